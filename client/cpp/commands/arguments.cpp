@@ -1,0 +1,131 @@
+#include "client/cpp/commands/arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+
+#include "client/cpp/commands/help.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+using GivenTexts = std::map<const Flag*, std::vector<std::string>>;
+
+/// CLI11 only splits the line into flags and texts; the texts are read later, all of them, so that
+/// no complaint hides another.
+void add_flags(CLI::App& app, const FlagList& list, GivenTexts& given) {
+  for (const Flag& flag : list.flags()) {
+    if (flag.is_switch) {
+      app.add_flag_callback(flag.names, [&given, &flag] { given[&flag] = {"true"}; });
+      continue;
+    }
+    CLI::Option* option = app.add_option_function<std::vector<std::string>>(
+        flag.names, [&given, &flag](const std::vector<std::string>& texts) {
+          auto& all = given[&flag];
+          all.insert(all.end(), texts.begin(), texts.end());
+        });
+    option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    if (flag.is_positional() && flag.is_repeatable) continue;
+    option->expected(1)->allow_extra_args(false);
+  }
+}
+
+/// "jobs list" is a "list" below a "jobs" that several commands share.
+CLI::App& add_command(CLI::App& root, const Command& command) {
+  CLI::App* app = &root;
+  for (const std::string& word : split(command.path, ' ')) {
+    const auto below =
+        app->get_subcommands([&](const CLI::App* each) { return each->get_name() == word; });
+    app = below.empty() ? app->add_subcommand(word) : below.front();
+    app->allow_extras();
+  }
+  return *app;
+}
+
+std::vector<std::string> names_of(const FlagList& list) {
+  std::vector<std::string> names;
+  for (const Flag& flag : list.flags()) {
+    if (flag.is_positional()) continue;
+    for (const std::string& name : split(flag.names, ',')) names.push_back(name);
+  }
+  return names;
+}
+
+/// Options are compared with the command's options, words with the commands.
+void complain_of_extras(const CLI::App& root, const CLI::App& app, const Command* command,
+                        const std::vector<Command>& commands, const FlagList& common_flags,
+                        Complaints& complaints) {
+  std::vector<std::string> options = names_of(common_flags);
+  if (command != nullptr) {
+    const auto own = names_of(command->flags);
+    options.insert(options.end(), own.begin(), own.end());
+  }
+  std::vector<std::string> paths;
+  paths.reserve(commands.size());
+  for (const Command& each : commands) paths.push_back(each.path);
+  const std::string group = &app == &root ? "" : app.get_name() + " ";
+
+  bool follows_option = false;  // the value of an unknown option is no news
+  for (const std::string& extra : root.remaining(true)) {
+    const std::string word = extra.substr(0, extra.find('='));
+    const bool is_option = word.size() > 1 && word[0] == '-';
+    if (extra != "--" && (is_option || !follows_option)) {
+      const char* kind = is_option ? "option" : command != nullptr ? "argument" : "command";
+      const std::string meant = is_option            ? nearest(word, options)
+                                : command == nullptr ? nearest(group + word, paths)
+                                                     : "";
+      complaints.push_back(std::string("unknown ") + kind + " " + printable(word) +
+                           (meant.empty() ? "" : " (is " + meant + " meant?)"));
+    }
+    follows_option = is_option && extra.find('=') == std::string::npos;
+  }
+}
+
+}  // namespace
+
+Parsed parse_arguments(const std::vector<std::string>& arguments,
+                       const std::vector<Command>& commands, const FlagList& common_flags) {
+  CLI::App root;
+  root.allow_extras();
+  bool version = false;
+  root.add_flag("--version", version);
+  GivenTexts given;
+  add_flags(root, common_flags, given);
+  std::map<const CLI::App*, const Command*> by_app;
+  for (const Command& command : commands) {
+    CLI::App& app = add_command(root, command);
+    add_flags(app, command.flags, given);
+    add_flags(app, common_flags, given);
+    by_app[&app] = &command;
+  }
+
+  Parsed parsed;
+  try {
+    // CLI11 wants the arguments reversed.
+    root.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForHelp&) {
+    parsed.wants_help = true;
+  } catch (const CLI::ParseError& error) {
+    parsed.complaints.push_back(error.what());
+  }
+  parsed.wants_version = version;
+  const CLI::App* app = &root;
+  while (!app->get_subcommands().empty()) app = app->get_subcommands().back();
+  const auto found = by_app.find(app);
+  if (found != by_app.end()) parsed.command = found->second;
+  if (parsed.wants_help || parsed.wants_version) return parsed;
+
+  complain_of_extras(root, *app, parsed.command, commands, common_flags, parsed.complaints);
+  if (parsed.command == nullptr) return parsed;
+  for (const FlagList* list : {&parsed.command->flags, &common_flags}) {
+    for (const Flag& flag : list->flags()) {
+      const auto texts = given.find(&flag);
+      if (texts != given.end()) flag.read(texts->second, parsed.complaints);
+    }
+  }
+  if (parsed.command->check) parsed.command->check(parsed.complaints);
+  return parsed;
+}
+
+}  // namespace tribodyn::client

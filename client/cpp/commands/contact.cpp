@@ -1,0 +1,120 @@
+#include <google/protobuf/descriptor.h>
+
+#include <array>
+#include <iostream>
+#include <memory>
+
+#include "client/cpp/commands/scenario.h"
+#include "client/cpp/report/contact_report.h"
+#include "client/cpp/service/errors.h"
+#include "client/cpp/text/csv.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+/// A number of the request: its field, unit, legal range, the default, and what it is.
+struct ContactInput {
+  const char* field;
+  const char* unit;
+  const char* range;
+  double standard;
+  const char* description;
+};
+
+// A hypoid flank of a passenger car near 70 km/h; steel; a run-in surface.
+constexpr std::array kInputs = {
+    ContactInput{"load_newtons", "N", "0 to 1e6", 1000, "Normal load W"},
+    ContactInput{"radius_x_metres", "m", "1e-5 to 1e4", 0.02, "Effective radius R_zx along x"},
+    ContactInput{"radius_y_metres", "m", "1e-5 to 1e4", 1.09, "Effective radius R_zy along y"},
+    ContactInput{"pinion_velocity_x_metres_per_second", "m/s", "-1e3 to 1e3", 5,
+                 "Surface velocity u_s,p"},
+    ContactInput{"pinion_velocity_y_metres_per_second", "m/s", "-1e3 to 1e3", 6,
+                 "Surface velocity v_s,p"},
+    ContactInput{"gear_velocity_x_metres_per_second", "m/s", "-1e3 to 1e3", 4,
+                 "Surface velocity u_s,g"},
+    ContactInput{"gear_velocity_y_metres_per_second", "m/s", "-1e3 to 1e3", -1,
+                 "Surface velocity v_s,g"},
+    ContactInput{"sump_temperature_celsius", "C", "-70 to 200", 40, "Temperature of the oil bath"},
+    ContactInput{"inlet_temperature_rise_kelvin", "K", "0 to 300", 20,
+                 "From the bath to the inlet (eq 14)"},
+    ContactInput{"youngs_modulus_pascals", "Pa", "1e6 to 1e13", 206e9, "Of both solids (eq 13)"},
+    ContactInput{"poissons_ratio", "-", "-0.99 to 0.5", 0.3, "Of both solids (eq 13)"},
+    ContactInput{"solid_thermal_conductivity_watts_per_metre_kelvin", "W/(m K)", "1e-3 to 1e4", 46,
+                 "Of both solids (eq 35)"},
+    ContactInput{"solid_density_kilograms_per_cubic_metre", "kg/m3", "1 to 1e5", 7850,
+                 "Of both solids (eq 35)"},
+    ContactInput{"solid_specific_heat_capacity_joules_per_kilogram_kelvin", "J/(kg K)", "1 to 1e5",
+                 470, "Of both solids (eq 35)"},
+    ContactInput{"asperity_density_per_square_metre", "1/m2", "1e3 to 1e16", 2.5e9,
+                 "Greenwood-Tripp eta_G (eq 41)"},
+    ContactInput{"asperity_radius_metres", "m", "1e-9 to 1", 40e-6,
+                 "Greenwood-Tripp beta_G (eq 41)"},
+    ContactInput{"composite_rms_height_metres", "m", "1e-10 to 1e-2", 0.4e-6,
+                 "Roughness sigma_G of both surfaces (eq 41)"},
+    ContactInput{"tribofilm_shear_strength_pascals", "Pa", "0 to 1e10", 2e6, "tau_0 of eq 40"},
+    ContactInput{"asperity_friction_coefficient", "-", "0 to 10", 0.17, "zeta of eq 40"},
+};
+
+void set_number(v1::EvaluateContactRequest& request, const char* field, double value) {
+  request.GetReflection()->SetDouble(
+      &request, v1::EvaluateContactRequest::descriptor()->FindFieldByName(field), value);
+}
+
+void add_contact_flags(FlagList& list, v1::EvaluateContactRequest& request) {
+  list.group("Contact");
+  request.set_lubricant("lubricants/1");
+  list.text("--lubricant,-l", "NAME", "Lubricant, e.g. 2 or lubricants/2. Default: 1.",
+            [&request](const std::string& name) {
+              request.set_lubricant(resource_name("lubricants", name));
+            });
+  for (const ContactInput& input : kInputs) {
+    set_number(request, input.field, input.standard);
+    list.number(flag_of_field(input.field), {input.unit, input.range, significant(input.standard)},
+                input.description, [&request, field = input.field](double value) {
+                  set_number(request, field, value);
+                });
+  }
+  add_model_flags(list, *request.mutable_model_options());
+}
+
+int run_contact(const v1::EvaluateContactRequest& request, const CommonOptions& options) {
+  const v1::EvaluateContactResponse contact = options.connect().evaluate_contact(request);
+  switch (options.output_format) {
+    case OutputFormat::kTable:
+      std::cout << contact_report(contact);
+      break;
+    case OutputFormat::kCsv: {
+      CsvRow row;
+      append_fields(contact, "", row);
+      std::cout << csv_text({row});
+      break;
+    }
+    case OutputFormat::kJson:
+      std::cout << json_text(contact);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+Command contact_command() {
+  const auto request = std::make_shared<v1::EvaluateContactRequest>();
+  Command command{
+      "contact",
+      "one flank contact from explicit inputs, every intermediate quantity",
+      "Solves one lubricated flank contact and prints every quantity with symbol and equation. x "
+      "is "
+      "the direction of radius x, y that of radius y. The defaults are a typical hypoid flank.",
+      {"tribodyn contact --lubricant 1 --load-newtons 2000",
+       "tribodyn contact --lubricant 2 --gear-velocity-y-metres-per-second 0 --newtonian "
+       "--output csv"},
+      {},
+      {},
+      {}};
+  add_contact_flags(command.flags, *request);
+  command.run = [request](const CommonOptions& options) { return run_contact(*request, options); };
+  return command;
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,151 @@
+#include "client/cpp/commands/flags.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+/// "Oil bath temperature. Legal: -70 to 200 C. Default: 40 C."
+std::string described(const std::string& description, const NumberText& text) {
+  const std::string unit = text.unit == "-" ? "" : " " + text.unit;
+  return description + ". Legal: " + text.range + unit +
+         (text.standard.empty() ? "." : ". Default: " + text.standard + unit + ".");
+}
+
+std::string quoted(const std::string& text) { return "'" + printable(text) + "'"; }
+
+std::string complaint(const std::string& name, const std::string& given, const std::string& wrong) {
+  return name + ": " + quoted(given) + " " + wrong;
+}
+
+std::string value_name_of(const NumberText& text) {
+  return text.unit == "-" ? "NUMBER" : text.unit;
+}
+
+}  // namespace
+
+std::optional<double> parse_number(const std::string& text) {
+  const char* first = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
+  const char* last = text.data() + text.size();
+  double value = 0;
+  const auto [end, error] = std::from_chars(first, last, value);
+  if (error != std::errc() || end != last || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+void FlagList::add(const std::string& names, const std::string& value_name,
+                   const std::string& description,
+                   const std::function<void(const std::string&, Complaints&)>& read) {
+  Flag flag{names, value_name, description, group_};
+  flag.read = [name = flag.first_name(), read](const std::vector<std::string>& texts,
+                                               Complaints& complaints) {
+    if (texts.size() > 1) {
+      complaints.push_back(name + " is given " + std::to_string(texts.size()) + " times");
+    }
+    for (const std::string& text : texts) read(text, complaints);
+  };
+  flags_.push_back(std::move(flag));
+}
+
+void FlagList::number(const std::string& names, const NumberText& text,
+                      const std::string& description, const std::function<void(double)>& set) {
+  const std::string name = names.substr(0, names.find(','));
+  const std::string unit = text.unit == "-" ? "" : " in " + text.unit;
+  add(names, value_name_of(text), described(description, text),
+      [=](const std::string& given, Complaints& complaints) {
+        if (const auto value = parse_number(given)) {
+          set(*value);
+        } else {
+          complaints.push_back(complaint(name, given, "is not a number" + unit));
+        }
+      });
+}
+
+void FlagList::whole_number(const std::string& names, const NumberText& text,
+                            const std::string& description, const std::function<void(int)>& set) {
+  const std::string name = names.substr(0, names.find(','));
+  add(names, value_name_of(text), described(description, text),
+      [=](const std::string& given, Complaints& complaints) {
+        int value = 0;
+        const char* last = given.data() + given.size();
+        const auto [end, error] = std::from_chars(given.data(), last, value);
+        if (error == std::errc() && end == last) {
+          set(value);
+        } else {
+          complaints.push_back(complaint(name, given, "is not a whole number"));
+        }
+      });
+}
+
+void FlagList::text(const std::string& names, const std::string& value_name,
+                    const std::string& description,
+                    const std::function<void(const std::string&)>& set) {
+  const std::string name = names.substr(0, names.find(','));
+  add(names, value_name, description, [=](const std::string& given, Complaints& complaints) {
+    if (given.empty()) complaints.push_back(name + " is empty");
+    set(given);
+  });
+}
+
+void FlagList::texts(const std::string& names, const std::string& value_name,
+                     const std::string& description,
+                     const std::function<void(const std::string&)>& add_value) {
+  choices(names, value_name, description, [add_value](const std::string& value) {
+    add_value(value);
+    return true;
+  });
+}
+
+void FlagList::choices(const std::string& names, const std::string& words,
+                       const std::string& description,
+                       const std::function<bool(const std::string&)>& add_value) {
+  Flag flag{names, words, description, group_};
+  flag.is_repeatable = true;
+  flag.read = [name = flag.first_name(), words, add_value](const std::vector<std::string>& given,
+                                                           Complaints& complaints) {
+    for (const std::string& text : given) {
+      if (text.empty()) complaints.push_back(name + " is empty");
+      for (const std::string& value : split(text, ',')) {
+        if (value.empty()) {
+          complaints.push_back(complaint(name, text, "has an empty part"));
+        } else if (!add_value(value)) {
+          complaints.push_back(complaint(name, value, "is not one of " + words));
+        }
+      }
+    }
+  };
+  flags_.push_back(std::move(flag));
+}
+
+void FlagList::choice(const std::string& names, const std::vector<std::string>& words,
+                      const std::string& description, const std::function<void(int)>& set) {
+  const std::string name = names.substr(0, names.find(','));
+  std::string all;
+  for (const std::string& word : words) {
+    if (!all.empty()) all += '|';
+    all += word;
+  }
+  add(names, all, description, [=](const std::string& given, Complaints& complaints) {
+    const auto found = std::find(words.begin(), words.end(), given);
+    if (found == words.end()) {
+      complaints.push_back(complaint(name, given, "is not one of " + all));
+    } else {
+      set(static_cast<int>(found - words.begin()));
+    }
+  });
+}
+
+void FlagList::toggle(const std::string& names, const std::string& description,
+                      const std::function<void()>& set) {
+  Flag flag{names, "", description, group_};
+  flag.is_switch = true;
+  flag.read = [set](const std::vector<std::string>&, Complaints&) { set(); };
+  flags_.push_back(std::move(flag));
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tribodyn::client {
+
+/// What is wrong with a command line, all of it: one sentence each.
+using Complaints = std::vector<std::string>;
+
+/// One flag or positional argument of a command: how help shows it, and how its texts are read.
+struct Flag {
+  std::string names;        ///< "--speed-kilometers-per-hour,--speed"; "name" for a positional
+  std::string value_name;   ///< "KM/H", "NAME", "FILE"; empty for a switch
+  std::string description;  ///< with legal range and default
+  std::string group;        ///< heading in the help
+  bool is_switch = false;
+  bool is_repeatable = false;
+  /// Takes every text given (never empty; {"true"} for a switch).
+  std::function<void(const std::vector<std::string>&, Complaints&)> read = {};
+
+  bool is_positional() const { return names.front() != '-'; }
+  std::string first_name() const { return names.substr(0, names.find(',')); }
+};
+
+/// How a number is described: unit, legal range and default are always shown together.
+struct NumberText {
+  std::string unit;           ///< "km/h", "-" for a pure number
+  std::string range;          ///< as the server checks it: "0 to 250"
+  std::string standard = "";  ///< the default in words or digits; empty: must be given
+};
+
+/// Collects the flags of a command; each hands what it read to its setter, and nothing that it
+/// could not read.
+class FlagList {
+ public:
+  /// Following flags stand under this heading in the help.
+  void group(std::string heading) { group_ = std::move(heading); }
+
+  void number(const std::string& names, const NumberText& text, const std::string& description,
+              const std::function<void(double)>& set);
+  void whole_number(const std::string& names, const NumberText& text,
+                    const std::string& description, const std::function<void(int)>& set);
+  void text(const std::string& names, const std::string& value_name, const std::string& description,
+            const std::function<void(const std::string&)>& set);
+  /// Repeatable; each text may also hold several values separated by commas.
+  void texts(const std::string& names, const std::string& value_name,
+             const std::string& description, const std::function<void(const std::string&)>& add);
+  /// One of `words`; `set` gets its index.
+  void choice(const std::string& names, const std::vector<std::string>& words,
+              const std::string& description, const std::function<void(int)>& set);
+  /// As texts; `add` says whether it knows the word, one of `words`.
+  void choices(const std::string& names, const std::string& words, const std::string& description,
+               const std::function<bool(const std::string&)>& add);
+  void toggle(const std::string& names, const std::string& description,
+              const std::function<void()>& set);
+
+  const std::vector<Flag>& flags() const { return flags_; }
+
+ private:
+  void add(const std::string& names, const std::string& value_name, const std::string& description,
+           const std::function<void(const std::string&, Complaints&)>& read);
+
+  std::string group_ = "Options";
+  std::vector<Flag> flags_;
+};
+
+/// The whole text as a finite number; nothing else will do.
+std::optional<double> parse_number(const std::string& text);
+
+}  // namespace tribodyn::client

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "client/cpp/commands/operating_point.h"
+#include "client/cpp/commands/scenario.h"
+#include "client/cpp/plot/history_plot.h"
+#include "client/cpp/report/history_report.h"
+#include "client/cpp/report/inputs.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+constexpr char kTimeColumn[] = "time_seconds";
+
+struct HistoryFlags {
+  OperatingPointFlags point;
+  Scenario scenario;
+  v1::HistoryRequest history;
+  std::string simulation;
+  std::string csv_path;
+  std::string plot_path;
+};
+
+void add_history_flags(FlagList& list, HistoryFlags& flags) {
+  list.group("History");
+  list.texts("--columns", "NAMES",
+             "What to record, by commas; each name ends in its unit. Also: pinion_speed_..., "
+             "gear_friction_torque_newton_metres, flank_load_newtons (three flank slots), ...; a "
+             "wrong name is answered with the nearest. Time is always recorded. Default: "
+             "dynamic_transmission_error_metres,mesh_force_newtons,mesh_loss_power_watts.",
+             [&](const std::string& column) { flags.history.add_columns(column); });
+  list.whole_number("--mesh-cycles", {"mesh cycles", "1 to 1000", "1"},
+                    "Length of the recorded steady state",
+                    [&](int count) { flags.history.set_mesh_cycles(count); });
+  list.whole_number("--samples-per-mesh-cycle", {"samples", "2 to 100000", "192"},
+                    "Equidistant in mesh phase",
+                    [&](int count) { flags.history.set_samples_per_mesh_cycle(count); });
+  list.text("--simulation", "NAME",
+            "Read the history of this finished simulation instead of computing one.",
+            [&](const std::string& name) { flags.simulation = name; });
+  list.group("Files");
+  list.text("--csv", "FILE", "Also write the samples as CSV.",
+            [&](const std::string& path) { flags.csv_path = path; });
+  list.text("--plot", "FILE.svg", "Also draw every column against time.",
+            [&](const std::string& path) { flags.plot_path = path; });
+}
+
+v1::Simulation computed(HistoryFlags& flags, Connection& connection) {
+  v1::HistoryRequest& history = flags.history;
+  if (history.columns_size() == 0) {
+    history.add_columns("dynamic_transmission_error_metres");
+    history.add_columns("mesh_force_newtons");
+    history.add_columns("mesh_loss_power_watts");
+  }
+  if (std::find(history.columns().begin(), history.columns().end(), kTimeColumn) ==
+      history.columns().end()) {
+    history.add_columns(kTimeColumn);
+    std::rotate(history.mutable_columns()->begin(), history.mutable_columns()->end() - 1,
+                history.mutable_columns()->end());
+  }
+  auto& study = *flags.scenario.simulation.mutable_operating_point();
+  study = operating_point_study(flags.point);
+  *study.mutable_history() = history;
+  const auto ended = run_scenario(flags.scenario, connection);
+  return ended.empty() ? v1::Simulation() : ended.front();
+}
+
+int run_history(HistoryFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  const v1::Simulation simulation =
+      flags.simulation.empty()
+          ? computed(flags, connection)
+          : connection.get_simulation(resource_name("simulations", flags.simulation));
+  if (simulation.name().empty()) return kExitOk;  // detached
+  if (simulation.state() != v1::Simulation::SUCCEEDED) return report_failures({simulation});
+  const v1::HistoryChunk history = connection.read_history(simulation.name());
+  switch (options.output_format) {
+    case OutputFormat::kTable:
+      std::cout << printable(simulation.name()) << ": " << study_text(simulation) << ", "
+                << printable(simulation.lubricant()) << ", " << inputs_text(simulation) << "\n\n"
+                << history_summary(history)
+                << "\nThe samples: --output csv, or --csv FILE; a picture: --plot FILE.svg.\n";
+      break;
+    case OutputFormat::kCsv:
+      std::cout << history_csv(history);
+      break;
+    case OutputFormat::kJson:
+      std::cout << json_text(history);
+  }
+  if (!flags.csv_path.empty()) write_file(flags.csv_path, history_csv(history));
+  if (!flags.plot_path.empty()) write_file(flags.plot_path, history_plot(simulation, history));
+  return kExitOk;
+}
+
+}  // namespace
+
+Command history_command() {
+  const auto flags = std::make_shared<HistoryFlags>();
+  Command command{
+      "history",
+      "what happens over the mesh cycle, against time",
+      "Computes an operating point with time histories of its steady state and reads them.",
+      {"tribodyn history --lubricant 1 --speed-kilometers-per-hour 72.5 --mesh-cycles 2 "
+       "--plot history.svg",
+       "tribodyn history --lubricant 1 --speed 72.5 --columns "
+       "flank_load_newtons,flank_contact_temperature_kelvin --output csv"},
+      {},
+      {},
+      {}};
+  add_operating_point_flags(command.flags, flags->point);
+  add_history_flags(command.flags, *flags);
+  add_scenario_flags(command.flags, flags->scenario);
+  command.check = [flags](Complaints& complaints) {
+    if (!flags->simulation.empty()) return;
+    check_operating_point(flags->point, complaints);
+    check_scenario(flags->scenario, false, complaints);
+  };
+  command.run = [flags](const CommonOptions& options) { return run_history(*flags, options); };
+  return command;
+}
+
+}  // namespace tribodyn::client

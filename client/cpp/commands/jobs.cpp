@@ -1,0 +1,200 @@
+#include <google/protobuf/util/time_util.h>
+
+#include <iostream>
+#include <memory>
+
+#include "client/cpp/commands/scenario.h"
+#include "client/cpp/report/inputs.h"
+#include "client/cpp/report/results.h"
+#include "client/cpp/service/follow.h"
+#include "client/cpp/text/csv.h"
+#include "client/cpp/text/table.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+using google::protobuf::util::TimeUtil;
+
+struct JobFlags {
+  std::vector<std::string> names;
+  int limit = 20;
+  bool shows_assumptions = false;
+};
+
+std::string time_text(const google::protobuf::Timestamp& time) {
+  const google::protobuf::Timestamp whole = TimeUtil::SecondsToTimestamp(time.seconds());
+  return TimeUtil::ToString(whole);
+}
+
+std::string jobs_table(const std::vector<v1::Simulation>& simulations) {
+  Table table({{"Name", "", Table::Align::kLeft},
+               {"State", "", Table::Align::kLeft},
+               {"done", "%"},
+               {"Created", "UTC", Table::Align::kLeft},
+               {"took", ""},
+               {"Lubricant", "", Table::Align::kLeft},
+               {"Study", "", Table::Align::kLeft},
+               {"Title", "", Table::Align::kLeft}});
+  for (const v1::Simulation& simulation : simulations) {
+    const double seconds = run_seconds(simulation);
+    table.add_row({resource_id(simulation.name()), state_text(simulation.state()),
+                   fixed(100 * simulation.progress_fraction(), 0),
+                   simulation.has_create_time() ? time_text(simulation.create_time()) : "-",
+                   seconds >= 0 ? duration_text(seconds) : "-", resource_id(simulation.lubricant()),
+                   study_text(simulation), simulation.display_name()});
+  }
+  return table.text();
+}
+
+std::string jobs_csv(const std::vector<v1::Simulation>& simulations) {
+  std::vector<CsvRow> rows;
+  for (const v1::Simulation& simulation : simulations) {
+    const Inputs inputs = inputs_of(simulation);
+    const double seconds = run_seconds(simulation);
+    rows.push_back(
+        {{"name", simulation.name()},
+         {"display_name", simulation.display_name()},
+         {"state", v1::Simulation::State_Name(simulation.state())},
+         {"progress_fraction", shortest(simulation.progress_fraction())},
+         {"create_time",
+          simulation.has_create_time() ? TimeUtil::ToString(simulation.create_time()) : ""},
+         {"run_seconds", seconds >= 0 ? shortest(seconds) : ""},
+         {"lubricant", inputs.lubricant},
+         {"gear_set", inputs.gear_set},
+         {"surface", inputs.surface},
+         {"vehicle", inputs.vehicle},
+         {"sump_temperature_celsius", shortest(inputs.sump_temperature_celsius)},
+         {"study", study_text(simulation)},
+         {"error_reason", simulation.error().reason()},
+         {"error_message", simulation.error().message()}});
+  }
+  return csv_text(rows);
+}
+
+std::string jobs_text(const std::vector<v1::Simulation>& simulations, OutputFormat format,
+                      bool alone) {
+  switch (format) {
+    case OutputFormat::kTable:
+      return jobs_table(simulations);
+    case OutputFormat::kCsv:
+      return jobs_csv(simulations);
+    case OutputFormat::kJson:
+      break;
+  }
+  return results_text(simulations, format, alone, false);
+}
+
+int run_list(const JobFlags& flags, const CommonOptions& options) {
+  const auto list = options.connect().list_simulations(flags.limit);
+  std::cout << jobs_text({list.simulations().begin(), list.simulations().end()},
+                         options.output_format, false);
+  if (!list.next_page_token().empty() && options.output_format == OutputFormat::kTable) {
+    std::cerr << "There are more; --limit raises their number.\n";
+  }
+  return kExitOk;
+}
+
+/// A job that has a result is shown by it; one that has none, as it stands.
+int run_get(const JobFlags& flags, const CommonOptions& options) {
+  const v1::Simulation simulation =
+      options.connect().get_simulation(resource_name("simulations", flags.names.front()));
+  if (simulation.state() == v1::Simulation::SUCCEEDED) {
+    std::cout << results_text({simulation}, options.output_format, true, flags.shows_assumptions);
+    return kExitOk;
+  }
+  std::cout << jobs_text({simulation}, options.output_format, true);
+  return has_ended(simulation.state()) ? report_failures({simulation}) : kExitOk;
+}
+
+int run_watch(const JobFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  std::vector<v1::Simulation> jobs;
+  std::vector<std::string> labels;
+  for (const std::string& name : flags.names) {
+    jobs.push_back(connection.get_simulation(resource_name("simulations", name)));
+    labels.push_back(jobs.back().lubricant());
+  }
+  const auto ended = follow(connection, jobs, labels);
+  std::cout << results_text(ended, options.output_format, false, flags.shows_assumptions);
+  return report_failures(ended);
+}
+
+int run_cancel(const JobFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  std::vector<v1::Simulation> jobs;
+  for (const std::string& name : flags.names) {
+    jobs.push_back(connection.cancel_simulation(resource_name("simulations", name)));
+  }
+  std::cout << jobs_text(jobs, options.output_format, false);
+  return kExitOk;
+}
+
+Command job_command(const char* path, const char* summary, const char* about, const char* example,
+                    bool several, bool shows_results,
+                    int (*run)(const JobFlags&, const CommonOptions&)) {
+  const auto flags = std::make_shared<JobFlags>();
+  Command command{path, summary, about, {example}, {}, {}, {}};
+  command.flags.group("Arguments");
+  const char* description = "The job, e.g. 12 or simulations/12 (`tribodyn jobs list`).";
+  const auto add = [flags](const std::string& name) { flags->names.push_back(name); };
+  if (several) {
+    command.flags.texts("name", "NAME", description, add);
+  } else {
+    command.flags.text("name", "NAME", description, add);
+  }
+  if (shows_results) {
+    command.flags.group("Options");
+    command.flags.toggle("--assumptions", "Print every assumption the result rests on.",
+                         [flags] { flags->shows_assumptions = true; });
+  }
+  command.check = [flags](Complaints& complaints) {
+    if (flags->names.empty()) {
+      complaints.emplace_back("NAME is missing; `tribodyn jobs list` shows the jobs");
+    }
+  };
+  command.run = [flags, run](const CommonOptions& options) { return run(*flags, options); };
+  return command;
+}
+
+}  // namespace
+
+Command jobs_list_command() {
+  const auto flags = std::make_shared<JobFlags>();
+  Command command{"jobs list",
+                  "the newest jobs of the server",
+                  "Lists jobs, newest first.",
+                  {"tribodyn jobs list --limit 5"},
+                  {},
+                  {},
+                  {}};
+  command.flags.whole_number("--limit,-n", {"jobs", "1 to 100000", "20"}, "How many",
+                             [flags](int value) { flags->limit = value; });
+  command.check = [flags](Complaints& complaints) {
+    if (flags->limit < 1 || flags->limit > 100000) {
+      complaints.emplace_back("--limit must be 1 to 100000");
+    }
+  };
+  command.run = [flags](const CommonOptions& options) { return run_list(*flags, options); };
+  return command;
+}
+
+Command jobs_get_command() {
+  return job_command("jobs get", "one job: its result, or how far it is",
+                     "Prints the result of a job, or where it stands.",
+                     "tribodyn jobs get 12 --output json", false, true, run_get);
+}
+
+Command jobs_watch_command() {
+  return job_command("jobs watch", "follow jobs to their end, then print their results",
+                     "Follows jobs until all have ended and prints their results. Ctrl-C stops "
+                     "following; the jobs go on.",
+                     "tribodyn jobs watch 12", true, true, run_watch);
+}
+
+Command jobs_cancel_command() {
+  return job_command("jobs cancel", "stop jobs", "Stops jobs; one that has ended is left as it is.",
+                     "tribodyn jobs cancel 12", true, false, run_cancel);
+}
+
+}  // namespace tribodyn::client

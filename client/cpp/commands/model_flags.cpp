@@ -1,0 +1,93 @@
+#include <google/protobuf/descriptor.h>
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "client/cpp/commands/scenario.h"
+#include "client/cpp/service/errors.h"
+
+namespace tribodyn::client {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+
+/// What each switch of ModelOptions does. A switch that is not listed here still gets its flag.
+const std::map<std::string, std::string>& switch_descriptions() {
+  static const std::map<std::string, std::string> kDescriptions = {
+      {"isothermal", "Contact temperature equal to the inlet's: no thermal network (eqs 35-39)."},
+      {"newtonian", "No shear thinning (eq 23)."},
+      {"no_limiting_shear_stress", "Shear stress not restricted to the limiting one."},
+      {"no_boundary_friction", "No friction of asperities (eq 40); they still carry load."},
+      {"damping_in_contact_only", "Mesh damping acts only while the flanks touch."},
+      {"energy_consistent", "Add the parametric torques that eq 2 leaves out."},
+      {"subtract_contact_point_motion", "Entrainment as the moving contact point sees it."},
+      {"load_dependent_mesh_data", "Mesh stiffness, error and load shares at the actual torque."},
+      {"exact_hertz", "Elliptic integrals in place of the fits of eqs 21, 22."},
+      {"hertz_from_total_load", "Contact ellipse from the total load, not the film's part."},
+  };
+  return kDescriptions;
+}
+
+/// The words of --as-published and the field each switches on.
+const std::vector<std::pair<std::string, std::string>>& misprints() {
+  static const std::vector<std::pair<std::string, std::string>> kMisprints = {
+      {"eq17", "eq17_atan"},           {"eq20", "eq20_semi_major"},
+      {"eq22", "eq22_inverted_ratio"}, {"eq31", "eq31_32_logarithm"},
+      {"eq43", "eq43_44_polynomials"}, {"eq46", "eq46_square_root_of_sum"},
+  };
+  return kMisprints;
+}
+
+void switch_on(google::protobuf::Message& message, const std::string& field) {
+  message.GetReflection()->SetBool(&message, message.GetDescriptor()->FindFieldByName(field), true);
+}
+
+std::string misprint_words() {
+  std::string words;
+  for (const auto& [word, field] : misprints()) words += (words.empty() ? "" : "|") + word;
+  return words;
+}
+
+void add_as_published_flag(FlagList& flags, v1::ModelOptions& options) {
+  flags.choices("--as-published", misprint_words(),
+                "Switch a misprint of the paper back on, to see what it does: " + misprint_words() +
+                    ", several by commas (eq31 stands for eqs 31 and 32, eq43 for 43 and 44). "
+                    "Default: all corrected.",
+                [&options](const std::string& given) {
+                  for (const auto& [word, field] : misprints()) {
+                    if (given == word || given == field) {
+                      switch_on(*options.mutable_as_published(), field);
+                      return true;
+                    }
+                  }
+                  return false;
+                });
+}
+
+}  // namespace
+
+void add_model_flags(FlagList& flags, v1::ModelOptions& options) {
+  flags.group("Model (default: the paper's model with its misprints corrected)");
+  const auto* descriptor = v1::ModelOptions::descriptor();
+  for (int i = 0; i < descriptor->field_count(); ++i) {
+    const FieldDescriptor& field = *descriptor->field(i);
+    if (field.cpp_type() != FieldDescriptor::CPPTYPE_BOOL) continue;
+    const auto found = switch_descriptions().find(field.name());
+    flags.toggle(flag_of_field(field.name()),
+                 found != switch_descriptions().end() ? found->second : "See ModelOptions.",
+                 [&options, name = field.name()] { switch_on(options, name); });
+  }
+  flags.choice("--pressure-viscosity-index", {"reciprocal-asymptotic", "houpert"},
+               "Roelands index Z: solved from eq 33 for the measured coefficient, or from eq 32. "
+               "Default: reciprocal-asymptotic.",
+               [&options](int index) {
+                 options.set_pressure_viscosity_index(index == 0
+                                                          ? v1::ModelOptions::RECIPROCAL_ASYMPTOTIC
+                                                          : v1::ModelOptions::HOUPERT);
+               });
+  add_as_published_flag(flags, options);
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,74 @@
+#include "client/cpp/commands/operating_point.h"
+
+namespace tribodyn::client {
+
+void add_operating_point_flags(FlagList& flags, OperatingPointFlags& point) {
+  flags.group("Operating point: a speed, or a torque with a pinion speed");
+  flags.number("--speed-kilometers-per-hour,--speed", {"km/h", "0.1 to 400", ""}, "Vehicle speed",
+               [&](double value) { point.speed_kilometers_per_hour = value; });
+  flags.number("--acceleration-metres-per-second-squared,--acceleration",
+               {"m/s2", "-50 to 50", "0"}, "Of the vehicle, as at an instant of a drive cycle",
+               [&](double value) { point.acceleration_metres_per_second_squared = value; });
+  flags.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"}, "Road slope",
+               [&](double value) { point.ascent_angle_degrees = value; });
+  flags.number("--pinion-torque-newton-metres,--torque", {"N m", "-1e5 to 1e5", ""},
+               "In place of a speed, with the pinion speed; negative is coast",
+               [&](double value) { point.pinion_torque_newton_metres = value; });
+  flags.number("--pinion-speed-radians-per-second,--pinion-speed", {"rad/s", "0.01 to 1e4", ""},
+               "Mean speed of the pinion, with the pinion torque",
+               [&](double value) { point.pinion_speed_radians_per_second = value; });
+  add_model_and_start_flags(flags, point.study);
+  flags.toggle("--probe-coexisting-response",
+               "Also settle from the other start and report a second steady state if there is one.",
+               [&] { point.study.set_probe_coexisting_response(true); });
+}
+
+void check_operating_point(const OperatingPointFlags& point, Complaints& complaints) {
+  const bool by_speed = point.speed_kilometers_per_hour.has_value();
+  const bool has_torque = point.pinion_torque_newton_metres.has_value();
+  const bool has_pinion_speed = point.pinion_speed_radians_per_second.has_value();
+  if (by_speed && (has_torque || has_pinion_speed)) {
+    complaints.emplace_back(
+        "either --speed-kilometers-per-hour, or --pinion-torque-newton-metres with "
+        "--pinion-speed-radians-per-second, not both");
+  } else if (has_torque != has_pinion_speed) {
+    complaints.emplace_back(has_torque ? "--pinion-torque-newton-metres needs "
+                                         "--pinion-speed-radians-per-second"
+                                       : "--pinion-speed-radians-per-second needs "
+                                         "--pinion-torque-newton-metres");
+  } else if (!by_speed && !has_torque) {
+    complaints.emplace_back(
+        "--speed-kilometers-per-hour is missing, e.g. --speed-kilometers-per-hour 72.5");
+  }
+  if (has_torque && point.acceleration_metres_per_second_squared) {
+    complaints.emplace_back(
+        "--acceleration-metres-per-second-squared does not go with --pinion-torque-newton-metres");
+  }
+  if (has_torque && point.ascent_angle_degrees) {
+    complaints.emplace_back(
+        "--ascent-angle-degrees does not go with --pinion-torque-newton-metres");
+  }
+}
+
+v1::OperatingPointStudy operating_point_study(const OperatingPointFlags& point) {
+  v1::OperatingPointStudy study = point.study;
+  const double ascent = point.ascent_angle_degrees.value_or(0);
+  if (point.pinion_torque_newton_metres) {
+    auto& torque = *study.mutable_prescribed_torque();
+    torque.set_pinion_torque_newton_metres(*point.pinion_torque_newton_metres);
+    torque.set_pinion_speed_radians_per_second(point.pinion_speed_radians_per_second.value_or(0));
+  } else if (point.acceleration_metres_per_second_squared) {
+    auto& snapshot = *study.mutable_drive_cycle_snapshot();
+    snapshot.set_speed_kilometers_per_hour(point.speed_kilometers_per_hour.value_or(0));
+    snapshot.set_acceleration_metres_per_second_squared(
+        *point.acceleration_metres_per_second_squared);
+    snapshot.set_ascent_angle_degrees(ascent);
+  } else {
+    study.mutable_cruise()->set_speed_kilometers_per_hour(
+        point.speed_kilometers_per_hour.value_or(0));
+    study.mutable_cruise()->set_ascent_angle_degrees(ascent);
+  }
+  return study;
+}
+
+}  // namespace tribodyn::client

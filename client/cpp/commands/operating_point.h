@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+
+#include "client/cpp/commands/command.h"
+#include "tribodyn/v1/simulations.pb.h"
+
+namespace tribodyn::client {
+
+/// What holds an operating point, as flags: a speed (with acceleration and slope), or a torque with
+/// a pinion speed.
+struct OperatingPointFlags {
+  std::optional<double> speed_kilometers_per_hour;
+  std::optional<double> acceleration_metres_per_second_squared;
+  std::optional<double> ascent_angle_degrees;
+  std::optional<double> pinion_torque_newton_metres;
+  std::optional<double> pinion_speed_radians_per_second;
+  v1::OperatingPointStudy study;  ///< model, start, probe
+};
+
+/// Writes to `point`, which must outlive the flags.
+void add_operating_point_flags(FlagList& flags, OperatingPointFlags& point);
+void check_operating_point(const OperatingPointFlags& point, Complaints& complaints);
+v1::OperatingPointStudy operating_point_study(const OperatingPointFlags& point);
+
+/// --model and --start, shared with the curve.
+template <class Study>
+void add_model_and_start_flags(FlagList& flags, Study& study) {
+  flags.choice("--model", {"full", "quasi-static"},
+               "full: the four degrees of freedom in time; quasi-static: equilibrium at constant "
+               "speed, phase by phase. Default: full.",
+               [&study](int index) { study.set_model(index == 0 ? v1::FULL : v1::QUASI_STATIC); });
+  flags.choice("--start", {"quasi-static", "separated"},
+               "Where the march starts; it decides the branch where two responses coexist. "
+               "quasi-static: the low-amplitude one; separated: vibro-impact where it exists. "
+               "Default: quasi-static.",
+               [&study](int index) {
+                 study.set_start(index == 0 ? v1::QUASI_STATIC_EQUILIBRIUM : v1::SEPARATED);
+               });
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,134 @@
+#include "client/cpp/commands/scenario.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "client/cpp/service/follow.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
+  flags.group("Solver");
+  flags.number(
+      "--relative-tolerance", {"-", "1e-11 to 1e-3", "1e-7"}, "Error of the time march, per step",
+      [&](double value) { simulation.mutable_solver_options()->set_relative_tolerance(value); });
+  flags.number(
+      "--settling-tolerance", {"-", "1e-12 to 0.1", "1e-6"},
+      "Relative change per period below which the response counts as steady",
+      [&](double value) { simulation.mutable_solver_options()->set_settling_tolerance(value); });
+  flags.whole_number("--maximum-mesh-cycles", {"mesh cycles", "1 to 100000", "4000"},
+                     "Work limit of the search for the steady state", [&](int value) {
+                       simulation.mutable_solver_options()->set_maximum_mesh_cycles(value);
+                     });
+  flags.whole_number("--recorded-mesh-cycles", {"mesh cycles", "1 to 1000", "50"},
+                     "Averaged where no period is found", [&](int value) {
+                       simulation.mutable_solver_options()->set_recorded_mesh_cycles(value);
+                     });
+}
+
+/// All or nothing: one refused lubricant takes back what was submitted beside it.
+[[noreturn]] void withdraw(const std::vector<v1::Simulation>& submitted, const Complaints& refusals,
+                           Connection& connection) {
+  for (const v1::Simulation& simulation : submitted)
+    connection.cancel_simulation(simulation.name());
+  std::string text;
+  for (const std::string& refusal : refusals) text += (text.empty() ? "" : "\n") + refusal;
+  if (!submitted.empty()) text += "\n  The others were cancelled.";
+  throw Failure(kExitFailed, text);
+}
+
+}  // namespace
+
+void add_scenario_flags(FlagList& flags, Scenario& scenario) {
+  v1::Simulation& simulation = scenario.simulation;
+  flags.group("Fluid, hardware, temperatures");
+  flags.texts("--lubricant,-l", "NAME",
+              "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` shows them).",
+              [&](const std::string& name) { scenario.lubricants.push_back(name); });
+  flags.text(
+      "--gear-set", "NAME", "Gear set in its driveline. Default: A.",
+      [&](const std::string& name) { simulation.set_gear_set(resource_name("gearSets", name)); });
+  flags.text(
+      "--surface", "NAME", "Composite roughness of the flanks. Default: run-in.",
+      [&](const std::string& name) { simulation.set_surface(resource_name("surfaces", name)); });
+  flags.text(
+      "--vehicle", "NAME", "Road load. Default: passenger-car.",
+      [&](const std::string& name) { simulation.set_vehicle(resource_name("vehicles", name)); });
+  flags.number("--sump-temperature-celsius,--sump", {"C", "-70 to 200", "40"},
+               "Temperature of the oil bath",
+               [&](double value) { simulation.set_sump_temperature_celsius(value); });
+  flags.number("--inlet-temperature-rise-kelvin", {"K", "0 to 300", "20"},
+               "From the bath to the contact's inlet (eq 14)",
+               [&](double value) { simulation.set_inlet_temperature_rise_kelvin(value); });
+  add_model_flags(flags, *simulation.mutable_model_options());
+  add_solver_flags(flags, simulation);
+  flags.group("Job");
+  flags.text("--display-name", "TEXT", "A title for the job, shown by `tribodyn jobs list`.",
+             [&](const std::string& text) { simulation.set_display_name(text); });
+  flags.toggle("--detach", "Submit the job and return at once.", [&] { scenario.detach = true; });
+  flags.toggle("--assumptions", "Print every assumption the result rests on.",
+               [&] { scenario.shows_assumptions = true; });
+}
+
+void check_scenario(const Scenario& scenario, bool several_lubricants, Complaints& complaints) {
+  if (scenario.lubricants.empty()) {
+    complaints.emplace_back("--lubricant is missing, e.g. --lubricant 1");
+  }
+  if (scenario.lubricants.size() > 1 && !several_lubricants) {
+    complaints.emplace_back("--lubricant: one only (curve takes several)");
+  }
+}
+
+std::vector<v1::Simulation> simulations_of(const Scenario& scenario) {
+  std::vector<v1::Simulation> simulations;
+  for (const std::string& lubricant : scenario.lubricants) {
+    simulations.push_back(scenario.simulation);
+    simulations.back().set_lubricant(resource_name("lubricants", lubricant));
+  }
+  return simulations;
+}
+
+std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection) {
+  std::vector<v1::Simulation> submitted;
+  std::vector<std::string> labels;
+  Complaints refusals;
+  for (const v1::Simulation& simulation : simulations_of(scenario)) {
+    try {
+      submitted.push_back(connection.create_simulation(simulation));
+      labels.push_back(simulation.lubricant());
+    } catch (const Failure& failure) {
+      if (failure.exit_code() != kExitFailed) throw;
+      const std::string refusal = failure.what();
+      if (std::find(refusals.begin(), refusals.end(), refusal) == refusals.end()) {
+        refusals.push_back(refusal);
+      }
+    }
+  }
+  if (!refusals.empty()) withdraw(submitted, refusals, connection);
+  if (!scenario.detach) return follow(connection, submitted, labels);
+  for (const v1::Simulation& simulation : submitted) {
+    std::cout << simulation.name() << "  " << state_text(simulation.state())
+              << "  follow: tribodyn jobs watch " << resource_id(simulation.name()) << "\n";
+  }
+  return {};
+}
+
+int report_failures(const std::vector<v1::Simulation>& simulations) {
+  int exit_code = kExitOk;
+  for (const v1::Simulation& simulation : simulations) {
+    if (simulation.state() == v1::Simulation::SUCCEEDED) continue;
+    exit_code = kExitFailed;
+    std::cerr << "tribodyn: " << printable(simulation.name()) << " ("
+              << printable(simulation.lubricant()) << ") " << state_text(simulation.state());
+    if (simulation.has_error()) {
+      std::cerr << ": " << printable(simulation.error().message()) << " ["
+                << printable(simulation.error().reason()) << "]";
+    }
+    std::cerr << "\n";
+  }
+  return exit_code;
+}
+
+}  // namespace tribodyn::client

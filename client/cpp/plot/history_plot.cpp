@@ -1,0 +1,156 @@
+#include "client/cpp/plot/history_plot.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <vector>
+
+#include "client/cpp/plot/panel.h"
+#include "client/cpp/report/inputs.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+constexpr double kWidth = 960;
+constexpr double kLeft = 80;
+constexpr double kPanelHeight = 130;
+constexpr double kPanelPitch = 180;
+constexpr double kTop = 100;
+
+struct UnitSuffix {
+  const char* suffix;
+  const char* unit;
+  double factor;
+};
+
+// Longest first where one ends in another.
+constexpr UnitSuffix kUnits[] = {
+    {"_radians_per_second", "rad/s", 1},
+    {"_metres_per_second", "m/s", 1},
+    {"_newton_metres", "N m", 1},
+    {"_per_second", "10\xE2\x81\xB6/s", 1e-6},
+    {"_newtons", "N", 1},
+    {"_metres", "\xC2\xB5m", 1e6},
+    {"_seconds", "ms", 1e3},
+    {"_watts", "W", 1},
+    {"_kelvin", "K", 1},
+    {"_pascals", "GPa", 1e-9},
+    {"_percent", "%", 1},
+};
+
+constexpr char kTimeColumn[] = "time_seconds";
+constexpr char kFlankMark[] = "_flank_";
+
+bool is_abscissa(const std::string& name) {
+  return name == kTimeColumn || name.rfind("mesh_phase", 0) == 0;
+}
+
+/// Columns by quantity, in the order they came.
+std::vector<std::pair<std::string, std::vector<const v1::HistoryChunk::Column*>>> grouped(
+    const v1::HistoryChunk& history) {
+  std::vector<std::pair<std::string, std::vector<const v1::HistoryChunk::Column*>>> groups;
+  for (const auto& column : history.columns()) {
+    if (is_abscissa(column.name())) continue;
+    const std::string quantity = column_quantity(column.name());
+    const auto found = std::find_if(groups.begin(), groups.end(),
+                                    [&](const auto& group) { return group.first == quantity; });
+    if (found != groups.end()) {
+      found->second.push_back(&column);
+    } else {
+      groups.push_back({quantity, {&column}});
+    }
+  }
+  return groups;
+}
+
+std::vector<double> scaled(const v1::HistoryChunk::Column& column, double factor) {
+  std::vector<double> values;
+  values.reserve(column.values_size());
+  for (const double value : column.values()) values.push_back(factor * value);
+  return values;
+}
+
+/// Time in ms, else mesh phase, else the row.
+std::pair<std::string, std::vector<double>> abscissa(const v1::HistoryChunk& history) {
+  const v1::HistoryChunk::Column* phase = nullptr;
+  for (const auto& column : history.columns()) {
+    if (column.name() == kTimeColumn) return {"Time, ms", scaled(column, 1e3)};
+    if (is_abscissa(column.name())) phase = &column;
+  }
+  if (phase != nullptr) return {"Mesh phase, cycles", scaled(*phase, 1)};
+  std::vector<double> rows;
+  const int count = history.columns_size() > 0 ? history.columns(0).values_size() : 0;
+  rows.reserve(count);
+  for (int i = 0; i < count; ++i) rows.push_back(i);
+  return {"Sample", rows};
+}
+
+}  // namespace
+
+std::string column_quantity(const std::string& column) {
+  const std::size_t mark = column.rfind(kFlankMark);
+  const bool ends_in_slot = mark != std::string::npos && mark > 0 &&
+                            mark + sizeof(kFlankMark) == column.size() &&
+                            std::isdigit(static_cast<unsigned char>(column.back())) != 0;
+  return ends_in_slot ? column.substr(0, mark) : column;
+}
+
+ColumnTitle column_title(const std::string& column) {
+  std::string words = column_quantity(column);
+  std::string unit;
+  double factor = 1;
+  for (const UnitSuffix& known : kUnits) {
+    const std::string suffix = known.suffix;
+    if (words.size() <= suffix.size() ||
+        words.compare(words.size() - suffix.size(), suffix.size(), suffix) != 0) {
+      continue;
+    }
+    words.erase(words.size() - suffix.size());
+    unit = known.unit;
+    factor = known.factor;
+    break;
+  }
+  std::replace(words.begin(), words.end(), '_', ' ');
+  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return {unit.empty() ? words : words + ", " + unit, factor};
+}
+
+std::string history_plot(const v1::Simulation& simulation, const v1::HistoryChunk& history) {
+  const auto groups = grouped(history);
+  const auto [x_title, x] = abscissa(history);
+  const double height = kTop + kPanelPitch * static_cast<double>(groups.size()) + 20;
+  Svg svg(kWidth, height);
+  svg.text({kLeft, 38}, "Steady state of " + simulation.lubricant() + ": " + study_text(simulation),
+           {19, "start", "#111", true, 0});
+  svg.text({kLeft, 60}, inputs_text(simulation, "\xC2\xB0\x43"), {12, "start", "#555", false, 0});
+  double top = kTop;
+  for (const auto& [quantity, columns] : groups) {
+    const ColumnTitle title = column_title(quantity);
+    Panel panel;
+    panel.corner = {kLeft, top};
+    panel.width = kWidth - kLeft - 90;
+    panel.height = kPanelHeight;
+    panel.title = title.title;
+    panel.shows_x_numbers = true;
+    if (&quantity == &groups.back().first) panel.x_title = x_title;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      Series series;
+      series.colour = series_colour(i);
+      series.x = x;
+      series.y = scaled(*columns[i], title.factor);
+      series.width = 1.8;
+      if (columns.size() > 1)
+        series.label = "flank " + columns[i]->name().substr(columns[i]->name().size() - 1);
+      panel.series.push_back(std::move(series));
+    }
+    draw_panel(panel, svg);
+    top += kPanelPitch;
+  }
+  const std::string caption = "Model " + model_options_text(simulation.model_options()) + " (" +
+                              simulation.result().model_version() + ").";
+  svg.text({kLeft, height - 14}, caption, {11.5, "start", "#555", false, 0});
+  return svg.finish();
+}
+
+}  // namespace tribodyn::client

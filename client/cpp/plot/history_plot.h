@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "tribodyn/v1/simulations.pb.h"
+
+namespace tribodyn::client {
+
+/// Small multiples of a history's columns against time, the three flank slots of one quantity in
+/// one panel.
+std::string history_plot(const v1::Simulation& simulation, const v1::HistoryChunk& history);
+
+/// "mesh_force_newtons" as a title and a factor into a readable unit: {"Mesh force, N", 1}.
+struct ColumnTitle {
+  std::string title;
+  double factor = 1;
+};
+ColumnTitle column_title(const std::string& column);
+
+/// A column without its flank slot: "flank_load_newtons" from "flank_load_newtons_flank_1".
+std::string column_quantity(const std::string& column);
+
+}  // namespace tribodyn::client

@@ -1,0 +1,158 @@
+#include "client/cpp/report/inputs.h"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/util/time_util.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+constexpr double kDefaultSumpTemperatureCelsius = 40;
+constexpr double kDefaultInletTemperatureRiseKelvin = 20;
+
+std::string or_default(const std::string& name, const char* standard) {
+  return name.empty() ? standard : name;
+}
+
+void append_switches(const google::protobuf::Message& message, const std::string& prefix,
+                     std::string& text) {
+  const auto* descriptor = message.GetDescriptor();
+  for (int i = 0; i < descriptor->field_count(); ++i) {
+    const auto& field = *descriptor->field(i);
+    if (field.cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_BOOL) continue;
+    if (!message.GetReflection()->GetBool(message, &field)) continue;
+    text += (text.empty() ? "" : ", ") + prefix + field.name();
+  }
+}
+
+std::string ascent_text(double degrees) {
+  return degrees == 0 ? "" : ", ascent " + significant(degrees) + " degrees";
+}
+
+std::string point_text(const v1::OperatingPointStudy& study) {
+  switch (study.condition_case()) {
+    case v1::OperatingPointStudy::kCruise:
+      return "cruise at " + significant(study.cruise().speed_kilometers_per_hour()) + " km/h" +
+             ascent_text(study.cruise().ascent_angle_degrees());
+    case v1::OperatingPointStudy::kDriveCycleSnapshot: {
+      const auto& snapshot = study.drive_cycle_snapshot();
+      return significant(snapshot.speed_kilometers_per_hour()) + " km/h accelerating at " +
+             significant(snapshot.acceleration_metres_per_second_squared()) + " m/s2" +
+             ascent_text(snapshot.ascent_angle_degrees());
+    }
+    case v1::OperatingPointStudy::kPrescribedTorque:
+      return "pinion torque " +
+             significant(study.prescribed_torque().pinion_torque_newton_metres()) + " N m at " +
+             significant(study.prescribed_torque().pinion_speed_radians_per_second()) + " rad/s";
+    default:
+      return "operating point";
+  }
+}
+
+std::string curve_text(const v1::InefficiencyCurveStudy& study) {
+  const std::string direction = study.direction() == v1::DOWN ? ", down-sweep" : ", up-sweep";
+  const std::string ascent = ascent_text(study.ascent_angle_degrees());
+  if (study.speeds_kilometers_per_hour_size() > 0) {
+    const auto& speeds = study.speeds_kilometers_per_hour();
+    const auto [least, largest] = std::minmax_element(speeds.begin(), speeds.end());
+    return "inefficiency curve from " + significant(*least) + " to " + significant(*largest) +
+           " km/h, " + std::to_string(speeds.size()) + " speeds" + direction + ascent;
+  }
+  return "inefficiency curve from " + significant(study.first_speed_kilometers_per_hour()) +
+         " to " + significant(study.last_speed_kilometers_per_hour()) + " km/h by " +
+         significant(study.speed_step_kilometers_per_hour()) + direction + ascent;
+}
+
+}  // namespace
+
+Inputs inputs_of(const v1::Simulation& simulation) {
+  return {simulation.lubricant(),
+          or_default(simulation.gear_set(), "gearSets/A"),
+          or_default(simulation.surface(), "surfaces/run-in"),
+          or_default(simulation.vehicle(), "vehicles/passenger-car"),
+          simulation.has_sump_temperature_celsius() ? simulation.sump_temperature_celsius()
+                                                    : kDefaultSumpTemperatureCelsius,
+          simulation.has_inlet_temperature_rise_kelvin()
+              ? simulation.inlet_temperature_rise_kelvin()
+              : kDefaultInletTemperatureRiseKelvin};
+}
+
+std::string inputs_text(const v1::Simulation& simulation, const char* celsius) {
+  const Inputs inputs = inputs_of(simulation);
+  return "gear set " + resource_id(inputs.gear_set) + ", surface " + resource_id(inputs.surface) +
+         ", vehicle " + resource_id(inputs.vehicle) + "; sump " +
+         significant(inputs.sump_temperature_celsius) + " " + celsius + ", inlet rise " +
+         significant(inputs.inlet_temperature_rise_kelvin) + " K";
+}
+
+std::string model_options_text(const v1::ModelOptions& options) {
+  std::string text;
+  append_switches(options, "", text);
+  if (options.pressure_viscosity_index() == v1::ModelOptions::HOUPERT) {
+    text += text.empty() ? "Houpert's Z" : ", Houpert's Z";
+  }
+  append_switches(options.as_published(), "as published ", text);
+  return text.empty() ? "as corrected" : text;
+}
+
+std::string study_text(const v1::Simulation& simulation) {
+  switch (simulation.study_case()) {
+    case v1::Simulation::kOperatingPoint:
+      return point_text(simulation.operating_point());
+    case v1::Simulation::kInefficiencyCurve:
+      return curve_text(simulation.inefficiency_curve());
+    default:
+      return "no study";
+  }
+}
+
+std::string provenance_word(v1::Provenance provenance) {
+  std::string word = v1::Provenance_Name(provenance);
+  word = word.substr(word.find('_') + 1);
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word;
+}
+
+void add_provenance(const v1::SimulationResult& result, bool shows_all, Sheet& sheet) {
+  sheet.heading("Provenance");
+  sheet.line("model version", result.model_version());
+  sheet.line("input hash", result.input_hash());
+  if (!shows_all) {
+    std::map<int, int> counts;
+    for (const auto& assumption : result.assumptions()) ++counts[assumption.provenance()];
+    std::string text;
+    for (const auto& [provenance, count] : counts) {
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + " " +
+              provenance_word(static_cast<v1::Provenance>(provenance));
+    }
+    sheet.line("parameters", text.empty() ? "none stated" : text + " (all: --assumptions)");
+    return;
+  }
+  std::map<int, std::vector<const v1::Assumption*>> groups;
+  for (const auto& assumption : result.assumptions()) {
+    groups[assumption.provenance()].push_back(&assumption);
+  }
+  for (const auto& [provenance, group] : groups) {
+    sheet.heading("Parameters, " + provenance_word(static_cast<v1::Provenance>(provenance)));
+    for (const v1::Assumption* assumption : group) {
+      sheet.remark(assumption->resource() + " " + assumption->field() + " = " +
+                   assumption->value() +
+                   (assumption->source().empty() ? "" : " (" + assumption->source() + ")"));
+    }
+  }
+}
+
+double run_seconds(const v1::Simulation& simulation) {
+  if (!simulation.has_start_time() || !simulation.has_end_time()) return -1;
+  using google::protobuf::util::TimeUtil;
+  return 1e-6 * static_cast<double>(TimeUtil::DurationToMicroseconds(simulation.end_time() -
+                                                                     simulation.start_time()));
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "client/cpp/service/connection.h"
+
+namespace tribodyn::client {
+
+/// "queued", "running", "succeeded", ...
+std::string state_text(v1::Simulation::State state);
+bool has_ended(v1::Simulation::State state);
+
+/// Watches simulations side by side until every one has ended, with one progress display on
+/// standard error, and returns them with their results, in the same order. A broken stream is taken
+/// up again for a while. Throws Failure: kExitInterrupted on Ctrl-C, kExitCannotConnect when the
+/// server is lost; either says how to resume or cancel, for the simulations themselves go on.
+std::vector<v1::Simulation> follow(Connection& connection,
+                                   const std::vector<v1::Simulation>& simulations,
+                                   const std::vector<std::string>& labels);
+
+}  // namespace tribodyn::client

@@ -1,0 +1,133 @@
+#include "client/cpp/text/csv.h"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/timestamp.pb.h>
+#include <google/protobuf/util/time_util.h>
+
+#include "client/cpp/text/text.h"
+#include "tribodyn/v1/results.pb.h"
+
+namespace tribodyn::client {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+std::string scalar_text(const Message& message, const FieldDescriptor& field) {
+  const auto& reflection = *message.GetReflection();
+  if (field.has_presence() && !reflection.HasField(message, &field)) return "";
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return shortest(reflection.GetDouble(message, &field));
+    case FieldDescriptor::CPPTYPE_FLOAT:
+      return shortest(reflection.GetFloat(message, &field));
+    case FieldDescriptor::CPPTYPE_INT32:
+      return std::to_string(reflection.GetInt32(message, &field));
+    case FieldDescriptor::CPPTYPE_INT64:
+      return std::to_string(reflection.GetInt64(message, &field));
+    case FieldDescriptor::CPPTYPE_UINT32:
+      return std::to_string(reflection.GetUInt32(message, &field));
+    case FieldDescriptor::CPPTYPE_UINT64:
+      return std::to_string(reflection.GetUInt64(message, &field));
+    case FieldDescriptor::CPPTYPE_BOOL:
+      return reflection.GetBool(message, &field) ? "true" : "false";
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return reflection.GetEnum(message, &field)->name();
+    case FieldDescriptor::CPPTYPE_STRING:
+      return reflection.GetString(message, &field);
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      break;
+  }
+  return "";
+}
+
+void append_message(const Message& parent, const FieldDescriptor& field, const std::string& name,
+                    CsvRow& row) {
+  const Message& child = parent.GetReflection()->GetMessage(parent, &field);
+  const bool present = parent.GetReflection()->HasField(parent, &field);
+  if (field.message_type() == google::protobuf::Timestamp::descriptor()) {
+    google::protobuf::Timestamp time;
+    time.CopyFrom(child);
+    row.emplace_back(name, present ? google::protobuf::util::TimeUtil::ToString(time) : "");
+  } else if (field.message_type() == v1::Extremes::descriptor()) {
+    for (int i = 0; i < field.message_type()->field_count(); ++i) {
+      const FieldDescriptor& part = *field.message_type()->field(i);
+      row.emplace_back(part.name() + "_" + name, present ? scalar_text(child, part) : "");
+    }
+  } else if (present) {
+    append_fields(child, name + "_", row);
+  } else {
+    append_empty_fields(child, name + "_", row);
+  }
+}
+
+void append_flanks(const Message& parent, const FieldDescriptor& field, const std::string& name,
+                   CsvRow& row) {
+  const auto& reflection = *parent.GetReflection();
+  for (int slot = 0; slot < kFlankSlots; ++slot) {
+    const std::string prefix = name + "_" + std::to_string(slot) + "_";
+    if (slot < reflection.FieldSize(parent, &field)) {
+      append_fields(reflection.GetRepeatedMessage(parent, &field, slot), prefix, row);
+    } else {
+      append_empty_fields(v1::FlankLoss::default_instance(), prefix, row);
+    }
+  }
+}
+
+}  // namespace
+
+std::string csv_line(const std::vector<std::string>& cells) {
+  std::string line;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (i > 0) line += ',';
+    if (cells[i].find_first_of(",\"\r\n") == std::string::npos) {
+      line += cells[i];
+      continue;
+    }
+    line += '"';
+    for (const char c : cells[i]) line += c == '"' ? std::string("\"\"") : std::string(1, c);
+    line += '"';
+  }
+  return line + "\n";
+}
+
+void append_fields(const Message& message, std::string_view prefix, CsvRow& row) {
+  const auto* descriptor = message.GetDescriptor();
+  for (int i = 0; i < descriptor->field_count(); ++i) {
+    const FieldDescriptor& field = *descriptor->field(i);
+    const std::string name = std::string(prefix) + field.name();
+    if (field.is_repeated()) {
+      if (field.message_type() == v1::FlankLoss::descriptor()) {
+        append_flanks(message, field, name, row);
+      } else {
+        row.emplace_back(name + "_count",
+                         std::to_string(message.GetReflection()->FieldSize(message, &field)));
+      }
+    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      append_message(message, field, name, row);
+    } else {
+      row.emplace_back(name, scalar_text(message, field));
+    }
+  }
+}
+
+void append_empty_fields(const Message& message, std::string_view prefix, CsvRow& row) {
+  const std::size_t first = row.size();
+  append_fields(message, prefix, row);
+  for (std::size_t i = first; i < row.size(); ++i) row[i].second.clear();
+}
+
+std::string csv_text(const std::vector<CsvRow>& rows) {
+  if (rows.empty()) return "";
+  std::vector<std::string> cells;
+  for (const auto& [header, value] : rows.front()) cells.push_back(header);
+  std::string text = csv_line(cells);
+  for (const CsvRow& row : rows) {
+    cells.clear();
+    for (const auto& [header, value] : row) cells.push_back(value);
+    text += csv_line(cells);
+  }
+  return text;
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tribodyn::client {
+
+/// One CSV line (RFC 4180 with a plain line feed): cells with a comma, quote or line break quoted.
+std::string csv_line(const std::vector<std::string>& cells);
+
+/// A row under construction: each cell with its header.
+using CsvRow = std::vector<std::pair<std::string, std::string>>;
+
+/// Appends every field of a message, nested ones flattened, numbers as their shortest exact text,
+/// unset optional fields empty. The headers depend on the type alone, never on the values, and keep
+/// their unit suffix: an Extremes field "film_ratio" gives "minimum_film_ratio" and so on; a
+/// repeated field of at most `kFlankSlots` numbered parts (FlankLoss) is written out, of any other
+/// only the count is given.
+void append_fields(const google::protobuf::Message& message, std::string_view prefix, CsvRow& row);
+inline constexpr int kFlankSlots = 3;
+/// The same headers with empty cells.
+void append_empty_fields(const google::protobuf::Message& message, std::string_view prefix,
+                         CsvRow& row);
+
+/// Header line and rows. All rows must have the same headers.
+std::string csv_text(const std::vector<CsvRow>& rows);
+
+}  // namespace tribodyn::client

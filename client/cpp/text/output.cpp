@@ -1,0 +1,48 @@
+#include "client/cpp/text/output.h"
+
+#include <google/protobuf/util/json_util.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include "client/cpp/failure.h"
+
+namespace tribodyn::client {
+
+std::string json_text(const google::protobuf::Message& message) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.add_whitespace = true;
+  options.always_print_primitive_fields = true;
+  std::string text;
+  const auto status = google::protobuf::util::MessageToJsonString(message, &text, options);
+  if (!status.ok()) throw Failure(kExitFailed, "cannot write JSON: " + status.ToString());
+  return text;
+}
+
+void write_file(const std::string& path, const std::string& text) {
+  struct stat info;
+  // A pipe or a device (/dev/stdout) is written to as it is; only a file can be replaced.
+  const bool replace = stat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode);
+  const std::string target = replace ? path + ".part" + std::to_string(getpid()) : path;
+  {
+    std::ofstream file(target, std::ios::binary);
+    file << text;
+    file.close();
+    if (!file) {
+      const std::string why = std::strerror(errno);
+      if (replace) unlink(target.c_str());
+      throw Failure(kExitFailed, "cannot write " + path + ": " + why);
+    }
+  }
+  if (replace && std::rename(target.c_str(), path.c_str()) != 0) {
+    const std::string why = std::strerror(errno);
+    unlink(target.c_str());
+    throw Failure(kExitFailed, "cannot write " + path + ": " + why);
+  }
+}
+
+}  // namespace tribodyn::client

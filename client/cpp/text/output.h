@@ -1,0 +1,18 @@
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <string>
+
+namespace tribodyn::client {
+
+enum class OutputFormat { kTable, kCsv, kJson };
+
+/// The message as protobuf's JSON mapping defines it, indented, zeros written out.
+std::string json_text(const google::protobuf::Message& message);
+
+/// Replaces the file in one step: a reader sees the old text or the new one, never half of it.
+/// Throws Failure when the file cannot be written.
+void write_file(const std::string& path, const std::string& text);
+
+}  // namespace tribodyn::client

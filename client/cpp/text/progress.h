@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace tribodyn::client {
+
+/// How far one job is.
+struct JobProgress {
+  std::string label;    ///< e.g. "lubricants/1"
+  std::string state;    ///< "queued", "running", ...
+  std::string stage;    ///< e.g. "settling at 65 km/h"
+  double fraction = 0;  ///< [0, 1]
+  bool ended = false;
+};
+
+/// One terminal line: label, bar, percent, time, stage; at most `width` columns.
+std::string progress_bar_line(const JobProgress& job, int label_width, double elapsed_seconds,
+                              int width);
+
+/// Shows several jobs: bars redrawn in place on a terminal; elsewhere a line when a job changes
+/// state or has come another 10 %. Not thread safe.
+class ProgressDisplay {
+ public:
+  /// `terminal`: whether `out` understands cursor movements.
+  ProgressDisplay(std::ostream& out, bool terminal, int width);
+  void show(const std::vector<JobProgress>& jobs);
+  /// Leaves the last picture standing (terminal) and ends the display.
+  void finish();
+
+ private:
+  void redraw(const std::vector<JobProgress>& jobs, double elapsed_seconds);
+  void log_changes(const std::vector<JobProgress>& jobs, double elapsed_seconds);
+
+  std::ostream& out_;
+  bool terminal_;
+  int width_;
+  std::chrono::steady_clock::time_point start_;
+  std::size_t lines_drawn_ = 0;
+  std::vector<std::string> logged_states_;
+  std::vector<int> logged_tenths_;
+};
+
+/// Whether standard error is a terminal that can move its cursor, and its width.
+bool standard_error_is_terminal();
+int standard_error_width();
+
+}  // namespace tribodyn::client

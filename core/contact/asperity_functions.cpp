@@ -1,0 +1,176 @@
+#include "core/contact/asperity_functions.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace tribodyn {
+namespace {
+
+// With s = l + t and l = c + d, c the nearest of a grid of centres,
+//
+//   F_n(c + d) = exp(-c^2/2) exp(-d (c + d/2)) P_n(d),
+//   P_n(d) = (2 pi)^(-1/2) int_0^inf t^n exp(-t^2/2 - c t) exp(-d t) dt.
+//
+// P_n is entire in d and nearly exponential, so that a short polynomial represents it on |d| <=
+// 1/8. The Gaussian factor is split so that no rounding error is multiplied by l^2/2 (which reaches
+// 700): c and d are exact, and |d (c + d/2)| < 5.
+constexpr double kCentreSpacing = 0.25;
+constexpr double kHalfWidth = kCentreSpacing / 2;
+constexpr double kVanishes = 38.75;  // beyond, F_2 is below half the smallest subnormal number
+constexpr int kCentres = 156;        // centres 0, 0.25 ... 38.75
+constexpr int kTerms = 12;
+
+struct Piece {
+  std::array<double, kTerms> f2;    // coefficients of P_2 in d
+  std::array<double, kTerms> f5_2;  // coefficients of P_5/2 in d
+  double root_of_gaussian;          // exp(-c^2/4): its square would underflow too early
+};
+
+using Extended = long double;
+
+constexpr int kTaylorTerms = 26;
+using TaylorSeries = std::array<Extended, kTaylorTerms>;
+
+// Coefficients of the Chebyshev polynomials T_m(x) in powers of x.
+using ChebyshevTable = std::array<TaylorSeries, kTaylorTerms>;
+
+ChebyshevTable chebyshev_polynomials() {
+  ChebyshevTable table{};
+  table[0][0] = 1;
+  table[1][1] = 1;
+  for (int m = 2; m < kTaylorTerms; ++m) {
+    for (int j = 0; j < kTaylorTerms; ++j) {
+      table[m][j] = (j > 0 ? 2 * table[m - 1][j - 1] : 0) - table[m - 2][j];
+    }
+  }
+  return table;
+}
+
+// Lanczos economisation: takes a series in x, |x| <= 1, to kTerms by subtracting multiples of T_m
+// from the top down, and returns the coefficients in d = kHalfWidth x.
+std::array<double, kTerms> economised(TaylorSeries series, const ChebyshevTable& chebyshev) {
+  for (int m = kTaylorTerms - 1; m >= kTerms; --m) {
+    const Extended multiple = series[m] / chebyshev[m][m];
+    for (int j = m; j >= 0; j -= 2) series[j] -= multiple * chebyshev[m][j];
+  }
+  std::array<double, kTerms> coefficients;
+  Extended power = 1;
+  for (int j = 0; j < kTerms; ++j) {
+    coefficients[j] = static_cast<double>(series[j] / power);
+    power *= kHalfWidth;
+  }
+  return coefficients;
+}
+
+// The Taylor series of P_n about c has the coefficients (-1)^j/j! int t^(n+j) exp(-t^2/2 - c t) dt.
+// All of them come from one double-exponential quadrature, t = exp(x - exp(-x))/(1 + c) with the
+// trapezoidal rule in x (Takahasi and Mori, Publ. RIMS 9 (1974) 721-741). Halving the step changes
+// no coefficient by more than a few units of extended precision.
+Piece make_piece(Extended centre, const ChebyshevTable& chebyshev) {
+  constexpr Extended kStep = Extended{1} / 16;
+  constexpr int kFirst = -52;  // t (1 + c) = 2e-13: the integrand t^2 dt is below 1e-37
+  constexpr int kLast = 66;    // t (1 + c) = 61: exp(-t^2/2 - c t) is below 1e-25 for every c
+  const Extended weight_scale = kStep / std::sqrt(2 * std::numbers::pi_v<Extended>);
+  TaylorSeries series_2{};
+  TaylorSeries series_5_2{};
+  for (int i = kFirst; i <= kLast; ++i) {
+    const Extended x = i * kStep;
+    const Extended inner = std::exp(-x);
+    const Extended t = std::exp(x - inner) / (1 + centre);
+    Extended term = weight_scale * t * (1 + inner) * t * t * std::exp(-t * (t / 2 + centre));
+    const Extended root_t = std::sqrt(t);
+    for (int j = 0; j < kTaylorTerms; ++j) {
+      series_2[j] += term;
+      series_5_2[j] += term * root_t;
+      term *= -t * Extended{kHalfWidth} / (j + 1);
+    }
+  }
+  Piece piece;
+  piece.f2 = economised(series_2, chebyshev);
+  piece.f5_2 = economised(series_5_2, chebyshev);
+  piece.root_of_gaussian = static_cast<double>(std::exp(-centre * centre / 4));
+  return piece;
+}
+
+using Table = std::array<Piece, kCentres>;
+
+Table make_table() {
+  const ChebyshevTable chebyshev = chebyshev_polynomials();
+  Table table;
+  for (int k = 0; k < kCentres; ++k) table[k] = make_piece(k * Extended{kCentreSpacing}, chebyshev);
+  return table;
+}
+
+const Table& table() {
+  static const Table table = make_table();
+  return table;
+}
+
+// Estrin's scheme: four levels deep where Horner's is eleven.
+double polynomial(const std::array<double, kTerms>& a, double d) {
+  static_assert(kTerms == 12);
+  const double d2 = d * d;
+  const double d4 = d2 * d2;
+  const double low = (a[0] + a[1] * d) + (a[2] + a[3] * d) * d2;
+  const double high = (a[4] + a[5] * d) + (a[6] + a[7] * d) * d2;
+  const double top = (a[8] + a[9] * d) + (a[10] + a[11] * d) * d2;
+  return low + (high + top * d4) * d4;
+}
+
+// Where on the table a film ratio in [0, kVanishes) lies.
+struct Place {
+  const Piece& piece;
+  double offset;    // d
+  double gaussian;  // exp(-d (c + d/2))
+};
+
+Place find(double film_ratio) {
+  const int k = static_cast<int>(film_ratio / kCentreSpacing + 0.5);
+  const double centre = k * kCentreSpacing;
+  const double offset = film_ratio - centre;
+  return {table()[k], offset, std::exp(-offset * (centre + 0.5 * offset))};
+}
+
+double scaled(const Place& place, double polynomial_value) {
+  const double root = place.piece.root_of_gaussian;
+  return polynomial_value * place.gaussian * root * root;
+}
+
+bool in_table(double film_ratio) { return film_ratio >= 0 && film_ratio < kVanishes; }
+
+double outside_table(double film_ratio) {
+  return film_ratio >= kVanishes ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+AsperityFunctions asperity_functions(double film_ratio) {
+  if (!in_table(film_ratio)) return {outside_table(film_ratio), outside_table(film_ratio)};
+  const Place place = find(film_ratio);
+  return {scaled(place, polynomial(place.piece.f2, place.offset)),
+          scaled(place, polynomial(place.piece.f5_2, place.offset))};
+}
+
+double asperity_function_2(double film_ratio) {
+  if (!in_table(film_ratio)) return outside_table(film_ratio);
+  const Place place = find(film_ratio);
+  return scaled(place, polynomial(place.piece.f2, place.offset));
+}
+
+double asperity_function_5_2(double film_ratio) {
+  if (!in_table(film_ratio)) return outside_table(film_ratio);
+  const Place place = find(film_ratio);
+  return scaled(place, polynomial(place.piece.f5_2, place.offset));
+}
+
+AsperityFunctions asperity_functions_as_published(double film_ratio) {
+  const double l = film_ratio;
+  AsperityFunctions f;
+  f.f5_2 = ((((-0.0046 * l + 0.0574) * l - 0.2958) * l + 0.7844) * l - 1.0776) * l + 0.6167;
+  f.f2 = ((((-0.0018 * l + 0.0281) * l - 0.1728) * l + 0.5258) * l - 0.8043) * l + 0.5003;
+  return f;
+}
+
+}  // namespace tribodyn

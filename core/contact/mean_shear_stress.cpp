@@ -1,0 +1,201 @@
+#include "core/contact/mean_shear_stress.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/lubricant/rheology.h"
+#include "core/lubricant/viscosity.h"
+#include "core/numerics/bracketed_root.h"
+#include "core/numerics/gauss_legendre.h"
+
+namespace tribodyn {
+namespace {
+
+constexpr double c = kRoelandsPressureCoefficient;
+
+/// ln tau(s) = base + factor (e^{Z s} - 1) at one temperature, with slopes in temperature.
+struct Law {
+  double base, base_slope;
+  double factor, factor_slope;
+  double index;
+  double tau_zero, gamma;  // tau_L = tau_zero + gamma p
+
+  double log_stress(double s) const { return base + factor * std::expm1(index * s); }
+  double pressure(double s) const { return std::expm1(s) / c; }
+  double limit(double s) const { return tau_zero + gamma * pressure(s); }
+  /// ln(tau / tau_L): positive where the stress is limited.
+  ValueAndSlope excess(double s) const {
+    const double growth = std::exp(index * s), u = std::exp(s);
+    const double limit = tau_zero + gamma * (u - 1) / c;
+    return {base + factor * (growth - 1) - std::log(limit),
+            factor * index * growth - gamma * u / c / limit};
+  }
+};
+
+Law law_at(const ShearedFilm& film, double temperature) {
+  const Lubricant& oil = *film.lubricant;
+  const double log_eta = log_ambient_viscosity(oil, temperature);
+  const double above = temperature - oil.vogel_reference_temperature;
+  const double log_eta_slope = -oil.vogel_temperature_coefficient / (above * above);
+  Law law{};
+  law.index = film.pressure_viscosity_index;
+  law.factor = roelands_factor(log_eta, film.as_published);
+  law.factor_slope = log_eta_slope;
+  if (film.as_published.eq31_32_logarithm) {
+    law.factor_slope *= std::exp(log_eta - law.factor);  // d ln(eta + 9.67) = eta/(eta + 9.67) d ln eta
+  }
+  law.base = log_eta + film.log_shear_rate;
+  law.base_slope = log_eta_slope;
+  if (!film.newtonian) {
+    const auto shift = time_temperature_shift(oil, film.time_temperature_reference, temperature,
+                                              log_eta, log_eta_slope);
+    const auto thinning = havriliak_negami(
+        oil, std::log(oil.relaxation_time) + shift.log_factor + film.log_shear_rate);
+    law.base -= thinning.log_function;
+    law.base_slope -= thinning.slope * shift.slope;
+  }
+  law.tau_zero = oil.limiting_shear_stress_at_zero_pressure;
+  law.gamma = oil.limiting_shear_stress_coefficient;
+  return law;
+}
+
+/// int tau p dp over [from, to] in s, and the same weighted with d ln tau/dT, both over exp(shift).
+struct Moment {
+  double shift = 0, value = 0, slope = 0;
+};
+
+template <int N>
+void add_panel(const Law& law, double from, double to, Moment& out) {
+  const auto& rule = gauss_legendre<N>();
+  using Array = Eigen::Array<double, N, 1>;
+  const Array s = from + (to - from) * rule.node;
+  const Array u = s.exp();
+  const Array growth = (law.index * s).exp() - 1;
+  // e^s - 1 loses digits only where p is so small that the stress does not depend on it.
+  const Array q = s(N - 1) > 1e-3 ? Array(u - 1) : Array(s * (1 + s * (0.5 + s / 6 * (1 + s / 4))));
+  const Array weighted = (to - from) / (c * c) * rule.weight *
+                         (law.base - out.shift + law.factor * growth).exp() * q * u;
+  out.value += weighted.sum();
+  out.slope += (weighted * (law.base_slope + law.factor_slope * growth)).sum();
+}
+
+Moment moment(const Law& law, double from, double to) {
+  Moment out;
+  const double start = law.log_stress(from), end = law.log_stress(to);
+  out.shift = std::max(start, end);
+  const double span = std::abs(end - start);
+  if (span <= 6) {
+    add_panel<12>(law, from, to, out);
+  } else {
+    // Panels of at most 12 e-folds, laid out evenly in ln tau.
+    const int panels = static_cast<int>(std::min(64.0, std::ceil(span / 12)));
+    double left = from;
+    for (int i = 1; i <= panels; ++i) {
+      const double growth = ((i * end + (panels - i) * start) / panels - law.base) / law.factor;
+      const double right = i == panels ? to : std::clamp(std::log1p(growth) / law.index, left, to);
+      add_panel<20>(law, left, right, out);
+      left = right;
+    }
+  }
+  return out;
+}
+
+/// Points of [0, end] in s between which ln(tau/tau_L) is monotone. Its slope has the sign of
+/// psi(u) = L Z ((tau_0 c - gamma) u^{Z-1} + gamma u^Z) - gamma, u = e^s, which has one extremum.
+int monotone_pieces(const Law& law, double end, std::array<double, 5>& points) {
+  const auto psi = [&](double s) {
+    const double power = std::exp((law.index - 1) * s), u = std::exp(s);
+    return law.factor * law.index * power *
+               ((law.tau_zero * c - law.gamma) + law.gamma * u) - law.gamma;
+  };
+  int count = 0;
+  points[count++] = 0;
+  double turn = -1;
+  if (law.gamma > 0) {
+    const double u = (1 - law.index) * (law.tau_zero * c - law.gamma) / (law.index * law.gamma);
+    if (u > 1) turn = std::log(u);
+  }
+  double left = 0, psi_left = psi(0);
+  const auto visit = [&](double right) {
+    const double psi_right = psi(right);
+    if ((psi_left < 0 && psi_right > 0) || (psi_left > 0 && psi_right < 0)) {
+      points[count++] = bracketed_root(psi, left, right, psi_left, psi_right);
+    }
+    left = right;
+    psi_left = psi_right;
+  };
+  if (turn > 0 && turn < end) visit(turn);
+  visit(end);
+  points[count++] = end;
+  return count;
+}
+
+}  // namespace
+
+MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
+                                  double& switch_guess) {
+  const Law law = law_at(film, temperature);
+  const double end = std::log1p(c * film.maximum_pressure);
+  const double log_scale = std::log(2.0) - 2 * std::log(film.maximum_pressure);
+  if (!film.limited) {
+    const Moment all = moment(law, 0, end);
+    return {log_scale + all.shift + std::log(all.value), all.slope / all.value, 0, 0, false};
+  }
+
+  std::array<double, 5> pieces{};
+  const int points = monotone_pieces(law, end, pieces);
+  std::array<double, 6> cuts{};
+  int cut_count = 0;
+  cuts[cut_count++] = 0;
+  double excess_left = law.excess(0).value;
+  bool limited = excess_left > 0;
+  const bool limited_at_rim = limited;
+  for (int i = 1; i < points; ++i) {
+    const double excess_right = law.excess(pieces[i]).value;
+    if ((excess_left > 0) != (excess_right > 0)) {
+      const bool rising = excess_right > 0;
+      const double guess =
+          switch_guess > pieces[i - 1] && switch_guess < pieces[i]
+              ? switch_guess
+              : pieces[i - 1] + (pieces[i] - pieces[i - 1]) *
+                                    (std::isfinite(excess_left)
+                                         ? excess_left / (excess_left - excess_right)
+                                         : 0.5);
+      // The integrand is continuous across the cut: an error d of it costs the integral d^2.
+      const double cut = safeguarded_newton([&](double s) { return law.excess(s); }, pieces[i - 1],
+                                            pieces[i], guess, rising, 1e-8);
+      switch_guess = cut;
+      cuts[cut_count++] = cut;
+      limited = !limited;
+    }
+    excess_left = excess_right;
+  }
+  const int switches = cut_count - 1;
+  cuts[cut_count] = end;
+
+  if (switches == 0 && !limited_at_rim) {
+    const Moment all = moment(law, 0, end);
+    return {log_scale + all.shift + std::log(all.value), all.slope / all.value, 0, 0, false};
+  }
+  double value = 0, slope = 0, share = 0;
+  bool on_limit = limited_at_rim;
+  const double area_scale = 1 / (film.maximum_pressure * film.maximum_pressure);
+  for (int i = 0; i < cut_count; ++i, on_limit = !on_limit) {
+    if (on_limit) {
+      const double p0 = law.pressure(cuts[i]);
+      const double p1 = i == switches ? film.maximum_pressure : law.pressure(cuts[i + 1]);
+      value += 0.5 * law.tau_zero * (p1 - p0) * (p1 + p0) +
+               law.gamma / 3 * (p1 - p0) * (p1 * p1 + p1 * p0 + p0 * p0);
+      share += (p1 - p0) * (p1 + p0) * area_scale;
+    } else {
+      const Moment part = moment(law, cuts[i], cuts[i + 1]);
+      const double scale = std::exp(part.shift);
+      value += scale * part.value;
+      slope += scale * part.slope;
+    }
+  }
+  return {log_scale + std::log(value), slope / value, std::min(share, 1.0), switches, limited};
+}
+
+}  // namespace tribodyn

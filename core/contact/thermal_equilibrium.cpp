@@ -1,0 +1,110 @@
+#include "core/contact/thermal_equilibrium.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/lubricant/viscosity.h"
+#include "core/numerics/bracketed_root.h"
+
+namespace tribodyn {
+namespace {
+
+/// Whether ln tau falls with temperature at every pressure between two temperatures, from
+/// d ln tau/dT <= -(1 - alpha beta) A1/(T - T0)^2 + alpha beta max(0, 1/T + rho'/rho).
+bool provably_falling(const ShearedFilm& film, double cold, double hot) {
+  if (film.newtonian) return true;
+  const Lubricant& oil = *film.lubricant;
+  const double product = oil.havriliak_negami_alpha * oil.havriliak_negami_beta;
+  const double above = hot - oil.vogel_reference_temperature;
+  const double rise = 1 / cold + oil.density_temperature_slope / density(oil, cold);
+  return (1 - product) * oil.vogel_temperature_coefficient / (above * above) >
+         product * std::max(0.0, rise);
+}
+
+/// w with w e^w = z, z >= 0, to a few digits: the start of the iteration only.
+double lambert_start(double z) {
+  double w = std::log1p(z) * (1 - std::log1p(std::log1p(z)) / (2 + std::log1p(z)));
+  for (int i = 0; i < 2; ++i) w -= (w - z * std::exp(-w)) / (1 + w);
+  return w;
+}
+
+}  // namespace
+
+ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double base, double gain) {
+  double guess = 0;
+  const MeanShearStress cold = mean_shear_stress(film, base, guess);
+  if (!(gain > 0)) return {1, base, cold};
+
+  const Lubricant& oil = *film.lubricant;
+  double hottest = std::numeric_limits<double>::infinity();
+  if (!film.newtonian && oil.density_temperature_slope < 0) {
+    hottest = (1 - 1e-9) * -oil.density_at_zero_kelvin / oil.density_temperature_slope;
+  }
+  if (base >= hottest) return {0, base, cold};
+
+  const double log_gain = std::log(gain);
+  // H(y) = y - ln(gain tau_bar(base + e^y)), y = ln(T - base).
+  const auto balance = [&](double y, MeanShearStress& stress) {
+    const double rise = std::exp(y);
+    stress = mean_shear_stress(film, base + rise, guess);
+    return ValueAndSlope{y - log_gain - stress.log_value, 1 - stress.slope * rise};
+  };
+  const auto answer = [&](double y, int roots) {
+    const double temperature = base + std::exp(y);
+    return ThermalEquilibrium{roots, temperature, mean_shear_stress(film, temperature, guess)};
+  };
+  MeanShearStress stress{};
+
+  // Where tau_bar falls from base on, the rise is at most gain tau_bar(base).
+  const double unheated = log_gain + cold.log_value;
+  const double highest = std::min(unheated, std::log(hottest - base));
+  if (std::isfinite(highest) && provably_falling(film, base, base + std::exp(highest))) {
+    if (highest < unheated && balance(highest, stress).value < 0) return {0, base, cold};
+    double lower = -std::numeric_limits<double>::infinity(), upper = highest;
+    double y = upper;
+    if (cold.slope < 0) {
+      y = std::min(y, std::log(lambert_start(-cold.slope * std::exp(unheated)) / -cold.slope));
+    }
+    for (int i = 0; i < 100; ++i) {
+      const ValueAndSlope at = balance(y, stress);
+      // The slope of H is at least 1, so a value closes the other side of the bracket too.
+      if (at.value >= 0) {
+        upper = y;
+        lower = std::max(lower, y - at.value);
+      } else {
+        lower = y;
+        upper = std::min(upper, y - at.value);
+      }
+      double next = y - at.value / at.slope;
+      if (!(next >= lower && next <= upper)) next = 0.5 * (lower + upper);
+      if (std::abs(next - y) <= 3e-8) return answer(next, 1);  // Newton's error is the square of it
+      // Bisection now and then, so that no cycle between plateau and tail survives.
+      y = i % 8 == 7 ? 0.5 * (lower + upper) : next;
+    }
+    return answer(0.5 * (lower + upper), 1);
+  }
+
+  // Scan ln(T - base) from far below any root to the hottest temperature allowed.
+  const double top = std::isfinite(hottest) ? std::log(hottest - base) : std::log(1e7);
+  const double bottom = std::min(top, unheated) - 40;
+  constexpr int kScan = 400;
+  const auto value = [&](double y) { return balance(y, stress).value; };
+  int roots = 0;
+  double first = 0, left = bottom, f_left = value(bottom);
+  for (int i = 1; i <= kScan; ++i) {
+    // Denser towards the top, where the curve turns.
+    const double t = static_cast<double>(i) / kScan;
+    const double right = bottom + (top - bottom) * (1 - (1 - t) * (1 - t));
+    const double f_right = value(right);
+    if ((f_left < 0) != (f_right < 0)) {
+      if (++roots == 1) first = bracketed_root(value, left, right, f_left, f_right);
+    }
+    left = right;
+    f_left = f_right;
+  }
+  if (roots == 0) return {0, base, cold};
+  return answer(first, roots);
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,254 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/refusal.h"
+
+namespace tribodyn {
+
+/// How a march went.
+struct MarchStatistics {
+  long right_hand_sides = 0;
+  long accepted_steps = 0;
+  long rejected_steps = 0;
+  long events = 0;
+};
+
+struct MarchOptions {
+  double relative_tolerance = 1e-7;  ///< of each component's scale, per step
+  double maximum_step = std::numeric_limits<double>::infinity();
+};
+
+/// One accepted step with its continuous extension; valid during the callback only.
+template <int N>
+struct MarchStep {
+  using State = std::array<double, N>;
+  double start, length;
+  const State& from;
+  const State& to;
+  const std::array<State, 7>& stage;
+
+  /// State at start + theta length, theta in [0, 1]: fourth-order extension of the pair
+  /// (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.6).
+  State at(double theta) const {
+    const double t = theta, u = 1 - theta;
+    constexpr double d1 = -12715105075.0 / 11282082432.0, d3 = 87487479700.0 / 32700410799.0,
+                     d4 = -10690763975.0 / 1880347072.0, d5 = 701980252875.0 / 199316789632.0,
+                     d6 = -1453857185.0 / 822651844.0, d7 = 69997945.0 / 29380423.0;
+    State out;
+    for (int i = 0; i < N; ++i) {
+      const double difference = to[i] - from[i];
+      const double bend = length * stage[0][i] - difference;
+      const double rest = difference - length * stage[6][i] - bend;
+      const double last = length * (d1 * stage[0][i] + d3 * stage[2][i] + d4 * stage[3][i] +
+                                    d5 * stage[4][i] + d6 * stage[5][i] + d7 * stage[6][i]);
+      out[i] = from[i] + t * (difference + u * (bend + t * (rest + u * last)));
+    }
+    return out;
+  }
+};
+
+/// Dormand-Prince 5(4) march of a piecewise smooth system. Within a regime and between breakpoints
+/// the right-hand side is smooth; steps end exactly on breakpoints and on events, so the order is
+/// that of the pair everywhere (Dormand and Prince, J. Comput. Appl. Math. 6, 1980, 19).
+///
+/// System provides
+///   static constexpr int kSize, kEvents; using State = std::array<double, kSize>;
+///   void derivative(double s, const State& y, State& dy)      in the current regime, continued
+///                                                             smoothly a little beyond its edge
+///   void events(double s, const State& y, std::array<double, kEvents>& g)
+///       an event happens where g rises through 0; scaled so that 1e-13 is nothing; -1 if none
+///   void on_event(int index, double s, const State& y)        changes the regime
+///   double next_breakpoint(double s)  first point beyond s where the right-hand side has a kink
+///   void on_breakpoint(double s)      s was reached
+///   double scale(int i)               size of component i for the error test; infinity: not tested
+/// No allocation, no exception but Refusal("CHATTER") and Refusal("NOT_FINITE").
+template <class System>
+class EventExactMarch {
+ public:
+  static constexpr int N = System::kSize;
+  using State = std::array<double, N>;
+
+  EventExactMarch(System& system, const MarchOptions& options)
+      : system_(system), options_(options) {}
+
+  /// Marches y from s to end. `on_step(MarchStep<N>)` sees every accepted step.
+  template <class OnStep>
+  void run(double& s, State& y, double end, OnStep&& on_step) {
+    evaluate(s, y, k_[0]);
+    double breakpoint = std::min(end, system_.next_breakpoint(s));
+    if (next_step_ <= 0) next_step_ = std::min(breakpoint - s, options_.maximum_step);
+    int chatter = 0;
+    while (s < end) {
+      const double room = breakpoint - s;
+      double h = std::min({next_step_, options_.maximum_step, room});
+      bool at_breakpoint = false;
+      if (h > 0.999999 * room) {
+        h = room;
+        at_breakpoint = true;
+      } else if (h > 0.5 * room) {
+        h = 0.5 * room;  // two even steps instead of a long and a sliver
+      }
+      const double error = attempt(s, y, h);
+      if (!(error <= 1)) {
+        ++statistics_.rejected_steps;
+        next_step_ = h * (std::isfinite(error) ? std::max(0.2, 0.9 * std::pow(error, -0.2)) : 0.1);
+        if (!(s + next_step_ > s)) throw Refusal("NOT_FINITE", "the march cannot go on: step size vanished");
+        continue;
+      }
+      const double growth = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.5, 4.0);
+      double suggested = h * growth;
+      if (at_breakpoint || h < next_step_) suggested = std::max(suggested, std::min(next_step_, 4 * h));
+
+      const int event = first_event(s, y, h);
+      if (event >= 0) {
+        at_breakpoint = false;
+        suggested = std::max(suggested, next_step_);
+      }
+      finish_step(s, y, event >= 0 ? event_step_ : h, on_step);
+      if (at_breakpoint) s = breakpoint;
+      if (event >= 0) {
+        ++statistics_.events;
+        chatter = event_step_ < 1e-12 * h ? chatter + 1 : 0;
+        if (chatter > 50) throw Refusal("CHATTER", "contact opens and closes without end");
+        system_.on_event(event, s, y);
+        evaluate(s, y, k_[0]);
+      } else {
+        chatter = 0;
+      }
+      next_step_ = suggested;
+      if (at_breakpoint && s < end) {
+        system_.on_breakpoint(s);
+        breakpoint = std::min(end, system_.next_breakpoint(s));
+      }
+    }
+  }
+
+  void run(double& s, State& y, double end) {
+    run(s, y, end, [](const MarchStep<N>&) {});
+  }
+
+  const MarchStatistics& statistics() const { return statistics_; }
+  void restart() { next_step_ = 0; }
+
+ private:
+  void evaluate(double s, const State& y, State& dy) {
+    ++statistics_.right_hand_sides;
+    system_.derivative(s, y, dy);
+  }
+
+  /// Stages 2 to 7 from k_[0]; the new state in next_. Returns the scaled error (NaN possible).
+  double attempt(double s, const State& y, double h) {
+    static constexpr double c[6] = {0.2, 0.3, 0.8, 8.0 / 9, 1, 1};
+    static constexpr double a[6][6] = {
+        {0.2},
+        {3.0 / 40, 9.0 / 40},
+        {44.0 / 45, -56.0 / 15, 32.0 / 9},
+        {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
+        {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
+        {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
+    static constexpr double e[7] = {71.0 / 57600,      0,           -71.0 / 16695, 71.0 / 1920,
+                                    -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
+    for (int stage = 0; stage < 6; ++stage) {
+      for (int i = 0; i < N; ++i) {
+        double sum = 0;
+        for (int j = 0; j <= stage; ++j) sum += a[stage][j] * k_[j][i];
+        next_[i] = y[i] + h * sum;
+      }
+      evaluate(s + c[stage] * h, next_, k_[stage + 1]);
+    }
+    double worst = 0;
+    for (int i = 0; i < N; ++i) {
+      const double scale = system_.scale(i);
+      if (std::isinf(scale)) continue;
+      double error = 0;
+      for (int j = 0; j < 7; ++j) error += e[j] * k_[j][i];
+      error = std::abs(h * error) / (scale * options_.relative_tolerance);
+      if (!(error <= worst)) worst = error;  // keeps NaN
+    }
+    return worst;
+  }
+
+  template <class OnStep>
+  void finish_step(double& s, State& y, double h, OnStep&& on_step) {
+    on_step(MarchStep<N>{s, h, y, next_, k_});
+    ++statistics_.accepted_steps;
+    s += h;
+    y = next_;
+    k_[0] = k_[6];
+  }
+
+  double event_value(double s, const State& y, int index) {
+    std::array<double, System::kEvents> g;
+    system_.events(s, y, g);
+    return g[index];
+  }
+
+  /// The first event inside the step, or -1. Its place is found on true steps of the pair, not on
+  /// the extension; the stages and next_ then belong to the step up to the event, event_step_.
+  int first_event(double s, const State& y, double h) {
+    constexpr double kNothing = 1e-13;
+    constexpr int kProbes = 4;
+    const MarchStep<N> step{s, h, y, next_, k_};
+    std::array<double, System::kEvents> g;
+    int found = -1;
+    double upper = 1, lower = 0;
+    for (int probe = 1; probe <= kProbes && found < 0; ++probe) {
+      const double theta = static_cast<double>(probe) / kProbes;
+      system_.events(s + theta * h, probe == kProbes ? next_ : step.at(theta), g);
+      double first = std::numeric_limits<double>::infinity();
+      for (int index = 0; index < System::kEvents; ++index) {
+        if (!(g[index] > kNothing)) continue;
+        // Where on the extension, to tell which comes first.
+        double left = lower, right = theta;
+        for (int i = 0; i < 40; ++i) {
+          const double middle = 0.5 * (left + right);
+          (event_value(s + middle * h, step.at(middle), index) > 0 ? right : left) = middle;
+        }
+        if (right < first) {
+          first = right;
+          found = index;
+        }
+      }
+      if (found >= 0) upper = first;
+      lower = theta;
+    }
+    if (found < 0) return -1;
+
+    // Secant steps on the length of a true step, inside a bracket.
+    double low = 0, high = h, x = std::max(upper * h, 1e-15 * h);
+    double best = x, previous = 0, g_previous = 0;
+    bool have_previous = false;
+    for (int i = 0; i < 30; ++i) {
+      attempt(s, y, x);
+      const double gx = event_value(s + x, next_, found);
+      best = x;
+      if (std::abs(gx) <= kNothing) break;
+      (gx > 0 ? high : low) = x;
+      double trial = have_previous && gx != g_previous
+                         ? x - gx * (x - previous) / (gx - g_previous)
+                         : x * (gx > 0 ? 1 - 1e-6 : 1 + 1e-6);
+      if (!(trial > low && trial < high)) trial = 0.5 * (low + high);
+      if (high - low <= 4e-16 * h) break;
+      previous = x;
+      g_previous = gx;
+      have_previous = true;
+      x = trial;
+    }
+    event_step_ = best;
+    return found;
+  }
+
+  System& system_;
+  MarchOptions options_;
+  MarchStatistics statistics_;
+  std::array<State, 7> k_{};
+  State next_{};
+  double next_step_ = 0;
+  double event_step_ = 0;
+};
+
+}  // namespace tribodyn

@@ -1,0 +1,209 @@
+#include "core/dynamics/gear_pair_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tribodyn {
+namespace {
+
+double square(double v) { return v * v; }
+
+}  // namespace
+
+GearPairSystem::GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
+                               const DrivelineDynamics& dynamics, const ModelOptions& options)
+    : mesh_(mesh), contact_(contact), dynamics_(dynamics), options_(options) {}
+
+double GearPairSystem::cycle_angle() const {
+  return 2 * std::numbers::pi / mesh_.pinion_teeth();
+}
+
+void GearPairSystem::kinematics(double phase, const double* y, Instant& out) const {
+  // N_g phi_g = N_p phi_p - N_g winding/R_g0, because R_g0 N_p = R_p0 N_g.
+  const double theta = 2 * std::numbers::pi * phase;
+  const double lag = mesh_.gear_teeth() / mesh_.mean_gear_contact_radius();
+  out.mesh = mesh_.functions(theta, theta - lag * y[kWinding]);
+  const MeshFunctions& m = out.mesh;
+  const double b = dynamics_.half_backlash;
+  out.transmission_error =
+      b + y[kWinding] + m.radius_integral - m.static_transmission_error;
+  out.transmission_velocity =
+      (m.pinion_contact_radius - m.static_transmission_error_slope) * y[kPinionSpeed] -
+      m.gear_contact_radius * y[kGearSpeed];
+  out.deflection = regime.side == 0 ? 0 : out.transmission_error - regime.side * b;
+  out.damper_force = regime.side == 0 && options_.damping_in_contact_only
+                         ? 0
+                         : dynamics_.mesh_damping * out.transmission_velocity;
+  out.mesh_force = m.mesh_stiffness * out.deflection + out.damper_force;
+}
+
+ContactRegime GearPairSystem::regime_of(double phase, const double* y) const {
+  Instant at;
+  kinematics(phase, y, at);
+  ContactRegime r;
+  const double b = dynamics_.half_backlash;
+  r.side = at.transmission_error >= b ? 1 : at.transmission_error <= -b ? -1 : 0;
+  const double force = at.mesh.mesh_stiffness * (at.transmission_error - r.side * b) +
+                       dynamics_.mesh_damping * at.transmission_velocity;
+  r.loaded = r.side != 0 && r.side * force > 0;
+  return r;
+}
+
+void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
+  kinematics(phase, y, out);
+  const DrivelineDynamics& d = dynamics_;
+  out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
+                            d.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+  out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
+                          d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
+  out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
+
+  std::array<FlankKinematics, kFlankPairs> flanks;
+  mesh_.flanks(interval_, phase, flanks);
+  const double load = regime.side != 0 && regime.loaded
+                          ? std::max(0.0, regime.side * out.mesh_force) : 0;
+  for (int k = 0; k < kFlankPairs; ++k) {
+    const FlankKinematics& flank = flanks[k];
+    out.load[k] = flank.load_share * load;
+    if (!(out.load[k] > 0)) {
+      out.contact[k] = ContactSolution{};
+      out.motion[k] = FlankMotion{};
+      continue;
+    }
+    FlankMotion& motion = out.motion[k];
+    motion = flank_motion(flank, y[kPinionSpeed], y[kGearSpeed]);
+    if (options_.tabulated_friction_arms) {
+      motion.pinion_friction_arm = flank.pinion_friction_arm;
+      motion.gear_friction_arm = flank.gear_friction_arm;
+    }
+    double drift_x = 0, drift_y = 0;
+    if (options_.subtract_contact_point_motion) {
+      drift_x = flank.contact_point_velocity_x * y[kPinionSpeed];
+      drift_y = flank.contact_point_velocity_y * y[kPinionSpeed];
+    }
+    ++contact_solutions_;
+    out.contact[k] = contact_.solve({out.load[k], flank.radius_x, flank.radius_y,
+                                     motion.pinion_x - drift_x, motion.pinion_y - drift_y,
+                                     motion.gear_x - drift_x, motion.gear_y - drift_y});
+    const ContactSolution& contact = out.contact[k];
+    if (contact.status != ContactStatus::kOk && refusal_ == ContactStatus::kOk) {
+      refusal_ = contact.status;
+    }
+    out.pinion_friction_torque += motion.pinion_friction_arm * contact.friction;
+    out.gear_friction_torque += motion.gear_friction_arm * contact.friction;
+    out.loss_power += motion.sliding_speed * contact.friction;
+  }
+}
+
+void GearPairSystem::derivative(const double* y, const Instant& at, bool record,
+                                double* dy) const {
+  const DrivelineDynamics& d = dynamics_;
+  const MeshFunctions& m = at.mesh;
+  // Eqs 1-4 in time.
+  const double parametric_torque =
+      at.mesh_force * m.static_transmission_error_slope -
+      0.5 * m.mesh_stiffness_slope * square(at.deflection);
+  double pinion_torque =
+      -m.pinion_contact_radius * at.mesh_force + at.pinion_shaft_torque + at.pinion_friction_torque;
+  if (options_.energy_consistent) pinion_torque += parametric_torque;
+  dy[kTime] = 1;
+  dy[kPinionShaftTwist] = y[kPinionShaftSpeed] - y[kPinionSpeed];
+  dy[kWinding] = mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
+                 mesh_.mean_gear_contact_radius() * y[kGearSpeed];
+  dy[kGearShaftTwist] = y[kGearSpeed] - y[kWheelSpeed];
+  dy[kPinionShaftSpeed] = (torques_.pinion - at.pinion_shaft_torque) / d.pinion_shaft_inertia;
+  dy[kPinionSpeed] = pinion_torque / d.pinion_inertia;
+  dy[kGearSpeed] = (m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque +
+                    at.gear_friction_torque) / d.gear_inertia;
+  dy[kWheelSpeed] = (at.gear_shaft_torque - torques_.wheel) / d.wheel_inertia;
+  dy[kLossWork] = at.loss_power;
+  dy[kLossShareSquared] = square(at.loss_power / y[kPinionShaftSpeed]);
+  int count = kMarchComponents;
+
+  if (record) {
+    count = kRecordComponents;
+    for (int i = kMarchComponents; i < kRecordComponents; ++i) dy[i] = 0;
+    double viscous = 0, boundary = 0;
+    bool limited_centre = false;
+    for (int k = 0; k < kFlankPairs; ++k) {
+      if (!(at.load[k] > 0)) continue;
+      const ContactSolution& c = at.contact[k];
+      viscous += c.viscous_friction;
+      boundary += c.boundary_friction;
+      dy[kFlankViscousWork0 + k] = at.motion[k].sliding_speed * c.viscous_friction;
+      dy[kFlankBoundaryWork0 + k] = at.motion[k].sliding_speed * c.boundary_friction;
+      dy[kLoadTime] += at.load[k];
+      dy[kFilmLoadTime] += at.load[k] * c.central_film_thickness;
+      dy[kFilmRatioLoadTime] += at.load[k] * c.film_ratio;
+      dy[kTemperatureLoadTime] += at.load[k] * c.contact_temperature;
+      dy[kPressureLoadTime] += at.load[k] * c.maximum_pressure;
+      dy[kShearRateLoadTime] += at.load[k] * std::min(c.shear_rate, 1e300);
+      dy[kLimitedAreaLoadTime] += at.load[k] * c.limiting_stress_area_share;
+      limited_centre = limited_centre || c.limiting_stress_at_centre;
+    }
+    dy[kViscousForceSquared] = square(viscous);
+    dy[kBoundaryForceSquared] = square(boundary);
+    dy[kTransmissionErrorTime] = at.transmission_error;
+    dy[kMeshForceTime] = at.mesh_force;
+    dy[kPinionFrictionTorqueTime] = at.pinion_friction_torque;
+    dy[kGearFrictionTorqueTime] = at.gear_friction_torque;
+    dy[kLimitedCentreTime] = limited_centre ? 1 : 0;
+    dy[kGapTime] = regime.side == 0 ? 1 : 0;
+    dy[kCoastTime] = regime.side < 0 ? 1 : 0;
+    dy[kPinionShaftAngle] = y[kPinionShaftSpeed];
+    dy[kWheelAngle] = y[kWheelSpeed];
+    dy[kShaftDampingWork] =
+        d.pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]) +
+        d.gear_shaft_damping * square(y[kGearSpeed] - y[kWheelSpeed]);
+    dy[kMeshDampingWork] = at.damper_force * at.transmission_velocity;
+    if (!options_.energy_consistent) dy[kParametricWork] = parametric_torque * y[kPinionSpeed];
+  }
+  const double time_per_phase = cycle_angle() / y[kPinionSpeed];
+  for (int i = 0; i < count; ++i) dy[i] *= time_per_phase;
+}
+
+void GearPairSystem::to_march(const SectionState& section, double* y) const {
+  y[kTime] = 0;
+  y[kPinionShaftTwist] = section.pinion_shaft_twist;
+  y[kGearShaftTwist] = section.gear_shaft_twist;
+  y[kPinionShaftSpeed] = section.pinion_shaft_speed;
+  y[kPinionSpeed] = section.pinion_speed;
+  y[kGearSpeed] = section.gear_speed;
+  y[kWheelSpeed] = section.wheel_speed;
+  // b + winding + radius_integral(0, winding) = deflection: a contraction by R_g's ripple, 1e-2.
+  const double lag = mesh_.gear_teeth() / mesh_.mean_gear_contact_radius();
+  double winding = section.mesh_deflection - dynamics_.half_backlash;
+  for (int i = 0; i < 60; ++i) {
+    const double next = section.mesh_deflection - dynamics_.half_backlash -
+                        mesh_.functions(0, -lag * winding).radius_integral;
+    const bool done = std::abs(next - winding) <= 1e-20 + 1e-16 * std::abs(winding);
+    winding = next;
+    if (done) break;
+  }
+  y[kWinding] = winding;
+  y[kLossWork] = y[kLossShareSquared] = 0;
+}
+
+SectionState GearPairSystem::to_section(const double* y) const {
+  const double lag = mesh_.gear_teeth() / mesh_.mean_gear_contact_radius();
+  return {y[kPinionShaftTwist], y[kGearShaftTwist], y[kPinionShaftSpeed], y[kPinionSpeed],
+          y[kGearSpeed],        y[kWheelSpeed],
+          dynamics_.half_backlash + y[kWinding] +
+              mesh_.functions(0, -lag * y[kWinding]).radius_integral};
+}
+
+double GearPairSystem::stored_energy(double phase, const double* y) const {
+  const DrivelineDynamics& d = dynamics_;
+  Instant at;
+  kinematics(phase, y, at);
+  return 0.5 * (d.pinion_shaft_inertia * square(y[kPinionShaftSpeed]) +
+                d.pinion_inertia * square(y[kPinionSpeed]) +
+                d.gear_inertia * square(y[kGearSpeed]) +
+                d.wheel_inertia * square(y[kWheelSpeed]) +
+                d.pinion_shaft_stiffness * square(y[kPinionShaftTwist]) +
+                d.gear_shaft_stiffness * square(y[kGearShaftTwist]) +
+                at.mesh.mesh_stiffness * square(at.deflection));
+}
+
+}  // namespace tribodyn

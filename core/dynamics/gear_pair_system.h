@@ -1,0 +1,136 @@
+#pragma once
+
+#include <array>
+
+#include "core/contact/flank_contact.h"
+#include "core/dynamics/section_state.h"
+#include "core/gear/mesh_data.h"
+#include "core/study/scene.h"
+
+namespace tribodyn {
+
+/// State of the march over mesh phase. The pinion angle is the independent variable, so that the
+/// samples of the tooth contact tables and the mesh cycle fall on known places; time is a component.
+/// Twists and the winding are differences of angles and stay small.
+enum MarchComponent {
+  kTime,             ///< [s] since the section
+  kPinionShaftTwist, ///< phi_s - phi_p [rad]
+  kWinding,          ///< R_p0 phi_p - R_g0 phi_g [m]
+  kGearShaftTwist,   ///< phi_g - phi_w [rad]
+  kPinionShaftSpeed, ///< [rad/s]
+  kPinionSpeed,
+  kGearSpeed,
+  kWheelSpeed,
+  kLossWork,         ///< int sum V_s F_fr dt [J]
+  kLossShareSquared, ///< int (sum V_s F_fr / phidot_s)^2 dt [(N m)^2 s]: eq 30's RMS but for T_s
+  kMarchComponents
+};
+
+/// Integrals that only a recorded march carries, after the components above.
+enum RecordComponent {
+  kFlankViscousWork0 = kMarchComponents,  ///< one per slot [J]
+  kFlankBoundaryWork0 = kFlankViscousWork0 + kFlankPairs,
+  kViscousForceSquared = kFlankBoundaryWork0 + kFlankPairs,  ///< [N2 s]
+  kBoundaryForceSquared,
+  kTransmissionErrorTime,  ///< int x dt
+  kMeshForceTime,
+  kPinionFrictionTorqueTime,
+  kGearFrictionTorqueTime,
+  kLoadTime,               ///< int sum W dt, weight of the following
+  kFilmLoadTime,
+  kFilmRatioLoadTime,
+  kTemperatureLoadTime,
+  kPressureLoadTime,
+  kShearRateLoadTime,
+  kLimitedAreaLoadTime,
+  kLimitedCentreTime,
+  kGapTime,
+  kCoastTime,
+  kPinionShaftAngle,       ///< int phidot_s dt
+  kWheelAngle,
+  kShaftDampingWork,
+  kMeshDampingWork,
+  kParametricWork,
+  kRecordComponents
+};
+
+/// Which flanks touch. `loaded` is false where c xdot pulls the mesh force below zero: the flanks
+/// still touch, the friction is off.
+struct ContactRegime {
+  int side = 1;  ///< +1 drive flanks, 0 gap, -1 coast flanks
+  bool loaded = true;
+};
+
+struct Torques {
+  double pinion = 0;  ///< T_s [N m]
+  double wheel = 0;   ///< T_w [N m]
+};
+
+/// Everything at one instant, for records and histories.
+struct Instant {
+  MeshFunctions mesh;
+  double deflection = 0;           ///< f [m]
+  double transmission_error = 0;   ///< x [m]
+  double transmission_velocity = 0;  ///< xdot [m/s]
+  double mesh_force = 0;           ///< k_m f + c xdot [N]; of which the damper:
+  double damper_force = 0;
+  double pinion_shaft_torque = 0;  ///< [N m]
+  double gear_shaft_torque = 0;
+  double pinion_friction_torque = 0;
+  double gear_friction_torque = 0;
+  double loss_power = 0;           ///< sum V_s F_fr [W]
+  std::array<double, kFlankPairs> load{};
+  std::array<FlankMotion, kFlankPairs> motion{};
+  std::array<ContactSolution, kFlankPairs> contact{};
+};
+
+/// Eqs 1-11 with friction (eqs 28, 29) in the loop. One instance per march: it carries the regime.
+/// Evaluation allocates nothing and throws nothing; a contact that is refused is remembered.
+class GearPairSystem {
+ public:
+  /// Keeps references: mesh, contact and dynamics must outlive it.
+  GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
+                 const DrivelineDynamics& dynamics, const ModelOptions& options);
+
+  void set_torques(const Torques& torques) { torques_ = torques; }
+  const Torques& torques() const { return torques_; }
+  /// Table interval that the mesh phase is in; phases are continued by its straight lines.
+  void set_interval(int interval) { interval_ = interval; }
+  int interval() const { return interval_; }
+  ContactRegime regime;
+
+  /// Regime that a state is in by its x and xdot.
+  ContactRegime regime_of(double phase, const double* state) const;
+  /// All of eqs 1-11 and the friction of each loaded flank at mesh phase [cycles]. Counts contacts.
+  void evaluate(double phase, const double* state, Instant& out);
+  /// d state / d phase of the first kMarchComponents from an instant, and of the record if asked.
+  void derivative(const double* state, const Instant& at, bool record, double* derivative) const;
+  /// x and mesh force without friction: for events.
+  void kinematics(double phase, const double* state, Instant& out) const;
+
+  double cycle_angle() const;  ///< phi_p per mesh cycle, 2 pi/N_p
+  void to_march(const SectionState& section, double* state) const;
+  SectionState to_section(const double* state) const;
+  /// Kinetic and elastic energy [J].
+  double stored_energy(double phase, const double* state) const;
+
+  const MeshData& mesh() const { return mesh_; }
+  const DrivelineDynamics& dynamics() const { return dynamics_; }
+  const FlankContactModel& contact_model() const { return contact_; }
+  const ModelOptions& options() const { return options_; }
+  long contact_solutions() const { return contact_solutions_; }
+  /// kOk, or the first refusal met.
+  ContactStatus refusal() const { return refusal_; }
+
+ private:
+  const MeshData& mesh_;
+  const FlankContactModel& contact_;
+  const DrivelineDynamics& dynamics_;
+  ModelOptions options_;
+  Torques torques_;
+  int interval_ = 0;
+  long contact_solutions_ = 0;
+  ContactStatus refusal_ = ContactStatus::kOk;
+};
+
+}  // namespace tribodyn

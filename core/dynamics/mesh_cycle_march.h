@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/dynamics/event_exact_march.h"
+#include "core/dynamics/gear_pair_system.h"
+
+namespace tribodyn {
+
+/// Sizes of the components of the march: what an error of one is measured against.
+struct MarchScales {
+  double length;        ///< static mesh deflection [m]
+  double speed;         ///< pinion speed of a free vibration that large [rad/s]
+  double torque;        ///< [N m]
+  double loss_work;     ///< 1 % of the input work of a mesh cycle [J]
+  double loss_squared;  ///< the same for kLossShareSquared
+  double time;          ///< in which the pinion turns by length/R_p0 [s]
+  double of(const MeshData& mesh, int component) const;
+};
+
+MarchScales march_scales(const GearPairSystem& system, double mean_pinion_speed);
+
+/// Opening (or closing) of the gap.
+struct GapEvent {
+  double phase;  ///< [cycles]
+  double time;   ///< [s]
+  bool opens;
+};
+
+/// The gear pair as EventExactMarch sees it, over mesh phase in [0, 1].
+/// kRecord adds the integrals of RecordComponent.
+template <bool kRecord>
+class PhaseSystem {
+ public:
+  static constexpr int kSize = kRecord ? static_cast<int>(kRecordComponents)
+                                       : static_cast<int>(kMarchComponents);
+  static constexpr int kEvents = 2;
+  using State = std::array<double, kSize>;
+
+  PhaseSystem(GearPairSystem& system, const MarchScales& scales)
+      : system_(system), scales_(scales) {
+    for (int i = 0; i < kSize; ++i) {
+      scale_[i] = i < kMarchComponents ? scales.of(system.mesh(), i)
+                                       : std::numeric_limits<double>::infinity();
+    }
+    system_.set_interval(0);
+  }
+
+  void derivative(double phase, const State& y, State& dy) {
+    system_.evaluate(phase, y.data(), instant_);
+    system_.derivative(y.data(), instant_, kRecord, dy.data());
+  }
+
+  void events(double phase, const State& y, std::array<double, kEvents>& g) const {
+    Instant at;
+    system_.kinematics(phase, y.data(), at);
+    const double b = system_.dynamics().half_backlash;
+    const ContactRegime& regime = system_.regime;
+    if (regime.side == 0) {
+      g = {(at.transmission_error - b) / scales_.length, (-b - at.transmission_error) / scales_.length};
+      return;
+    }
+    const double force = regime.side * at.mesh_force * system_.mesh().mean_pinion_contact_radius() /
+                         scales_.torque;
+    g = {(b - regime.side * at.transmission_error) / scales_.length,
+         regime.loaded ? -force : force};
+  }
+
+  void on_event(int index, double phase, const State& y) {
+    ContactRegime& regime = system_.regime;
+    const int before = regime.side;
+    if (regime.side == 0) {
+      regime.side = index == 0 ? 1 : -1;
+    } else if (index == 1) {
+      regime.loaded = !regime.loaded;
+      return;
+    } else {
+      regime.side = system_.dynamics().half_backlash > 0 ? 0 : -regime.side;
+    }
+    Instant at;
+    system_.kinematics(phase, y.data(), at);
+    // Deflection is nothing here; the damper alone decides whether load starts at once.
+    regime.loaded = regime.side != 0 && regime.side * at.transmission_velocity > 0 &&
+                    system_.dynamics().mesh_damping > 0;
+    if (gap_events != nullptr && (before == 0) != (regime.side == 0)) {
+      gap_events->push_back({phase, y[kTime], regime.side == 0});
+    }
+  }
+
+  double next_breakpoint(double) const {
+    return static_cast<double>(system_.interval() + 1) / system_.mesh().intervals();
+  }
+  void on_breakpoint(double) { system_.set_interval(system_.interval() + 1); }
+  double scale(int i) const { return scale_[i]; }
+
+  std::vector<GapEvent>* gap_events = nullptr;
+
+ private:
+  GearPairSystem& system_;
+  MarchScales scales_;
+  State scale_;
+  Instant instant_;
+};
+
+using MarchState = std::array<double, kMarchComponents>;
+
+/// Marches one mesh cycle from phase 0; time and work start from zero. Adds to `statistics`.
+/// Throws Refusal NO_FORWARD_ROTATION when the pinion comes to a stop, and the name of a contact's
+/// refusal when one is met.
+void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales, const MarchOptions& options,
+                      MarchState& state, MarchStatistics& statistics);
+
+void throw_if_refused(const GearPairSystem& system);
+
+}  // namespace tribodyn

@@ -1,0 +1,267 @@
+#include "core/dynamics/steady_state.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tribodyn {
+namespace {
+
+constexpr int kUnknowns = 8;   // the seven of SectionState and the torque
+constexpr int kWindow = 8;     // periods that an extrapolation looks back on
+constexpr int kFirstCycles = 8;  // marched before anything is extrapolated
+constexpr double kStabilityMargin = 2e-3;  // finite differences of the period map are that good
+using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+
+constexpr int kStateOf[kUnknowns - 1] = {kPinionShaftTwist, kWinding,   kGearShaftTwist, kPinionShaftSpeed,
+                                         kPinionSpeed,      kGearSpeed, kWheelSpeed};
+
+/// The period map with its corrections, in scaled unknowns.
+class PeriodMap {
+ public:
+  PeriodMap(GearPairSystem& system, const SteadyStateRequest& request, SteadyState& out)
+      : system_(system), request_(request), out_(out),
+        scales_(march_scales(system, request.mean_pinion_speed)) {
+    for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system.mesh(), kStateOf[i]);
+    scale_(kUnknowns - 1) = scales_.torque;
+  }
+
+  Vector pack(const MarchState& state) const {
+    Vector v;
+    for (int i = 0; i + 1 < kUnknowns; ++i) v(i) = state[kStateOf[i]] / scale_(i);
+    v(kUnknowns - 1) = unknown_torque() / scale_(kUnknowns - 1);
+    return v;
+  }
+
+  void unpack(const Vector& v, MarchState& state) {
+    for (int i = 0; i + 1 < kUnknowns; ++i) state[kStateOf[i]] = v(i) * scale_(i);
+    set_unknown_torque(v(kUnknowns - 1) * scale_(kUnknowns - 1));
+    system_.regime = system_.regime_of(0, state.data());
+  }
+
+  /// One period from `state`, corrected for speed and torque.
+  void advance(MarchState& state, int period) {
+    const MarchState before = state;
+    double time = 0;
+    for (int i = 0; i < period; ++i) {
+      march_mesh_cycle(system_, scales_, request_.march, state, out_.statistics);
+      time += state[kTime];
+      ++out_.mesh_cycles;
+    }
+    const DrivelineDynamics& d = system_.dynamics();
+    const MeshData& mesh = system_.mesh();
+    const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
+    // Momentum gained by the whole train, as the pinion feels it, must come from the torque.
+    const auto momentum = [&](const MarchState& y) {
+      return d.pinion_shaft_inertia * y[kPinionShaftSpeed] + d.pinion_inertia * y[kPinionSpeed] +
+             ratio * (d.gear_inertia * y[kGearSpeed] + d.wheel_inertia * y[kWheelSpeed]);
+    };
+    const double excess = (momentum(state) - momentum(before)) / time;
+    if (request_.solve_wheel_torque) {
+      const double change = excess / ratio;
+      set_unknown_torque(unknown_torque() + change);
+      state[kGearShaftTwist] += change / d.gear_shaft_stiffness;
+    } else {
+      set_unknown_torque(unknown_torque() - excess);
+      state[kPinionShaftTwist] -= excess / d.pinion_shaft_stiffness;
+      state[kWinding] -=
+          excess / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
+    }
+    const double shift = request_.mean_pinion_speed - period * system_.cycle_angle() / time;
+    state[kPinionShaftSpeed] += shift;
+    state[kPinionSpeed] += shift;
+    state[kGearSpeed] += ratio * shift;
+    state[kWheelSpeed] += ratio * shift;
+    const ContactRegime kept = system_.regime;
+    system_.regime = system_.regime_of(0, state.data());
+    if (system_.regime.side == kept.side) system_.regime = kept;
+  }
+
+  /// Largest modulus of the eigenvalues of the corrected period map at a fixed point, by forward
+  /// differences: the Floquet multipliers but for the two that speed and torque correction remove.
+  double largest_multiplier(const MarchState& state, int period) {
+    constexpr double kStep = 1e-4;
+    const Torques torques = system_.torques();
+    const ContactRegime regime = system_.regime;
+    const Vector origin = pack(state);
+    MarchState moved = state;
+    advance(moved, period);
+    const Vector image = pack(moved);
+    Eigen::MatrixXd jacobian(kUnknowns, kUnknowns);
+    for (int j = 0; j < kUnknowns; ++j) {
+      Vector shifted = origin;
+      shifted(j) += kStep;
+      moved = state;
+      unpack(shifted, moved);
+      advance(moved, period);
+      jacobian.col(j) = (pack(moved) - image) / kStep;
+    }
+    system_.set_torques(torques);
+    system_.regime = regime;
+    return Eigen::EigenSolver<Eigen::MatrixXd>(jacobian, false).eigenvalues().cwiseAbs().maxCoeff();
+  }
+
+ private:
+  double unknown_torque() const {
+    return request_.solve_wheel_torque ? system_.torques().wheel : system_.torques().pinion;
+  }
+  void set_unknown_torque(double value) {
+    Torques t = system_.torques();
+    (request_.solve_wheel_torque ? t.wheel : t.pinion) = value;
+    system_.set_torques(t);
+  }
+
+  GearPairSystem& system_;
+  const SteadyStateRequest& request_;
+  SteadyState& out_;
+  MarchScales scales_;
+  Vector scale_;
+};
+
+/// Anderson's extrapolation from the last arguments and images of a map.
+class Extrapolation {
+ public:
+  void clear() { arguments_.clear(); images_.clear(); }
+  void add(const Vector& argument, const Vector& image) {
+    if (arguments_.size() > kWindow) {
+      arguments_.erase(arguments_.begin());
+      images_.erase(images_.begin());
+    }
+    arguments_.push_back(argument);
+    images_.push_back(image);
+  }
+  bool ready() const { return arguments_.size() >= 2; }
+  Vector next() const {
+    const int columns = static_cast<int>(arguments_.size()) - 1;
+    Eigen::Matrix<double, kUnknowns, Eigen::Dynamic> residuals(kUnknowns, columns),
+        images(kUnknowns, columns);
+    const Vector last = images_.back() - arguments_.back();
+    for (int j = 0; j < columns; ++j) {
+      residuals.col(j) = (images_[j + 1] - arguments_[j + 1]) - (images_[j] - arguments_[j]);
+      images.col(j) = images_[j + 1] - images_[j];
+    }
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(residuals);
+    qr.setThreshold(1e-10);
+    const Eigen::VectorXd weights = qr.solve(last);
+    return images_.back() - images * weights;
+  }
+
+ private:
+  std::vector<Vector> arguments_, images_;
+};
+
+/// The shortest period, up to 4, after which the sections repeat clearly better than after 1.
+int shortest_period(const std::vector<Vector>& sections) {
+  const auto repeat = [&](int p) { return (sections.back() - sections.end()[-1 - p]).norm(); };
+  int period = 1;
+  for (int p = 2; p <= 4 && static_cast<int>(sections.size()) > p; ++p) {
+    if (repeat(p) < 0.3 * repeat(period)) period = p;
+  }
+  return period;
+}
+
+}  // namespace
+
+MarchState static_start(const GearPairSystem& system, double mean_pinion_speed, double offset) {
+  const MeshData& mesh = system.mesh();
+  const DrivelineDynamics& d = system.dynamics();
+  const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
+  const MeshFunctions at = mesh.functions(0, 0);
+  const double force = system.torques().pinion / at.pinion_contact_radius;
+  const double side = force >= 0 ? 1 : -1;
+  SectionState section;
+  section.pinion_shaft_twist = system.torques().pinion / d.pinion_shaft_stiffness;
+  section.gear_shaft_twist = force * at.gear_contact_radius / d.gear_shaft_stiffness;
+  section.pinion_shaft_speed = section.pinion_speed = mean_pinion_speed;
+  // xdot = 0 at the section.
+  section.gear_speed = (at.pinion_contact_radius - at.static_transmission_error_slope) *
+                       mean_pinion_speed / at.gear_contact_radius;
+  section.wheel_speed = mean_pinion_speed * ratio;
+  section.mesh_deflection = side * d.half_backlash + at.static_transmission_error +
+                            force / at.mesh_stiffness + side * offset;
+  MarchState state{};
+  system.to_march(section, state.data());
+  return state;
+}
+
+SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
+                               const SteadyStateRequest& request) {
+  SteadyState out;
+  PeriodMap map(system, request, out);
+  MarchState state = start;
+  system.regime = system.regime_of(0, state.data());
+
+  // An extrapolated residual is about (1 - slowest multiplier) times the error, 0.01 at worst.
+  const double wanted = 0.01 * request.tolerance;
+  constexpr double kNone = 1e300;
+  int period = 1, failures = 0, plain_left = kFirstCycles, confirmed = 0, without_gain = 0;
+  double best = kNone, reported = 0;
+  Vector best_image, marched = map.pack(state);
+  Extrapolation extrapolation;
+  std::vector<Vector> sections;  // of consecutive plain mesh cycles, for finding the period
+  while (out.mesh_cycles + period <= request.maximum_mesh_cycles) {
+    if (request.progress) {
+      const double done = best >= 1 ? 0 : std::log(std::max(best, wanted)) / std::log(wanted);
+      reported = std::max(reported, std::clamp(done, 0.0, 0.99));
+      if (!request.progress(reported)) throw Cancelled();
+    }
+    const Vector argument = map.pack(state);
+    map.advance(state, period);
+    const Vector image = map.pack(state);
+    out.defect = (image - argument).norm();
+    if (out.defect <= wanted) {
+      // Once more without extrapolation: the answer lies on a marched orbit.
+      if (++confirmed < 2) continue;
+      confirmed = 0;
+      out.largest_multiplier = map.largest_multiplier(state, period);
+      if (out.largest_multiplier <= 1 + kStabilityMargin) {
+        out.settled = true;
+        break;
+      }
+      // Extrapolation finds repelling orbits too, between two branches. The march would have left it:
+      // go back to where it was and let it run on for longer.
+      map.unpack(marched, state);
+      plain_left = 24 * ++failures;
+      sections.clear();
+      continue;
+    }
+    confirmed = 0;
+    if (plain_left > 0) {
+      sections.push_back(image);
+      if (--plain_left == 0) {
+        marched = image;
+        if (failures >= 2 && period == 1 && sections.size() > 8) period = shortest_period(sections);
+        sections.clear();
+        best = kNone;
+        without_gain = 0;
+        extrapolation.clear();
+      }
+      continue;
+    }
+    if (out.defect < 0.9 * best) {
+      best = out.defect;
+      best_image = image;
+      without_gain = 0;
+    } else if (++without_gain > 3 + (best < 1e-3 ? kWindow : 0)) {
+      // Not contracting: take it back and let the transients die for a while. A period that does not
+      // settle either gives way to single cycles.
+      if (best < kNone) map.unpack(best_image, state);
+      if (++failures % 4 == 0) period = 1;
+      plain_left = std::min(16 * failures, 96);
+      continue;
+    }
+    extrapolation.add(argument, image);
+    if (extrapolation.ready()) {
+      map.unpack(extrapolation.next(), state);
+      ++out.accelerations;
+    }
+  }
+  out.period = out.settled ? period : 0;
+  out.state = state;
+  out.regime = system.regime;
+  out.torques = system.torques();
+  return out;
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,72 @@
+#include "core/lubricant/viscosity.h"
+
+#include <cmath>
+#include <string>
+
+#include "core/numerics/bracketed_root.h"
+#include "core/numerics/gauss_legendre.h"
+#include "core/refusal.h"
+
+namespace tribodyn {
+
+double log_ambient_viscosity(const Lubricant& lubricant, double temperature) {
+  return std::log(lubricant.vogel_viscosity_prefactor) +
+         lubricant.vogel_temperature_coefficient /
+             (temperature - lubricant.vogel_reference_temperature);
+}
+
+double ambient_viscosity(const Lubricant& lubricant, double temperature) {
+  return std::exp(log_ambient_viscosity(lubricant, temperature));
+}
+
+double density(const Lubricant& lubricant, double temperature) {
+  return lubricant.density_at_zero_kelvin + lubricant.density_temperature_slope * temperature;
+}
+
+double roelands_factor(double log_ambient_viscosity, const AsPublished& as_published) {
+  return as_published.eq31_32_logarithm
+             ? std::log(std::exp(log_ambient_viscosity) + kRoelandsLogViscosity)
+             : log_ambient_viscosity + kRoelandsLogViscosity;
+}
+
+double log_viscosity_under_pressure(double log_ambient_viscosity, double factor, double index,
+                                    double pressure) {
+  return log_ambient_viscosity +
+         factor * std::expm1(index * std::log1p(kRoelandsPressureCoefficient * pressure));
+}
+
+double reciprocal_asymptotic_coefficient(double factor, double index) {
+  // int_0^inf exp(-v) (1 + v/L)^(1/Z - 1) dv / (Z c L); the integrand peaks near v = 1/Z - 1 - L and
+  // falls as exp(-v) beyond, so panels of width 4 up to its hundred-e-fold tail lose nothing.
+  constexpr double kPanel = 4;
+  const auto& rule = gauss_legendre<20>();
+  const double power = 1 / index - 1;
+  const double end = 60 + 6 * std::max(0.0, power);
+  double integral = 0;
+  for (double start = 0; start < end; start += kPanel) {
+    const auto v = start + kPanel * rule.node;
+    integral += kPanel * (rule.weight * (power * (v / factor).log1p() - v).exp()).sum();
+  }
+  return index * kRoelandsPressureCoefficient * factor / integral;
+}
+
+double index_from_reciprocal_asymptotic(double factor, double coefficient) {
+  constexpr double kLow = 0.05, kHigh = 3;
+  const auto excess = [&](double index) {
+    return reciprocal_asymptotic_coefficient(factor, index) / coefficient - 1;
+  };
+  if (factor > 0) {
+    const double low = excess(kLow), high = excess(kHigh);
+    if (low <= 0 && high >= 0) return bracketed_root(excess, kLow, kHigh, low, high);
+  }
+  throw Refusal("PRESSURE_VISCOSITY_INDEX",
+                "no Roelands index Z in [0.05, 3] gives a pressure-viscosity coefficient of " +
+                    std::to_string(coefficient * 1e9) +
+                    " 1/GPa back by eq 33 (ln eta_0 + 9.67 = " + std::to_string(factor) + ")");
+}
+
+double index_from_houpert(double factor, double coefficient) {
+  return coefficient / (kRoelandsPressureCoefficient * factor);
+}
+
+}  // namespace tribodyn

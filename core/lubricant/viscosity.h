@@ -1,0 +1,41 @@
+#pragma once
+
+#include "core/lubricant/lubricant.h"
+#include "core/model_options.h"
+
+namespace tribodyn {
+
+inline constexpr double kRoelandsPressureCoefficient = 5.1e-9;  ///< of eqs 31, 32 [1/Pa]
+inline constexpr double kRoelandsLogViscosity = 9.67;           ///< of eqs 31, 32 [-]
+
+/// ln eta_0(T), eq 34 (Vogel 1921). eta in Pa s, temperature in K.
+/// Valid for temperature > T_0,ref; +inf or meaningless at or below it: callers check.
+double log_ambient_viscosity(const Lubricant& lubricant, double temperature);
+
+/// eta_0(T) [Pa s], eq 34.
+double ambient_viscosity(const Lubricant& lubricant, double temperature);
+
+/// rho(T) [kg/m3], eq 26: linear in temperature [K]. Negative beyond intercept/|slope|.
+double density(const Lubricant& lubricant, double temperature);
+
+/// The factor of eqs 31 and 32 that multiplies Z: ln eta_0 + 9.67 (Roelands 1966), or, as printed,
+/// ln(eta_0 + 9.67). Argument: ln of eta_0 in Pa s.
+double roelands_factor(double log_ambient_viscosity, const AsPublished& as_published);
+
+/// ln eta(p) [Pa s] of eq 31 from ln eta_0, the factor above, Z and the pressure [Pa] >= 0.
+double log_viscosity_under_pressure(double log_ambient_viscosity, double factor, double index,
+                                    double pressure);
+
+/// alpha* [1/Pa] of eq 33 for a Roelands fluid, by quadrature of
+/// int_0^inf exp(-L((1 + cp)^Z - 1)) dp with v = L((1 + cp)^Z - 1); relative error below 1e-13 for
+/// factor L in [0.5, 60], Z in [0.05, 3].
+double reciprocal_asymptotic_coefficient(double factor, double index);
+
+/// Z such that eq 33 gives alpha* back at the factor L (bracketed root, to machine precision).
+/// Throws Refusal PRESSURE_VISCOSITY_INDEX when no Z in [0.05, 3] does or L is not positive.
+double index_from_reciprocal_asymptotic(double factor, double coefficient);
+
+/// Z of eq 32 (Houpert 1985): alpha* / (5.1e-9 L).
+double index_from_houpert(double factor, double coefficient);
+
+}  // namespace tribodyn

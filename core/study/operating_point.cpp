@@ -1,0 +1,292 @@
+#include "core/study/operating_point.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/dynamics/steady_state.h"
+#include "core/number_text.h"
+#include "core/refusal.h"
+#include "core/study/history_sampler.h"
+#include "core/study/quasi_static.h"
+#include "core/study/range_warnings.h"
+#include "core/study/response_record.h"
+
+namespace tribodyn {
+namespace {
+
+constexpr double kLargeVibrationDeflection = 60e-6;  // [m]
+
+/// Speed and torques that the condition fixes; the unknown torque without friction.
+struct Target {
+  double mean_pinion_speed;
+  double vehicle_speed;
+  Torques torques;
+  bool solve_wheel_torque;
+};
+
+Target target_of(const Scene& scene, const OperatingCondition& c) {
+  const double ratio = static_cast<double>(scene.gear_set.pinion_teeth) / scene.gear_set.gear_teeth;
+  Target t{};
+  if (c.kind == OperatingCondition::Kind::kPrescribedTorque) {
+    t.mean_pinion_speed = c.pinion_speed;
+    t.vehicle_speed = c.pinion_speed * ratio * scene.vehicle.wheel_radius;
+    t.torques = {c.pinion_torque, c.pinion_torque / ratio};
+    t.solve_wheel_torque = true;
+  } else {
+    const double acceleration =
+        c.kind == OperatingCondition::Kind::kDriveCycleSnapshot ? c.acceleration : 0;
+    t.vehicle_speed = c.vehicle_speed;
+    t.mean_pinion_speed = c.vehicle_speed / scene.vehicle.wheel_radius / ratio;
+    const double wheel = wheel_torque(scene.vehicle, c.vehicle_speed, c.ascent_angle, acceleration);
+    t.torques = {wheel * ratio, wheel};
+  }
+  if (!(t.mean_pinion_speed > 0) || !std::isfinite(t.mean_pinion_speed)) {
+    throw Refusal("NO_FORWARD_ROTATION",
+                  "the mean pinion speed must be positive; it is " +
+                      number_text(t.mean_pinion_speed) + " rad/s");
+  }
+  return t;
+}
+
+/// The neighbour's steady state, its wind-up and speeds moved to this point.
+MarchState carried_start(const GearPairSystem& system, const CarriedState& from,
+                         double mean_pinion_speed) {
+  const MeshData& mesh = system.mesh();
+  const DrivelineDynamics& d = system.dynamics();
+  const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
+  SectionState section = from.section_state;
+  const double pinion = system.torques().pinion - from.pinion_torque;
+  const double wheel = system.torques().wheel - from.wheel_torque;
+  section.pinion_shaft_twist += pinion / d.pinion_shaft_stiffness;
+  section.gear_shaft_twist += wheel / d.gear_shaft_stiffness;
+  section.mesh_deflection +=
+      pinion / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
+  const double speed = mean_pinion_speed - from.mean_pinion_speed;
+  section.pinion_shaft_speed += speed;
+  section.pinion_speed += speed;
+  section.gear_speed += ratio * speed;
+  section.wheel_speed += ratio * speed;
+  MarchState state{};
+  system.to_march(section, state.data());
+  return state;
+}
+
+/// Marches the steady state once more, recording. The state goes on from cycle to cycle.
+void record_response(GearPairSystem& system, const SteadyState& steady, int cycles,
+                     const MarchOptions& options, const MarchScales& scales, ResponseRecord& record,
+                     HistorySampler& history, SolverStatistics& statistics,
+                     const std::function<bool(double)>& progress) {
+  using Phases = PhaseSystem<true>;
+  constexpr int kSize = Phases::kSize;
+  Phases::State y{};
+  std::copy(steady.state.begin(), steady.state.end(), y.begin());
+  y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
+  system.regime = steady.regime;
+  system.set_torques(steady.torques);
+  record.starts_in_gap = system.regime.side == 0;
+
+  GearPairSystem probe = system;  // evaluates between the march's own evaluations
+  std::array<Instant, ResponseRecord::kSamples> samples;
+  int cycle = 0;
+  bool recording = true;
+  const auto on_step = [&](const MarchStep<kSize>& step) {
+    if (!(step.to[kPinionSpeed] > 0)) {
+      throw Refusal("NO_FORWARD_ROTATION",
+                    "the pinion comes to a stop: the march over mesh phase needs forward rotation");
+    }
+    probe.regime = system.regime;
+    probe.set_interval(system.interval());
+    if (recording) {
+      for (int i = 0; i < ResponseRecord::kSamples; ++i) {
+        const double theta = static_cast<double>(i) / (ResponseRecord::kSamples - 1);
+        const auto at = i == 0 ? step.from : i + 1 == ResponseRecord::kSamples ? step.to : step.at(theta);
+        probe.evaluate(step.start + theta * step.length, at.data(), samples[i]);
+      }
+      record.add_step(samples);
+    }
+    while (history.wanted() && history.next_phase() < cycle + step.start + step.length) {
+      const double inside = history.next_phase() - cycle;
+      const auto at = step.at(std::clamp((inside - step.start) / step.length, 0.0, 1.0));
+      probe.evaluate(inside, at.data(), samples[0]);
+      history.add(cycle + inside, at.data(), samples[0], system.torques().pinion);
+    }
+  };
+  for (; cycle < cycles || history.wanted(); ++cycle) {
+    if (progress && !progress(1)) throw Cancelled();
+    Phases phases(system, scales);
+    std::vector<GapEvent> events;
+    phases.gap_events = &events;
+    recording = cycle < cycles;
+    EventExactMarch<Phases> march(phases, options);
+    double phase = 0;
+    march.run(phase, y, 1.0, on_step);
+    throw_if_refused(system);
+    statistics.right_hand_sides += march.statistics().right_hand_sides;
+    statistics.accepted_steps += march.statistics().accepted_steps;
+    statistics.rejected_steps += march.statistics().rejected_steps;
+    statistics.events += march.statistics().events;
+    ++statistics.mesh_cycles;
+    if (recording) {
+      for (GapEvent event : events) {
+        event.phase += cycle;
+        record.gap_events.push_back(event);
+      }
+    }
+    if (cycle + 1 == cycles) std::copy(y.begin(), y.end(), record.integrals.begin());
+  }
+  statistics.contact_solutions += probe.contact_solutions() - system.contact_solutions();
+}
+
+SolverStatistics statistics_of(const SteadyState& s) {
+  SolverStatistics out;
+  out.right_hand_sides = s.statistics.right_hand_sides;
+  out.accepted_steps = s.statistics.accepted_steps;
+  out.rejected_steps = s.statistics.rejected_steps;
+  out.events = s.statistics.events;
+  out.mesh_cycles = s.mesh_cycles;
+  out.accelerations = s.accelerations;
+  out.periodicity_defect = s.defect;
+  out.largest_multiplier = s.largest_multiplier;
+  return out;
+}
+
+PointResult empty_result(const Target& target, PointModel model) {
+  PointResult out;
+  out.vehicle_speed = target.vehicle_speed;
+  out.mean_pinion_speed = target.mean_pinion_speed;
+  out.model = model;
+  return out;
+}
+
+PointResult solve_full(GearPairSystem& system, const Target& target, const PointOptions& options,
+                       const MarchState& start, const HistoryRequest& history_request) {
+  SteadyStateRequest request;
+  request.mean_pinion_speed = target.mean_pinion_speed;
+  request.solve_wheel_torque = target.solve_wheel_torque;
+  request.march.relative_tolerance = options.relative_tolerance;
+  request.tolerance = options.settling_tolerance;
+  request.maximum_mesh_cycles = options.maximum_mesh_cycles;
+  request.progress = options.progress;
+  const SteadyState steady = solve_steady_state(system, start, request);
+
+  PointResult out = empty_result(target, PointModel::kFull);
+  out.settled = steady.settled;
+  out.period_in_mesh_cycles = steady.period;
+  out.statistics = statistics_of(steady);
+  out.recorded_mesh_cycles = steady.settled ? steady.period : options.recorded_mesh_cycles;
+  const MarchScales scales = march_scales(system, target.mean_pinion_speed);
+  ResponseRecord record(scales.torque / system.mesh().mean_pinion_contact_radius());
+  HistorySampler history(history_request);
+  record_response(system, steady, out.recorded_mesh_cycles, request.march, scales, record, history,
+                  out.statistics, options.progress);
+  out.statistics.contact_solutions += system.contact_solutions();
+  record.fill(system.torques(), out.recorded_mesh_cycles, steady.settled, out);
+  const double end_energy = system.stored_energy(0, record.integrals.data());
+  system.regime = steady.regime;
+  out.power_balance.stored = end_energy - system.stored_energy(0, steady.state.data());
+  out.section_state = system.to_section(steady.state.data());
+  out.history = history.take();
+  return out;
+}
+
+PointResult solve_quasi_static_point(GearPairSystem& system, const Target& target,
+                                     const PointOptions& options) {
+  PointResult out = empty_result(target, PointModel::kQuasiStatic);
+  ResponseRecord record(std::abs(system.torques().pinion) /
+                        system.mesh().mean_pinion_contact_radius());
+  HistorySampler history(options.history);
+  solve_quasi_static(system, target.mean_pinion_speed, target.solve_wheel_torque, record, history);
+  out.settled = true;
+  out.period_in_mesh_cycles = out.recorded_mesh_cycles = 1;
+  record.fill(system.torques(), 1, true, out);
+  out.statistics.contact_solutions = system.contact_solutions();
+  system.regime = {system.torques().pinion >= 0 ? 1 : -1, true};
+  out.section_state =
+      system.to_section(static_start(system, target.mean_pinion_speed, 0).data());
+  out.history = history.take();
+  return out;
+}
+
+/// A response with its own gear data, so that the torque may change them.
+struct Prepared {
+  GearSet gear_set;
+  MeshData mesh;
+  Prepared(const GearSet& base, const ModelOptions& options, double pinion_torque)
+      : gear_set(options.load_dependent_mesh_data ? at_torque(base, pinion_torque) : base),
+        mesh(gear_set) {}
+};
+
+}  // namespace
+
+PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,
+                                  const PointOptions& options) {
+  check(scene.gear_set);
+  const Target target = target_of(scene, condition);
+  const FlankContactModel contact(scene.lubricant, scene.solid, scene.roughness, scene.boundary,
+                                  scene.sump_temperature, scene.inlet_temperature_rise,
+                                  scene.options);
+
+  // One response from one start. With mesh data at the torque, the torque is iterated.
+  const auto respond = [&](PointStart start, const std::optional<CarriedState>& carried,
+                           const HistoryRequest& history) {
+    std::optional<CarriedState> from = carried;
+    double data_torque = target.torques.pinion;
+    SolverStatistics spent;
+    for (int pass = 0;; ++pass) {
+      const Prepared prepared(scene.gear_set, scene.options, data_torque);
+      GearPairSystem system(prepared.mesh, contact, prepared.gear_set.dynamics, scene.options);
+      system.set_torques(target.torques);
+      const bool last_pass = !scene.options.load_dependent_mesh_data || pass >= 12;
+      PointResult result;
+      if (options.model == PointModel::kQuasiStatic) {
+        result = solve_quasi_static_point(system, target, options);
+      } else {
+        MarchState state{};
+        if (from) {
+          state = carried_start(system, *from, target.mean_pinion_speed);
+        } else {
+          state = static_start(system, target.mean_pinion_speed,
+                               start == PointStart::kLargeVibration
+                                   ? kLargeVibrationDeflection : 0);
+        }
+        result = solve_full(system, target, options, state, history);
+      }
+      result.statistics.mesh_cycles += spent.mesh_cycles;
+      result.statistics.right_hand_sides += spent.right_hand_sides;
+      result.statistics.contact_solutions += spent.contact_solutions;
+      result.statistics.accepted_steps += spent.accepted_steps;
+      result.statistics.rejected_steps += spent.rejected_steps;
+      result.statistics.events += spent.events;
+      const double change = std::abs(result.pinion_torque - data_torque);
+      if (last_pass || change <= 1e-10 * std::abs(result.pinion_torque)) return result;
+      spent = result.statistics;
+      data_torque = result.pinion_torque;
+      from = CarriedState{result.section_state, result.mean_pinion_speed, result.pinion_torque,
+                          result.wheel_torque};
+    }
+  };
+
+  PointResult result = respond(options.start, options.carried_state, options.history);
+  if (options.probe_coexisting_response && options.model == PointModel::kFull) {
+    for (const PointStart start : {PointStart::kQuasiStatic, PointStart::kLargeVibration}) {
+      const PointResult other = respond(start, std::nullopt, {});
+      const double span = result.dynamic_transmission_error.maximum -
+                          result.dynamic_transmission_error.minimum;
+      const double difference = std::abs(other.dynamic_transmission_error.minimum -
+                                         result.dynamic_transmission_error.minimum) +
+                                std::abs(other.dynamic_transmission_error.maximum -
+                                         result.dynamic_transmission_error.maximum);
+      if (!other.settled || !result.settled || difference <= 1e-3 * span) continue;
+      result.coexisting_response = CoexistingResponse{
+          other.inefficiency_rms.value_or(0), other.inefficiency_energy_mean.value_or(0),
+          other.pinion_torque, other.dynamic_transmission_error.minimum,
+          other.dynamic_transmission_error.maximum, other.contact_loss};
+      break;
+    }
+  }
+  result.warnings = range_warnings(scene, result);
+  return result;
+}
+
+}  // namespace tribodyn

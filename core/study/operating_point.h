@@ -1,0 +1,172 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/dynamics/section_state.h"
+#include "core/study/history.h"
+#include "core/study/scene.h"
+
+namespace tribodyn {
+
+/// What holds the operating point. Every kind keeps the mean speed at the stated value.
+struct OperatingCondition {
+  enum class Kind {
+    kCruise,              ///< T_w from eq 7; T_s solved
+    kDriveCycleSnapshot,  ///< as kCruise, T_w with the vehicle's inertia; T_s solved
+    kPrescribedTorque,    ///< T_s and pinion speed given; T_w solved
+  };
+  Kind kind = Kind::kCruise;
+  double vehicle_speed = 0;  ///< kCruise, kDriveCycleSnapshot [m/s]
+  double acceleration = 0;   ///< kDriveCycleSnapshot [m/s2]
+  double ascent_angle = 0;   ///< kCruise, kDriveCycleSnapshot [rad]
+  double pinion_torque = 0;  ///< kPrescribedTorque [N m]; negative is coast
+  double pinion_speed = 0;   ///< kPrescribedTorque, mean [rad/s]
+};
+
+enum class PointModel {
+  kFull,         ///< 4-DoF march to the steady state, friction in the loop
+  kQuasiStatic,  ///< static equilibrium at constant speed, phase by phase
+};
+
+/// Where a single point starts; it decides the branch where two responses coexist.
+enum class PointStart {
+  kQuasiStatic,  ///< wound up to the static equilibrium: the low-amplitude branch
+  kLargeVibration,  ///< the same, released from 60 um more mesh deflection: the vibro-impact branch
+                    ///< where it exists
+};
+
+/// A neighbour's steady state, to start from. Speeds and wind-up are shifted to the new point.
+struct CarriedState {
+  SectionState section_state;
+  double mean_pinion_speed = 0;  ///< [rad/s]
+  double pinion_torque = 0;      ///< T_s there [N m]
+  double wheel_torque = 0;       ///< T_w there [N m]
+};
+
+struct PointOptions {
+  PointModel model = PointModel::kFull;
+  PointStart start = PointStart::kQuasiStatic;
+  std::optional<CarriedState> carried_state;  ///< overrides start
+  bool probe_coexisting_response = false;     ///< also settle from the other start and compare
+  double relative_tolerance = 1e-7;           ///< of the march, per step [1e-11, 1e-3]
+  double settling_tolerance = 1e-6;  ///< relative change of the response per period that counts as settled
+  int maximum_mesh_cycles = 4000;    ///< work limit of the search for the steady state
+  int recorded_mesh_cycles = 50;     ///< averaged when no period is found (the paper's 50)
+  HistoryRequest history;            ///< empty: none computed
+  /// Called between mesh cycles with the fraction done in [0, 1]; false cancels (throws Cancelled).
+  std::function<bool(double)> progress;
+};
+
+struct Extremes {
+  double minimum = 0, mean = 0, maximum = 0;
+};
+
+/// An interval without contact inside the recorded steady state.
+struct ContactLoss {
+  double start_mesh_phase = 0;  ///< cycles from the section [0, period)
+  double end_mesh_phase = 0;    ///< cycles; may exceed the period when it wraps
+  double duration = 0;          ///< [s]
+};
+
+/// Viscous and boundary loss of one flank slot, time means [W].
+struct FlankLoss {
+  double viscous = 0, boundary = 0;
+};
+
+struct SolverStatistics {
+  long right_hand_sides = 0;
+  long contact_solutions = 0;
+  long accepted_steps = 0;
+  long rejected_steps = 0;
+  long events = 0;            ///< exact locations of contact loss, regain and load onset
+  long mesh_cycles = 0;       ///< marched in all
+  long accelerations = 0;     ///< accepted extrapolations towards the steady state
+  double periodicity_defect = 0;  ///< relative change of the section state over the last period
+  double largest_multiplier = 0;  ///< Floquet, modulus; below 1: the response is attracting
+};
+
+/// Work over the recorded steady state [J]; input = output + losses + stored + parametric.
+struct PowerBalance {
+  double input = 0;           ///< T_s dphi_s
+  double output = 0;          ///< T_w dphi_w
+  double friction = 0;        ///< flank friction
+  double shaft_damping = 0;   ///< c_t1, c_t2
+  double mesh_damping = 0;    ///< c xdot^2
+  double stored = 0;          ///< change of kinetic and elastic energy
+  double parametric = 0;      ///< the torques eq 2 leaves out: F e' - k_m' f^2/2 per radian of phi_p
+};
+
+struct RangeWarning {
+  std::string code;      ///< stable UPPER_SNAKE_CASE
+  std::string sentence;  ///< with the value, its unit and the validated range
+};
+
+/// The other steady state at the same operating point, in short.
+struct CoexistingResponse {
+  double inefficiency_rms = 0;          ///< [%]
+  double inefficiency_energy_mean = 0;  ///< [%]
+  double pinion_torque = 0;             ///< [N m]
+  double dte_minimum = 0, dte_maximum = 0;  ///< [m]
+  bool contact_loss = false;
+};
+
+/// A point of the inefficiency curve. SI units; inefficiencies in percent of the input power.
+/// What is lost here is mesh (conjunctional) power: bearings, churning and seals are not in it.
+struct PointResult {
+  double vehicle_speed = 0;       ///< [m/s]
+  double mean_pinion_speed = 0;   ///< [rad/s]
+  double mesh_frequency = 0;      ///< [Hz]
+  double pinion_torque = 0;       ///< T_s [N m]
+  double wheel_torque = 0;        ///< T_w [N m]
+  double input_power = 0;         ///< mean T_s phidot_s [W]
+
+  std::optional<double> inefficiency_rms;          ///< eq 30, RMS over time [%]; absent at no input power
+  std::optional<double> inefficiency_energy_mean;  ///< loss energy / input energy [%]
+  double mesh_loss_power = 0;     ///< mean [W]
+  double mesh_loss_torque = 0;    ///< mesh_loss_power / mean pinion speed [N m]
+  double viscous_loss_power = 0;  ///< [W]
+  double boundary_loss_power = 0; ///< [W]
+  std::array<FlankLoss, kFlankPairs> flank_losses;
+  double boundary_to_viscous_friction_ratio = 0;  ///< ratio of the RMS total forces (fig 8) [-]
+
+  Extremes dynamic_transmission_error;  ///< x [m]
+  Extremes mesh_force;                  ///< k_m f + c xdot [N]
+  Extremes pinion_friction_torque;      ///< T_fr,p [N m]
+  Extremes gear_friction_torque;        ///< T_fr,g [N m]
+
+  bool contact_loss = false;
+  bool coast_side_contact = false;
+  double contact_loss_time_share = 0;  ///< [-]
+  std::vector<ContactLoss> contact_losses;
+
+  Extremes central_film_thickness;  ///< over loaded flanks; means are load-time weighted [m]
+  Extremes film_ratio;              ///< lambda_s [-]
+  Extremes contact_temperature;     ///< T_c [K]
+  Extremes maximum_pressure;        ///< p_max [Pa]
+  Extremes shear_rate;              ///< [1/s]
+  double limiting_stress_time_share = 0;  ///< share of time with a contact centre on tau_L [-]
+  double limiting_stress_area_share = 0;  ///< load-time mean of the area share on tau_L [-]
+
+  PointModel model = PointModel::kFull;
+  bool settled = false;
+  int period_in_mesh_cycles = 0;  ///< 0: none found; results are then averages over the record
+  int recorded_mesh_cycles = 0;
+  std::optional<double> estimated_relative_error;  ///< absent: not estimated
+  SolverStatistics statistics;
+  PowerBalance power_balance;
+  std::optional<CoexistingResponse> coexisting_response;
+  std::vector<RangeWarning> warnings;
+  SectionState section_state;  ///< the steady state at mesh phase 0
+  History history;
+};
+
+/// Solves one operating point. Throws Refusal (reasons: contact_status_name, NO_FORWARD_ROTATION,
+/// WORK_LIMIT, ...) or Cancelled.
+PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,
+                                  const PointOptions& options);
+
+}  // namespace tribodyn

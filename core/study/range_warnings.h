@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+#include "core/study/operating_point.h"
+
+namespace tribodyn {
+
+/// Where inputs or results leave the range in which the laws were measured or checked.
+std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& result);
+
+}  // namespace tribodyn

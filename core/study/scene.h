@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/gear/gear_set.h"
+#include "core/lubricant/lubricant.h"
+#include "core/model_options.h"
+#include "core/surface/surface.h"
+#include "core/vehicle/vehicle.h"
+
+namespace tribodyn {
+
+/// All physical inputs of a study but the operating point. SI units, temperatures in K.
+struct Scene {
+  Lubricant lubricant;
+  GearSet gear_set;
+  Roughness roughness;
+  BoundaryFriction boundary;
+  Solid solid;
+  Vehicle vehicle;
+  double sump_temperature;        ///< T_b [K]
+  double inlet_temperature_rise;  ///< eq 14 [K]
+  ModelOptions options;
+};
+
+}  // namespace tribodyn

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <span>
+
+#include "core/model_options.h"
+#include "core/surface/surface.h"
+
+namespace tribodyn {
+
+/// Spectral moments of a rough profile or surface, eq 45.
+struct SpectralMoments {
+  double m0;  ///< mean square height [m2]; its root is Rq
+  double m2;  ///< mean square slope [-]
+  double m4;  ///< mean square curvature [1/m2]
+};
+
+/// What is taken off a measured profile before its moments are formed.
+enum class Levelling {
+  kMean,              ///< the mean height (eq 45 assumes a centred profile)
+  kLeastSquaresLine,  ///< the least-squares line: also removes the tilt of the specimen
+};
+
+/// Eq 45 from a profile sampled at equal spacing:
+///
+///   m0 = mean z^2,   m2 = mean (dz/dx)^2,   m4 = mean (d2z/dx2)^2.
+///
+/// m0 is averaged over all samples. Slope (z[i+1] - z[i-1])/(2 dx) and curvature
+/// (z[i+1] - 2 z[i] + z[i-1])/dx^2 are central differences, averaged over the interior samples;
+/// both have an error of second order in dx: for a wave of length L they give m2 (sin q/q)^2 and m4
+/// (sin(q/2)/(q/2))^4, q = 2 pi dx/L. m2 and m4 of a real surface depend on the sampling interval
+/// (they have no limit for a fractal profile): keep it, and the filter, with the result.
+///
+/// heights [m]: at least 5, all finite; spacing dx [m] > 0.
+/// Throws Refusal PROFILE_UNUSABLE, naming everything that is wrong.
+/// Source: J. I. McCool, Wear 107 (1986) 37-60.
+SpectralMoments spectral_moments(std::span<const double> heights, double spacing,
+                                 Levelling levelling = Levelling::kMean);
+
+/// Eq 46, the isotropic surface equivalent to an anisotropic one measured along the axial and the
+/// radial direction: m0 is the arithmetic mean, m2 and m4 are the geometric means sqrt(m_a m_r).
+/// The paper prints sqrt(m_a + m_r), which has the wrong dimension for m4 and gives sqrt(2 m)
+/// instead of m for an isotropic surface (as_published.eq46_square_root_of_sum).
+/// Source: R. S. Sayles and T. R. Thomas, Appl. Energy 2 (1976) 249-267.
+SpectralMoments equivalent_isotropic_moments(const SpectralMoments& axial,
+                                             const SpectralMoments& radial,
+                                             const AsPublished& as_published);
+
+/// Eq 47: the moments of two uncorrelated surfaces in contact add up.
+SpectralMoments composite_moments(const SpectralMoments& pinion, const SpectralMoments& gear);
+
+/// Eq 48, the Greenwood-Tripp parameters of an isotropic Gaussian surface:
+///
+///   eta_G = m4/(6 pi sqrt(3) m2),   beta_G = 0.375 sqrt(pi/m4),   sigma_G = sqrt(m0).
+///
+/// Throws Refusal SURFACE_WITHOUT_ROUGHNESS when a moment is not positive and finite: a perfectly
+/// smooth surface has no asperities to describe.
+/// Sources: M. S. Longuet-Higgins, Phil. Trans. R. Soc. A 249 (1957) 321-387; A. W. Bush, R. D.
+/// Gibson, T. R. Thomas, Wear 35 (1975) 87-111.
+Roughness greenwood_tripp_roughness(const SpectralMoments& composite);
+
+}  // namespace tribodyn

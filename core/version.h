@@ -1,0 +1,8 @@
+#pragma once
+
+namespace tribodyn {
+
+/// Changes whenever any result can change by a bit: laws, defaults, solver, friction kernel variant.
+inline constexpr char kModelVersion[] = "tribodyn-model-1";
+
+}  // namespace tribodyn

@@ -1,0 +1,70 @@
+#include "server/api/grpc_server.h"
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/resource_quota.h>
+#include <grpcpp/server_builder.h>
+
+#include <chrono>
+
+#include "server/api/services.h"
+
+namespace tribodyn::server {
+namespace {
+
+using ExternalConnections = grpc::experimental::ExternalConnectionAcceptor;
+
+constexpr int kMaximumRequestBytes = 1 << 20;
+constexpr int kMaximumResponseBytes = 16 << 20;
+constexpr int kMaximumStreamsPerConnection = 1000;
+constexpr std::size_t kMaximumOpenStreams = 10'000;
+constexpr int kMaximumReflectionThreads = 16;   // reflection is gRPC's only blocking service here
+constexpr int kHandshakeMilliseconds = 10'000;  // who connects and stays silent goes
+constexpr int kIdleMilliseconds = 600'000;      // without any call; clients connect again unseen
+constexpr auto kShutdownGrace = std::chrono::seconds(1);
+
+}  // namespace
+
+GrpcServer::GrpcServer(Application& application, const ListenAddress& address)
+    : acceptor_(address), live_(kMaximumOpenStreams), services_(grpc_services(application, live_)) {
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  grpc::ServerBuilder builder;
+  std::shared_ptr<ExternalConnections> connections =
+      builder.experimental().AddExternalConnectionAcceptor(
+          grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
+          grpc::InsecureServerCredentials());
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaximumStreamsPerConnection);
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMilliseconds);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleMilliseconds);
+  builder.SetMaxReceiveMessageSize(kMaximumRequestBytes);
+  builder.SetMaxSendMessageSize(kMaximumResponseBytes);
+  grpc::ResourceQuota quota("tribodynd");
+  quota.SetMaxThreads(kMaximumReflectionThreads);
+  builder.SetResourceQuota(quota);
+  builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);  // else one a processor
+  for (const auto& each : services_) builder.RegisterService(each.get());
+  server_ = builder.BuildAndStart();
+  if (!server_) throw ListenError("gRPC does not start on " + to_text(address));
+  server_->GetHealthCheckService()->SetServingStatus(true);
+  acceptor_.start([connections](int listener, int connection) {
+    ExternalConnections::NewConnectionParameters accepted;
+    accepted.listener_fd = listener;
+    accepted.fd = connection;
+    connections->HandleNewConnection(&accepted);
+  });
+}
+
+GrpcServer::~GrpcServer() { shutdown(); }
+
+void GrpcServer::shutdown() {
+  if (!server_) return;
+  acceptor_.stop();
+  server_->GetHealthCheckService()->SetServingStatus(false);
+  live_.close_all();
+  server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
+  server_->Wait();
+  server_.reset();
+}
+
+}  // namespace tribodyn::server

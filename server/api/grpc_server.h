@@ -1,0 +1,39 @@
+#pragma once
+
+#include <grpcpp/server.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/api/acceptor.h"
+#include "server/api/listen_address.h"
+#include "server/api/live_streams.h"
+#include "server/app/application.h"
+
+namespace tribodyn::server {
+
+/// The gRPC server with health and reflection. Started by the constructor; `shutdown` and the
+/// destructor from one thread.
+class GrpcServer {
+ public:
+  /// Throws ListenError. `application` must outlive the object.
+  GrpcServer(Application& application, const ListenAddress& address);
+  ~GrpcServer();
+  GrpcServer(const GrpcServer&) = delete;
+  GrpcServer& operator=(const GrpcServer&) = delete;
+
+  /// Where it really listens, with the port that the system picked.
+  std::string address() const { return to_text(acceptor_.address()); }
+
+  /// Accepts nothing new, ends every stream with UNAVAILABLE and waits for the rest.
+  void shutdown();
+
+ private:
+  Acceptor acceptor_;
+  LiveStreams live_;
+  std::vector<std::unique_ptr<grpc::Service>> services_;
+  std::unique_ptr<grpc::Server> server_;
+};
+
+}  // namespace tribodyn::server

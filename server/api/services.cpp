@@ -1,0 +1,161 @@
+#include "server/api/services.h"
+
+#include <utility>
+
+#include "server/api/grpc_status.h"
+#include "server/api/stream_reactor.h"
+#include "server/app/contacts.h"
+#include "server/app/resources.h"
+#include "server/app/simulations.h"
+#include "server/app/streams.h"
+#include "tribodyn/v1/contacts.grpc.pb.h"
+#include "tribodyn/v1/gear_sets.grpc.pb.h"
+#include "tribodyn/v1/lubricants.grpc.pb.h"
+#include "tribodyn/v1/simulations.grpc.pb.h"
+#include "tribodyn/v1/surfaces.grpc.pb.h"
+#include "tribodyn/v1/vehicles.grpc.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+using Context = grpc::CallbackServerContext;
+using Unary = grpc::ServerUnaryReactor;
+
+template <class Message>
+Unary* answer(Context* context, Message* response, Outcome<Message> outcome) {
+  Unary* reactor = context->DefaultReactor();
+  if (outcome.ok()) {
+    *response = std::move(outcome.message());
+    reactor->Finish(grpc::Status::OK);
+  } else {
+    reactor->Finish(to_grpc(outcome.error()));
+  }
+  return reactor;
+}
+
+class LubricantsService final : public v1::Lubricants::CallbackService {
+ public:
+  explicit LubricantsService(Application& application) : application_(application) {}
+  Unary* GetLubricant(Context* context, const v1::GetLubricantRequest* request,
+                      v1::Lubricant* response) override {
+    return answer(context, response, get_lubricant(application_, *request));
+  }
+  Unary* ListLubricants(Context* context, const v1::ListLubricantsRequest* request,
+                        v1::ListLubricantsResponse* response) override {
+    return answer(context, response, list_lubricants(application_, *request));
+  }
+
+ private:
+  Application& application_;
+};
+
+class GearSetsService final : public v1::GearSets::CallbackService {
+ public:
+  explicit GearSetsService(Application& application) : application_(application) {}
+  Unary* GetGearSet(Context* context, const v1::GetGearSetRequest* request,
+                    v1::GearSet* response) override {
+    return answer(context, response, get_gear_set(application_, *request));
+  }
+  Unary* ListGearSets(Context* context, const v1::ListGearSetsRequest* request,
+                      v1::ListGearSetsResponse* response) override {
+    return answer(context, response, list_gear_sets(application_, *request));
+  }
+
+ private:
+  Application& application_;
+};
+
+class SurfacesService final : public v1::Surfaces::CallbackService {
+ public:
+  explicit SurfacesService(Application& application) : application_(application) {}
+  Unary* GetSurface(Context* context, const v1::GetSurfaceRequest* request,
+                    v1::Surface* response) override {
+    return answer(context, response, get_surface(application_, *request));
+  }
+  Unary* ListSurfaces(Context* context, const v1::ListSurfacesRequest* request,
+                      v1::ListSurfacesResponse* response) override {
+    return answer(context, response, list_surfaces(application_, *request));
+  }
+
+ private:
+  Application& application_;
+};
+
+class VehiclesService final : public v1::Vehicles::CallbackService {
+ public:
+  explicit VehiclesService(Application& application) : application_(application) {}
+  Unary* GetVehicle(Context* context, const v1::GetVehicleRequest* request,
+                    v1::Vehicle* response) override {
+    return answer(context, response, get_vehicle(application_, *request));
+  }
+  Unary* ListVehicles(Context* context, const v1::ListVehiclesRequest* request,
+                      v1::ListVehiclesResponse* response) override {
+    return answer(context, response, list_vehicles(application_, *request));
+  }
+
+ private:
+  Application& application_;
+};
+
+class ContactsService final : public v1::Contacts::CallbackService {
+ public:
+  explicit ContactsService(Application& application) : application_(application) {}
+  Unary* EvaluateContact(Context* context, const v1::EvaluateContactRequest* request,
+                         v1::EvaluateContactResponse* response) override {
+    return answer(context, response, evaluate_contact(application_, *request));
+  }
+
+ private:
+  Application& application_;
+};
+
+class SimulationsService final : public v1::Simulations::CallbackService {
+ public:
+  SimulationsService(Application& application, LiveStreams& live)
+      : application_(application), live_(live) {}
+  Unary* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
+                          v1::Simulation* response) override {
+    return answer(context, response, create_simulation(application_, *request));
+  }
+  Unary* GetSimulation(Context* context, const v1::GetSimulationRequest* request,
+                       v1::Simulation* response) override {
+    return answer(context, response, get_simulation(application_, *request));
+  }
+  Unary* ListSimulations(Context* context, const v1::ListSimulationsRequest* request,
+                         v1::ListSimulationsResponse* response) override {
+    return answer(context, response, list_simulations(application_, *request));
+  }
+  Unary* CancelSimulation(Context* context, const v1::CancelSimulationRequest* request,
+                          v1::Simulation* response) override {
+    return answer(context, response, cancel_simulation(application_, *request));
+  }
+  grpc::ServerWriteReactor<v1::SimulationEvent>* WatchSimulation(
+      Context*, const v1::WatchSimulationRequest* request) override {
+    return StreamReactor<v1::SimulationEvent>::start(live_,
+                                                     watch_simulation(application_, *request));
+  }
+  grpc::ServerWriteReactor<v1::HistoryChunk>* ReadHistory(
+      Context*, const v1::ReadHistoryRequest* request) override {
+    return StreamReactor<v1::HistoryChunk>::start(live_, read_history(application_, *request));
+  }
+
+ private:
+  Application& application_;
+  LiveStreams& live_;
+};
+
+}  // namespace
+
+std::vector<std::unique_ptr<grpc::Service>> grpc_services(Application& application,
+                                                          LiveStreams& live) {
+  std::vector<std::unique_ptr<grpc::Service>> out;
+  out.push_back(std::make_unique<LubricantsService>(application));
+  out.push_back(std::make_unique<GearSetsService>(application));
+  out.push_back(std::make_unique<SurfacesService>(application));
+  out.push_back(std::make_unique<VehiclesService>(application));
+  out.push_back(std::make_unique<ContactsService>(application));
+  out.push_back(std::make_unique<SimulationsService>(application, live));
+  return out;
+}
+
+}  // namespace tribodyn::server

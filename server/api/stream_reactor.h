@@ -1,0 +1,149 @@
+#pragma once
+
+#include <grpcpp/support/server_callback.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "server/api/grpc_status.h"
+#include "server/api/live_streams.h"
+#include "server/app/errors.h"
+#include "server/app/message_source.h"
+#include "server/app/outcome.h"
+
+namespace tribodyn::server {
+
+/// Pumps a MessageSource into a gRPC stream: one message under way at a time, the next one only
+/// from OnWriteDone or, when the source had nothing, when the source says that something changed.
+/// Safe for concurrent access: whoever holds `busy_` owns source and stream; nobody holds the mutex
+/// while calling into gRPC. Keeps itself alive until OnDone.
+template <class Message>
+class StreamReactor final : public grpc::ServerWriteReactor<Message>,
+                            public ProgressObserver,
+                            public LiveStream,
+                            public std::enable_shared_from_this<StreamReactor<Message>> {
+ public:
+  using Source = std::shared_ptr<MessageSource<Message>>;
+
+  explicit StreamReactor(LiveStreams& live) : live_(live) {}
+
+  /// A stream of the source's messages, or one that ends at once with the error.
+  static grpc::ServerWriteReactor<Message>* start(LiveStreams& live, Outcome<Source> outcome) {
+    auto reactor = std::make_shared<StreamReactor>(live);
+    reactor->self_ = reactor;
+    std::optional<google::rpc::Status> refused;
+    if (outcome.ok()) {
+      refused = live.add(reactor);
+    } else {
+      refused = outcome.error();
+    }
+    if (refused) {
+      reactor->close(*refused);
+      return reactor.get();
+    }
+    reactor->source_ = std::move(outcome.message());
+    reactor->source_->observe(reactor);
+    reactor->changed();
+    return reactor.get();
+  }
+
+  void changed() override {
+    {
+      const std::lock_guard lock(mutex_);
+      if (finished_) return;
+      again_ = true;
+      if (busy_) return;
+      busy_ = true;
+    }
+    send_next();
+  }
+
+  void close(const google::rpc::Status& status) override {
+    {
+      const std::lock_guard lock(mutex_);
+      if (finished_) return;
+      if (busy_) {
+        if (!closing_) closing_ = status;
+        return;
+      }
+      finished_ = true;
+    }
+    this->Finish(to_grpc(status));
+  }
+
+  void OnWriteDone(bool ok) override {
+    if (!ok) return finish(error(google::rpc::CANCELLED, "CANCELLED", "the client is gone"));
+    send_next();
+  }
+
+  void OnCancel() override {
+    close(error(google::rpc::CANCELLED, "CANCELLED", "the client cancelled"));
+  }
+
+  void OnDone() override {
+    live_.remove(this);
+    const auto last = std::move(self_);  // may destroy this object on leaving
+  }
+
+ private:
+  using Step = typename MessageSource<Message>::Step;
+
+  /// The owner of `busy_` sends a message, ends the stream, or gives `busy_` back.
+  void send_next() {
+    for (;;) {
+      std::optional<google::rpc::Status> closing;
+      {
+        const std::lock_guard lock(mutex_);
+        again_ = false;
+        closing = closing_;
+      }
+      if (closing) return finish(*closing);
+      switch (ask_source()) {
+        case Step::kMessage:
+          return this->StartWrite(&message_);
+        case Step::kEnd:
+          return finish(end_);
+        case Step::kWait:
+          break;
+      }
+      const std::lock_guard lock(mutex_);
+      if (again_ || closing_) continue;
+      busy_ = false;
+      return;
+    }
+  }
+
+  Step ask_source() {
+    try {
+      const Step step = source_->next(message_);
+      if (step == Step::kEnd) end_ = source_->error();
+      return step;
+    } catch (const std::exception&) {
+      end_ = error(google::rpc::INTERNAL, "INTERNAL", "the stream broke off");
+      return Step::kEnd;
+    }
+  }
+
+  void finish(const google::rpc::Status& status) {
+    {
+      const std::lock_guard lock(mutex_);
+      finished_ = true;
+    }
+    this->Finish(to_grpc(status));
+  }
+
+  LiveStreams& live_;
+  Source source_;            // owner of busy_
+  Message message_;          // owner of busy_
+  google::rpc::Status end_;  // owner of busy_
+  std::mutex mutex_;
+  bool busy_ = false;      // guarded by mutex_
+  bool again_ = false;     // guarded by mutex_
+  bool finished_ = false;  // guarded by mutex_; stays set once Finish is called
+  std::optional<google::rpc::Status> closing_;  // guarded by mutex_
+  std::shared_ptr<StreamReactor> self_;
+};
+
+}  // namespace tribodyn::server

@@ -1,0 +1,75 @@
+#include "server/app/errors.h"
+
+#include <fmt/format.h>
+
+#include "google/rpc/error_details.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+google::rpc::BadRequest bad_request(const Violations& violations) {
+  google::rpc::BadRequest out;
+  std::size_t bytes = 0;
+  std::size_t shown = 0;
+  for (const Violation& violation : violations) {
+    bytes += violation.field.size() + violation.description.size() + 12;
+    if (bytes > kMaximumBadRequestBytes) break;
+    ++shown;
+    auto* added = out.add_field_violations();
+    added->set_field(violation.field);
+    added->set_description(violation.description);
+  }
+  if (shown < violations.size()) {
+    auto* rest = out.add_field_violations();
+    rest->set_field("*");
+    rest->set_description(fmt::format("{} more violations", violations.size() - shown));
+  }
+  return out;
+}
+
+}  // namespace
+
+google::rpc::Status error(google::rpc::Code code, const std::string& reason,
+                          const std::string& message) {
+  google::rpc::Status status;
+  status.set_code(code);
+  status.set_message(message);
+  google::rpc::ErrorInfo info;
+  info.set_domain(kErrorDomain);
+  info.set_reason(reason);
+  status.add_details()->PackFrom(info);
+  return status;
+}
+
+google::rpc::Status invalid(const Violations& violations) {
+  const Violation& first = violations.front();
+  std::string message = fmt::format("{}: {}", first.field, first.description);
+  if (violations.size() > 1) message += fmt::format(" (and {} more)", violations.size() - 1);
+  google::rpc::Status status = error(google::rpc::INVALID_ARGUMENT, "INVALID_FIELDS", message);
+  status.add_details()->PackFrom(bad_request(violations));
+  return status;
+}
+
+google::rpc::Status not_found(const std::string& type, const std::string& name,
+                              const std::string& message) {
+  google::rpc::Status status = error(google::rpc::NOT_FOUND, "NOT_FOUND", message);
+  google::rpc::ResourceInfo info;
+  info.set_resource_type(type);
+  info.set_resource_name(name);
+  status.add_details()->PackFrom(info);
+  return status;
+}
+
+google::rpc::Status exhausted(const std::string& message, int retry_seconds) {
+  google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, "TOO_MANY_WAITING", message);
+  google::rpc::RetryInfo info;
+  info.mutable_retry_delay()->set_seconds(retry_seconds);
+  status.add_details()->PackFrom(info);
+  return status;
+}
+
+google::rpc::Status shutting_down() {
+  return error(google::rpc::UNAVAILABLE, "SHUTTING_DOWN", "the server is shutting down");
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "google/rpc/code.pb.h"
+#include "google/rpc/status.pb.h"
+#include "server/convert/violations.h"
+
+namespace tribodyn::server {
+
+inline constexpr char kErrorDomain[] = "tribodyn";
+
+/// An error with ErrorInfo (domain "tribodyn" and the reason, UPPER_SNAKE_CASE).
+google::rpc::Status error(google::rpc::Code code, const std::string& reason,
+                          const std::string& message);
+
+/// INVALID_ARGUMENT with every violation as BadRequest. Details travel in a header block that gRPC
+/// clients limit to 8 KiB: what does not fit is counted in a last violation.
+google::rpc::Status invalid(const Violations& violations);
+
+/// NOT_FOUND with ResourceInfo.
+google::rpc::Status not_found(const std::string& type, const std::string& name,
+                              const std::string& message);
+
+/// RESOURCE_EXHAUSTED with RetryInfo.
+google::rpc::Status exhausted(const std::string& message, int retry_seconds);
+
+/// UNAVAILABLE, SHUTTING_DOWN.
+google::rpc::Status shutting_down();
+
+/// Serialised size of BadRequest that surely reaches a client.
+inline constexpr std::size_t kMaximumBadRequestBytes = 5500;
+
+}  // namespace tribodyn::server

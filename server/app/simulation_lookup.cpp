@@ -1,0 +1,20 @@
+#include "server/app/simulation_lookup.h"
+
+#include <optional>
+
+#include "server/app/errors.h"
+#include "server/convert/resource_names.h"
+
+namespace tribodyn::server {
+
+Outcome<StoredSimulation> find_simulation(Application& application, const std::string& name) {
+  const std::optional<std::int64_t> id = simulation_id(name);
+  if (!id) {
+    return invalid({{"name", "not a name of the form \"simulations/{id}\", id a number"}});
+  }
+  std::optional<StoredSimulation> stored = application.store.simulation(*id);
+  if (!stored) return not_found("tribodyn.v1.Simulation", name, name + " does not exist");
+  return std::move(*stored);
+}
+
+}  // namespace tribodyn::server

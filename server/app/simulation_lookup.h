@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "server/app/application.h"
+#include "server/app/outcome.h"
+
+namespace tribodyn::server {
+
+/// The stored simulation of that name; INVALID_ARGUMENT for what is no name, or NOT_FOUND.
+Outcome<StoredSimulation> find_simulation(Application& application, const std::string& name);
+
+}  // namespace tribodyn::server

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+
+#include "server/app/application.h"
+#include "server/app/message_source.h"
+#include "server/app/outcome.h"
+#include "tribodyn/v1/simulations.pb.h"
+
+namespace tribodyn::server {
+
+template <class Message>
+using StreamOutcome = Outcome<std::shared_ptr<MessageSource<Message>>>;
+
+/// Events of a simulation until its end: the present one at once, then each change.
+StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
+                                                    const v1::WatchSimulationRequest& request);
+
+/// Rows of a history in chunks of at most 256 KiB of numbers.
+StreamOutcome<v1::HistoryChunk> read_history(Application& application,
+                                             const v1::ReadHistoryRequest& request);
+
+inline constexpr std::int64_t kChunkValues = 32'768;  ///< 256 KiB of doubles
+
+}  // namespace tribodyn::server

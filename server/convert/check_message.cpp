@@ -1,0 +1,164 @@
+#include "server/convert/check_message.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/convert/constraints.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::Reflection;
+
+/// One field of one message under check.
+struct Place {
+  const FieldDescriptor& field;
+  std::string path;
+  Violations& violations;
+};
+
+void check_number(const Place& place, double value) {
+  const Constraint* row =
+      find_constraint(place.field.containing_type()->name(), place.field.name());
+  if (row == nullptr) {
+    if (!std::isfinite(value)) {
+      place.violations.push_back(
+          {place.path, fmt::format("{} = {}; must be finite", place.field.name(), value)});
+    }
+    return;
+  }
+  if (value == 0 && row->zero == Zero::kUnset && !place.field.has_presence()) return;
+  if (value >= row->minimum && value <= row->maximum) return;  // false for NaN
+  std::string text = out_of_range_text(*row, value);
+  if (value == 0 && !place.field.has_presence() && !place.field.is_repeated()) {
+    text += "; 0 also means not set";
+  }
+  place.violations.push_back({place.path, std::move(text)});
+}
+
+void check_enum(const Place& place, int value) {
+  if (place.field.enum_type()->FindValueByNumber(value) != nullptr) return;
+  std::string names;
+  for (int i = 0; i < place.field.enum_type()->value_count(); ++i) {
+    names += (i == 0 ? "" : ", ") + place.field.enum_type()->value(i)->name();
+  }
+  place.violations.push_back(
+      {place.path, fmt::format("{} = {}; legal: {}", place.field.name(), value, names)});
+}
+
+void check_text(const Place& place, const std::string& value) {
+  const std::string& name = place.field.name();
+  const int longest =
+      name == "description" || name == "source" ? kMaximumProseLength : kMaximumTextLength;
+  if (value.size() <= static_cast<std::size_t>(longest)) return;
+  place.violations.push_back(
+      {place.path, fmt::format("{} has {} bytes; legal: at most {}", name, value.size(), longest)});
+}
+
+void check_singular(const Message& message, const Reflection& reflection, const Place& place) {
+  switch (place.field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return check_number(place, reflection.GetDouble(message, &place.field));
+    case FieldDescriptor::CPPTYPE_INT32:
+      return check_number(place, reflection.GetInt32(message, &place.field));
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return check_enum(place, reflection.GetEnumValue(message, &place.field));
+    case FieldDescriptor::CPPTYPE_STRING:
+      return check_text(place, reflection.GetString(message, &place.field));
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return check_message(reflection.GetMessage(message, &place.field), place.path,
+                           place.violations);
+    default:
+      return;
+  }
+}
+
+void check_element(const Message& message, const Reflection& reflection, int index,
+                   const Place& place) {
+  switch (place.field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return check_number(place, reflection.GetRepeatedDouble(message, &place.field, index));
+    case FieldDescriptor::CPPTYPE_STRING:
+      return check_text(place, reflection.GetRepeatedString(message, &place.field, index));
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return check_message(reflection.GetRepeatedMessage(message, &place.field, index), place.path,
+                           place.violations);
+    default:
+      return;
+  }
+}
+
+/// Elements up to the longest list the service accepts, and a limited number of complaints.
+void check_repeated(const Message& message, const Reflection& reflection,
+                    const FieldDescriptor& field, const std::string& path, Violations& violations) {
+  const int count = std::min(reflection.FieldSize(message, &field), kMaximumCurvePoints);
+  Violations found;
+  for (int i = 0; i < count; ++i) {
+    check_element(message, reflection, i, {field, fmt::format("{}[{}]", path, i), found});
+  }
+  const std::size_t reported =
+      std::min(found.size(), static_cast<std::size_t>(kMaximumReportedElements));
+  violations.insert(violations.end(), found.begin(),
+                    found.begin() + static_cast<std::ptrdiff_t>(reported));
+  if (found.size() > reported) {
+    violations.push_back(
+        {path, fmt::format("{} more of its elements are not acceptable", found.size() - reported)});
+  }
+}
+
+bool may_be_infinite(std::string_view field) {
+  return field == "shear_rate_per_second" ||
+         field == "pinion_thermal_resistance_kelvins_per_watt" ||
+         field == "gear_thermal_resistance_kelvins_per_watt";
+}
+
+std::string first_not_finite(const Message& message, bool infinity_allowed) {
+  const Reflection& reflection = *message.GetReflection();
+  std::vector<const FieldDescriptor*> fields;
+  reflection.ListFields(message, &fields);
+  for (const FieldDescriptor* field : fields) {
+    const bool allowed = infinity_allowed || may_be_infinite(field->name());
+    const auto good = [allowed](double value) {
+      return std::isfinite(value) || (allowed && std::isinf(value) && value > 0);
+    };
+    const int count = field->is_repeated() ? reflection.FieldSize(message, field) : 1;
+    for (int i = 0; i < count; ++i) {
+      if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+        const double value = field->is_repeated() ? reflection.GetRepeatedDouble(message, field, i)
+                                                  : reflection.GetDouble(message, field);
+        if (!good(value)) return field->name();
+      } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+        const Message& inner = field->is_repeated()
+                                   ? reflection.GetRepeatedMessage(message, field, i)
+                                   : reflection.GetMessage(message, field);
+        const std::string path = first_not_finite(inner, allowed);
+        if (!path.empty()) return field->name() + "." + path;
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+void check_message(const Message& message, const std::string& path, Violations& violations) {
+  const Reflection& reflection = *message.GetReflection();
+  const auto& descriptor = *message.GetDescriptor();
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const FieldDescriptor& field = *descriptor.field(i);
+    const std::string field_path = join_path(path, field.name());
+    if (field.is_repeated()) {
+      check_repeated(message, reflection, field, field_path, violations);
+    } else if (!field.has_presence() || reflection.HasField(message, &field)) {
+      check_singular(message, reflection, {field, field_path, violations});
+    }
+  }
+}
+
+std::string first_not_finite(const Message& message) { return first_not_finite(message, false); }
+
+}  // namespace tribodyn::server

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <string>
+
+#include "server/convert/violations.h"
+
+namespace tribodyn::server {
+
+/// Checks every number, enum and text inside a message, nested messages too, against the table of
+/// constraints: finite, inside its legal range, a value the enum has, a text of sensible length.
+/// Adds all violations, in field order. A number without a row in the table is only checked to be
+/// finite; unset optional fields and unset messages are left alone.
+void check_message(const google::protobuf::Message& message, const std::string& path,
+                   Violations& violations);
+
+/// Path of the first number that is NaN, or infinite where that has no documented meaning; empty
+/// when there is none. A shear rate without film and the thermal resistance of a surface at rest
+/// are infinite.
+std::string first_not_finite(const google::protobuf::Message& message);
+
+}  // namespace tribodyn::server

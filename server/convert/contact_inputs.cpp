@@ -1,0 +1,50 @@
+#include "server/convert/contact_inputs.h"
+
+#include "core/refusal.h"
+#include "server/convert/check_message.h"
+#include "server/convert/from_core.h"
+#include "server/convert/study_checks.h"
+#include "server/convert/to_core.h"
+
+namespace tribodyn::server {
+
+std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& request,
+                                          const ResourceLookup& lookup, Violations& violations) {
+  const std::size_t before = violations.size();
+  check_message(request, "", violations);
+  std::optional<v1::Lubricant> lubricant;
+  std::string path = "lubricant_parameters";
+  if (request.has_lubricant_parameters()) {
+    lubricant = request.lubricant_parameters();
+  } else if (request.fluid_case() == v1::EvaluateContactRequest::kLubricant) {
+    path = "lubricant";
+    lubricant =
+        find_resource<v1::Lubricant>(lookup, request.lubricant(), kLubricants, path, violations);
+  } else {
+    violations.push_back({"fluid", "not set; legal: lubricant or lubricant_parameters"});
+  }
+  if (lubricant) {
+    check_fluid_at_inlet(*lubricant, request.sump_temperature_celsius(),
+                         request.inlet_temperature_rise_kelvin(), path, violations);
+  }
+  if (violations.size() > before) return std::nullopt;
+  return lubricant;
+}
+
+v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request,
+                                             const v1::Lubricant& lubricant) {
+  const FlankContactModel model(
+      to_core(lubricant), solid(request), roughness(request), boundary_friction(request),
+      request.sump_temperature_celsius() + kZeroCelsius, request.inlet_temperature_rise_kelvin(),
+      to_core(request.model_options()));
+  const ContactSolution solution = model.solve(contact_conditions(request));
+  if (solution.status != ContactStatus::kOk && solution.status != ContactStatus::kNoLoad) {
+    throw Refusal(contact_status_name(solution.status), contact_status_sentence(solution.status));
+  }
+  v1::EvaluateContactResponse response = to_message(solution);
+  const std::string bad = first_not_finite(response);
+  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
+  return response;
+}
+
+}  // namespace tribodyn::server

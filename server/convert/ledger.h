@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "server/convert/simulation_inputs.h"
+#include "tribodyn/v1/results.pb.h"
+
+namespace tribodyn::server {
+
+/// Every assumption a result rests on: each parameter of fluid, gear set (its series and tables by
+/// block), surface and vehicle with value, unit, provenance and source, and what the request left
+/// to defaults.
+std::vector<v1::Assumption> assumptions(const SimulationInputs& inputs);
+
+}  // namespace tribodyn::server

@@ -1,0 +1,87 @@
+#include "server/convert/resource_names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+#include "server/convert/constraints.h"
+
+namespace tribodyn::server {
+namespace {
+
+bool is_id_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+         c == '_' || c == '.';
+}
+
+/// Levenshtein distance.
+std::size_t edits(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+/// The start of a client's text as plain ASCII: never half a UTF-8 character, never a control code.
+std::string excerpt(std::string_view text) {
+  std::string out(text.substr(0, 60));
+  for (char& c : out) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return text.size() > 60 ? out + "..." : out;
+}
+
+}  // namespace
+
+bool is_resource_name(std::string_view name, std::string_view collection) {
+  if (name.size() > static_cast<std::size_t>(kMaximumTextLength)) return false;
+  if (name.size() < collection.size() + 2 || name.substr(0, collection.size()) != collection ||
+      name[collection.size()] != '/') {
+    return false;
+  }
+  const std::string_view id = name.substr(collection.size() + 1);
+  return std::all_of(id.begin(), id.end(), is_id_character);
+}
+
+std::optional<std::int64_t> simulation_id(std::string_view name) {
+  if (!is_resource_name(name, kSimulations)) return std::nullopt;
+  const std::string_view digits = name.substr(std::string_view(kSimulations).size() + 1);
+  std::int64_t id = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), id);
+  if (error != std::errc() || end != digits.data() + digits.size() || id <= 0) return std::nullopt;
+  return id;
+}
+
+std::string simulation_name(std::int64_t id) { return fmt::format("{}/{}", kSimulations, id); }
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {
+  const std::string_view compared = name.substr(0, kMaximumTextLength);
+  const auto nearest = std::min_element(existing.begin(), existing.end(),
+                                        [&](const std::string& a, const std::string& b) {
+                                          return edits(compared, a) < edits(compared, b);
+                                        });
+  return nearest == existing.end() ? std::string() : *nearest;
+}
+
+std::string unknown_name_text(std::string_view name, std::string_view collection,
+                              const std::vector<std::string>& existing) {
+  const std::string nearest = nearest_name(name, existing);
+  const std::string hint = nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
+  if (is_resource_name(name, collection)) {
+    return fmt::format("\"{}\" does not exist{}", excerpt(name), hint);
+  }
+  return fmt::format("\"{}\" is not a name of the form \"{}/{{id}}\"{}", excerpt(name), collection,
+                     hint);
+}
+
+}  // namespace tribodyn::server

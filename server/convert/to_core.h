@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/contact/flank_contact.h"
+#include "core/gear/gear_set.h"
+#include "core/lubricant/lubricant.h"
+#include "core/model_options.h"
+#include "core/surface/surface.h"
+#include "core/vehicle/vehicle.h"
+#include "tribodyn/v1/contacts.pb.h"
+#include "tribodyn/v1/gear_sets.pb.h"
+#include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/model_options.pb.h"
+#include "tribodyn/v1/surfaces.pb.h"
+#include "tribodyn/v1/vehicles.pb.h"
+
+namespace tribodyn::server {
+
+inline constexpr double kZeroCelsius = 273.15;  ///< [K]
+
+// Messages to core values, field by field. Nothing is checked here: see check_message.h.
+Lubricant to_core(const v1::Lubricant& message);
+Roughness roughness(const v1::Surface& message);
+BoundaryFriction boundary_friction(const v1::Surface& message);
+Solid solid(const v1::GearSet& message);
+Vehicle to_core(const v1::Vehicle& message);
+ModelOptions to_core(const v1::ModelOptions& message);
+
+/// Tables beyond three slots are left out; core's check() judges the rest.
+GearSet to_core(const v1::GearSet& message);
+
+// The parts of an explicit contact.
+ContactConditions contact_conditions(const v1::EvaluateContactRequest& message);
+Roughness roughness(const v1::EvaluateContactRequest& message);
+BoundaryFriction boundary_friction(const v1::EvaluateContactRequest& message);
+Solid solid(const v1::EvaluateContactRequest& message);
+
+}  // namespace tribodyn::server

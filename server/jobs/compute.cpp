@@ -1,0 +1,97 @@
+#include "server/jobs/compute.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "core/refusal.h"
+#include "core/version.h"
+#include "server/convert/check_message.h"
+#include "server/convert/from_core.h"
+#include "server/convert/input_hash.h"
+#include "server/convert/ledger.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr std::string_view kShearRate = "flank_shear_rate_per_second";
+
+std::string stage_of(const OperatingCondition& condition) {
+  if (condition.kind == OperatingCondition::Kind::kPrescribedTorque) {
+    return fmt::format("settling at {} N m and {} rad/s", condition.pinion_torque,
+                       condition.pinion_speed);
+  }
+  return fmt::format("settling at {} km/h", kilometers_per_hour(condition.vehicle_speed));
+}
+
+/// No number of a history may be NaN, and only a shear rate infinite (no film under sliding).
+void check_finite(const History& history) {
+  for (std::size_t c = 0; c < history.values.size(); ++c) {
+    const bool infinite_allowed = history.names[c].starts_with(kShearRate);
+    for (const double value : history.values[c]) {
+      if (std::isnan(value) || (std::isinf(value) && !infinite_allowed)) {
+        throw Refusal("RESULT_NOT_FINITE",
+                      "history column " + history.names[c] + " holds a number that is not finite");
+      }
+    }
+  }
+}
+
+void compute_point(const PointStudy& study, const Scene& scene, const StudyFunctions& studies,
+                   const ReportProgress& report, Computed& out) {
+  PointOptions options = study.options;
+  const std::string stage = stage_of(study.condition);
+  options.progress = [&](double fraction) { return report(fraction, stage); };
+  PointResult result = studies.solve_operating_point(scene, study.condition, options);
+  *out.result.add_points() = to_curve_point(result);
+  check_finite(result.history);
+  for (std::size_t c = 0; c < result.history.names.size(); ++c) {
+    out.result.add_history_columns(result.history.names[c]);
+    out.result.set_history_rows(static_cast<std::int64_t>(result.history.values[c].size()));
+    out.history.push_back({result.history.names[c], std::move(result.history.values[c])});
+  }
+}
+
+void compute_curve(const CurveStudy& study, const Scene& scene, const StudyFunctions& studies,
+                   const ReportProgress& report, Computed& out) {
+  const bool down = study.options.direction == SweepDirection::kDown;
+  const std::size_t count = study.vehicle_speeds.size();
+  std::size_t done = 0;
+  SweepOptions options = study.options;
+  options.point.progress = [&](double fraction) {
+    const std::size_t now = std::min(done, count - 1);
+    const double speed = study.vehicle_speeds[down ? count - 1 - now : now];
+    return report(fraction, fmt::format("settling at {} km/h, point {} of {}",
+                                        kilometers_per_hour(speed), now + 1, count));
+  };
+  const std::vector<SweepPoint> points =
+      studies.sweep_speed(scene, study.vehicle_speeds, study.ascent_angle, options,
+                          [&done](const SweepPoint&) { ++done; });
+  for (const SweepPoint& point : points) *out.result.add_points() = to_curve_point(point);
+  out.result.set_direction(down ? v1::DOWN : v1::UP);
+}
+
+}  // namespace
+
+Computed compute(const SimulationInputs& inputs, const StudyFunctions& studies,
+                 const ReportProgress& report) {
+  Computed out;
+  const Scene physical = scene(inputs);
+  const Study asked = study(inputs);
+  if (const auto* point = std::get_if<PointStudy>(&asked)) {
+    compute_point(*point, physical, studies, report, out);
+  } else {
+    compute_curve(std::get<CurveStudy>(asked), physical, studies, report, out);
+  }
+  const std::string bad = first_not_finite(out.result);
+  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
+  out.result.set_model_version(kModelVersion);
+  out.result.set_input_hash(input_hash(inputs));
+  for (v1::Assumption& assumption : assumptions(inputs)) {
+    *out.result.add_assumptions() = std::move(assumption);
+  }
+  return out;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "server/convert/simulation_inputs.h"
+#include "server/store/store.h"
+#include "tribodyn/v1/results.pb.h"
+
+namespace tribodyn::server {
+
+/// The core's studies; tests put their own in place.
+struct StudyFunctions {
+  std::function<PointResult(const Scene&, const OperatingCondition&, const PointOptions&)>
+      solve_operating_point = tribodyn::solve_operating_point;
+  std::function<std::vector<SweepPoint>(const Scene&, std::vector<double>, double,
+                                        const SweepOptions&,
+                                        const std::function<void(const SweepPoint&)>&)>
+      sweep_speed = tribodyn::sweep_speed;
+};
+
+/// What a simulation leaves behind.
+struct Computed {
+  v1::SimulationResult result;
+  std::vector<StoredColumn> history;
+};
+
+/// Told the fraction done in [0, 1] and the stage; false asks to stop.
+using ReportProgress = std::function<bool(double fraction, const std::string& stage)>;
+
+/// Runs the study and makes the whole result: points, ledger, hash, versions. Throws Refusal,
+/// Cancelled, or what the core throws.
+Computed compute(const SimulationInputs& inputs, const StudyFunctions& studies,
+                 const ReportProgress& report);
+
+}  // namespace tribodyn::server

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "server/convert/resource_names.h"
+#include "server/jobs/compute.h"
+#include "server/jobs/job_queue.h"
+#include "server/jobs/progress_board.h"
+#include "server/store/store.h"
+
+namespace tribodyn::server {
+
+/// Wall-clock time for records.
+using Clock = std::function<Microseconds()>;
+Microseconds system_time();
+
+/// What a watcher sees of a simulation that has ended.
+Progress end_of(const StoredSimulation& stored);
+
+/// Resources of the store.
+ResourceLookup resource_lookup(Store& store);
+
+/// Carries one simulation from QUEUED to its end: inputs from the store, the study in the core, the
+/// result back into the store, progress on the board. Whatever goes wrong ends in the store, never
+/// in the thread. Safe for concurrent access without external synchronization.
+class SimulationRunner {
+ public:
+  SimulationRunner(Store& store, ProgressBoard& board, Clock clock, StudyFunctions studies);
+
+  void run(std::int64_t id, const StopSignal& stop) const;
+
+ private:
+  void compute_and_save(std::int64_t id, const StopSignal& stop) const;
+  void show_end(std::int64_t id) const;
+  void stopped(std::int64_t id, StopReason reason) const;
+  void fail(std::int64_t id, const std::string& reason, const std::string& message) const;
+
+  Store& store_;
+  ProgressBoard& board_;
+  Clock clock_;
+  StudyFunctions studies_;
+};
+
+}  // namespace tribodyn::server

@@ -1,0 +1,386 @@
+#include "server/store/store.h"
+
+#include <SQLiteCpp/Statement.h>
+#include <SQLiteCpp/Transaction.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "server/store/schema.h"
+
+static_assert(std::endian::native == std::endian::little, "history columns are little-endian");
+
+namespace tribodyn::server {
+namespace {
+
+constexpr int kReaderConnections = 8;
+
+StoreError translate(const SQLite::Exception& error, const std::filesystem::path& path) {
+  const std::string name = "database " + path.string();
+  switch (error.getErrorCode()) {
+    case SQLITE_NOTADB:
+    case SQLITE_CORRUPT:
+      return {StoreError::Kind::kCorrupt,
+              name + " is damaged or no SQLite database: " + error.what()};
+    case SQLITE_READONLY:
+    case SQLITE_PERM:
+      return {StoreError::Kind::kReadOnly, name + " cannot be written: " + error.what()};
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return {StoreError::Kind::kInUse, name + " is locked by another program: " + error.what()};
+    case SQLITE_CANTOPEN:
+      return {StoreError::Kind::kCannotOpen, name + " cannot be opened: " + error.what()};
+    default:
+      return {StoreError::Kind::kFailed, name + ": " + error.what()};
+  }
+}
+
+/// One path for one file, so that two spellings of it meet in one lock.
+std::filesystem::path one_path(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::filesystem::path found = std::filesystem::weakly_canonical(path, ignored);
+  return found.empty() ? path : found;
+}
+
+SQLite::Database open_writer(const std::filesystem::path& path) try {
+  return {path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMilliseconds};
+} catch (const SQLite::Exception& error) {
+  throw translate(error, path);
+}
+
+StoredSimulation row(const SQLite::Statement& query) {
+  StoredSimulation out;
+  out.id = query.getColumn(0).getInt64();
+  out.state = static_cast<StoredState>(query.getColumn(1).getInt());
+  out.create_time = query.getColumn(2).getInt64();
+  if (!query.getColumn(3).isNull()) out.start_time = query.getColumn(3).getInt64();
+  if (!query.getColumn(4).isNull()) out.end_time = query.getColumn(4).getInt64();
+  out.request = query.getColumn(5).getString();
+  out.input_hash = query.getColumn(6).getString();
+  out.error_reason = query.getColumn(7).getString();
+  out.error_message = query.getColumn(8).getString();
+  return out;
+}
+
+constexpr char kSimulationColumns[] =
+    "SELECT id, state, create_time, start_time, end_time, request, input_hash, error_reason, "
+    "error_message FROM simulations ";
+
+/// Reads rows until `limit` of them or `byte_limit` bytes of the column that is large.
+template <class Row, class Read>
+Page<Row> page(SQLite::Statement& query, int limit, std::size_t byte_limit, int large_column,
+               const Read& read_row) {
+  Page<Row> out;
+  std::size_t bytes = 0;
+  while (query.executeStep()) {
+    bytes += static_cast<std::size_t>(query.getColumn(large_column).getBytes());
+    const bool full =
+        static_cast<int>(out.rows.size()) == limit || (!out.rows.empty() && bytes > byte_limit);
+    if (full) {
+      out.more = true;
+      break;
+    }
+    out.rows.push_back(read_row(query));
+  }
+  return out;
+}
+
+void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes) {
+  statement.bind(index, bytes.data(), static_cast<int>(bytes.size()));
+}
+
+/// Incremental reading of one blob.
+class BlobReader {
+ public:
+  BlobReader(SQLite::Database& database, std::int64_t row_id) {
+    if (sqlite3_blob_open(database.getHandle(), "main", "history", "data", row_id, 0, &blob_) !=
+        SQLITE_OK) {
+      const SQLite::Exception error(database.getHandle());
+      sqlite3_blob_close(blob_);
+      throw error;
+    }
+  }
+  ~BlobReader() { sqlite3_blob_close(blob_); }
+  BlobReader(const BlobReader&) = delete;
+  BlobReader& operator=(const BlobReader&) = delete;
+
+  std::vector<double> read(std::int64_t start, std::int64_t count) {
+    std::vector<double> values(static_cast<std::size_t>(count));
+    const int status = sqlite3_blob_read(blob_, values.data(), static_cast<int>(count * 8),
+                                         static_cast<int>(start * 8));
+    if (status != SQLITE_OK) throw SQLite::Exception("cannot read a history column", status);
+    return values;
+  }
+
+ private:
+  sqlite3_blob* blob_ = nullptr;
+};
+
+}  // namespace
+
+template <class Action>
+auto Store::write(const Action& action) {
+  const std::lock_guard lock(writer_mutex_);
+  try {
+    return action(writer_);
+  } catch (const SQLite::Exception& error) {
+    throw translate(error, path_);
+  }
+}
+
+template <class Action>
+auto Store::read(const Action& action) {
+  try {
+    ReaderPool::Loan loan = readers_.borrow();
+    return action(*loan);
+  } catch (const SQLite::Exception& error) {
+    throw translate(error, path_);
+  }
+}
+
+Store::Store(const std::filesystem::path& database)
+    : path_(one_path(database)),
+      lock_(path_),
+      writer_(open_writer(path_)),
+      readers_(path_, kReaderConnections) {
+  open_schema();
+}
+
+void Store::open_schema() {
+  write([this](SQLite::Database& db) {
+    const auto pragma = [&db](const char* name) {
+      return db.execAndGet(std::string("PRAGMA ") + name).getInt();
+    };
+    const int version = pragma("user_version");
+    const bool ours = pragma("application_id") == kApplicationId;
+    const bool empty = db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
+    if (!empty && !ours) {
+      throw StoreError(StoreError::Kind::kForeign,
+                       "database " + path_.string() + " belongs to another program");
+    }
+    if (version > kSchemaVersion) {
+      throw StoreError(StoreError::Kind::kNewerSchema,
+                       "database " + path_.string() + " has schema " + std::to_string(version) +
+                           ", written by a newer tribodynd; this one knows schemas up to " +
+                           std::to_string(kSchemaVersion));
+    }
+    if (sqlite3_db_readonly(db.getHandle(), "main") == 1) {
+      throw StoreError(StoreError::Kind::kReadOnly,
+                       "database " + path_.string() + " cannot be written: it is read-only");
+    }
+    db.execAndGet("PRAGMA journal_mode = WAL");
+    db.exec("PRAGMA synchronous = FULL");
+    db.exec("PRAGMA foreign_keys = ON");
+    if (empty) {
+      SQLite::Transaction transaction(db);
+      db.exec(kSchema);
+      db.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
+      db.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
+      transaction.commit();
+    }
+  });
+}
+
+void Store::add_resources(const std::vector<StoredResource>& resources) {
+  write([&](SQLite::Database& db) {
+    SQLite::Transaction transaction(db);
+    SQLite::Statement insert(db, "INSERT INTO resources VALUES (?, ?) ON CONFLICT DO NOTHING");
+    for (const auto& [name, body] : resources) {
+      insert.bind(1, name);
+      bind_blob(insert, 2, body);
+      insert.exec();
+      insert.reset();
+    }
+    transaction.commit();
+  });
+}
+
+std::optional<std::string> Store::resource(const std::string& name) {
+  return read([&](SQLite::Database& db) -> std::optional<std::string> {
+    SQLite::Statement query(db, "SELECT body FROM resources WHERE name = ?");
+    query.bind(1, name);
+    if (!query.executeStep()) return std::nullopt;
+    return query.getColumn(0).getString();
+  });
+}
+
+Page<StoredResource> Store::resources(const std::string& collection, const std::string& after,
+                                      int limit, std::size_t byte_limit) {
+  return read([&](SQLite::Database& db) {
+    SQLite::Statement query(
+        db, "SELECT name, body FROM resources WHERE name > ? AND name < ? ORDER BY name LIMIT ?");
+    query.bind(1, std::max(after, collection + "/"));
+    query.bind(2, collection + "0");  // '0' follows '/'
+    query.bind(3, limit + 1);
+    return page<StoredResource>(query, limit, byte_limit, 1, [](const SQLite::Statement& found) {
+      return StoredResource{found.getColumn(0).getString(), found.getColumn(1).getString()};
+    });
+  });
+}
+
+std::vector<std::string> Store::resource_names(const std::string& collection) {
+  return read([&](SQLite::Database& db) {
+    SQLite::Statement query(db,
+                            "SELECT name FROM resources WHERE name > ? AND name < ? ORDER BY name");
+    query.bind(1, collection + "/");
+    query.bind(2, collection + "0");
+    std::vector<std::string> names;
+    while (query.executeStep()) names.push_back(query.getColumn(0).getString());
+    return names;
+  });
+}
+
+std::int64_t Store::add_simulation(const std::string& request, const std::string& input_hash,
+                                   Microseconds now) {
+  return write([&](SQLite::Database& db) -> std::int64_t {
+    SQLite::Statement insert(
+        db,
+        "INSERT INTO simulations (state, create_time, request, input_hash) VALUES (1, ?, ?, ?)");
+    insert.bind(1, now);
+    bind_blob(insert, 2, request);
+    insert.bind(3, input_hash);
+    insert.exec();
+    return db.getLastInsertRowid();
+  });
+}
+
+std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
+  return read([&](SQLite::Database& db) -> std::optional<StoredSimulation> {
+    SQLite::Statement query(db, std::string(kSimulationColumns) + "WHERE id = ?");
+    query.bind(1, id);
+    if (!query.executeStep()) return std::nullopt;
+    return row(query);
+  });
+}
+
+Page<StoredSimulation> Store::simulations(std::int64_t before, int limit, std::size_t byte_limit) {
+  return read([&](SQLite::Database& db) {
+    SQLite::Statement query(
+        db, std::string(kSimulationColumns) + "WHERE id < ? ORDER BY id DESC LIMIT ?");
+    query.bind(1, before == 0 ? std::numeric_limits<std::int64_t>::max() : before);
+    query.bind(2, limit + 1);
+    return page<StoredSimulation>(query, limit, byte_limit, 5, row);
+  });
+}
+
+bool Store::mark_running(std::int64_t id, Microseconds now) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Statement update(
+        db, "UPDATE simulations SET state = 2, start_time = ? WHERE id = ? AND state = 1");
+    update.bind(1, now);
+    update.bind(2, id);
+    return update.exec() == 1;
+  });
+}
+
+bool Store::mark_queued(std::int64_t id) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Statement update(
+        db, "UPDATE simulations SET state = 1, start_time = NULL WHERE id = ? AND state = 2");
+    update.bind(1, id);
+    return update.exec() == 1;
+  });
+}
+
+bool Store::mark_cancelled(std::int64_t id, Microseconds now) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Statement update(
+        db, "UPDATE simulations SET state = 5, end_time = ? WHERE id = ? AND state IN (1, 2)");
+    update.bind(1, now);
+    update.bind(2, id);
+    return update.exec() == 1;
+  });
+}
+
+bool Store::mark_failed(std::int64_t id, Microseconds now, const std::string& reason,
+                        const std::string& message) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Statement update(db,
+                             "UPDATE simulations SET state = 4, end_time = ?, error_reason = ?, "
+                             "error_message = ? WHERE id = ? AND state IN (1, 2)");
+    update.bind(1, now);
+    update.bind(2, reason);
+    update.bind(3, message);
+    update.bind(4, id);
+    return update.exec() == 1;
+  });
+}
+
+bool Store::mark_succeeded(std::int64_t id, Microseconds now, const std::string& result,
+                           const std::vector<StoredColumn>& history) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Transaction transaction(db);
+    SQLite::Statement update(
+        db, "UPDATE simulations SET state = 3, end_time = ? WHERE id = ? AND state = 2");
+    update.bind(1, now);
+    update.bind(2, id);
+    if (update.exec() != 1) return false;
+    SQLite::Statement insert(db, "INSERT INTO results VALUES (?, ?)");
+    insert.bind(1, id);
+    bind_blob(insert, 2, result);
+    insert.exec();
+    SQLite::Statement column(
+        db, "INSERT INTO history (simulation, position, name, data) VALUES (?, ?, ?, ?)");
+    for (std::size_t i = 0; i < history.size(); ++i) {
+      column.bind(1, id);
+      column.bind(2, static_cast<std::int64_t>(i));
+      column.bind(3, history[i].name);
+      column.bindNoCopy(4, history[i].values.data(),
+                        static_cast<int>(history[i].values.size() * sizeof(double)));
+      column.exec();
+      column.reset();
+    }
+    transaction.commit();
+    return true;
+  });
+}
+
+std::vector<std::int64_t> Store::requeue_unfinished() {
+  return write([](SQLite::Database& db) {
+    SQLite::Transaction transaction(db);
+    db.exec("UPDATE simulations SET state = 1, start_time = NULL WHERE state = 2");
+    SQLite::Statement query(db, "SELECT id FROM simulations WHERE state = 1 ORDER BY id");
+    std::vector<std::int64_t> ids;
+    while (query.executeStep()) ids.push_back(query.getColumn(0).getInt64());
+    transaction.commit();
+    return ids;
+  });
+}
+
+std::optional<std::string> Store::result(std::int64_t id) {
+  return read([&](SQLite::Database& db) -> std::optional<std::string> {
+    SQLite::Statement query(db, "SELECT body FROM results WHERE simulation = ?");
+    query.bind(1, id);
+    if (!query.executeStep()) return std::nullopt;
+    return query.getColumn(0).getString();
+  });
+}
+
+Store::HistoryShape Store::history_shape(std::int64_t id) {
+  return read([&](SQLite::Database& db) {
+    SQLite::Statement query(
+        db, "SELECT name, length(data) / 8 FROM history WHERE simulation = ? ORDER BY position");
+    query.bind(1, id);
+    HistoryShape shape;
+    while (query.executeStep()) {
+      shape.names.push_back(query.getColumn(0).getString());
+      shape.rows = query.getColumn(1).getInt64();
+    }
+    return shape;
+  });
+}
+
+std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,
+                                        std::int64_t start, std::int64_t count) {
+  return read([&](SQLite::Database& db) {
+    SQLite::Statement query(db, "SELECT id FROM history WHERE simulation = ? AND name = ?");
+    query.bind(1, id);
+    query.bind(2, column);
+    if (!query.executeStep()) throw SQLite::Exception("no such history column");
+    return BlobReader(db, query.getColumn(0).getInt64()).read(start, count);
+  });
+}
+
+}  // namespace tribodyn::server

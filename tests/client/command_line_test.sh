@@ -1,0 +1,307 @@
+#!/usr/bin/env bash
+# Drives every command of the command line against a real tribodynd: a free port on loopback, a
+# database in a temporary folder.
+# usage: command_line_test.sh TRIBODYND TRIBODYN
+set -uo pipefail
+
+server=$1
+client=$2
+folder=$(mktemp -d)
+server_pid=
+failures=0
+
+start_server() {
+  rm -f "$folder/port"
+  "$server" --listen 127.0.0.1:0 --database "$folder/db.sqlite" --port-file "$folder/port" \
+    >>"$folder/server.log" 2>&1 &
+  server_pid=$!
+  for _ in $(seq 600); do
+    [ -s "$folder/port" ] && break
+    kill -0 "$server_pid" 2>/dev/null || break
+    sleep 0.1
+  done
+  if [ ! -s "$folder/port" ]; then
+    cat "$folder/server.log"
+    echo "the server did not start"
+    exit 1
+  fi
+  TRIBODYN_SERVER=$(<"$folder/port")
+  export TRIBODYN_SERVER
+}
+
+stop_server() {
+  [ -n "$server_pid" ] || return 0
+  kill "$server_pid" 2>/dev/null
+  for _ in $(seq 300); do
+    kill -0 "$server_pid" 2>/dev/null || break
+    sleep 0.1
+  done
+  kill -9 "$server_pid" 2>/dev/null
+  wait "$server_pid" 2>/dev/null
+  server_pid=
+}
+
+cleanup() {
+  stop_server
+  rm -rf "$folder"
+}
+trap cleanup EXIT
+trap 'exit 1' INT TERM
+
+fail() {
+  failures=$((failures + 1))
+  echo "FAILED: $*"
+  echo "  stdout: $(head -c 1500 "$folder/out")"
+  echo "  stderr: $(head -c 1500 "$folder/err")"
+}
+
+# expect CODE ARGUMENTS...: runs the client, keeps its output in out and err.
+expect() {
+  local wanted=$1 code=0
+  shift
+  asked="$*"
+  "$client" "$@" >"$folder/out" 2>"$folder/err" </dev/null || code=$?
+  [ "$code" -eq "$wanted" ] || fail "tribodyn $asked: exit code $code, not $wanted"
+}
+out_has() { grep -qE -- "$1" "$folder/out" || fail "tribodyn $asked: no '$1' on standard output"; }
+err_has() { grep -qE -- "$1" "$folder/err" || fail "tribodyn $asked: no '$1' on standard error"; }
+out_lines() {
+  local lines
+  lines=$(wc -l <"$folder/out")
+  [ "$lines" -eq "$1" ] || fail "tribodyn $asked: $lines lines, not $1"
+}
+# Every line of a CSV without quotes has as many cells as its header.
+out_is_csv() {
+  grep -v '"' "$folder/out" | awk -F, 'NR == 1 { n = NF } NF != n || n < 2 { bad = 1 } END { exit bad }' ||
+    fail "tribodyn $asked: not a CSV table"
+}
+# Braces and brackets balance and the text is an object.
+out_is_json() {
+  awk 'NR == 1 && !/^\{/ { bad = 1 }
+       { open += gsub(/[{[]/, ""); open -= gsub(/[]}]/, "") } END { exit bad || open != 0 }' \
+    <(sed 's/"[^"]*"//g; 1s/^$/{/' "$folder/out") || fail "tribodyn $asked: not JSON"
+}
+
+echo "--- without a server"
+TRIBODYN_SERVER=127.0.0.1:9 expect 3 lubricants list
+err_has 'cannot connect to the server at 127.0.0.1:9'
+expect 3 --server "unix:$folder/none" lubricants list
+expect 0 --help
+out_has 'Exit codes'
+for command in point curve history contact "lubricants list" "lubricants get" "jobs list" \
+  "jobs get" "jobs watch" "jobs cancel"; do
+  # shellcheck disable=SC2086  # the words of a command
+  expect 0 $command --help
+  out_has '^Examples$'
+done
+expect 0 --version
+expect 2
+expect 2 pointt --speed 3
+err_has 'is point meant'
+
+start_server
+
+echo "--- usage: every mistake at once"
+expect 2 point --speed fast --sump hot --model quick --nonsense
+for part in "'fast' is not a number" "'hot' is not a number" "'quick' is not one of" \
+  "unknown option --nonsense" "--lubricant is missing"; do
+  err_has "$part"
+done
+
+echo "--- refusals: every violation at once"
+expect 1 point --lubricant 7 --speed -5 --sump-temperature-celsius 900 \
+  --relative-tolerance 1 --gear-set Z
+for part in 'speed_kilometers_per_hour = -5 km/h; legal: 0\.1 to 400' \
+  'sump_temperature_celsius = 900 C; legal: -70 to 200' 'relative_tolerance = 1; legal' \
+  'lubricants/7' 'gearSets/Z'; do
+  err_has "$part"
+done
+expect 1 contact --load-newtons -1 --radius-x-metres 0 --poissons-ratio 0.7
+for part in 'load_newtons = -1 N' 'radius_x_metres = 0 m' 'poissons_ratio = 0.7'; do
+  err_has "$part"
+done
+expect 1 history --lubricant 1 --speed 50 --columns mesh_force_newton,nothing --samples-per-mesh-cycle 1
+for part in 'mesh_force_newtons' 'columns\[[12]\]' 'samples_per_mesh_cycle = 1'; do
+  err_has "$part"
+done
+expect 1 curve --lubricant 1,8 --first-speed 90 --last-speed 20
+for part in 'lubricants/8' 'last_speed_kilometers_per_hour = 20'; do
+  err_has "$part"
+done
+expect 1 lubricants get none
+expect 1 jobs get none
+expect 1 jobs cancel none
+expect 1 jobs watch none
+
+echo "--- legal ranges in the help are those of the server"
+# Each number flag with a range: a value above it is refused, by name, with the same range.
+ranges() {
+  "$client" "$1" --help | awk '
+    /^  --/ { flag = $1; sub(/,$/, "", flag) }
+    /Legal:/ { sub(/.*Legal: /, ""); if ($2 == "to") print flag, $1, $3 }' | sed 's/\.$//'
+}
+same_numbers() { awk 'BEGIN { exit !(ARGV[1] + 0 == ARGV[3] + 0 && ARGV[2] + 0 == ARGV[4] + 0) }' "$@"; }
+checked=0
+for command in point contact history curve; do
+  while read -r flag lowest highest; do
+    given=(--lubricant 1 --speed 50)
+    case "$command $flag" in
+      *" --timeout-seconds") continue ;;  # the client's own
+      contact\ *) given=() ;;
+      curve\ * | *" --speed-kilometers-per-hour") given=(--lubricant 1) ;;
+      *" --pinion-torque-newton-metres") given=(--lubricant 1 --pinion-speed 1) ;;
+      *" --pinion-speed-radians-per-second") given=(--lubricant 1 --torque 1) ;;
+    esac
+    case "$flag" in
+      *-mesh-cycles | *-mesh-cycle) value=$((highest + 1)) ;;
+      *) value=$(awk -v v="$highest" 'BEGIN { printf("%.9g", v * 1.001) }') ;;
+    esac
+    expect 1 "$command" "${given[@]}" "$flag" "$value"
+    field=$(sed 's/^--//; s/-/_/g' <<<"$flag")
+    read -r server_lowest server_highest < <(
+      sed -n "s/^ *$field = .*; legal: \\([^ ]*\\) to \\([^ ]*\\).*/\\1 \\2/p" "$folder/err")
+    same_numbers "$lowest" "$highest" "${server_lowest:-none}" "${server_highest:-none}" ||
+      fail "$command $flag: help says $lowest to $highest"
+    checked=$((checked + 1))
+  done < <(ranges "$command")
+done
+[ "$checked" -ge 45 ] || fail "only $checked ranges found in the help"
+
+echo "--- lubricants"
+expect 0 lubricants list
+out_has 'lubricants/1'
+out_has 'lubricants/3'
+expect 0 lubricants list --output csv
+out_is_csv
+out_lines 4
+out_has 'pressure_viscosity_coefficient_per_pascal'
+expect 0 lubricants list --output json
+out_is_json
+out_has '"lubricants": \['
+expect 0 lubricants get 2
+out_has 'relaxation_time_seconds'
+expect 0 lubricants get lubricants/2 -o json
+out_is_json
+out_has '"pressureViscosityCoefficientPerPascal": 1.931e-0?8'
+expect 0 lubricants get 2 -o csv
+out_lines 2
+
+echo "--- contact"
+expect 0 contact
+out_has 'central film thickness +h_cen +[0-9.]+ +um +12'
+expect 0 contact --lubricant 2 --newtonian --output csv
+out_is_csv
+out_lines 2
+expect 0 contact --output json
+out_is_json
+out_has '"centralFilmThicknessMetres": [0-9.]+e-0?[67]'
+
+echo "--- point"
+expect 0 point --lubricant 1 --speed-kilometers-per-hour 72.5
+for part in 'inefficiency, energy mean +[0-9.]+ %' 'inefficiency, RMS' 'mesh loss +[0-9.]+ W' \
+  'film ratio lambda' 'contact loss' 'model version' 'input hash +[0-9a-f]{64}' \
+  'estimated relative error' 'right-hand sides' 'assumed'; do
+  out_has "$part"
+done
+err_has 'lubricants/1: succeeded'
+expect 0 point --lubricant 1 --speed 50 --model quasi-static --isothermal --assumptions
+out_has 'model used +quasi-static'
+out_has 'model: isothermal'
+out_has 'asperity_radius_metres'
+expect 0 point --lubricant 1 --speed 50 --model quasi-static --output csv
+out_lines 2
+out_has ',mesh_loss_power_watts,'
+expect 0 point --lubricant 1 --speed 50 --model quasi-static --output json
+out_is_json
+out_has '"inefficiencyEnergyMeanPercent": [0-9]'
+expect 0 point --lubricant 1 --model quasi-static --pinion-torque-newton-metres 60 \
+  --pinion-speed-radians-per-second 200
+out_has 'pinion torque 60 N m at 200 rad/s'
+expect 0 point --lubricant 1 --model quasi-static --speed 50 --acceleration 0.5 --ascent -1
+out_has '50 km/h accelerating at 0.5 m/s2, ascent -1 degrees'
+
+echo "--- curve"
+expect 0 curve --lubricant 1 --lubricant 2,3 --first-speed 40 --last-speed 60 --speed-step 10 \
+  --model quasi-static --csv "$folder/curve.csv" --plot "$folder/curve.svg"
+out_has 'lubricants/3: inefficiency curve from 40 to 60 km/h'
+[ "$(wc -l <"$folder/curve.csv")" -eq 10 ] || fail "curve.csv has not 1 + 9 lines"
+grep -q '</svg>' "$folder/curve.svg" || fail "curve.svg is not whole"
+if command -v rsvg-convert >/dev/null; then
+  rsvg-convert "$folder/curve.svg" -o "$folder/curve.png" || fail "curve.svg cannot be drawn"
+fi
+expect 0 curve --lubricant 1 --first-speed 40 --last-speed 60 --speed-step 10 \
+  --model quasi-static --direction down --output csv
+out_lines 4
+out_has ',DOWN,'
+expect 0 curve --lubricant 1 --first-speed 40 --last-speed 50 --speed-step 10 \
+  --model quasi-static --output json
+out_is_json
+out_has '"simulations": \['
+expect 1 curve --lubricant 1 --first-speed 40 --last-speed 50 --speed-step 10 \
+  --model quasi-static --plot /nonexistent/folder/curve.svg
+err_has 'cannot write /nonexistent/folder/curve.svg'
+
+echo "--- history"
+expect 0 history --lubricant 1 --speed 50 --model quasi-static --mesh-cycles 2 \
+  --samples-per-mesh-cycle 16 --columns mesh_force_newtons,flank_load_newtons --output csv \
+  --plot "$folder/history.svg"
+out_lines 33
+out_is_csv
+out_has '^time_seconds,mesh_force_newtons,flank_load_newtons_flank_0'
+grep -q 'flank 2' "$folder/history.svg" || fail "history.svg misses a flank"
+expect 0 history --lubricant 1 --speed 50 --model quasi-static --samples-per-mesh-cycle 16
+out_has 'dynamic_transmission_error_metres +16'
+job=$(sed -n 's,^simulations/\([^:]*\):.*,\1,p' "$folder/out")
+expect 0 history --simulation "$job" --output json
+out_is_json
+out_has '"totalRows": "16"'
+
+echo "--- jobs"
+long=(--lubricant 1 --first-speed 20 --last-speed 140 --speed-step 0.2 --relative-tolerance 1e-11)
+expect 0 curve "${long[@]}" --detach
+job=$(sed -n 's,^simulations/\([^ ]*\) .*,\1,p' "$folder/out")
+[ -n "$job" ] || fail "no name from --detach"
+expect 0 jobs get "$job"
+out_has 'running|queued'
+expect 0 jobs get "$job" --output json
+out_is_json
+expect 0 jobs list
+out_has "^$job"
+expect 0 jobs list --limit 2 --output csv
+out_lines 3
+expect 0 jobs list --limit 2 --output json
+out_is_json
+
+echo "--- Ctrl-C stops following, not the job"
+"$client" jobs watch "$job" >"$folder/out" 2>"$folder/err" </dev/null &
+watcher=$!
+asked="jobs watch, then Ctrl-C"
+for _ in $(seq 100); do
+  grep -q running "$folder/err" && break
+  sleep 0.1
+done
+kill -INT "$watcher"
+code=0
+wait "$watcher" || code=$?
+[ "$code" -eq 130 ] || fail "Ctrl-C: exit code $code, not 130"
+err_has "tribodyn jobs watch $job"
+err_has "tribodyn jobs cancel $job"
+expect 0 jobs get "$job"
+out_has 'running'
+expect 0 jobs cancel "$job"
+expect 1 jobs watch "$job"
+err_has 'cancelled'
+expect 0 jobs cancel "$job"
+
+echo "--- results outlive the server"
+expect 0 point --lubricant 3 --speed 50 --model quasi-static --output json
+name=$(sed -n 's,^ "name": "simulations/\(.*\)".*,\1,p' "$folder/out")
+cp "$folder/out" "$folder/before"
+stop_server
+expect 3 jobs get "$name"
+start_server
+expect 0 jobs get "$name" --output json
+cmp -s "$folder/before" "$folder/out" || fail "the result of $name changed with a restart"
+
+[ "$failures" -eq 0 ] || echo "$failures failures"
+[ "$failures" -eq 0 ]

@@ -1,0 +1,69 @@
+#include "client/cpp/service/errors.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+
+namespace tribodyn::client {
+namespace {
+
+grpc::Status refusal_with_violations() {
+  google::rpc::Status details;
+  google::rpc::ErrorInfo info;
+  info.set_reason("INVALID_INPUTS");
+  details.add_details()->PackFrom(info);
+  google::rpc::BadRequest bad;
+  auto* violation = bad.add_field_violations();
+  violation->set_field("simulation.sump_temperature_celsius");
+  violation->set_description("sump_temperature_celsius = 900 C; legal: -70 to 200 C (eq 14)");
+  violation = bad.add_field_violations();
+  violation->set_field("simulation.lubricant");
+  violation->set_description("lubricants/7 does not exist");
+  details.add_details()->PackFrom(bad);
+  return {grpc::StatusCode::INVALID_ARGUMENT, "2 fields are not legal",
+          details.SerializeAsString()};
+}
+
+TEST(Errors, ListEveryViolation) {
+  EXPECT_EQ(readable_error(refusal_with_violations()),
+            "2 illegal fields [INVALID_INPUTS]\n"
+            "  sump_temperature_celsius = 900 C; legal: -70 to 200 C (eq 14)\n"
+            "  simulation.lubricant: lubricants/7 does not exist");
+  EXPECT_EQ(to_failure(refusal_with_violations(), "here").exit_code(), kExitFailed);
+}
+
+TEST(Errors, SayWhenToTryAgain) {
+  google::rpc::Status details;
+  google::rpc::RetryInfo retry;
+  retry.mutable_retry_delay()->set_seconds(2);
+  details.add_details()->PackFrom(retry);
+  const grpc::Status status(grpc::StatusCode::RESOURCE_EXHAUSTED, "queue full",
+                            details.SerializeAsString());
+  EXPECT_EQ(readable_error(status), "queue full [RESOURCE_EXHAUSTED]\n  try again in 2.0 s");
+}
+
+TEST(Errors, NoServerIsToldFromAServerThatRefuses) {
+  const grpc::Status absent(grpc::StatusCode::UNAVAILABLE, "connection refused");
+  EXPECT_EQ(to_failure(absent, "127.0.0.1:1").exit_code(), kExitCannotConnect);
+  EXPECT_NE(std::string(to_failure(absent, "127.0.0.1:1").what()).find("127.0.0.1:1"),
+            std::string::npos);
+  const grpc::Status stopping(grpc::StatusCode::UNAVAILABLE, "stopping",
+                              refusal_with_violations().error_details());
+  EXPECT_EQ(to_failure(stopping, "x").exit_code(), kExitFailed);
+}
+
+TEST(Errors, SurviveDetailsThatAreNotProtobuf) {
+  const grpc::Status status(grpc::StatusCode::INTERNAL, "bad \x1b[31m", "\xff\xff\xff");
+  EXPECT_EQ(readable_error(status), "bad ?[31m [INTERNAL]");
+}
+
+TEST(Errors, FlagsAreNamedAfterFields) {
+  EXPECT_EQ(flag_of_field("simulation.sump_temperature_celsius"), "--sump-temperature-celsius");
+  EXPECT_EQ(flag_of_field("a.speeds[3]"), "--speeds");
+}
+
+}  // namespace
+}  // namespace tribodyn::client

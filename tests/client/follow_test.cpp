@@ -1,0 +1,139 @@
+#include "client/cpp/service/follow.h"
+
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <csignal>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "client/cpp/failure.h"
+#include "tribodyn/v1/simulations.grpc.pb.h"
+
+namespace tribodyn::client {
+namespace {
+
+using State = v1::Simulation::State;
+
+/// A server whose watch streams follow a script: what a real one does only on bad days.
+class ScriptedServer final : public v1::Simulations::Service {
+ public:
+  /// How one watch goes: these states are sent, then it ends like this, or waits to be cancelled.
+  struct Watch {
+    std::vector<State> states;
+    grpc::Status end;
+    bool hangs = false;
+  };
+
+  ScriptedServer() {
+    grpc::ServerBuilder builder;
+    int port = 0;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port);
+    builder.RegisterService(this);
+    server_ = builder.BuildAndStart();
+    address_ = "127.0.0.1:" + std::to_string(port);
+  }
+  ~ScriptedServer() override { server_->Shutdown(); }
+
+  const std::string& address() const { return address_; }
+  int watches() const { return watches_; }
+  bool hanging() const { return hanging_; }
+  /// The n-th watch follows the n-th script, the last one for all that come after.
+  std::vector<Watch> scripts;
+
+  grpc::Status WatchSimulation(grpc::ServerContext* context, const v1::WatchSimulationRequest*,
+                               grpc::ServerWriter<v1::SimulationEvent>* writer) override {
+    const std::size_t index = std::min<std::size_t>(watches_++, scripts.size() - 1);
+    const Watch& script = scripts[index];
+    for (const State state : script.states) {
+      v1::SimulationEvent event;
+      event.set_state(state);
+      writer->Write(event);
+    }
+    while (script.hangs && !context->IsCancelled()) {
+      hanging_ = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return script.end;
+  }
+
+  grpc::Status GetSimulation(grpc::ServerContext*, const v1::GetSimulationRequest* request,
+                             v1::Simulation* simulation) override {
+    simulation->set_name(request->name());
+    simulation->set_state(v1::Simulation::SUCCEEDED);
+    return grpc::Status::OK;
+  }
+
+ private:
+  std::unique_ptr<grpc::Server> server_;
+  std::string address_;
+  std::atomic<int> watches_ = 0;
+  std::atomic<bool> hanging_ = false;
+};
+
+std::vector<v1::Simulation> queued(const std::vector<std::string>& names) {
+  std::vector<v1::Simulation> simulations;
+  for (const std::string& name : names) {
+    simulations.emplace_back().set_name("simulations/" + name);
+    simulations.back().set_state(v1::Simulation::QUEUED);
+  }
+  return simulations;
+}
+
+TEST(Follow, ReturnsEverySimulationOnceAllHaveEnded) {
+  ScriptedServer server;
+  server.scripts = {{{v1::Simulation::RUNNING, v1::Simulation::SUCCEEDED}, grpc::Status::OK}};
+  Connection connection(server.address(), std::chrono::seconds(10));
+  const auto ended = follow(connection, queued({"a", "b"}), {"a", "b"});
+  ASSERT_EQ(ended.size(), 2U);
+  EXPECT_EQ(ended[1].name(), "simulations/b");
+}
+
+TEST(Follow, TakesABrokenStreamUpAgain) {
+  ScriptedServer server;
+  server.scripts = {{{v1::Simulation::RUNNING}, {grpc::StatusCode::UNAVAILABLE, "restarting"}},
+                    {{}, grpc::Status::OK},
+                    {{v1::Simulation::SUCCEEDED}, grpc::Status::OK}};
+  Connection connection(server.address(), std::chrono::seconds(10));
+  EXPECT_EQ(follow(connection, queued({"a"}), {"a"}).size(), 1U);
+  EXPECT_EQ(server.watches(), 3);
+}
+
+TEST(Follow, EndsOnARefusal) {
+  ScriptedServer server;
+  server.scripts = {{{}, {grpc::StatusCode::NOT_FOUND, "no such simulation"}}};
+  Connection connection(server.address(), std::chrono::seconds(10));
+  try {
+    follow(connection, queued({"a"}), {"a"});
+    FAIL() << "a refusal passed";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.exit_code(), kExitFailed);
+    EXPECT_NE(std::string(failure.what()).find("no such simulation"), std::string::npos);
+  }
+}
+
+TEST(Follow, CtrlCSaysHowToGoOn) {
+  ScriptedServer server;
+  server.scripts = {{{v1::Simulation::RUNNING}, grpc::Status::CANCELLED, true}};
+  Connection connection(server.address(), std::chrono::seconds(10));
+  std::thread user([&] {
+    while (!server.hanging()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::raise(SIGINT);
+  });
+  try {
+    follow(connection, queued({"job1"}), {"lubricants/1"});
+    ADD_FAILURE() << "Ctrl-C passed unnoticed";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.exit_code(), kExitInterrupted);
+    EXPECT_NE(std::string(failure.what()).find("tribodyn jobs watch job1"), std::string::npos);
+    EXPECT_NE(std::string(failure.what()).find("tribodyn jobs cancel job1"), std::string::npos);
+  }
+  user.join();
+}
+
+}  // namespace
+}  // namespace tribodyn::client

@@ -1,0 +1,236 @@
+#include "client/cpp/text/text.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "client/cpp/failure.h"
+#include "client/cpp/report/contact_report.h"
+#include "client/cpp/report/curve_report.h"
+#include "client/cpp/report/history_report.h"
+#include "client/cpp/report/point_report.h"
+#include "client/cpp/text/csv.h"
+#include "client/cpp/text/output.h"
+#include "client/cpp/text/progress.h"
+#include "client/cpp/text/table.h"
+#include "tests/client/sample_simulations.h"
+
+namespace tribodyn::client {
+namespace {
+
+using testing::AssertionFailure;
+using testing::AssertionResult;
+using testing::AssertionSuccess;
+
+AssertionResult holds(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return AssertionSuccess();
+  return AssertionFailure() << "\"" << part << "\" is not in\n" << text;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines = split(text, '\n');
+  if (!lines.empty() && lines.back().empty()) lines.pop_back();
+  return lines;
+}
+
+TEST(Text, NumbersAreRoundedAndNeverNegativeZero) {
+  EXPECT_EQ(fixed(-0.0004, 2), "0.00");
+  EXPECT_EQ(fixed(1.005e3, 1), "1005.0");
+  EXPECT_EQ(fixed(std::nan(""), 2), "-");
+  EXPECT_EQ(significant(1.23456789e7, 3), "1.23e+07");
+  EXPECT_EQ(shortest(0.1), "0.1");
+  EXPECT_EQ(shortest(-std::numeric_limits<double>::infinity()), "-Infinity");
+  EXPECT_EQ(duration_text(3.25), "3.2 s");
+  EXPECT_EQ(duration_text(125), "2 min 05 s");
+  EXPECT_EQ(duration_text(3720), "1 h 02 min");
+}
+
+TEST(Text, PrintableDisarmsControlCharacters) {
+  EXPECT_EQ(printable("a\x1b[2Jb\nc\x7f"), "a?[2Jb c?");
+  EXPECT_EQ(printable("\xC2\x9B"
+                      "31m"),
+            "?31m");
+  EXPECT_EQ(printable("\xC2\xB5m"), "\xC2\xB5m");
+}
+
+TEST(Text, SplitKeepsEmptyParts) {
+  EXPECT_EQ(split("a,,b,", ','), (std::vector<std::string>{"a", "", "b", ""}));
+  EXPECT_TRUE(split("", ',').empty());
+}
+
+TEST(Text, ResourceNames) {
+  EXPECT_EQ(resource_name("lubricants", "1"), "lubricants/1");
+  EXPECT_EQ(resource_name("lubricants", "lubricants/1"), "lubricants/1");
+  EXPECT_EQ(resource_id("simulations/x"), "x");
+}
+
+TEST(Table, AlignsByDisplayWidth) {
+  Table table({{"film", "\xC2\xB5m"}, {"lost", "", Table::Align::kLeft}});
+  table.add_row({"0.123", "yes"});
+  table.add_row({"10.5"});
+  EXPECT_EQ(table.text(),
+            " film  lost\n"
+            "   \xC2\xB5m\n"
+            "-----  ----\n"
+            "0.123  yes\n"
+            " 10.5\n");
+}
+
+TEST(Csv, QuotesWhatNeedsIt) {
+  EXPECT_EQ(csv_line({"a", "b,c", "say \"x\"", "two\nlines", ""}),
+            "a,\"b,c\",\"say \"\"x\"\"\",\"two\nlines\",\n");
+}
+
+TEST(Csv, HeadersHaveUnitsAndDoNotDependOnValues) {
+  v1::Simulation curve = sample_curve("1", 1);
+  const auto full = lines_of(points_csv({curve}));
+  ASSERT_EQ(full.size(), 26U);
+  for (auto& point : *curve.mutable_result()->mutable_points()) {
+    point.clear_result();
+    point.set_refusal_reason("WORK_LIMIT");
+  }
+  const auto refused = lines_of(points_csv({curve}));
+  EXPECT_EQ(full[0], refused[0]);
+  const auto headers = split(full[0], ',');
+  EXPECT_EQ(std::set<std::string>(headers.begin(), headers.end()).size(), headers.size());
+  for (const std::string& line : full) EXPECT_EQ(split(line, ',').size(), headers.size());
+  EXPECT_TRUE(holds(full[0], ",speed_kilometers_per_hour,"));
+  EXPECT_TRUE(holds(full[0], ",minimum_central_film_thickness_metres,"));
+  EXPECT_TRUE(holds(full[0], ",flank_losses_2_boundary_watts,"));
+  EXPECT_TRUE(holds(full[0], ",inefficiency_rms_percent,"));
+  EXPECT_TRUE(holds(refused[1], ",,,,"));
+  EXPECT_TRUE(holds(refused[1], "WORK_LIMIT"));
+}
+
+TEST(Csv, UnsetOptionalIsEmptyNotZero) {
+  v1::PointResult result;
+  CsvRow row;
+  append_fields(result, "", row);
+  for (const auto& [header, value] : row) {
+    if (header == "inefficiency_rms_percent" || header == "estimated_relative_error" ||
+        header == "minimum_film_ratio") {
+      EXPECT_EQ(value, "") << header;
+    }
+    if (header == "mesh_loss_power_watts") {
+      EXPECT_EQ(value, "0");
+    }
+  }
+}
+
+TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
+  const std::string text = point_report(sample_point(), false);
+  for (const char* part :
+       {"Mesh loss (conjunctional", "inefficiency, energy mean", "eq 30", "72.5 km/h", "T_s",
+        "film ratio lambda", "contact loss                 yes", "0.6000 ms", "1.2e-06", "abc123",
+        "tribodyn-model-1", "isothermal, as published eq17_atan", "FILM_RATIO_LOW",
+        "Another steady state", "1 assumed (all: --assumptions)"}) {
+    EXPECT_TRUE(holds(text, part));
+  }
+  EXPECT_EQ(text.find("axle loss"), std::string::npos);
+  EXPECT_TRUE(
+      holds(point_report(sample_point(), true), "asperity_radius_metres = 4e-05 m (inside"));
+}
+
+TEST(PointReport, SaysWhatWasNotEstimated) {
+  v1::Simulation simulation = sample_point();
+  auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
+  result.clear_estimated_relative_error();
+  EXPECT_TRUE(holds(point_report(simulation, false), "not estimated"));
+}
+
+TEST(CurveReport, HasOneLineASpeedAndSaysWhyOneIsMissing) {
+  v1::Simulation curve = sample_curve("2", 1);
+  auto& point = *curve.mutable_result()->mutable_points(2);
+  point.clear_result();
+  point.set_refusal_reason("WORK_LIMIT");
+  point.set_refusal_message("no steady state within 4000 mesh cycles");
+  const std::string text = curve_report(curve, false);
+  for (const char* part :
+       {"lubricants/2: inefficiency curve from 20 to 140 km/h", "refused",
+        "30 km/h: no steady state within 4000 mesh cycles [WORK_LIMIT]", "yes", "mesh loss"}) {
+    EXPECT_TRUE(holds(text, part));
+  }
+}
+
+TEST(HistoryReport, SummaryAndCsv) {
+  EXPECT_TRUE(holds(history_summary(sample_history()), "flank_load_newtons_flank_2"));
+  const auto lines = lines_of(history_csv(sample_history()));
+  ASSERT_EQ(lines.size(), 385U);
+  EXPECT_EQ(lines[0],
+            "time_seconds,mesh_force_newtons,flank_load_newtons_flank_0,"
+            "flank_load_newtons_flank_1,flank_load_newtons_flank_2");
+}
+
+TEST(ContactReport, ShowsEveryNumberOfTheResponse) {
+  v1::EvaluateContactResponse contact;
+  const auto* descriptor = contact.GetDescriptor();
+  int numbers = 0;
+  for (int i = 0; i < descriptor->field_count(); ++i) {
+    const auto* field = descriptor->field(i);
+    if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) ++numbers;
+  }
+  contact.set_central_film_thickness_metres(3.21e-7);
+  const std::string text = contact_report(contact);
+  EXPECT_TRUE(holds(text, "h_cen"));
+  EXPECT_TRUE(holds(text, "0.321"));
+  const auto lines = lines_of(text);
+  const auto blank = std::find(lines.begin(), lines.end(), "");
+  EXPECT_EQ(blank - lines.begin() - 2, numbers);  // header and rule
+}
+
+TEST(Json, WritesZerosAndRoundTrips) {
+  const std::string text = json_text(sample_point());
+  EXPECT_TRUE(holds(text, "\"coastSideContact\": false"));
+  v1::Simulation blank;
+  EXPECT_EQ(json_text(blank).find("sumpTemperatureCelsius"), std::string::npos);
+}
+
+TEST(WriteFile, ReplacesOrSaysWhyNot) {
+  const std::string path = testing::TempDir() + "/tribodyn_write_file_test.txt";
+  write_file(path, "one");
+  write_file(path, "two");
+  EXPECT_THROW(write_file("/nonexistent/folder/file", "x"), Failure);
+}
+
+TEST(ProgressBar, FitsTheTerminal) {
+  const JobProgress job{"lubricants/1", "running", "settling at 65 km/h", 0.5, false};
+  const std::string line = progress_bar_line(job, 12, 10, 200);
+  EXPECT_EQ(line, "lubricants/1 [##########..........]  50 %  10.0 s left  settling at 65 km/h");
+  EXPECT_EQ(progress_bar_line(job, 12, 10, 30).size(), 30U);
+  EXPECT_TRUE(holds(progress_bar_line({"a", "running", "", 1, false}, 1, 0, 99), " 99 %"));
+}
+
+TEST(ProgressDisplay, IsSparseOffTerminals) {
+  std::ostringstream out;
+  ProgressDisplay display(out, false, 80);
+  JobProgress job{"lubricants/1", "running", "settling", 0, false};
+  for (int i = 0; i <= 100; ++i) {
+    job.fraction = 0.01 * i;
+    display.show({job});
+  }
+  job.state = "succeeded";
+  job.ended = true;
+  display.show({job});
+  const auto lines = lines_of(out.str());
+  EXPECT_GE(lines.size(), 8U);
+  EXPECT_LE(lines.size(), 12U);
+  EXPECT_EQ(out.str().find('\x1b'), std::string::npos);
+  EXPECT_TRUE(holds(lines.back(), "lubricants/1: succeeded"));
+}
+
+TEST(ProgressDisplay, RedrawsOnTerminals) {
+  std::ostringstream out;
+  ProgressDisplay display(out, true, 80);
+  const JobProgress job{"a", "running", "", 0.1, false};
+  display.show({job, job});
+  display.show({job, job});
+  EXPECT_TRUE(holds(out.str(), "\x1b[2A"));
+}
+
+}  // namespace
+}  // namespace tribodyn::client

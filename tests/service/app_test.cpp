@@ -1,0 +1,290 @@
+// The service end to end, without gRPC.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "google/rpc/error_details.pb.h"
+#include "server/app/contacts.h"
+#include "server/app/errors.h"
+#include "server/app/resources.h"
+#include "server/app/simulations.h"
+#include "server/app/streams.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+template <class Detail>
+std::optional<Detail> detail(const google::rpc::Status& status) {
+  for (const auto& any : status.details()) {
+    Detail out;
+    if (any.UnpackTo(&out)) return out;
+  }
+  return std::nullopt;
+}
+
+class AppTest : public testing::Test {
+ protected:
+  template <class Request>
+  Request named(const std::string& name) const {
+    Request request;
+    request.set_name(name);
+    return request;
+  }
+
+  std::string finished(const v1::Simulation& simulation) {
+    std::string name = bench_.create(simulation);
+    EXPECT_TRUE(bench_.reaches(name, v1::Simulation::SUCCEEDED));
+    return name;
+  }
+
+  Bench bench_;
+  Application app_ = bench_.application();
+};
+
+TEST_F(AppTest, EveryErrorSaysWhyInErrorInfo) {
+  for (const auto& status :
+       {get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/9")).error(),
+        get_gear_set(app_, named<v1::GetGearSetRequest>("x")).error(),
+        create_simulation(app_, {}).error(),
+        get_simulation(app_, named<v1::GetSimulationRequest>("simulations/77")).error(),
+        cancel_simulation(app_, named<v1::CancelSimulationRequest>("")).error(),
+        watch_simulation(app_, named<v1::WatchSimulationRequest>("simulations/0")).error(),
+        read_history(app_, named<v1::ReadHistoryRequest>("simulations/77")).error(),
+        evaluate_contact(app_, {}).error(), shutting_down(), exhausted("later", 1)}) {
+    const auto info = detail<google::rpc::ErrorInfo>(status);
+    ASSERT_TRUE(info) << status.message();
+    EXPECT_EQ(info->domain(), "tribodyn");
+    EXPECT_FALSE(info->reason().empty());
+    EXPECT_NE(status.code(), google::rpc::OK);
+    EXPECT_FALSE(status.message().empty());
+  }
+}
+
+TEST_F(AppTest, ResourcesAreReadAndListed) {
+  EXPECT_EQ(get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/2"))
+                .message()
+                .vogel_temperature_coefficient_kelvin(),
+            1105);
+  EXPECT_EQ(get_gear_set(app_, named<v1::GetGearSetRequest>("gearSets/B")).message().gear_teeth(),
+            36);
+  EXPECT_EQ(get_surface(app_, named<v1::GetSurfaceRequest>("surfaces/run-in")).message().name(),
+            "surfaces/run-in");
+  EXPECT_EQ(list_vehicles(app_, {}).message().vehicles_size(), 1);
+  EXPECT_EQ(list_surfaces(app_, {}).message().surfaces_size(), 1);
+  EXPECT_EQ(list_gear_sets(app_, {}).message().gear_sets_size(), 3);
+}
+
+TEST_F(AppTest, ListsArePaged) {
+  v1::ListLubricantsRequest request;
+  request.set_page_size(2);
+  const auto first = list_lubricants(app_, request).message();
+  ASSERT_EQ(first.lubricants_size(), 2);
+  ASSERT_FALSE(first.next_page_token().empty());
+  request.set_page_token(first.next_page_token());
+  const auto second = list_lubricants(app_, request).message();
+  ASSERT_EQ(second.lubricants_size(), 1);
+  EXPECT_EQ(second.lubricants(0).name(), "lubricants/3");
+  EXPECT_TRUE(second.next_page_token().empty());
+  request.set_page_token("nonsense");
+  request.set_page_size(-1);
+  const auto bad = detail<google::rpc::BadRequest>(list_lubricants(app_, request).error());
+  ASSERT_TRUE(bad);
+  EXPECT_EQ(bad->field_violations_size(), 2);
+}
+
+TEST_F(AppTest, WhatDoesNotExistIsNotFoundWithTheNearestName) {
+  const auto status = get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/33")).error();
+  EXPECT_EQ(status.code(), google::rpc::NOT_FOUND);
+  EXPECT_THAT(status.message(), testing::HasSubstr("lubricants/3"));
+  EXPECT_EQ(detail<google::rpc::ResourceInfo>(status)->resource_name(), "lubricants/33");
+}
+
+TEST_F(AppTest, ASimulationIsAcceptedListedAndRead) {
+  const std::string first = finished(point_simulation());
+  const std::string second = finished(curve_simulation());
+  v1::ListSimulationsRequest request;
+  request.set_page_size(1);
+  const auto page = list_simulations(app_, request).message();
+  ASSERT_EQ(page.simulations_size(), 1);
+  EXPECT_EQ(page.simulations(0).name(), second) << "newest first";
+  EXPECT_FALSE(page.simulations(0).has_result());
+  request.set_page_token(page.next_page_token());
+  EXPECT_EQ(list_simulations(app_, request).message().simulations(0).name(), first);
+  const v1::Simulation curve = bench_.get(second);
+  EXPECT_EQ(curve.result().points_size(), 13);
+  EXPECT_EQ(curve.result().direction(), v1::UP);
+  EXPECT_TRUE(curve.has_create_time() && curve.has_start_time() && curve.has_end_time());
+  EXPECT_EQ(curve.inefficiency_curve().speed_step_kilometers_per_hour(), 10) << "as requested";
+}
+
+TEST_F(AppTest, CancellingIsIdempotentAndLeavesTheEndedAlone) {
+  const std::string name = finished(point_simulation());
+  for (int i = 0; i < 2; ++i) {
+    const auto outcome = cancel_simulation(app_, named<v1::CancelSimulationRequest>(name));
+    ASSERT_TRUE(outcome.ok());
+    EXPECT_EQ(outcome.message().state(), v1::Simulation::SUCCEEDED);
+    EXPECT_TRUE(outcome.message().has_result());
+  }
+}
+
+TEST_F(AppTest, AnEmptyContactIsRefusedWithEveryViolation) {
+  const auto status = evaluate_contact(app_, {}).error();
+  EXPECT_EQ(status.code(), google::rpc::INVALID_ARGUMENT);
+  EXPECT_EQ(detail<google::rpc::BadRequest>(status)->field_violations_size(), 10);
+}
+
+TEST_F(AppTest, WhatTheModelRefusesIsAnErrorWithItsReason) {
+  v1::EvaluateContactRequest request = contact_request();
+  request.set_gear_velocity_x_metres_per_second(-5);
+  request.set_gear_velocity_y_metres_per_second(-6);
+  request.mutable_model_options()->set_no_limiting_shear_stress(true);
+  const auto status = evaluate_contact(app_, request).error();
+  EXPECT_EQ(status.code(), google::rpc::INVALID_ARGUMENT);
+  EXPECT_EQ(detail<google::rpc::ErrorInfo>(status)->reason(), "UNBOUNDED_SHEAR");
+}
+
+TEST_F(AppTest, NoLoadIsAnAnswer) {
+  v1::EvaluateContactRequest request = contact_request();
+  request.set_load_newtons(0);
+  const auto outcome = evaluate_contact(app_, request);
+  ASSERT_TRUE(outcome.ok());
+  EXPECT_EQ(outcome.message().status(), "NO_LOAD");
+  EXPECT_EQ(outcome.message().friction_newtons(), 0);
+}
+
+TEST_F(AppTest, DetailsStaySmallEnoughForAnyClientAndCountTheRest) {
+  Violations violations;
+  for (int i = 0; i < 500; ++i) violations.push_back({"field", std::string(100, 'x')});
+  const auto status = invalid(violations);
+  EXPECT_LT(status.ByteSizeLong(), 6000U);
+  const auto bad = detail<google::rpc::BadRequest>(status);
+  const auto& last = bad->field_violations(bad->field_violations_size() - 1);
+  EXPECT_EQ(last.description(),
+            std::to_string(500 - (bad->field_violations_size() - 1)) + " more violations");
+}
+
+TEST_F(AppTest, EverythingWrongWithAContactAtOnceStillFits) {
+  v1::EvaluateContactRequest request;
+  const auto spoil = [](google::protobuf::Message* message) {
+    const auto& descriptor = *message->GetDescriptor();
+    for (int i = 0; i < descriptor.field_count(); ++i) {
+      if (descriptor.field(i)->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) {
+        message->GetReflection()->SetDouble(message, descriptor.field(i), -1.2345678901234567e300);
+      }
+    }
+  };
+  spoil(&request);
+  spoil(request.mutable_lubricant_parameters());
+  const auto bad = detail<google::rpc::BadRequest>(evaluate_contact(app_, request).error());
+  ASSERT_TRUE(bad);
+  for (const auto& violation : bad->field_violations()) {
+    EXPECT_NE(violation.field(), "*") << violation.description();
+  }
+}
+
+std::vector<v1::HistoryChunk> read_all(const StreamOutcome<v1::HistoryChunk>& outcome) {
+  std::vector<v1::HistoryChunk> out;
+  v1::HistoryChunk chunk;
+  while (outcome.message()->next(chunk) == MessageSource<v1::HistoryChunk>::Step::kMessage) {
+    out.push_back(chunk);
+  }
+  EXPECT_EQ(outcome.message()->error().code(), 0);
+  return out;
+}
+
+v1::Simulation with_history(int cycles, int samples) {
+  v1::Simulation simulation = point_simulation();
+  v1::HistoryRequest* history = simulation.mutable_operating_point()->mutable_history();
+  history->add_columns("mesh_force_newtons");
+  history->add_columns("flank_load_newtons");
+  history->set_mesh_cycles(cycles);
+  history->set_samples_per_mesh_cycle(samples);
+  return simulation;
+}
+
+TEST_F(AppTest, HistoriesComeInChunksColumnByColumn) {
+  const std::string name = finished(with_history(10, 5000));
+  EXPECT_EQ(bench_.get(name).result().history_rows(), 50'000);
+  EXPECT_EQ(bench_.get(name).result().history_columns_size(), 4);
+  const auto chunks = read_all(read_history(app_, named<v1::ReadHistoryRequest>(name)));
+  EXPECT_GT(chunks.size(), 5U);
+  std::int64_t row = 0;
+  for (const auto& chunk : chunks) {
+    EXPECT_EQ(chunk.start_row(), row);
+    EXPECT_EQ(chunk.total_rows(), 50'000);
+    EXPECT_LE(chunk.ByteSizeLong(), 300'000U);
+    ASSERT_EQ(chunk.columns_size(), 4);
+    EXPECT_EQ(chunk.columns(2).name(), "flank_load_newtons_flank_1");
+    for (int i = 0; i < chunk.columns(2).values_size(); ++i) {
+      ASSERT_EQ(chunk.columns(2).values(i), 1000.0 + static_cast<double>(row + i));
+    }
+    row += chunk.columns(0).values_size();
+  }
+  EXPECT_EQ(row, 50'000);
+}
+
+TEST_F(AppTest, HistoriesAreReadInPart) {
+  const std::string name = finished(with_history(1, 100));
+  auto request = named<v1::ReadHistoryRequest>(name);
+  request.add_columns("flank_load_newtons");
+  request.add_columns("flank_load_newtons_flank_2");
+  request.set_start_row(90);
+  request.set_row_count(5);
+  auto chunks = read_all(read_history(app_, request));
+  ASSERT_EQ(chunks.size(), 1U);
+  ASSERT_EQ(chunks[0].columns_size(), 3) << "a flank column stands for its three flanks";
+  EXPECT_THAT(chunks[0].columns(2).values(), testing::ElementsAre(2090, 2091, 2092, 2093, 2094));
+  request.set_row_count(1000);
+  EXPECT_EQ(read_all(read_history(app_, request))[0].columns(0).values_size(), 10);
+  request.set_start_row(100);
+  EXPECT_TRUE(read_all(read_history(app_, request)).empty());
+  request.set_start_row(101);
+  request.set_row_count(-1);
+  request.add_columns("mesh_forces");
+  const auto bad = detail<google::rpc::BadRequest>(read_history(app_, request).error());
+  ASSERT_TRUE(bad);
+  EXPECT_EQ(bad->field_violations_size(), 3);
+}
+
+TEST_F(AppTest, AHistoryNeedsAResultThatHasOne) {
+  const std::string name = finished(point_simulation());
+  EXPECT_EQ(read_history(app_, named<v1::ReadHistoryRequest>(name)).error().code(),
+            google::rpc::NOT_FOUND);
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  bench_.restart(patient_studies(release));
+  Application app = bench_.application();
+  const std::string running = bench_.create(point_simulation());
+  EXPECT_EQ(read_history(app, named<v1::ReadHistoryRequest>(running)).error().code(),
+            google::rpc::FAILED_PRECONDITION);
+  *release = true;
+}
+
+TEST_F(AppTest, AWatchShowsThePresentAndThenTheEnd) {
+  const std::string name = finished(point_simulation());
+  const auto outcome = watch_simulation(app_, named<v1::WatchSimulationRequest>(name));
+  ASSERT_TRUE(outcome.ok());
+  using Step = MessageSource<v1::SimulationEvent>::Step;
+  v1::SimulationEvent event;
+  ASSERT_EQ(outcome.message()->next(event), Step::kMessage);
+  EXPECT_EQ(event.state(), v1::Simulation::SUCCEEDED);
+  EXPECT_EQ(event.progress_fraction(), 1);
+  EXPECT_EQ(outcome.message()->next(event), Step::kEnd);
+}
+
+TEST_F(AppTest, TooManyWaitingSimulationsAreTurnedAwayWithARetry) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench small(patient_studies(release), 1, 1);
+  const std::string running = small.create(point_simulation());
+  ASSERT_TRUE(small.reaches(running, v1::Simulation::RUNNING));
+  small.create(point_simulation());
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = point_simulation();
+  Application app = small.application();
+  const auto status = create_simulation(app, request).error();
+  EXPECT_EQ(status.code(), google::rpc::RESOURCE_EXHAUSTED);
+  EXPECT_GT(detail<google::rpc::RetryInfo>(status)->retry_delay().seconds(), 0);
+  *release = true;
+}
+
+}  // namespace
+}  // namespace tribodyn::server

@@ -1,0 +1,154 @@
+// Jobs, store and application from many threads at once; made for ThreadSanitizer.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "server/app/contacts.h"
+#include "server/app/resources.h"
+#include "server/app/simulations.h"
+#include "server/app/streams.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+/// Runs the action on several threads and waits for all.
+void on_threads(int count, const std::function<void(int)>& action) {
+  std::vector<std::thread> threads;
+  threads.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) threads.emplace_back([&action, i] { action(i); });
+  for (std::thread& thread : threads) thread.join();
+}
+
+v1::Simulation with_history() {
+  v1::Simulation simulation = point_simulation();
+  simulation.mutable_operating_point()->mutable_history()->add_columns("flank_load_newtons");
+  return simulation;
+}
+
+/// Watches as the gRPC layer does: asks again whenever it is told to.
+class Watcher : public ProgressObserver, public std::enable_shared_from_this<Watcher> {
+ public:
+  using Source = std::shared_ptr<MessageSource<v1::SimulationEvent>>;
+  explicit Watcher(Source source) : source_(std::move(source)) {}
+  void start() {
+    source_->observe(weak_from_this());
+    changed();
+  }
+  void changed() override {
+    const std::lock_guard lock(mutex_);
+    v1::SimulationEvent event;
+    for (;;) {
+      const auto step = source_->next(event);
+      if (step == MessageSource<v1::SimulationEvent>::Step::kEnd) ended_ = true;
+      if (step != MessageSource<v1::SimulationEvent>::Step::kMessage) return;
+      EXPECT_GE(event.state(), last_);
+      last_ = event.state();
+    }
+  }
+  bool ended() const { return ended_; }
+
+ private:
+  std::mutex mutex_;
+  Source source_;
+  int last_ = 0;
+  std::atomic<bool> ended_ = false;
+};
+
+TEST(Concurrency, CreateWatchReadCancelAllAtOnce) {
+  Bench bench(quick_studies(), 4);
+  Application app = bench.application();
+  constexpr int kThreads = 6;
+  constexpr int kRounds = 15;
+  std::atomic<int> ends = 0;
+  on_threads(kThreads, [&](int thread) {
+    for (int round = 0; round < kRounds; ++round) {
+      const std::string name = bench.create(with_history());
+      v1::WatchSimulationRequest watch;
+      watch.set_name(name);
+      auto watcher = std::make_shared<Watcher>(watch_simulation(app, watch).message());
+      watcher->start();
+      if ((thread + round) % 3 == 0) {
+        v1::CancelSimulationRequest cancel;
+        cancel.set_name(name);
+        EXPECT_TRUE(cancel_simulation(app, cancel).ok());
+      }
+      EXPECT_TRUE(eventually([&] { return watcher->ended(); }));
+      const v1::Simulation done = bench.get(name);
+      if (done.state() == v1::Simulation::SUCCEEDED) {
+        v1::ReadHistoryRequest read;
+        read.set_name(name);
+        v1::HistoryChunk chunk;
+        read_history(app, read).message()->next(chunk);
+        EXPECT_EQ(chunk.columns(0).values_size(), 192);
+      } else {
+        EXPECT_EQ(done.state(), v1::Simulation::CANCELLED);
+      }
+      EXPECT_TRUE(list_simulations(app, {}).ok());
+      EXPECT_TRUE(list_gear_sets(app, {}).ok());
+      ++ends;
+    }
+  });
+  EXPECT_EQ(ends, kThreads * kRounds);
+}
+
+TEST(Concurrency, CancellingFromManyThreadsEndsEachOnce) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench bench(patient_studies(release), 2);
+  std::vector<std::string> names;
+  names.reserve(12);
+  for (int i = 0; i < 12; ++i) names.push_back(bench.create(point_simulation()));
+  Application app = bench.application();
+  on_threads(4, [&](int) {
+    for (const std::string& name : names) {
+      v1::CancelSimulationRequest cancel;
+      cancel.set_name(name);
+      const auto outcome = cancel_simulation(app, cancel);
+      EXPECT_EQ(outcome.message().state(), v1::Simulation::CANCELLED);
+    }
+  });
+  const std::string next = bench.create(point_simulation());
+  *release = true;
+  EXPECT_TRUE(bench.reaches(next, v1::Simulation::SUCCEEDED));
+}
+
+TEST(Concurrency, StoppingWhileWatchedAndFed) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench bench(patient_studies(release), 3);
+  Application app = bench.application();
+  std::vector<std::string> names;
+  names.reserve(6);
+  for (int i = 0; i < 6; ++i) names.push_back(bench.create(curve_simulation()));
+  std::thread stopper([&] { bench.jobs().stop(); });
+  on_threads(3, [&](int) {
+    for (const std::string& name : names) {
+      v1::WatchSimulationRequest watch;
+      watch.set_name(name);
+      EXPECT_TRUE(watch_simulation(app, watch).ok());
+      v1::CreateSimulationRequest create;
+      *create.mutable_simulation() = point_simulation();
+      create_simulation(app, create);  // accepted or turned away, both are right
+    }
+  });
+  stopper.join();
+  for (const std::string& name : names) {
+    EXPECT_EQ(bench.get(name).state(), v1::Simulation::QUEUED);
+  }
+}
+
+TEST(Concurrency, ContactsAreEvaluatedSideBySideWithEqualBits) {
+  Bench bench;
+  Application app = bench.application();
+  const auto expected = evaluate_contact(app, contact_request());
+  ASSERT_TRUE(expected.ok()) << expected.error().message();
+  on_threads(4, [&](int) {
+    for (int i = 0; i < 50; ++i) {
+      const auto outcome = evaluate_contact(app, contact_request());
+      ASSERT_TRUE(outcome.ok());
+      EXPECT_EQ(outcome.message().SerializeAsString(), expected.message().SerializeAsString());
+    }
+  });
+}
+
+}  // namespace
+}  // namespace tribodyn::server

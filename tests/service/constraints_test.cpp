@@ -1,0 +1,235 @@
+// Every row of the table of constraints has a request that breaks it; every rule between fields
+// too.
+#include "server/convert/constraints.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <ostream>
+#include <set>
+
+#include "server/convert/check_message.h"
+#include "server/convert/contact_inputs.h"
+#include "server/convert/simulation_inputs.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using testing::AllOf;
+using testing::Contains;
+using testing::Field;
+using testing::HasSubstr;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+auto violation(const std::string& field, const std::string& text) {
+  return Contains(
+      AllOf(Field(&Violation::field, field), Field(&Violation::description, HasSubstr(text))));
+}
+
+Violations check(const v1::Simulation& simulation) {
+  Violations violations;
+  read_simulation(simulation, seed_lookup(), "simulation", violations);
+  return violations;
+}
+
+Violations check(const v1::EvaluateContactRequest& request) {
+  Violations violations;
+  read_contact(request, seed_lookup(), violations);
+  return violations;
+}
+
+/// A request that holds the message of a row, the message inside it, and how it is checked.
+struct Subject {
+  v1::Simulation simulation = point_simulation();
+  v1::EvaluateContactRequest contact = contact_request();
+  v1::Surface surface = seed<v1::Surface>("surfaces/run-in");
+  v1::Vehicle vehicle = seed<v1::Vehicle>("vehicles/passenger-car");
+  v1::GearSet gear_set = seed<v1::GearSet>("gearSets/A");
+  Message* message = nullptr;
+  std::string path;
+
+  explicit Subject(std::string_view name) {
+    v1::OperatingPointStudy* point = simulation.mutable_operating_point();
+    if (name == "Lubricant") {
+      *contact.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/1");
+      use(contact.mutable_lubricant_parameters(), "lubricant_parameters.");
+    } else if (name == "EvaluateContactRequest") {
+      use(&contact, "");
+    } else if (name == "Simulation") {
+      use(&simulation, "simulation.");
+    } else if (name == "Cruise") {
+      use(point->mutable_cruise(), "simulation.operating_point.cruise.");
+    } else if (name == "DriveCycleSnapshot") {
+      point->mutable_drive_cycle_snapshot()->set_speed_kilometers_per_hour(50);
+      use(point->mutable_drive_cycle_snapshot(),
+          "simulation.operating_point.drive_cycle_snapshot.");
+    } else if (name == "PrescribedTorque") {
+      point->mutable_prescribed_torque()->set_pinion_speed_radians_per_second(100);
+      use(point->mutable_prescribed_torque(), "simulation.operating_point.prescribed_torque.");
+    } else if (name == "HistoryRequest") {
+      point->mutable_history()->add_columns("mesh_force_newtons");
+      use(point->mutable_history(), "simulation.operating_point.history.");
+    } else if (name == "InefficiencyCurveStudy") {
+      simulation = curve_simulation();
+      use(simulation.mutable_inefficiency_curve(), "simulation.inefficiency_curve.");
+    } else if (name == "SolverOptions") {
+      use(simulation.mutable_solver_options(), "simulation.solver_options.");
+    } else if (name == "Surface") {
+      use(&surface, "");
+    } else if (name == "Vehicle") {
+      use(&vehicle, "");
+    } else if (name == "GearSet") {
+      use(&gear_set, "");
+    } else if (name == "DrivelineDynamics") {
+      use(gear_set.mutable_dynamics(), "dynamics.");
+    }
+  }
+
+  void use(Message* inside, const std::string& prefix) {
+    message = inside;
+    path = prefix;
+  }
+
+  Violations check() const {
+    if (path.starts_with("simulation.")) return server::check(simulation);
+    if (path == "lubricant_parameters." || message == &contact) return server::check(contact);
+    Violations violations;
+    if (message == &surface) check_message(surface, "", violations);
+    if (message == &vehicle) check_message(vehicle, "", violations);
+    if (message == &gear_set || path == "dynamics.") check_message(gear_set, "", violations);
+    return violations;
+  }
+};
+
+}  // namespace
+
+/// What GoogleTest shows of a row.
+void PrintTo(const Constraint& row, std::ostream* out) { *out << row.message << "." << row.field; }
+
+namespace {
+
+class ConstraintRow : public testing::TestWithParam<Constraint> {
+ protected:
+  const FieldDescriptor& field(const Subject& subject) const {
+    return *subject.message->GetDescriptor()->FindFieldByName(std::string(GetParam().field));
+  }
+
+  Violations with(double value) const {
+    Subject subject(GetParam().message);
+    const auto* reflection = subject.message->GetReflection();
+    const FieldDescriptor& target = field(subject);
+    if (target.is_repeated()) {
+      auto* curve = subject.simulation.mutable_inefficiency_curve();
+      curve->Clear();
+      reflection->AddDouble(subject.message, &target, value);
+    } else if (target.cpp_type() == FieldDescriptor::CPPTYPE_INT32) {
+      reflection->SetInt32(subject.message, &target, static_cast<int>(value));
+    } else {
+      reflection->SetDouble(subject.message, &target, value);
+    }
+    return subject.check();
+  }
+
+  std::string path() const {
+    const Subject subject(GetParam().message);
+    const std::string name = subject.path + std::string(GetParam().field);
+    return field(subject).is_repeated() ? name + "[0]" : name;
+  }
+
+  bool is_integer() const {
+    return field(Subject(GetParam().message)).cpp_type() == FieldDescriptor::CPPTYPE_INT32;
+  }
+
+  double below() const {
+    const double minimum = GetParam().minimum;
+    if (is_integer()) return minimum - 1 == 0 ? -1 : minimum - 1;
+    if (minimum == 0) return -1e-9;
+    return minimum - 1e-6 * std::abs(minimum);
+  }
+  double above() const {
+    const double maximum = GetParam().maximum;
+    return is_integer() ? maximum + 1 : maximum + 1e-6 * std::abs(maximum);
+  }
+};
+
+TEST_P(ConstraintRow, KeepsOutWhatIsBelowAndAboveAndNoNumber) {
+  const std::string name(GetParam().field);
+  EXPECT_THAT(with(below()), violation(path(), name + " = "));
+  EXPECT_THAT(with(above()), violation(path(), name + " = "));
+  if (is_integer()) return;
+  EXPECT_THAT(with(kNaN), violation(path(), name + " = nan"));
+  EXPECT_THAT(with(kInfinity), violation(path(), name + " = inf"));
+  EXPECT_THAT(with(-kInfinity), violation(path(), name + " = -inf"));
+}
+
+TEST_P(ConstraintRow, NamesUnitRangeAndEquation) {
+  const Constraint& row = GetParam();
+  const Violations found = with(above());
+  ASSERT_THAT(found, violation(path(), quantity_text(row.maximum, row.unit)));
+  EXPECT_THAT(found, violation(path(), "legal: " + number_text(row.minimum) + " to "));
+  EXPECT_THAT(found, violation(path(), std::string(row.equation)));
+}
+
+TEST_P(ConstraintRow, LetsTheEndsOfItsRangePass) {
+  for (const double end : {GetParam().minimum, GetParam().maximum}) {
+    for (const Violation& found : with(end)) {
+      EXPECT_FALSE(found.description.starts_with(out_of_range_text(GetParam(), end)))
+          << found.description;
+    }
+  }
+}
+
+std::string row_name(const testing::TestParamInfo<Constraint>& info) {
+  return std::string(info.param.message) + "_" + std::string(info.param.field);
+}
+
+std::vector<Constraint> all_rows() { return {constraints().begin(), constraints().end()}; }
+
+INSTANTIATE_TEST_SUITE_P(Table, ConstraintRow, testing::ValuesIn(all_rows()), row_name);
+
+/// Every number that a client can send.
+void collect_numbers(const Descriptor& descriptor, std::set<std::string>& out) {
+  static const std::set<std::string> kSetByServer = {
+      "progress_fraction", "create_time", "start_time", "end_time", "error", "result"};
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const FieldDescriptor& field = *descriptor.field(i);
+    if (kSetByServer.contains(field.name())) continue;
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      collect_numbers(*field.message_type(), out);
+    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ||
+               field.cpp_type() == FieldDescriptor::CPPTYPE_INT32) {
+      out.insert(descriptor.name() + "." + field.name());
+    }
+  }
+}
+
+TEST(Constraints, EveryNumberThatAClientCanSendHasARow) {
+  std::set<std::string> sent;
+  collect_numbers(*v1::CreateSimulationRequest::descriptor(), sent);
+  collect_numbers(*v1::EvaluateContactRequest::descriptor(), sent);
+  for (const std::string& name : sent) {
+    const std::size_t dot = name.find('.');
+    EXPECT_NE(find_constraint(name.substr(0, dot), name.substr(dot + 1)), nullptr) << name;
+  }
+}
+
+TEST(Constraints, EveryRowNamesAFieldThatExists) {
+  const auto* pool = google::protobuf::DescriptorPool::generated_pool();
+  for (const Constraint& row : constraints()) {
+    const Descriptor* message =
+        pool->FindMessageTypeByName("tribodyn.v1." + std::string(row.message));
+    ASSERT_NE(message, nullptr) << row.message;
+    EXPECT_NE(message->FindFieldByName(std::string(row.field)), nullptr) << row.field;
+  }
+}
+
+}  // namespace
+}  // namespace tribodyn::server

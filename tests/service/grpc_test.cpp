@@ -1,0 +1,323 @@
+// The real tribodynd over gRPC: every method, bad input, streams that nobody reads.
+#include <gmock/gmock.h>
+#include <grpcpp/client_context.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <limits>
+#include <optional>
+#include <random>
+#include <thread>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "tests/service/grpc_fixture.h"
+#include "tests/service/raw_client.h"
+#include "tribodyn/v1/contacts.grpc.pb.h"
+#include "tribodyn/v1/gear_sets.grpc.pb.h"
+#include "tribodyn/v1/lubricants.grpc.pb.h"
+#include "tribodyn/v1/surfaces.grpc.pb.h"
+#include "tribodyn/v1/vehicles.grpc.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+template <class Detail>
+std::optional<Detail> detail(const grpc::Status& status) {
+  google::rpc::Status parsed;
+  parsed.ParseFromString(status.error_details());
+  for (const auto& any : parsed.details()) {
+    Detail out;
+    if (any.UnpackTo(&out)) return out;
+  }
+  return std::nullopt;
+}
+
+TEST_F(GrpcTest, HealthAndReflectionAnswer) {
+  RawClient client(channel_);
+  const auto [status, health] = client.call("/grpc.health.v1.Health/Check", "");
+  EXPECT_TRUE(status.ok());
+  EXPECT_EQ(health, std::string("\x08\x01", 2)) << "SERVING";
+  const std::string services = client.list_services();
+  for (const char* name :
+       {"Lubricants", "GearSets", "Surfaces", "Vehicles", "Contacts", "Simulations"}) {
+    EXPECT_THAT(services, HasSubstr(std::string("tribodyn.v1.") + name));
+  }
+}
+
+TEST_F(GrpcTest, ResourcesAreServed) {
+  {
+    grpc::ClientContext context;
+    v1::ListLubricantsResponse response;
+    ASSERT_TRUE(v1::Lubricants::NewStub(channel_)->ListLubricants(&context, {}, &response).ok());
+    EXPECT_EQ(response.lubricants_size(), 3);
+  }
+  {
+    grpc::ClientContext context;
+    v1::ListGearSetsResponse response;
+    ASSERT_TRUE(v1::GearSets::NewStub(channel_)->ListGearSets(&context, {}, &response).ok());
+    EXPECT_EQ(response.gear_sets_size(), 3);
+  }
+  {
+    grpc::ClientContext context;
+    v1::GetLubricantRequest request;
+    request.set_name("lubricants/1");
+    v1::Lubricant response;
+    ASSERT_TRUE(v1::Lubricants::NewStub(channel_)->GetLubricant(&context, request, &response).ok());
+    EXPECT_EQ(response.pressure_viscosity_coefficient_per_pascal(), 1.609e-8);
+  }
+  {
+    grpc::ClientContext context;
+    v1::GetGearSetRequest request;
+    request.set_name("gearSets/A");
+    v1::GearSet response;
+    ASSERT_TRUE(v1::GearSets::NewStub(channel_)->GetGearSet(&context, request, &response).ok());
+    EXPECT_EQ(response.SerializeAsString(), seed<v1::GearSet>("gearSets/A").SerializeAsString());
+  }
+  {
+    grpc::ClientContext context;
+    v1::GetSurfaceRequest request;
+    request.set_name("surfaces/run-in");
+    v1::Surface response;
+    EXPECT_TRUE(v1::Surfaces::NewStub(channel_)->GetSurface(&context, request, &response).ok());
+  }
+  {
+    grpc::ClientContext context;
+    v1::ListSurfacesResponse response;
+    ASSERT_TRUE(v1::Surfaces::NewStub(channel_)->ListSurfaces(&context, {}, &response).ok());
+    EXPECT_EQ(response.surfaces_size(), 1);
+  }
+  {
+    grpc::ClientContext context;
+    v1::GetVehicleRequest request;
+    request.set_name("vehicles/passenger-car");
+    v1::Vehicle response;
+    EXPECT_TRUE(v1::Vehicles::NewStub(channel_)->GetVehicle(&context, request, &response).ok());
+  }
+  {
+    grpc::ClientContext context;
+    v1::ListVehiclesResponse response;
+    ASSERT_TRUE(v1::Vehicles::NewStub(channel_)->ListVehicles(&context, {}, &response).ok());
+    EXPECT_EQ(response.vehicles_size(), 1);
+  }
+}
+
+TEST_F(GrpcTest, AContactIsEvaluated) {
+  grpc::ClientContext context;
+  v1::EvaluateContactResponse response;
+  const grpc::Status status =
+      v1::Contacts::NewStub(channel_)->EvaluateContact(&context, contact_request(), &response);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(response.status(), "OK");
+  EXPECT_GT(response.friction_newtons(), 0);
+  EXPECT_NEAR(response.film_load_newtons() + response.asperity_load_newtons(), 2000, 1e-6);
+  EXPECT_FALSE(response.model_version().empty());
+}
+
+TEST_F(GrpcTest, EverythingWrongWithAContactArrivesInOneAnswer) {
+  v1::EvaluateContactRequest request;
+  const auto spoil = [](google::protobuf::Message* message) {
+    const auto& descriptor = *message->GetDescriptor();
+    for (int i = 0; i < descriptor.field_count(); ++i) {
+      if (descriptor.field(i)->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) {
+        message->GetReflection()->SetDouble(message, descriptor.field(i), -1.2345678901234567e300);
+      }
+    }
+  };
+  spoil(&request);
+  spoil(request.mutable_lubricant_parameters());
+  grpc::ClientContext context;
+  v1::EvaluateContactResponse response;
+  const grpc::Status status =
+      v1::Contacts::NewStub(channel_)->EvaluateContact(&context, request, &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
+  EXPECT_EQ(detail<google::rpc::ErrorInfo>(status)->reason(), "INVALID_FIELDS");
+  const auto bad = detail<google::rpc::BadRequest>(status);
+  ASSERT_TRUE(bad);
+  EXPECT_GE(bad->field_violations_size(), 33);
+}
+
+TEST_F(GrpcTest, ASimulationIsCreatedWatchedReadAndListed) {
+  v1::Simulation request = point_simulation();
+  request.mutable_operating_point()->mutable_history()->add_columns("mesh_force_newtons");
+  request.mutable_operating_point()->mutable_history()->add_columns("flank_load_newtons");
+  v1::Simulation created;
+  ASSERT_TRUE(create(request, &created).ok());
+  EXPECT_EQ(created.name(), "simulations/1");
+  grpc::Status status;
+  const auto events = watch(created.name(), &status);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  ASSERT_FALSE(events.empty());
+  ASSERT_EQ(events.back().state(), v1::Simulation::SUCCEEDED) << events.back().error().message();
+  double progress = 0;
+  for (const auto& event : events) {
+    EXPECT_GE(event.progress_fraction(), progress);
+    progress = event.progress_fraction();
+  }
+  const v1::Simulation done = get(created.name());
+  EXPECT_EQ(done.result().points_size(), 1);
+  EXPECT_GT(done.result().points(0).result().inefficiency_rms_percent(), 0);
+  EXPECT_EQ(done.result().history_rows(), 192);
+
+  grpc::ClientContext context;
+  v1::ReadHistoryRequest read;
+  read.set_name(created.name());
+  auto reader = simulations_->ReadHistory(&context, read);
+  int rows = 0;
+  for (v1::HistoryChunk chunk; reader->Read(&chunk);) {
+    EXPECT_EQ(chunk.columns_size(), 4);
+    rows += chunk.columns(0).values_size();
+  }
+  EXPECT_TRUE(reader->Finish().ok());
+  EXPECT_EQ(rows, 192);
+
+  grpc::ClientContext list_context;
+  v1::ListSimulationsResponse list;
+  EXPECT_TRUE(simulations_->ListSimulations(&list_context, {}, &list).ok());
+  EXPECT_EQ(list.simulations_size(), 1);
+}
+
+TEST_F(GrpcTest, BadSimulationsComeBackWithAllTheirViolations) {
+  v1::Simulation request;
+  request.set_lubricant("lubricants/4");
+  request.set_sump_temperature_celsius(std::numeric_limits<double>::quiet_NaN());
+  v1::Simulation created;
+  const grpc::Status status = create(request, &created);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  const auto bad = detail<google::rpc::BadRequest>(status);
+  ASSERT_TRUE(bad);
+  EXPECT_EQ(bad->field_violations_size(), 3);
+}
+
+TEST_F(GrpcTest, ARunningSimulationIsCancelledAndItsWatcherSeesTheEnd) {
+  v1::Simulation created;
+  ASSERT_TRUE(create(long_simulation(), &created).ok());
+  ASSERT_TRUE(eventually([&] { return get(created.name()).state() == v1::Simulation::RUNNING; }));
+  std::thread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    EXPECT_EQ(cancel(created.name()).state(), v1::Simulation::CANCELLED);
+  });
+  grpc::Status status;
+  const auto events = watch(created.name(), &status);
+  canceller.join();
+  EXPECT_TRUE(status.ok());
+  EXPECT_EQ(events.back().state(), v1::Simulation::CANCELLED);
+  EXPECT_EQ(cancel(created.name()).state(), v1::Simulation::CANCELLED) << "idempotent";
+  grpc::Status again;
+  EXPECT_EQ(watch(created.name(), &again).size(), 1U);
+  v1::Simulation next;
+  ASSERT_TRUE(create(point_simulation(), &next).ok());
+  EXPECT_TRUE(eventually([&] { return get(next.name()).state() == v1::Simulation::SUCCEEDED; }));
+}
+
+TEST_F(GrpcTest, AWatcherThatNeverReadsHoldsUpNobody) {
+  v1::Simulation running;
+  ASSERT_TRUE(create(long_simulation(), &running).ok());
+  RawClient client(channel_);
+  std::vector<std::shared_ptr<RawClient::Stream>> streams;
+  v1::WatchSimulationRequest request;
+  request.set_name(running.name());
+  streams.reserve(200);
+  for (int i = 0; i < 200; ++i) {
+    streams.push_back(
+        client.open("/tribodyn.v1.Simulations/WatchSimulation", request.SerializeAsString()));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(cancel(running.name()).state(), v1::Simulation::CANCELLED);
+  process_->signal(SIGTERM);
+  EXPECT_EQ(process_->wait(std::chrono::seconds(8)), 0) << process_->log();
+}
+
+TEST_F(GrpcTest, ReflectionStreamsThatStayOpenHoldUpNobody) {
+  RawClient client(channel_);
+  std::vector<std::shared_ptr<RawClient::Stream>> streams;
+  streams.reserve(60);
+  for (int i = 0; i < 60; ++i) {
+    streams.push_back(client.open("/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo",
+                                  std::string("\x3a\x00", 2)));
+  }
+  v1::Simulation created;
+  EXPECT_TRUE(create(point_simulation(), &created).ok());
+  streams.clear();
+  EXPECT_TRUE(eventually([&] { return !client.list_services().empty(); })) << "and it recovers";
+}
+
+TEST_F(GrpcTest, GarbageNeitherCrashesNorHangsIt) {
+  RawClient client(channel_);
+  std::mt19937 random(20261121);
+  for (const char* method :
+       {"Lubricants/GetLubricant", "Lubricants/ListLubricants", "GearSets/GetGearSet",
+        "Contacts/EvaluateContact", "Simulations/CreateSimulation", "Simulations/GetSimulation",
+        "Simulations/ListSimulations", "Simulations/CancelSimulation"}) {
+    for (int i = 0; i < 50; ++i) {
+      std::string bytes(random() % 300, '\0');
+      for (char& byte : bytes) byte = static_cast<char>(random());
+      client.call("/tribodyn.v1." + std::string(method), bytes);
+    }
+  }
+  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/EvaluateContact", std::string(2'000'000, 'x'))
+                .first.error_code(),
+            grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/NoSuchMethod", "").first.error_code(),
+            grpc::StatusCode::UNIMPLEMENTED);
+  if (const auto port = address_.rfind(':'); port != std::string::npos) {
+    send_raw_bytes(std::stoi(address_.substr(port + 1)), "GET / HTTP/1.1\r\n\r\n");
+    send_raw_bytes(std::stoi(address_.substr(port + 1)), std::string(100'000, '\xff'));
+  }
+  EXPECT_TRUE(process_->running());
+  grpc::ClientContext context;
+  v1::ListVehiclesResponse response;
+  EXPECT_TRUE(v1::Vehicles::NewStub(channel_)->ListVehicles(&context, {}, &response).ok());
+}
+
+class FewFilesTest : public GrpcTest {
+ protected:
+  void SetUp() override {
+    maximum_files_ = 200;
+    start();
+  }
+  grpc::Status list_vehicles(const std::shared_ptr<grpc::Channel>& channel) {
+    grpc::ClientContext context;
+    v1::ListVehiclesResponse response;
+    return v1::Vehicles::NewStub(channel)->ListVehicles(&context, {}, &response);
+  }
+};
+
+TEST_F(FewFilesTest, ConnectionsThatUseUpAllFilesMakeItDeafOnlyWhileTheyLast) {
+  const int port = std::stoi(address_.substr(address_.rfind(':') + 1));
+  EXPECT_TRUE(list_vehicles(channel_).ok());
+  {
+    const SilentConnections flood(port, 400);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    EXPECT_TRUE(list_vehicles(channel_).ok()) << "who is connected is served";
+    v1::Simulation created;
+    EXPECT_TRUE(create(point_simulation(), &created).ok());
+  }
+  EXPECT_TRUE(eventually([&] { return list_vehicles(connect(address_)).ok(); }));
+}
+
+TEST_F(GrpcTest, NoFormulationAppearsInTheLog) {
+  v1::EvaluateContactRequest request = contact_request();
+  *request.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/1");
+  request.mutable_lubricant_parameters()->set_display_name("SecretFluid");
+  request.mutable_lubricant_parameters()->set_relaxation_time_seconds(-1.23454321);
+  grpc::ClientContext context;
+  v1::EvaluateContactResponse response;
+  EXPECT_FALSE(v1::Contacts::NewStub(channel_)->EvaluateContact(&context, request, &response).ok());
+  v1::Simulation simulation = point_simulation();
+  simulation.set_display_name("SecretFluid");
+  simulation.set_sump_temperature_celsius(12.345);
+  v1::Simulation created;
+  ASSERT_TRUE(create(simulation, &created).ok());
+  ASSERT_TRUE(eventually([&] { return get(created.name()).state() >= v1::Simulation::SUCCEEDED; }));
+  EXPECT_FALSE(process_->log().empty());
+  for (const char* secret : {"SecretFluid", "1.23454321", "12.345", "lubricants/", "1.609e-08"}) {
+    EXPECT_THAT(process_->log(), Not(HasSubstr(secret)));
+  }
+}
+
+}  // namespace
+}  // namespace tribodyn::server

@@ -1,0 +1,194 @@
+// What a simulation rests on: defaults, studies, hash and ledger.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/version.h"
+#include "server/convert/input_hash.h"
+#include "server/convert/ledger.h"
+#include "server/convert/simulation_inputs.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+SimulationInputs inputs_of(const v1::Simulation& simulation) {
+  Violations violations;
+  auto inputs = read_simulation(simulation, seed_lookup(), "simulation", violations);
+  if (!inputs) throw std::runtime_error(violations.front().description);
+  return *inputs;
+}
+
+TEST(Inputs, DefaultsAreThoseOfTheContract) {
+  const SimulationInputs inputs = inputs_of(point_simulation());
+  EXPECT_EQ(inputs.gear_set.name(), "gearSets/A");
+  EXPECT_EQ(inputs.surface.name(), "surfaces/run-in");
+  EXPECT_EQ(inputs.vehicle.name(), "vehicles/passenger-car");
+  const Scene physical = scene(inputs);
+  EXPECT_EQ(physical.sump_temperature, 313.15);
+  EXPECT_EQ(physical.inlet_temperature_rise, 20);
+  const auto point = std::get<PointStudy>(study(inputs));
+  EXPECT_EQ(point.condition.kind, OperatingCondition::Kind::kCruise);
+  EXPECT_EQ(point.condition.vehicle_speed, 65 / 3.6);
+  EXPECT_EQ(point.options.model, PointModel::kFull);
+  EXPECT_EQ(point.options.start, PointStart::kQuasiStatic);
+  EXPECT_EQ(point.options.relative_tolerance, 1e-7);
+  EXPECT_EQ(point.options.settling_tolerance, 1e-6);
+  EXPECT_EQ(point.options.maximum_mesh_cycles, 4000);
+  EXPECT_EQ(point.options.recorded_mesh_cycles, 50);
+  EXPECT_TRUE(point.options.history.columns.empty());
+}
+
+TEST(Inputs, EveryOperatingConditionArrives) {
+  v1::Simulation simulation = point_simulation();
+  v1::OperatingPointStudy* asked = simulation.mutable_operating_point();
+  asked->mutable_cruise()->set_ascent_angle_degrees(90 / std::numbers::pi);
+  asked->set_model(v1::QUASI_STATIC);
+  asked->set_start(v1::SEPARATED);
+  asked->set_probe_coexisting_response(true);
+  asked->mutable_history()->add_columns("mesh_force_newtons");
+  asked->mutable_history()->set_mesh_cycles(3);
+  auto point = std::get<PointStudy>(study(inputs_of(simulation)));
+  EXPECT_DOUBLE_EQ(point.condition.ascent_angle, 0.5);
+  EXPECT_EQ(point.options.model, PointModel::kQuasiStatic);
+  EXPECT_EQ(point.options.start, PointStart::kLargeVibration);
+  EXPECT_TRUE(point.options.probe_coexisting_response);
+  EXPECT_EQ(point.options.history.columns, std::vector<HistoryColumn>{HistoryColumn::kMeshForce});
+  EXPECT_EQ(point.options.history.mesh_cycles, 3);
+  EXPECT_EQ(point.options.history.samples_per_mesh_cycle, 192);
+
+  asked->mutable_drive_cycle_snapshot()->set_speed_kilometers_per_hour(36);
+  asked->mutable_drive_cycle_snapshot()->set_acceleration_metres_per_second_squared(-2);
+  point = std::get<PointStudy>(study(inputs_of(simulation)));
+  EXPECT_EQ(point.condition.kind, OperatingCondition::Kind::kDriveCycleSnapshot);
+  EXPECT_EQ(point.condition.vehicle_speed, 10);
+  EXPECT_EQ(point.condition.acceleration, -2);
+
+  asked->mutable_prescribed_torque()->set_pinion_torque_newton_metres(-30);
+  asked->mutable_prescribed_torque()->set_pinion_speed_radians_per_second(250);
+  point = std::get<PointStudy>(study(inputs_of(simulation)));
+  EXPECT_EQ(point.condition.kind, OperatingCondition::Kind::kPrescribedTorque);
+  EXPECT_EQ(point.condition.pinion_torque, -30);
+  EXPECT_EQ(point.condition.pinion_speed, 250);
+}
+
+TEST(Inputs, ARangeOfSpeedsIncludesItsLast) {
+  v1::Simulation simulation = curve_simulation();
+  v1::InefficiencyCurveStudy* asked = simulation.mutable_inefficiency_curve();
+  asked->set_first_speed_kilometers_per_hour(0.1);
+  asked->set_last_speed_kilometers_per_hour(0.7);
+  asked->set_speed_step_kilometers_per_hour(0.1);
+  asked->set_direction(v1::DOWN);
+  asked->set_ascent_angle_degrees(180 / std::numbers::pi / 10);
+  const auto curve = std::get<CurveStudy>(study(inputs_of(simulation)));
+  ASSERT_EQ(curve.vehicle_speeds.size(), 7U);
+  EXPECT_DOUBLE_EQ(curve.vehicle_speeds.front(), 0.1 / 3.6);
+  EXPECT_DOUBLE_EQ(curve.vehicle_speeds.back(), 0.7 / 3.6);
+  EXPECT_EQ(curve.options.direction, SweepDirection::kDown);
+  EXPECT_DOUBLE_EQ(curve.ascent_angle, 0.1);
+}
+
+TEST(Hash, DependsOnValuesNotOnWhatTheyAreCalled) {
+  const SimulationInputs inputs = inputs_of(point_simulation());
+  const std::string hash = input_hash(inputs);
+  EXPECT_EQ(hash.size(), 64U);
+  EXPECT_EQ(hash, input_hash(inputs_of(point_simulation())));
+  SimulationInputs same = inputs;
+  same.lubricant.set_name("lubricants/other");
+  same.lubricant.set_display_name("other");
+  same.lubricant.set_description("other");
+  same.lubricant.clear_provenance();
+  same.effective.set_display_name("other");
+  same.effective.set_lubricant("lubricants/other");
+  EXPECT_EQ(hash, input_hash(same));
+  SimulationInputs other = inputs;
+  other.lubricant.set_thermal_conductivity_watts_per_metre_kelvin(std::nextafter(0.154, 1));
+  EXPECT_NE(hash, input_hash(other));
+  other = inputs;
+  other.gear_set.mutable_flank_slots(1)->set_load_share(40, 0.5);
+  EXPECT_NE(hash, input_hash(other));
+}
+
+TEST(Hash, StatedDefaultsEqualUnstatedOnes) {
+  v1::Simulation stated = point_simulation();
+  stated.set_gear_set("gearSets/A");
+  stated.set_sump_temperature_celsius(40);
+  stated.set_inlet_temperature_rise_kelvin(20);
+  stated.mutable_solver_options()->set_relative_tolerance(1e-7);
+  stated.mutable_operating_point()->set_model(v1::FULL);
+  stated.mutable_operating_point()->mutable_cruise()->set_ascent_angle_degrees(-0.0);
+  EXPECT_EQ(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));
+  stated.mutable_operating_point()->set_model(v1::QUASI_STATIC);
+  EXPECT_NE(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));
+}
+
+TEST(Hash, EqualSpeedsHoweverStatedAreEqualInputs) {
+  v1::Simulation listed = curve_simulation();
+  listed.mutable_inefficiency_curve()->Clear();
+  for (int speed = 140; speed >= 20; speed -= 10) {
+    listed.mutable_inefficiency_curve()->add_speeds_kilometers_per_hour(speed);
+  }
+  EXPECT_EQ(input_hash(inputs_of(listed)), input_hash(inputs_of(curve_simulation())));
+}
+
+TEST(Hash, CanonicalTextNamesEveryValueWithAllItsDigits) {
+  const std::string text = canonical_inputs(inputs_of(point_simulation()));
+  EXPECT_TRUE(text.starts_with("model_version=" + std::string(kModelVersion) + "\n"));
+  EXPECT_NE(text.find("\nsimulation.sump_temperature_celsius=0x1.4p+5\n"), std::string::npos);
+  EXPECT_NE(text.find("\ngear_set.flank_slots[2].gear_velocity_y_metres[96]="), std::string::npos);
+  EXPECT_NE(text.find("\nsimulation.operating_point.model=FULL\n"), std::string::npos);
+  EXPECT_EQ(text.find("provenance"), std::string::npos);
+  EXPECT_EQ(text.find("lubricants/"), std::string::npos);
+}
+
+std::map<std::string, v1::Assumption> ledger_of(const v1::Simulation& simulation) {
+  std::map<std::string, v1::Assumption> out;
+  for (const v1::Assumption& entry : assumptions(inputs_of(simulation))) {
+    EXPECT_TRUE(out.emplace(entry.resource() + " " + entry.field(), entry).second) << entry.field();
+    EXPECT_NE(entry.provenance(), v1::PROVENANCE_UNSPECIFIED) << entry.field();
+    EXPECT_FALSE(entry.source().empty()) << entry.field();
+    EXPECT_FALSE(entry.value().empty()) << entry.field();
+  }
+  return out;
+}
+
+TEST(Ledger, NamesEveryParameterWithValueUnitAndProvenance) {
+  auto ledger = ledger_of(point_simulation());
+  const auto& alpha = ledger.at("lubricants/1 pressure_viscosity_coefficient_per_pascal");
+  EXPECT_EQ(alpha.value(), "1.609e-08 1/Pa");
+  EXPECT_EQ(alpha.provenance(), v1::PROVENANCE_PUBLISHED);
+  EXPECT_EQ(ledger.at("lubricants/1 vogel_reference_temperature_kelvin").provenance(),
+            v1::PROVENANCE_DERIVED);
+  EXPECT_EQ(ledger.at("gearSets/A dynamics.pinion_inertia_kilogram_square_metres").provenance(),
+            v1::PROVENANCE_CALIBRATED);
+  EXPECT_EQ(ledger.at("gearSets/A series").value(), "8 harmonics at 30 N m");
+  EXPECT_EQ(ledger.at("gearSets/A flank_slots").value(), "3 slots of 97 samples");
+  EXPECT_EQ(ledger.at("surfaces/run-in tribofilm_shear_strength_pascals").value(), "2000000 Pa");
+  EXPECT_EQ(ledger.at("vehicles/passenger-car mass_kilograms").value(), "1300 kg");
+  EXPECT_FALSE(ledger.contains("gearSets/A series_by_torque")) << "not used, so not assumed";
+  EXPECT_EQ(ledger.size(), 6U + 14 + (7 + 2 + 10) + 5 + 7);
+}
+
+TEST(Ledger, MarksWhatTheRequestLeftToDefaults) {
+  auto ledger = ledger_of(point_simulation());
+  EXPECT_EQ(ledger.at("request sump_temperature_celsius").provenance(), v1::PROVENANCE_ASSUMED);
+  EXPECT_EQ(ledger.at("request sump_temperature_celsius").value(), "40 C");
+  EXPECT_EQ(ledger.at("request inlet_temperature_rise_kelvin").provenance(),
+            v1::PROVENANCE_PUBLISHED);
+  EXPECT_EQ(ledger.at("request gear_set").provenance(), v1::PROVENANCE_ASSUMED);
+  EXPECT_EQ(ledger.at("request lubricant").provenance(), v1::PROVENANCE_USER);
+  v1::Simulation stated = point_simulation();
+  stated.set_sump_temperature_celsius(90);
+  stated.set_gear_set("gearSets/A");
+  stated.mutable_model_options()->set_load_dependent_mesh_data(true);
+  ledger = ledger_of(stated);
+  EXPECT_EQ(ledger.at("request sump_temperature_celsius").provenance(), v1::PROVENANCE_USER);
+  EXPECT_EQ(ledger.at("request gear_set").provenance(), v1::PROVENANCE_USER);
+  EXPECT_EQ(ledger.at("gearSets/A series_by_torque").value(), "10, 20, 30, 45, 65, 100 N m");
+}
+
+}  // namespace
+}  // namespace tribodyn::server

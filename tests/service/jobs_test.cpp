@@ -1,0 +1,268 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <thread>
+
+#include "core/refusal.h"
+#include "server/jobs/job_queue.h"
+#include "server/jobs/progress_board.h"
+#include "server/jobs/simulation_jobs.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+/// A study that throws.
+template <class Thrown>
+StudyFunctions throwing(const Thrown& thrown) {
+  StudyFunctions out = quick_studies();
+  out.solve_operating_point = [thrown](const Scene&, const OperatingCondition&,
+                                       const PointOptions&) -> PointResult { throw thrown; };
+  return out;
+}
+
+TEST(JobQueue, RunsWhatIsPushedInOrder) {
+  std::mutex mutex;
+  std::vector<std::int64_t> done;
+  JobQueue queue(1, 100, [&](std::int64_t id, const StopSignal&) {
+    const std::lock_guard lock(mutex);
+    done.push_back(id);
+  });
+  for (int id = 1; id <= 20; ++id) {
+    ASSERT_TRUE(queue.reserve());
+    queue.push(id);
+  }
+  EXPECT_TRUE(eventually([&] {
+    const std::lock_guard lock(mutex);
+    return done.size() == 20;
+  }));
+  const std::lock_guard lock(mutex);
+  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
+}
+
+TEST(JobQueue, TurnsAwayWhatIsTooMuch) {
+  std::atomic<bool> release = false;
+  JobQueue queue(1, 2, [&](std::int64_t, const StopSignal& stop) {
+    while (!release && !stop.requested()) std::this_thread::yield();
+  });
+  ASSERT_TRUE(queue.reserve());
+  ASSERT_TRUE(queue.reserve());
+  EXPECT_FALSE(queue.reserve()) << "reserved places count";
+  queue.release();
+  EXPECT_TRUE(queue.reserve());
+  queue.push(1);
+  queue.push(2);
+  EXPECT_TRUE(eventually([&] {  // one of them runs by now
+    if (!queue.reserve()) return false;
+    queue.release();
+    return true;
+  }));
+  queue.push_resumed(3);
+  queue.push_resumed(4);
+  EXPECT_FALSE(queue.reserve()) << "resumed jobs count but are never turned away";
+  release = true;
+}
+
+TEST(JobQueue, ADefectiveJobDoesNotEndTheThread) {
+  std::atomic<int> done = 0;
+  JobQueue queue(1, 10, [&](std::int64_t id, const StopSignal&) {
+    ++done;
+    if (id == 1) throw std::runtime_error("defect");
+  });
+  queue.push_resumed(1);
+  queue.push_resumed(2);
+  EXPECT_TRUE(eventually([&] { return done == 2; }));
+}
+
+TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
+  std::atomic<int> started = 0;
+  std::atomic<int> shut_down = 0;
+  {
+    JobQueue queue(2, 10, [&](std::int64_t, const StopSignal& stop) {
+      ++started;
+      while (!stop.requested()) std::this_thread::yield();
+      if (stop.reason() == StopReason::kShutdown) ++shut_down;
+    });
+    for (int id = 1; id <= 5; ++id) queue.push_resumed(id);
+    EXPECT_TRUE(eventually([&] { return started == 2; }));
+    queue.stop();
+    EXPECT_FALSE(queue.reserve());
+  }
+  EXPECT_EQ(started, 2);
+  EXPECT_EQ(shut_down, 2);
+}
+
+TEST(ProgressChannel, NeverFallsAndNeverLeavesItsEnd) {
+  ProgressChannel channel({});
+  channel.publish({StoredState::kRunning, 0.5, "a", "", ""});
+  channel.publish({StoredState::kRunning, 0.25, "b", "", ""});
+  EXPECT_EQ(channel.latest().progress.fraction, 0.5);
+  EXPECT_EQ(channel.latest().progress.stage, "b");
+  channel.publish({StoredState::kCancelled, 0, "", "", ""});
+  const auto number = channel.latest().number;
+  channel.publish({StoredState::kRunning, 0.75, "c", "", ""});
+  EXPECT_EQ(channel.latest().progress.state, StoredState::kCancelled);
+  EXPECT_EQ(channel.latest().number, number);
+}
+
+class Counter : public ProgressObserver {
+ public:
+  void changed() override { ++count; }
+  std::atomic<int> count = 0;
+};
+
+TEST(ProgressChannel, TellsObserversWhileTheyLive) {
+  ProgressChannel channel({});
+  auto observer = std::make_shared<Counter>();
+  channel.observe(observer);
+  channel.publish({StoredState::kRunning, 0.5, "", "", ""});
+  EXPECT_EQ(observer->count, 1);
+  observer.reset();
+  channel.publish({StoredState::kRunning, 0.75, "", "", ""});
+}
+
+TEST(SimulationJobs, ASimulationSucceedsAndItsResultIsStored) {
+  Bench bench;
+  const std::string name = bench.create(point_simulation());
+  ASSERT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED));
+  const v1::Simulation done = bench.get(name);
+  EXPECT_EQ(done.result().points(0).result().inefficiency_rms_percent(), 1.5);
+  EXPECT_EQ(done.result().points(0).speed_kilometers_per_hour(), 65);
+  EXPECT_EQ(done.progress_fraction(), 1);
+  EXPECT_EQ(done.result().input_hash().size(), 64U);
+  EXPECT_GT(done.result().assumptions_size(), 40);
+}
+
+TEST(SimulationJobs, ARefusalBecomesAFailureWithItsReason) {
+  Bench bench(throwing(Refusal("NO_FORWARD_ROTATION", "the pinion stands still")));
+  const std::string name = bench.create(point_simulation());
+  ASSERT_TRUE(bench.reaches(name, v1::Simulation::FAILED));
+  EXPECT_EQ(bench.get(name).error().reason(), "NO_FORWARD_ROTATION");
+  EXPECT_EQ(bench.get(name).error().message(), "the pinion stands still");
+}
+
+TEST(SimulationJobs, ADefectBecomesAFailureAndTheNextOneRuns) {
+  Bench bench(throwing(std::logic_error("defect")), 1);
+  const std::string name = bench.create(point_simulation());
+  ASSERT_TRUE(bench.reaches(name, v1::Simulation::FAILED));
+  EXPECT_EQ(bench.get(name).error().reason(), "INTERNAL");
+  const std::string next = bench.create(curve_simulation());
+  EXPECT_TRUE(bench.reaches(next, v1::Simulation::SUCCEEDED));
+}
+
+TEST(SimulationJobs, ThrowingSomethingElseBecomesAFailureToo) {
+  Bench bench(throwing(42));
+  EXPECT_TRUE(bench.reaches(bench.create(point_simulation()), v1::Simulation::FAILED));
+}
+
+TEST(SimulationJobs, MemoryThatRunsOutBecomesAFailure) {
+  Bench bench(throwing(std::bad_alloc()));
+  const std::string name = bench.create(point_simulation());
+  ASSERT_TRUE(bench.reaches(name, v1::Simulation::FAILED));
+  EXPECT_EQ(bench.get(name).error().reason(), "OUT_OF_MEMORY");
+}
+
+TEST(SimulationJobs, NumbersThatAreNotFiniteNeverBecomeAResult) {
+  StudyFunctions studies = quick_studies();
+  studies.solve_operating_point = [](const Scene&, const OperatingCondition&, const PointOptions&) {
+    PointResult out;
+    out.film_ratio.mean = std::numeric_limits<double>::quiet_NaN();
+    return out;
+  };
+  Bench bench(studies);
+  const std::string name = bench.create(point_simulation());
+  ASSERT_TRUE(bench.reaches(name, v1::Simulation::FAILED));
+  EXPECT_EQ(bench.get(name).error().reason(), "RESULT_NOT_FINITE");
+  EXPECT_THAT(bench.get(name).error().message(), testing::HasSubstr("film_ratio.mean"));
+}
+
+TEST(SimulationJobs, ARunningSimulationStopsWhenCancelled) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench bench(patient_studies(release), 1);
+  const std::string name = bench.create(point_simulation());
+  ASSERT_TRUE(bench.reaches(name, v1::Simulation::RUNNING));
+  bench.jobs().cancel(*simulation_id(name));
+  EXPECT_EQ(bench.get(name).state(), v1::Simulation::CANCELLED) << "at once";
+  const std::string next = bench.create(curve_simulation());
+  EXPECT_TRUE(bench.reaches(next, v1::Simulation::RUNNING)) << "the only thread is free again";
+  *release = true;
+  EXPECT_TRUE(bench.reaches(next, v1::Simulation::SUCCEEDED));
+  EXPECT_EQ(bench.get(name).state(), v1::Simulation::CANCELLED);
+  EXPECT_FALSE(bench.get(name).has_result());
+}
+
+TEST(SimulationJobs, AWaitingSimulationIsCancelledWithoutRunning) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench bench(patient_studies(release), 1);
+  const std::string first = bench.create(point_simulation());
+  const std::string second = bench.create(point_simulation());
+  bench.jobs().cancel(*simulation_id(second));
+  *release = true;
+  EXPECT_TRUE(bench.reaches(first, v1::Simulation::SUCCEEDED));
+  EXPECT_EQ(bench.get(second).state(), v1::Simulation::CANCELLED);
+  EXPECT_FALSE(bench.get(second).has_start_time());
+}
+
+TEST(SimulationJobs, ProgressIsMonotoneAndSeldom) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench bench(patient_studies(release), 1);
+  const std::string name = bench.create(curve_simulation());
+  const auto channel = bench.jobs().watch(*simulation_id(name));
+  auto counter = std::make_shared<Counter>();
+  channel->observe(counter);
+  double last = 0;
+  const auto begin = std::chrono::steady_clock::now();
+  while (last < 0.6) {
+    const double now = channel->latest().progress.fraction;
+    ASSERT_GE(now, last);
+    last = now;
+  }
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+  EXPECT_LE(counter->count, 2 + 4 * seconds.count()) << "at most four a second, and the state";
+  EXPECT_THAT(channel->latest().progress.stage,
+              testing::HasSubstr("settling at 20 km/h, point 1 of 13"));
+  *release = true;
+  EXPECT_TRUE(eventually([&] { return has_ended(channel->latest().progress.state); }));
+  EXPECT_EQ(channel->latest().progress.fraction, 1);
+}
+
+TEST(SimulationJobs, AStopPutsWhatRunsBackIntoTheQueue) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench bench(patient_studies(release), 1);
+  const std::string running = bench.create(point_simulation());
+  const std::string waiting = bench.create(point_simulation());
+  ASSERT_TRUE(bench.reaches(running, v1::Simulation::RUNNING));
+  bench.jobs().stop();
+  EXPECT_EQ(bench.get(running).state(), v1::Simulation::QUEUED);
+  EXPECT_EQ(bench.get(waiting).state(), v1::Simulation::QUEUED);
+  bench.restart(quick_studies());
+  EXPECT_TRUE(bench.reaches(running, v1::Simulation::SUCCEEDED));
+  EXPECT_TRUE(bench.reaches(waiting, v1::Simulation::SUCCEEDED));
+}
+
+TEST(SimulationJobs, WatchingAnEndedSimulationShowsItsEnd) {
+  Bench bench(throwing(Refusal("WORK_LIMIT", "too long")));
+  const std::string name = bench.create(point_simulation());
+  ASSERT_TRUE(bench.reaches(name, v1::Simulation::FAILED));
+  bench.restart(quick_studies());
+  const auto channel = bench.jobs().watch(*simulation_id(name));
+  EXPECT_EQ(channel->latest().progress.state, StoredState::kFailed);
+  EXPECT_EQ(channel->latest().progress.error_reason, "WORK_LIMIT");
+  EXPECT_EQ(bench.jobs().watch(4711), nullptr);
+  EXPECT_FALSE(bench.jobs().progress(*simulation_id(name))) << "nothing is kept of the ended";
+}
+
+TEST(SimulationJobs, TooManyWaitingAreTurnedAway) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench bench(patient_studies(release), 1, 2);
+  const std::string running = bench.create(point_simulation());
+  ASSERT_TRUE(bench.reaches(running, v1::Simulation::RUNNING));
+  bench.create(point_simulation());
+  bench.create(point_simulation());
+  EXPECT_FALSE(bench.jobs().submit("request", std::string(64, 'a')));
+  *release = true;
+}
+
+}  // namespace
+}  // namespace tribodyn::server

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <grpcpp/channel.h>
+#include <grpcpp/support/status.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tribodyn::server {
+
+/// Sends any bytes to any method, also those without generated stubs.
+class RawClient {
+ public:
+  explicit RawClient(std::shared_ptr<grpc::Channel> channel) : channel_(std::move(channel)) {}
+
+  /// A unary call; the answer as bytes.
+  std::pair<grpc::Status, std::string> call(const std::string& method, const std::string& request);
+
+  /// A stream on which one request is sent and nothing is ever read; open as long as the object.
+  struct Stream;
+  std::shared_ptr<Stream> open(const std::string& method, const std::string& request);
+
+  /// What server reflection answers to "list services".
+  std::string list_services();
+
+ private:
+  std::shared_ptr<grpc::Channel> channel_;
+};
+
+/// Connections to a local port on which nothing is ever sent; open as long as the object.
+class SilentConnections {
+ public:
+  SilentConnections(int port, int count);
+  ~SilentConnections();
+  SilentConnections(const SilentConnections&) = delete;
+  SilentConnections& operator=(const SilentConnections&) = delete;
+
+ private:
+  std::vector<int> descriptors_;
+};
+
+/// Connects to a local port, sends bytes that are no HTTP/2, and hangs up.
+void send_raw_bytes(int port, const std::string& bytes);
+
+}  // namespace tribodyn::server

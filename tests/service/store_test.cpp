@@ -1,0 +1,198 @@
+#include "server/store/store.h"
+
+#include <SQLiteCpp/Statement.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "server/store/schema.h"
+#include "server/store/seeds.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+const std::string kHash(64, 'a');
+
+class StoreTest : public testing::Test {
+ protected:
+  std::string path() const { return folder_.file("tribodyn.db"); }
+  StoreError::Kind kind_of_opening(const std::string& file) const {
+    try {
+      const Store store(file);
+    } catch (const StoreError& error) {
+      message_ = error.what();
+      return error.kind();
+    }
+    ADD_FAILURE() << "opened";
+    return StoreError::Kind::kFailed;
+  }
+
+  TemporaryFolder folder_;
+  mutable std::string message_;
+};
+
+TEST_F(StoreTest, SeedsAreAddedOnceAndNeverOverwritten) {
+  Store store(path());
+  store.add_resources({{"lubricants/1", "first"}});
+  store.add_resources({{"lubricants/1", "second"}, {"lubricants/2", "other"}});
+  EXPECT_EQ(store.resource("lubricants/1"), "first");
+  EXPECT_EQ(store.resource("lubricants/2"), "other");
+  EXPECT_EQ(store.resource("lubricants/3"), std::nullopt);
+}
+
+TEST_F(StoreTest, ResourcesArePagedByNumberAndBytesWithinTheirCollection) {
+  Store store(path());
+  store.add_resources(
+      {{"a/1", "x"}, {"b/1", "x"}, {"b/2", std::string(100, 'x')}, {"b/3", "x"}, {"c/1", "x"}});
+  auto page = store.resources("b", "", 2, 1000);
+  ASSERT_EQ(page.rows.size(), 2U);
+  EXPECT_EQ(page.rows.front().name, "b/1");
+  EXPECT_TRUE(page.more);
+  page = store.resources("b", "b/2", 2, 1000);
+  ASSERT_EQ(page.rows.size(), 1U);
+  EXPECT_FALSE(page.more);
+  page = store.resources("b", "", 10, 50);
+  EXPECT_EQ(page.rows.size(), 1U);
+  EXPECT_TRUE(page.more);
+  page = store.resources("b", "b/1", 10, 50);
+  EXPECT_EQ(page.rows.size(), 1U) << "one row always comes, however large";
+  EXPECT_EQ(store.resource_names("b").size(), 3U);
+}
+
+TEST_F(StoreTest, ASimulationGoesThroughItsStatesAndKeepsItsResult) {
+  Store store(path());
+  const auto id = store.add_simulation(std::string("re\0quest", 8), kHash, 10);
+  EXPECT_EQ(store.simulation(id)->state, StoredState::kQueued);
+  EXPECT_TRUE(store.mark_running(id, 20));
+  EXPECT_FALSE(store.mark_running(id, 20)) << "only one worker gets it";
+  EXPECT_TRUE(store.mark_succeeded(id, 30, "result", {{"a", {1, 2, 3}}, {"b", {4, 5, 6}}}));
+  const auto stored = store.simulation(id);
+  EXPECT_EQ(stored->state, StoredState::kSucceeded);
+  EXPECT_EQ(stored->create_time, 10);
+  EXPECT_EQ(stored->start_time, 20);
+  EXPECT_EQ(stored->end_time, 30);
+  EXPECT_EQ(stored->request, std::string("re\0quest", 8));
+  EXPECT_EQ(store.result(id), "result");
+  EXPECT_EQ(store.history_shape(id).names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(store.history_shape(id).rows, 3);
+  EXPECT_EQ(store.history_rows(id, "b", 1, 2), (std::vector<double>{5, 6}));
+  EXPECT_FALSE(store.mark_cancelled(id, 40)) << "an end is final";
+  EXPECT_FALSE(store.mark_failed(id, 40, "X", "y"));
+}
+
+TEST_F(StoreTest, ACancelledSimulationTakesNoResult) {
+  Store store(path());
+  const auto id = store.add_simulation("request", kHash, 1);
+  store.mark_running(id, 2);
+  EXPECT_TRUE(store.mark_cancelled(id, 3));
+  EXPECT_FALSE(store.mark_succeeded(id, 4, "result", {{"a", {1}}}));
+  EXPECT_EQ(store.result(id), std::nullopt);
+  EXPECT_TRUE(store.history_shape(id).names.empty());
+}
+
+TEST_F(StoreTest, WhatACrashInterruptedIsQueuedAgainAndResultsStay) {
+  std::int64_t queued = 0, running = 0, done = 0;
+  {
+    Store store(path());
+    queued = store.add_simulation("q", kHash, 1);
+    running = store.add_simulation("r", kHash, 2);
+    done = store.add_simulation("d", kHash, 3);
+    store.mark_running(running, 4);
+    store.mark_running(done, 4);
+    store.mark_succeeded(done, 5, "result", {});
+  }
+  Store store(path());
+  EXPECT_EQ(store.requeue_unfinished(), (std::vector<std::int64_t>{queued, running}));
+  EXPECT_EQ(store.simulation(running)->state, StoredState::kQueued);
+  EXPECT_EQ(store.simulation(running)->start_time, std::nullopt);
+  EXPECT_EQ(store.result(done), "result");
+}
+
+TEST_F(StoreTest, IdsAreNeverUsedAgainAndListsAreNewestFirst) {
+  Store store(path());
+  for (int i = 0; i < 5; ++i) store.add_simulation("r", kHash, i);
+  const auto page = store.simulations(0, 2, 1000);
+  ASSERT_EQ(page.rows.size(), 2U);
+  EXPECT_TRUE(page.more);
+  EXPECT_EQ(page.rows[0].id, 5);
+  EXPECT_EQ(store.simulations(4, 10, 1000).rows.size(), 3U);
+  EXPECT_FALSE(store.simulations(4, 10, 1000).more);
+}
+
+TEST_F(StoreTest, TheSchemaKeepsOutWhatMakesNoSense) {
+  Store store(path());
+  EXPECT_THROW(store.add_simulation("r", "short hash", 1), StoreError);
+  SQLite::Database raw(path(), SQLite::OPEN_READWRITE);
+  raw.exec("PRAGMA foreign_keys = ON");
+  EXPECT_THROW(raw.exec("INSERT INTO results VALUES (77, x'00')"), SQLite::Exception);
+  EXPECT_THROW(raw.exec("INSERT INTO resources VALUES ('a/1', 'text is no blob')"),
+               SQLite::Exception);
+  const auto id = store.add_simulation("r", kHash, 1);
+  EXPECT_THROW(raw.exec("UPDATE simulations SET state = 9 WHERE id = " + std::to_string(id)),
+               SQLite::Exception);
+  EXPECT_THROW(raw.exec("UPDATE simulations SET state = 4 WHERE id = " + std::to_string(id)),
+               SQLite::Exception)
+      << "no failure without a reason";
+}
+
+TEST_F(StoreTest, CommitsAreDurable) {
+  Store store(path());
+  SQLite::Database raw(path(), SQLite::OPEN_READONLY);
+  EXPECT_EQ(raw.execAndGet("PRAGMA journal_mode").getString(), "wal");
+  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), kSchemaVersion);
+}
+
+TEST_F(StoreTest, RefusesANewerSchema) {
+  { const Store store(path()); }
+  {
+    SQLite::Database raw(path(), SQLite::OPEN_READWRITE);
+    raw.exec("PRAGMA user_version = 99");
+  }
+  EXPECT_EQ(kind_of_opening(path()), StoreError::Kind::kNewerSchema);
+  EXPECT_NE(message_.find("schema 99"), std::string::npos) << message_;
+}
+
+TEST_F(StoreTest, RefusesADatabaseThatAnotherServerHas) {
+  const Store store(path());
+  EXPECT_EQ(kind_of_opening(path()), StoreError::Kind::kInUse);
+  EXPECT_NE(message_.find("another tribodynd"), std::string::npos) << message_;
+  std::filesystem::create_directory(folder_.path() / "sub");
+  EXPECT_EQ(kind_of_opening(folder_.file("sub/../tribodyn.db")), StoreError::Kind::kInUse);
+}
+
+TEST_F(StoreTest, RefusesTheDatabaseOfAnotherProgram) {
+  {
+    SQLite::Database raw(path(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    raw.exec("CREATE TABLE contacts (name TEXT)");
+  }
+  EXPECT_EQ(kind_of_opening(path()), StoreError::Kind::kForeign);
+}
+
+TEST_F(StoreTest, RefusesWhatIsNoDatabase) {
+  std::ofstream(path()) << std::string(8192, 'x');
+  EXPECT_EQ(kind_of_opening(path()), StoreError::Kind::kCorrupt);
+  EXPECT_NE(message_.find(path()), std::string::npos) << message_;
+}
+
+TEST_F(StoreTest, RefusesAFolderThatIsNotThere) {
+  EXPECT_EQ(kind_of_opening(folder_.file("no/such/folder.db")), StoreError::Kind::kCannotOpen);
+}
+
+TEST_F(StoreTest, RefusesAReadOnlyFile) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everything";
+  { const Store store(path()); }
+  std::filesystem::permissions(path(), std::filesystem::perms::owner_read);
+  EXPECT_EQ(kind_of_opening(path()), StoreError::Kind::kReadOnly);
+}
+
+TEST_F(StoreTest, EverySeedParsesAndHasItsOwnName) {
+  std::set<std::string> names;
+  for (const StoredResource& seed : seed_resources()) names.insert(seed.name);
+  EXPECT_EQ(names, (std::set<std::string>{"lubricants/1", "lubricants/2", "lubricants/3",
+                                          "gearSets/A", "gearSets/B", "gearSets/A-conformal",
+                                          "surfaces/run-in", "vehicles/passenger-car"}));
+}
+
+}  // namespace
+}  // namespace tribodyn::server

@@ -1,0 +1,215 @@
+#include "tests/service/support.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cstdlib>
+#include <stdexcept>
+#include <thread>
+
+#include "core/refusal.h"
+#include "server/app/simulations.h"
+#include "server/store/seeds.h"
+
+namespace tribodyn::server {
+namespace {
+
+// Quiet tests; and spdlog's registry exists before any thread does, as in the server: made inside a
+// library that ThreadSanitizer does not see into, its first use in a thread looks like a race.
+[[maybe_unused]] const bool kQuiet = [] {
+  spdlog::set_level(spdlog::level::off);
+  return true;
+}();
+
+constexpr auto kPollInterval = std::chrono::milliseconds(2);
+
+PointResult made_up_point(double vehicle_speed, const HistoryRequest& history) {
+  PointResult out;
+  out.vehicle_speed = vehicle_speed;
+  out.inefficiency_rms = 1.5;
+  out.settled = true;
+  const int rows = history.mesh_cycles * history.samples_per_mesh_cycle;
+  for (const HistoryColumn column : history.columns) {
+    const int copies = is_per_flank(column) ? kFlankPairs : 1;
+    for (int k = 0; k < copies; ++k) {
+      std::string name(history_column_name(column));
+      if (copies > 1) name += "_flank_" + std::to_string(k);
+      out.history.names.push_back(std::move(name));
+      std::vector<double>& values = out.history.values.emplace_back();
+      for (int i = 0; i < rows; ++i) values.push_back(1000.0 * k + i);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "tribodyn-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+ResourceLookup seed_lookup() {
+  static const std::vector<StoredResource> kSeeds = seed_resources();
+  return {[](const std::string& name) -> std::optional<std::string> {
+            for (const StoredResource& seed : kSeeds) {
+              if (seed.name == name) return seed.body;
+            }
+            return std::nullopt;
+          },
+          [](const std::string& collection) {
+            std::vector<std::string> names;
+            for (const StoredResource& seed : kSeeds) {
+              if (seed.name.starts_with(collection + "/")) names.push_back(seed.name);
+            }
+            return names;
+          }};
+}
+
+v1::EvaluateContactRequest contact_request() {
+  v1::EvaluateContactRequest out;
+  out.set_load_newtons(2000);
+  out.set_radius_x_metres(0.015);
+  out.set_radius_y_metres(0.3);
+  out.set_pinion_velocity_x_metres_per_second(5);
+  out.set_pinion_velocity_y_metres_per_second(6);
+  out.set_gear_velocity_x_metres_per_second(4);
+  out.set_gear_velocity_y_metres_per_second(-1);
+  out.set_lubricant("lubricants/1");
+  out.set_sump_temperature_celsius(40);
+  out.set_inlet_temperature_rise_kelvin(20);
+  out.set_youngs_modulus_pascals(206e9);
+  out.set_poissons_ratio(0.3);
+  out.set_solid_thermal_conductivity_watts_per_metre_kelvin(46);
+  out.set_solid_density_kilograms_per_cubic_metre(7850);
+  out.set_solid_specific_heat_capacity_joules_per_kilogram_kelvin(470);
+  out.set_asperity_density_per_square_metre(5e9);
+  out.set_asperity_radius_metres(1.5e-5);
+  out.set_composite_rms_height_metres(5e-7);
+  out.set_tribofilm_shear_strength_pascals(2e6);
+  out.set_asperity_friction_coefficient(0.17);
+  return out;
+}
+
+v1::Simulation point_simulation() {
+  v1::Simulation out;
+  out.set_lubricant("lubricants/1");
+  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(65);
+  return out;
+}
+
+v1::Simulation curve_simulation() {
+  v1::Simulation out;
+  out.set_lubricant("lubricants/2");
+  v1::InefficiencyCurveStudy* curve = out.mutable_inefficiency_curve();
+  curve->set_first_speed_kilometers_per_hour(20);
+  curve->set_last_speed_kilometers_per_hour(140);
+  curve->set_speed_step_kilometers_per_hour(10);
+  return out;
+}
+
+StudyFunctions quick_studies() {
+  StudyFunctions out;
+  out.solve_operating_point = [](const Scene&, const OperatingCondition& condition,
+                                 const PointOptions& options) {
+    return made_up_point(condition.vehicle_speed, options.history);
+  };
+  out.sweep_speed = [](const Scene&, const std::vector<double>& speeds, double, const SweepOptions&,
+                       const std::function<void(const SweepPoint&)>& on_point) {
+    std::vector<SweepPoint> points;
+    for (const double speed : speeds) {
+      points.push_back({.vehicle_speed = speed,
+                        .result = made_up_point(speed, {}),
+                        .refusal_reason = "",
+                        .refusal_sentence = ""});
+      on_point(points.back());
+    }
+    return points;
+  };
+  return out;
+}
+
+StudyFunctions patient_studies(const std::shared_ptr<std::atomic<bool>>& release) {
+  const auto wait = [release](const std::function<bool(double)>& progress) {
+    for (int step = 0; !*release; ++step) {
+      if (!progress(step / (step + 100.0))) throw Cancelled();
+      std::this_thread::sleep_for(kPollInterval);
+    }
+  };
+  StudyFunctions out = quick_studies();
+  out.solve_operating_point = [wait, inner = out.solve_operating_point](
+                                  const Scene& scene, const OperatingCondition& condition,
+                                  const PointOptions& options) {
+    wait(options.progress);
+    return inner(scene, condition, options);
+  };
+  out.sweep_speed = [wait, inner = out.sweep_speed](
+                        const Scene& scene, const std::vector<double>& speeds, double angle,
+                        const SweepOptions& options,
+                        const std::function<void(const SweepPoint&)>& on_point) {
+    wait(options.point.progress);
+    return inner(scene, speeds, angle, options, on_point);
+  };
+  return out;
+}
+
+bool eventually(const std::function<bool()>& condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (std::chrono::steady_clock::now() < end) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(kPollInterval);
+  }
+  return condition();
+}
+
+Bench::Bench(StudyFunctions studies, int threads, std::size_t maximum_waiting)
+    : threads_(threads), maximum_waiting_(maximum_waiting) {
+  open(std::move(studies));
+}
+
+void Bench::open(StudyFunctions studies) {
+  store_ = std::make_unique<Store>(folder_.file("tribodyn.db"));
+  store_->add_resources(seed_resources());
+  SimulationJobs::Options options;
+  options.threads = threads_;
+  options.maximum_waiting = maximum_waiting_;
+  options.studies = std::move(studies);
+  jobs_ = std::make_unique<SimulationJobs>(*store_, options);
+  jobs_->resume();
+}
+
+void Bench::restart(StudyFunctions studies) {
+  jobs_->stop();
+  jobs_.reset();
+  store_.reset();
+  open(std::move(studies));
+}
+
+std::string Bench::create(const v1::Simulation& simulation) {
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = simulation;
+  Application app = application();
+  const auto outcome = create_simulation(app, request);
+  if (!outcome.ok()) throw std::runtime_error(outcome.error().message());
+  return outcome.message().name();
+}
+
+v1::Simulation Bench::get(const std::string& name) {
+  v1::GetSimulationRequest request;
+  request.set_name(name);
+  Application app = application();
+  const auto outcome = get_simulation(app, request);
+  if (!outcome.ok()) throw std::runtime_error(outcome.error().message());
+  return outcome.message();
+}
+
+bool Bench::reaches(const std::string& name, v1::Simulation::State state) {
+  return eventually([&] { return get(name).state() == state; });
+}
+
+}  // namespace tribodyn::server

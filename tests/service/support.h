@@ -1,0 +1,85 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/app/application.h"
+#include "server/convert/resource_names.h"
+#include "server/jobs/simulation_jobs.h"
+#include "server/store/store.h"
+#include "tribodyn/v1/contacts.pb.h"
+#include "tribodyn/v1/simulations.pb.h"
+
+namespace tribodyn::server {
+
+/// A folder that goes when the object goes.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The seeds as a lookup, without a database.
+ResourceLookup seed_lookup();
+
+/// The seed of that name.
+template <class Resource>
+Resource seed(const std::string& name) {
+  Resource resource;
+  resource.ParseFromString(*seed_lookup().body(name));
+  return resource;
+}
+
+/// Acceptable requests, to be spoilt by tests.
+v1::EvaluateContactRequest contact_request();
+v1::Simulation point_simulation();
+v1::Simulation curve_simulation();
+
+/// Studies that answer at once with made-up numbers: speed in, speed out, 1.5 % inefficiency.
+StudyFunctions quick_studies();
+
+/// Studies that report progress until they are stopped, or until `release` is set.
+StudyFunctions patient_studies(const std::shared_ptr<std::atomic<bool>>& release);
+
+/// Polls until the condition holds; false after ten seconds.
+bool eventually(const std::function<bool()>& condition);
+
+/// Store with seeds, jobs and application over a temporary database.
+class Bench {
+ public:
+  explicit Bench(StudyFunctions studies = quick_studies(), int threads = 2,
+                 std::size_t maximum_waiting = kMaximumWaitingSimulations);
+
+  Store& store() { return *store_; }
+  SimulationJobs& jobs() { return *jobs_; }
+  Application application() { return {*store_, *jobs_}; }
+
+  /// Creates a simulation that must be accepted; its name.
+  std::string create(const v1::Simulation& simulation);
+  v1::Simulation get(const std::string& name);
+  bool reaches(const std::string& name, v1::Simulation::State state);
+
+  /// Stops everything and opens the same database again, as after a restart.
+  void restart(StudyFunctions studies);
+
+ private:
+  void open(StudyFunctions studies);
+
+  TemporaryFolder folder_;
+  int threads_;
+  std::size_t maximum_waiting_;
+  std::unique_ptr<Store> store_;
+  std::unique_ptr<SimulationJobs> jobs_;
+};
+
+}  // namespace tribodyn::server

@@ -1,0 +1,248 @@
+// Rules between fields, limits on work, and names: what the table of constraints cannot say.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "server/convert/check_message.h"
+#include "server/convert/contact_inputs.h"
+#include "server/convert/simulation_inputs.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+auto violation(const std::string& field, const std::string& text) {
+  return Contains(
+      AllOf(Field(&Violation::field, field), Field(&Violation::description, HasSubstr(text))));
+}
+
+Violations check(const v1::Simulation& simulation) {
+  Violations violations;
+  read_simulation(simulation, seed_lookup(), "simulation", violations);
+  return violations;
+}
+
+Violations check(const v1::EvaluateContactRequest& request) {
+  Violations violations;
+  read_contact(request, seed_lookup(), violations);
+  return violations;
+}
+
+TEST(Contact, ReasonableRequestsPass) {
+  EXPECT_THAT(check(contact_request()), IsEmpty());
+  v1::EvaluateContactRequest request = contact_request();
+  *request.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/2");
+  EXPECT_THAT(check(request), IsEmpty());
+}
+
+TEST(Contact, AllViolationsComeAtOnce) {
+  const Violations found = check(v1::EvaluateContactRequest());
+  for (const char* field : {"radius_x_metres", "radius_y_metres", "youngs_modulus_pascals",
+                            "solid_thermal_conductivity_watts_per_metre_kelvin",
+                            "solid_density_kilograms_per_cubic_metre",
+                            "solid_specific_heat_capacity_joules_per_kilogram_kelvin",
+                            "asperity_density_per_square_metre", "asperity_radius_metres",
+                            "composite_rms_height_metres"}) {
+    EXPECT_THAT(found, violation(field, "0 also means not set"));
+  }
+  EXPECT_THAT(found, violation("fluid", "lubricant or lubricant_parameters"));
+}
+
+TEST(Contact, AnUnknownFluidNamesTheNearest) {
+  v1::EvaluateContactRequest request = contact_request();
+  request.set_lubricant("lubricants/22");
+  EXPECT_THAT(check(request), violation("lubricant", "did you mean \"lubricants/2\"?"));
+  request.set_lubricant("lubricant 3\xc3\xa4\n");
+  EXPECT_THAT(check(request), violation("lubricant", "of the form \"lubricants/{id}\""));
+  request.set_lubricant(std::string(100'000, 'x'));
+  EXPECT_THAT(check(request), violation("lubricant", "xxx..."));
+}
+
+TEST(Contact, TheFluidMustHaveAViscosityAndADensityAtTheInlet) {
+  v1::EvaluateContactRequest request = contact_request();
+  v1::Lubricant* fluid = request.mutable_lubricant_parameters();
+  *fluid = seed<v1::Lubricant>("lubricants/1");
+  fluid->set_vogel_reference_temperature_kelvin(340);
+  EXPECT_THAT(check(request),
+              violation("lubricant_parameters", "below the inlet temperature, 333.15 K (eq 34)"));
+  EXPECT_THAT(check(request), violation("lubricant_parameters", "temperature of alpha*"));
+  fluid->set_vogel_reference_temperature_kelvin(159);
+  fluid->set_density_slope_kilograms_per_cubic_metre_kelvin(-50);
+  EXPECT_THAT(check(request), violation("lubricant_parameters", "positive (eq 26)"));
+}
+
+TEST(Simulation, ReasonableRequestsPass) {
+  EXPECT_THAT(check(point_simulation()), IsEmpty());
+  EXPECT_THAT(check(curve_simulation()), IsEmpty());
+}
+
+TEST(Simulation, AllViolationsComeAtOnce) {
+  v1::Simulation simulation;
+  simulation.set_lubricant("lubricants/x");
+  simulation.set_gear_set("gearSets/C");
+  simulation.set_surface("runin");
+  simulation.set_vehicle("vehicles/passenger_car");
+  simulation.set_sump_temperature_celsius(-300);
+  simulation.mutable_solver_options()->set_relative_tolerance(1);
+  v1::OperatingPointStudy* point = simulation.mutable_operating_point();
+  point->set_model(static_cast<v1::PointModel>(17));
+  point->mutable_history()->add_columns("mesh_force");
+  const Violations found = check(simulation);
+  EXPECT_THAT(found, violation("simulation.lubricant", "lubricants/1"));
+  EXPECT_THAT(found, violation("simulation.gear_set", "did you mean"));
+  EXPECT_THAT(found, violation("simulation.surface", "surfaces/run-in"));
+  EXPECT_THAT(found, violation("simulation.vehicle", "vehicles/passenger-car"));
+  EXPECT_THAT(found, violation("simulation.sump_temperature_celsius", "-300 C"));
+  EXPECT_THAT(found, violation("simulation.solver_options.relative_tolerance", "= 1"));
+  EXPECT_THAT(found, violation("simulation.operating_point.model", "FULL, QUASI_STATIC"));
+  EXPECT_THAT(found, violation("simulation.operating_point.condition", "cruise"));
+  EXPECT_THAT(found, violation("simulation.operating_point.history.columns[0]",
+                               "did you mean \"mesh_force_newtons\"?"));
+  EXPECT_EQ(found.size(), 9U);
+}
+
+TEST(Simulation, AStudyIsNeeded) {
+  v1::Simulation simulation = point_simulation();
+  simulation.clear_study();
+  EXPECT_THAT(check(simulation), violation("simulation.study", "operating_point"));
+}
+
+TEST(Simulation, TheSumpMustLeaveTheFluidLiquid) {
+  v1::Simulation simulation = point_simulation();
+  simulation.set_sump_temperature_celsius(-70);
+  simulation.set_inlet_temperature_rise_kelvin(0);
+  EXPECT_THAT(check(simulation), IsEmpty()) << "203 K is above the 159 K of fluid 1";
+}
+
+TEST(Simulation, MeshDataByTorqueMustBeThere) {
+  v1::Simulation simulation = point_simulation();
+  simulation.mutable_model_options()->set_load_dependent_mesh_data(true);
+  EXPECT_THAT(check(simulation), IsEmpty());
+  simulation.set_gear_set("gearSets/B");
+  EXPECT_THAT(check(simulation), violation("simulation.model_options.load_dependent_mesh_data",
+                                           "gearSets/B holds no data by torque"));
+}
+
+TEST(Curve, SpeedsAreStatedInExactlyOneWay) {
+  const std::string speeds = "simulation.inefficiency_curve.speeds_kilometers_per_hour";
+  v1::Simulation simulation = curve_simulation();
+  simulation.mutable_inefficiency_curve()->add_speeds_kilometers_per_hour(30);
+  EXPECT_THAT(check(simulation), violation(speeds, "one of the two"));
+  simulation.mutable_inefficiency_curve()->Clear();
+  EXPECT_THAT(check(simulation), violation(speeds, "not set"));
+  simulation.mutable_inefficiency_curve()->set_first_speed_kilometers_per_hour(10);
+  EXPECT_THAT(
+      check(simulation),
+      violation("simulation.inefficiency_curve.last_speed_kilometers_per_hour", "go together"));
+  EXPECT_THAT(
+      check(simulation),
+      violation("simulation.inefficiency_curve.speed_step_kilometers_per_hour", "go together"));
+}
+
+TEST(Curve, LastIsNotBelowFirst) {
+  v1::Simulation simulation = curve_simulation();
+  simulation.mutable_inefficiency_curve()->set_last_speed_kilometers_per_hour(10);
+  EXPECT_THAT(check(simulation),
+              violation("simulation.inefficiency_curve.last_speed_kilometers_per_hour",
+                        "at least the first speed, 20 km/h"));
+}
+
+TEST(Curve, SpeedsDiffer) {
+  v1::Simulation simulation = curve_simulation();
+  auto* curve = simulation.mutable_inefficiency_curve();
+  curve->Clear();
+  for (const double speed : {50.0, 20.0, 50.0}) curve->add_speeds_kilometers_per_hour(speed);
+  EXPECT_THAT(check(simulation),
+              violation("simulation.inefficiency_curve.speeds_kilometers_per_hour",
+                        "50 km/h is named twice"));
+}
+
+TEST(Curve, PointsAndWorkAreLimited) {
+  v1::Simulation simulation = curve_simulation();
+  auto* curve = simulation.mutable_inefficiency_curve();
+  curve->set_speed_step_kilometers_per_hour(0.1);
+  EXPECT_THAT(check(simulation),
+              violation("simulation.inefficiency_curve.speed_step_kilometers_per_hour",
+                        "1201 points; legal: at most 1000"));
+  curve->set_speed_step_kilometers_per_hour(0.125);
+  EXPECT_THAT(check(simulation), IsEmpty());
+  simulation.mutable_solver_options()->set_maximum_mesh_cycles(100000);
+  EXPECT_THAT(check(simulation), violation("simulation.inefficiency_curve", "work limit"));
+}
+
+TEST(Curve, ManyBadSpeedsAreCountedNotListed) {
+  v1::Simulation simulation = curve_simulation();
+  auto* curve = simulation.mutable_inefficiency_curve();
+  curve->Clear();
+  for (int i = 0; i < 200'000; ++i) curve->add_speeds_kilometers_per_hour(-1 - i);
+  const Violations found = check(simulation);
+  EXPECT_LT(found.size(), 20U);
+  EXPECT_THAT(found,
+              violation("simulation.inefficiency_curve.speeds_kilometers_per_hour", "990 more"));
+  EXPECT_THAT(found, violation("simulation.inefficiency_curve.speeds_kilometers_per_hour",
+                               "200000 points; legal: at most 1000"));
+}
+
+TEST(History, ColumnsAreKnownDistinctAndNotTooMany) {
+  v1::Simulation simulation = point_simulation();
+  auto* history = simulation.mutable_operating_point()->mutable_history();
+  EXPECT_THAT(check(simulation),
+              violation("simulation.operating_point.history.columns", "name at least one"));
+  history->add_columns("flank_load_newtons");
+  history->add_columns("flank_load_newtons");
+  EXPECT_THAT(check(simulation),
+              violation("simulation.operating_point.history.columns[1]", "named twice"));
+  history->mutable_columns()->DeleteSubrange(1, 1);
+  EXPECT_THAT(check(simulation), IsEmpty());
+  history->set_mesh_cycles(1000);
+  history->set_samples_per_mesh_cycle(1334);
+  EXPECT_THAT(check(simulation), violation("simulation.operating_point.history",
+                                           "4002000 values; legal: at most 4000000"))
+      << "a flank column counts three times";
+  for (int i = 0; i < 10'000; ++i) history->add_columns("x");
+  EXPECT_LT(check(simulation).size(), 120U);
+}
+
+TEST(Simulation, WhatOnlyTheServerSetsIsIgnored) {
+  v1::Simulation simulation = point_simulation();
+  simulation.set_name("simulations/1");
+  simulation.set_state(v1::Simulation::SUCCEEDED);
+  simulation.set_progress_fraction(kNaN);
+  simulation.mutable_result()->add_points()->set_speed_kilometers_per_hour(kNaN);
+  Violations violations;
+  const auto inputs = read_simulation(simulation, seed_lookup(), "simulation", violations);
+  ASSERT_TRUE(inputs);
+  EXPECT_EQ(inputs->requested.SerializeAsString(), point_simulation().SerializeAsString());
+}
+
+TEST(Simulation, LongTextsAreRefused) {
+  v1::Simulation simulation = point_simulation();
+  simulation.set_display_name(std::string(201, 'x'));
+  EXPECT_THAT(check(simulation), violation("simulation.display_name", "201 bytes"));
+}
+
+TEST(NotFinite, IsFoundWhereverItHides) {
+  v1::SimulationResult result;
+  auto* point = result.add_points()->mutable_result();
+  EXPECT_EQ(first_not_finite(result), "");
+  point->mutable_shear_rate_per_second()->set_maximum(kInfinity);
+  EXPECT_EQ(first_not_finite(result), "") << "no film under sliding: documented";
+  point->mutable_shear_rate_per_second()->set_maximum(kNaN);
+  EXPECT_EQ(first_not_finite(result), "points.result.shear_rate_per_second.maximum");
+  point->clear_shear_rate_per_second();
+  point->mutable_film_ratio()->set_mean(kInfinity);
+  EXPECT_EQ(first_not_finite(result), "points.result.film_ratio.mean");
+}
+
+}  // namespace
+}  // namespace tribodyn::server

@@ -1,0 +1,32 @@
+// Reads the JSON test data into yardstick types.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "yardstick_orbit.h"
+
+namespace tribodyn::yardstick {
+
+/// Parses a JSON file that may hold NaN or Infinity (as Python writes them; read as 1e999 = inf).
+nlohmann::json ReadJsonFile(const std::string& path);
+
+/// One worked contact: the `input` object of worked_points.json.
+struct ContactCase {
+  ContactFriction friction;
+  ContactInput input;
+};
+ContactCase ReadContactCase(const nlohmann::json& input, int quadrature_nodes = 16);
+
+/// Lubricant, material, surface and sump temperature of the orbits: `orbit_inputs.values`.
+ContactFriction ReadOrbitFriction(const nlohmann::json& values,
+                                  const FrictionOptions& options = {});
+
+/// Calibration A of reference_gear_set.json: blocks blank_geometry, dynamics, fourier, tables.
+GearPairParameters ReadGearPair(const nlohmann::json& gear_set);
+VehicleParameters ReadVehicle(const nlohmann::json& gear_set);
+
+/// `section_state` of an orbit.
+SectionState ReadSectionState(const nlohmann::json& section_state);
+
+}  // namespace tribodyn::yardstick
