@@ -26,6 +26,7 @@ void set(v1::SolverStatistics* out, const SolverStatistics& statistics) {
   out->set_mesh_cycles(statistics.mesh_cycles);
   out->set_accelerations(statistics.accelerations);
   out->set_periodicity_defect(statistics.periodicity_defect);
+  out->set_largest_multiplier(statistics.largest_multiplier);
 }
 
 void set(v1::PowerBalance* out, const PowerBalance& balance) {

@@ -121,7 +121,7 @@ PointOptions point_options(const v1::SolverOptions& solver, v1::PointModel model
                            v1::PointStart start) {
   PointOptions out;
   out.model = model == v1::QUASI_STATIC ? PointModel::kQuasiStatic : PointModel::kFull;
-  out.start = start == v1::SEPARATED ? PointStart::kLargeVibration : PointStart::kQuasiStatic;
+  out.start = start == v1::LARGE_VIBRATION ? PointStart::kLargeVibration : PointStart::kQuasiStatic;
   out.relative_tolerance = solver.relative_tolerance();
   out.settling_tolerance = solver.settling_tolerance();
   out.maximum_mesh_cycles = solver.maximum_mesh_cycles();

@@ -37,6 +37,8 @@ ToothContactTables tables(const v1::GearSet& message) {
     copy(slot.gear_velocity_y_metres(), out.gear_velocity_y[k]);
     copy(slot.contact_point_velocity_x_metres(), out.contact_point_velocity_x[k]);
     copy(slot.contact_point_velocity_y_metres(), out.contact_point_velocity_y[k]);
+    copy(slot.pinion_friction_arm_metres(), out.pinion_friction_arm[k]);
+    copy(slot.gear_friction_arm_metres(), out.gear_friction_arm[k]);
   }
   return out;
 }
@@ -115,6 +117,7 @@ ModelOptions to_core(const v1::ModelOptions& message) {
       .energy_consistent = message.energy_consistent(),
       .subtract_contact_point_motion = message.subtract_contact_point_motion(),
       .load_dependent_mesh_data = message.load_dependent_mesh_data(),
+      .tabulated_friction_arms = message.tabulated_friction_arms(),
       .pressure_viscosity_index = message.pressure_viscosity_index() == v1::ModelOptions::HOUPERT
                                       ? PressureViscosityIndex::kHoupert
                                       : PressureViscosityIndex::kReciprocalAsymptotic,

@@ -88,6 +88,7 @@ TEST(ToCore, EveryModelOptionArrives) {
   EXPECT_TRUE(with_flag("energy_consistent").energy_consistent);
   EXPECT_TRUE(with_flag("subtract_contact_point_motion").subtract_contact_point_motion);
   EXPECT_TRUE(with_flag("load_dependent_mesh_data").load_dependent_mesh_data);
+  EXPECT_TRUE(with_flag("tabulated_friction_arms").tabulated_friction_arms);
   EXPECT_EQ(with_flag("exact_hertz").hertz_solution, HertzSolution::kExact);
   EXPECT_EQ(with_flag("hertz_from_total_load").hertz_load, HertzLoad::kTotalLoad);
   EXPECT_TRUE(with_flag("eq17_atan").as_published.eq17_atan);
@@ -116,6 +117,8 @@ TEST(ToCore, GearSetTablesAndSeriesArriveWhole) {
             message.series().mesh_stiffness_newtons_per_metre().mean());
   EXPECT_EQ(set.series.static_transmission_error.cosine.size(), 8U);
   EXPECT_EQ(set.tables.gear_velocity_y[2][5], message.flank_slots(2).gear_velocity_y_metres(5));
+  EXPECT_EQ(set.tables.gear_friction_arm[0][90],
+            message.flank_slots(0).gear_friction_arm_metres(90));
   EXPECT_EQ(set.tables.contact_point_velocity_x[1][96],
             message.flank_slots(1).contact_point_velocity_x_metres(96));
 }
@@ -200,7 +203,7 @@ TEST(FromCore, NoFieldOfAPointIsForgotten) {
   }
   core.contact_loss = core.coast_side_contact = core.settled = true;
   core.period_in_mesh_cycles = core.recorded_mesh_cycles = 9;
-  core.statistics = {1, 2, 3, 4, 5, 6, 7, 8};
+  core.statistics = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   core.power_balance = {1, 2, 3, 4, 5, 6, 7};
   core.section_state = {1, 2, 3, 4, 5, 6, 7};
   const v1::PointResult result = to_message(core, 20);

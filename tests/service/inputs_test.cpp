@@ -47,7 +47,7 @@ TEST(Inputs, EveryOperatingConditionArrives) {
   v1::OperatingPointStudy* asked = simulation.mutable_operating_point();
   asked->mutable_cruise()->set_ascent_angle_degrees(90 / std::numbers::pi);
   asked->set_model(v1::QUASI_STATIC);
-  asked->set_start(v1::SEPARATED);
+  asked->set_start(v1::LARGE_VIBRATION);
   asked->set_probe_coexisting_response(true);
   asked->mutable_history()->add_columns("mesh_force_newtons");
   asked->mutable_history()->set_mesh_cycles(3);

@@ -59,6 +59,8 @@ void expect_tables(const v1::GearSet& set, const JsonValue& load_share) {
     EXPECT_EQ(numbers(slot.gear_velocity_y_metres()), table("A_vg"));
     EXPECT_EQ(numbers(slot.contact_point_velocity_x_metres()), table("A_contact_minor"));
     EXPECT_EQ(numbers(slot.contact_point_velocity_y_metres()), table("A_contact_major"));
+    EXPECT_EQ(numbers(slot.pinion_friction_arm_metres()), table("r_fr_p"));
+    EXPECT_EQ(numbers(slot.gear_friction_arm_metres()), table("r_fr_g"));
   }
 }
 

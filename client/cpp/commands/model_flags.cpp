@@ -24,6 +24,8 @@ const std::map<std::string, std::string>& switch_descriptions() {
       {"energy_consistent", "Add the parametric torques that eq 2 leaves out."},
       {"subtract_contact_point_motion", "Entrainment as the moving contact point sees it."},
       {"load_dependent_mesh_data", "Mesh stiffness, error and load shares at the actual torque."},
+      {"tabulated_friction_arms",
+       "Friction arms of the tables instead of those of the actual sliding direction."},
       {"exact_hertz", "Elliptic integrals in place of the fits of eqs 21, 22."},
       {"hertz_from_total_load", "Contact ellipse from the total load, not the film's part."},
   };

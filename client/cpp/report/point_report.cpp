@@ -137,6 +137,7 @@ void add_solver(const v1::PointResult& result, Sheet& sheet) {
                        " mesh cycles");
   const auto& statistics = result.statistics();
   sheet.line("periodicity defect", significant(statistics.periodicity_defect(), 3));
+  sheet.line("largest Floquet multiplier", significant(statistics.largest_multiplier(), 4));
   sheet.line("marched", std::to_string(statistics.mesh_cycles()) + " mesh cycles, " +
                             std::to_string(statistics.accepted_steps()) + " steps (" +
                             std::to_string(statistics.rejected_steps()) + " rejected), " +
