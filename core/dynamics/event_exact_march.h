@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <string>
 
 #include "core/refusal.h"
 
@@ -20,6 +22,9 @@ struct MarchStatistics {
 struct MarchOptions {
   double relative_tolerance = 1e-7;  ///< of each component's scale, per step
   double maximum_step = std::numeric_limits<double>::infinity();
+  long maximum_steps = 2000000;  ///< of one run(); beyond it Refusal("WORK_LIMIT")
+  /// Asked every few hundred steps; true stops the run with Cancelled. May be empty.
+  std::function<bool()> interrupted;
 };
 
 /// One accepted step with its continuous extension; valid during the callback only.
@@ -65,7 +70,7 @@ struct MarchStep {
 ///   double next_breakpoint(double s)  first point beyond s where the right-hand side has a kink
 ///   void on_breakpoint(double s)      s was reached
 ///   double scale(int i)               size of component i for the error test; infinity: not tested
-/// No allocation, no exception but Refusal("CHATTER") and Refusal("NOT_FINITE").
+/// No allocation; throws Refusal CHATTER, NOT_FINITE, WORK_LIMIT, and Cancelled.
 template <class System>
 class EventExactMarch {
  public:
@@ -82,7 +87,15 @@ class EventExactMarch {
     double breakpoint = std::min(end, system_.next_breakpoint(s));
     if (next_step_ <= 0) next_step_ = std::min(breakpoint - s, options_.maximum_step);
     int chatter = 0;
+    long attempts = 0;
     while (s < end) {
+      if (++attempts % 256 == 0) {
+        if (attempts > options_.maximum_steps) {
+          throw Refusal("WORK_LIMIT", "the march took " + std::to_string(attempts) +
+                                          " steps without reaching the end of the mesh cycle");
+        }
+        if (options_.interrupted && options_.interrupted()) throw Cancelled();
+      }
       const double room = breakpoint - s;
       double h = std::min({next_step_, options_.maximum_step, room});
       bool at_breakpoint = false;

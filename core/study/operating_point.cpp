@@ -168,6 +168,14 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
   request.tolerance = options.settling_tolerance;
   request.maximum_mesh_cycles = options.maximum_mesh_cycles;
   request.progress = options.progress;
+  double reported = 0;
+  if (options.progress) {
+    request.progress = [&](double fraction) {
+      reported = fraction;
+      return options.progress(fraction);
+    };
+    request.march.interrupted = [&] { return !options.progress(reported); };
+  }
   const SteadyState steady = solve_steady_state(system, start, request);
 
   PointResult out = empty_result(target, PointModel::kFull);

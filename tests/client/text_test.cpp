@@ -145,14 +145,16 @@ TEST(PointReport, SaysWhatWasNotEstimated) {
 
 TEST(CurveReport, HasOneLineASpeedAndSaysWhyOneIsMissing) {
   v1::Simulation curve = sample_curve("2", 1);
-  auto& point = *curve.mutable_result()->mutable_points(2);
-  point.clear_result();
-  point.set_refusal_reason("WORK_LIMIT");
-  point.set_refusal_message("no steady state within 4000 mesh cycles");
+  for (const int index : {2, 3}) {
+    auto& point = *curve.mutable_result()->mutable_points(index);
+    point.clear_result();
+    point.set_refusal_reason("WORK_LIMIT");
+    point.set_refusal_message("no steady state within 4000 mesh cycles");
+  }
   const std::string text = curve_report(curve, false);
   for (const char* part :
        {"lubricants/2: inefficiency curve from 20 to 140 km/h", "refused",
-        "30 km/h: no steady state within 4000 mesh cycles [WORK_LIMIT]", "yes", "mesh loss"}) {
+        "30, 35 km/h: no steady state within 4000 mesh cycles [WORK_LIMIT]", "yes", "mesh loss"}) {
     EXPECT_TRUE(holds(text, part));
   }
 }

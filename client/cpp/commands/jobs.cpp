@@ -101,7 +101,7 @@ int run_get(const JobFlags& flags, const CommonOptions& options) {
       options.connect().get_simulation(resource_name("simulations", flags.names.front()));
   if (simulation.state() == v1::Simulation::SUCCEEDED) {
     std::cout << results_text({simulation}, options.output_format, true, flags.shows_assumptions);
-    return kExitOk;
+    return report_failures({simulation});
   }
   std::cout << jobs_text({simulation}, options.output_format, true);
   return has_ended(simulation.state()) ? report_failures({simulation}) : kExitOk;

@@ -30,13 +30,14 @@ void add_model_and_start_flags(FlagList& flags, Study& study) {
                "full: the four degrees of freedom in time; quasi-static: equilibrium at constant "
                "speed, phase by phase. Default: full.",
                [&study](int index) { study.set_model(index == 0 ? v1::FULL : v1::QUASI_STATIC); });
-  flags.choice("--start", {"quasi-static", "large-vibration"},
-               "Where the march starts; it decides the branch where two responses coexist. "
-               "quasi-static: the low-amplitude one; large-vibration: vibro-impact where it exists. "
-               "Default: quasi-static.",
-               [&study](int index) {
-                 study.set_start(index == 0 ? v1::QUASI_STATIC_EQUILIBRIUM : v1::LARGE_VIBRATION);
-               });
+  flags.choice(
+      "--start", {"quasi-static", "large-vibration"},
+      "Where the march starts; it decides the branch where two responses coexist. "
+      "quasi-static: the low-amplitude one; large-vibration: vibro-impact where it exists. "
+      "Default: quasi-static.",
+      [&study](int index) {
+        study.set_start(index == 0 ? v1::QUASI_STATIC_EQUILIBRIUM : v1::LARGE_VIBRATION);
+      });
 }
 
 }  // namespace tribodyn::client

@@ -28,6 +28,21 @@ void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
                      });
 }
 
+/// "failed: no steady state [WORK_LIMIT]"; empty when there is a result to show.
+std::string failure_text(const v1::Simulation& simulation) {
+  if (simulation.state() == v1::Simulation::SUCCEEDED) {
+    const auto& points = simulation.result().points();
+    const bool has_result = std::any_of(points.begin(), points.end(),
+                                        [](const auto& point) { return point.has_result(); });
+    return has_result ? "" : "has no result at any speed";
+  }
+  std::string text = state_text(simulation.state());
+  if (simulation.has_error()) {
+    text += ": " + simulation.error().message() + " [" + simulation.error().reason() + "]";
+  }
+  return text;
+}
+
 /// All or nothing: one refused lubricant takes back what was submitted beside it.
 [[noreturn]] void withdraw(const std::vector<v1::Simulation>& submitted, const Complaints& refusals,
                            Connection& connection) {
@@ -118,15 +133,11 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
 int report_failures(const std::vector<v1::Simulation>& simulations) {
   int exit_code = kExitOk;
   for (const v1::Simulation& simulation : simulations) {
-    if (simulation.state() == v1::Simulation::SUCCEEDED) continue;
+    const std::string why = failure_text(simulation);
+    if (why.empty()) continue;
     exit_code = kExitFailed;
     std::cerr << "tribodyn: " << printable(simulation.name()) << " ("
-              << printable(simulation.lubricant()) << ") " << state_text(simulation.state());
-    if (simulation.has_error()) {
-      std::cerr << ": " << printable(simulation.error().message()) << " ["
-                << printable(simulation.error().reason()) << "]";
-    }
-    std::cerr << "\n";
+              << printable(simulation.lubricant()) << ") " << printable(why) << "\n";
   }
   return exit_code;
 }

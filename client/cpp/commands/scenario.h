@@ -29,7 +29,7 @@ std::vector<v1::Simulation> simulations_of(const Scenario& scenario);
 /// nothing), and returns them as they ended.
 std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection);
 
-/// Prints why simulations did not succeed on standard error; kExitFailed if any did not.
+/// Prints on standard error which simulations have nothing to show and why; kExitFailed if any has.
 int report_failures(const std::vector<v1::Simulation>& simulations);
 
 /// The flag of a field: "--no-limiting-shear-stress" from "no_limiting_shear_stress".

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/text/csv.h"
@@ -67,14 +68,21 @@ void add_warnings(const v1::SimulationResult& result, Sheet& sheet) {
   }
 }
 
+/// So is the same refusal.
 void add_refusals(const v1::SimulationResult& result, Sheet& sheet) {
-  bool first = true;
+  std::vector<std::pair<std::string, std::string>> refusals;  // why, at which speeds
   for (const v1::CurvePoint& point : result.points()) {
     if (point.has_result()) continue;
-    if (std::exchange(first, false)) sheet.heading("Speeds without a result");
-    sheet.remark(significant(point.speed_kilometers_per_hour()) +
-                 " km/h: " + point.refusal_message() + " [" + point.refusal_reason() + "]");
+    const std::string why = point.refusal_message() + " [" + point.refusal_reason() + "]";
+    const std::string speed = significant(point.speed_kilometers_per_hour());
+    if (refusals.empty() || refusals.back().first != why) {
+      refusals.emplace_back(why, speed);
+    } else {
+      refusals.back().second += ", " + speed;
+    }
   }
+  if (!refusals.empty()) sheet.heading("Speeds without a result");
+  for (const auto& [why, speeds] : refusals) sheet.remark(speeds + " km/h: " + why);
 }
 
 std::string solver_remark(const v1::SimulationResult& result) {

@@ -2,11 +2,26 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <thread>
 #include <utility>
 
 #include "client/cpp/service/errors.h"
 
 namespace tribodyn::client {
+namespace {
+
+constexpr int kConnectTries = 3;
+constexpr std::chrono::milliseconds kConnectPause(300);
+
+/// Whether nothing was sent, so that even a call that is not idempotent may be tried again.
+/// gRPC 1.51 reads errno too late after connect(): now and then a connection in progress passes for
+/// a failed one (seen where /sys is not mounted, with "No such file or directory").
+bool never_connected(const grpc::Status& status) {
+  return status.error_code() == grpc::StatusCode::UNAVAILABLE &&
+         status.error_message().rfind("failed to connect to all addresses", 0) == 0;
+}
+
+}  // namespace
 
 std::string server_address(const std::string& flag) {
   if (!flag.empty()) return flag;
@@ -35,13 +50,20 @@ Response Connection::call(Stub& stub,
                           grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
                                                        Response*),
                           const Request& request) {
-  grpc::ClientContext context;
-  context.set_deadline(std::chrono::system_clock::now() +
-                       std::chrono::duration_cast<std::chrono::milliseconds>(timeout_));
-  Response response;
-  const grpc::Status status = (stub.*method)(&context, request, &response);
-  if (!status.ok()) throw to_failure(status, address_);
-  return response;
+  const auto deadline = std::chrono::system_clock::now() +
+                        std::chrono::duration_cast<std::chrono::milliseconds>(timeout_);
+  grpc::Status first_failure;
+  for (int tries_left = kConnectTries;; --tries_left) {
+    grpc::ClientContext context;
+    context.set_deadline(deadline);
+    Response response;
+    const grpc::Status status = (stub.*method)(&context, request, &response);
+    if (status.ok()) return response;
+    if (!never_connected(status)) throw to_failure(status, address_);
+    if (first_failure.ok()) first_failure = status;  // says more than those of later tries
+    if (tries_left == 1) throw to_failure(first_failure, address_);
+    std::this_thread::sleep_for(kConnectPause);
+  }
 }
 
 v1::Simulation Connection::create_simulation(const v1::Simulation& simulation) {
