@@ -5,12 +5,12 @@ namespace tribodyn {
 /// The misprints of the paper that can be switched back on, one by one, to see what each does.
 /// All off by default. Source: Paouris et al. (the paper), corrected as documented beside each law.
 struct AsPublished {
-  bool eq17_atan = false;                    ///< theta = atan(V/U) instead of atan2(V, U)
-  bool eq20_semi_major = false;              ///< a_c with (k eps)^2 instead of k^2 eps
-  bool eq22_inverted_ratio = false;          ///< eps with Ry/Rx instead of Rx/Ry
-  bool eq31_32_logarithm = false;            ///< ln(eta0 + 9.67) instead of ln eta0 + 9.67; implies eq 32
-  bool eq43_44_polynomials = false;          ///< fitted polynomials instead of the exact F_n
-  bool eq46_square_root_of_sum = false;      ///< sqrt(m_a + m_r) instead of sqrt(m_a m_r)
+  bool eq17_atan = false;            ///< theta = atan(V/U) instead of atan2(V, U)
+  bool eq20_semi_major = false;      ///< a_c with (k eps)^2 instead of k^2 eps
+  bool eq22_inverted_ratio = false;  ///< eps with Ry/Rx instead of Rx/Ry
+  bool eq31_32_logarithm = false;    ///< ln(eta0 + 9.67) instead of ln eta0 + 9.67; implies eq 32
+  bool eq43_44_polynomials = false;  ///< fitted polynomials instead of the exact F_n
+  bool eq46_square_root_of_sum = false;  ///< sqrt(m_a + m_r) instead of sqrt(m_a m_r)
 };
 
 /// Where the Roelands index Z comes from.
@@ -31,15 +31,16 @@ enum class HertzLoad {
 
 /// What the model includes. Defaults are the paper's model as corrected.
 struct ModelOptions {
-  bool isothermal = false;                    ///< T_c = T_in: no thermal network (eqs 35-39 skipped)
-  bool newtonian = false;                     ///< F = 1 in eq 23: no shear thinning
-  bool no_limiting_shear_stress = false;      ///< tau not restricted to tau_L
-  bool no_boundary_friction = false;          ///< F_b = 0; asperities still carry load
-  bool damping_in_contact_only = false;       ///< c xdot acts only while flanks touch
-  bool energy_consistent = false;             ///< adds the parametric torques missing from eq 2
-  bool subtract_contact_point_motion = false; ///< entrainment seen by the moving footprint
-  bool load_dependent_mesh_data = false;      ///< Fourier series and load shares at the torque
-  bool tabulated_friction_arms = false;       ///< r_fr of the tables, not of the actual sliding direction
+  bool isothermal = false;                ///< T_c = T_in: no thermal network (eqs 35-39 skipped)
+  bool newtonian = false;                 ///< F = 1 in eq 23: no shear thinning
+  bool no_limiting_shear_stress = false;  ///< tau not restricted to tau_L
+  bool no_boundary_friction = false;      ///< F_b = 0; asperities still carry load
+  bool damping_in_contact_only = false;   ///< c xdot acts only while flanks touch
+  bool energy_consistent = false;         ///< adds the parametric torques missing from eq 2
+  bool subtract_contact_point_motion = false;  ///< entrainment seen by the moving footprint
+  bool load_dependent_mesh_data = false;       ///< Fourier series and load shares at the torque
+  bool tabulated_friction_arms =
+      false;  ///< r_fr of the tables, not of the actual sliding direction
   PressureViscosityIndex pressure_viscosity_index = PressureViscosityIndex::kReciprocalAsymptotic;
   HertzSolution hertz_solution = HertzSolution::kSimplified;
   HertzLoad hertz_load = HertzLoad::kFilmLoad;

@@ -2,7 +2,8 @@
 
 namespace tribodyn {
 
-/// Changes whenever any result can change by a bit: laws, defaults, solver, friction kernel variant.
+/// Changes whenever any result can change by a bit: laws, defaults, solver, friction kernel
+/// variant.
 inline constexpr char kModelVersion[] = "tribodyn-model-1";
 
 }  // namespace tribodyn

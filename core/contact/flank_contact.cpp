@@ -50,17 +50,18 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const Solid& so
     above_vogel(lubricant.rheology_reference_temperature, "a rheology reference temperature");
     if (!(density(lubricant, lubricant.rheology_reference_temperature) > 0) ||
         !(density(lubricant, inlet_temperature_) > 0)) {
-      throw Refusal("DENSITY_NOT_POSITIVE",
-                    "the density law is not positive at the rheology reference or inlet temperature");
+      throw Refusal(
+          "DENSITY_NOT_POSITIVE",
+          "the density law is not positive at the rheology reference or inlet temperature");
     }
     time_temperature_reference_ = time_temperature_reference(lubricant);
   }
 
   const bool houpert = options.as_published.eq31_32_logarithm ||
                        options.pressure_viscosity_index == PressureViscosityIndex::kHoupert;
-  const double factor_where_measured = roelands_factor(
-      log_ambient_viscosity(lubricant, lubricant.pressure_viscosity_temperature),
-      options.as_published);
+  const double factor_where_measured =
+      roelands_factor(log_ambient_viscosity(lubricant, lubricant.pressure_viscosity_temperature),
+                      options.as_published);
   const double log_inlet_viscosity = log_ambient_viscosity(lubricant, inlet_temperature_);
   const double inlet_factor = roelands_factor(log_inlet_viscosity, options.as_published);
   if (!(factor_where_measured > 0) || !(inlet_factor > 0)) {
@@ -80,8 +81,8 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const Solid& so
   }
   inlet_viscosity_ = std::exp(log_inlet_viscosity);
   reduced_modulus_ = reduced_modulus(solid.youngs_modulus, solid.poissons_ratio);
-  const double product = roughness.asperity_density * roughness.asperity_radius *
-                         roughness.composite_rms_height;
+  const double product =
+      roughness.asperity_density * roughness.asperity_radius * roughness.composite_rms_height;
   asperity_load_factor_ = 8 * std::numbers::sqrt2 / 15 * std::numbers::pi * product * product *
                           std::sqrt(roughness.composite_rms_height / roughness.asperity_radius) *
                           reduced_modulus_;
@@ -107,8 +108,8 @@ ContactSolution FlankContactModel::solve(const ContactConditions& conditions) co
   ContactStatus status = share_load(conditions, out);
   if (status == ContactStatus::kOk) status = heat(conditions, out);
   if (status == ContactStatus::kOk &&
-      !std::isfinite(out.friction + out.contact_temperature + out.maximum_pressure +
-                     out.film_load + out.film_ratio)) {
+      !std::isfinite(out.friction + out.contact_temperature + out.maximum_pressure + out.film_load +
+                     out.film_ratio)) {
     status = ContactStatus::kRefusedOverflow;
   }
   if (status != ContactStatus::kOk) return refuse(status);
@@ -117,7 +118,8 @@ ContactSolution FlankContactModel::solve(const ContactConditions& conditions) co
 }
 
 /// Eqs 12-22 and 41: how film and asperities share the load, and the ellipse and film that follow.
-ContactStatus FlankContactModel::share_load(const ContactConditions& k, ContactSolution& out) const {
+ContactStatus FlankContactModel::share_load(const ContactConditions& k,
+                                            ContactSolution& out) const {
   const double mean_x = 0.5 * (k.pinion_velocity_x + k.gear_velocity_x);
   const double mean_y = 0.5 * (k.pinion_velocity_y + k.gear_velocity_y);
   out.entrainment_speed = std::hypot(mean_x, mean_y);
@@ -141,27 +143,21 @@ ContactStatus FlankContactModel::share_load(const ContactConditions& k, ContactS
   out.pressure_viscosity_index = roelands_index_;
   out.reduced_modulus = reduced_modulus_;
 
-  const HertzFit fit =
-      options_.hertz_solution == HertzSolution::kExact
-          ? exact_ellipticity(k.radius_x, k.radius_y)
-          : simplified_ellipticity(k.radius_x, k.radius_y, options_.as_published);
+  const HertzFit fit = options_.hertz_solution == HertzSolution::kExact
+                           ? exact_ellipticity(k.radius_x, k.radius_y)
+                           : simplified_ellipticity(k.radius_x, k.radius_y, options_.as_published);
   const UnitLoadEllipse unit =
       unit_load_ellipse(fit, k.radius_x, k.radius_y, reduced_modulus_, options_.as_published);
-  const FilmConditions film{out.entrainment_radius,
-                            out.side_leakage_radius,
-                            inlet_viscosity_,
-                            inlet_pressure_viscosity_coefficient_,
-                            out.entrainment_speed,
-                            reduced_modulus_};
+  const FilmConditions film{out.entrainment_radius, out.side_leakage_radius,
+                            inlet_viscosity_,       inlet_pressure_viscosity_coefficient_,
+                            out.entrainment_speed,  reduced_modulus_};
   const double film_under_all = chittenden_dowson_central_film(film, k.load);
   const bool from_total = options_.hertz_load == HertzLoad::kTotalLoad;
   const EllipseAxes axes_under_all = ellipse_axes(unit, k.load);
-  const LoadSharing sharing{k.load,
-                            film_under_all / roughness_.composite_rms_height,
+  const LoadSharing sharing{k.load, film_under_all / roughness_.composite_rms_height,
                             asperity_load_factor_ * std::numbers::pi * axes_under_all.semi_major *
                                 axes_under_all.semi_minor,
-                            from_total,
-                            options_.as_published.eq43_44_polynomials};
+                            from_total, options_.as_published.eq43_44_polynomials};
   const SharedLoad shared = solve_load_sharing(sharing);
   if (!shared.found) return ContactStatus::kRefusedNoLoadSharing;
 
@@ -171,9 +167,8 @@ ContactStatus FlankContactModel::share_load(const ContactConditions& k, ContactS
   out.semi_minor_axis = axes.semi_minor;
   out.maximum_pressure = axes.maximum_pressure;
   out.contact_area = std::numbers::pi * axes.semi_major * axes.semi_minor;
-  out.central_film_thickness = out.entrainment_speed > 0
-                                   ? chittenden_dowson_central_film(film, out.film_load)
-                                   : 0;
+  out.central_film_thickness =
+      out.entrainment_speed > 0 ? chittenden_dowson_central_film(film, out.film_load) : 0;
   out.film_ratio = out.central_film_thickness / roughness_.composite_rms_height;
   const AsperityFunctions functions = options_.as_published.eq43_44_polynomials
                                           ? asperity_functions_as_published(out.film_ratio)
@@ -185,8 +180,8 @@ ContactStatus FlankContactModel::share_load(const ContactConditions& k, ContactS
 
 /// Eqs 18, 23-28 and 35-40: shear, friction and the temperature that they settle at.
 ContactStatus FlankContactModel::heat(const ContactConditions& k, ContactSolution& out) const {
-  const double slide = std::hypot(k.pinion_velocity_x - k.gear_velocity_x,
-                                  k.pinion_velocity_y - k.gear_velocity_y);
+  const double slide =
+      std::hypot(k.pinion_velocity_x - k.gear_velocity_x, k.pinion_velocity_y - k.gear_velocity_y);
   out.sliding_speed = slide;
   out.shear_rate = slide > 0 ? slide / out.central_film_thickness : 0;
   if (!options_.no_boundary_friction) {
@@ -197,8 +192,8 @@ ContactStatus FlankContactModel::heat(const ContactConditions& k, ContactSolutio
   const bool major_along_y = k.radius_y >= k.radius_x;
   const double semi_x = major_along_y ? out.semi_minor_axis : out.semi_major_axis;
   const double semi_y = major_along_y ? out.semi_major_axis : out.semi_minor_axis;
-  const double diffusivity = solid_.thermal_conductivity /
-                             (solid_.density * solid_.specific_heat_capacity);
+  const double diffusivity =
+      solid_.thermal_conductivity / (solid_.density * solid_.specific_heat_capacity);
   out.pinion_active_length =
       active_length(semi_x, semi_y, k.pinion_velocity_x, k.pinion_velocity_y);
   out.gear_active_length = active_length(semi_x, semi_y, k.gear_velocity_x, k.gear_velocity_y);
@@ -261,8 +256,9 @@ ContactStatus FlankContactModel::heat(const ContactConditions& k, ContactSolutio
       out.limiting_stress_at_centre = equilibrium.stress.limited_at_centre;
     }
     if (!options_.isothermal) {
-      out.oil_temperature_rise = oil_temperature_rise(
-          slide, out.mean_shear_stress, out.central_film_thickness, lubricant_.thermal_conductivity);
+      out.oil_temperature_rise =
+          oil_temperature_rise(slide, out.mean_shear_stress, out.central_film_thickness,
+                               lubricant_.thermal_conductivity);
     }
   }
   out.viscous_friction = viscous_area * out.mean_shear_stress;
@@ -277,36 +273,52 @@ ContactStatus FlankContactModel::heat(const ContactConditions& k, ContactSolutio
 
 const char* contact_status_name(ContactStatus status) {
   switch (status) {
-    case ContactStatus::kOk: return "OK";
-    case ContactStatus::kNoLoad: return "NO_LOAD";
-    case ContactStatus::kRefusedNotFinite: return "NOT_FINITE";
-    case ContactStatus::kRefusedRadius: return "RADIUS_NOT_POSITIVE";
-    case ContactStatus::kRefusedNegativeEntrainment: return "NEGATIVE_ENTRAINMENT";
-    case ContactStatus::kRefusedUnboundedShear: return "UNBOUNDED_SHEAR";
-    case ContactStatus::kRefusedNoLoadSharing: return "NO_LOAD_SHARING";
-    case ContactStatus::kRefusedNoTemperature: return "NO_CONTACT_TEMPERATURE";
-    case ContactStatus::kRefusedOverflow: return "OVERFLOW";
+    case ContactStatus::kOk:
+      return "OK";
+    case ContactStatus::kNoLoad:
+      return "NO_LOAD";
+    case ContactStatus::kRefusedNotFinite:
+      return "NOT_FINITE";
+    case ContactStatus::kRefusedRadius:
+      return "RADIUS_NOT_POSITIVE";
+    case ContactStatus::kRefusedNegativeEntrainment:
+      return "NEGATIVE_ENTRAINMENT";
+    case ContactStatus::kRefusedUnboundedShear:
+      return "UNBOUNDED_SHEAR";
+    case ContactStatus::kRefusedNoLoadSharing:
+      return "NO_LOAD_SHARING";
+    case ContactStatus::kRefusedNoTemperature:
+      return "NO_CONTACT_TEMPERATURE";
+    case ContactStatus::kRefusedOverflow:
+      return "OVERFLOW";
   }
   return "UNKNOWN";
 }
 
 const char* contact_status_sentence(ContactStatus status) {
   switch (status) {
-    case ContactStatus::kOk: return "solved";
-    case ContactStatus::kNoLoad: return "no load, no contact: every force is zero";
-    case ContactStatus::kRefusedNotFinite: return "an input of the contact is not a finite number";
-    case ContactStatus::kRefusedRadius: return "a radius of curvature is not positive";
+    case ContactStatus::kOk:
+      return "solved";
+    case ContactStatus::kNoLoad:
+      return "no load, no contact: every force is zero";
+    case ContactStatus::kRefusedNotFinite:
+      return "an input of the contact is not a finite number";
+    case ContactStatus::kRefusedRadius:
+      return "a radius of curvature is not positive";
     case ContactStatus::kRefusedNegativeEntrainment:
       return "eq 17 as published gives a negative entrainment speed for backward entrainment";
     case ContactStatus::kRefusedUnboundedShear:
       return "sliding without a film and without a limiting shear stress has no finite stress";
     case ContactStatus::kRefusedNoLoadSharing:
-      return "no film load balances asperities and film (eq 41): the polynomials of eqs 43, 44 or an "
+      return "no film load balances asperities and film (eq 41): the polynomials of eqs 43, 44 or "
+             "an "
              "ellipse from the total load can leave no root";
     case ContactStatus::kRefusedNoTemperature:
-      return "no contact temperature balances heat and conduction while the density law of eq 26 is "
+      return "no contact temperature balances heat and conduction while the density law of eq 26 "
+             "is "
              "positive";
-    case ContactStatus::kRefusedOverflow: return "a law left the range of double precision";
+    case ContactStatus::kRefusedOverflow:
+      return "a law left the range of double precision";
   }
   return "unknown";
 }

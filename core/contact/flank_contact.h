@@ -10,25 +10,26 @@ namespace tribodyn {
 /// One flank contact at one instant: what the friction kernel is asked. SI units.
 /// x is the direction of R_x (the minor axis while R_y >= R_x), y the direction of R_y.
 struct ContactConditions {
-  double load;                 ///< W, normal load [N]
-  double radius_x;             ///< R_zx, effective radius of curvature [m]
-  double radius_y;             ///< R_zy [m]
-  double pinion_velocity_x;    ///< u_s,p [m/s]
-  double pinion_velocity_y;    ///< v_s,p [m/s]
-  double gear_velocity_x;      ///< u_s,g [m/s]
-  double gear_velocity_y;      ///< v_s,g [m/s]
+  double load;               ///< W, normal load [N]
+  double radius_x;           ///< R_zx, effective radius of curvature [m]
+  double radius_y;           ///< R_zy [m]
+  double pinion_velocity_x;  ///< u_s,p [m/s]
+  double pinion_velocity_y;  ///< v_s,p [m/s]
+  double gear_velocity_x;    ///< u_s,g [m/s]
+  double gear_velocity_y;    ///< v_s,g [m/s]
 };
 
 enum class ContactStatus {
   kOk,
-  kNoLoad,                        ///< W <= 0: no contact; every force is zero
-  kRefusedNotFinite,              ///< an input is not finite
-  kRefusedRadius,                 ///< a radius is not positive
-  kRefusedNegativeEntrainment,    ///< only with as_published.eq17_atan
-  kRefusedUnboundedShear,         ///< zero film, sliding, and no limiting stress
-  kRefusedNoLoadSharing,          ///< no root of W_EHL + W_asp = W (as_published.eq43_44 or total-load ellipse)
-  kRefusedNoTemperature,          ///< no thermal equilibrium while the density law is positive
-  kRefusedOverflow,               ///< a law left the range of double precision
+  kNoLoad,                      ///< W <= 0: no contact; every force is zero
+  kRefusedNotFinite,            ///< an input is not finite
+  kRefusedRadius,               ///< a radius is not positive
+  kRefusedNegativeEntrainment,  ///< only with as_published.eq17_atan
+  kRefusedUnboundedShear,       ///< zero film, sliding, and no limiting stress
+  kRefusedNoLoadSharing,  ///< no root of W_EHL + W_asp = W (as_published.eq43_44 or total-load
+                          ///< ellipse)
+  kRefusedNoTemperature,  ///< no thermal equilibrium while the density law is positive
+  kRefusedOverflow,       ///< a law left the range of double precision
 };
 
 /// Stable UPPER_SNAKE_CASE name of a status, and one sentence for a person.
@@ -38,55 +39,57 @@ const char* contact_status_sentence(ContactStatus status);
 /// Everything about one contact; symbols and equations of the paper beside each. SI units.
 struct ContactSolution {
   ContactStatus status = ContactStatus::kNoLoad;
-  double film_load = 0;              ///< W_EHL [N]
-  double asperity_load = 0;          ///< W_asp, eq 41 [N]
-  double contact_area = 0;           ///< A_EHL = pi a_c b_c [m2]
-  double asperity_area = 0;          ///< A_asp, eq 42 [m2]
-  double semi_major_axis = 0;        ///< a_c, eq 20 [m]
-  double semi_minor_axis = 0;        ///< b_c, eq 20 [m]
-  double maximum_pressure = 0;       ///< p_max, eq 19 at the centre [Pa]
-  double entrainment_angle = 0;      ///< theta, measured from x [rad]
-  double entrainment_radius = 0;     ///< R_e, eq 15 [m]
-  double side_leakage_radius = 0;    ///< R_s, eq 16 [m]
-  double entrainment_speed = 0;      ///< U_eff, eq 17 [m/s]
-  double sliding_speed = 0;          ///< V_s [m/s]
-  double inlet_viscosity = 0;        ///< eta_0(T_in), eq 34 [Pa s]
+  double film_load = 0;                             ///< W_EHL [N]
+  double asperity_load = 0;                         ///< W_asp, eq 41 [N]
+  double contact_area = 0;                          ///< A_EHL = pi a_c b_c [m2]
+  double asperity_area = 0;                         ///< A_asp, eq 42 [m2]
+  double semi_major_axis = 0;                       ///< a_c, eq 20 [m]
+  double semi_minor_axis = 0;                       ///< b_c, eq 20 [m]
+  double maximum_pressure = 0;                      ///< p_max, eq 19 at the centre [Pa]
+  double entrainment_angle = 0;                     ///< theta, measured from x [rad]
+  double entrainment_radius = 0;                    ///< R_e, eq 15 [m]
+  double side_leakage_radius = 0;                   ///< R_s, eq 16 [m]
+  double entrainment_speed = 0;                     ///< U_eff, eq 17 [m/s]
+  double sliding_speed = 0;                         ///< V_s [m/s]
+  double inlet_viscosity = 0;                       ///< eta_0(T_in), eq 34 [Pa s]
   double inlet_pressure_viscosity_coefficient = 0;  ///< alpha*(T_in), eq 33 [1/Pa]
   double pressure_viscosity_index = 0;              ///< Z [-]
-  double reduced_modulus = 0;        ///< E', eq 13 [Pa]
-  double central_film_thickness = 0; ///< h_cen, eq 12 [m]
-  double film_ratio = 0;             ///< lambda_s = h_cen / sigma_G [-]
-  double shear_rate = 0;             ///< gamma_dot, eq 18 [1/s]; infinite where the film vanishes under sliding
-  double contact_temperature = 0;    ///< T_c, eq 38 [K]
-  double flash_temperature_rise = 0; ///< (dT_f)_av, eq 39 [K]
-  double oil_temperature_rise = 0;   ///< (dT_oil)_av, eq 39 [K]
-  double pinion_active_length = 0;   ///< l_p, eq 36 [m]
-  double gear_active_length = 0;     ///< l_g, eq 36 [m]
-  double film_thermal_resistance = 0;    ///< R_cf, eq 35 [K/W]
-  double pinion_thermal_resistance = 0;  ///< R_fp, eq 35 [K/W]; infinite for a surface at rest
-  double gear_thermal_resistance = 0;    ///< R_fg, eq 35 [K/W]; infinite for a surface at rest
-  double heat_partition = 0;         ///< a_h, eq 37 [-]
-  double mean_shear_stress = 0;      ///< tau_bar, area mean of eq 23 under the limit [Pa]
-  double viscous_friction = 0;       ///< F_v, eq 27 [N]
-  double boundary_friction = 0;      ///< F_b, eq 40 [N]
-  double friction = 0;               ///< F_fr, eq 28 [N]
-  double heat_rate = 0;              ///< q_dot = F_fr V_s [W]
-  double friction_coefficient = 0;   ///< F_fr / W [-]
+  double reduced_modulus = 0;                       ///< E', eq 13 [Pa]
+  double central_film_thickness = 0;                ///< h_cen, eq 12 [m]
+  double film_ratio = 0;                            ///< lambda_s = h_cen / sigma_G [-]
+  double shear_rate =
+      0;  ///< gamma_dot, eq 18 [1/s]; infinite where the film vanishes under sliding
+  double contact_temperature = 0;         ///< T_c, eq 38 [K]
+  double flash_temperature_rise = 0;      ///< (dT_f)_av, eq 39 [K]
+  double oil_temperature_rise = 0;        ///< (dT_oil)_av, eq 39 [K]
+  double pinion_active_length = 0;        ///< l_p, eq 36 [m]
+  double gear_active_length = 0;          ///< l_g, eq 36 [m]
+  double film_thermal_resistance = 0;     ///< R_cf, eq 35 [K/W]
+  double pinion_thermal_resistance = 0;   ///< R_fp, eq 35 [K/W]; infinite for a surface at rest
+  double gear_thermal_resistance = 0;     ///< R_fg, eq 35 [K/W]; infinite for a surface at rest
+  double heat_partition = 0;              ///< a_h, eq 37 [-]
+  double mean_shear_stress = 0;           ///< tau_bar, area mean of eq 23 under the limit [Pa]
+  double viscous_friction = 0;            ///< F_v, eq 27 [N]
+  double boundary_friction = 0;           ///< F_b, eq 40 [N]
+  double friction = 0;                    ///< F_fr, eq 28 [N]
+  double heat_rate = 0;                   ///< q_dot = F_fr V_s [W]
+  double friction_coefficient = 0;        ///< F_fr / W [-]
   double limiting_stress_area_share = 0;  ///< share of A_EHL that sits on tau_L [-]
-  int limiting_stress_switches = 0;  ///< radii at which the stress meets tau_L
+  int limiting_stress_switches = 0;       ///< radii at which the stress meets tau_L
   bool limiting_stress_at_centre = false;
-  int thermal_roots = 1;             ///< thermal equilibria found; above 1 the coldest is returned
+  int thermal_roots = 1;  ///< thermal equilibria found; above 1 the coldest is returned
 };
 
 /// The friction kernel of one fluid on one surface at one sump temperature.
-/// Immutable after construction; safe for concurrent use; `solve` allocates nothing and never throws.
+/// Immutable after construction; safe for concurrent use; `solve` allocates nothing and never
+/// throws.
 class FlankContactModel {
  public:
   /// Prepares all that does not depend on the instant: Z and alpha* (eqs 31-33), inlet viscosity
   /// (eq 34 at T_in = bath + rise), reduced modulus, Greenwood-Tripp prefactors.
   /// bath_temperature, inlet_temperature_rise in K.
-  /// Throws Refusal when T_in is at or below the Vogel reference temperature, when no Z gives alpha*
-  /// back, or when a parameter is outside the law's domain.
+  /// Throws Refusal when T_in is at or below the Vogel reference temperature, when no Z gives
+  /// alpha* back, or when a parameter is outside the law's domain.
   FlankContactModel(const Lubricant& lubricant, const Solid& solid, const Roughness& roughness,
                     const BoundaryFriction& boundary, double bath_temperature,
                     double inlet_temperature_rise, const ModelOptions& options);

@@ -51,8 +51,8 @@ SharedLoad solve_load_sharing(const LoadSharing& in) {
     const double ratio = in.film_ratio_under_all * std::exp(kFilmLoadExponent * r);
     const AsperityFunctions f = asperity_functions(ratio);
     const double film = std::exp(r), asperities = scale * std::exp(area_exponent * r) * f.f5_2;
-    // d ln F_5/2 / d lambda = -2.5 F_3/2 / F_5/2; F_n / Gamma(n+1) is log-concave in n, so F_3/2 comes
-    // from F_2 and F_5/2 to a few percent: enough for a slope.
+    // d ln F_5/2 / d lambda = -2.5 F_3/2 / F_5/2; F_n / Gamma(n+1) is log-concave in n, so F_3/2
+    // comes from F_2 and F_5/2 to a few percent: enough for a slope.
     double log_slope = 0;
     if (f.f5_2 > 0) {
       constexpr double kGammas = 1.329340388179137 * 3.323350970447843 / 4;

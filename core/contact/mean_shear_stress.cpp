@@ -43,7 +43,8 @@ Law law_at(const ShearedFilm& film, double temperature) {
   law.factor = roelands_factor(log_eta, film.as_published);
   law.factor_slope = log_eta_slope;
   if (film.as_published.eq31_32_logarithm) {
-    law.factor_slope *= std::exp(log_eta - law.factor);  // d ln(eta + 9.67) = eta/(eta + 9.67) d ln eta
+    law.factor_slope *=
+        std::exp(log_eta - law.factor);  // d ln(eta + 9.67) = eta/(eta + 9.67) d ln eta
   }
   law.base = log_eta + film.log_shear_rate;
   law.base_slope = log_eta_slope;
@@ -106,8 +107,8 @@ Moment moment(const Law& law, double from, double to) {
 int monotone_pieces(const Law& law, double end, std::array<double, 5>& points) {
   const auto psi = [&](double s) {
     const double power = std::exp((law.index - 1) * s), u = std::exp(s);
-    return law.factor * law.index * power *
-               ((law.tau_zero * c - law.gamma) + law.gamma * u) - law.gamma;
+    return law.factor * law.index * power * ((law.tau_zero * c - law.gamma) + law.gamma * u) -
+           law.gamma;
   };
   int count = 0;
   points[count++] = 0;
@@ -158,10 +159,10 @@ MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
       const double guess =
           switch_guess > pieces[i - 1] && switch_guess < pieces[i]
               ? switch_guess
-              : pieces[i - 1] + (pieces[i] - pieces[i - 1]) *
-                                    (std::isfinite(excess_left)
-                                         ? excess_left / (excess_left - excess_right)
-                                         : 0.5);
+              : pieces[i - 1] +
+                    (pieces[i] - pieces[i - 1]) * (std::isfinite(excess_left)
+                                                       ? excess_left / (excess_left - excess_right)
+                                                       : 0.5);
       // The integrand is continuous across the cut: an error d of it costs the integral d^2.
       const double cut = safeguarded_newton([&](double s) { return law.excess(s); }, pieces[i - 1],
                                             pieces[i], guess, rising, 1e-8);

@@ -109,12 +109,14 @@ class EventExactMarch {
       if (!(error <= 1)) {
         ++statistics_.rejected_steps;
         next_step_ = h * (std::isfinite(error) ? std::max(0.2, 0.9 * std::pow(error, -0.2)) : 0.1);
-        if (!(s + next_step_ > s)) throw Refusal("NOT_FINITE", "the march cannot go on: step size vanished");
+        if (!(s + next_step_ > s))
+          throw Refusal("NOT_FINITE", "the march cannot go on: step size vanished");
         continue;
       }
       const double growth = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.5, 4.0);
       double suggested = h * growth;
-      if (at_breakpoint || h < next_step_) suggested = std::max(suggested, std::min(next_step_, 4 * h));
+      if (at_breakpoint || h < next_step_)
+        suggested = std::max(suggested, std::min(next_step_, 4 * h));
 
       const int event = first_event(s, y, h);
       if (event >= 0) {
@@ -163,7 +165,7 @@ class EventExactMarch {
         {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
         {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
         {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-    static constexpr double e[7] = {71.0 / 57600,      0,           -71.0 / 16695, 71.0 / 1920,
+    static constexpr double e[7] = {71.0 / 57600,      0,          -71.0 / 16695, 71.0 / 1920,
                                     -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
     for (int stage = 0; stage < 6; ++stage) {
       for (int i = 0; i < N; ++i) {
@@ -241,9 +243,8 @@ class EventExactMarch {
       best = x;
       if (std::abs(gx) <= kNothing) break;
       (gx > 0 ? high : low) = x;
-      double trial = have_previous && gx != g_previous
-                         ? x - gx * (x - previous) / (gx - g_previous)
-                         : x * (gx > 0 ? 1 - 1e-6 : 1 + 1e-6);
+      double trial = have_previous && gx != g_previous ? x - gx * (x - previous) / (gx - g_previous)
+                                                       : x * (gx > 0 ? 1 - 1e-6 : 1 + 1e-6);
       if (!(trial > low && trial < high)) trial = 0.5 * (low + high);
       if (high - low <= 4e-16 * h) break;
       previous = x;

@@ -15,9 +15,7 @@ GearPairSystem::GearPairSystem(const MeshData& mesh, const FlankContactModel& co
                                const DrivelineDynamics& dynamics, const ModelOptions& options)
     : mesh_(mesh), contact_(contact), dynamics_(dynamics), options_(options) {}
 
-double GearPairSystem::cycle_angle() const {
-  return 2 * std::numbers::pi / mesh_.pinion_teeth();
-}
+double GearPairSystem::cycle_angle() const { return 2 * std::numbers::pi / mesh_.pinion_teeth(); }
 
 void GearPairSystem::kinematics(double phase, const double* y, Instant& out) const {
   // N_g phi_g = N_p phi_p - N_g winding/R_g0, because R_g0 N_p = R_p0 N_g.
@@ -26,8 +24,7 @@ void GearPairSystem::kinematics(double phase, const double* y, Instant& out) con
   out.mesh = mesh_.functions(theta, theta - lag * y[kWinding]);
   const MeshFunctions& m = out.mesh;
   const double b = dynamics_.half_backlash;
-  out.transmission_error =
-      b + y[kWinding] + m.radius_integral - m.static_transmission_error;
+  out.transmission_error = b + y[kWinding] + m.radius_integral - m.static_transmission_error;
   out.transmission_velocity =
       (m.pinion_contact_radius - m.static_transmission_error_slope) * y[kPinionSpeed] -
       m.gear_contact_radius * y[kGearSpeed];
@@ -61,8 +58,8 @@ void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
 
   std::array<FlankKinematics, kFlankPairs> flanks;
   mesh_.flanks(interval_, phase, flanks);
-  const double load = regime.side != 0 && regime.loaded
-                          ? std::max(0.0, regime.side * out.mesh_force) : 0;
+  const double load =
+      regime.side != 0 && regime.loaded ? std::max(0.0, regime.side * out.mesh_force) : 0;
   for (int k = 0; k < kFlankPairs; ++k) {
     const FlankKinematics& flank = flanks[k];
     out.load[k] = flank.load_share * load;
@@ -96,14 +93,12 @@ void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
   }
 }
 
-void GearPairSystem::derivative(const double* y, const Instant& at, bool record,
-                                double* dy) const {
+void GearPairSystem::derivative(const double* y, const Instant& at, bool record, double* dy) const {
   const DrivelineDynamics& d = dynamics_;
   const MeshFunctions& m = at.mesh;
   // Eqs 1-4 in time.
-  const double parametric_torque =
-      at.mesh_force * m.static_transmission_error_slope -
-      0.5 * m.mesh_stiffness_slope * square(at.deflection);
+  const double parametric_torque = at.mesh_force * m.static_transmission_error_slope -
+                                   0.5 * m.mesh_stiffness_slope * square(at.deflection);
   double pinion_torque =
       -m.pinion_contact_radius * at.mesh_force + at.pinion_shaft_torque + at.pinion_friction_torque;
   if (options_.energy_consistent) pinion_torque += parametric_torque;
@@ -114,8 +109,9 @@ void GearPairSystem::derivative(const double* y, const Instant& at, bool record,
   dy[kGearShaftTwist] = y[kGearSpeed] - y[kWheelSpeed];
   dy[kPinionShaftSpeed] = (torques_.pinion - at.pinion_shaft_torque) / d.pinion_shaft_inertia;
   dy[kPinionSpeed] = pinion_torque / d.pinion_inertia;
-  dy[kGearSpeed] = (m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque +
-                    at.gear_friction_torque) / d.gear_inertia;
+  dy[kGearSpeed] =
+      (m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque) /
+      d.gear_inertia;
   dy[kWheelSpeed] = (at.gear_shaft_torque - torques_.wheel) / d.wheel_inertia;
   dy[kLossWork] = at.loss_power;
   dy[kLossShareSquared] = square(at.loss_power / y[kPinionShaftSpeed]);
@@ -187,8 +183,12 @@ void GearPairSystem::to_march(const SectionState& section, double* y) const {
 
 SectionState GearPairSystem::to_section(const double* y) const {
   const double lag = mesh_.gear_teeth() / mesh_.mean_gear_contact_radius();
-  return {y[kPinionShaftTwist], y[kGearShaftTwist], y[kPinionShaftSpeed], y[kPinionSpeed],
-          y[kGearSpeed],        y[kWheelSpeed],
+  return {y[kPinionShaftTwist],
+          y[kGearShaftTwist],
+          y[kPinionShaftSpeed],
+          y[kPinionSpeed],
+          y[kGearSpeed],
+          y[kWheelSpeed],
           dynamics_.half_backlash + y[kWinding] +
               mesh_.functions(0, -lag * y[kWinding]).radius_integral};
 }
@@ -199,8 +199,7 @@ double GearPairSystem::stored_energy(double phase, const double* y) const {
   kinematics(phase, y, at);
   return 0.5 * (d.pinion_shaft_inertia * square(y[kPinionShaftSpeed]) +
                 d.pinion_inertia * square(y[kPinionSpeed]) +
-                d.gear_inertia * square(y[kGearSpeed]) +
-                d.wheel_inertia * square(y[kWheelSpeed]) +
+                d.gear_inertia * square(y[kGearSpeed]) + d.wheel_inertia * square(y[kWheelSpeed]) +
                 d.pinion_shaft_stiffness * square(y[kPinionShaftTwist]) +
                 d.gear_shaft_stiffness * square(y[kGearShaftTwist]) +
                 at.mesh.mesh_stiffness * square(at.deflection));

@@ -5,24 +5,24 @@
 #include "core/contact/flank_contact.h"
 #include "core/dynamics/section_state.h"
 #include "core/gear/mesh_data.h"
-#include "core/study/scene.h"
+#include "core/model_options.h"
 
 namespace tribodyn {
 
 /// State of the march over mesh phase. The pinion angle is the independent variable, so that the
-/// samples of the tooth contact tables and the mesh cycle fall on known places; time is a component.
-/// Twists and the winding are differences of angles and stay small.
+/// samples of the tooth contact tables and the mesh cycle fall on known places; time is a
+/// component. Twists and the winding are differences of angles and stay small.
 enum MarchComponent {
-  kTime,             ///< [s] since the section
-  kPinionShaftTwist, ///< phi_s - phi_p [rad]
-  kWinding,          ///< R_p0 phi_p - R_g0 phi_g [m]
-  kGearShaftTwist,   ///< phi_g - phi_w [rad]
-  kPinionShaftSpeed, ///< [rad/s]
+  kTime,              ///< [s] since the section
+  kPinionShaftTwist,  ///< phi_s - phi_p [rad]
+  kWinding,           ///< R_p0 phi_p - R_g0 phi_g [m]
+  kGearShaftTwist,    ///< phi_g - phi_w [rad]
+  kPinionShaftSpeed,  ///< [rad/s]
   kPinionSpeed,
   kGearSpeed,
   kWheelSpeed,
-  kLossWork,         ///< int sum V_s F_fr dt [J]
-  kLossShareSquared, ///< int (sum V_s F_fr / phidot_s)^2 dt [(N m)^2 s]: eq 30's RMS but for T_s
+  kLossWork,          ///< int sum V_s F_fr dt [J]
+  kLossShareSquared,  ///< int (sum V_s F_fr / phidot_s)^2 dt [(N m)^2 s]: eq 30's RMS but for T_s
   kMarchComponents
 };
 
@@ -36,7 +36,7 @@ enum RecordComponent {
   kMeshForceTime,
   kPinionFrictionTorqueTime,
   kGearFrictionTorqueTime,
-  kLoadTime,               ///< int sum W dt, weight of the following
+  kLoadTime,  ///< int sum W dt, weight of the following
   kFilmLoadTime,
   kFilmRatioLoadTime,
   kTemperatureLoadTime,
@@ -46,7 +46,7 @@ enum RecordComponent {
   kLimitedCentreTime,
   kGapTime,
   kCoastTime,
-  kPinionShaftAngle,       ///< int phidot_s dt
+  kPinionShaftAngle,  ///< int phidot_s dt
   kWheelAngle,
   kShaftDampingWork,
   kMeshDampingWork,
@@ -69,16 +69,16 @@ struct Torques {
 /// Everything at one instant, for records and histories.
 struct Instant {
   MeshFunctions mesh;
-  double deflection = 0;           ///< f [m]
-  double transmission_error = 0;   ///< x [m]
+  double deflection = 0;             ///< f [m]
+  double transmission_error = 0;     ///< x [m]
   double transmission_velocity = 0;  ///< xdot [m/s]
-  double mesh_force = 0;           ///< k_m f + c xdot [N]; of which the damper:
+  double mesh_force = 0;             ///< k_m f + c xdot [N]; of which the damper:
   double damper_force = 0;
   double pinion_shaft_torque = 0;  ///< [N m]
   double gear_shaft_torque = 0;
   double pinion_friction_torque = 0;
   double gear_friction_torque = 0;
-  double loss_power = 0;           ///< sum V_s F_fr [W]
+  double loss_power = 0;  ///< sum V_s F_fr [W]
   std::array<double, kFlankPairs> load{};
   std::array<FlankMotion, kFlankPairs> motion{};
   std::array<ContactSolution, kFlankPairs> contact{};

@@ -10,8 +10,8 @@ MarchScales march_scales(const GearPairSystem& system, double mean_pinion_speed)
   const double r_p = mesh.mean_pinion_contact_radius(), r_g = mesh.mean_gear_contact_radius();
   const double ratio = r_p / r_g;
   MarchScales s{};
-  s.torque = std::max({std::abs(system.torques().pinion), ratio * std::abs(system.torques().wheel),
-                       0.1});
+  s.torque =
+      std::max({std::abs(system.torques().pinion), ratio * std::abs(system.torques().wheel), 0.1});
   s.length = s.torque / (r_p * mesh.mean_mesh_stiffness());
   const double compliance = r_p * r_p / d.pinion_inertia + r_g * r_g / d.gear_inertia;
   s.speed = s.length * std::sqrt(mesh.mean_mesh_stiffness() * compliance) / r_p;
@@ -24,17 +24,26 @@ MarchScales march_scales(const GearPairSystem& system, double mean_pinion_speed)
 double MarchScales::of(const MeshData& mesh, int component) const {
   const double r_p = mesh.mean_pinion_contact_radius(), r_g = mesh.mean_gear_contact_radius();
   switch (component) {
-    case kTime: return time;
-    case kPinionShaftTwist: return length / r_p;
-    case kWinding: return length;
-    case kGearShaftTwist: return length / r_g;
+    case kTime:
+      return time;
+    case kPinionShaftTwist:
+      return length / r_p;
+    case kWinding:
+      return length;
+    case kGearShaftTwist:
+      return length / r_g;
     case kPinionShaftSpeed:
-    case kPinionSpeed: return speed;
+    case kPinionSpeed:
+      return speed;
     case kGearSpeed:
-    case kWheelSpeed: return speed * r_p / r_g;
-    case kLossWork: return loss_work;
-    case kLossShareSquared: return loss_squared;
-    default: return std::numeric_limits<double>::infinity();
+    case kWheelSpeed:
+      return speed * r_p / r_g;
+    case kLossWork:
+      return loss_work;
+    case kLossShareSquared:
+      return loss_squared;
+    default:
+      return std::numeric_limits<double>::infinity();
   }
 }
 
@@ -43,8 +52,8 @@ void throw_if_refused(const GearPairSystem& system) {
   throw Refusal(contact_status_name(system.refusal()), contact_status_sentence(system.refusal()));
 }
 
-void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales, const MarchOptions& options,
-                      MarchState& state, MarchStatistics& statistics) {
+void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales,
+                      const MarchOptions& options, MarchState& state, MarchStatistics& statistics) {
   PhaseSystem<false> phases(system, scales);
   EventExactMarch<PhaseSystem<false>> march(phases, options);
   state[kTime] = state[kLossWork] = state[kLossShareSquared] = 0;

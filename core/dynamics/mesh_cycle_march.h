@@ -35,8 +35,8 @@ struct GapEvent {
 template <bool kRecord>
 class PhaseSystem {
  public:
-  static constexpr int kSize = kRecord ? static_cast<int>(kRecordComponents)
-                                       : static_cast<int>(kMarchComponents);
+  static constexpr int kSize =
+      kRecord ? static_cast<int>(kRecordComponents) : static_cast<int>(kMarchComponents);
   static constexpr int kEvents = 2;
   using State = std::array<double, kSize>;
 
@@ -60,11 +60,12 @@ class PhaseSystem {
     const double b = system_.dynamics().half_backlash;
     const ContactRegime& regime = system_.regime;
     if (regime.side == 0) {
-      g = {(at.transmission_error - b) / scales_.length, (-b - at.transmission_error) / scales_.length};
+      g = {(at.transmission_error - b) / scales_.length,
+           (-b - at.transmission_error) / scales_.length};
       return;
     }
-    const double force = regime.side * at.mesh_force * system_.mesh().mean_pinion_contact_radius() /
-                         scales_.torque;
+    const double force =
+        regime.side * at.mesh_force * system_.mesh().mean_pinion_contact_radius() / scales_.torque;
     g = {(b - regime.side * at.transmission_error) / scales_.length,
          regime.loaded ? -force : force};
   }
@@ -110,8 +111,8 @@ using MarchState = std::array<double, kMarchComponents>;
 /// Marches one mesh cycle from phase 0; time and work start from zero. Adds to `statistics`.
 /// Throws Refusal NO_FORWARD_ROTATION when the pinion comes to a stop, and the name of a contact's
 /// refusal when one is met.
-void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales, const MarchOptions& options,
-                      MarchState& state, MarchStatistics& statistics);
+void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales,
+                      const MarchOptions& options, MarchState& state, MarchStatistics& statistics);
 
 void throw_if_refused(const GearPairSystem& system);
 

@@ -8,20 +8,23 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kUnknowns = 8;   // the seven of SectionState and the torque
-constexpr int kWindow = 8;     // periods that an extrapolation looks back on
-constexpr int kFirstCycles = 8;  // marched before anything is extrapolated
+constexpr int kUnknowns = 8;               // the seven of SectionState and the torque
+constexpr int kWindow = 8;                 // periods that an extrapolation looks back on
+constexpr int kFirstCycles = 8;            // marched before anything is extrapolated
 constexpr double kStabilityMargin = 2e-3;  // finite differences of the period map are that good
 using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
-constexpr int kStateOf[kUnknowns - 1] = {kPinionShaftTwist, kWinding,   kGearShaftTwist, kPinionShaftSpeed,
-                                         kPinionSpeed,      kGearSpeed, kWheelSpeed};
+constexpr int kStateOf[kUnknowns - 1] = {kPinionShaftTwist, kWinding,     kGearShaftTwist,
+                                         kPinionShaftSpeed, kPinionSpeed, kGearSpeed,
+                                         kWheelSpeed};
 
 /// The period map with its corrections, in scaled unknowns.
 class PeriodMap {
  public:
   PeriodMap(GearPairSystem& system, const SteadyStateRequest& request, SteadyState& out)
-      : system_(system), request_(request), out_(out),
+      : system_(system),
+        request_(request),
+        out_(out),
         scales_(march_scales(system, request.mean_pinion_speed)) {
     for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system.mesh(), kStateOf[i]);
     scale_(kUnknowns - 1) = scales_.torque;
@@ -65,8 +68,7 @@ class PeriodMap {
     } else {
       set_unknown_torque(unknown_torque() - excess);
       state[kPinionShaftTwist] -= excess / d.pinion_shaft_stiffness;
-      state[kWinding] -=
-          excess / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
+      state[kWinding] -= excess / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
     }
     const double shift = request_.mean_pinion_speed - period * system_.cycle_angle() / time;
     state[kPinionShaftSpeed] += shift;
@@ -122,7 +124,10 @@ class PeriodMap {
 /// Anderson's extrapolation from the last arguments and images of a map.
 class Extrapolation {
  public:
-  void clear() { arguments_.clear(); images_.clear(); }
+  void clear() {
+    arguments_.clear();
+    images_.clear();
+  }
   void add(const Vector& argument, const Vector& image) {
     if (arguments_.size() > kWindow) {
       arguments_.erase(arguments_.begin());
@@ -219,8 +224,8 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
         out.settled = true;
         break;
       }
-      // Extrapolation finds repelling orbits too, between two branches. The march would have left it:
-      // go back to where it was and let it run on for longer.
+      // Extrapolation finds repelling orbits too, between two branches. The march would have left
+      // it: go back to where it was and let it run on for longer.
       map.unpack(marched, state);
       plain_left = 24 * ++failures;
       sections.clear();
@@ -244,8 +249,8 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
       best_image = image;
       without_gain = 0;
     } else if (++without_gain > 3 + (best < 1e-3 ? kWindow : 0)) {
-      // Not contracting: take it back and let the transients die for a while. A period that does not
-      // settle either gives way to single cycles.
+      // Not contracting: take it back and let the transients die for a while. A period that does
+      // not settle either gives way to single cycles.
       if (best < kNone) map.unpack(best_image, state);
       if (++failures % 4 == 0) period = 1;
       plain_left = std::min(16 * failures, 96);

@@ -71,8 +71,8 @@ GearSet at_torque(const GearSet& gear_set, double pinion_torque) {
   const auto& shares = gear_set.load_share_by_torque;
   const auto [i, t] = locate(shares, torque);
   for (int k = 0; k < kFlankPairs; ++k) {
-    out.tables.load_share[k] = mix(shares[i].load_share[k],
-                                   shares[std::min(i + 1, shares.size() - 1)].load_share[k], t);
+    out.tables.load_share[k] =
+        mix(shares[i].load_share[k], shares[std::min(i + 1, shares.size() - 1)].load_share[k], t);
   }
   return out;
 }
@@ -119,7 +119,8 @@ void check(const GearSet& set) {
       }
       for (std::size_t j = 0; j < samples; ++j) {
         if (!std::isfinite(values[j]) || (column.positive && values[j] <= 0)) {
-          wrong += where + " sample " + std::to_string(j) + " is " + std::to_string(values[j]) + "; ";
+          wrong +=
+              where + " sample " + std::to_string(j) + " is " + std::to_string(values[j]) + "; ";
         }
       }
       if (k + 1 < kFlankPairs && (*column.table)[k + 1].size() == samples &&
@@ -140,15 +141,16 @@ void check(const GearSet& set) {
         sum += t.load_share[k][j];
       }
       if (!(std::abs(sum - 1) < 1e-3)) {
-        wrong += "load shares of sample " + std::to_string(j) + " add up to " + std::to_string(sum) +
-                 "; ";
+        wrong += "load shares of sample " + std::to_string(j) + " add up to " +
+                 std::to_string(sum) + "; ";
       }
     }
   }
   if (wrong.empty()) {
     const MeshData mesh(set);
     for (int i = 0; i < 720; ++i) {
-      const MeshFunctions f = mesh.functions(i * 3.14159265358979 / 360, i * 3.14159265358979 / 360);
+      const MeshFunctions f =
+          mesh.functions(i * 3.14159265358979 / 360, i * 3.14159265358979 / 360);
       if (!(f.mesh_stiffness > 0 && f.pinion_contact_radius > 0 && f.gear_contact_radius > 0)) {
         wrong += "k_m, R_p and R_g must stay positive over the mesh cycle; ";
         break;

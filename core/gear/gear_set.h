@@ -31,31 +31,33 @@ using SlotTable = std::array<std::vector<double>, kFlankPairs>;
 /// Tooth contact data over one mesh cycle. Velocities are coefficients per unit speed of their own
 /// member: u_p = A_up phidot_p and so on [m/s per rad/s = m].
 struct ToothContactTables {
-  SlotTable load_share;             ///< [-], zero where the pair does not touch; slots add up to 1
-  SlotTable radius_x;               ///< R_zx [m]
-  SlotTable radius_y;               ///< R_zy [m]
-  SlotTable pinion_velocity_x;      ///< A_up [m]
-  SlotTable pinion_velocity_y;      ///< A_vp [m]
-  SlotTable gear_velocity_x;        ///< A_ug [m]
-  SlotTable gear_velocity_y;        ///< A_vg [m]
-  SlotTable contact_point_velocity_x;  ///< per pinion speed [m]; used by subtract_contact_point_motion
+  SlotTable load_share;         ///< [-], zero where the pair does not touch; slots add up to 1
+  SlotTable radius_x;           ///< R_zx [m]
+  SlotTable radius_y;           ///< R_zy [m]
+  SlotTable pinion_velocity_x;  ///< A_up [m]
+  SlotTable pinion_velocity_y;  ///< A_vp [m]
+  SlotTable gear_velocity_x;    ///< A_ug [m]
+  SlotTable gear_velocity_y;    ///< A_vg [m]
+  SlotTable
+      contact_point_velocity_x;  ///< per pinion speed [m]; used by subtract_contact_point_motion
   SlotTable contact_point_velocity_y;
-  SlotTable pinion_friction_arm;  ///< r_fr,p at the mean speed ratio [m]; used by tabulated_friction_arms
-  SlotTable gear_friction_arm;    ///< r_fr,g
+  SlotTable
+      pinion_friction_arm;  ///< r_fr,p at the mean speed ratio [m]; used by tabulated_friction_arms
+  SlotTable gear_friction_arm;  ///< r_fr,g
 };
 
 /// Inertias, shafts and mesh of eqs 1-5. SI units.
 struct DrivelineDynamics {
-  double pinion_shaft_inertia;      ///< I_s [kg m2]
-  double pinion_inertia;            ///< I_p
-  double gear_inertia;              ///< I_g
-  double wheel_inertia;             ///< I_w
-  double pinion_shaft_stiffness;    ///< k_t1 [N m/rad]
-  double gear_shaft_stiffness;      ///< k_t2
-  double pinion_shaft_damping;      ///< c_t1 [N m s/rad]
-  double gear_shaft_damping;        ///< c_t2
-  double mesh_damping;              ///< c [N s/m]
-  double half_backlash;             ///< b [m]
+  double pinion_shaft_inertia;    ///< I_s [kg m2]
+  double pinion_inertia;          ///< I_p
+  double gear_inertia;            ///< I_g
+  double wheel_inertia;           ///< I_w
+  double pinion_shaft_stiffness;  ///< k_t1 [N m/rad]
+  double gear_shaft_stiffness;    ///< k_t2
+  double pinion_shaft_damping;    ///< c_t1 [N m s/rad]
+  double gear_shaft_damping;      ///< c_t2
+  double mesh_damping;            ///< c [N s/m]
+  double half_backlash;           ///< b [m]
 };
 
 /// A hypoid gear pair in its driveline, as eqs 1-11 and the friction kernel need it.

@@ -10,18 +10,17 @@ double coefficient(const std::vector<double>& list, std::size_t i) {
   return i < list.size() ? list[i] : 0;
 }
 
-constexpr double FlankKinematics::*kColumns[] = {
-    &FlankKinematics::load_share,
-    &FlankKinematics::radius_x,
-    &FlankKinematics::radius_y,
-    &FlankKinematics::pinion_velocity_x,
-    &FlankKinematics::pinion_velocity_y,
-    &FlankKinematics::gear_velocity_x,
-    &FlankKinematics::gear_velocity_y,
-    &FlankKinematics::contact_point_velocity_x,
-    &FlankKinematics::contact_point_velocity_y,
-    &FlankKinematics::pinion_friction_arm,
-    &FlankKinematics::gear_friction_arm};
+constexpr double FlankKinematics::*kColumns[] = {&FlankKinematics::load_share,
+                                                 &FlankKinematics::radius_x,
+                                                 &FlankKinematics::radius_y,
+                                                 &FlankKinematics::pinion_velocity_x,
+                                                 &FlankKinematics::pinion_velocity_y,
+                                                 &FlankKinematics::gear_velocity_x,
+                                                 &FlankKinematics::gear_velocity_y,
+                                                 &FlankKinematics::contact_point_velocity_x,
+                                                 &FlankKinematics::contact_point_velocity_y,
+                                                 &FlankKinematics::pinion_friction_arm,
+                                                 &FlankKinematics::gear_friction_arm};
 
 }  // namespace
 
@@ -51,30 +50,33 @@ MeshData::MeshData(const GearSet& set)
       stiffness_(set.series.mesh_stiffness.mean),
       error_(set.series.static_transmission_error.mean) {
   const MeshSeries& s = set.series;
-  const std::size_t count = std::max({s.pinion_contact_radius.sine.size(),
-                                      s.gear_contact_radius.sine.size(),
-                                      s.mesh_stiffness.sine.size(),
-                                      s.static_transmission_error.sine.size()});
+  const std::size_t count =
+      std::max({s.pinion_contact_radius.sine.size(), s.gear_contact_radius.sine.size(),
+                s.mesh_stiffness.sine.size(), s.static_transmission_error.sine.size()});
   for (std::size_t i = 0; i < count; ++i) {
-    harmonics_.push_back({coefficient(s.pinion_contact_radius.sine, i),
-                          coefficient(s.pinion_contact_radius.cosine, i),
-                          coefficient(s.gear_contact_radius.sine, i),
-                          coefficient(s.gear_contact_radius.cosine, i),
-                          coefficient(s.mesh_stiffness.sine, i),
-                          coefficient(s.mesh_stiffness.cosine, i),
-                          coefficient(s.static_transmission_error.sine, i),
-                          coefficient(s.static_transmission_error.cosine, i)});
+    harmonics_.push_back(
+        {coefficient(s.pinion_contact_radius.sine, i),
+         coefficient(s.pinion_contact_radius.cosine, i), coefficient(s.gear_contact_radius.sine, i),
+         coefficient(s.gear_contact_radius.cosine, i), coefficient(s.mesh_stiffness.sine, i),
+         coefficient(s.mesh_stiffness.cosine, i), coefficient(s.static_transmission_error.sine, i),
+         coefficient(s.static_transmission_error.cosine, i)});
   }
   const ToothContactTables& t = set.tables;
   samples_.resize(intervals_ + 1);
   for (int j = 0; j <= intervals_; ++j) {
     double sum = 0;
     for (int k = 0; k < kFlankPairs; ++k) {
-      samples_[j][k] = {std::max(0.0, t.load_share[k][j]), t.radius_x[k][j], t.radius_y[k][j],
-                        t.pinion_velocity_x[k][j], t.pinion_velocity_y[k][j],
-                        t.gear_velocity_x[k][j], t.gear_velocity_y[k][j],
-                        t.contact_point_velocity_x[k][j], t.contact_point_velocity_y[k][j],
-                        t.pinion_friction_arm[k][j], t.gear_friction_arm[k][j]};
+      samples_[j][k] = {std::max(0.0, t.load_share[k][j]),
+                        t.radius_x[k][j],
+                        t.radius_y[k][j],
+                        t.pinion_velocity_x[k][j],
+                        t.pinion_velocity_y[k][j],
+                        t.gear_velocity_x[k][j],
+                        t.gear_velocity_y[k][j],
+                        t.contact_point_velocity_x[k][j],
+                        t.contact_point_velocity_y[k][j],
+                        t.pinion_friction_arm[k][j],
+                        t.gear_friction_arm[k][j]};
       sum += samples_[j][k].load_share;
     }
     for (FlankKinematics& flank : samples_[j]) flank.load_share /= sum;

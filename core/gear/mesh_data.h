@@ -7,8 +7,8 @@
 
 namespace tribodyn {
 
-/// Eqs 8-11 at one pair of angles, with what the closed-form transmission error and the energy terms
-/// need. Slopes are per radian of phi_p.
+/// Eqs 8-11 at one pair of angles, with what the closed-form transmission error and the energy
+/// terms need. Slopes are per radian of phi_p.
 struct MeshFunctions {
   double pinion_contact_radius;            ///< R_p [m]
   double gear_contact_radius;              ///< R_g [m]
@@ -37,13 +37,14 @@ struct FlankMotion {
   double gear_friction_arm;    ///< r_fr,g [m]; r_fr,p phidot_p + r_fr,g phidot_g = -V_s
 };
 
-/// Velocities and lever arms r_p = -(dV . A_p)/V_s, r_g = (dV . A_g)/V_s with dV the sliding vector:
-/// the power identity is exact and holds when a shaft turns backwards. Without sliding both arms are 0.
+/// Velocities and lever arms r_p = -(dV . A_p)/V_s, r_g = (dV . A_g)/V_s with dV the sliding
+/// vector: the power identity is exact and holds when a shaft turns backwards. Without sliding both
+/// arms are 0.
 FlankMotion flank_motion(const FlankKinematics& kinematics, double pinion_speed, double gear_speed);
 
-/// A gear set packed for evaluation. Immutable; safe for concurrent use; evaluation allocates nothing.
-/// Tables are linear in mesh phase between their samples, shares clipped at zero and scaled to add
-/// up to 1 at every sample (hence everywhere); the slopes jump at the samples only.
+/// A gear set packed for evaluation. Immutable; safe for concurrent use; evaluation allocates
+/// nothing. Tables are linear in mesh phase between their samples, shares clipped at zero and
+/// scaled to add up to 1 at every sample (hence everywhere); the slopes jump at the samples only.
 /// The gear set must have passed check().
 class MeshData {
  public:
@@ -53,7 +54,8 @@ class MeshData {
   MeshFunctions functions(double theta_p, double theta_g) const;
 
   int intervals() const { return intervals_; }  ///< of the tables per mesh cycle
-  /// The pairs at `phase` in [0, 1] cycles, by the straight line of `interval` (continued outside it).
+  /// The pairs at `phase` in [0, 1] cycles, by the straight line of `interval` (continued outside
+  /// it).
   void flanks(int interval, double phase, std::array<FlankKinematics, kFlankPairs>& out) const;
 
   int pinion_teeth() const { return pinion_teeth_; }

@@ -16,9 +16,9 @@ TimeTemperatureShift time_temperature_shift(const Lubricant& lubricant, double r
                                             double temperature, double log_ambient_viscosity,
                                             double log_ambient_viscosity_slope) {
   const double rho = density(lubricant, temperature);
-  return {log_ambient_viscosity - std::log(temperature * rho) - reference,
-          log_ambient_viscosity_slope - 1 / temperature -
-              lubricant.density_temperature_slope / rho};
+  return {
+      log_ambient_viscosity - std::log(temperature * rho) - reference,
+      log_ambient_viscosity_slope - 1 / temperature - lubricant.density_temperature_slope / rho};
 }
 
 ShearThinning havriliak_negami(const Lubricant& lubricant, double log_reduced_shear_rate) {

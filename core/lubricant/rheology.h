@@ -4,8 +4,8 @@
 
 namespace tribodyn {
 
-/// ln a_TTS(T) of eq 25 and its slope d/dT [1/K]. temperature [K] above T_0,ref, where density(T) > 0.
-/// The reference terms are passed in because they do not change: see TimeTemperatureReference.
+/// ln a_TTS(T) of eq 25 and its slope d/dT [1/K]. temperature [K] above T_0,ref, where density(T) >
+/// 0. The reference terms are passed in because they do not change: see TimeTemperatureReference.
 struct TimeTemperatureShift {
   double log_factor;
   double slope;

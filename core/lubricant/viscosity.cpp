@@ -36,8 +36,8 @@ double log_viscosity_under_pressure(double log_ambient_viscosity, double factor,
 }
 
 double reciprocal_asymptotic_coefficient(double factor, double index) {
-  // int_0^inf exp(-v) (1 + v/L)^(1/Z - 1) dv / (Z c L); the integrand peaks near v = 1/Z - 1 - L and
-  // falls as exp(-v) beyond, so panels of width 4 up to its hundred-e-fold tail lose nothing.
+  // int_0^inf exp(-v) (1 + v/L)^(1/Z - 1) dv / (Z c L); the integrand peaks near v = 1/Z - 1 - L
+  // and falls as exp(-v) beyond, so panels of width 4 up to its hundred-e-fold tail lose nothing.
   constexpr double kPanel = 4;
   const auto& rule = gauss_legendre<20>();
   const double power = 1 / index - 1;

@@ -56,9 +56,10 @@ struct ValueAndSlope {
 
 /// A root of f inside [lower, upper] by Newton steps that never leave the bracket and fall back to
 /// bisection when they do not halve it fast enough (so that no two-cycle survives). f returns
-/// {value, slope}; f(lower) < 0 < f(upper) when `rising`, the reverse otherwise (not evaluated here).
-/// Stops when the value is zero or a step is below `tolerance` of max(|x|, 1): Newton's error after
-/// such a step is of the order of its square, so 1e-8 is enough for the last bit of a smooth f.
+/// {value, slope}; f(lower) < 0 < f(upper) when `rising`, the reverse otherwise (not evaluated
+/// here). Stops when the value is zero or a step is below `tolerance` of max(|x|, 1): Newton's
+/// error after such a step is of the order of its square, so 1e-8 is enough for the last bit of a
+/// smooth f.
 template <class Function>
 double safeguarded_newton(Function&& f, double lower, double upper, double start, bool rising,
                           double tolerance = 1e-15) {

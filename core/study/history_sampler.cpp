@@ -9,25 +9,40 @@ namespace {
 double whole_value(HistoryColumn column, double phase, const double* y, const Instant& at,
                    double pinion_torque) {
   switch (column) {
-    case HistoryColumn::kTime: return y[kTime];
-    case HistoryColumn::kMeshPhase: return phase;
-    case HistoryColumn::kPinionShaftSpeed: return y[kPinionShaftSpeed];
-    case HistoryColumn::kPinionSpeed: return y[kPinionSpeed];
-    case HistoryColumn::kGearSpeed: return y[kGearSpeed];
-    case HistoryColumn::kWheelSpeed: return y[kWheelSpeed];
-    case HistoryColumn::kDynamicTransmissionError: return at.transmission_error;
-    case HistoryColumn::kDynamicTransmissionErrorVelocity: return at.transmission_velocity;
-    case HistoryColumn::kMeshForce: return at.mesh_force;
-    case HistoryColumn::kPinionShaftTorque: return at.pinion_shaft_torque;
-    case HistoryColumn::kGearShaftTorque: return at.gear_shaft_torque;
-    case HistoryColumn::kPinionFrictionTorque: return at.pinion_friction_torque;
-    case HistoryColumn::kGearFrictionTorque: return at.gear_friction_torque;
-    case HistoryColumn::kMeshLossPower: return at.loss_power;
+    case HistoryColumn::kTime:
+      return y[kTime];
+    case HistoryColumn::kMeshPhase:
+      return phase;
+    case HistoryColumn::kPinionShaftSpeed:
+      return y[kPinionShaftSpeed];
+    case HistoryColumn::kPinionSpeed:
+      return y[kPinionSpeed];
+    case HistoryColumn::kGearSpeed:
+      return y[kGearSpeed];
+    case HistoryColumn::kWheelSpeed:
+      return y[kWheelSpeed];
+    case HistoryColumn::kDynamicTransmissionError:
+      return at.transmission_error;
+    case HistoryColumn::kDynamicTransmissionErrorVelocity:
+      return at.transmission_velocity;
+    case HistoryColumn::kMeshForce:
+      return at.mesh_force;
+    case HistoryColumn::kPinionShaftTorque:
+      return at.pinion_shaft_torque;
+    case HistoryColumn::kGearShaftTorque:
+      return at.gear_shaft_torque;
+    case HistoryColumn::kPinionFrictionTorque:
+      return at.pinion_friction_torque;
+    case HistoryColumn::kGearFrictionTorque:
+      return at.gear_friction_torque;
+    case HistoryColumn::kMeshLossPower:
+      return at.loss_power;
     case HistoryColumn::kInefficiency:
       return pinion_torque == 0
                  ? 0
                  : 100 * at.loss_power / std::abs(pinion_torque * y[kPinionShaftSpeed]);
-    default: return 0;
+    default:
+      return 0;
   }
 }
 
@@ -35,17 +50,28 @@ double flank_value(HistoryColumn column, int k, const Instant& at) {
   const ContactSolution& c = at.contact[k];
   if (!(at.load[k] > 0)) return 0;
   switch (column) {
-    case HistoryColumn::kFlankLoad: return at.load[k];
-    case HistoryColumn::kFlankFriction: return c.friction;
-    case HistoryColumn::kFlankViscousFriction: return c.viscous_friction;
-    case HistoryColumn::kFlankBoundaryFriction: return c.boundary_friction;
-    case HistoryColumn::kFlankFilmThickness: return c.central_film_thickness;
-    case HistoryColumn::kFlankFilmRatio: return c.film_ratio;
-    case HistoryColumn::kFlankContactTemperature: return c.contact_temperature;
-    case HistoryColumn::kFlankMaximumPressure: return c.maximum_pressure;
-    case HistoryColumn::kFlankShearRate: return c.shear_rate;
-    case HistoryColumn::kFlankSlidingSpeed: return at.motion[k].sliding_speed;
-    default: return 0;
+    case HistoryColumn::kFlankLoad:
+      return at.load[k];
+    case HistoryColumn::kFlankFriction:
+      return c.friction;
+    case HistoryColumn::kFlankViscousFriction:
+      return c.viscous_friction;
+    case HistoryColumn::kFlankBoundaryFriction:
+      return c.boundary_friction;
+    case HistoryColumn::kFlankFilmThickness:
+      return c.central_film_thickness;
+    case HistoryColumn::kFlankFilmRatio:
+      return c.film_ratio;
+    case HistoryColumn::kFlankContactTemperature:
+      return c.contact_temperature;
+    case HistoryColumn::kFlankMaximumPressure:
+      return c.maximum_pressure;
+    case HistoryColumn::kFlankShearRate:
+      return c.shear_rate;
+    case HistoryColumn::kFlankSlidingSpeed:
+      return at.motion[k].sliding_speed;
+    default:
+      return 0;
   }
 }
 

@@ -10,6 +10,7 @@
 #include "core/study/history_sampler.h"
 #include "core/study/quasi_static.h"
 #include "core/study/range_warnings.h"
+#include "core/study/recorded_march.h"
 #include "core/study/response_record.h"
 
 namespace tribodyn {
@@ -42,9 +43,8 @@ Target target_of(const Scene& scene, const OperatingCondition& c) {
     t.torques = {wheel * ratio, wheel};
   }
   if (!(t.mean_pinion_speed > 0) || !std::isfinite(t.mean_pinion_speed)) {
-    throw Refusal("NO_FORWARD_ROTATION",
-                  "the mean pinion speed must be positive; it is " +
-                      number_text(t.mean_pinion_speed) + " rad/s");
+    throw Refusal("NO_FORWARD_ROTATION", "the mean pinion speed must be positive; it is " +
+                                             number_text(t.mean_pinion_speed) + " rad/s");
   }
   return t;
 }
@@ -70,72 +70,6 @@ MarchState carried_start(const GearPairSystem& system, const CarriedState& from,
   MarchState state{};
   system.to_march(section, state.data());
   return state;
-}
-
-/// Marches the steady state once more, recording. The state goes on from cycle to cycle.
-void record_response(GearPairSystem& system, const SteadyState& steady, int cycles,
-                     const MarchOptions& options, const MarchScales& scales, ResponseRecord& record,
-                     HistorySampler& history, SolverStatistics& statistics,
-                     const std::function<bool(double)>& progress) {
-  using Phases = PhaseSystem<true>;
-  constexpr int kSize = Phases::kSize;
-  Phases::State y{};
-  std::copy(steady.state.begin(), steady.state.end(), y.begin());
-  y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
-  system.regime = steady.regime;
-  system.set_torques(steady.torques);
-  record.starts_in_gap = system.regime.side == 0;
-
-  GearPairSystem probe = system;  // evaluates between the march's own evaluations
-  std::array<Instant, ResponseRecord::kSamples> samples;
-  int cycle = 0;
-  bool recording = true;
-  const auto on_step = [&](const MarchStep<kSize>& step) {
-    if (!(step.to[kPinionSpeed] > 0)) {
-      throw Refusal("NO_FORWARD_ROTATION",
-                    "the pinion comes to a stop: the march over mesh phase needs forward rotation");
-    }
-    probe.regime = system.regime;
-    probe.set_interval(system.interval());
-    if (recording) {
-      for (int i = 0; i < ResponseRecord::kSamples; ++i) {
-        const double theta = static_cast<double>(i) / (ResponseRecord::kSamples - 1);
-        const auto at = i == 0 ? step.from : i + 1 == ResponseRecord::kSamples ? step.to : step.at(theta);
-        probe.evaluate(step.start + theta * step.length, at.data(), samples[i]);
-      }
-      record.add_step(samples);
-    }
-    while (history.wanted() && history.next_phase() < cycle + step.start + step.length) {
-      const double inside = history.next_phase() - cycle;
-      const auto at = step.at(std::clamp((inside - step.start) / step.length, 0.0, 1.0));
-      probe.evaluate(inside, at.data(), samples[0]);
-      history.add(cycle + inside, at.data(), samples[0], system.torques().pinion);
-    }
-  };
-  for (; cycle < cycles || history.wanted(); ++cycle) {
-    if (progress && !progress(1)) throw Cancelled();
-    Phases phases(system, scales);
-    std::vector<GapEvent> events;
-    phases.gap_events = &events;
-    recording = cycle < cycles;
-    EventExactMarch<Phases> march(phases, options);
-    double phase = 0;
-    march.run(phase, y, 1.0, on_step);
-    throw_if_refused(system);
-    statistics.right_hand_sides += march.statistics().right_hand_sides;
-    statistics.accepted_steps += march.statistics().accepted_steps;
-    statistics.rejected_steps += march.statistics().rejected_steps;
-    statistics.events += march.statistics().events;
-    ++statistics.mesh_cycles;
-    if (recording) {
-      for (GapEvent event : events) {
-        event.phase += cycle;
-        record.gap_events.push_back(event);
-      }
-    }
-    if (cycle + 1 == cycles) std::copy(y.begin(), y.end(), record.integrals.begin());
-  }
-  statistics.contact_solutions += probe.contact_solutions() - system.contact_solutions();
 }
 
 SolverStatistics statistics_of(const SteadyState& s) {
@@ -210,8 +144,7 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const Target& targe
   record.fill(system.torques(), 1, true, out);
   out.statistics.contact_solutions = system.contact_solutions();
   system.regime = {system.torques().pinion >= 0 ? 1 : -1, true};
-  out.section_state =
-      system.to_section(static_start(system, target.mean_pinion_speed, 0).data());
+  out.section_state = system.to_section(static_start(system, target.mean_pinion_speed, 0).data());
   out.history = history.take();
   return out;
 }
@@ -254,9 +187,9 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
         if (from) {
           state = carried_start(system, *from, target.mean_pinion_speed);
         } else {
-          state = static_start(system, target.mean_pinion_speed,
-                               start == PointStart::kLargeVibration
-                                   ? kLargeVibrationDeflection : 0);
+          state =
+              static_start(system, target.mean_pinion_speed,
+                           start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0);
         }
         result = solve_full(system, target, options, state, history);
       }
@@ -279,17 +212,19 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
   if (options.probe_coexisting_response && options.model == PointModel::kFull) {
     for (const PointStart start : {PointStart::kQuasiStatic, PointStart::kLargeVibration}) {
       const PointResult other = respond(start, std::nullopt, {});
-      const double span = result.dynamic_transmission_error.maximum -
-                          result.dynamic_transmission_error.minimum;
+      const double span =
+          result.dynamic_transmission_error.maximum - result.dynamic_transmission_error.minimum;
       const double difference = std::abs(other.dynamic_transmission_error.minimum -
                                          result.dynamic_transmission_error.minimum) +
                                 std::abs(other.dynamic_transmission_error.maximum -
                                          result.dynamic_transmission_error.maximum);
       if (!other.settled || !result.settled || difference <= 1e-3 * span) continue;
-      result.coexisting_response = CoexistingResponse{
-          other.inefficiency_rms.value_or(0), other.inefficiency_energy_mean.value_or(0),
-          other.pinion_torque, other.dynamic_transmission_error.minimum,
-          other.dynamic_transmission_error.maximum, other.contact_loss};
+      result.coexisting_response = CoexistingResponse{other.inefficiency_rms.value_or(0),
+                                                      other.inefficiency_energy_mean.value_or(0),
+                                                      other.pinion_torque,
+                                                      other.dynamic_transmission_error.minimum,
+                                                      other.dynamic_transmission_error.maximum,
+                                                      other.contact_loss};
       break;
     }
   }

@@ -34,7 +34,7 @@ enum class PointModel {
 
 /// Where a single point starts; it decides the branch where two responses coexist.
 enum class PointStart {
-  kQuasiStatic,  ///< wound up to the static equilibrium: the low-amplitude branch
+  kQuasiStatic,     ///< wound up to the static equilibrium: the low-amplitude branch
   kLargeVibration,  ///< the same, released from 60 um more mesh deflection: the vibro-impact branch
                     ///< where it exists
 };
@@ -53,10 +53,11 @@ struct PointOptions {
   std::optional<CarriedState> carried_state;  ///< overrides start
   bool probe_coexisting_response = false;     ///< also settle from the other start and compare
   double relative_tolerance = 1e-7;           ///< of the march, per step [1e-11, 1e-3]
-  double settling_tolerance = 1e-6;  ///< relative change of the response per period that counts as settled
-  int maximum_mesh_cycles = 4000;    ///< work limit of the search for the steady state
-  int recorded_mesh_cycles = 50;     ///< averaged when no period is found (the paper's 50)
-  HistoryRequest history;            ///< empty: none computed
+  double settling_tolerance =
+      1e-6;  ///< relative change of the response per period that counts as settled
+  int maximum_mesh_cycles = 4000;  ///< work limit of the search for the steady state
+  int recorded_mesh_cycles = 50;   ///< averaged when no period is found (the paper's 50)
+  HistoryRequest history;          ///< empty: none computed
   /// Called between mesh cycles with the fraction done in [0, 1]; false cancels (throws Cancelled).
   std::function<bool(double)> progress;
 };
@@ -82,22 +83,22 @@ struct SolverStatistics {
   long contact_solutions = 0;
   long accepted_steps = 0;
   long rejected_steps = 0;
-  long events = 0;            ///< exact locations of contact loss, regain and load onset
-  long mesh_cycles = 0;       ///< marched in all
-  long accelerations = 0;     ///< accepted extrapolations towards the steady state
+  long events = 0;                ///< exact locations of contact loss, regain and load onset
+  long mesh_cycles = 0;           ///< marched in all
+  long accelerations = 0;         ///< accepted extrapolations towards the steady state
   double periodicity_defect = 0;  ///< relative change of the section state over the last period
   double largest_multiplier = 0;  ///< Floquet, modulus; below 1: the response is attracting
 };
 
 /// Work over the recorded steady state [J]; input = output + losses + stored + parametric.
 struct PowerBalance {
-  double input = 0;           ///< T_s dphi_s
-  double output = 0;          ///< T_w dphi_w
-  double friction = 0;        ///< flank friction
-  double shaft_damping = 0;   ///< c_t1, c_t2
-  double mesh_damping = 0;    ///< c xdot^2
-  double stored = 0;          ///< change of kinetic and elastic energy
-  double parametric = 0;      ///< the torques eq 2 leaves out: F e' - k_m' f^2/2 per radian of phi_p
+  double input = 0;          ///< T_s dphi_s
+  double output = 0;         ///< T_w dphi_w
+  double friction = 0;       ///< flank friction
+  double shaft_damping = 0;  ///< c_t1, c_t2
+  double mesh_damping = 0;   ///< c xdot^2
+  double stored = 0;         ///< change of kinetic and elastic energy
+  double parametric = 0;     ///< the torques eq 2 leaves out: F e' - k_m' f^2/2 per radian of phi_p
 };
 
 struct RangeWarning {
@@ -107,9 +108,9 @@ struct RangeWarning {
 
 /// The other steady state at the same operating point, in short.
 struct CoexistingResponse {
-  double inefficiency_rms = 0;          ///< [%]
-  double inefficiency_energy_mean = 0;  ///< [%]
-  double pinion_torque = 0;             ///< [N m]
+  double inefficiency_rms = 0;              ///< [%]
+  double inefficiency_energy_mean = 0;      ///< [%]
+  double pinion_torque = 0;                 ///< [N m]
   double dte_minimum = 0, dte_maximum = 0;  ///< [m]
   bool contact_loss = false;
 };
@@ -117,19 +118,19 @@ struct CoexistingResponse {
 /// A point of the inefficiency curve. SI units; inefficiencies in percent of the input power.
 /// What is lost here is mesh (conjunctional) power: bearings, churning and seals are not in it.
 struct PointResult {
-  double vehicle_speed = 0;       ///< [m/s]
-  double mean_pinion_speed = 0;   ///< [rad/s]
-  double mesh_frequency = 0;      ///< [Hz]
-  double pinion_torque = 0;       ///< T_s [N m]
-  double wheel_torque = 0;        ///< T_w [N m]
-  double input_power = 0;         ///< mean T_s phidot_s [W]
+  double vehicle_speed = 0;      ///< [m/s]
+  double mean_pinion_speed = 0;  ///< [rad/s]
+  double mesh_frequency = 0;     ///< [Hz]
+  double pinion_torque = 0;      ///< T_s [N m]
+  double wheel_torque = 0;       ///< T_w [N m]
+  double input_power = 0;        ///< mean T_s phidot_s [W]
 
-  std::optional<double> inefficiency_rms;          ///< eq 30, RMS over time [%]; absent at no input power
+  std::optional<double> inefficiency_rms;  ///< eq 30, RMS over time [%]; absent at no input power
   std::optional<double> inefficiency_energy_mean;  ///< loss energy / input energy [%]
-  double mesh_loss_power = 0;     ///< mean [W]
-  double mesh_loss_torque = 0;    ///< mesh_loss_power / mean pinion speed [N m]
-  double viscous_loss_power = 0;  ///< [W]
-  double boundary_loss_power = 0; ///< [W]
+  double mesh_loss_power = 0;                      ///< mean [W]
+  double mesh_loss_torque = 0;                     ///< mesh_loss_power / mean pinion speed [N m]
+  double viscous_loss_power = 0;                   ///< [W]
+  double boundary_loss_power = 0;                  ///< [W]
   std::array<FlankLoss, kFlankPairs> flank_losses;
   double boundary_to_viscous_friction_ratio = 0;  ///< ratio of the RMS total forces (fig 8) [-]
 
@@ -143,11 +144,11 @@ struct PointResult {
   double contact_loss_time_share = 0;  ///< [-]
   std::vector<ContactLoss> contact_losses;
 
-  Extremes central_film_thickness;  ///< over loaded flanks; means are load-time weighted [m]
-  Extremes film_ratio;              ///< lambda_s [-]
-  Extremes contact_temperature;     ///< T_c [K]
-  Extremes maximum_pressure;        ///< p_max [Pa]
-  Extremes shear_rate;              ///< [1/s]
+  Extremes central_film_thickness;        ///< over loaded flanks; means are load-time weighted [m]
+  Extremes film_ratio;                    ///< lambda_s [-]
+  Extremes contact_temperature;           ///< T_c [K]
+  Extremes maximum_pressure;              ///< p_max [Pa]
+  Extremes shear_rate;                    ///< [1/s]
   double limiting_stress_time_share = 0;  ///< share of time with a contact centre on tau_L [-]
   double limiting_stress_area_share = 0;  ///< load-time mean of the area share on tau_L [-]
 

@@ -20,8 +20,8 @@ void equilibrium_state(const GearPairSystem& system, double phase, double force,
   MeshFunctions at = mesh.functions(theta, theta);
   for (int i = 0; i < 4; ++i) {  // R_g's ripple over the winding: contracts by 1e-2 and is tiny
     const double x = side * system.dynamics().half_backlash + force / at.mesh_stiffness;
-    y[kWinding] = x + at.static_transmission_error - at.radius_integral -
-                  system.dynamics().half_backlash;
+    y[kWinding] =
+        x + at.static_transmission_error - at.radius_integral - system.dynamics().half_backlash;
     at = mesh.functions(theta, theta - lag * y[kWinding]);
   }
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
@@ -47,7 +47,8 @@ Torques solve_quasi_static(GearPairSystem& system, double speed, bool solve_whee
   std::array<double, kRecordComponents> state{}, rate{};
   Instant at;
   const auto solve_at = [&](double phase, int interval, double& torque) {
-    const MeshFunctions f = mesh.functions(2 * std::numbers::pi * phase, 2 * std::numbers::pi * phase);
+    const MeshFunctions f =
+        mesh.functions(2 * std::numbers::pi * phase, 2 * std::numbers::pi * phase);
     const double force = (system.torques().pinion + torque) / f.pinion_contact_radius;
     equilibrium_state(system, phase, force, speed, kRecordComponents, state.data());
     system.set_interval(interval);

@@ -6,11 +6,12 @@
 
 namespace tribodyn {
 
-/// The cheap sibling of the march: constant speeds, xdot = 0, and at each mesh phase the load at which
-/// the pinion is in equilibrium, R_p F = T_s + T_fr,p(F). The unknown torque follows from the mean
-/// power. Two Gauss points in each interval of the tables (the integrand has kinks at their ends).
-/// Sets the system's torques and returns them; fills `record` for one mesh cycle.
-Torques solve_quasi_static(GearPairSystem& system, double mean_pinion_speed, bool solve_wheel_torque,
-                           ResponseRecord& record, HistorySampler& history);
+/// The cheap sibling of the march: constant speeds, xdot = 0, and at each mesh phase the load at
+/// which the pinion is in equilibrium, R_p F = T_s + T_fr,p(F). The unknown torque follows from the
+/// mean power. Two Gauss points in each interval of the tables (the integrand has kinks at their
+/// ends). Sets the system's torques and returns them; fills `record` for one mesh cycle.
+Torques solve_quasi_static(GearPairSystem& system, double mean_pinion_speed,
+                           bool solve_wheel_torque, ResponseRecord& record,
+                           HistorySampler& history);
 
 }  // namespace tribodyn

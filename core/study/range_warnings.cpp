@@ -20,9 +20,10 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
                                       "140 (section 2.3 of the paper)");
   }
   if (r.maximum_pressure.maximum > 1.35e9) {
-    warn("PRESSURE", "maximum pressure " + number_text(r.maximum_pressure.maximum * 1e-9) +
-                         " GPa; the friction model was compared with measurements from 0.85 to 1.35 "
-                         "GPa (fig 5)");
+    warn("PRESSURE",
+         "maximum pressure " + number_text(r.maximum_pressure.maximum * 1e-9) +
+             " GPa; the friction model was compared with measurements from 0.85 to 1.35 "
+             "GPa (fig 5)");
   }
   if (r.film_ratio.minimum < 0.5 && r.film_ratio.maximum > 0) {
     warn("FILM_RATIO", "film ratio down to " + number_text(r.film_ratio.minimum) +
@@ -35,29 +36,31 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
                                   "; Greenwood and Tripp expect 0.03 to 0.05 for steel on steel");
   }
   if (r.limiting_stress_area_share > 0.5) {
-    warn("LIMITING_STRESS", number_text(100 * r.limiting_stress_area_share) +
-                                " % of the loaded area sits on the limiting shear stress, which was "
-                                "measured at 40 degrees Celsius and is held independent of "
-                                "temperature");
+    warn("LIMITING_STRESS",
+         number_text(100 * r.limiting_stress_area_share) +
+             " % of the loaded area sits on the limiting shear stress, which was "
+             "measured at 40 degrees Celsius and is held independent of "
+             "temperature");
   }
   if (inlet < 20) {
-    warn("COLD_INLET", "inlet at " + number_text(inlet) +
-                           " degrees Celsius: inlet shear heating and starvation are not modelled and "
-                           "thin the film of cold oil");
+    warn("COLD_INLET",
+         "inlet at " + number_text(inlet) +
+             " degrees Celsius: inlet shear heating and starvation are not modelled and "
+             "thin the film of cold oil");
   }
   if (!r.settled) {
-    warn("NOT_SETTLED",
-         "no period of 1 to 4 mesh cycles settled within " +
-             std::to_string(r.statistics.mesh_cycles) +
-             " mesh cycles: the figures are averages over " +
-             std::to_string(r.recorded_mesh_cycles) + " recorded cycles");
+    warn("NOT_SETTLED", "no period of 1 to 4 mesh cycles settled within " +
+                            std::to_string(r.statistics.mesh_cycles) +
+                            " mesh cycles: the figures are averages over " +
+                            std::to_string(r.recorded_mesh_cycles) + " recorded cycles");
   } else if (r.period_in_mesh_cycles > 1) {
-    warn("PERIOD", "the response repeats after " + std::to_string(r.period_in_mesh_cycles) +
-                       " mesh cycles");
+    warn("PERIOD",
+         "the response repeats after " + std::to_string(r.period_in_mesh_cycles) + " mesh cycles");
   }
   if (r.model == PointModel::kQuasiStatic) {
     warn("QUASI_STATIC",
-         "no dynamics: within a few percent far from resonance; near the mesh resonance, half of it, "
+         "no dynamics: within a few percent far from resonance; near the mesh resonance, half of "
+         "it, "
          "and in vibro-impact the inefficiency can be 10 to 45 % low");
   }
   if (scene.options.isothermal) {

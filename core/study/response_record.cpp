@@ -44,7 +44,8 @@ void ResponseRecord::add_samples(const std::array<Instant, kSamples>& instants, 
 void ResponseRecord::add_step(const std::array<Instant, kSamples>& instants) {
   add_samples(instants, transmission_error_, [](const Instant& i) { return i.transmission_error; });
   add_samples(instants, mesh_force_, [](const Instant& i) { return i.mesh_force; });
-  add_samples(instants, pinion_friction_, [](const Instant& i) { return i.pinion_friction_torque; });
+  add_samples(instants, pinion_friction_,
+              [](const Instant& i) { return i.pinion_friction_torque; });
   add_samples(instants, gear_friction_, [](const Instant& i) { return i.gear_friction_torque; });
   for (int k = 0; k < kFlankPairs; ++k) {
     const bool all = std::all_of(instants.begin(), instants.end(),
@@ -93,8 +94,7 @@ void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
   out.mesh_loss_torque = out.mesh_loss_power / out.mean_pinion_speed;
   if (std::abs(out.input_power) > 1e-9 * (std::abs(out.input_power) + out.mesh_loss_power) &&
       out.input_power != 0) {
-    out.inefficiency_rms =
-        100 / std::abs(torques.pinion) * std::sqrt(y[kLossShareSquared] / time);
+    out.inefficiency_rms = 100 / std::abs(torques.pinion) * std::sqrt(y[kLossShareSquared] / time);
     out.inefficiency_energy_mean = 100 * out.mesh_loss_power / std::abs(out.input_power);
   }
   if (y[kViscousForceSquared] > 0) {

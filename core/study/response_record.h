@@ -15,8 +15,8 @@ class ResponseRecord {
   static constexpr int kSamples = 5;  ///< per step, equidistant: extremes are refined by parabolas
   using Integrals = std::array<double, kRecordComponents>;
 
-  /// Film, temperature, pressure and shear rate count towards extremes on flanks that carry at least
-  /// 1 % of `reference_force` [N].
+  /// Film, temperature, pressure and shear rate count towards extremes on flanks that carry at
+  /// least 1 % of `reference_force` [N].
   explicit ResponseRecord(double reference_force) : load_floor_(0.01 * reference_force) {}
 
   void add_step(const std::array<Instant, kSamples>& instants);

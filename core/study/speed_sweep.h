@@ -21,7 +21,7 @@ struct SweepOptions {
 struct SweepPoint {
   double vehicle_speed = 0;  ///< [m/s]
   std::optional<PointResult> result;
-  std::string refusal_reason;    ///< when there is no result
+  std::string refusal_reason;  ///< when there is no result
   std::string refusal_sentence;
 };
 

@@ -35,11 +35,16 @@ inline GearSet reference_gear_set(const std::string& calibration = "A") {
   out.pinion_teeth = file.at("blank_geometry").at("N_p");
   out.gear_teeth = file.at("blank_geometry").at("N_g");
   const nlohmann::json& t = file.at("tables");
-  out.tables = {reference_slots(t.at("load_share")),      reference_slots(t.at("Rx")),
-                reference_slots(t.at("Ry")),              reference_slots(t.at("A_up")),
-                reference_slots(t.at("A_vp")),            reference_slots(t.at("A_ug")),
-                reference_slots(t.at("A_vg")),            reference_slots(t.at("A_contact_minor")),
-                reference_slots(t.at("A_contact_major")), reference_slots(t.at("r_fr_p")),
+  out.tables = {reference_slots(t.at("load_share")),
+                reference_slots(t.at("Rx")),
+                reference_slots(t.at("Ry")),
+                reference_slots(t.at("A_up")),
+                reference_slots(t.at("A_vp")),
+                reference_slots(t.at("A_ug")),
+                reference_slots(t.at("A_vg")),
+                reference_slots(t.at("A_contact_minor")),
+                reference_slots(t.at("A_contact_major")),
+                reference_slots(t.at("r_fr_p")),
                 reference_slots(t.at("r_fr_g"))};
   const nlohmann::json& own = calibration == "B" ? file.at("calibration_B") : file;
   out.series = reference_mesh_series(own.at("fourier"));
@@ -61,8 +66,8 @@ inline GearSet reference_gear_set(const std::string& calibration = "A") {
 
 /// Fluids 1, 2, 3 of the paper.
 inline Lubricant reference_lubricant(int fluid = 1) {
-  Lubricant oil{1.55e-4, 944.8, 159, 1.609e-8, 313.15, 4.5e-7, 0.9,
-                0.25,    343.15, 4e6, 0.029,   0.154,  1016.1, -0.6323};
+  Lubricant oil{1.55e-4, 944.8,  159, 1.609e-8, 313.15, 4.5e-7, 0.9,
+                0.25,    343.15, 4e6, 0.029,    0.154,  1016.1, -0.6323};
   if (fluid == 2) {
     oil.vogel_viscosity_prefactor = 7.47e-5;
     oil.vogel_temperature_coefficient = 1105.0;
