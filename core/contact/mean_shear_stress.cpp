@@ -85,12 +85,15 @@ Moment moment(const Law& law, double from, double to) {
   Moment out;
   const double start = law.log_stress(from), end = law.log_stress(to);
   out.shift = std::max(start, end);
-  const double span = std::abs(end - start);
-  if (span <= 6) {
+  // E-folds of the integrand: those of the stress, and two per unit of s from p dp.
+  const double folds = std::abs(end - start) + 2 * (to - from);
+  if (folds <= 6) {
     add_panel<12>(law, from, to, out);
+  } else if (folds <= 10) {
+    add_panel<16>(law, from, to, out);
   } else {
     // Panels of at most 12 e-folds, laid out evenly in ln tau.
-    const int panels = static_cast<int>(std::min(64.0, std::ceil(span / 12)));
+    const int panels = static_cast<int>(std::min(64.0, std::ceil(folds / 12)));
     double left = from;
     for (int i = 1; i <= panels; ++i) {
       const double growth = ((i * end + (panels - i) * start) / panels - law.base) / law.factor;

@@ -33,6 +33,8 @@ double lambert_start(double z) {
 
 ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double base, double gain) {
   double guess = 0;
+  // Only asperities that pull (eqs 43, 44 as printed) can cool the film out of eq 34's range.
+  if (!(base > film.lubricant->vogel_reference_temperature)) return {0, base, {}};
   const MeanShearStress cold = mean_shear_stress(film, base, guess);
   if (!(gain > 0)) return {1, base, cold};
 
@@ -78,7 +80,9 @@ ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double bas
       }
       double next = y - at.value / at.slope;
       if (!(next >= lower && next <= upper)) next = 0.5 * (lower + upper);
-      if (std::abs(next - y) <= 3e-8) return answer(next, 1);  // Newton's error is the square of it
+      // Newton's error is the square of the step, but for the last kelvin before the density law
+      // ends: there tau_bar changes more within a step of 3e-8 than anywhere else.
+      if (std::abs(next - y) <= 3e-8 && std::abs(at.value) <= 1e-7) return answer(next, 1);
       // Bisection now and then, so that no cycle between plateau and tail survives.
       y = i % 8 == 7 ? 0.5 * (lower + upper) : next;
     }

@@ -60,6 +60,11 @@ struct MarchStep {
 /// the right-hand side is smooth; steps end exactly on breakpoints and on events, so the order is
 /// that of the pair everywhere (Dormand and Prince, J. Comput. Appl. Math. 6, 1980, 19).
 ///
+/// Corners: a piece may begin or end like a power t^p, 0 < p < 1, of the distance (friction under a
+/// load that starts from zero). The embedded estimate sees only a part of the error there. Steps
+/// that touch a corner are tested more sharply, so that steps shrink towards it and the error of
+/// the whole stays in proportion to the tolerance.
+///
 /// System provides
 ///   static constexpr int kSize, kEvents; using State = std::array<double, kSize>;
 ///   void derivative(double s, const State& y, State& dy)      in the current regime, continued
@@ -70,6 +75,10 @@ struct MarchStep {
 ///   double next_breakpoint(double s)  first point beyond s where the right-hand side has a kink
 ///   void on_breakpoint(double s)      s was reached
 ///   double scale(int i)               size of component i for the error test; infinity: not tested
+/// and may provide, all or none,
+///   bool corner_behind()              the piece that starts here starts with a corner
+///   bool corner_ahead()               the piece ends with one at the next breakpoint
+///   bool corner_at(int index)         the piece ends with one at this event
 /// No allocation; throws Refusal CHATTER, NOT_FINITE, WORK_LIMIT, and Cancelled.
 template <class System>
 class EventExactMarch {
@@ -88,6 +97,7 @@ class EventExactMarch {
     if (next_step_ <= 0) next_step_ = std::min(breakpoint - s, options_.maximum_step);
     int chatter = 0;
     long attempts = 0;
+    bool from_corner = corner_behind();
     while (s < end) {
       if (++attempts % 256 == 0) {
         if (attempts > options_.maximum_steps) {
@@ -102,10 +112,20 @@ class EventExactMarch {
       if (h > 0.999999 * room) {
         h = room;
         at_breakpoint = true;
-      } else if (h > 0.5 * room) {
+      } else if (h > 0.5 * room && !corner_ahead()) {
         h = 0.5 * room;  // two even steps instead of a long and a sliver
       }
       const double error = attempt(s, y, h);
+      if (from_corner && error <= 1 && error * kUnseenAfterCorner > 1) {
+        ++statistics_.rejected_steps;
+        next_step_ = h * nearer_corner(error * kUnseenAfterCorner);
+        continue;
+      }
+      if (at_breakpoint && error <= 1 && error * kUnseenBeforeCorner > 1 && corner_ahead()) {
+        ++statistics_.rejected_steps;
+        next_step_ = h * (1 - nearer_corner(error * kUnseenBeforeCorner));
+        continue;
+      }
       if (!(error <= 1)) {
         ++statistics_.rejected_steps;
         next_step_ = h * (std::isfinite(error) ? std::max(0.2, 0.9 * std::pow(error, -0.2)) : 0.1);
@@ -119,11 +139,18 @@ class EventExactMarch {
         suggested = std::max(suggested, std::min(next_step_, 4 * h));
 
       const int event = first_event(s, y, h);
+      if (event >= 0 && event_error_ * kUnseenBeforeCorner > 1 && corner_at(event) &&
+          event_step_ > 1e-9 * h) {
+        ++statistics_.rejected_steps;
+        next_step_ = event_step_ * (1 - nearer_corner(event_error_ * kUnseenBeforeCorner));
+        continue;
+      }
       if (event >= 0) {
         at_breakpoint = false;
         suggested = std::max(suggested, next_step_);
       }
       finish_step(s, y, event >= 0 ? event_step_ : h, on_step);
+      from_corner = false;
       if (at_breakpoint) s = breakpoint;
       if (event >= 0) {
         ++statistics_.events;
@@ -131,6 +158,7 @@ class EventExactMarch {
         if (chatter > 50) throw Refusal("CHATTER", "contact opens and closes without end");
         system_.on_event(event, s, y);
         evaluate(s, y, k_[0]);
+        from_corner = corner_behind();
       } else {
         chatter = 0;
       }
@@ -138,6 +166,7 @@ class EventExactMarch {
       if (at_breakpoint && s < end) {
         system_.on_breakpoint(s);
         breakpoint = std::min(end, system_.next_breakpoint(s));
+        from_corner = corner_behind();
       }
     }
   }
@@ -150,6 +179,25 @@ class EventExactMarch {
   void restart() { next_step_ = 0; }
 
  private:
+  /// Error over estimate for t^p, 0.6 < p < 1, on a step that starts or ends at the corner.
+  static constexpr double kUnseenAfterCorner = 30, kUnseenBeforeCorner = 6;
+  static constexpr bool kHasCorners = requires(System & system) { system.corner_ahead(); };
+
+  bool corner_behind() const {
+    if constexpr (kHasCorners) return system_.corner_behind();
+    return false;
+  }
+  bool corner_ahead() const {
+    if constexpr (kHasCorners) return system_.corner_ahead();
+    return false;
+  }
+  bool corner_at(int event) const {
+    if constexpr (kHasCorners) return system_.corner_at(event);
+    return false;
+  }
+  /// By how much a step must come nearer to a corner, where errors fall like h^(1 + p) only.
+  static double nearer_corner(double error) { return std::max(0.02, 0.9 / std::sqrt(error)); }
+
   void evaluate(double s, const State& y, State& dy) {
     ++statistics_.right_hand_sides;
     system_.derivative(s, y, dy);
@@ -238,7 +286,7 @@ class EventExactMarch {
     double best = x, previous = 0, g_previous = 0;
     bool have_previous = false;
     for (int i = 0; i < 30; ++i) {
-      attempt(s, y, x);
+      event_error_ = attempt(s, y, x);
       const double gx = event_value(s + x, next_, found);
       best = x;
       if (std::abs(gx) <= kNothing) break;
@@ -263,6 +311,7 @@ class EventExactMarch {
   State next_{};
   double next_step_ = 0;
   double event_step_ = 0;
+  double event_error_ = 0;
 };
 
 }  // namespace tribodyn

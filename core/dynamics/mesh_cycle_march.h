@@ -76,7 +76,7 @@ class PhaseSystem {
     if (regime.side == 0) {
       regime.side = index == 0 ? 1 : -1;
     } else if (index == 1) {
-      regime.loaded = !regime.loaded;
+      regime.loaded = load_begins_ = !regime.loaded;
       return;
     } else {
       regime.side = system_.dynamics().half_backlash > 0 ? 0 : -regime.side;
@@ -94,15 +94,39 @@ class PhaseSystem {
   double next_breakpoint(double) const {
     return static_cast<double>(system_.interval() + 1) / system_.mesh().intervals();
   }
-  void on_breakpoint(double) { system_.set_interval(system_.interval() + 1); }
+  void on_breakpoint(double) {
+    system_.set_interval(system_.interval() + 1);
+    load_begins_ = false;
+  }
   double scale(int i) const { return scale_[i]; }
+
+  /// Friction goes like W^0.74 near W = 0: where a pair takes or gives up its share of the load,
+  /// and where the load of all begins or ends.
+  bool corner_behind() const { return system_.regime.loaded && (load_begins_ || share_is_zero(0)); }
+  bool corner_ahead() const { return system_.regime.loaded && share_is_zero(1); }
+  bool corner_at(int) const { return system_.regime.loaded; }
 
   std::vector<GapEvent>* gap_events = nullptr;
 
  private:
+  /// Whether a pair has no load at that end (0 or 1) of the interval but has inside.
+  bool share_is_zero(int end) const {
+    constexpr double kNothing = 1e-12;
+    const int interval = system_.interval();
+    const double count = system_.mesh().intervals();
+    std::array<FlankKinematics, kFlankPairs> at_end, inside;
+    system_.mesh().flanks(interval, (interval + end) / count, at_end);
+    system_.mesh().flanks(interval, (interval + 0.5) / count, inside);
+    for (int k = 0; k < kFlankPairs; ++k) {
+      if (at_end[k].load_share <= kNothing && inside[k].load_share > kNothing) return true;
+    }
+    return false;
+  }
+
   GearPairSystem& system_;
   MarchScales scales_;
   State scale_;
+  bool load_begins_ = false;  ///< at the start of this piece, from zero
   Instant instant_;
 };
 

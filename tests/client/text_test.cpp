@@ -168,6 +168,20 @@ TEST(HistoryReport, SummaryAndCsv) {
             "flank_load_newtons_flank_1,flank_load_newtons_flank_2");
 }
 
+TEST(HistoryReport, AFlankWithoutLoadHasNoTemperature) {
+  EXPECT_EQ(column_quantity("flank_film_ratio_flank_1"), "flank_film_ratio");
+  EXPECT_EQ(column_quantity("flank_load_newtons"), "flank_load_newtons");
+  EXPECT_TRUE(zero_means_no_contact("flank_contact_temperature_kelvin_flank_0"));
+  EXPECT_FALSE(zero_means_no_contact("flank_load_newtons_flank_0"));
+  EXPECT_FALSE(zero_means_no_contact("mesh_force_newtons"));
+  v1::HistoryChunk history;
+  auto& column = *history.add_columns();
+  column.set_name("flank_contact_temperature_kelvin_flank_0");
+  for (const double value : {0.0, 350.0, 370.0}) column.add_values(value);
+  const auto lines = lines_of(history_summary(history));
+  EXPECT_TRUE(holds(lines.at(2), "2      350   360      370"));
+}
+
 TEST(ContactReport, ShowsEveryNumberOfTheResponse) {
   v1::EvaluateContactResponse contact;
   const auto* descriptor = contact.GetDescriptor();

@@ -120,8 +120,8 @@ struct Shear {
 
   /// ln of eq 23 with eq 31, without the limit.
   double log_unlimited(double pressure) const {
-    const double log_eta = log_viscosity(contact.lubricant, temperature);
-    const double factor = roelands_factor(log_eta, contact.options.as_published);
+    const double log_eta = plain::log_viscosity(contact.lubricant, temperature);
+    const double factor = plain::roelands_factor(log_eta, contact.options.as_published);
     const double thinning =
         contact.options.newtonian
             ? 0
@@ -140,17 +140,10 @@ struct Shear {
   }
 };
 
-/// The mean of the stress over the footprint by quadrature over position: t = r^2 is the share of
-/// the area within a radius, eq 19 gives p = p_max sqrt(1 - t).
-inline double mean_stress(const Shear& shear, double maximum_pressure) {
-  return integral(
-      [&](double t) { return shear.stress(maximum_pressure * std::sqrt(std::max(0.0, 1 - t))); }, 0,
-      1);
-}
-
-/// Radii at which the stress meets the limit, and the share of the area on it, by a scan.
+/// Radii at which the stress meets the limit, and the share of the area on it, by a scan in
+/// xi = p/p_max.
 struct Limited {
-  int switches = 0;
+  std::vector<double> switches;
   double area_share = 0;
   bool centre = false;
 };
@@ -162,27 +155,43 @@ inline Limited limited(const Shear& shear, double maximum_pressure, int scan = 4
     const double p = maximum_pressure * xi;
     return shear.log_unlimited(p) - std::log(shear.limit(p));
   };
-  double left = 0;
   bool on = excess(0) > 0;
   double entered = 0;  // xi where the current stretch on the limit began
   for (int i = 1; i <= scan; ++i) {
-    const double right = static_cast<double>(i) / scan;
-    if ((excess(right) > 0) != on) {
-      double low = left, high = right;
-      for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (low + high);
-        ((excess(middle) > 0) == on ? low : high) = middle;
-      }
-      ++out.switches;
-      if (on) out.area_share += low * low - entered * entered;
-      entered = low;
-      on = !on;
+    double low = static_cast<double>(i - 1) / scan, high = static_cast<double>(i) / scan;
+    if ((excess(high) > 0) == on) continue;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (low + high);
+      ((excess(middle) > 0) == on ? low : high) = middle;
     }
-    left = right;
+    out.switches.push_back(low);
+    if (on) out.area_share += low * low - entered * entered;
+    entered = low;
+    on = !on;
   }
   out.centre = on;
   if (on) out.area_share += 1 - entered * entered;
   return out;
+}
+
+/// The mean of the stress over the footprint by quadrature over position: t = r^2 is the share of
+/// the area within a radius, eq 19 gives p = p_max sqrt(1 - t). Cut where the stress has kinks.
+inline double mean_stress(const Shear& shear, double maximum_pressure) {
+  std::vector<double> cuts{0};
+  const Limited kinks = limited(shear, maximum_pressure);
+  for (auto xi = kinks.switches.rbegin(); xi != kinks.switches.rend(); ++xi) {
+    cuts.push_back((1 - *xi) * (1 + *xi));
+  }
+  cuts.push_back(1);
+  double mean = 0;
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    mean += integral(
+        [&](double t) {
+          return shear.stress(maximum_pressure * std::sqrt(std::max(0.0, 1 - t)));
+        },
+        cuts[i - 1], cuts[i]);
+  }
+  return mean;
 }
 
 /// |a - b| relative to the larger; 0 for equal infinities.

@@ -26,6 +26,8 @@ const std::map<std::string, std::string>& switch_descriptions() {
       {"load_dependent_mesh_data", "Mesh stiffness, error and load shares at the actual torque."},
       {"tabulated_friction_arms",
        "Friction arms of the tables instead of those of the actual sliding direction."},
+      {"tabulated_friction_arms",
+       "Lever arms of friction from the tables of the gear set, not from the actual sliding."},
       {"exact_hertz", "Elliptic integrals in place of the fits of eqs 21, 22."},
       {"hertz_from_total_load", "Contact ellipse from the total load, not the film's part."},
   };

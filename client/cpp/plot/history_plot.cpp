@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <map>
 #include <vector>
 
 #include "client/cpp/plot/panel.h"
+#include "client/cpp/report/history_report.h"
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/text/text.h"
 
@@ -40,7 +42,6 @@ constexpr UnitSuffix kUnits[] = {
 };
 
 constexpr char kTimeColumn[] = "time_seconds";
-constexpr char kFlankMark[] = "_flank_";
 
 bool is_abscissa(const std::string& name) {
   return name == kTimeColumn || name.rfind("mesh_phase", 0) == 0;
@@ -67,7 +68,11 @@ std::vector<std::pair<std::string, std::vector<const v1::HistoryChunk::Column*>>
 std::vector<double> scaled(const v1::HistoryChunk::Column& column, double factor) {
   std::vector<double> values;
   values.reserve(column.values_size());
-  for (const double value : column.values()) values.push_back(factor * value);
+  const bool has_gaps = zero_means_no_contact(column.name());
+  for (const double value : column.values()) {
+    values.push_back(has_gaps && value == 0 ? std::numeric_limits<double>::quiet_NaN()
+                                            : factor * value);
+  }
   return values;
 }
 
@@ -87,14 +92,6 @@ std::pair<std::string, std::vector<double>> abscissa(const v1::HistoryChunk& his
 }
 
 }  // namespace
-
-std::string column_quantity(const std::string& column) {
-  const std::size_t mark = column.rfind(kFlankMark);
-  const bool ends_in_slot = mark != std::string::npos && mark > 0 &&
-                            mark + sizeof(kFlankMark) == column.size() &&
-                            std::isdigit(static_cast<unsigned char>(column.back())) != 0;
-  return ends_in_slot ? column.substr(0, mark) : column;
-}
 
 ColumnTitle column_title(const std::string& column) {
   std::string words = column_quantity(column);

@@ -17,7 +17,4 @@ struct ColumnTitle {
 };
 ColumnTitle column_title(const std::string& column);
 
-/// A column without its flank slot: "flank_load_newtons" from "flank_load_newtons_flank_1".
-std::string column_quantity(const std::string& column);
-
 }  // namespace tribodyn::client

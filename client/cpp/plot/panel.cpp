@@ -109,6 +109,12 @@ void draw_labels(const Panel& panel, const Scale& scale, Svg& svg) {
       labels[i - 1].y -= overlap / 2;
     }
   }
+  // None below the frame, where the numbers of the axis stand.
+  double lowest = panel.corner.y + panel.height;
+  for (auto label = labels.rbegin(); label != labels.rend(); ++label) {
+    label->y = std::min(label->y, lowest - (label->series->note.empty() ? 0 : kNoteDistance) - 4);
+    lowest = label->y - kLabelDistance + 4;
+  }
   for (const Label& label : labels) {
     svg.text({panel.corner.x + panel.width + 10, label.y + 4}, label.series->label,
              {kLabelSize + 0.5, "start", label.series->colour, true, 0});
@@ -137,7 +143,8 @@ void draw_panel(const Panel& panel, Svg& svg) {
   if (scale.y.empty()) scale.y = {0, 1};
   if (scale.x.low == scale.x.high) scale.x = {scale.x.low - 1, scale.x.high + 1};
   const auto x_ticks = nice_ticks(scale.x.low, scale.x.high, static_cast<int>(panel.width / 60));
-  const auto y_ticks = nice_ticks(scale.y.low, scale.y.high, static_cast<int>(panel.height / 45));
+  const auto y_ticks =
+      nice_ticks(scale.y.low, scale.y.high, std::max(4, static_cast<int>(panel.height / 45)));
   scale.y = {y_ticks.front(), y_ticks.back()};
 
   const double bottom = panel.corner.y + panel.height;

@@ -1,6 +1,7 @@
 #include "client/cpp/report/history_report.h"
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 #include <vector>
 
@@ -10,23 +11,43 @@
 
 namespace tribodyn::client {
 
+namespace {
+
+constexpr char kFlankMark[] = "_flank_";
+
+std::vector<std::string> summary_row(const v1::HistoryChunk::Column& column) {
+  std::vector<double> values(column.values().begin(), column.values().end());
+  if (zero_means_no_contact(column.name())) std::erase(values, 0.0);
+  if (values.empty()) return {column.name(), "0", "-", "-", "-"};
+  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+  const double mean =
+      std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return {column.name(), std::to_string(values.size()), significant(*least, 6),
+          significant(mean, 6), significant(*largest, 6)};
+}
+
+}  // namespace
+
+std::string column_quantity(const std::string& column) {
+  const std::size_t mark = column.rfind(kFlankMark);
+  const bool ends_in_slot = mark != std::string::npos && mark > 0 &&
+                            mark + sizeof(kFlankMark) == column.size() &&
+                            std::isdigit(static_cast<unsigned char>(column.back())) != 0;
+  return ends_in_slot ? column.substr(0, mark) : column;
+}
+
+bool zero_means_no_contact(const std::string& column) {
+  const std::string quantity = column_quantity(column);
+  return quantity != column && !quantity.ends_with("_newtons");
+}
+
 std::string history_summary(const v1::HistoryChunk& history) {
   Table table({{"Column", "", Table::Align::kLeft},
                {"samples", ""},
                {"minimum", ""},
                {"mean", ""},
                {"maximum", ""}});
-  for (const auto& column : history.columns()) {
-    const auto& values = column.values();
-    if (values.empty()) {
-      table.add_row({column.name(), "0"});
-      continue;
-    }
-    const auto [least, largest] = std::minmax_element(values.begin(), values.end());
-    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / values.size();
-    table.add_row({column.name(), std::to_string(values.size()), significant(*least, 6),
-                   significant(mean, 6), significant(*largest, 6)});
-  }
+  for (const auto& column : history.columns()) table.add_row(summary_row(column));
   return table.text();
 }
 

@@ -93,7 +93,7 @@ std::string cycle_table(const v1::PointResult& result) {
   return table.text();
 }
 
-void add_contact(const v1::PointResult& result, Sheet& sheet) {
+void add_contact(const v1::PointResult& result, bool probed, Sheet& sheet) {
   sheet.heading("Contact");
   sheet.line("contact loss", result.contact_loss() ? "yes" : "no");
   if (result.contact_loss()) {
@@ -109,7 +109,10 @@ void add_contact(const v1::PointResult& result, Sheet& sheet) {
              "%", "of time");
   sheet.line("limiting stress, area", fixed(100 * result.limiting_stress_area_share(), 2), "%",
              "load-time mean");
-  if (!result.has_coexisting_response()) return;
+  if (!result.has_coexisting_response()) {
+    if (probed) sheet.line("another steady state", "none found from the other start");
+    return;
+  }
   const auto& other = result.coexisting_response();
   sheet.heading("Another steady state exists at this point");
   sheet.line("inefficiency, energy mean", fixed(other.inefficiency_energy_mean_percent(), 4), "%");
@@ -176,7 +179,7 @@ std::string point_report(const v1::Simulation& simulation, bool shows_assumption
   add_losses(result, losses);
   add_operation(result, losses);
   Sheet rest;
-  add_contact(result, rest);
+  add_contact(result, simulation.operating_point().probe_coexisting_response(), rest);
   add_solver(result, rest);
   add_provenance(simulation.result(), shows_assumptions, rest);
   if (result.warnings_size() > 0) rest.heading("Outside the validated range");
