@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -20,6 +21,43 @@ namespace tribodyn {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool all_finite(std::initializer_list<double> values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+/// False where a law overflowed: only shear rate and thermal resistances of solids may be infinite.
+bool representable(const ContactSolution& s) {
+  return !std::isnan(s.shear_rate + s.pinion_thermal_resistance + s.gear_thermal_resistance) &&
+         all_finite({s.film_load,
+                     s.asperity_load,
+                     s.contact_area,
+                     s.asperity_area,
+                     s.semi_major_axis,
+                     s.semi_minor_axis,
+                     s.maximum_pressure,
+                     s.entrainment_angle,
+                     s.entrainment_radius,
+                     s.side_leakage_radius,
+                     s.entrainment_speed,
+                     s.sliding_speed,
+                     s.central_film_thickness,
+                     s.film_ratio,
+                     s.contact_temperature,
+                     s.flash_temperature_rise,
+                     s.oil_temperature_rise,
+                     s.pinion_active_length,
+                     s.gear_active_length,
+                     s.film_thermal_resistance,
+                     s.heat_partition,
+                     s.mean_shear_stress,
+                     s.viscous_friction,
+                     s.boundary_friction,
+                     s.friction,
+                     s.heat_rate,
+                     s.friction_coefficient,
+                     s.limiting_stress_area_share});
+}
 
 std::string celsius(double kelvin) { return std::to_string(kelvin - 273.15) + " degrees Celsius"; }
 
@@ -98,8 +136,8 @@ ContactSolution FlankContactModel::solve(const ContactConditions& conditions) co
     return out;
   };
   const ContactConditions& k = conditions;
-  if (!std::isfinite(k.load + k.radius_x + k.radius_y + k.pinion_velocity_x + k.pinion_velocity_y +
-                     k.gear_velocity_x + k.gear_velocity_y)) {
+  if (!all_finite({k.load, k.radius_x, k.radius_y, k.pinion_velocity_x, k.pinion_velocity_y,
+                   k.gear_velocity_x, k.gear_velocity_y})) {
     return refuse(ContactStatus::kRefusedNotFinite);
   }
   if (!(k.load > 0)) return refuse(ContactStatus::kNoLoad);
@@ -107,11 +145,7 @@ ContactSolution FlankContactModel::solve(const ContactConditions& conditions) co
 
   ContactStatus status = share_load(conditions, out);
   if (status == ContactStatus::kOk) status = heat(conditions, out);
-  if (status == ContactStatus::kOk &&
-      !std::isfinite(out.friction + out.contact_temperature + out.maximum_pressure + out.film_load +
-                     out.film_ratio)) {
-    status = ContactStatus::kRefusedOverflow;
-  }
+  if (status == ContactStatus::kOk && !representable(out)) status = ContactStatus::kRefusedOverflow;
   if (status != ContactStatus::kOk) return refuse(status);
   out.status = status;
   return out;
@@ -152,6 +186,9 @@ ContactStatus FlankContactModel::share_load(const ContactConditions& k,
                             inlet_viscosity_,       inlet_pressure_viscosity_coefficient_,
                             out.entrainment_speed,  reduced_modulus_};
   const double film_under_all = chittenden_dowson_central_film(film, k.load);
+  if (!std::isfinite(film_under_all) || (film_under_all == 0 && out.entrainment_speed > 0)) {
+    return ContactStatus::kRefusedOverflow;
+  }
   const bool from_total = options_.hertz_load == HertzLoad::kTotalLoad;
   const EllipseAxes axes_under_all = ellipse_axes(unit, k.load);
   const LoadSharing sharing{k.load, film_under_all / roughness_.composite_rms_height,
@@ -160,6 +197,7 @@ ContactStatus FlankContactModel::share_load(const ContactConditions& k,
                             from_total, options_.as_published.eq43_44_polynomials};
   const SharedLoad shared = solve_load_sharing(sharing);
   if (!shared.found) return ContactStatus::kRefusedNoLoadSharing;
+  if (!std::isnormal(shared.film_load)) return ContactStatus::kRefusedOverflow;
 
   out.film_load = shared.film_load;
   const EllipseAxes axes = from_total ? axes_under_all : ellipse_axes(unit, out.film_load);

@@ -55,12 +55,19 @@ double carlson_rd(double x, double y, double z) {
 // With q = 1/k^2 = 1 - m: K - E = (m/3) R_D(0, q, 1) and E - q K = (m q/3) R_D(0, 1, q)
 // (DLMF 19.25.1). So Hertz's relation and E have no cancellation left in them:
 //   r = R_D(0, 1, q)/R_D(0, q, 1),   E = (q/3) (R_D(0, 1, q) + R_D(0, q, 1)).
-struct EllipseIntegrals {
-  double along;   // R_D(0, 1, q)
-  double across;  // R_D(0, q, 1)
+// Beyond k = e^40 they are 2 ln k - ln(ln 4k - 1) and 1 to the last bit, and q would underflow.
+struct EllipseShape {
+  double log_ratio;        // ln r
+  double second_integral;  // E
 };
 
-EllipseIntegrals ellipse_integrals(double q) { return {carlson_rd(0, 1, q), carlson_rd(0, q, 1)}; }
+EllipseShape ellipse_shape(double log_k) {
+  if (log_k > 40) return {2 * log_k - std::log(std::log(4.0) + log_k - 1), 1};
+  const double q = std::exp(-2 * log_k);
+  const double along = carlson_rd(0, 1, q);
+  const double across = carlson_rd(0, q, 1);
+  return {std::log(along / across), q / 3 * (along + across)};
+}
 
 }  // namespace
 
@@ -102,10 +109,7 @@ HertzFit exact_ellipticity(double radius_x, double radius_y) {
   // ln r is a smooth function of ln k with a slope between 3/2 (circle) and 2 (line), so the
   // root lies in [1/2, 2/3] ln r. Regula falsi with the Illinois rule inside that bracket.
   const double target = std::log(ratio);
-  const auto residual = [target](double log_k) {
-    const EllipseIntegrals integrals = ellipse_integrals(std::exp(-2 * log_k));
-    return std::log(integrals.along / integrals.across) - target;
-  };
+  const auto residual = [target](double log_k) { return ellipse_shape(log_k).log_ratio - target; };
   // The ends are widened by a little more than rounding, and are not evaluated to be believed.
   double low = 0.5 * target * (1 - 1e-9);
   double high = 2.0 / 3.0 * target * (1 + 1e-9) + 1e-15;
@@ -132,10 +136,7 @@ HertzFit exact_ellipticity(double radius_x, double radius_y) {
     last_side = side;
     if (width <= 4 * std::numeric_limits<double>::epsilon() * high) break;
   }
-  const double ellipticity = std::exp(log_k);
-  const double q = 1 / (ellipticity * ellipticity);
-  const EllipseIntegrals integrals = ellipse_integrals(q);
-  return {ellipticity, q / 3 * (integrals.along + integrals.across)};
+  return {std::exp(log_k), ellipse_shape(log_k).second_integral};
 }
 
 UnitLoadEllipse unit_load_ellipse(const HertzFit& fit, double radius_x, double radius_y,

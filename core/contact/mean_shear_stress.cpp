@@ -89,7 +89,7 @@ Moment moment(const Law& law, double from, double to) {
   const double folds = std::abs(end - start) + 2 * (to - from);
   if (folds <= 6) {
     add_panel<12>(law, from, to, out);
-  } else if (folds <= 10) {
+  } else if (folds <= 8) {
     add_panel<16>(law, from, to, out);
   } else {
     // Panels of at most 12 e-folds, laid out evenly in ln tau.

@@ -79,6 +79,8 @@ struct MarchStep {
 ///   bool corner_behind()              the piece that starts here starts with a corner
 ///   bool corner_ahead()               the piece ends with one at the next breakpoint
 ///   bool corner_at(int index)         the piece ends with one at this event
+/// and
+///   void on_no_step()                 no step however short succeeds: may throw the reason
 /// No allocation; throws Refusal CHATTER, NOT_FINITE, WORK_LIMIT, and Cancelled.
 template <class System>
 class EventExactMarch {
@@ -129,8 +131,10 @@ class EventExactMarch {
       if (!(error <= 1)) {
         ++statistics_.rejected_steps;
         next_step_ = h * (std::isfinite(error) ? std::max(0.2, 0.9 * std::pow(error, -0.2)) : 0.1);
-        if (!(s + next_step_ > s))
+        if (!(s + next_step_ > s)) {
+          if constexpr (requires { system_.on_no_step(); }) system_.on_no_step();
           throw Refusal("NOT_FINITE", "the march cannot go on: step size vanished");
+        }
         continue;
       }
       const double growth = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.5, 4.0);
@@ -230,7 +234,8 @@ class EventExactMarch {
       double error = 0;
       for (int j = 0; j < 7; ++j) error += e[j] * k_[j][i];
       error = std::abs(h * error) / (scale * options_.relative_tolerance);
-      if (!(error <= worst)) worst = error;  // keeps NaN
+      if (std::isnan(error)) return error;
+      worst = std::max(worst, error);
     }
     return worst;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "core/contact/flank_contact.h"
 #include "core/dynamics/section_state.h"
@@ -119,8 +120,9 @@ class GearPairSystem {
   const FlankContactModel& contact_model() const { return contact_; }
   const ModelOptions& options() const { return options_; }
   long contact_solutions() const { return contact_solutions_; }
-  /// kOk, or the first refusal met.
+  /// kOk, or the first refusal met since it was taken.
   ContactStatus refusal() const { return refusal_; }
+  ContactStatus take_refusal() { return std::exchange(refusal_, ContactStatus::kOk); }
 
  private:
   const MeshData& mesh_;

@@ -30,6 +30,9 @@ struct GapEvent {
   bool opens;
 };
 
+void throw_if_refused(ContactStatus status);
+void throw_if_refused(const GearPairSystem& system);
+
 /// The gear pair as EventExactMarch sees it, over mesh phase in [0, 1].
 /// kRecord adds the integrals of RecordComponent.
 template <bool kRecord>
@@ -50,8 +53,31 @@ class PhaseSystem {
   }
 
   void derivative(double phase, const State& y, State& dy) {
+    constexpr double kNoRate = std::numeric_limits<double>::quiet_NaN();  // fails the step
+    if (std::isfinite(y[kPinionSpeed])) pinion_speed_ = y[kPinionSpeed];
+    if (y[kPinionSpeed] <= 0) {
+      dy.fill(kNoRate);
+      return;
+    }
     system_.evaluate(phase, y.data(), instant_);
     system_.derivative(y.data(), instant_, kRecord, dy.data());
+    // A refused contact fails the step: the wild stages of one that is too long mean nothing.
+    const ContactStatus status = system_.take_refusal();
+    if (status == ContactStatus::kOk) {
+      refusal_ = status;
+    } else {
+      if (refusal_ == ContactStatus::kOk) refusal_ = status;  // the rest of this step sees NaN
+      dy.fill(kNoRate);
+    }
+  }
+  void on_no_step() const {
+    // Phase goes like the root of time where the pinion stops: steps end before the speed is zero.
+    if (pinion_speed_ * scales_.time * system_.mesh().mean_pinion_contact_radius() <
+        1e-4 * scales_.length) {
+      throw Refusal("NO_FORWARD_ROTATION",
+                    "the pinion comes to a stop: the march over mesh phase needs forward rotation");
+    }
+    throw_if_refused(refusal_);
   }
 
   void events(double phase, const State& y, std::array<double, kEvents>& g) const {
@@ -126,7 +152,9 @@ class PhaseSystem {
   GearPairSystem& system_;
   MarchScales scales_;
   State scale_;
-  bool load_begins_ = false;  ///< at the start of this piece, from zero
+  double pinion_speed_ = 0;                     ///< in the last evaluation
+  bool load_begins_ = false;                    ///< at the start of this piece, from zero
+  ContactStatus refusal_ = ContactStatus::kOk;  ///< of the last evaluations
   Instant instant_;
 };
 
@@ -137,7 +165,5 @@ using MarchState = std::array<double, kMarchComponents>;
 /// refusal when one is met.
 void march_mesh_cycle(GearPairSystem& system, const MarchScales& scales,
                       const MarchOptions& options, MarchState& state, MarchStatistics& statistics);
-
-void throw_if_refused(const GearPairSystem& system);
 
 }  // namespace tribodyn

@@ -80,6 +80,19 @@ class PeriodMap {
     if (system_.regime.side == kept.side) system_.regime = kept;
   }
 
+  /// Scaled change of the state over some mesh cycles.
+  double change(const MarchState& state, int cycles) {
+    const Torques torques = system_.torques();
+    const ContactRegime regime = system_.regime;
+    const Vector before = pack(state);
+    MarchState moved = state;
+    advance(moved, cycles);
+    const double norm = (pack(moved) - before).norm();
+    system_.set_torques(torques);
+    system_.regime = regime;
+    return norm;
+  }
+
   /// Largest modulus of the eigenvalues of the corrected period map at a fixed point, by forward
   /// differences: the Floquet multipliers but for the two that speed and torque correction remove.
   double largest_multiplier(const MarchState& state, int period) {
@@ -168,16 +181,19 @@ int shortest_period(const std::vector<Vector>& sections) {
 
 }  // namespace
 
-MarchState static_start(const GearPairSystem& system, double mean_pinion_speed, double offset) {
+MarchState static_start(const GearPairSystem& system, double mean_pinion_speed,
+                        double pinion_friction_torque, double gear_friction_torque, double offset) {
   const MeshData& mesh = system.mesh();
   const DrivelineDynamics& d = system.dynamics();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
   const MeshFunctions at = mesh.functions(0, 0);
-  const double force = system.torques().pinion / at.pinion_contact_radius;
+  const double force =
+      (system.torques().pinion + pinion_friction_torque) / at.pinion_contact_radius;
   const double side = force >= 0 ? 1 : -1;
   SectionState section;
   section.pinion_shaft_twist = system.torques().pinion / d.pinion_shaft_stiffness;
-  section.gear_shaft_twist = force * at.gear_contact_radius / d.gear_shaft_stiffness;
+  section.gear_shaft_twist =
+      (force * at.gear_contact_radius + gear_friction_torque) / d.gear_shaft_stiffness;
   section.pinion_shaft_speed = section.pinion_speed = mean_pinion_speed;
   // xdot = 0 at the section.
   section.gear_speed = (at.pinion_contact_radius - at.static_transmission_error_slope) *
@@ -222,6 +238,12 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
       out.largest_multiplier = map.largest_multiplier(state, period);
       if (out.largest_multiplier <= 1 + kStabilityMargin) {
         out.settled = true;
+        // What repeats after 2 or 4 cycles may do so after fewer.
+        for (int fewer = 1; fewer < period; ++fewer) {
+          if (period % fewer != 0 || map.change(state, fewer) > 10 * request.tolerance) continue;
+          period = fewer;
+          out.largest_multiplier = map.largest_multiplier(state, period);
+        }
         break;
       }
       // Extrapolation finds repelling orbits too, between two branches. The march would have left

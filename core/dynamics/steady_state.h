@@ -29,9 +29,11 @@ struct SteadyState {
   MarchStatistics statistics;
 };
 
-/// Static equilibrium at the mean speed, friction left out: where a single point starts.
+/// Static equilibrium of mesh and shafts at mesh phase 0 and the mean speed, under the system's
+/// torques and the given friction torques [N m] (eqs 2, 3): where a single point starts.
 /// `offset` [m] is added to the mesh deflection (positive: pressed together).
-MarchState static_start(const GearPairSystem& system, double mean_pinion_speed, double offset);
+MarchState static_start(const GearPairSystem& system, double mean_pinion_speed,
+                        double pinion_friction_torque, double gear_friction_torque, double offset);
 
 /// Marches mesh cycles until the response repeats. After each period the unknown torque takes up
 /// the momentum gained, its wind-up goes into shafts and mesh, and the mean speed is put back. Once

@@ -109,4 +109,21 @@ void HistorySampler::add(double phase, const double* state, const Instant& at,
   ++next_;
 }
 
+void HistorySampler::repeat_first_cycle(double period) {
+  const long cycle = request_.samples_per_mesh_cycle;
+  for (; wanted(); ++next_) {
+    const double passed = static_cast<double>(next_ / cycle);
+    std::size_t slot = 0;
+    for (const HistoryColumn column : request_.columns) {
+      const int copies = is_per_flank(column) ? kFlankPairs : 1;
+      for (int k = 0; k < copies; ++k, ++slot) {
+        double value = history_.values[slot][static_cast<std::size_t>(next_ % cycle)];
+        if (column == HistoryColumn::kTime) value += passed * period;
+        if (column == HistoryColumn::kMeshPhase) value += passed;
+        history_.values[slot].push_back(value);
+      }
+    }
+  }
+}
+
 }  // namespace tribodyn

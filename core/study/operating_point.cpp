@@ -49,6 +49,18 @@ Target target_of(const Scene& scene, const OperatingCondition& c) {
   return t;
 }
 
+/// The quasi-static response at mesh phase 0: its torques leave little for the march to settle.
+MarchState point_start(GearPairSystem& system, const Target& target, double offset,
+                       const std::function<bool(double)>& progress) {
+  ResponseRecord unused(0);
+  HistorySampler none{HistoryRequest{}};
+  const QuasiStatic start =
+      solve_quasi_static(system, target.mean_pinion_speed, target.solve_wheel_torque, unused, none,
+                         progress ? [&progress](double) { return progress(0); } : progress);
+  return static_start(system, target.mean_pinion_speed, start.pinion_friction_torque,
+                      start.gear_friction_torque, offset);
+}
+
 /// The neighbour's steady state, its wind-up and speeds moved to this point.
 MarchState carried_start(const GearPairSystem& system, const CarriedState& from,
                          double mean_pinion_speed) {
@@ -138,13 +150,18 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const Target& targe
   ResponseRecord record(std::abs(system.torques().pinion) /
                         system.mesh().mean_pinion_contact_radius());
   HistorySampler history(options.history);
-  solve_quasi_static(system, target.mean_pinion_speed, target.solve_wheel_torque, record, history);
+  const QuasiStatic solved =
+      solve_quasi_static(system, target.mean_pinion_speed, target.solve_wheel_torque, record,
+                         history, options.progress);
   out.settled = true;
   out.period_in_mesh_cycles = out.recorded_mesh_cycles = 1;
   record.fill(system.torques(), 1, true, out);
   out.statistics.contact_solutions = system.contact_solutions();
   system.regime = {system.torques().pinion >= 0 ? 1 : -1, true};
-  out.section_state = system.to_section(static_start(system, target.mean_pinion_speed, 0).data());
+  out.section_state =
+      system.to_section(static_start(system, target.mean_pinion_speed,
+                                     solved.pinion_friction_torque, solved.gear_friction_torque, 0)
+                            .data());
   out.history = history.take();
   return out;
 }
@@ -183,14 +200,11 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
       if (options.model == PointModel::kQuasiStatic) {
         result = solve_quasi_static_point(system, target, options);
       } else {
-        MarchState state{};
-        if (from) {
-          state = carried_start(system, *from, target.mean_pinion_speed);
-        } else {
-          state =
-              static_start(system, target.mean_pinion_speed,
-                           start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0);
-        }
+        const MarchState state =
+            from ? carried_start(system, *from, target.mean_pinion_speed)
+                 : point_start(system, target,
+                               start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0,
+                               options.progress);
         result = solve_full(system, target, options, state, history);
       }
       result.statistics.mesh_cycles += spent.mesh_cycles;

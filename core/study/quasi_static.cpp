@@ -35,8 +35,9 @@ void equilibrium_state(const GearPairSystem& system, double phase, double force,
 
 }  // namespace
 
-Torques solve_quasi_static(GearPairSystem& system, double speed, bool solve_wheel_torque,
-                           ResponseRecord& record, HistorySampler& history) {
+QuasiStatic solve_quasi_static(GearPairSystem& system, double speed, bool solve_wheel_torque,
+                               ResponseRecord& record, HistorySampler& history,
+                               const std::function<bool(double)>& progress) {
   const MeshData& mesh = system.mesh();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
   const int intervals = mesh.intervals(), points = 2 * intervals;
@@ -58,6 +59,7 @@ Torques solve_quasi_static(GearPairSystem& system, double speed, bool solve_whee
 
   // Load and torque settle together: each sweep divides the error by about thirty.
   for (int sweep = 0; sweep < 40; ++sweep) {
+    if (progress && !progress(sweep / 40.0)) throw Cancelled();
     double loss = 0, change = 0;
     for (int i = 0; i < points; ++i) {
       const double before = friction_torque[i];
@@ -85,17 +87,20 @@ Torques solve_quasi_static(GearPairSystem& system, double speed, bool solve_whee
     for (int c = 0; c < kRecordComponents; ++c) record.integrals[c] += rate[c] / points;
     record.add_instant(at);
   }
-  while (history.wanted()) {
+  while (history.wanted_in_first_cycle()) {
+    if (progress && !progress(1)) throw Cancelled();
     const double phase = history.next_phase();
-    const double inside = phase - std::floor(phase);
-    const int interval = std::min(static_cast<int>(inside * intervals), intervals - 1);
+    const int interval = std::min(static_cast<int>(phase * intervals), intervals - 1);
     double torque = friction_torque[2 * interval];
-    for (int i = 0; i < 8; ++i) solve_at(inside, interval, torque);
+    for (int i = 0; i < 8; ++i) solve_at(phase, interval, torque);
     state[kTime] = phase * system.cycle_angle() / speed;
     history.add(phase, state.data(), at, system.torques().pinion);
   }
+  history.repeat_first_cycle(system.cycle_angle() / speed);
   throw_if_refused(system);
-  return system.torques();
+  double torque = friction_torque[0];
+  for (int i = 0; i < 8; ++i) solve_at(0, 0, torque);
+  return {system.torques(), at.pinion_friction_torque, at.gear_friction_torque};
 }
 
 }  // namespace tribodyn

@@ -73,7 +73,8 @@ void add_refusals(const v1::SimulationResult& result, Sheet& sheet) {
   std::vector<std::pair<std::string, std::string>> refusals;  // why, at which speeds
   for (const v1::CurvePoint& point : result.points()) {
     if (point.has_result()) continue;
-    const std::string why = point.refusal_message() + " [" + point.refusal_reason() + "]";
+    std::string why = point.refusal_message();
+    why.append(" [").append(point.refusal_reason()).append("]");
     const std::string speed = significant(point.speed_kilometers_per_hour());
     if (refusals.empty() || refusals.back().first != why) {
       refusals.emplace_back(why, speed);

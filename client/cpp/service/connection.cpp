@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <thread>
 #include <utility>
 
 #include "client/cpp/service/errors.h"
@@ -10,8 +9,7 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr int kConnectTries = 3;
-constexpr std::chrono::milliseconds kConnectPause(300);
+constexpr std::chrono::seconds kSecondTry(1);
 
 /// Whether nothing was sent, so that even a call that is not idempotent may be tried again.
 /// gRPC 1.51 reads errno too late after connect(): now and then a connection in progress passes for
@@ -36,13 +34,11 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
   // http_proxy is for the web; a server on loopback or in the same plant is not behind it.
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 200);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 200);
-  const auto channel =
-      grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), arguments);
-  simulations_ = v1::Simulations::NewStub(channel);
-  lubricants_ = v1::Lubricants::NewStub(channel);
-  contacts_ = v1::Contacts::NewStub(channel);
+  channel_ = grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), arguments);
+  simulations_ = v1::Simulations::NewStub(channel_);
+  lubricants_ = v1::Lubricants::NewStub(channel_);
+  contacts_ = v1::Contacts::NewStub(channel_);
 }
 
 template <class Stub, class Request, class Response>
@@ -52,17 +48,18 @@ Response Connection::call(Stub& stub,
                           const Request& request) {
   const auto deadline = std::chrono::system_clock::now() +
                         std::chrono::duration_cast<std::chrono::milliseconds>(timeout_);
-  grpc::Status first_failure;
-  for (int tries_left = kConnectTries;; --tries_left) {
+  bool is_second_try = false;
+  for (;;) {
     grpc::ClientContext context;
     context.set_deadline(deadline);
     Response response;
     const grpc::Status status = (stub.*method)(&context, request, &response);
     if (status.ok()) return response;
-    if (!never_connected(status)) throw to_failure(status, address_);
-    if (first_failure.ok()) first_failure = status;  // says more than those of later tries
-    if (tries_left == 1) throw to_failure(first_failure, address_);
-    std::this_thread::sleep_for(kConnectPause);
+    if (is_second_try || !never_connected(status) ||
+        !channel_->WaitForConnected(std::chrono::system_clock::now() + kSecondTry)) {
+      throw to_failure(status, address_);
+    }
+    is_second_try = true;
   }
 }
 

@@ -50,6 +50,7 @@ class Connection {
 
   std::string address_;
   std::chrono::duration<double> timeout_;
+  std::shared_ptr<grpc::Channel> channel_;
   std::unique_ptr<v1::Simulations::Stub> simulations_;
   std::unique_ptr<v1::Lubricants::Stub> lubricants_;
   std::unique_ptr<v1::Contacts::Stub> contacts_;

@@ -1,0 +1,437 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "tests/consistency/plain_contact.h"
+#include "yardstick_friction.h"
+
+// Contacts at the edges of the laws: each has a closed form, a brute-force value, the value of the
+// independent implementation, or a refusal by name.
+namespace tribodyn {
+namespace {
+
+using plain::difference;
+using std::numbers::pi;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+yardstick::ContactFriction yardstick_of(const ContactCase& c) {
+  const Lubricant& l = c.lubricant;
+  yardstick::FrictionOptions options;
+  options.isothermal = c.options.isothermal;
+  options.newtonian = c.options.newtonian;
+  options.houpert_pressure_index =
+      c.options.pressure_viscosity_index == PressureViscosityIndex::kHoupert;
+  options.elliptic_integral_hertz = c.options.hertz_solution == HertzSolution::kExact;
+  options.quadrature_nodes = 64;
+  return {{l.vogel_viscosity_prefactor, l.vogel_temperature_coefficient,
+           l.vogel_reference_temperature, l.pressure_viscosity_coefficient,
+           l.pressure_viscosity_temperature, l.relaxation_time, l.havriliak_negami_alpha,
+           l.havriliak_negami_beta, l.rheology_reference_temperature,
+           l.limiting_shear_stress_at_zero_pressure, l.limiting_shear_stress_coefficient,
+           l.density_temperature_slope, l.density_at_zero_kelvin, l.thermal_conductivity},
+          {c.solid.youngs_modulus, c.solid.poissons_ratio, c.solid.thermal_conductivity,
+           c.solid.density, c.solid.specific_heat_capacity},
+          {c.roughness.asperity_density, c.roughness.asperity_radius,
+           c.roughness.composite_rms_height, c.boundary.tribofilm_shear_strength,
+           c.boundary.asperity_friction_coefficient},
+          c.sump_temperature,
+          c.inlet_temperature_rise,
+          options};
+}
+
+/// Solves and compares every figure with the independent implementation.
+ContactSolution expect_yardstick(const ContactCase& c, double tolerance = 1e-9) {
+  const ContactSolution s = c.solve();
+  EXPECT_EQ(s.status, ContactStatus::kOk) << contact_status_name(s.status);
+  const ContactConditions& k = c.conditions;
+  const yardstick::ContactResult y = yardstick_of(c).Evaluate(
+      {k.load, k.radius_x, k.radius_y, k.pinion_velocity_x, k.pinion_velocity_y,
+       k.gear_velocity_x, k.gear_velocity_y});
+  const auto expect = [tolerance](const char* name, double ours, double theirs) {
+    EXPECT_LE(difference(ours, theirs), tolerance) << name << " " << ours << " " << theirs;
+  };
+  expect("W_EHL", s.film_load, y.film_load);
+  expect("W_asp", s.asperity_load, y.asperity_load);
+  expect("A_EHL", s.contact_area, y.film_area);
+  expect("A_asp", s.asperity_area, y.asperity_area);
+  expect("p_max", s.maximum_pressure, y.maximum_pressure);
+  expect("R_e", s.entrainment_radius, y.entrainment_radius);
+  expect("h_cen", s.central_film_thickness, y.central_film_thickness);
+  expect("T_c", s.contact_temperature, y.temperature);
+  expect("l_p", s.pinion_active_length, y.pinion_active_length);
+  expect("a_h", s.heat_partition, y.heat_partition);
+  expect("tau_bar", s.mean_shear_stress, y.mean_shear_stress);
+  expect("F_v", s.viscous_friction, y.viscous_friction);
+  expect("F_b", s.boundary_friction, y.boundary_friction);
+  expect("F_fr", s.friction, y.friction);
+  expect("q", s.heat_rate, y.heat_rate);
+  EXPECT_EQ(s.limiting_stress_switches, y.limiting_stress_switches);
+  return s;
+}
+
+/// The area mean of eq 23 by a million rings.
+double brute_force_stress(const ContactCase& c, const ContactSolution& s) {
+  const plain::Shear shear{c, s.pressure_viscosity_index, s.shear_rate, s.contact_temperature};
+  constexpr int kRings = 1'000'000;
+  double sum = 0;
+  for (int i = 0; i < kRings; ++i) {
+    const double xi = (i + 0.5) / kRings;
+    sum += shear.stress(s.maximum_pressure * xi) * xi;
+  }
+  return 2 * sum / kRings;
+}
+
+TEST(HardContacts, VanishingLoad) {
+  for (const double load : {1e-3, 1e-6, 1e-9, 1e-15, 1e-30, 1e-60, 1e-100, 1e-200, 1e-300}) {
+    SCOPED_TRACE(load);
+    ContactCase c;
+    c.conditions.load = load;
+    const ContactSolution s = expect_yardstick(c);
+    EXPECT_EQ(s.asperity_load < 1e-3 * load, true);
+    if (load > 1e-20) continue;
+    // Ambient pressure all over: eqs 23 and 39 with eta_0 alone.
+    const double thinning =
+        plain::log_shear_thinning(c.lubricant, s.shear_rate, s.contact_temperature);
+    const double eta = std::exp(plain::log_viscosity(c.lubricant, s.contact_temperature) - thinning);
+    EXPECT_LE(difference(s.mean_shear_stress, eta * s.shear_rate), 1e-7);
+    const double slide = s.sliding_speed;
+    EXPECT_NEAR(s.contact_temperature - c.inlet_temperature(),
+                eta * slide * slide / (8 * c.lubricant.thermal_conductivity), 1e-6);
+  }
+}
+
+TEST(HardContacts, NoLoadAndLiftedFlanksHaveNoFriction) {
+  ContactCase c;
+  for (const double load : {0.0, -0.0, -1e-300, -2000.0}) {
+    c.conditions.load = load;
+    const ContactSolution s = c.solve();
+    EXPECT_EQ(s.status, ContactStatus::kNoLoad);
+    EXPECT_EQ(s.friction, 0);
+    EXPECT_EQ(s.heat_rate, 0);
+  }
+}
+
+TEST(HardContacts, PureRollingLeavesTheAsperities) {
+  ContactCase c;
+  c.conditions = {2000, 0.015, 0.3, 5, 1, 5, 1};
+  const ContactSolution s = c.solve();
+  ASSERT_EQ(s.status, ContactStatus::kOk);
+  EXPECT_EQ(s.sliding_speed, 0);
+  EXPECT_EQ(s.shear_rate, 0);
+  EXPECT_EQ(s.mean_shear_stress, 0);
+  EXPECT_EQ(s.viscous_friction, 0);
+  EXPECT_EQ(s.heat_rate, 0);
+  EXPECT_EQ(s.contact_temperature, c.inlet_temperature());
+  EXPECT_EQ(s.friction, 2e6 * s.asperity_area + 0.17 * s.asperity_load);
+  EXPECT_GT(s.friction, 0);
+  EXPECT_DOUBLE_EQ(s.heat_partition, 0.5);
+}
+
+TEST(HardContacts, SlowSlidingTendsToPureRolling) {
+  ContactCase c;
+  c.conditions = {2000, 0.015, 0.3, 5, 1, 5, 1};
+  const ContactSolution rolling = c.solve();
+  for (const double creep : {1e-3, 1e-6, 1e-9, 1e-12}) {
+    c.conditions.gear_velocity_x = 5 - creep;
+    const ContactSolution s = c.solve();
+    ASSERT_EQ(s.status, ContactStatus::kOk);
+    // tau is at most the ambient stress times exp(alpha p): linear in the creep.
+    EXPECT_LT(s.friction - rolling.boundary_friction, 2e5 * creep);
+    EXPECT_GT(s.viscous_friction, 0);
+  }
+}
+
+/// W_EHL + C W_EHL^(2/3) = W for surfaces without a film: a cubic in W_EHL^(1/3).
+double film_load_without_film(const ContactCase& c, double asperity_load_per_unit_film_load) {
+  double root = std::cbrt(c.conditions.load);
+  for (int i = 0; i < 100; ++i) {
+    const double f = root * root * (root + asperity_load_per_unit_film_load) - c.conditions.load;
+    root -= f / (root * (3 * root + 2 * asperity_load_per_unit_film_load));
+  }
+  return root * root * root;
+}
+
+TEST(HardContacts, ZeroEntrainmentSitsOnTheLimitingStress) {
+  for (const double load : {1e-6, 1.0, 2000.0, 2e4}) {
+    SCOPED_TRACE(load);
+    ContactCase c;
+    c.conditions = {load, 0.015, 0.3, 3, 2, -3, -2};
+    const ContactSolution s = c.solve();
+    ASSERT_EQ(s.status, ContactStatus::kOk);
+    EXPECT_EQ(s.central_film_thickness, 0);
+    EXPECT_EQ(s.film_ratio, 0);
+    EXPECT_EQ(s.shear_rate, kInfinity);
+    // F_5/2(0) = 2^(5/2) Gamma(7/4)/(2 sqrt pi), F_2(0) = 1/2.
+    const double f = std::pow(2, 1.25) * std::tgamma(1.75) / (2 * std::sqrt(pi));
+    const double modulus = 206e9 / (1 - 0.09), product = 0.04 * 0.04, ratio = 0.3 / 0.015;
+    const double k = 1.0339 * std::pow(ratio, 0.636), eps = 1.0003 + 0.5968 / ratio;
+    const double radius = 0.015 * 0.3 / 0.315;
+    const double unit_area =
+        pi * std::cbrt(6 * k * k * eps * radius / (pi * modulus)) *
+        std::cbrt(6 * eps * radius / (pi * k * modulus));
+    const double per_unit =
+        8 * std::sqrt(2.0) / 15 * pi * unit_area * product * std::sqrt(0.01) * modulus * f;
+    EXPECT_LE(difference(s.film_load, film_load_without_film(c, per_unit)), 1e-12);
+    EXPECT_LE(difference(s.asperity_area, pi * pi * s.contact_area * product / 2), 1e-14);
+    const double limit = 4e6 + 0.029 * s.maximum_pressure * 2 / 3;
+    EXPECT_LE(difference(s.mean_shear_stress, limit), 1e-14);
+    EXPECT_EQ(s.limiting_stress_area_share, 1);
+    const double flash = s.pinion_thermal_resistance * s.heat_partition * s.heat_rate;
+    EXPECT_LE(difference(s.contact_temperature, c.inlet_temperature() + flash), 1e-14);
+
+    c.options.no_limiting_shear_stress = true;
+    EXPECT_EQ(c.solve().status, ContactStatus::kRefusedUnboundedShear);
+    c.conditions.gear_velocity_x = c.conditions.gear_velocity_y = 0;
+    c.conditions.pinion_velocity_x = c.conditions.pinion_velocity_y = 0;
+    EXPECT_EQ(c.solve().status, ContactStatus::kOk);  // no film, but no sliding either
+  }
+}
+
+TEST(HardContacts, NearlyZeroEntrainmentTendsToIt) {
+  ContactCase c;
+  c.conditions = {2000, 0.015, 0.3, 3, 0, -3, 0};
+  const ContactSolution still = c.solve();
+  for (const double speed : {1e-6, 1e-12, 1e-50, 1e-300}) {
+    c.conditions.gear_velocity_x = -3 + speed;
+    c.conditions.pinion_velocity_x = 3;
+    c.conditions.pinion_velocity_y = speed;
+    const ContactSolution s = c.solve();
+    ASSERT_EQ(s.status, ContactStatus::kOk);
+    if (speed < 1e-9) {
+      EXPECT_LE(difference(s.friction, still.friction), 1e-3);
+    }
+    if (speed < 1e-40) {
+      EXPECT_LE(difference(s.friction, still.friction), 1e-12);
+    }
+  }
+}
+
+TEST(HardContacts, SurfaceAtRestTakesNoHeat) {
+  ContactCase c;
+  c.conditions = {2000, 0.015, 0.3, 5, 1, 0, 0};
+  const ContactSolution gear = c.solve();
+  ASSERT_EQ(gear.status, ContactStatus::kOk);
+  EXPECT_EQ(gear.gear_thermal_resistance, kInfinity);
+  EXPECT_DOUBLE_EQ(gear.heat_partition, 1);
+  EXPECT_LE(difference(gear.flash_temperature_rise,
+                       gear.pinion_thermal_resistance * gear.heat_rate), 1e-14);
+
+  c.conditions = {2000, 0.015, 0.3, 0, 0, 5, 1};
+  const ContactSolution pinion = c.solve();
+  ASSERT_EQ(pinion.status, ContactStatus::kOk);
+  EXPECT_EQ(pinion.pinion_thermal_resistance, kInfinity);
+  EXPECT_EQ(pinion.heat_partition, 0);
+  // The limit of R_fp a_h: through the film into the gear.
+  EXPECT_LE(difference(pinion.flash_temperature_rise,
+                       (pinion.gear_thermal_resistance + pinion.film_thermal_resistance) *
+                           pinion.heat_rate), 1e-14);
+  // and it is the limit of a slow pinion.
+  c.conditions.pinion_velocity_x = 1e-20;
+  EXPECT_LE(difference(c.solve().friction, pinion.friction), 1e-8);
+}
+
+TEST(HardContacts, BothSurfacesAtRest) {
+  ContactCase c;
+  c.conditions = {2000, 0.015, 0.3, 0, 0, 0, 0};
+  const ContactSolution s = c.solve();
+  ASSERT_EQ(s.status, ContactStatus::kOk);
+  EXPECT_EQ(s.central_film_thickness, 0);
+  EXPECT_EQ(s.viscous_friction, 0);
+  EXPECT_EQ(s.heat_rate, 0);
+  EXPECT_EQ(s.flash_temperature_rise, 0);
+  EXPECT_EQ(s.contact_temperature, c.inlet_temperature());
+  EXPECT_EQ(s.friction, 2e6 * s.asperity_area + 0.17 * s.asperity_load);
+  EXPECT_EQ(s.heat_partition, 0.5);
+}
+
+TEST(HardContacts, WideToNeedleLikeEllipses) {
+  for (double ratio = 0.4; ratio <= 1000; ratio *= 1.5) {
+    SCOPED_TRACE(ratio);
+    ContactCase c;
+    c.conditions.radius_y = ratio * c.conditions.radius_x;
+    expect_yardstick(c);
+    c.options.hertz_solution = HertzSolution::kExact;
+    // std::comp_ellint loses digits at a modulus near 1.
+    expect_yardstick(c, ratio < 50 ? 1e-9 : 1e-8);
+  }
+}
+
+TEST(HardContacts, FilmRatioFromNothingToAHundredThousand) {
+  bool vanished = false;
+  for (double height = 1e-3; height > 1e-12; height /= 1.7) {
+    SCOPED_TRACE(height);
+    ContactCase c;
+    c.roughness.composite_rms_height = height;
+    c.roughness.asperity_density = 0.04 / (height * c.roughness.asperity_radius);
+    const ContactSolution s = expect_yardstick(c);
+    if (s.film_ratio > 39) {
+      vanished = true;
+      EXPECT_EQ(s.film_load, c.conditions.load);
+      EXPECT_EQ(s.asperity_load, 0);
+      EXPECT_EQ(s.asperity_area, 0);
+      EXPECT_EQ(s.boundary_friction, 0);
+    }
+  }
+  EXPECT_TRUE(vanished);
+}
+
+TEST(HardContacts, AsperitiesThatFillTheFootprintLeaveNoViscousArea) {
+  ContactCase c;
+  c.roughness.asperity_density *= 12;  // eta beta sigma = 0.48: A_asp > A_EHL at no film
+  c.conditions = {2000, 0.015, 0.3, 1e-4, 0, 0, 0};
+  const ContactSolution s = c.solve();
+  ASSERT_EQ(s.status, ContactStatus::kOk);
+  ASSERT_GT(s.asperity_area, s.contact_area);
+  EXPECT_EQ(s.viscous_friction, 0);
+  EXPECT_EQ(s.friction, s.boundary_friction);
+}
+
+TEST(HardContacts, FilmFarThinnerThanTheRoughness) {
+  for (const double speed : {1.0, 1e-2, 1e-4, 1e-6}) {
+    SCOPED_TRACE(speed);
+    ContactCase c;
+    c.roughness = {5e8, 15e-6, 5e-6};
+    c.conditions.pinion_velocity_x = 1.2 * speed;
+    c.conditions.gear_velocity_x = 0.8 * speed;
+    c.conditions.pinion_velocity_y = c.conditions.gear_velocity_y = 0.1 * speed;
+    const ContactSolution s = expect_yardstick(c);
+    EXPECT_LT(s.film_ratio, 0.2);
+    EXPECT_GT(s.asperity_load, 0.15 * c.conditions.load);
+  }
+}
+
+TEST(HardContacts, ArcticToScorchingSumps) {
+  for (const int fluid : {1, 2, 3}) {
+    for (double celsius = -70; celsius <= 200; celsius += 15) {
+      SCOPED_TRACE(std::to_string(fluid) + " at " + std::to_string(celsius));
+      ContactCase c;
+      c.lubricant = reference_lubricant(fluid);
+      c.sump_temperature = celsius + 273.15;
+      expect_yardstick(c);
+      c.options.isothermal = true;
+      expect_yardstick(c);
+    }
+  }
+}
+
+TEST(HardContacts, ThreeHundredMetresPerSecondOfSliding) {
+  for (const double load : {1.0, 100.0, 5000.0}) {
+    SCOPED_TRACE(load);
+    ContactCase c;
+    c.conditions = {load, 0.015, 0.3, 40, 200, 40, -100};
+    const ContactSolution s = expect_yardstick(c);
+    EXPECT_DOUBLE_EQ(s.sliding_speed, 300);
+    c.options.newtonian = true;
+    expect_yardstick(c);
+  }
+}
+
+TEST(HardContacts, NoLimitingStressAtZeroPressure) {
+  ContactCase c;
+  c.lubricant.limiting_shear_stress_at_zero_pressure = 0;
+  for (const double load : {1e-3, 1.0, 2000.0}) {
+    SCOPED_TRACE(load);
+    c.conditions.load = load;
+    const ContactSolution s = c.solve();
+    ASSERT_EQ(s.status, ContactStatus::kOk);
+    EXPECT_GE(s.limiting_stress_switches, 1);  // the rim sits on the limit, which is 0 there
+    EXPECT_LE(difference(s.mean_shear_stress, brute_force_stress(c, s)), 1e-10);
+  }
+}
+
+TEST(HardContacts, LimitingStressThatDoesNotRiseWithPressure) {
+  ContactCase c;
+  c.lubricant.limiting_shear_stress_coefficient = 0;
+  const ContactSolution s = c.solve();
+  ASSERT_EQ(s.status, ContactStatus::kOk);
+  EXPECT_LE(s.mean_shear_stress, 4e6);
+  EXPECT_LE(difference(s.mean_shear_stress, brute_force_stress(c, s)), 1e-10);
+  c.sump_temperature = 253.15;
+  c.options.isothermal = true;  // stiff all over
+  EXPECT_NEAR(c.solve().mean_shear_stress, 4e6, 1e3);
+}
+
+TEST(HardContacts, NoLimitingStressAtAllIsNoViscousFriction) {
+  ContactCase c;
+  c.lubricant.limiting_shear_stress_at_zero_pressure = 0;
+  c.lubricant.limiting_shear_stress_coefficient = 0;
+  const ContactSolution s = c.solve();
+  ASSERT_EQ(s.status, ContactStatus::kOk);
+  EXPECT_EQ(s.mean_shear_stress, 0);
+  EXPECT_EQ(s.friction, s.boundary_friction);
+  EXPECT_EQ(s.limiting_stress_area_share, 1);
+  EXPECT_LE(difference(s.contact_temperature,
+                       c.inlet_temperature() + s.pinion_thermal_resistance * s.heat_partition *
+                                                   s.boundary_friction * s.sliding_speed),
+            1e-14);
+  c.conditions.gear_velocity_x = -c.conditions.pinion_velocity_x;  // nor without a film
+  c.conditions.gear_velocity_y = -c.conditions.pinion_velocity_y;
+  EXPECT_EQ(c.solve().viscous_friction, 0);
+}
+
+TEST(HardContacts, ClippedAtRimAndCentreButNotBetween) {
+  ContactCase c;
+  c.lubricant.limiting_shear_stress_at_zero_pressure = 1e5;
+  c.options.newtonian = c.options.isothermal = true;
+  const ContactSolution s = expect_yardstick(c);
+  EXPECT_EQ(s.limiting_stress_switches, 2);
+  EXPECT_TRUE(s.limiting_stress_at_centre);
+  EXPECT_LT(s.limiting_stress_area_share, 1);
+  const plain::Shear shear{c, s.pressure_viscosity_index, s.shear_rate, s.contact_temperature};
+  const plain::Limited scan = plain::limited(shear, s.maximum_pressure);
+  ASSERT_EQ(scan.switches.size(), 2u);
+  EXPECT_TRUE(scan.centre);
+  EXPECT_NEAR(s.limiting_stress_area_share, scan.area_share, 1e-12);
+  EXPECT_LE(difference(s.mean_shear_stress, brute_force_stress(c, s)), 1e-10);
+}
+
+TEST(HardContacts, BelowTheVogelTemperatureThereIsNoViscosity) {
+  const auto reason = [](const ContactCase& c) {
+    try {
+      return std::string(contact_status_name(c.solve().status));
+    } catch (const Refusal& refusal) {
+      EXPECT_NE(std::string(refusal.what()).find("Vogel"), std::string::npos) << refusal.what();
+      return refusal.reason();
+    }
+  };
+  ContactCase c;
+  const double vogel = c.lubricant.vogel_reference_temperature;
+  c.inlet_temperature_rise = 0;
+  for (const double below : {0.0, 1e-9, 1.0, 100.0, 1000.0}) {
+    c.sump_temperature = vogel - below;
+    EXPECT_EQ(reason(c), "BELOW_VOGEL_TEMPERATURE");
+  }
+  c.sump_temperature = std::nextafter(vogel, 1e3);  // e^(1e16) Pa s
+  EXPECT_EQ(reason(c), "OVERFLOW");
+  c.sump_temperature = vogel + 20;
+  EXPECT_EQ(reason(c), "OK");
+  c.lubricant.pressure_viscosity_temperature = vogel;
+  EXPECT_EQ(reason(c), "BELOW_VOGEL_TEMPERATURE");
+  c.lubricant.pressure_viscosity_temperature = 313.15;
+  c.lubricant.rheology_reference_temperature = vogel - 1;
+  EXPECT_EQ(reason(c), "BELOW_VOGEL_TEMPERATURE");
+  c.options.newtonian = true;  // eq 25 is not needed
+  EXPECT_EQ(reason(c), "OK");
+}
+
+TEST(HardContacts, ImpossibleGeometryIsRefusedByName) {
+  ContactCase c;
+  for (const double radius : {0.0, -0.015}) {
+    c.conditions.radius_x = radius;
+    EXPECT_EQ(c.solve().status, ContactStatus::kRefusedRadius);
+  }
+  c = {};
+  c.options.hertz_load = HertzLoad::kTotalLoad;
+  c.roughness.asperity_density *= 10;
+  c.conditions = {2000, 0.015, 0.3, 3, 0, -3, 0};
+  EXPECT_EQ(c.solve().status, ContactStatus::kRefusedNoLoadSharing);
+}
+
+}  // namespace
+}  // namespace tribodyn
