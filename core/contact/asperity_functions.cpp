@@ -127,7 +127,10 @@ struct Place {
 };
 
 Place find(double film_ratio) {
-  const int k = static_cast<int>(film_ratio / kCentreSpacing + 0.5);
+  // The nearest centre; film_ratio is not negative here. (lround would cost a call on the hot
+  // path.)
+  const int k =
+      static_cast<int>(film_ratio / kCentreSpacing + 0.5);  // NOLINT(bugprone-incorrect-roundings)
   const double centre = k * kCentreSpacing;
   const double offset = film_ratio - centre;
   return {table()[k], offset, std::exp(-offset * (centre + 0.5 * offset))};

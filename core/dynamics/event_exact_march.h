@@ -261,28 +261,36 @@ class EventExactMarch {
     constexpr double kNothing = 1e-13;
     constexpr int kProbes = 4;
     const MarchStep<N> step{s, h, y, next_, k_};
-    std::array<double, System::kEvents> g;
+    std::array<std::array<double, System::kEvents>, kProbes + 1> g;
+    system_.events(s, y, g[0]);
     int found = -1;
-    double upper = 1, lower = 0;
+    double upper = std::numeric_limits<double>::infinity();
     for (int probe = 1; probe <= kProbes && found < 0; ++probe) {
       const double theta = static_cast<double>(probe) / kProbes;
-      system_.events(s + theta * h, probe == kProbes ? next_ : step.at(theta), g);
-      double first = std::numeric_limits<double>::infinity();
+      system_.events(s + theta * h, probe == kProbes ? next_ : step.at(theta), g[probe]);
       for (int index = 0; index < System::kEvents; ++index) {
-        if (!(g[index] > kNothing)) continue;
+        double left = theta - 1.0 / kProbes, right = theta;
+        if (!(g[probe][index] > kNothing)) {
+          // Up and down again between the probes: look at the top of their parabola.
+          if (probe < 2) continue;
+          const double before = g[probe - 2][index], top = g[probe - 1][index];
+          const double after = g[probe][index];
+          const double bend = 2 * top - before - after;
+          if (!(bend > 0 && std::abs(after - before) < 2 * bend)) continue;
+          right = left + 0.5 / kProbes * (after - before) / bend;
+          left -= 1.0 / kProbes;
+          if (!(event_value(s + right * h, step.at(right), index) > kNothing)) continue;
+        }
         // Where on the extension, to tell which comes first.
-        double left = lower, right = theta;
         for (int i = 0; i < 40; ++i) {
           const double middle = 0.5 * (left + right);
           (event_value(s + middle * h, step.at(middle), index) > 0 ? right : left) = middle;
         }
-        if (right < first) {
-          first = right;
+        if (right < upper) {
+          upper = right;
           found = index;
         }
       }
-      if (found >= 0) upper = first;
-      lower = theta;
     }
     if (found < 0) return -1;
 

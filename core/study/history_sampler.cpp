@@ -112,7 +112,8 @@ void HistorySampler::add(double phase, const double* state, const Instant& at,
 void HistorySampler::repeat_first_cycle(double period) {
   const long cycle = request_.samples_per_mesh_cycle;
   for (; wanted(); ++next_) {
-    const double passed = static_cast<double>(next_ / cycle);
+    const long cycles_before = next_ / cycle;
+    const double passed = static_cast<double>(cycles_before);
     std::size_t slot = 0;
     for (const HistoryColumn column : request_.columns) {
       const int copies = is_per_flank(column) ? kFlankPairs : 1;

@@ -57,13 +57,18 @@ QuasiStatic solve_quasi_static(GearPairSystem& system, double speed, bool solve_
     torque = at.pinion_friction_torque;
   };
 
+  const auto phase_of = [&](int point) {
+    const int interval = point / 2;
+    return (interval + gauss[point % 2]) / intervals;
+  };
+
   // Load and torque settle together: each sweep divides the error by about thirty.
   for (int sweep = 0; sweep < 40; ++sweep) {
     if (progress && !progress(sweep / 40.0)) throw Cancelled();
     double loss = 0, change = 0;
     for (int i = 0; i < points; ++i) {
       const double before = friction_torque[i];
-      solve_at((i / 2 + gauss[i % 2]) / intervals, i / 2, friction_torque[i]);
+      solve_at(phase_of(i), i / 2, friction_torque[i]);
       change = std::max(change, std::abs(friction_torque[i] - before));
       loss += at.loss_power / points;
     }
@@ -82,7 +87,7 @@ QuasiStatic solve_quasi_static(GearPairSystem& system, double speed, bool solve_
 
   record.integrals = {};
   for (int i = 0; i < points; ++i) {
-    solve_at((i / 2 + gauss[i % 2]) / intervals, i / 2, friction_torque[i]);
+    solve_at(phase_of(i), i / 2, friction_torque[i]);
     system.derivative(state.data(), at, true, rate.data());
     for (int c = 0; c < kRecordComponents; ++c) record.integrals[c] += rate[c] / points;
     record.add_instant(at);

@@ -248,6 +248,7 @@ void expect_identities(const char* name, std::uint64_t stream, Change change, in
     const ContactSolution s = c.solve();
     if (s.status != ContactStatus::kOk) continue;
     ++solved;
+    EXPECT_EQ(s.thermal_roots, 1);
     for (const auto& [equation, residual] : residuals(c, s)) {
       EXPECT_LT(residual, kResidual) << equation;
       worst[equation] = std::max(worst[equation], residual);

@@ -46,8 +46,9 @@ Response Connection::call(Stub& stub,
                           grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&,
                                                        Response*),
                           const Request& request) {
-  const auto deadline = std::chrono::system_clock::now() +
-                        std::chrono::duration_cast<std::chrono::milliseconds>(timeout_);
+  using std::chrono::system_clock;
+  const auto deadline =
+      system_clock::now() + std::chrono::duration_cast<system_clock::duration>(timeout_);
   bool is_second_try = false;
   for (;;) {
     grpc::ClientContext context;
@@ -56,7 +57,7 @@ Response Connection::call(Stub& stub,
     const grpc::Status status = (stub.*method)(&context, request, &response);
     if (status.ok()) return response;
     if (is_second_try || !never_connected(status) ||
-        !channel_->WaitForConnected(std::chrono::system_clock::now() + kSecondTry)) {
+        !channel_->WaitForConnected(std::min(deadline, system_clock::now() + kSecondTry))) {
       throw to_failure(status, address_);
     }
     is_second_try = true;

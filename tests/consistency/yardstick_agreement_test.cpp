@@ -1,0 +1,85 @@
+// The march over mesh phase against an implementation in time that shares no code with it.
+#include <gtest/gtest.h>
+
+#include "core/study/operating_point.h"
+#include "tests/support/reference_scene.h"
+#include "tests/yardstick/yardstick_data.h"
+#include "tests/yardstick/yardstick_orbit.h"
+
+namespace tribodyn {
+namespace {
+
+constexpr double kAgreement = 1e-6;
+
+struct Place {
+  const char* name;
+  double kilometers_per_hour;
+  PointStart start = PointStart::kQuasiStatic;
+  bool isothermal = false;
+  bool newtonian = false;
+};
+
+class YardstickAgreement : public testing::TestWithParam<Place> {};
+
+TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
+  const Place& place = GetParam();
+  const double speed = place.kilometers_per_hour / 3.6;
+  Scene scene = reference_scene();
+  scene.options.isothermal = place.isothermal;
+  scene.options.newtonian = place.newtonian;
+  OperatingCondition condition;
+  condition.vehicle_speed = speed;
+  PointOptions options;
+  options.start = place.start;
+  options.relative_tolerance = 1e-9;
+  options.settling_tolerance = 1e-7;
+  const PointResult ours = solve_operating_point(scene, condition, options);
+  ASSERT_TRUE(ours.settled);
+
+  const auto worked =
+      yardstick::ReadJsonFile(std::string(TRIBODYN_TEST_DATA) + "/worked_points.json");
+  const auto gear =
+      yardstick::ReadJsonFile(std::string(TRIBODYN_TEST_DATA) + "/reference_gear_set.json");
+  yardstick::FrictionOptions friction;
+  friction.isothermal = place.isothermal;
+  friction.newtonian = place.newtonian;
+  const yardstick::GearPairSystem system(
+      yardstick::ReadGearPair(gear), yardstick::ReadVehicle(gear),
+      yardstick::ReadOrbitFriction(worked.at("orbit_inputs").at("values"), friction),
+      yardstick::FrictionArms::kFromVelocities);
+  // Our section, 0.1 % off, is only where its own shooting starts: it must find its own orbit.
+  yardstick::SectionState start;
+  start.pinion_shaft_twist = 1.001 * ours.section_state.pinion_shaft_twist;
+  start.gear_shaft_twist = 0.999 * ours.section_state.gear_shaft_twist;
+  start.pinion_shaft_speed = 1.001 * ours.section_state.pinion_shaft_speed;
+  start.pinion_speed = 1.001 * ours.section_state.pinion_speed;
+  start.gear_speed = 1.001 * ours.section_state.gear_speed;
+  start.gear_shaft_speed = 1.001 * ours.section_state.wheel_speed;
+  start.advance_with_error = 1.001 * ours.section_state.mesh_deflection;
+  const yardstick::Orbit theirs =
+      yardstick::FindPeriodicOrbit(system, start, 0.999 * ours.pinion_torque, speed);
+  ASSERT_TRUE(theirs.converged) << "mismatch " << theirs.mismatch;
+
+  const auto expect_near = [](double a, double b, const char* what) {
+    EXPECT_NEAR(a, b, kAgreement * std::abs(b)) << what << ", relative " << a / b - 1;
+  };
+  const yardstick::MeshCycle& cycle = theirs.cycle;
+  expect_near(ours.pinion_torque, cycle.input_torque, "T_s");
+  expect_near(ours.inefficiency_rms.value(), cycle.rms_inefficiency, "RMS inefficiency");
+  expect_near(ours.inefficiency_energy_mean.value(), cycle.energy_mean_inefficiency, "energy mean");
+  expect_near(ours.dynamic_transmission_error.minimum, cycle.transmission_error.minimum, "DTE min");
+  expect_near(ours.dynamic_transmission_error.mean, cycle.transmission_error.mean, "DTE mean");
+  expect_near(ours.dynamic_transmission_error.maximum, cycle.transmission_error.maximum, "DTE max");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Speeds, YardstickAgreement,
+    testing::Values(Place{"v20", 20}, Place{"v37_5", 37.5}, Place{"v67_5_up", 67.5},
+                    Place{"v67_5_down", 67.5, PointStart::kLargeVibration}, Place{"v72_5", 72.5},
+                    Place{"v80", 80}, Place{"v100", 100}, Place{"v140", 140},
+                    Place{"v100_isothermal", 100, PointStart::kQuasiStatic, true},
+                    Place{"v100_newtonian", 100, PointStart::kQuasiStatic, false, true}),
+    [](const auto& place) { return std::string(place.param.name); });
+
+}  // namespace
+}  // namespace tribodyn
