@@ -19,7 +19,8 @@ inline constexpr int kRandomStates = 100;
 inline constexpr int kRandomStates = 400;
 #endif
 
-/// One flank contact with all that it depends on. The default is a typical one of the reference set.
+/// One flank contact with all that it depends on. The default is a typical one of the reference
+/// set.
 struct ContactCase {
   Lubricant lubricant = reference_lubricant();
   Solid solid{206e9, 0.3, 46, 7850, 470};
@@ -32,7 +33,8 @@ struct ContactCase {
 
   double inlet_temperature() const { return sump_temperature + inlet_temperature_rise; }
   FlankContactModel model() const {
-    return {lubricant, solid, roughness, boundary, sump_temperature, inlet_temperature_rise, options};
+    return {lubricant, solid, roughness, boundary, sump_temperature, inlet_temperature_rise,
+            options};
   }
   ContactSolution solve() const { return model().solve(conditions); }
 };
@@ -70,20 +72,18 @@ class Draw {
 /// alpha_HN beta_HN stays below 0.8, so that there is one thermal equilibrium.
 inline ContactCase random_contact_case(Draw& draw) {
   ContactCase c;
-  c.lubricant = {draw.log_between(3e-5, 5e-4),     draw.between(700, 1150),
-                 draw.between(140, 170),           draw.between(0.8e-8, 3e-8),
-                 draw.between(293, 333),           draw.log_between(1e-9, 1e-4),
-                 draw.between(0.5, 1),             draw.between(0.1, 0.8),
-                 draw.between(313, 373),           draw.between(0, 1e7),
-                 draw.between(0.005, 0.1),         draw.between(0.1, 0.3),
-                 draw.between(950, 1100),          draw.between(-0.7, -0.5)};
+  c.lubricant = {
+      draw.log_between(3e-5, 5e-4), draw.between(700, 1150),  draw.between(140, 170),
+      draw.between(0.8e-8, 3e-8),   draw.between(293, 333),   draw.log_between(1e-9, 1e-4),
+      draw.between(0.5, 1),         draw.between(0.1, 0.8),   draw.between(313, 373),
+      draw.between(0, 1e7),         draw.between(0.005, 0.1), draw.between(0.1, 0.3),
+      draw.between(950, 1100),      draw.between(-0.7, -0.5)};
   c.solid = {draw.log_between(70e9, 400e9), draw.between(0.2, 0.35), draw.log_between(5, 200),
              draw.between(2500, 9000), draw.between(300, 900)};
   c.roughness.asperity_radius = draw.log_between(5e-6, 100e-6);
   c.roughness.composite_rms_height = draw.log_between(0.03e-6, 4e-6);
   c.roughness.asperity_density =
-      draw.between(0.02, 0.1) /
-      (c.roughness.asperity_radius * c.roughness.composite_rms_height);
+      draw.between(0.02, 0.1) / (c.roughness.asperity_radius * c.roughness.composite_rms_height);
   c.boundary = {draw.between(0, 5e6), draw.between(0, 0.3)};
   c.sump_temperature = draw.between(253.15, 403.15);
   c.inlet_temperature_rise = draw.between(0, 40);

@@ -28,10 +28,10 @@ double square(double v) { return v * v; }
 double asperity_function(double order, double film_ratio, const AsPublished& as_published) {
   if (!as_published.eq43_44_polynomials) return yardstick::AsperityIntegral(order, film_ratio);
   const double l = film_ratio;
-  return order == 2 ? -0.0018 * std::pow(l, 5) + 0.0281 * std::pow(l, 4) -
-                          0.1728 * std::pow(l, 3) + 0.5258 * l * l - 0.8043 * l + 0.5003
-                    : -0.0046 * std::pow(l, 5) + 0.0574 * std::pow(l, 4) -
-                          0.2958 * std::pow(l, 3) + 0.7844 * l * l - 1.0776 * l + 0.6167;
+  return order == 2 ? -0.0018 * std::pow(l, 5) + 0.0281 * std::pow(l, 4) - 0.1728 * std::pow(l, 3) +
+                          0.5258 * l * l - 0.8043 * l + 0.5003
+                    : -0.0046 * std::pow(l, 5) + 0.0574 * std::pow(l, 4) - 0.2958 * std::pow(l, 3) +
+                          0.7844 * l * l - 1.0776 * l + 0.6167;
 }
 
 void add_film_and_load(const ContactCase& c, const ContactSolution& s, Residuals& out) {
@@ -58,19 +58,19 @@ void add_film_and_load(const ContactCase& c, const ContactSolution& s, Residuals
   const double speed_number = eta * s.entrainment_speed / (modulus * along);
   const double material_number = s.inlet_pressure_viscosity_coefficient * modulus;
   const double load_number = s.film_load / (modulus * square(along));
-  out["eq 12 h_cen"] = difference(
-      s.central_film_thickness,
-      4.31 * along * std::pow(speed_number, 0.68) * std::pow(material_number, 0.49) *
-          std::pow(load_number, -0.073) * (1 - std::exp(-1.23 * std::pow(across / along, 2.0 / 3))));
+  out["eq 12 h_cen"] =
+      difference(s.central_film_thickness,
+                 4.31 * along * std::pow(speed_number, 0.68) * std::pow(material_number, 0.49) *
+                     std::pow(load_number, -0.073) *
+                     (1 - std::exp(-1.23 * std::pow(across / along, 2.0 / 3))));
   out["lambda_s"] =
       difference(s.film_ratio, s.central_film_thickness / c.roughness.composite_rms_height);
 
   const double product = square(c.roughness.asperity_density * c.roughness.asperity_radius *
                                 c.roughness.composite_rms_height);
   // The polynomials cancel near their roots: their largest term is the scale.
-  const double term = misprints.eq43_44_polynomials
-                          ? std::max(0.5, 0.0018 * std::pow(s.film_ratio, 5))
-                          : 0;
+  const double term =
+      misprints.eq43_44_polynomials ? std::max(0.5, 0.0018 * std::pow(s.film_ratio, 5)) : 0;
   const auto scaled = [&](double found, double factor, double function) {
     const double scale = factor * std::max(std::abs(function), term);
     return std::abs(found - factor * function) /
@@ -88,8 +88,7 @@ void add_film_and_load(const ContactCase& c, const ContactSolution& s, Residuals
 void add_ellipse(const ContactCase& c, const ContactSolution& s, Residuals& out) {
   const ContactConditions& k = c.conditions;
   const AsPublished& misprints = c.options.as_published;
-  const double load =
-      c.options.hertz_load == HertzLoad::kTotalLoad ? k.load : s.film_load;
+  const double load = c.options.hertz_load == HertzLoad::kTotalLoad ? k.load : s.film_load;
   const double ratio = std::max(k.radius_x, k.radius_y) / std::min(k.radius_x, k.radius_y);
   const double radius = k.radius_x * k.radius_y / (k.radius_x + k.radius_y);
   double ellipticity = 1.0339 * std::pow(ratio, 0.636);
@@ -105,9 +104,8 @@ void add_ellipse(const ContactCase& c, const ContactSolution& s, Residuals& out)
   }
   const double common = 6 * load * radius / (pi * s.reduced_modulus);
   const double power = misprints.eq20_semi_major ? 2 : 1;
-  out["eq 20 a_c"] =
-      difference(s.semi_major_axis,
-                 std::cbrt(common * square(ellipticity) * std::pow(integral, power)));
+  out["eq 20 a_c"] = difference(
+      s.semi_major_axis, std::cbrt(common * square(ellipticity) * std::pow(integral, power)));
   out["eq 20 b_c"] = difference(s.semi_minor_axis, std::cbrt(common * integral / ellipticity));
   out["A_EHL"] = difference(s.contact_area, pi * s.semi_major_axis * s.semi_minor_axis);
   out["eq 19 p_max"] = difference(s.maximum_pressure, 3 * load / (2 * s.contact_area));
@@ -125,12 +123,12 @@ void add_viscosity(const ContactCase& c, const ContactSolution& s, Residuals& ou
       c.options.pressure_viscosity_index == PressureViscosityIndex::kHoupert) {
     out["eq 32 Z"] =
         difference(index, oil.pressure_viscosity_coefficient / (plain::kRoelands * measured));
-    out["eq 32 alpha*(T_in)"] = difference(s.inlet_pressure_viscosity_coefficient,
-                                           index * plain::kRoelands * inlet);
+    out["eq 32 alpha*(T_in)"] =
+        difference(s.inlet_pressure_viscosity_coefficient, index * plain::kRoelands * inlet);
     return;
   }
-  out["eq 33 Z"] = difference(plain::reciprocal_asymptotic(measured, index),
-                              oil.pressure_viscosity_coefficient);
+  out["eq 33 Z"] =
+      difference(plain::reciprocal_asymptotic(measured, index), oil.pressure_viscosity_coefficient);
   out["eq 33 alpha*(T_in)"] = difference(plain::reciprocal_asymptotic(inlet, index),
                                          s.inlet_pressure_viscosity_coefficient);
 }
@@ -146,8 +144,8 @@ double active_length(const ContactCase& c, const ContactSolution& s, double u, d
 
 void add_heat(const ContactCase& c, const ContactSolution& s, Residuals& out) {
   const ContactConditions& k = c.conditions;
-  const double slide = std::hypot(k.pinion_velocity_x - k.gear_velocity_x,
-                                  k.pinion_velocity_y - k.gear_velocity_y);
+  const double slide =
+      std::hypot(k.pinion_velocity_x - k.gear_velocity_x, k.pinion_velocity_y - k.gear_velocity_y);
   out["V_s"] = difference(s.sliding_speed, slide);
   out["eq 18 shear rate"] = difference(s.shear_rate, slide / s.central_film_thickness);
 
@@ -176,11 +174,10 @@ void add_heat(const ContactCase& c, const ContactSolution& s, Residuals& out) {
                              temperature};
     return plain::mean_stress(shear, s.maximum_pressure);
   };
-  const double boundary =
-      c.options.no_boundary_friction
-          ? 0
-          : c.boundary.tribofilm_shear_strength * s.asperity_area +
-                c.boundary.asperity_friction_coefficient * s.asperity_load;
+  const double boundary = c.options.no_boundary_friction
+                              ? 0
+                              : c.boundary.tribofilm_shear_strength * s.asperity_area +
+                                    c.boundary.asperity_friction_coefficient * s.asperity_load;
   const double stress = stress_at(s.contact_temperature);
   const double viscous = (s.contact_area - s.asperity_area) * stress;
   out["eqs 23-26, 31 tau_bar"] = difference(s.mean_shear_stress, stress);
@@ -192,20 +189,18 @@ void add_heat(const ContactCase& c, const ContactSolution& s, Residuals& out) {
 
   const double heats = c.options.isothermal ? 0 : 1;
   const auto flash_rise = [&](double tau) {
-    return heats * pinion * partition *
-           ((s.contact_area - s.asperity_area) * tau + boundary) * slide;
+    return heats * pinion * partition * ((s.contact_area - s.asperity_area) * tau + boundary) *
+           slide;
   };
   const auto oil_rise = [&](double tau) {
-    return heats * slide * tau * s.central_film_thickness /
-           (8 * c.lubricant.thermal_conductivity);
+    return heats * slide * tau * s.central_film_thickness / (8 * c.lubricant.thermal_conductivity);
   };
   out["eq 39 dT_f"] = difference(s.flash_temperature_rise, flash_rise(stress));
   out["eq 39 dT_oil"] = difference(s.oil_temperature_rise, oil_rise(stress));
   const auto excess = [&](double temperature, double tau) {
     return c.inlet_temperature() + flash_rise(tau) + oil_rise(tau) - temperature;
   };
-  double residual =
-      std::abs(excess(s.contact_temperature, stress)) / s.contact_temperature;
+  double residual = std::abs(excess(s.contact_temperature, stress)) / s.contact_temperature;
   if (residual >= kResidual) {
     // Just below the end of the density law rounding T_c alone moves eq 39 by more. There the root
     // must lie that close to T_c.
@@ -218,9 +213,9 @@ void add_heat(const ContactCase& c, const ContactSolution& s, Residuals& out) {
   out["eq 38 T_c"] = residual;
 
   if (!c.options.no_limiting_shear_stress) {
-    const double mean_limit = c.lubricant.limiting_shear_stress_at_zero_pressure +
-                              c.lubricant.limiting_shear_stress_coefficient * s.maximum_pressure *
-                                  2 / 3;
+    const double mean_limit =
+        c.lubricant.limiting_shear_stress_at_zero_pressure +
+        c.lubricant.limiting_shear_stress_coefficient * s.maximum_pressure * 2 / 3;
     EXPECT_LE(s.mean_shear_stress, mean_limit * (1 + 1e-14)) << "the mean beyond the mean limit";
   }
 }
@@ -263,13 +258,16 @@ void expect_identities(const char* name, std::uint64_t stream, Change change, in
 }
 
 TEST(ContactIdentities, DefaultModel) {
-  expect_identities("default", 1, [](ContactCase&) {}, kRandomStates);
+  expect_identities(
+      "default", 1, [](ContactCase&) {}, kRandomStates);
 }
 
 TEST(ContactIdentities, IsothermalNewtonianUnlimitedAndWithoutBoundaryFriction) {
   const int states = kRandomStates / 4;
-  expect_identities("isothermal", 2, [](ContactCase& c) { c.options.isothermal = true; }, states);
-  expect_identities("Newtonian", 3, [](ContactCase& c) { c.options.newtonian = true; }, states);
+  expect_identities(
+      "isothermal", 2, [](ContactCase& c) { c.options.isothermal = true; }, states);
+  expect_identities(
+      "Newtonian", 3, [](ContactCase& c) { c.options.newtonian = true; }, states);
   expect_identities(
       "no boundary friction", 4, [](ContactCase& c) { c.options.no_boundary_friction = true; },
       states);
@@ -282,16 +280,14 @@ TEST(ContactIdentities, IsothermalNewtonianUnlimitedAndWithoutBoundaryFriction) 
 TEST(ContactIdentities, OtherHertzAndViscosityLaws) {
   const int states = kRandomStates / 4;
   expect_identities(
-      "exact Hertz", 6,
-      [](ContactCase& c) { c.options.hertz_solution = HertzSolution::kExact; }, states);
+      "exact Hertz", 6, [](ContactCase& c) { c.options.hertz_solution = HertzSolution::kExact; },
+      states);
   expect_identities(
       "ellipse from the total load", 7,
       [](ContactCase& c) { c.options.hertz_load = HertzLoad::kTotalLoad; }, states);
   expect_identities(
       "Houpert", 8,
-      [](ContactCase& c) {
-        c.options.pressure_viscosity_index = PressureViscosityIndex::kHoupert;
-      },
+      [](ContactCase& c) { c.options.pressure_viscosity_index = PressureViscosityIndex::kHoupert; },
       states);
 }
 

@@ -66,7 +66,8 @@ TEST(ContactLimits, ShortRelaxationTimeIsTheNewtonianOption) {
     for (const double relaxation_time : {0.0, 1e-300}) {
       c.lubricant.relaxation_time = relaxation_time;
       const ContactSolution thinning = c.solve();
-      if (thinning.status == ContactStatus::kRefusedNoTemperature) continue;  // beyond the density law
+      if (thinning.status == ContactStatus::kRefusedNoTemperature)
+        continue;  // beyond the density law
       expect_same(thinning, newtonian, 1e-13);
     }
   });
@@ -200,8 +201,8 @@ TEST(ContactLimits, SwappingTheSurfacesOrTurningBothAroundChangesNoForce) {
     if (swapped.status != ContactStatus::kOk) return;  // R_fp a_h is not symmetric: hotter
     EXPECT_EQ(swapped.central_film_thickness, s.central_film_thickness);
     EXPECT_LE(std::abs(swapped.heat_partition + s.heat_partition - 1), 1e-14);
-    for (double* v : {&k.pinion_velocity_x, &k.pinion_velocity_y, &k.gear_velocity_x,
-                      &k.gear_velocity_y}) {
+    for (double* v :
+         {&k.pinion_velocity_x, &k.pinion_velocity_y, &k.gear_velocity_x, &k.gear_velocity_y}) {
       *v = -*v;
     }
     expect_same(c.solve(), swapped);

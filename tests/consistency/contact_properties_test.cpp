@@ -31,8 +31,8 @@ ContactSolution solved(const ContactCase& c) {
 }
 
 void speed_up(ContactConditions& k, double growth) {
-  for (double* v : {&k.pinion_velocity_x, &k.pinion_velocity_y, &k.gear_velocity_x,
-                    &k.gear_velocity_y}) {
+  for (double* v :
+       {&k.pinion_velocity_x, &k.pinion_velocity_y, &k.gear_velocity_x, &k.gear_velocity_y}) {
     *v *= growth;
   }
 }
@@ -40,13 +40,13 @@ void speed_up(ContactConditions& k, double growth) {
 RC_GTEST_PROP(FilmProperties, RisesWithViscosityCoefficientAndSpeedFallsWithLoad, ()) {
   const ContactSolution s = solved(any_case());
   const double growth = any_growth();
-  FilmConditions film{s.entrainment_radius, s.side_leakage_radius, s.inlet_viscosity,
-                      s.inlet_pressure_viscosity_coefficient, s.entrainment_speed,
-                      s.reduced_modulus};
+  FilmConditions film{s.entrainment_radius, s.side_leakage_radius,
+                      s.inlet_viscosity,    s.inlet_pressure_viscosity_coefficient,
+                      s.entrainment_speed,  s.reduced_modulus};
   const double h = chittenden_dowson_central_film(film, s.film_load);
   RC_ASSERT(chittenden_dowson_central_film(film, s.film_load * growth) < h);
-  for (double* rising : {&film.viscosity, &film.pressure_viscosity_coefficient,
-                         &film.entrainment_speed}) {
+  for (double* rising :
+       {&film.viscosity, &film.pressure_viscosity_coefficient, &film.entrainment_speed}) {
     const double before = *rising;
     *rising *= growth;
     RC_ASSERT(chittenden_dowson_central_film(film, s.film_load) > h);
@@ -113,10 +113,11 @@ double any_finite() {
                        std::numeric_limits<double>::min(), 1e-300, 1e-200, 1e-100, 1e-30, 1e-9,
                        1e-3, 1.0, 300.0, 1e4, 1e9, 1e30, 1e100, 1e154, 1e200, 1e300,
                        std::numeric_limits<double>::max()),
-      rc::gen::map(rc::gen::arbitrary<std::uint64_t>(), [](std::uint64_t bits) {
-        const double v = std::abs(std::bit_cast<double>(bits));
-        return std::isfinite(v) ? v : 1.0;
-      }),
+      rc::gen::map(rc::gen::arbitrary<std::uint64_t>(),
+                   [](std::uint64_t bits) {
+                     const double v = std::abs(std::bit_cast<double>(bits));
+                     return std::isfinite(v) ? v : 1.0;
+                   }),
       rc::gen::map(rc::gen::inRange(-3000, 3000), [](int e) { return std::pow(10, e / 10.0); }));
   return *rc::gen::arbitrary<bool>() ? size : -size;
 }
@@ -257,10 +258,9 @@ RC_GTEST_PROP(ContactFuzz, AnyFiniteConditionsGiveAnAnswerOrANamedRefusal, ()) {
 RC_GTEST_PROP(ContactFuzz, NotANumberIsRefusedByName, ()) {
   ContactCase c = any_case();
   const FlankContactModel model = c.model();
-  const double poison =
-      *rc::gen::element(std::numeric_limits<double>::quiet_NaN(),
-                        std::numeric_limits<double>::infinity(),
-                        -std::numeric_limits<double>::infinity());
+  const double poison = *rc::gen::element(std::numeric_limits<double>::quiet_NaN(),
+                                          std::numeric_limits<double>::infinity(),
+                                          -std::numeric_limits<double>::infinity());
   *numbers_of(c.conditions).at(*rc::gen::inRange(0, 7)) = poison;
   RC_ASSERT(model.solve(c.conditions).status == ContactStatus::kRefusedNotFinite);
 }

@@ -29,29 +29,28 @@ yardstick::ContactFriction yardstick_of(const ContactCase& c) {
       c.options.pressure_viscosity_index == PressureViscosityIndex::kHoupert;
   options.elliptic_integral_hertz = c.options.hertz_solution == HertzSolution::kExact;
   options.quadrature_nodes = 64;
-  return {{l.vogel_viscosity_prefactor, l.vogel_temperature_coefficient,
-           l.vogel_reference_temperature, l.pressure_viscosity_coefficient,
-           l.pressure_viscosity_temperature, l.relaxation_time, l.havriliak_negami_alpha,
-           l.havriliak_negami_beta, l.rheology_reference_temperature,
-           l.limiting_shear_stress_at_zero_pressure, l.limiting_shear_stress_coefficient,
-           l.density_temperature_slope, l.density_at_zero_kelvin, l.thermal_conductivity},
-          {c.solid.youngs_modulus, c.solid.poissons_ratio, c.solid.thermal_conductivity,
-           c.solid.density, c.solid.specific_heat_capacity},
-          {c.roughness.asperity_density, c.roughness.asperity_radius,
-           c.roughness.composite_rms_height, c.boundary.tribofilm_shear_strength,
-           c.boundary.asperity_friction_coefficient},
-          c.sump_temperature,
-          c.inlet_temperature_rise,
-          options};
+  return {
+      {l.vogel_viscosity_prefactor, l.vogel_temperature_coefficient, l.vogel_reference_temperature,
+       l.pressure_viscosity_coefficient, l.pressure_viscosity_temperature, l.relaxation_time,
+       l.havriliak_negami_alpha, l.havriliak_negami_beta, l.rheology_reference_temperature,
+       l.limiting_shear_stress_at_zero_pressure, l.limiting_shear_stress_coefficient,
+       l.density_temperature_slope, l.density_at_zero_kelvin, l.thermal_conductivity},
+      {c.solid.youngs_modulus, c.solid.poissons_ratio, c.solid.thermal_conductivity,
+       c.solid.density, c.solid.specific_heat_capacity},
+      {c.roughness.asperity_density, c.roughness.asperity_radius, c.roughness.composite_rms_height,
+       c.boundary.tribofilm_shear_strength, c.boundary.asperity_friction_coefficient},
+      c.sump_temperature,
+      c.inlet_temperature_rise,
+      options};
 }
 
 /// Eqs 38 and 39 for a stress.
 double temperature_of(const ContactCase& c, const ContactSolution& s, double stress) {
   const double friction = (s.contact_area - s.asperity_area) * stress + s.boundary_friction;
   return c.inlet_temperature() +
-         s.sliding_speed * (s.pinion_thermal_resistance * s.heat_partition * friction +
-                            stress * s.central_film_thickness /
-                                (8 * c.lubricant.thermal_conductivity));
+         s.sliding_speed *
+             (s.pinion_thermal_resistance * s.heat_partition * friction +
+              stress * s.central_film_thickness / (8 * c.lubricant.thermal_conductivity));
 }
 
 /// The stress and temperature of a solution against the plain equations.
@@ -76,9 +75,9 @@ ContactSolution expect_yardstick(const ContactCase& c, double tolerance = 1e-9) 
       c.options.newtonian || c.options.isothermal || temperature_of(c, s, limit) < end;
   if (!in_reach) return s;
   const ContactConditions& k = c.conditions;
-  const yardstick::ContactResult y = yardstick_of(c).Evaluate(
-      {k.load, k.radius_x, k.radius_y, k.pinion_velocity_x, k.pinion_velocity_y,
-       k.gear_velocity_x, k.gear_velocity_y});
+  const yardstick::ContactResult y =
+      yardstick_of(c).Evaluate({k.load, k.radius_x, k.radius_y, k.pinion_velocity_x,
+                                k.pinion_velocity_y, k.gear_velocity_x, k.gear_velocity_y});
   const auto expect = [tolerance](const char* name, double ours, double theirs) {
     EXPECT_LE(difference(ours, theirs), tolerance) << name << " " << ours << " " << theirs;
   };
@@ -124,7 +123,8 @@ TEST(HardContacts, VanishingLoad) {
     // Ambient pressure all over: eqs 23 and 39 with eta_0 alone.
     const double thinning =
         plain::log_shear_thinning(c.lubricant, s.shear_rate, s.contact_temperature);
-    const double eta = std::exp(plain::log_viscosity(c.lubricant, s.contact_temperature) - thinning);
+    const double eta =
+        std::exp(plain::log_viscosity(c.lubricant, s.contact_temperature) - thinning);
     EXPECT_LE(difference(s.mean_shear_stress, eta * s.shear_rate), 1e-7);
     const double slide = s.sliding_speed;
     EXPECT_NEAR(s.contact_temperature - c.inlet_temperature(),
@@ -198,9 +198,8 @@ TEST(HardContacts, ZeroEntrainmentSitsOnTheLimitingStress) {
     const double modulus = 206e9 / (1 - 0.09), product = 0.04 * 0.04, ratio = 0.3 / 0.015;
     const double k = 1.0339 * std::pow(ratio, 0.636), eps = 1.0003 + 0.5968 / ratio;
     const double radius = 0.015 * 0.3 / 0.315;
-    const double unit_area =
-        pi * std::cbrt(6 * k * k * eps * radius / (pi * modulus)) *
-        std::cbrt(6 * eps * radius / (pi * k * modulus));
+    const double unit_area = pi * std::cbrt(6 * k * k * eps * radius / (pi * modulus)) *
+                             std::cbrt(6 * eps * radius / (pi * k * modulus));
     const double per_unit =
         8 * std::sqrt(2.0) / 15 * pi * unit_area * product * std::sqrt(0.01) * modulus * f;
     EXPECT_LE(difference(s.film_load, film_load_without_film(c, per_unit)), 1e-12);
@@ -245,8 +244,9 @@ TEST(HardContacts, SurfaceAtRestTakesNoHeat) {
   ASSERT_EQ(gear.status, ContactStatus::kOk);
   EXPECT_EQ(gear.gear_thermal_resistance, kInfinity);
   EXPECT_DOUBLE_EQ(gear.heat_partition, 1);
-  EXPECT_LE(difference(gear.flash_temperature_rise,
-                       gear.pinion_thermal_resistance * gear.heat_rate), 1e-14);
+  EXPECT_LE(
+      difference(gear.flash_temperature_rise, gear.pinion_thermal_resistance * gear.heat_rate),
+      1e-14);
 
   c.conditions = {2000, 0.015, 0.3, 0, 0, 5, 1};
   const ContactSolution pinion = c.solve();
@@ -256,7 +256,8 @@ TEST(HardContacts, SurfaceAtRestTakesNoHeat) {
   // The limit of R_fp a_h: through the film into the gear.
   EXPECT_LE(difference(pinion.flash_temperature_rise,
                        (pinion.gear_thermal_resistance + pinion.film_thermal_resistance) *
-                           pinion.heat_rate), 1e-14);
+                           pinion.heat_rate),
+            1e-14);
   // and it is the limit of a slow pinion.
   c.conditions.pinion_velocity_x = 1e-20;
   EXPECT_LE(difference(c.solve().friction, pinion.friction), 1e-8);

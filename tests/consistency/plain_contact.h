@@ -32,10 +32,9 @@ double integral(Function&& f, double from, double to) {
       0.190350578064785409913256402421014, 0.169004726639267902826583426598550,
       0.140653259715525918745189590510238, 0.104790010322250183839876322541518,
       0.063092092629978553290700663189204, 0.022935322010529224963732008058970};
-  static constexpr double gauss[8] = {0.417959183673469387755102040816327, 0,
-                                      0.381830050505118944950369775488975, 0,
-                                      0.279705391489276667901467771423780, 0,
-                                      0.129484966168869693270611432679082, 0};
+  static constexpr double gauss[8] = {
+      0.417959183673469387755102040816327, 0, 0.381830050505118944950369775488975, 0,
+      0.279705391489276667901467771423780, 0, 0.129484966168869693270611432679082, 0};
   struct Panel {
     double from, to, value, error;
     bool operator<(const Panel& other) const { return error < other.error; }
@@ -122,10 +121,9 @@ struct Shear {
   double log_unlimited(double pressure) const {
     const double log_eta = plain::log_viscosity(contact.lubricant, temperature);
     const double factor = plain::roelands_factor(log_eta, contact.options.as_published);
-    const double thinning =
-        contact.options.newtonian
-            ? 0
-            : log_shear_thinning(contact.lubricant, shear_rate, temperature);
+    const double thinning = contact.options.newtonian
+                                ? 0
+                                : log_shear_thinning(contact.lubricant, shear_rate, temperature);
     return log_eta + factor * (std::pow(1 + kRoelands * pressure, index) - 1) +
            std::log(shear_rate) - thinning;
   }
@@ -186,9 +184,7 @@ inline double mean_stress(const Shear& shear, double maximum_pressure) {
   double mean = 0;
   for (std::size_t i = 1; i < cuts.size(); ++i) {
     mean += integral(
-        [&](double t) {
-          return shear.stress(maximum_pressure * std::sqrt(std::max(0.0, 1 - t)));
-        },
+        [&](double t) { return shear.stress(maximum_pressure * std::sqrt(std::max(0.0, 1 - t))); },
         cuts[i - 1], cuts[i]);
   }
   return mean;
@@ -197,8 +193,7 @@ inline double mean_stress(const Shear& shear, double maximum_pressure) {
 /// |a - b| relative to the larger; 0 for equal infinities.
 inline double difference(double a, double b) {
   if (a == b) return 0;
-  return std::abs(a - b) /
-         std::max({std::abs(a), std::abs(b), std::numeric_limits<double>::min()});
+  return std::abs(a - b) / std::max({std::abs(a), std::abs(b), std::numeric_limits<double>::min()});
 }
 
 }  // namespace tribodyn::plain

@@ -34,8 +34,8 @@ TEST(PublishedViscosity, IndexOfAnOilHardlyDependsOnTemperatureUnlessTheLogarith
     const std::vector<double> viscosity = oil.at("eta"), alpha = oil.at("alpha");
     double low = 1e9, high = 0;
     for (std::size_t i = 0; i < alpha.size(); ++i) {
-      const double index = index_from_houpert(
-          roelands_factor(std::log(viscosity[i]), as_published), alpha[i]);
+      const double index =
+          index_from_houpert(roelands_factor(std::log(viscosity[i]), as_published), alpha[i]);
       low = std::min(low, index);
       high = std::max(high, index);
     }

@@ -23,9 +23,7 @@ class Excess {
     film_ = cold.solve();
     EXPECT_EQ(film_.status, ContactStatus::kOk);
   }
-  double flash_resistance() const {
-    return film_.pinion_thermal_resistance * film_.heat_partition;
-  }
+  double flash_resistance() const { return film_.pinion_thermal_resistance * film_.heat_partition; }
   double base() const {
     return case_.inlet_temperature() +
            flash_resistance() * film_.boundary_friction * film_.sliding_speed;
@@ -43,8 +41,7 @@ class Excess {
   }
   /// At a temperature, to the last digits.
   double fine(double temperature) const {
-    return base() +
-           heating(plain::mean_stress(sheared_at(temperature), film_.maximum_pressure)) -
+    return base() + heating(plain::mean_stress(sheared_at(temperature), film_.maximum_pressure)) -
            temperature;
   }
 
