@@ -15,7 +15,8 @@ struct ThermalEquilibrium {
 /// as a root in ln(T - base). Where shear thinning leaves tau_bar provably falling with temperature
 /// (alpha_HN beta_HN well below 1, or Newtonian) there is exactly one root and Newton's bracket is
 /// closed from the start; elsewhere the whole range up to the zero of the density law is scanned
-/// and all roots are counted. gain = 0 (isothermal) evaluates the stress at base.
+/// and all roots are counted. None where base is outside eqs 26 and 34. gain = 0 (isothermal)
+/// evaluates the stress at base.
 ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double base, double gain);
 
 }  // namespace tribodyn

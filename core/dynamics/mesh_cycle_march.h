@@ -73,7 +73,7 @@ class PhaseSystem {
   void on_no_step() const {
     // Phase goes like the root of time where the pinion stops: steps end before the speed is zero.
     if (pinion_speed_ * scales_.time * system_.mesh().mean_pinion_contact_radius() <
-        1e-4 * scales_.length) {
+        0.05 * scales_.length) {
       throw Refusal("NO_FORWARD_ROTATION",
                     "the pinion comes to a stop: the march over mesh phase needs forward rotation");
     }

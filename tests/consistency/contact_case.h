@@ -8,16 +8,13 @@
 
 #include "core/contact/flank_contact.h"
 #include "core/refusal.h"
+#include "tests/consistency/run_length.h"
 #include "tests/support/reference_scene.h"
 
 namespace tribodyn {
 
-/// Random states per test. Turn this down, and nothing else, for a slow build.
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr int kRandomStates = 100;
-#else
-inline constexpr int kRandomStates = 400;
-#endif
+/// Random states per test.
+inline constexpr int kRandomStates = kShortRun ? 100 : 400;
 
 /// One flank contact with all that it depends on. The default is a typical one of the reference
 /// set.

@@ -123,7 +123,7 @@ double any_finite() {
 }
 
 /// Replaces about one in `one_in` numbers.
-void shake(std::vector<double*> numbers, int one_in) {
+void shake(const std::vector<double*>& numbers, int one_in) {
   for (double* number : numbers) {
     if (*rc::gen::inRange(0, one_in) == 0) *number = any_finite();
   }

@@ -216,7 +216,7 @@ State resume(Bench& bench, const PointResult& point) {
   return y;
 }
 
-TEST(TransmissionErrorIdentities, AThousandMarchedCyclesDoNotWindUp) {
+TEST(TransmissionErrorIdentities, MarchedCyclesDoNotWindUp) {
   Bench bench(reference_scene());
   const PointResult point = solve_operating_point(bench.scene, cruise(100), {});
   ASSERT_TRUE(point.settled);
@@ -224,7 +224,8 @@ TEST(TransmissionErrorIdentities, AThousandMarchedCyclesDoNotWindUp) {
   const MarchScales scales = march_scales(bench.system, point.mean_pinion_speed);
   const double start = y[kWinding];
   MarchStatistics statistics;
-  for (int i = 0; i < 1000; ++i) march_mesh_cycle(bench.system, scales, {}, y, statistics);
+  constexpr int kCycles = kShortRun ? 200 : 1000;
+  for (int i = 0; i < kCycles; ++i) march_mesh_cycle(bench.system, scales, {}, y, statistics);
   // The speed may drift with the torque's last digits, the flanks may not part from each other.
   EXPECT_NEAR(y[kWinding], start, 1e-3 * scales.length);
 }

@@ -161,6 +161,14 @@ TEST(ThermalRoots, NoneIsRefusedByName) {
   EXPECT_EQ(c.solve().status, ContactStatus::kOk);
 }
 
+TEST(ThermalRoots, AsperitiesThatPullAreNotLeftToCoolTheOilBelowItsViscosityLaw) {
+  ContactCase c;
+  c.options.as_published.eq43_44_polynomials = true;  // negative at a film ratio of 20
+  c.roughness.composite_rms_height = 0.04e-6;
+  c.conditions = {2000, 0.015, 0.3, 5, 10, 4, -1};
+  EXPECT_STREQ(contact_status_name(c.solve().status), "NO_CONTACT_TEMPERATURE");
+}
+
 // A step of 3e-8 in ln(T - base), elsewhere nothing, is not small in the last kelvin of the density
 // law: there T_c was once wrong by a third of the rise.
 TEST(ThermalRoots, LastKelvinOfTheDensityLaw) {

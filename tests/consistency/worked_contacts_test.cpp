@@ -37,9 +37,9 @@ void switch_misprint_on(const std::string& word, AsPublished& out) {
 /// Reads each key of an object once, and complains of keys that nobody asked for.
 class Reader {
  public:
-  Reader(std::string name, const json& object) : name_(std::move(name)), left_(object) {}
+  Reader(const std::string& name, const json& object) : name_(name), left_(object) {}
   json take(const std::string& key) {
-    const json value = left_.at(key);
+    json value = left_.at(key);
     left_.erase(key);
     return value;
   }
