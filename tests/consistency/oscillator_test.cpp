@@ -105,7 +105,8 @@ TEST(March, BouncingBallMeetsTheFloorAtTheExactTimes) {
     ASSERT_GE(system.times.size(), 20u);
     EXPECT_EQ(march.statistics().events, static_cast<long>(system.times.size()));
     for (std::size_t n = 0; n < system.times.size(); ++n) {
-      const double bounces = static_cast<double>(n / 2);
+      const std::size_t bounces_before = n / 2;
+      const double bounces = static_cast<double>(bounces_before);
       const double exact = fall + bounces * (2 * fall + contact) + (n % 2 == 1 ? contact : 0);
       EXPECT_NEAR(system.times[n], exact, 2e-10) << n;
     }

@@ -1,0 +1,219 @@
+// Operating points at the edge of what anyone may ask: each ends settled, or says that it is not,
+// or is refused by name; always finite, always within the work limit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/refusal.h"
+#include "core/study/operating_point.h"
+#include "run_length.h"
+#include "tests/support/reference_scene.h"
+
+namespace tribodyn {
+namespace {
+
+OperatingCondition cruise(double kilometers_per_hour) {
+  OperatingCondition condition;
+  condition.vehicle_speed = kilometers_per_hour / 3.6;
+  return condition;
+}
+
+OperatingCondition prescribed(double pinion_torque, double kilometers_per_hour) {
+  const Scene scene = reference_scene();
+  OperatingCondition condition;
+  condition.kind = OperatingCondition::Kind::kPrescribedTorque;
+  condition.pinion_torque = pinion_torque;
+  condition.pinion_speed = kilometers_per_hour / 3.6 / scene.vehicle.wheel_radius *
+                           scene.gear_set.gear_teeth / scene.gear_set.pinion_teeth;
+  return condition;
+}
+
+void expect_finite(const Extremes& e, const char* what) {
+  EXPECT_TRUE(std::isfinite(e.minimum) && std::isfinite(e.mean) && std::isfinite(e.maximum))
+      << what;
+  const double slack = 1e-9 * (std::abs(e.minimum) + std::abs(e.maximum));
+  EXPECT_LE(e.minimum, e.mean + slack) << what;
+  EXPECT_LE(e.mean, e.maximum + slack) << what;
+}
+
+void expect_sound(const PointResult& r, const PointOptions& options) {
+  expect_finite(r.dynamic_transmission_error, "DTE");
+  expect_finite(r.mesh_force, "mesh force");
+  expect_finite(r.pinion_friction_torque, "pinion friction torque");
+  expect_finite(r.gear_friction_torque, "gear friction torque");
+  expect_finite(r.central_film_thickness, "film");
+  expect_finite(r.contact_temperature, "temperature");
+  expect_finite(r.maximum_pressure, "pressure");
+  expect_finite(r.shear_rate, "shear rate");
+  for (const double value :
+       {r.pinion_torque, r.wheel_torque, r.input_power, r.mesh_loss_power, r.mesh_loss_torque,
+        r.viscous_loss_power, r.boundary_loss_power, r.boundary_to_viscous_friction_ratio,
+        r.inefficiency_rms.value_or(0), r.inefficiency_energy_mean.value_or(0),
+        r.section_state.mesh_deflection, r.statistics.periodicity_defect,
+        r.statistics.largest_multiplier}) {
+    EXPECT_TRUE(std::isfinite(value));
+  }
+  EXPECT_GE(r.mesh_loss_power, 0);
+  EXPECT_GE(r.contact_loss_time_share, 0);
+  EXPECT_LE(r.contact_loss_time_share, 1);
+  const bool warned =
+      std::any_of(r.warnings.begin(), r.warnings.end(),
+                  [](const RangeWarning& warning) { return warning.code == "NOT_SETTLED"; });
+  EXPECT_NE(r.settled, warned);
+  if (r.settled) {
+    EXPECT_GE(r.period_in_mesh_cycles, 1);
+    EXPECT_LT(r.statistics.largest_multiplier, 1.001);
+  }
+  const PowerBalance& b = r.power_balance;
+  const double flow = std::abs(b.input) + std::abs(b.output) + b.friction;
+  EXPECT_NEAR(
+      b.input - b.output - b.friction - b.shaft_damping - b.mesh_damping - b.stored - b.parametric,
+      0, 1e-8 * flow);
+  // A few periods may be marched beyond the limit: multipliers, probes of the period, the record.
+  EXPECT_LE(r.statistics.mesh_cycles, options.maximum_mesh_cycles + 50 + r.recorded_mesh_cycles);
+}
+
+/// Settled, or sound and honest, or refused by name. Returns whether it settled.
+bool expect_an_answer(const Scene& scene, const OperatingCondition& condition,
+                      PointOptions options = {}) {
+  try {
+    const PointResult r = solve_operating_point(scene, condition, options);
+    expect_sound(r, options);
+    return r.settled;
+  } catch (const Refusal& refusal) {
+    const std::string& name = refusal.reason();
+    EXPECT_FALSE(name.empty());
+    EXPECT_TRUE(std::all_of(name.begin(), name.end(), [](char c) {
+      return (c >= 'A' && c <= 'Z') || c == '_';
+    })) << name;
+    EXPECT_GT(std::string(refusal.what()).size(), 20u);
+    EXPECT_NE(name, "NOT_FINITE");
+    return false;
+  }
+}
+
+struct Change {
+  const char* name;
+  std::function<void(Scene&)> apply;
+};
+
+void scale_stiffness(Scene& scene, double factor) {
+  FourierSeries& k = scene.gear_set.series.mesh_stiffness;
+  k.mean *= factor;
+  for (double& c : k.sine) c *= factor;
+  for (double& c : k.cosine) c *= factor;
+}
+
+const std::vector<Change>& changes() {
+  static const std::vector<Change> all = {
+      {"no_mesh_damping", [](Scene& s) { s.gear_set.dynamics.mesh_damping = 0; }},
+      {"quarter_mesh_damping", [](Scene& s) { s.gear_set.dynamics.mesh_damping *= 0.25; }},
+      {"no_backlash", [](Scene& s) { s.gear_set.dynamics.half_backlash = 0; }},
+      {"backlash_of_millimetres", [](Scene& s) { s.gear_set.dynamics.half_backlash = 1e-3; }},
+      {"hundredfold_stiffness", [](Scene& s) { scale_stiffness(s, 100); }},
+      {"hundredth_of_stiffness", [](Scene& s) { scale_stiffness(s, 0.01); }},
+      {"sump_at_140", [](Scene& s) { s.sump_temperature = 140 + 273.15; }},
+      {"gear_set_B", [](Scene& s) { s.gear_set = reference_gear_set("B"); }},
+      {"load_dependent", [](Scene& s) { s.options.load_dependent_mesh_data = true; }},
+      {"energy_consistent", [](Scene& s) { s.options.energy_consistent = true; }},
+      {"damping_in_contact_only", [](Scene& s) { s.options.damping_in_contact_only = true; }}};
+  return all;
+}
+
+class HardPoint : public testing::TestWithParam<Change> {};
+
+TEST_P(HardPoint, Settles) {
+  Scene scene = reference_scene();
+  GetParam().apply(scene);
+  for (const double speed : {37.5, 72.5, 140.0}) {
+    if (kShortRun && speed != 72.5) continue;
+    SCOPED_TRACE(speed);
+    EXPECT_TRUE(expect_an_answer(scene, cruise(speed)));
+  }
+  PointOptions loud;
+  loud.start = PointStart::kLargeVibration;
+  EXPECT_TRUE(expect_an_answer(scene, cruise(67.5), loud));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, HardPoint, testing::ValuesIn(changes()),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(HardPoints, SpeedsFromOneTo300) {
+  for (const double speed : {1.0, 5.0, 200.0, 300.0}) {
+    SCOPED_TRACE(speed);
+    EXPECT_TRUE(expect_an_answer(reference_scene(), cruise(speed)));
+  }
+}
+
+TEST(HardPoints, ArcticSumpIsSlowOilButAnswers) {
+  // Contacts of film at -20 C are solved a hundred times more slowly at speed: one speed will do.
+  Scene scene = reference_scene(1, -40);
+  EXPECT_TRUE(expect_an_answer(scene, cruise(20)));
+  if (full_run()) {
+    EXPECT_TRUE(expect_an_answer(scene, cruise(140)));
+  }
+}
+
+TEST(HardPoints, CoastRunsOnTheOtherFlanks) {
+  for (const double torque : {-5.0, -30.0}) {
+    for (const double speed : {20.0, 72.5, 140.0}) {
+      if (kShortRun && speed != 72.5) continue;
+      SCOPED_TRACE(std::to_string(torque) + " N m at " + std::to_string(speed));
+      const PointResult r = solve_operating_point(reference_scene(), prescribed(torque, speed), {});
+      expect_sound(r, {});
+      EXPECT_TRUE(r.settled);
+      EXPECT_TRUE(r.coast_side_contact);
+      EXPECT_LT(r.dynamic_transmission_error.minimum, -75e-6);
+      EXPECT_LT(r.input_power, 0);
+      EXPECT_GT(r.inefficiency_energy_mean.value(), 0);
+      // Friction brakes the train: less comes out at the pinion than goes in at the wheel.
+      EXPECT_LT(r.pinion_torque - r.wheel_torque * 13 / 36, 0.05 * std::abs(torque));
+      EXPECT_GT(r.pinion_torque - r.wheel_torque * 13 / 36, 0);
+    }
+  }
+}
+
+TEST(HardPoints, AlmostNoTorqueRattlesOrSettles) {
+  for (const double speed : {20.0, 72.5, 140.0}) {
+    if (kShortRun && speed != 72.5) continue;
+    SCOPED_TRACE(speed);
+    EXPECT_TRUE(expect_an_answer(reference_scene(), prescribed(1, speed)));
+  }
+}
+
+// Nothing holds the flanks together: they drift through the backlash, slower than the work limit.
+TEST(HardPoints, NoTorqueFloatsAndSaysThatItHasNotSettled) {
+  PointOptions options;
+  options.maximum_mesh_cycles = 150;
+  options.recorded_mesh_cycles = 5;
+  const PointResult r = solve_operating_point(reference_scene(), prescribed(0, 72.5), options);
+  expect_sound(r, options);
+  EXPECT_FALSE(r.settled);
+  EXPECT_FALSE(r.inefficiency_rms.has_value());
+  EXPECT_FALSE(r.inefficiency_energy_mean.has_value());
+}
+
+TEST(HardPoints, HeavyTorqueKnocksAcrossTheBacklash) {
+  EXPECT_TRUE(expect_an_answer(reference_scene(), prescribed(300, 72.5)));
+}
+
+TEST(HardPoints, LooseAndTightTolerances) {
+  const PointResult reference = solve_operating_point(reference_scene(), cruise(72.5), {});
+  for (const double tolerance : {1e-3, 1e-5, 1e-10}) {
+    SCOPED_TRACE(tolerance);
+    PointOptions options;
+    options.relative_tolerance = tolerance;
+    const PointResult r = solve_operating_point(reference_scene(), cruise(72.5), options);
+    EXPECT_TRUE(r.settled);
+    EXPECT_NEAR(r.inefficiency_rms.value() / reference.inefficiency_rms.value(), 1,
+                std::max(tolerance, 1e-6));
+  }
+}
+
+}  // namespace
+}  // namespace tribodyn

@@ -1,0 +1,131 @@
+// Which steady states there are, and whether the solver tells them apart: coexisting responses and
+// doubled periods.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/study/operating_point.h"
+#include "run_length.h"
+#include "tests/support/reference_scene.h"
+
+namespace tribodyn {
+namespace {
+
+OperatingCondition cruise(double kilometers_per_hour) {
+  OperatingCondition condition;
+  condition.vehicle_speed = kilometers_per_hour / 3.6;
+  return condition;
+}
+
+PointResult point(double kilometers_per_hour, PointStart start = PointStart::kQuasiStatic,
+                  bool probe = false) {
+  PointOptions options;
+  options.start = start;
+  options.probe_coexisting_response = probe;
+  return solve_operating_point(reference_scene(), cruise(kilometers_per_hour), options);
+}
+
+bool warns(const PointResult& result, const std::string& code) {
+  return std::any_of(result.warnings.begin(), result.warnings.end(),
+                     [&](const RangeWarning& warning) { return warning.code == code; });
+}
+
+void expect_same(const CoexistingResponse& seen, const PointResult& own) {
+  const double span =
+      own.dynamic_transmission_error.maximum - own.dynamic_transmission_error.minimum;
+  EXPECT_NEAR(seen.inefficiency_rms / own.inefficiency_rms.value(), 1, 1e-6);
+  EXPECT_NEAR(seen.inefficiency_energy_mean / own.inefficiency_energy_mean.value(), 1, 1e-6);
+  EXPECT_NEAR(seen.pinion_torque / own.pinion_torque, 1, 1e-7);
+  EXPECT_NEAR(seen.dte_minimum, own.dynamic_transmission_error.minimum, 1e-5 * span);
+  EXPECT_NEAR(seen.dte_maximum, own.dynamic_transmission_error.maximum, 1e-5 * span);
+  EXPECT_EQ(seen.contact_loss, own.contact_loss);
+}
+
+TEST(SteadyStates, TwoResponsesCoexistAt67AndAHalfAndEachReportsTheOther) {
+  const PointResult quiet = point(67.5, PointStart::kQuasiStatic, true);
+  const PointResult loud = point(67.5, PointStart::kLargeVibration, true);
+  for (const PointResult* r : {&quiet, &loud}) {
+    EXPECT_TRUE(r->settled);
+    EXPECT_EQ(r->period_in_mesh_cycles, 1);
+    EXPECT_LT(r->statistics.largest_multiplier, 0.99) << "both attract";
+  }
+  EXPECT_FALSE(quiet.contact_loss);
+  EXPECT_TRUE(loud.contact_loss);
+  EXPECT_GT(loud.inefficiency_rms.value(), 1.5 * quiet.inefficiency_rms.value());
+  ASSERT_TRUE(quiet.coexisting_response.has_value());
+  ASSERT_TRUE(loud.coexisting_response.has_value());
+  expect_same(*quiet.coexisting_response, loud);
+  expect_same(*loud.coexisting_response, quiet);
+}
+
+TEST(SteadyStates, NoSecondResponseIsReportedWhereThereIsOne) {
+  EXPECT_FALSE(point(40, PointStart::kQuasiStatic, true).coexisting_response.has_value());
+  EXPECT_FALSE(point(75, PointStart::kLargeVibration, true).coexisting_response.has_value());
+}
+
+// Gear set A (mesh damping 3 %) near twice the first mesh resonance.
+TEST(SteadyStates, ThePeriodDoublesNearTwiceTheResonance) {
+  for (const double speed : {150.0, 152.0, 154.0}) {
+    if (kShortRun && speed != 152) continue;
+    SCOPED_TRACE(speed);
+    const PointResult r = point(speed);
+    ASSERT_TRUE(r.settled);
+    EXPECT_EQ(r.period_in_mesh_cycles, 2);
+    EXPECT_EQ(r.recorded_mesh_cycles, 2);
+    EXPECT_TRUE(r.contact_loss);
+    EXPECT_LT(r.statistics.largest_multiplier, 1);
+    EXPECT_TRUE(warns(r, "PERIOD"));
+    EXPECT_FALSE(warns(r, "NOT_SETTLED"));
+    for (const ContactLoss& loss : r.contact_losses) {
+      EXPECT_GE(loss.start_mesh_phase, 0);
+      EXPECT_LT(loss.start_mesh_phase, 2);
+    }
+  }
+}
+
+TEST(SteadyStates, DoubledPeriodIsTheSameFromBothStarts) {
+  const PointResult quiet = point(152), loud = point(152, PointStart::kLargeVibration);
+  EXPECT_EQ(loud.period_in_mesh_cycles, 2);
+  EXPECT_NEAR(loud.inefficiency_rms.value() / quiet.inefficiency_rms.value(), 1, 1e-6);
+  EXPECT_NEAR(loud.dynamic_transmission_error.maximum / quiet.dynamic_transmission_error.maximum, 1,
+              1e-6);
+}
+
+// Below 149.4 km/h the orbit of one mesh cycle attracts, though hardly; one of two cycles coexists.
+// Settling over two cycles must not call the first a doubled period.
+TEST(SteadyStates, OneMeshCycleStaysOneCloseToTheDoubling) {
+  const PointResult quiet = point(149);
+  EXPECT_TRUE(quiet.settled);
+  EXPECT_EQ(quiet.period_in_mesh_cycles, 1);
+  EXPECT_FALSE(quiet.contact_loss);
+  EXPECT_NEAR(quiet.statistics.largest_multiplier, 0.995, 1e-3);
+  const PointResult loud = point(149, PointStart::kLargeVibration);
+  EXPECT_TRUE(loud.settled);
+  EXPECT_EQ(loud.period_in_mesh_cycles, 2);
+  EXPECT_TRUE(loud.contact_loss);
+}
+
+TEST(SteadyStates, ARepellingOrbitIsLeft) {
+  // The orbit of one mesh cycle has the multiplier -1.0014 here and is found first.
+  const PointResult r = point(149.5);
+  EXPECT_TRUE(r.settled);
+  EXPECT_EQ(r.period_in_mesh_cycles, 2);
+  EXPECT_LE(r.statistics.mesh_cycles, 1500);
+}
+
+TEST(SteadyStates, WithoutWorkToSettleTheAnswerSaysSo) {
+  PointOptions options;
+  options.maximum_mesh_cycles = 5;
+  options.recorded_mesh_cycles = 3;
+  const PointResult r = solve_operating_point(reference_scene(), cruise(72.5), options);
+  EXPECT_FALSE(r.settled);
+  EXPECT_EQ(r.period_in_mesh_cycles, 0);
+  EXPECT_EQ(r.recorded_mesh_cycles, 3);
+  EXPECT_TRUE(warns(r, "NOT_SETTLED"));
+  EXPECT_TRUE(std::isfinite(r.inefficiency_rms.value()));
+}
+
+}  // namespace
+}  // namespace tribodyn
