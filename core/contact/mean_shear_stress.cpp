@@ -85,15 +85,17 @@ Moment moment(const Law& law, double from, double to) {
   Moment out;
   const double start = law.log_stress(from), end = law.log_stress(to);
   out.shift = std::max(start, end);
-  // E-folds of the integrand: those of the stress, and two per unit of s from p dp.
-  const double folds = std::abs(end - start) + 2 * (to - from);
-  if (folds <= 6) {
+  // E-folds of the integrand if it grew all along as it does at its end, where it is steepest:
+  // d ln tau/ds there, and two per unit of s from p dp.
+  const double steepest = law.index * std::abs(end - law.base + law.factor) + 2;
+  const double folds = steepest * (to - from);
+  if (folds <= 7.5) {
     add_panel<12>(law, from, to, out);
-  } else if (folds <= 8) {
+  } else if (folds <= 15) {
     add_panel<16>(law, from, to, out);
   } else {
-    // Panels of at most 12 e-folds, laid out evenly in ln tau.
-    const int panels = static_cast<int>(std::min(64.0, std::ceil(folds / 12)));
+    // Panels of at most 20 such e-folds, laid out evenly in ln tau.
+    const int panels = static_cast<int>(std::min(64.0, std::ceil(folds / 20)));
     double left = from;
     for (int i = 1; i <= panels; ++i) {
       const double growth = ((i * end + (panels - i) * start) / panels - law.base) / law.factor;

@@ -70,10 +70,11 @@ void expect_sound(const PointResult& r, const PointOptions& options) {
     EXPECT_LT(r.statistics.largest_multiplier, 1.001);
   }
   const PowerBalance& b = r.power_balance;
+  // The floor is rounding of the stored kinetic energy, hundreds of joules.
   const double flow = std::abs(b.input) + std::abs(b.output) + b.friction;
   EXPECT_NEAR(
       b.input - b.output - b.friction - b.shaft_damping - b.mesh_damping - b.stored - b.parametric,
-      0, 1e-8 * flow);
+      0, 1e-10 + 1e-8 * flow);
   // A few periods may be marched beyond the limit: multipliers, probes of the period, the record.
   EXPECT_LE(r.statistics.mesh_cycles, options.maximum_mesh_cycles + 50 + r.recorded_mesh_cycles);
 }
@@ -141,7 +142,7 @@ TEST_P(HardPoint, Settles) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, HardPoint, testing::ValuesIn(changes()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& change) { return std::string(change.param.name); });
 
 TEST(HardPoints, SpeedsFromOneTo300) {
   for (const double speed : {1.0, 5.0, 200.0, 300.0}) {
