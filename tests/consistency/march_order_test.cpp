@@ -196,11 +196,13 @@ class OrderTest : public testing::Test {
       work.add(std::log(even), std::log(e.work));
       if (std::max(e.state, e.work) < Fit::kSmallest) break;
     }
-    EXPECT_GT(state.points(), 5);
-    EXPECT_GT(work.points(), 3);
-    EXPECT_NEAR(state.order(), 5, 0.3);
+    EXPECT_GT(state.points(), kShortRun ? 3 : 5);
+    EXPECT_GT(work.points(), kShortRun ? 1 : 3);
+    EXPECT_NEAR(state.order(), 5, kShortRun ? 0.8 : 0.3);
     // The work is a quadrature of a power 0.74 at each corner, small at once and then slower.
-    EXPECT_GT(work.order(), 3.3);
+    if (!kShortRun) {
+      EXPECT_GT(work.order(), 3.3);
+    }
     RecordProperty("order_of_state", std::to_string(state.order()));
     RecordProperty("order_of_loss_work", std::to_string(work.order()));
   }
