@@ -183,9 +183,10 @@ void add_heat(const ContactCase& c, const ContactSolution& s, Residuals& out) {
   out["eqs 23-26, 31 tau_bar"] = difference(s.mean_shear_stress, stress);
   out["eq 27 F_v"] = difference(s.viscous_friction, viscous);
   out["eq 40 F_b"] = difference(s.boundary_friction, boundary);
-  out["eq 28 F_fr"] = difference(s.friction, viscous + boundary);
-  out["mu"] = difference(s.friction_coefficient, (viscous + boundary) / k.load);
-  out["q"] = difference(s.heat_rate, (viscous + boundary) * slide);
+  // Printed asperities may pull: the scale is that of the terms.
+  out["eq 28 F_fr"] = std::abs(s.friction - (viscous + boundary)) / (viscous + std::abs(boundary));
+  out["mu"] = difference(s.friction_coefficient, s.friction / k.load);
+  out["q"] = difference(s.heat_rate, s.friction * slide);
 
   const double heats = c.options.isothermal ? 0 : 1;
   const auto flash_rise = [&](double tau) {
@@ -195,7 +196,8 @@ void add_heat(const ContactCase& c, const ContactSolution& s, Residuals& out) {
   const auto oil_rise = [&](double tau) {
     return heats * slide * tau * s.central_film_thickness / (8 * c.lubricant.thermal_conductivity);
   };
-  out["eq 39 dT_f"] = difference(s.flash_temperature_rise, flash_rise(stress));
+  out["eq 39 dT_f"] =
+      difference(s.flash_temperature_rise, heats * pinion * partition * s.heat_rate);
   out["eq 39 dT_oil"] = difference(s.oil_temperature_rise, oil_rise(stress));
   const auto excess = [&](double temperature, double tau) {
     return c.inlet_temperature() + flash_rise(tau) + oil_rise(tau) - temperature;
