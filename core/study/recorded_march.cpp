@@ -20,6 +20,7 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
   record.starts_in_gap = system.regime.side == 0;
 
   GearPairSystem probe = system;  // evaluates between the march's own evaluations
+  const long solved_before = probe.contact_solutions();
   std::array<Instant, ResponseRecord::kSamples> samples;
   int cycle = 0;
   bool recording = true;
@@ -70,7 +71,7 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
     }
     if (cycle + 1 == cycles) std::copy(y.begin(), y.end(), record.integrals.begin());
   }
-  statistics.contact_solutions += probe.contact_solutions() - system.contact_solutions();
+  statistics.contact_solutions += probe.contact_solutions() - solved_before;
 }
 
 }  // namespace tribodyn
