@@ -106,8 +106,10 @@ PointResult empty_result(const Target& target, PointModel model) {
 }
 
 PointResult solve_full(GearPairSystem& system, const Target& target, const PointOptions& options,
-                       const MarchState& start, const HistoryRequest& history_request) {
+                       const MarchState& start, int first_period,
+                       const HistoryRequest& history_request) {
   SteadyStateRequest request;
+  request.first_period = first_period;
   request.mean_pinion_speed = target.mean_pinion_speed;
   request.solve_wheel_torque = target.solve_wheel_torque;
   request.march.relative_tolerance = options.relative_tolerance;
@@ -209,7 +211,8 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
                  : point_start(system, target,
                                start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0,
                                options.progress);
-        result = solve_full(system, target, options, state, history);
+        const int first_period = from ? std::max(1, from->period) : 1;
+        result = solve_full(system, target, options, state, first_period, history);
       }
       result.statistics.mesh_cycles += spent.mesh_cycles;
       result.statistics.right_hand_sides += spent.right_hand_sides;
@@ -222,7 +225,7 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
       spent = result.statistics;
       data_torque = result.pinion_torque;
       from = CarriedState{result.section_state, result.mean_pinion_speed, result.pinion_torque,
-                          result.wheel_torque};
+                          result.wheel_torque, result.period_in_mesh_cycles};
     }
   };
 

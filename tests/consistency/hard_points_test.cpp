@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/gear/mesh_data.h"
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "run_length.h"
@@ -79,10 +80,10 @@ void expect_sound(const Scene& scene, const PointResult& r, const PointOptions& 
     EXPECT_LT(r.statistics.largest_multiplier, 1.001);
   }
   const PowerBalance& b = r.power_balance;
-  // Speeds are rounded in every step.
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() * kinetic_energy(scene, r) *
-                          r.recorded_mesh_cycles;
   const double flow = std::abs(b.input) + std::abs(b.output) + b.friction;
+  // Each step rounds the speeds, and there is one at least in every interval of the tables.
+  const double rounding = std::numeric_limits<double>::epsilon() * kinetic_energy(scene, r) *
+                          r.recorded_mesh_cycles * MeshData(scene.gear_set).intervals();
   EXPECT_NEAR(
       b.input - b.output - b.friction - b.shaft_damping - b.mesh_damping - b.stored - b.parametric,
       0, 1e-8 * flow + rounding);
