@@ -102,6 +102,8 @@ class FlankContactModel {
   double pressure_viscosity_index() const { return roelands_index_; }
 
  private:
+  friend class FlankContactBatch;
+
   ContactStatus share_load(const ContactConditions& conditions, ContactSolution& out) const;
   ContactStatus heat(const ContactConditions& conditions, ContactSolution& out) const;
 

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+
+#include "core/contact/contact_block_tables.h"
+#include "core/contact/flank_contact_batch.h"
+
+namespace tribodyn {
+
+/// Contacts solved together; the most that fit next to their intermediates in a first-level cache.
+inline constexpr int kBlockContacts = 32;
+
+/// A number for each contact of a block.
+using ContactLanes = double[kBlockContacts];
+
+/// Conditions, and geometry as in ContactGeometries. Arrays of kBlockContacts, of any alignment.
+struct ContactBlockInputs {
+  const double *load, *pinion_x, *pinion_y, *gear_x, *gear_y;
+  const double* start_temperature;  ///< 0: none
+  const double *curvature_x, *curvature_y, *unit_area, *per_semi_x, *per_semi_y, *unit_pressure;
+};
+
+struct alignas(64) ContactBlockResults {
+  ContactLanes friction, viscous_friction, boundary_friction, contact_temperature, film_thickness,
+      film_ratio, maximum_pressure, film_load, asperity_load, sliding_speed, shear_rate,
+      mean_shear_stress, limited_area_share;
+  ContactLanes limited_at_centre;  ///< 1 or 0
+  ContactLanes solved;             ///< 1 or 0: the reference must solve it
+};
+
+/// Solves the first `count` contacts of a block with the given instructions, which the CPU must
+/// have. Beyond the count, inputs may be anything but must be there.
+void solve_contact_block(InstructionSet instruction_set, const ContactBlockTables& tables,
+                         int count, const ContactBlockInputs& in, ContactBlockResults& out);
+
+/// Films without a boundary part at the inlet temperature, for the fit of the start.
+struct alignas(64) StartSamples {
+  ContactLanes shear_rate, pressure, gain;
+};
+
+/// T_c - T_in of kBlockContacts of them [K], to some eight digits, into an array aligned like a
+/// block.
+void sample_rises(InstructionSet instruction_set, const ContactBlockTables& tables,
+                  const StartSamples& samples, double* rise);
+
+/// Fits tables.start; see StartFit.
+void fit_start(InstructionSet instruction_set, ContactBlockTables& tables);
+
+/// y = exp(x) for n values, by the library's exponential of that width: the unit of the
+/// benchmarks. n must be a
+/// multiple of 8, the arrays aligned to 64 bytes.
+void vector_exponential(InstructionSet instruction_set, const double* x, double* y, std::size_t n);
+
+/// Whether the CPU has the instructions.
+bool has_instructions(InstructionSet instruction_set);
+
+}  // namespace tribodyn

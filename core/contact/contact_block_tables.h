@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/lubricant/lubricant.h"
+
+namespace tribodyn {
+
+/// sum_ij c_ij x^i y^j over |x|, |y| <= 1; row i ends at its own last power of y. In the order of
+/// Horner's scheme, highest powers first.
+struct BivariatePolynomial {
+  std::vector<int> row_length;       ///< powers of y in each row
+  std::vector<double> coefficients;  ///< row after row
+};
+
+inline constexpr int kAsperityTerms = 20;
+/// F_n of the asperity functions: exp(-l^2/2) v^(n+1) P(x), v = 1/(l + kAsperityShift),
+/// x = asperity_scale v + asperity_offset in [-1, 1] for 0 <= l <= kAsperityEnd.
+inline constexpr double kAsperityShift = 3.5;
+inline constexpr double kAsperityEnd = 36.5;
+inline constexpr double kAsperitiesVanish = 38.75;
+
+/// Where the thermal iteration starts: ln(1/r - 1), r = tau_bar/tau_bar(all on tau_L), as a cubic
+/// in Chebyshev polynomials of ln shear rate, ln(1 + c p_max) and ln(gain tau_bar(all on tau_L)),
+/// each scaled to [-1, 1]. Fitted to 64 solutions; within some 10 % in gears, which saves half of
+/// the steps.
+struct StartFit {
+  std::array<double, 3> scale{}, offset{};
+  std::array<double, 20> coefficients{};
+};
+
+/// What the vector code needs of one fluid on one surface at one sump temperature. The mean stress
+/// comes from one function of two variables,
+///
+///   int_0^p exp(L ((1 + c p')^Z - 1)) p' dp' = p^2/2 exp(L ((1 + c p)^Z - 1)) R(L, ln(1 + c p)),
+///
+/// with L = ln eta_0(T) + 9.67 and c = 5.1e-9 1/Pa (eq 31): R is tabulated once for the fluid's Z,
+/// so that no quadrature remains in the solve.
+struct ContactBlockTables {
+  /// False: everything goes to the reference.
+  bool covered = false;
+
+  // Film (eq 12): ln h = log_film + 0.806 ln U^2 - 0.466 ln Q_e - 0.073 ln W + ln side leakage.
+  double log_film = 0;
+  double inverse_roughness = 0;  ///< 1/sigma_G [1/m]
+  double asperity_load_factor = 0, asperity_area_factor = 0;
+  double tribofilm_shear_strength = 0, asperity_friction_coefficient = 0;  ///< 0: no F_b
+  double conductance_factor = 0;  ///< k_s/(1.06 sqrt(diffusivity))
+  double oil_conductivity = 0;
+  double inlet_temperature = 0;
+  bool isothermal = false, newtonian = false, limited = false;
+
+  Lubricant lubricant{};
+  double log_vogel_prefactor = 0;
+  double index = 0;               ///< Z
+  double log_relaxation = 0;      ///< ln lambda less the reference terms of eq 25
+  double density_term = 0;        ///< about d ln(rho T)/dT [1/K]
+  double log_limit_at_rim = 0;    ///< ln tau_L0
+  double limit_slope = 0;         ///< gamma_L/c [Pa]
+  double monotone_factor = 0;     ///< from this L on, ln(tau/tau_L) rises inwards
+  bool falls_then_rises = false;  ///< ln(tau/tau_L) has no maximum inside at any L > 0
+  double proved_temperature = 0;  ///< below it ln tau falls with T at every pressure
+  double hottest = 0;             ///< of the table [K]
+  double deepest = 0;             ///< greatest ln(1 + c p) of the table
+
+  double deepest_pressure = 0;  ///< the same as c p
+
+  // x = factor_scale L + factor_offset, y = depth_scale s + depth_offset.
+  double factor_scale = 0, factor_offset = 0, depth_scale = 0, depth_offset = 0;
+  BivariatePolynomial ratio;         ///< R to 1e-12
+  BivariatePolynomial coarse_ratio;  ///< R to 3e-7: iterations only
+
+  bool start_fitted = false;
+  StartFit start;
+
+  double asperity_scale = 0, asperity_offset = 0;
+  std::array<double, kAsperityTerms> f2{}, f5_2{};  ///< from the highest power down
+};
+
+/// Fills the polynomials of R for L in [least_factor, greatest_factor]; Z is `index`. Takes as much
+/// depth as 28 terms allow. False when that is nothing.
+bool tabulate_ratio(double least_factor, double greatest_factor, ContactBlockTables& tables);
+
+/// Fills the polynomials of F_2 and F_5/2.
+void tabulate_asperities(ContactBlockTables& tables);
+
+}  // namespace tribodyn

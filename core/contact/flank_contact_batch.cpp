@@ -1,0 +1,353 @@
+#include "core/contact/flank_contact_batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/contact/contact_block.h"
+#include "core/contact/contact_block_tables.h"
+#include "core/contact/hertz.h"
+#include "core/lubricant/rheology.h"
+#include "core/lubricant/viscosity.h"
+
+namespace tribodyn {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool equal(const AsPublished& a, const AsPublished& b) {
+  return a.eq20_semi_major == b.eq20_semi_major && a.eq22_inverted_ratio == b.eq22_inverted_ratio;
+}
+
+/// Least of u^(Z-1) (tau_0 c + gamma (u - 1)) over u >= 1: what eq 31's steepness is up against.
+double least_steepness(double index, double tau_zero_c, double gamma) {
+  const auto at = [&](double u) { return std::pow(u, index - 1) * (tau_zero_c + gamma * (u - 1)); };
+  double least = at(1);
+  if (index < 1 && gamma > 0) {
+    const double turn = (1 - index) * (tau_zero_c - gamma) / (index * gamma);
+    if (turn > 1) least = std::min(least, at(turn));
+  }
+  return gamma > 0 || index >= 1 ? least : 0;
+}
+
+/// Below it d ln tau/dT <= -(1 - ab) A1/(T - T0)^2 + ab/T < 0 at every pressure, a b = alpha_HN
+/// beta_HN; infinite for a Newtonian fluid.
+double proved_temperature(const Lubricant& oil, bool newtonian) {
+  const double product = oil.havriliak_negami_alpha * oil.havriliak_negami_beta;
+  if (newtonian || product == 0) return kInfinity;
+  if (!(product > 0 && product < 1) || oil.density_temperature_slope > 0) return -kInfinity;
+  const double b = oil.vogel_reference_temperature +
+                   0.5 * oil.vogel_temperature_coefficient * (1 - product) / product;
+  const double t0 = oil.vogel_reference_temperature;
+  return (b + std::sqrt(b * b - t0 * t0)) * (1 - 1e-9);
+}
+
+}  // namespace
+
+ContactGeometries::ContactGeometries(double reduced_modulus, const ModelOptions& options,
+                                     std::size_t count)
+    : reduced_modulus_(reduced_modulus),
+      hertz_solution_(options.hertz_solution),
+      as_published_(options.as_published) {
+  resize(count);
+}
+
+void ContactGeometries::resize(std::size_t count) {
+  for (auto* column : {&radius_x_, &radius_y_, &curvature_x_, &curvature_y_, &unit_area_,
+                       &per_semi_x_, &per_semi_y_, &maximum_pressure_}) {
+    column->resize(count);
+  }
+}
+
+void ContactGeometries::set(std::size_t i, double radius_x, double radius_y) {
+  radius_x_[i] = radius_x;
+  radius_y_[i] = radius_y;
+  if (!(radius_x > 0 && radius_y > 0)) {
+    curvature_x_[i] = curvature_y_[i] = unit_area_[i] = per_semi_x_[i] = 0;
+    per_semi_y_[i] = maximum_pressure_[i] = 0;
+    return;
+  }
+  const HertzFit fit = hertz_solution_ == HertzSolution::kExact
+                           ? exact_ellipticity(radius_x, radius_y)
+                           : simplified_ellipticity(radius_x, radius_y, as_published_);
+  const UnitLoadEllipse unit =
+      unit_load_ellipse(fit, radius_x, radius_y, reduced_modulus_, as_published_);
+  const bool major_along_y = radius_y >= radius_x;
+  curvature_x_[i] = 1 / radius_x;
+  curvature_y_[i] = 1 / radius_y;
+  unit_area_[i] = std::numbers::pi * unit.semi_minor * unit.semi_major;
+  per_semi_x_[i] = 1 / (major_along_y ? unit.semi_minor : unit.semi_major);
+  per_semi_y_[i] = 1 / (major_along_y ? unit.semi_major : unit.semi_minor);
+  maximum_pressure_[i] = unit.maximum_pressure;
+}
+
+struct FlankContactBatch::Tables : ContactBlockTables {};
+
+FlankContactBatch::FlankContactBatch(const FlankContactModel& model)
+    : FlankContactBatch(model, widest()) {}
+
+FlankContactBatch::FlankContactBatch(const FlankContactModel& model, InstructionSet instruction_set)
+    : model_(model), instruction_set_(instruction_set) {
+  auto tables = std::make_unique<Tables>();
+  Tables& t = *tables;
+  const Lubricant& oil = model.lubricant_;
+  const ModelOptions& options = model.options_;
+  const double modulus = model.reduced_modulus_;
+  const double sigma = model.roughness_.composite_rms_height;
+  t.log_film = std::log(4.31) + 0.68 * std::log(model.inlet_viscosity_ / modulus) +
+               0.49 * std::log(model.inlet_pressure_viscosity_coefficient_ * modulus) +
+               0.073 * std::log(modulus);
+  t.inverse_roughness = 1 / sigma;
+  t.asperity_load_factor = model.asperity_load_factor_;
+  t.asperity_area_factor = model.asperity_area_factor_;
+  if (!options.no_boundary_friction) {
+    t.tribofilm_shear_strength = model.boundary_.tribofilm_shear_strength;
+    t.asperity_friction_coefficient = model.boundary_.asperity_friction_coefficient;
+  }
+  const Solid& solid = model.solid_;
+  t.conductance_factor =
+      std::sqrt(solid.thermal_conductivity * solid.density * solid.specific_heat_capacity) / 1.06;
+  t.oil_conductivity = oil.thermal_conductivity;
+  t.inlet_temperature = model.inlet_temperature_;
+  t.isothermal = options.isothermal;
+  t.newtonian = options.newtonian;
+  t.limited = model.can_limit_;
+  t.lubricant = oil;
+  t.log_vogel_prefactor = std::log(oil.vogel_viscosity_prefactor);
+  t.index = model.roelands_index_;
+  t.log_relaxation = std::log(oil.relaxation_time) - model.time_temperature_reference_;
+
+  t.density_term =
+      1 / t.inlet_temperature + oil.density_temperature_slope / density(oil, t.inlet_temperature);
+  const double tau_zero = oil.limiting_shear_stress_at_zero_pressure;
+  const double gamma = oil.limiting_shear_stress_coefficient;
+  if (t.limited) {
+    const double tau_zero_c = tau_zero * kRoelandsPressureCoefficient;
+    t.log_limit_at_rim = std::log(tau_zero);
+    t.limit_slope = gamma / kRoelandsPressureCoefficient;
+    t.monotone_factor = gamma / (t.index * least_steepness(t.index, tau_zero_c, gamma));
+    if (gamma == 0) t.monotone_factor = 0;
+    t.falls_then_rises = t.index >= 1 || tau_zero_c <= gamma;
+  }
+
+  double end_of_density = kInfinity;
+  if (!t.newtonian && oil.density_temperature_slope < 0) {
+    end_of_density = -oil.density_at_zero_kelvin / oil.density_temperature_slope;
+  }
+  t.proved_temperature = proved_temperature(oil, t.newtonian);
+  const bool one_equilibrium = t.isothermal || t.proved_temperature >= end_of_density;
+  if (one_equilibrium) t.proved_temperature = kInfinity;
+
+  const auto factor_at = [&](double temperature) {
+    return log_ambient_viscosity(oil, temperature) + kRoelandsLogViscosity;
+  };
+  t.hottest = std::min(t.inlet_temperature + 200, 0.9 * end_of_density);
+  const AsPublished& p = options.as_published;
+  const bool one_switch_at_most = !t.limited || (tau_zero > 0 && gamma >= 0);
+  const bool proved = one_equilibrium || t.limited;
+  t.covered = !p.eq17_atan && !p.eq31_32_logarithm && !p.eq43_44_polynomials &&
+              options.hertz_load == HertzLoad::kFilmLoad && one_switch_at_most && proved &&
+              (t.newtonian || oil.relaxation_time > 0) && t.hottest > t.inlet_temperature + 1 &&
+              std::isfinite(t.log_film) &&
+              tabulate_ratio(factor_at(t.hottest), factor_at(t.inlet_temperature), t);
+  tabulate_asperities(t);
+  if (t.covered && t.limited && !t.isothermal) fit_start(instruction_set, t);
+  tables_ = std::move(tables);
+}
+
+FlankContactBatch::~FlankContactBatch() = default;
+FlankContactBatch::FlankContactBatch(FlankContactBatch&&) noexcept = default;
+FlankContactBatch& FlankContactBatch::operator=(FlankContactBatch&&) noexcept = default;
+
+InstructionSet FlankContactBatch::widest() {
+  for (const InstructionSet set : {InstructionSet::kAvx512, InstructionSet::kAvx2}) {
+    if (has_instructions(set)) return set;
+  }
+  return InstructionSet::kPortable;
+}
+
+bool FlankContactBatch::supported(InstructionSet instruction_set) {
+  return has_instructions(instruction_set);
+}
+
+const char* FlankContactBatch::name(InstructionSet instruction_set) {
+  switch (instruction_set) {
+    case InstructionSet::kPortable:
+      return "portable";
+    case InstructionSet::kAvx2:
+      return "avx2";
+    case InstructionSet::kAvx512:
+      return "avx512";
+  }
+  return "unknown";
+}
+
+namespace {
+
+/// Contact i of the caller's arrays from the reference's solution.
+void put(const ContactSolution& s, std::size_t i, const FlankContactBatchResults& to) {
+  const auto set = [i](auto* array, auto value) {
+    if (array != nullptr) array[i] = value;
+  };
+  set(to.friction, s.friction);
+  set(to.viscous_friction, s.viscous_friction);
+  set(to.boundary_friction, s.boundary_friction);
+  set(to.contact_temperature, s.contact_temperature);
+  set(to.central_film_thickness, s.central_film_thickness);
+  set(to.film_ratio, s.film_ratio);
+  set(to.maximum_pressure, s.maximum_pressure);
+  set(to.film_load, s.film_load);
+  set(to.asperity_load, s.asperity_load);
+  set(to.sliding_speed, s.sliding_speed);
+  set(to.shear_rate, s.shear_rate);
+  set(to.mean_shear_stress, s.mean_shear_stress);
+  set(to.limiting_stress_area_share, s.limiting_stress_area_share);
+  set(to.limiting_stress_at_centre, s.limiting_stress_at_centre);
+  set(to.status, s.status);
+}
+
+/// The first `count` contacts of a block; n of them is contact place(n) of the caller's arrays.
+template <class Place>
+void put(const ContactBlockResults& from, int count, Place&& place,
+         const FlankContactBatchResults& to) {
+  const auto set = [&](auto* array, auto&& value) {
+    if (array == nullptr) return;
+    for (int n = 0; n < count; ++n) array[place(n)] = value(n);
+  };
+  const auto copy = [&](double* array, const ContactLanes& lanes) {
+    set(array, [&](int n) { return lanes[n]; });
+  };
+  copy(to.friction, from.friction);
+  copy(to.viscous_friction, from.viscous_friction);
+  copy(to.boundary_friction, from.boundary_friction);
+  copy(to.contact_temperature, from.contact_temperature);
+  copy(to.central_film_thickness, from.film_thickness);
+  copy(to.film_ratio, from.film_ratio);
+  copy(to.maximum_pressure, from.maximum_pressure);
+  copy(to.film_load, from.film_load);
+  copy(to.asperity_load, from.asperity_load);
+  copy(to.sliding_speed, from.sliding_speed);
+  copy(to.shear_rate, from.shear_rate);
+  copy(to.mean_shear_stress, from.mean_shear_stress);
+  copy(to.limiting_stress_area_share, from.limited_area_share);
+  set(to.limiting_stress_at_centre, [&](int n) { return from.limited_at_centre[n] != 0; });
+  set(to.status, [](int) { return ContactStatus::kOk; });
+}
+
+bool all_loaded(const double* load) {
+  bool all = true;
+  for (int n = 0; n < kBlockContacts; ++n) all = all && !(load[n] <= 0);
+  return all;
+}
+
+/// Contacts gathered from here and there.
+class Collected {
+ public:
+  /// Copies the first contact of `from` to place n.
+  void take(const ContactBlockInputs& from, int n) {
+    for (std::size_t c = 0; c < kColumns.size(); ++c) column_[c][n] = *(from.*kColumns[c]);
+  }
+  /// Fills the rest with copies of the last of `count`.
+  void pad(int count) {
+    for (ContactLanes& column : column_) {
+      std::fill(column + count, column + kBlockContacts, column[count - 1]);
+    }
+  }
+  ContactBlockInputs inputs() const {
+    ContactBlockInputs in;
+    for (std::size_t c = 0; c < kColumns.size(); ++c) in.*kColumns[c] = column_[c];
+    return in;
+  }
+
+ private:
+  using In = ContactBlockInputs;
+  static constexpr std::array kColumns{&In::load,        &In::pinion_x,    &In::pinion_y,
+                                       &In::gear_x,      &In::gear_y,      &In::start_temperature,
+                                       &In::curvature_x, &In::curvature_y, &In::unit_area,
+                                       &In::per_semi_x,  &In::per_semi_y,  &In::unit_pressure};
+  alignas(64) ContactLanes column_[kColumns.size()];
+};
+
+constexpr ContactLanes kNoStart{};
+
+}  // namespace
+
+std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::size_t first,
+                                     std::size_t count,
+                                     const FlankContactBatchConditions& conditions,
+                                     const FlankContactBatchResults& results) const {
+  const ContactGeometries& g = geometries;
+  const FlankContactBatchConditions& k = conditions;
+  std::size_t by_reference = 0;
+  const auto reference = [&](std::size_t i) {
+    put(model_.solve({k.load[i], g.radius_x_[first + i], g.radius_y_[first + i],
+                      k.pinion_velocity_x[i], k.pinion_velocity_y[i], k.gear_velocity_x[i],
+                      k.gear_velocity_y[i]}),
+        i, results);
+    ++by_reference;
+  };
+  const bool covered = tables_->covered && g.reduced_modulus_ == model_.reduced_modulus_ &&
+                       g.hertz_solution_ == model_.options_.hertz_solution &&
+                       equal(g.as_published_, model_.options_.as_published);
+  if (!covered) {
+    for (std::size_t i = 0; i < count; ++i) reference(i);
+    return by_reference;
+  }
+
+  // Blocks that are under load all over are read where they are, others are collected first.
+  const auto inputs = [&](std::size_t i) {
+    const std::size_t at = first + i;
+    return ContactBlockInputs{k.load + i,
+                              k.pinion_velocity_x + i,
+                              k.pinion_velocity_y + i,
+                              k.gear_velocity_x + i,
+                              k.gear_velocity_y + i,
+                              k.start_temperature != nullptr ? k.start_temperature + i : kNoStart,
+                              g.curvature_x_.data() + at,
+                              g.curvature_y_.data() + at,
+                              g.unit_area_.data() + at,
+                              g.per_semi_x_.data() + at,
+                              g.per_semi_y_.data() + at,
+                              g.maximum_pressure_.data() + at};
+  };
+  ContactBlockResults solved;
+  Collected collected;
+  std::array<std::size_t, kBlockContacts> place;
+  int filled = 0;
+  const auto flush = [&] {
+    collected.pad(filled);
+    solve_contact_block(instruction_set_, *tables_, filled, collected.inputs(), solved);
+    put(
+        solved, filled, [&](int n) { return place[n]; }, results);
+    for (int n = 0; n < filled; ++n) {
+      if (solved.solved[n] == 0) reference(place[n]);
+    }
+    filled = 0;
+  };
+  for (std::size_t i = 0; i < count;) {
+    if (filled == 0 && count - i >= kBlockContacts && all_loaded(k.load + i)) {
+      solve_contact_block(instruction_set_, *tables_, kBlockContacts, inputs(i), solved);
+      put(
+          solved, kBlockContacts, [i](int n) { return i + n; }, results);
+      for (int n = 0; n < kBlockContacts; ++n) {
+        if (solved.solved[n] == 0) reference(i + n);
+      }
+      i += kBlockContacts;
+      continue;
+    }
+    if (k.load[i] <= 0) {
+      reference(i);
+      --by_reference;
+    } else {
+      collected.take(inputs(i), filled);
+      place[filled] = i;
+      if (++filled == kBlockContacts) flush();
+    }
+    ++i;
+  }
+  if (filled > 0) flush();
+  return by_reference;
+}
+
+}  // namespace tribodyn
