@@ -5,6 +5,8 @@
 #include "core/dynamics/mesh_cycle_march.h"
 #include "core/study/operating_point.h"
 #include "tests/consistency/allocation/counted_new.h"
+#include "tests/support/contact_batch.h"
+#include "tests/support/realistic_contacts.h"
 #include "tests/support/reference_scene.h"
 
 namespace tribodyn {
@@ -84,6 +86,18 @@ TEST_P(Allocation, NoneInAMeshCycle) {
 TEST_P(Allocation, NoneInARefusedContact) {
   ContactConditions impossible{2000, -0.015, 0.3, 5, 6, 4, -1};
   EXPECT_EQ(allocations_of([&] { contact_.solve(impossible); }), 0);
+}
+
+TEST(BatchAllocation, NoneInASolve) {
+  const Scene scene = reference_scene();
+  std::vector<ContactConditions> conditions = realistic_contacts(scene, 100, 30).conditions;
+  conditions[7].radius_x = -1;  // goes to the reference
+  conditions[9].load = 0;
+  ContactArrays arrays(conditions, scene.solid, scene.options);
+  for (const InstructionSet set : supported_instruction_sets()) {
+    const FlankContactBatch batch(contact_model(scene), set);
+    EXPECT_EQ(allocations_of([&] { EXPECT_EQ(arrays.solve(batch), 1u); }), 0);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(SmoothAndVibroImpact, Allocation, testing::Values(100.0, 72.5));
