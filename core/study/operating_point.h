@@ -39,6 +39,12 @@ enum class PointStart {
                     ///< where it exists
 };
 
+/// How the steady state of the full model is found.
+enum class SteadyStateMethod {
+  kAutomatic,  ///< by shooting; marched where shooting finds no attracting response
+  kMarch,      ///< marched to the end
+};
+
 /// A neighbour's steady state, to start from. Speeds and wind-up are shifted to the new point.
 struct CarriedState {
   SectionState section_state;
@@ -46,6 +52,7 @@ struct CarriedState {
   double pinion_torque = 0;      ///< T_s there [N m]
   double wheel_torque = 0;       ///< T_w there [N m]
   int period = 1;                ///< of the response there [mesh cycles]; 0: none found
+  bool contact_loss = false;     ///< there
 };
 
 struct PointOptions {
@@ -53,7 +60,11 @@ struct PointOptions {
   PointStart start = PointStart::kQuasiStatic;
   std::optional<CarriedState> carried_state;  ///< overrides start
   bool probe_coexisting_response = false;     ///< also settle from the other start and compare
-  double relative_tolerance = 1e-7;           ///< of the march, per step [1e-11, 1e-3]
+  SteadyStateMethod method = SteadyStateMethod::kAutomatic;
+  /// Of shooting: wanted relative error of both inefficiencies, the torque and the extremes of the
+  /// transmission error [1e-8, 1e-2]
+  double tolerance = 1e-5;
+  double relative_tolerance = 1e-7;  ///< of the march, per step [1e-11, 1e-3]
   double settling_tolerance =
       1e-6;  ///< relative change of the response per period that counts as settled
   int maximum_mesh_cycles = 4000;  ///< work limit of the search for the steady state
@@ -154,6 +165,7 @@ struct PointResult {
   double limiting_stress_area_share = 0;  ///< load-time mean of the area share on tau_L [-]
 
   PointModel model = PointModel::kFull;
+  SteadyStateMethod method = SteadyStateMethod::kMarch;  ///< kAutomatic: found by shooting
   bool settled = false;
   int period_in_mesh_cycles = 0;  ///< 0: none found; results are then averages over the record
   int recorded_mesh_cycles = 0;
