@@ -28,6 +28,9 @@ struct Constraint {
 /// All rows, grouped by message.
 std::span<const Constraint> constraints();
 
+/// True for a parameter that the model needs: unset, it is a violation.
+bool is_required(const Constraint& row);
+
 /// The row of a field, or null.
 const Constraint* find_constraint(std::string_view message, std::string_view field);
 
@@ -39,6 +42,9 @@ std::string quantity_text(double value, std::string_view unit);
 
 /// "radius_x_metres = -1 m; legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".
 std::string out_of_range_text(const Constraint& constraint, double value);
+
+/// "radius_x_metres is not set; legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".
+std::string not_set_text(const Constraint& constraint);
 
 // Limits on counts, so that no request can starve the server.
 inline constexpr int kMaximumCurvePoints = 1000;

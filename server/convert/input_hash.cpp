@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/version.h"
+#include "server/convert/output_only.h"
 
 namespace tribodyn::server {
 namespace {
@@ -16,12 +17,14 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// Fields that say what a thing is called or where it comes from, never what it is.
-bool is_label(const std::string& field) {
-  static const std::set<std::string> kLabels = {"name",       "display_name", "description",
-                                                "provenance", "lubricant",    "gear_set",
-                                                "surface",    "vehicle"};
-  return kLabels.contains(field);
+/// Fields that say what a thing is called, where it comes from or what only the server sets; never
+/// what the model computes with.
+bool is_label(const FieldDescriptor& field) {
+  static const std::set<std::string> kLabels = {
+      "name",      "display_name",   "description",  "provenance", "lubricant",
+      "gear_set",  "surface",        "vehicle",      "labels",     "derived_from",
+      "condition", "base_oil_class", "measurements", "lims_id",    "external_sample_id"};
+  return kLabels.contains(field.name()) || is_output_only(field);
 }
 
 void add_line(std::string& text, const std::string& path, const std::string& value) {
@@ -68,7 +71,7 @@ void add_message(std::string& text, const Message& message, const std::string& p
   const auto& reflection = *message.GetReflection();
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor& field = *descriptor.field(i);
-    if (is_label(field.name())) continue;
+    if (is_label(field)) continue;
     const std::string field_path = path + "." + field.name();
     if (field.is_repeated()) {
       for (int k = 0; k < reflection.FieldSize(message, &field); ++k) {

@@ -4,6 +4,7 @@
 
 #include "server/convert/check_message.h"
 #include "server/convert/history_columns.h"
+#include "server/convert/output_only.h"
 #include "server/convert/solver_defaults.h"
 #include "server/convert/study_checks.h"
 #include "server/convert/to_core.h"
@@ -143,15 +144,7 @@ HistoryRequest history_request(const v1::HistoryRequest& message) {
 
 v1::Simulation client_part(const v1::Simulation& simulation) {
   v1::Simulation out = simulation;
-  out.clear_name();
-  out.clear_state();
-  out.clear_progress_fraction();
-  out.clear_create_time();
-  out.clear_start_time();
-  out.clear_end_time();
-  out.clear_error();
-  out.clear_result();
-  out.DiscardUnknownFields();
+  keep_client_part(out);
   return out;
 }
 
