@@ -30,7 +30,7 @@ struct DensityLaw {
 /// Stated for rho_15 of 800 to 1164 kg/m3 and -20 to 150 C.
 double expanded_density(double density_15, double temperature);
 
-/// Eq 26 through the density at 15 C and expanded_density at 100 C: within 0.1 % of it from -10 to
+/// Eq 26 through the density at 15 C and expanded_density at 100 C: within 0.13 % of it from -10 to
 /// 150 C. Slope about -0.64 kg/(m3 K) for any oil of 850 to 950 kg/m3 (the paper's: -0.6323).
 /// Standard uncertainty of the slope (assumed): 5 % for hydrocarbons, 15 % for esters, polyglycols
 /// and unknown classes, which D1250 does not cover.
