@@ -31,18 +31,19 @@ struct VogelFit {
   double reduced_chi_square;  ///< weighted squares per degree of freedom; 0 when there is none
   int degrees_of_freedom;     ///< rows less fitted parameters
   double condition_number;    ///< of the weighted Jacobian with columns scaled to unit length
-  bool reference_temperature_assumed;  ///< T_0 is kTypicalVogelReferenceTemperature, not fitted
+  bool reference_temperature_assumed;  ///< T_0 rests on an assumption, not on the data alone
 };
 
 /// Least squares of ln eta over (eta_ref, A_1, T_0). The first two are linear and eliminated
 /// (variable projection); T_0 is the bracketed root of the derivative of the remaining sum, the
-/// lowest of its minima in (50 K, coldest row - 5 K).
+/// lowest of its minima in (50 K, coldest row - 20 K).
 ///
 /// Weights: 1/u^2 when any row states its uncertainty (others count with 1 %), and covariance
 /// (J'WJ)^-1, widened by the reduced chi-square where that exceeds 1. When none does, equal weights
 /// and a variance estimated from the residuals, or 1 % where no degree of freedom is left.
-/// T_0 is taken as typical, with its uncertainty as a prior, when there are only two distinct
-/// temperatures, or the data show less curvature than any T_0 in that range gives.
+/// Where the data leave T_0 open (two distinct temperatures, less curvature than any T_0 in that
+/// range would give, or a standard uncertainty above 30 K) the typical T_0 and its uncertainty
+/// enter as one more observation. Two temperatures then leave it where it is and are met exactly.
 ///
 /// Rows in any order; replicates allowed. Temperatures count as distinct from 0.5 K apart.
 /// Throws Refusal, naming rows counted from 1:
@@ -54,6 +55,11 @@ struct VogelFit {
 ///   VISCOSITY_TABLE_NOT_VOGEL     the coldest row rises so steeply that T_0 would run into it, or
 ///                                 the fitted parameters leave 1e-12..1e3 Pa s, 1..1e5 K.
 VogelFit fit_vogel(std::span<const ViscosityPoint> points);
+
+/// The same with T_0 [K] given, known to a standard uncertainty [K]: two distinct temperatures are
+/// met exactly. Throws also VISCOSITY_TABLE_NOT_VOGEL when T_0 is not 20 K below the coldest row.
+VogelFit fit_vogel_at(std::span<const ViscosityPoint> points, double reference_temperature,
+                      double standard_uncertainty);
 
 /// ln of eq 34 and its standard uncertainty, sqrt(g' C g), at a temperature [K] > T_0.
 double log_viscosity(const VogelFit& fit, double temperature);
