@@ -8,50 +8,12 @@
 #include "core/lubricant/base_oil_estimates.h"
 #include "core/lubricant/gear_viscosity_grade.h"
 #include "core/lubricant/lubricant.h"
+#include "core/lubricant/lubricant_parameters.h"
 #include "core/lubricant/thermal_expansion.h"
 #include "core/lubricant/viscosity_temperature.h"
 #include "core/lubricant/vogel_fit.h"
 
 namespace tribodyn {
-
-/// How a number came to be known; the same list as Provenance of the service's contract.
-enum class Provenance {
-  kPublished,   ///< printed in the paper
-  kDerived,     ///< follows from published numbers, checked
-  kLiterature,  ///< from another source, named
-  kMeasured,
-  kFitted,
-  kAssumed,     ///< a choice; must be shown as such
-  kCalibrated,  ///< assumed, tuned so that a published fact holds
-  kUser,        ///< stated in the request
-};
-
-/// One parameter as it is known.
-struct KnownParameter {
-  double value;                                ///< SI
-  std::optional<double> standard_uncertainty;  ///< same unit as the value
-  Provenance provenance;
-  std::string source;
-};
-
-/// One of something for each parameter of a Lubricant, by the same names.
-template <class T>
-struct LubricantParameters {
-  T vogel_viscosity_prefactor;
-  T vogel_temperature_coefficient;
-  T vogel_reference_temperature;
-  T pressure_viscosity_coefficient;
-  T pressure_viscosity_temperature;
-  T relaxation_time;
-  T havriliak_negami_alpha;
-  T havriliak_negami_beta;
-  T rheology_reference_temperature;
-  T limiting_shear_stress_at_zero_pressure;
-  T limiting_shear_stress_coefficient;
-  T thermal_conductivity;
-  T density_at_zero_kelvin;
-  T density_temperature_slope;
-};
 
 /// A fluid as a formulator knows it. Everything is optional; SI units; tables in any order.
 struct FluidMeasurements {
@@ -93,8 +55,8 @@ struct CharacterisedFluid {
   std::optional<VogelFit> viscosity_fit;
   std::vector<ViscosityPoint> fitted_points;  ///< the rows themselves, as dynamic viscosities
 
-  /// -10 to 150 C in steps of 10 K where both laws exist: only for a fluid known by its kinematic
-  /// viscosities at 40 and 100 C alone.
+  /// -10 to 150 C in steps of 10 K where both laws exist, for a fluid with kinematic viscosities at
+  /// 40 and 100 C.
   std::vector<ViscosityLawComparison> walther_comparison;
 
   // As the fluid would be described on a data sheet: the measured value where there is one, else
@@ -111,18 +73,21 @@ struct CharacterisedFluid {
 /// fitted to measurements; estimated from the base-oil class, with a warning.
 ///
 /// Viscosity: kinematic viscosities at 40 and 100 C alone give the Vogel law through both, exactly,
-/// whose T_0 follows ASTM D341 most closely (least squares of ln eta, -10 to 150 C). As soon as any
-/// other viscosity is given, all are fitted by fit_vogel (kinematic ones times density; 0.5 % for
-/// D445, 5 % for Brookfield where no uncertainty is stated).
+/// whose T_0 follows ASTM D341 most closely (walther_vogel.h; 15 K of standard uncertainty,
+/// assumed). As soon as any other viscosity is given, all are fitted by fit_vogel
+/// (kinematic ones times density; 0.5 % for D445, 1 % for dynamic viscosities, 5 % for Brookfield
+/// where no uncertainty is stated; assumed).
 ///
 /// Warnings: BASE_OIL_UNSPECIFIED, PARAMETER_ESTIMATED (one per parameter), ESTIMATE_OUT_OF_RANGE,
 /// DENSITY_ESTIMATED, EXPANSION_ESTIMATED, VOGEL_REFERENCE_TEMPERATURE_ASSUMED,
-/// VISCOSITY_EXTRAPOLATED (no measurement below 40 or above 100 C), VISCOSITY_MISFIT (naming the
-/// row), VISCOSITY_INDEX_UNDEFINED.
+/// VISCOSITY_EXTRAPOLATED (nothing measured at or below 40 C, or at or above 100 C),
+/// VISCOSITY_MISFIT (naming the row), VISCOSITY_INDEX_UNDEFINED, TEMPERATURE_ASSUMED (of a stated
+/// alpha* or lambda).
 ///
 /// Throws Refusal FLUID_UNDERDETERMINED (not two viscosities, nor a stated Vogel law),
-/// PARAMETER_INCOMPLETE (part of a set stated), PARAMETER_OUT_OF_RANGE (stated and not finite, or
-/// of impossible sign), and those of fit_vogel, density_law and viscosity_temperature_line.
+/// PARAMETER_INCOMPLETE (part of a set stated), PARAMETER_OUT_OF_RANGE (stated and not finite or of
+/// impossible sign, or a law that does not hold at 40 and 100 C), and those of fit_vogel,
+/// density_law and viscosity_temperature_line.
 CharacterisedFluid characterise(const FluidMeasurements& fluid);
 
 }  // namespace tribodyn
