@@ -215,6 +215,15 @@ class Assembly {
                " K within " + number_text(deviation(2)) +
                " is used. A third temperature well apart, best a cold one, settles it.");
     }
+    if (kinematic_alone) {
+      constexpr double kCold = 263.15;
+      warn("VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature",
+           "Two viscosities do not determine T_0; that which follows ASTM D341 is used, " +
+               number_text(fit.reference_temperature) + " K within " + number_text(deviation(2)) +
+               ", and leaves the viscosity at " + celsius(kCold) + " known to " +
+               number_text(100 * relative_viscosity_uncertainty(fit, kCold)) +
+               " %. A cold viscosity settles it.");
+    }
     warn_of_misfits(fit);
     warn_of_extrapolation();
     if (line) compare_with_walther(*line, fit);

@@ -83,6 +83,7 @@ TEST(Characterisation, IsSilentAboutAnAssumption) {
   const CharacterisedFluid fluid = characterise(three_numbers());
   EXPECT_EQ(codes(fluid).count("PARAMETER_ESTIMATED"), 7);
   EXPECT_TRUE(warns(fluid, "EXPANSION_ESTIMATED", "density_temperature_slope"));
+  EXPECT_TRUE(warns(fluid, "VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature"));
   EXPECT_FALSE(warns(fluid, "BASE_OIL_UNSPECIFIED"));
   for (const char* parameter :
        {"pressure_viscosity_coefficient", "relaxation_time", "havriliak_negami_alpha",
