@@ -99,7 +99,7 @@ void start_watchdog() {
 
 void serve(const Flags& flags, const ListenAddress& address, const sigset_t& signals) {
   Store store(flags.database);
-  store.add_resources(seed_resources());
+  store.add_resources(seed_resources(), system_time());
   const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   SimulationJobs::Options options;
   options.threads = flags.threads == 0 ? processors : flags.threads;

@@ -15,7 +15,7 @@ enum class Zero {
 /// One row of the table that drives every range check and its message. The range is closed and wide
 /// enough for hard cases: it keeps out what no law of the model can mean, not what is unusual.
 struct Constraint {
-  std::string_view message;  ///< message of tribodyn.v1, e.g. "Lubricant"
+  std::string_view message;  ///< message of tribodyn.v1, e.g. "Lubricant", "LoadShareAtTorque.Slot"
   std::string_view field;    ///< its field, e.g. "relaxation_time_seconds"
   std::string_view unit;     ///< symbol for people, e.g. "s"; empty for a pure number
   double minimum;

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 #include <google/protobuf/message.h>
-#include <openssl/evp.h>
 
-#include <array>
 #include <set>
 #include <stdexcept>
 
 #include "core/version.h"
 #include "server/convert/output_only.h"
+#include "server/hash/sha256.h"
 
 namespace tribodyn::server {
 namespace {
@@ -96,16 +95,6 @@ std::string canonical_inputs(const SimulationInputs& inputs) {
   return text;
 }
 
-std::string input_hash(const SimulationInputs& inputs) {
-  const std::string text = canonical_inputs(inputs);
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-  unsigned int length = 0;
-  if (EVP_Digest(text.data(), text.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("SHA-256 is not available");
-  }
-  std::string hex;
-  for (unsigned int i = 0; i < length; ++i) hex += fmt::format("{:02x}", digest[i]);
-  return hex;
-}
+std::string input_hash(const SimulationInputs& inputs) { return sha256(canonical_inputs(inputs)); }
 
 }  // namespace tribodyn::server

@@ -36,7 +36,7 @@ ResourceLookup seed_lookup();
 template <class Resource>
 Resource seed(const std::string& name) {
   Resource resource;
-  resource.ParseFromString(*seed_lookup().body(name));
+  resource.ParseFromString(seed_lookup().find({name, 0})->body);
   return resource;
 }
 
