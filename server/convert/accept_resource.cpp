@@ -47,13 +47,18 @@ void check_labels(const Labels& labels, const std::string& path, Violations& vio
   }
 }
 
+const char* collection_of(const v1::Lubricant&) { return kLubricants; }
+const char* collection_of(const v1::GearSet&) { return kGearSets; }
+const char* collection_of(const v1::Surface&) { return kSurfaces; }
+const char* collection_of(const v1::Vehicle&) { return kVehicles; }
+
 /// A resource may descend from a deleted one, never from itself.
 template <class Resource>
 void check_descent(const Resource& stated, const ResourceLookup& lookup, const std::string& path,
                    Violations& violations) {
   const std::string& name = stated.derived_from();
   if (name.empty()) return;
-  const std::string collection = stated.name().substr(0, stated.name().find('/'));
+  const std::string collection = collection_of(stated);
   const auto parsed = parse_revision_name(name, collection);
   if (parsed && parsed->name == stated.name()) {
     violations.push_back({path, fmt::format("{} is the resource itself", name)});

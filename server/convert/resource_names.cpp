@@ -87,6 +87,9 @@ std::string simulation_name(std::int64_t id) { return fmt::format("{}/{}", kSimu
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {
   const std::string_view compared = name.substr(0, kMaximumTextLength);
+  for (const std::string& each : existing) {
+    if (!name.empty() && each.starts_with(name)) return each;  // its unit was left out
+  }
   const auto nearest = std::min_element(existing.begin(), existing.end(),
                                         [&](const std::string& a, const std::string& b) {
                                           return edits(compared, a) < edits(compared, b);
