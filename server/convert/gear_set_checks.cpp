@@ -20,7 +20,6 @@ using Numbers = google::protobuf::RepeatedFieldRef<double>;
 constexpr double kShareTolerance = 1e-3;
 constexpr double kContinuityTolerance = 1e-6;  // of the value, or of a thousandth
 constexpr double kPowerTolerance = 1e-6;       // of the speeds that make it up
-constexpr double kRatioTolerance = 1e-9;
 
 /// Adds violations up to a limit and counts the rest.
 class Complaints {

@@ -33,6 +33,7 @@ void check_gear_set(const v1::GearSet& gear_set, const std::string& path, Violat
 void check_gear_set(const v1::GearSet& gear_set, const LocateSample& locate,
                     const std::string& path, Violations& violations);
 
+inline constexpr double kRatioTolerance = 1e-9;  ///< of R_g0 against R_p0 N_g/N_p
 inline constexpr int kMaximumFlankSamples = 10'000;
 inline constexpr int kMaximumHarmonics = 1000;
 inline constexpr int kMaximumTorques = 100;

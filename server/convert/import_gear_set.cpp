@@ -338,7 +338,9 @@ void snap_ratio(v1::GearSet& gear_set) {
   const double expected = series.pinion_contact_radius_metres().mean() * gear_set.gear_teeth() /
                           gear_set.pinion_teeth();
   const double stated = series.gear_contact_radius_metres().mean();
-  if (stated == expected || !(std::abs(stated - expected) <= kSnapTolerance * std::abs(expected))) {
+  const double difference = std::abs(stated - expected);
+  if (difference <= kRatioTolerance * std::abs(expected) ||
+      !(difference <= kSnapTolerance * std::abs(expected))) {
     return;
   }
   series.mutable_gear_contact_radius_metres()->set_mean(expected);

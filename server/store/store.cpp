@@ -8,9 +8,11 @@
 #include <bit>
 #include <limits>
 
+#include "server/store/deadline.h"
 #include "server/store/resource_queries.h"
 #include "server/store/resource_rows.h"
 #include "server/store/schema.h"
+#include "server/store/translate_error.h"
 
 static_assert(std::endian::native == std::endian::little, "history columns are little-endian");
 
@@ -19,26 +21,6 @@ namespace {
 
 constexpr int kReaderConnections = 8;
 
-StoreError translate(const SQLite::Exception& error, const std::filesystem::path& path) {
-  const std::string name = "database " + path.string();
-  switch (error.getErrorCode()) {
-    case SQLITE_NOTADB:
-    case SQLITE_CORRUPT:
-      return {StoreError::Kind::kCorrupt,
-              name + " is damaged or no SQLite database: " + error.what()};
-    case SQLITE_READONLY:
-    case SQLITE_PERM:
-      return {StoreError::Kind::kReadOnly, name + " cannot be written: " + error.what()};
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-      return {StoreError::Kind::kInUse, name + " is locked by another program: " + error.what()};
-    case SQLITE_CANTOPEN:
-      return {StoreError::Kind::kCannotOpen, name + " cannot be opened: " + error.what()};
-    default:
-      return {StoreError::Kind::kFailed, name + ": " + error.what()};
-  }
-}
-
 /// One path for one file, so that two spellings of it meet in one lock.
 std::filesystem::path one_path(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -46,10 +28,17 @@ std::filesystem::path one_path(const std::filesystem::path& path) {
   return found.empty() ? path : found;
 }
 
+void check_deadline(const std::filesystem::path& path) {
+  if (DeadlineScope::has_passed()) {
+    throw StoreError(StoreError::Kind::kDeadline,
+                     "database " + path.string() + ": the deadline has passed");
+  }
+}
+
 SQLite::Database open_writer(const std::filesystem::path& path) try {
   return {path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMilliseconds};
 } catch (const SQLite::Exception& error) {
-  throw translate(error, path);
+  throw translate_error(error, path);
 }
 
 StoredSimulation row(const SQLite::Statement& query) {
@@ -122,20 +111,22 @@ class BlobReader {
 template <class Action>
 auto Store::write(const Action& action) {
   const std::lock_guard lock(writer_mutex_);
+  check_deadline(path_);
   try {
     return action(writer_);
   } catch (const SQLite::Exception& error) {
-    throw translate(error, path_);
+    throw translate_error(error, path_);
   }
 }
 
 template <class Action>
 auto Store::read(const Action& action) {
+  check_deadline(path_);
   try {
     ReaderPool::Loan loan = readers_.borrow();
     return action(*loan);
   } catch (const SQLite::Exception& error) {
-    throw translate(error, path_);
+    throw translate_error(error, path_);
   }
 }
 
@@ -145,6 +136,7 @@ Store::Store(const std::filesystem::path& database)
       writer_(open_writer(path_)),
       readers_(path_, kReaderConnections) {
   open_schema();
+  heed_deadlines(writer_);
 }
 
 void Store::open_schema() {

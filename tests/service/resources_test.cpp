@@ -11,6 +11,7 @@
 #include "server/app/simulations.h"
 #include "server/convert/output_only.h"
 #include "server/convert/provenance.h"
+#include "server/store/deadline.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -148,8 +149,7 @@ TEST_F(ResourcesTest, WhatWasEnteredIsKeptAsEntered) {
       ->set_dynamic_viscosity_millipascal_seconds(95'000);
   const auto made = create(entered, "x");
   ASSERT_TRUE(made.ok()) << complaints(made.error());
-  EXPECT_TRUE(
-      MessageDifferencer::Equals(made.message().measurements(), entered.measurements()));
+  EXPECT_TRUE(MessageDifferencer::Equals(made.message().measurements(), entered.measurements()));
   EXPECT_EQ(made.message().characterisation().viscosity_residuals_size(), 5);
   EXPECT_EQ(made.message().characterisation().sae_j306_grade(), "75W-90");
   EXPECT_GT(made.message().characterisation().root_mean_square_residual(), 0);
@@ -163,16 +163,16 @@ TEST_F(ResourcesTest, AStatedParameterIsNeverReplaced) {
   ASSERT_TRUE(made.ok()) << complaints(made.error());
   EXPECT_EQ(made.message().thermal_conductivity_watts_per_metre_kelvin(), 0.2);
   EXPECT_EQ(made.message().relaxation_time_seconds(), 0) << "zero is a value";
-  const auto* entry = find_provenance(made.message().provenance(),
-                                      "thermal_conductivity_watts_per_metre_kelvin");
+  const auto* entry =
+      find_provenance(made.message().provenance(), "thermal_conductivity_watts_per_metre_kelvin");
   EXPECT_EQ(entry->provenance(), v1::PROVENANCE_USER);
   EXPECT_FALSE(entry->computed());
 }
 
 TEST_F(ResourcesTest, ALubricantOfWhichTooLittleIsKnownIsRefusedWhole) {
   v1::Lubricant entered;
-  entered.mutable_measurements()
-      ->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(70);
+  entered.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
+      70);
   EXPECT_EQ(create(entered, "x").error().code(), google::rpc::INVALID_ARGUMENT);
   entered.mutable_measurements()->set_density_15_celsius_kilograms_per_cubic_metre(-1);
   entered.mutable_measurements()->add_viscosities()->set_temperature_celsius(9999);
@@ -233,8 +233,8 @@ TEST_F(ResourcesTest, AnUpdateTakesOverWhatTheMaskNamesAndNothingElse) {
 TEST_F(ResourcesTest, WhatWasComputedFollowsItsGrounds) {
   const v1::Lubricant first = create(three_numbers(), "x").message();
   v1::Lubricant change = first;
-  change.mutable_measurements()
-      ->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(15);
+  change.mutable_measurements()->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(
+      15);
   const v1::Lubricant second = update(change).message();
   EXPECT_NE(second.vogel_temperature_coefficient_kelvin(),
             first.vogel_temperature_coefficient_kelvin());
@@ -242,8 +242,8 @@ TEST_F(ResourcesTest, WhatWasComputedFollowsItsGrounds) {
   change = second;
   change.set_thermal_conductivity_watts_per_metre_kelvin(0.16);
   const v1::Lubricant third = update(change).message();
-  const auto* entry = find_provenance(third.provenance(),
-                                      "thermal_conductivity_watts_per_metre_kelvin");
+  const auto* entry =
+      find_provenance(third.provenance(), "thermal_conductivity_watts_per_metre_kelvin");
   EXPECT_FALSE(entry->computed()) << "the client's from now on";
   EXPECT_EQ(entry->provenance(), v1::PROVENANCE_USER);
   EXPECT_EQ(third.thermal_conductivity_watts_per_metre_kelvin(), 0.16);
@@ -373,8 +373,7 @@ TEST_F(ListTest, FiltersFindWhatTheySayOnEveryPage) {
 }
 
 TEST_F(ListTest, OrdersHoldOverPages) {
-  EXPECT_THAT(ids("", "name desc"),
-              ElementsAre("o7", "o6", "o5", "o4", "o3", "o2", "o1", "o0"));
+  EXPECT_THAT(ids("", "name desc"), ElementsAre("o7", "o6", "o5", "o4", "o3", "o2", "o1", "o0"));
   EXPECT_THAT(ids("", "thermal_conductivity_watts_per_metre_kelvin"),
               ElementsAre("o3", "o7", "o2", "o6", "o1", "o5", "o0", "o4"));
   EXPECT_THAT(ids("labels.project = axle", "thermal_conductivity_watts_per_metre_kelvin desc", 1),
@@ -401,6 +400,20 @@ TEST_F(ListTest, UnknownWordsNameTheNearest) {
   EXPECT_THAT(said("", "lims"), HasSubstr("did you mean \"lims_id\"?"));
   EXPECT_THAT(said("", "name backwards"), HasSubstr("asc or desc"));
   EXPECT_THAT(said(std::string(3000, 'x'), ""), HasSubstr("at most 2000"));
+}
+
+TEST_F(ListTest, ACallEndsAtItsDeadlineAndHasChangedNothing) {
+  const DeadlineScope over(DeadlineScope::Clock::now());
+  std::vector<NewResource> many;
+  for (int i = 0; i < 200; ++i) {
+    many.push_back({"lubricants/m" + std::to_string(i), std::string(5000, 'x')});
+  }
+  EXPECT_THROW(bench_.store().add_resources(many, 1), StoreError);
+  v1::ListLubricantsRequest request;
+  request.set_filter("display_name:odd AND name:o AND lims_id:l AND labels.project:a");
+  EXPECT_EQ(list_lubricants(app_, request).error().code(), google::rpc::DEADLINE_EXCEEDED);
+  const DeadlineScope later(DeadlineScope::Clock::now() + std::chrono::hours(1));
+  EXPECT_TRUE(DeadlineScope::has_passed()) << "the earliest counts";
 }
 
 TEST_F(ListTest, ATokenBelongsToItsList) {
