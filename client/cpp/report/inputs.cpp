@@ -8,6 +8,7 @@
 #include <map>
 
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
@@ -66,6 +67,20 @@ std::string curve_text(const v1::InefficiencyCurveStudy& study) {
   return "inefficiency curve from " + significant(study.first_speed_kilometers_per_hour()) +
          " to " + significant(study.last_speed_kilometers_per_hour()) + " km/h by " +
          significant(study.speed_step_kilometers_per_hour()) + direction + ascent;
+}
+
+/// What a result that compares fluids rests on most: never left out.
+void add_assumed_of_lubricant(const v1::SimulationResult& result, Sheet& sheet) {
+  bool first = true;
+  for (const auto& assumption : result.assumptions()) {
+    if (assumption.provenance() != v1::PROVENANCE_ASSUMED ||
+        assumption.resource().rfind("lubricants/", 0) != 0) {
+      continue;
+    }
+    if (first) sheet.heading("Assumed of the lubricant, not measured");
+    first = false;
+    sheet.line(label_of_field(assumption.field()), assumption.value());
+  }
 }
 
 }  // namespace
@@ -132,6 +147,7 @@ void add_provenance(const v1::SimulationResult& result, bool shows_all, Sheet& s
               provenance_word(static_cast<v1::Provenance>(provenance));
     }
     sheet.line("parameters", text.empty() ? "none stated" : text + " (all: --assumptions)");
+    add_assumed_of_lubricant(result, sheet);
     return;
   }
   std::map<int, std::vector<const v1::Assumption*>> groups;
