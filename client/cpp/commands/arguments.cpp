@@ -80,6 +80,7 @@ void complain_of_extras(const CLI::App& root, const CLI::App& app, const Command
                            (meant.empty() ? "" : " (is " + meant + " meant?)"));
     }
     follows_option = is_option && extra.find('=') == std::string::npos;
+    if (!is_option && command == nullptr) break;  // what follows belongs to the unknown command
   }
 }
 

@@ -15,6 +15,7 @@ using google::protobuf::Message;
 struct ImportFlags {
   std::vector<std::string> files;
   std::string id;
+  std::string like;
   ResourceEdits edits;
   TableFiles tables;
   bool replace = false;
@@ -114,9 +115,10 @@ int import_tables(const ResourceKind& kind, const ImportFlags& flags,
   TableFiles tables = flags.tables;
   for (const std::string& path : flags.files) add_table(kind, path, tables);
   const std::string id = !flags.id.empty() ? flags.id : id_of_file(flags.files.front());
-  const ResourcePointer resource = kind.make();
-  flags.edits.apply(*resource);
   Connection connection = options.connect();
+  const ResourcePointer resource =
+      flags.like.empty() ? kind.make() : copy_of(connection, kind, flags.like, tables);
+  flags.edits.apply(*resource);
   const ResourcePointer imported =
       create_with_tables(connection, kind, *resource, id, tables, flags.validate_only);
   show_written("imported", *imported, flags.validate_only, options.output_format);
@@ -204,8 +206,7 @@ Command import_command(const ResourceKind& kind) {
   } else if (kind.word == "gear-sets") {
     command.about += " Or from tooth contact data computed elsewhere (CSV).";
     command.examples.emplace_back(
-        "tribodyn gear-sets import contact.csv --series series.csv --id mine --pinion-teeth 13 "
-        "--gear-teeth 36");
+        "tribodyn gear-sets import contact.csv --series series.csv --id mine --like A");
   } else if (kind.word == "surfaces") {
     command.about += " Or from measured profiles (CSV).";
     command.examples.emplace_back(
@@ -221,6 +222,11 @@ Command import_command(const ResourceKind& kind) {
   command.flags.text("--id", "NAME",
                      "Its id. Default: the name in the file, else the file's own name.",
                      [flags](const std::string& text) { flags->id = resource_id(text); });
+  command.flags
+      .text("--like", "NAME",
+            "Of a table: what it does not tell is as in this " + kind.singular + ".",
+            [flags](const std::string& text) { flags->like = text; })
+      .collection = kind.collection;
   command.flags.toggle("--replace", "Make a new revision of what is there already.",
                        [flags] { flags->replace = true; });
   command.flags.toggle("--validate-only", "Check everything and show the outcome; write nothing.",

@@ -77,6 +77,32 @@ void add_table(const ResourceKind& kind, const std::string& path, TableFiles& ta
   }
 }
 
+ResourcePointer copy_of(Connection& connection, const ResourceKind& kind, const std::string& name,
+                        const TableFiles& tables) {
+  ResourcePointer resource = kind.calls->get(connection, kind.name_of(name));
+  clear_output_only(*resource);
+  const auto clear = [&](std::initializer_list<const char*> fields) {
+    for (const char* field : fields) {
+      resource->GetReflection()->ClearField(resource.get(),
+                                            resource->GetDescriptor()->FindFieldByName(field));
+    }
+  };
+  clear({"name", "derived_from"});
+  if (!tables.tooth_contact.empty()) {
+    clear({"flank_slots", "series_by_torque", "load_share_by_torque"});
+  }
+  if (!tables.series.empty()) clear({"series"});
+  if (!tables.profiles.empty()) {
+    clear({"measurements", "asperity_density_per_square_metre", "asperity_radius_metres",
+           "composite_rms_height_metres"});
+    for (const char* field : {"asperity_density_per_square_metre", "asperity_radius_metres",
+                              "composite_rms_height_metres"}) {
+      drop_provenance(*resource, field);
+    }
+  }
+  return resource;
+}
+
 ResourcePointer create_with_tables(Connection& connection, const ResourceKind& kind,
                                    const google::protobuf::Message& resource, const std::string& id,
                                    const TableFiles& tables, bool validate_only) {

@@ -15,6 +15,7 @@ using google::protobuf::Message;
 struct WriteFlags {
   std::string name;
   std::string file;
+  std::string like;
   std::string etag;
   ResourceEdits edits;
   TableFiles tables;
@@ -56,11 +57,19 @@ void add_write_flags(Command& command, const std::shared_ptr<WriteFlags>& flags,
                        [flags] { flags->validate_only = true; });
 }
 
+/// What the flags of create change.
+ResourcePointer start_of(Connection& connection, const ResourceKind& kind,
+                         const WriteFlags& flags) {
+  if (!flags.file.empty()) return read_one(kind, flags.file);
+  if (!flags.like.empty()) return copy_of(connection, kind, flags.like, flags.tables);
+  return kind.make();
+}
+
 int run_create(const ResourceKind& kind, const WriteFlags& flags, const CommonOptions& options) {
-  const ResourcePointer resource = flags.file.empty() ? kind.make() : read_one(kind, flags.file);
+  Connection connection = options.connect();
+  const ResourcePointer resource = start_of(connection, kind, flags);
   flags.edits.apply(*resource);
   set_text(*resource, "name", "");
-  Connection connection = options.connect();
   const ResourcePointer created = create_with_tables(
       connection, kind, *resource, resource_id(flags.name), flags.tables, flags.validate_only);
   show_written("created", *created, flags.validate_only, options.output_format);
@@ -128,20 +137,36 @@ Command create_command(const ResourceKind& kind) {
   } else {
     command.about = "Adds a " + kind.singular +
                     ". Values carry their unit, e.g. 0.4um; `tribodyn help units` lists them.";
-    command.examples = {"tribodyn " + kind.word + " create mine --file " + kind.example + ".json"};
+    command.examples = {"tribodyn " + kind.word + " create mine --like " + kind.example,
+                        "tribodyn " + kind.word + " create mine --file mine.json"};
+    if (kind.word == "gear-sets") {
+      command.examples.emplace_back(
+          "tribodyn gear-sets create mine --like A --tooth-contact contact.csv --series "
+          "series.csv");
+    } else if (kind.word == "surfaces") {
+      command.examples.emplace_back(
+          "tribodyn surfaces create mine --like run-in --profile pinion,axial,p.csv --profile "
+          "gear,axial,g.csv");
+    }
   }
-  add_name(command, kind, flags,
-           "Its id: letters, digits, '-', '_', '.'; e.g. my-" + kind.singular.substr(0, 3) + ".",
-           false);
+  add_name(command, kind, flags, "Its id: letters, digits, '-', '_', '.'; e.g. mine.", false);
   add_table_flags(command.flags, kind, flags->tables);
   add_edit_flags(command.flags, kind, flags->edits);
   add_write_flags(command, flags,
                   "Start from this JSON file, as export writes it; flags go before.");
+  command.flags
+      .text("--like", "NAME", "Start from a copy of this " + kind.singular + "; flags go before.",
+            [flags](const std::string& text) { flags->like = text; })
+      .collection = kind.collection;
   command.check = [flags, &kind](Complaints& complaints) {
     if (flags->name.empty()) {
       complaints.emplace_back("NAME is missing, e.g. tribodyn " + kind.word + " create mine");
     }
-    if (flags->edits.empty() && flags->file.empty() && flags->tables.empty()) {
+    if (!flags->like.empty() && !flags->file.empty()) {
+      complaints.emplace_back("either --like or --file");
+    }
+    if (flags->edits.empty() && flags->file.empty() && flags->like.empty() &&
+        flags->tables.empty()) {
       complaints.emplace_back("nothing is said of it; see `tribodyn " + kind.word +
                               " create --help`");
     }

@@ -40,6 +40,11 @@ void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tabl
 /// A file named without a flag: the table of its kind.
 void add_table(const ResourceKind& kind, const std::string& path, TableFiles& tables);
 
+/// A copy of a resource that exists, without its name and what the server sets; without what the
+/// tables bring, too.
+ResourcePointer copy_of(Connection& connection, const ResourceKind& kind, const std::string& name,
+                        const TableFiles& tables);
+
 /// Creates a resource from what is known of it and its tables; without tables, from that alone.
 ResourcePointer create_with_tables(Connection& connection, const ResourceKind& kind,
                                    const google::protobuf::Message& resource, const std::string& id,

@@ -1,11 +1,9 @@
-#include <algorithm>
 #include <iostream>
 #include <memory>
 
 #include "client/cpp/commands/command.h"
 #include "client/cpp/resources/kind.h"
 #include "client/cpp/text/csv.h"
-#include "client/cpp/text/nearest.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 
@@ -56,16 +54,7 @@ std::string schema_table(const v1::Schema& schema) {
 
 int run(const std::string& word, const CommonOptions& options) {
   Connection connection = options.connect();
-  const std::string message = message_of(word);
-  const v1::Schema schema = connection.schema(message);
-  if (!message.empty() && schema.constraints().empty()) {
-    std::vector<std::string> known;
-    const v1::Schema all = connection.schema();
-    for (const auto& row : all.constraints()) known.push_back(row.message());
-    const std::string meant = nearest(message, known);
-    throw Failure(kExitFailed, "the server has no constraints of '" + printable(message) + "'" +
-                                   (meant.empty() ? "" : " (is " + meant + " meant?)"));
-  }
+  const v1::Schema schema = connection.schema(message_of(word));
   switch (options.output_format) {
     case OutputFormat::kTable:
       std::cout << schema_table(schema);

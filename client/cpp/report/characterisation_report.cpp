@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "client/cpp/report/resource_report.h"
 #include "client/cpp/text/colour.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
@@ -37,6 +40,28 @@ std::string comparison_text(const v1::LubricantCharacterisation& fluid) {
                      " C the law in use (Vogel) is " + fixed(100 * lowest, 1) + " to +" +
                      fixed(100 * highest, 1) + " % off ASTM D341 through the same viscosities.",
                  2);
+}
+
+/// Estimates of single parameters share one line: each stands in the table of parameters with its
+/// uncertainty and source.
+std::string warnings_text(const v1::LubricantCharacterisation& fluid) {
+  std::vector<std::string> estimated;
+  std::string text;
+  const auto add = [&](const std::string& sentence) {
+    text += caution(wrapped("! " + printable(sentence), 2));
+  };
+  for (const auto& warning : fluid.warnings()) {
+    if (warning.code() == "PARAMETER_ESTIMATED") {
+      estimated.push_back(label_of_field(warning.field()));
+    } else {
+      add(warning.sentence());
+    }
+  }
+  if (!estimated.empty()) {
+    add("Not measured but estimated, with the uncertainty and the source below: " +
+        joined(estimated, ", ") + ".");
+  }
+  return text.empty() ? "" : "\n" + heading("To know before relying on it") + "\n" + text;
 }
 
 }  // namespace
@@ -73,12 +98,7 @@ std::string characterisation_sheet(const v1::Lubricant& lubricant) {
             fixed(100 * fluid.root_mean_square_residual(), 2) + " %\n";
   }
   if (fluid.walther_comparison_size() > 0) text += comparison_text(fluid);
-  if (fluid.warnings_size() > 0) text += "\n" + heading("To know before relying on it") + "\n";
-  for (const auto& warning : fluid.warnings()) {
-    text += caution(
-        wrapped("! " + printable(warning.sentence()) + " [" + printable(warning.code()) + "]", 2));
-  }
-  return text;
+  return text + warnings_text(fluid);
 }
 
 }  // namespace tribodyn::client

@@ -224,17 +224,44 @@ std::string profiles_text(const v1::Surface& surface) {
   return "\n" + table.text();
 }
 
-/// The columns of a kind's table, beside name and title.
-const std::vector<std::string>& list_fields(const ResourceKind& kind) {
-  static const std::map<std::string, std::vector<std::string>> kFields = {
+/// A column of a kind's table, beside name and title: a number, perhaps inside a block.
+struct ListColumn {
+  const char* header;
+  const char* block;  ///< null: at the top
+  const char* field;
+};
+
+const std::vector<ListColumn>& list_columns(const ResourceKind& kind) {
+  static const std::map<std::string, std::vector<ListColumn>> kColumns = {
       {"lubricants",
-       {"pressure_viscosity_coefficient_per_pascal", "vogel_temperature_coefficient_kelvin",
-        "thermal_conductivity_watts_per_metre_kelvin"}},
-      {"gear-sets", {"pinion_teeth", "gear_teeth"}},
-      {"surfaces", {"composite_rms_height_metres", "asperity_friction_coefficient"}},
-      {"vehicles", {"mass_kilograms", "drag_coefficient", "wheel_radius_metres"}},
+       {{"KV40", "measurements", "kinematic_viscosity_40_celsius_square_millimetres_per_second"},
+        {"KV100", "measurements", "kinematic_viscosity_100_celsius_square_millimetres_per_second"},
+        {"alpha*", nullptr, "pressure_viscosity_coefficient_per_pascal"},
+        {"Vogel A_1", nullptr, "vogel_temperature_coefficient_kelvin"}}},
+      {"gear-sets",
+       {{"pinion teeth", nullptr, "pinion_teeth"}, {"gear teeth", nullptr, "gear_teeth"}}},
+      {"surfaces",
+       {{"RMS height", nullptr, "composite_rms_height_metres"},
+        {"asperity friction", nullptr, "asperity_friction_coefficient"}}},
+      {"vehicles",
+       {{"mass", nullptr, "mass_kilograms"},
+        {"drag", nullptr, "drag_coefficient"},
+        {"wheel radius", nullptr, "wheel_radius_metres"}}},
   };
-  return kFields.at(kind.word);
+  return kColumns.at(kind.word);
+}
+
+/// "-" where nothing is stated.
+std::string list_cell(const Message& resource, const ListColumn& column) {
+  const Message* parent = &resource;
+  if (column.block != nullptr) {
+    parent = &resource.GetReflection()->GetMessage(
+        resource, resource.GetDescriptor()->FindFieldByName(column.block));
+  }
+  const Parameter parameter{parent->GetDescriptor()->FindFieldByName(column.field), parent, ""};
+  const double value = number_of(parameter);
+  const bool stated = parameter.field->has_presence() ? is_known(parameter) : value != 0;
+  return stated ? significant(in_trade_unit(column.field, value)) : "-";
 }
 
 std::string list_json(const ResourceKind& kind, const std::vector<ResourcePointer>& resources) {
@@ -290,8 +317,8 @@ std::string resource_table(const ResourceKind& kind, const std::vector<ResourceP
                            bool as_revisions) {
   std::vector<Table::Column> columns = {
       {"Name", "", Table::Align::kLeft}, {"rev.", ""}, {"Changed", "UTC", Table::Align::kLeft}};
-  for (const std::string& field : list_fields(kind)) {
-    columns.push_back({label_of_field(field), trade_unit_of_field(field)});
+  for (const ListColumn& column : list_columns(kind)) {
+    columns.push_back({column.header, trade_unit_of_field(column.field)});
   }
   columns.push_back({"Title", "", Table::Align::kLeft});
   Table table(columns);
@@ -301,11 +328,8 @@ std::string resource_table(const ResourceKind& kind, const std::vector<ResourceP
     std::vector<std::string> cells = {resource_id(text_field(*resource, "name")) + deleted,
                                       std::to_string(revision_of(*resource)),
                                       time_text(*resource, "revision_create_time")};
-    for (const std::string& field : list_fields(kind)) {
-      const Parameter parameter{resource->GetDescriptor()->FindFieldByName(field), resource.get(),
-                                field};
-      cells.push_back(is_known(parameter) ? significant(in_trade_unit(field, number_of(parameter)))
-                                          : "-");
+    for (const ListColumn& column : list_columns(kind)) {
+      cells.push_back(list_cell(*resource, column));
     }
     cells.push_back(text_field(*resource, "display_name"));
     table.add_row(std::move(cells));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <numeric>
 
 #include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
@@ -104,10 +105,11 @@ void set_number(const Leaf& leaf, Message& resource, double value) {
   if (leaf.block == nullptr) set_user_provenance(resource, leaf.field->name());
 }
 
-std::string sentence(std::string text, const std::string& fallback) {
-  if (text.empty()) text = fallback;
-  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text + ".";
+/// The wording, or the field's name in words.
+std::string sentence(const std::string& wording, std::string label) {
+  if (!wording.empty()) return wording + ".";
+  label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
+  return label + ".";
 }
 
 std::string lower_kebab(std::string word) {
@@ -194,13 +196,20 @@ void add_text_flag(FlagList& flags, const ResourceKind& kind, const FieldDescrip
 }
 
 void add_class_flag(FlagList& flags, const FieldDescriptor& field, ResourceEdits& edits) {
-  const std::vector<std::string> words = enum_words(*field.enum_type());
+  std::vector<std::string> words = enum_words(*field.enum_type());
+  std::vector<int> values(words.size());
+  std::iota(values.begin(), values.end(), 1);
+  if (field.enum_type() == v1::Lubricant::BaseOilClass_descriptor()) {
+    words.insert(words.end(), {"pao", "pag"});
+    values.insert(values.end(),
+                  {v1::Lubricant::POLYALPHAOLEFIN, v1::Lubricant::POLYALKYLENE_GLYCOL});
+  }
   flags.choice(flag_of_field(field.name()), words,
                sentence(wording_of(field).description, label_of_field(field.name())),
-               [&edits, &field](int index) {
-                 edits.add(field.name(), [&field, index](Message& resource) {
+               [&edits, &field, values](int index) {
+                 edits.add(field.name(), [&field, value = values[index]](Message& resource) {
                    resource.GetReflection()->SetEnum(&resource, &field,
-                                                     field.enum_type()->value(index + 1));
+                                                     field.enum_type()->FindValueByNumber(value));
                  });
                });
 }

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 
 #include "client/cpp/failure.h"
 #include "client/cpp/text/nearest.h"
@@ -48,7 +49,9 @@ void find_unknown(const Struct& object, const Descriptor& type, const std::strin
       find_unknown(value.struct_value(), *field.message_type(), below, complaints);
     }
   };
-  for (const auto& [name, value] : object.fields()) {
+  // Sorted: the order of a protobuf map changes from run to run.
+  const std::map<std::string, Value> fields(object.fields().begin(), object.fields().end());
+  for (const auto& [name, value] : fields) {
     const std::string here = path_below(path, name);
     const FieldDescriptor* field = find_field(type, name);
     if (field == nullptr) {

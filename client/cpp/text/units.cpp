@@ -213,8 +213,11 @@ class UnitReader {
 };
 
 std::optional<Unit> parse_unit(std::string_view text) {
-  // Sheets write W/mK and mean W/(m K); nobody means a watt per millikelvin.
+  // Sheets write mPas, Nm and W/mK; nobody means a watt per millikelvin.
   std::string plain = plain_signs(text);
+  for (const auto& [from, to] : {std::pair("Pas", "Pa s"), std::pair("Nm", "N m")}) {
+    plain = replaced(std::move(plain), from, to);
+  }
   if (plain.ends_with("W/mK")) plain.replace(plain.size() - 2, 2, "(m K)");
   return UnitReader(std::move(plain)).read();
 }
