@@ -91,7 +91,7 @@ Resource end(Resource out) {
   std::sort(out.mutable_labels()->begin(), out.mutable_labels()->end(),
             [](const v1::Label& a, const v1::Label& b) { return a.key() < b.key(); });
   clear_units(*out.mutable_provenance());
-  complete_provenance(*Resource::descriptor(), *out.mutable_provenance());
+  complete_provenance(out, *out.mutable_provenance());
   return out;
 }
 
