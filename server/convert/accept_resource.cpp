@@ -62,7 +62,7 @@ void check_descent(const Resource& stated, const ResourceLookup& lookup, const s
   const auto parsed = parse_revision_name(name, collection);
   if (parsed && parsed->name == stated.name()) {
     violations.push_back({path, fmt::format("{} is the resource itself", name)});
-  } else if (!parsed || !lookup.find(*parsed)) {
+  } else if (!parsed || !lookup.find({parsed->name, 0})) {  // revisions number anew on import
     violations.push_back({path, unknown_name_text(name, collection, lookup.names(collection))});
   }
 }
