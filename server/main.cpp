@@ -17,6 +17,7 @@
 
 #include "core/version.h"
 #include "server/api/grpc_server.h"
+#include "server/app/stored_inputs.h"
 #include "server/store/maintenance.h"
 #include "server/store/seeds.h"
 #include "server/store/store.h"
@@ -68,7 +69,7 @@ int run_command(const std::string& name, const Flags& flags) {
   } else if (name == "restore") {
     restore_database(flags.file, flags.database);
   } else {
-    const std::vector<std::string> problems = check_database(flags.database);
+    const std::vector<std::string> problems = check_database(flags.database, hash_stored_inputs);
     for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());
     if (!problems.empty()) return kBadDatabase;
   }

@@ -74,7 +74,7 @@ class Scanner {
   template <class Test>
   std::string take(const Test& test) {
     const auto end = std::find_if_not(rest_.begin(), rest_.end(), test);
-    const std::string out(rest_.begin(), end);
+    std::string out(rest_.begin(), end);
     rest_.remove_prefix(out.size());
     skip_spaces();
     return out;

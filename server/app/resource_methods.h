@@ -101,7 +101,7 @@ Outcome<Resource> preview(const Resource& accepted) {
 template <class Resource>
 std::string new_name(const std::string& id, const std::string& stated, Violations& violations) {
   const std::string collection = Kind<Resource>::kCollection;
-  const std::string name = id.empty() ? stated : collection + "/" + id;
+  std::string name = id.empty() ? stated : collection + "/" + id;
   if (is_resource_name(name, collection)) return name;
   const std::string field = std::string(Kind<Resource>::kField) + "_id";
   violations.push_back(

@@ -41,7 +41,7 @@ void add_words(const std::string& name, const std::vector<std::string>& words, v
 }
 
 void add_enum(const EnumDescriptor& descriptor, v1::Schema& out) {
-  const std::string name = descriptor.full_name();
+  const std::string& name = descriptor.full_name();
   const std::string package = descriptor.file()->package() + ".";
   v1::Vocabulary* added = out.add_vocabularies();
   added->set_name(name.starts_with(package) ? name.substr(package.size()) : name);

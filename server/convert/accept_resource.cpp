@@ -62,7 +62,7 @@ void check_descent(const Resource& stated, const ResourceLookup& lookup, const s
   const auto parsed = parse_revision_name(name, collection);
   if (parsed && parsed->name == stated.name()) {
     violations.push_back({path, fmt::format("{} is the resource itself", name)});
-  } else if (!parsed || !lookup.find(*parsed)) {
+  } else if (!parsed || !lookup.find({parsed->name, 0})) {  // revisions number anew on import
     violations.push_back({path, unknown_name_text(name, collection, lookup.names(collection))});
   }
 }
@@ -91,7 +91,7 @@ Resource end(Resource out) {
   std::sort(out.mutable_labels()->begin(), out.mutable_labels()->end(),
             [](const v1::Label& a, const v1::Label& b) { return a.key() < b.key(); });
   clear_units(*out.mutable_provenance());
-  complete_provenance(*Resource::descriptor(), *out.mutable_provenance());
+  complete_provenance(out, *out.mutable_provenance());
   return out;
 }
 

@@ -54,9 +54,9 @@ void check_enum(const Place& place, int value) {
 
 void check_text(const Place& place, const std::string& value) {
   const std::string& name = place.field.name();
-  const int longest =
-      name == "description" || name == "source" || name == "warning" ? kMaximumProseLength
-                                                                     : kMaximumTextLength;
+  const int longest = name == "description" || name == "source" || name == "warning"
+                          ? kMaximumProseLength
+                          : kMaximumTextLength;
   if (value.size() <= static_cast<std::size_t>(longest)) return;
   place.violations.push_back(
       {place.path, fmt::format("{} has {} bytes; legal: at most {}", name, value.size(), longest)});

@@ -89,13 +89,18 @@ class ToothContactReader {
   }
 
   std::string locate(int slot, int sample, std::string_view column) const {
-    const auto index = static_cast<std::size_t>(slot * layout_.samples + sample);
-    const int line = index < layout_.row.size() ? table_.rows[layout_.row[index]].line : 0;
+    const std::size_t at = index(slot, sample);
+    const int line = at < layout_.row.size() ? table_.rows[layout_.row[at]].line : 0;
     const CsvColumn* found = find_column(columns_, column);
     return csv_place(table_, line, found == nullptr ? column : found->form.header);
   }
 
  private:
+  std::size_t index(int slot, int sample) const {
+    return static_cast<std::size_t>(slot) * static_cast<std::size_t>(layout_.samples) +
+           static_cast<std::size_t>(sample);
+  }
+
   bool has(std::string_view quantity) const { return find_column(columns_, quantity) != nullptr; }
 
   void complain(const std::string& text) { violations_.push_back({table_.name, text}); }
@@ -154,7 +159,9 @@ class ToothContactReader {
     }
     for (int k = 0; k < kFlankPairs; ++k) {
       for (int j = 0; j < layout_.samples; ++j) {
-        layout_.row.push_back(static_cast<std::size_t>(k * (layout_.samples - 1) + j));
+        layout_.row.push_back(static_cast<std::size_t>(k) *
+                                  static_cast<std::size_t>(layout_.samples - 1) +
+                              static_cast<std::size_t>(j));
       }
     }
   }
@@ -203,8 +210,7 @@ class ToothContactReader {
       for (int k = 0; k < kFlankPairs; ++k) {
         v1::FlankSlot* slot = gear_set_.mutable_flank_slots(k);
         for (int j = 0; j < layout_.samples; ++j) {
-          slot->GetReflection()->AddDouble(
-              slot, &field, values[layout_.row[static_cast<std::size_t>(k * layout_.samples + j)]]);
+          slot->GetReflection()->AddDouble(slot, &field, values[layout_.row[index(k, j)]]);
         }
       }
     }

@@ -23,7 +23,10 @@ bool is_label(const FieldDescriptor& field) {
       "name",      "display_name",   "description",  "provenance", "lubricant",
       "gear_set",  "surface",        "vehicle",      "labels",     "derived_from",
       "condition", "base_oil_class", "measurements", "lims_id",    "external_sample_id"};
-  return kLabels.contains(field.name()) || is_output_only(field);
+  // Constant lines in the text of every simulation; without them stored hashes would be others.
+  static const std::set<std::string> kConstant = {"state", "progress_fraction"};
+  return kLabels.contains(field.name()) ||
+         (is_output_only(field) && !kConstant.contains(field.name()));
 }
 
 void add_line(std::string& text, const std::string& path, const std::string& value) {

@@ -33,6 +33,12 @@ bool contains(const std::vector<std::string>& list, const std::string& word) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
+bool is_there(const google::protobuf::Message& resource, const FieldDescriptor& block) {
+  const auto& reflection = *resource.GetReflection();
+  return block.is_repeated() ? reflection.FieldSize(resource, &block) > 0
+                             : reflection.HasField(resource, &block);
+}
+
 /// Symbol of the unit of "half_backlash_metres" or "dynamics.half_backlash_metres".
 std::string unit_of(const Descriptor& resource, const std::string& field) {
   const std::size_t dot = field.find('.');
@@ -115,9 +121,14 @@ void fill_units(const Descriptor& resource, Provenances& all) {
   for (v1::ParameterProvenance& entry : all) entry.set_unit(unit_of(resource, entry.field()));
 }
 
-void complete_provenance(const Descriptor& resource, Provenances& all) {
-  const ParameterPaths paths = parameter_paths(resource);
-  std::vector<std::string> needed = paths.blocks;
+void complete_provenance(const google::protobuf::Message& resource, Provenances& all) {
+  const ParameterPaths paths = parameter_paths(*resource.GetDescriptor());
+  std::vector<std::string> needed;
+  for (const std::string& block : paths.blocks) {
+    if (is_there(resource, *resource.GetDescriptor()->FindFieldByName(block))) {
+      needed.push_back(block);
+    }
+  }
   for (const std::string& number : paths.numbers) {
     if (number.find('.') == std::string::npos) needed.push_back(number);
   }

@@ -33,7 +33,7 @@ void check_provenance(const google::protobuf::Descriptor& resource, const Proven
 void clear_units(Provenances& all);
 void fill_units(const google::protobuf::Descriptor& resource, Provenances& all);
 
-/// An entry PROVENANCE_USER for every number and block that has none.
-void complete_provenance(const google::protobuf::Descriptor& resource, Provenances& all);
+/// An entry PROVENANCE_USER for every number, and every block that is there, that has none.
+void complete_provenance(const google::protobuf::Message& resource, Provenances& all);
 
 }  // namespace tribodyn::server

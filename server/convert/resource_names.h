@@ -56,8 +56,8 @@ std::string simulation_name(std::int64_t id);
 /// The start of a client's text as plain ASCII: never half a UTF-8 character, never a control code.
 std::string plain_excerpt(std::string_view text);
 
-/// The first of `existing` that begins with `name`, else the one with the fewest edits from it; empty
-/// when there is none.
+/// The first of `existing` that begins with `name`, else the one with the fewest edits from it;
+/// empty when there is none.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing);
 
 /// "lubricants/7 does not exist; did you mean lubricants/1?", or what a name must look like.

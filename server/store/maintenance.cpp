@@ -144,12 +144,32 @@ void check_properties(SQLite::Database& db, Problems& problems) {
   }
 }
 
-void check_simulations(SQLite::Database& db, Problems& problems) {
+std::optional<std::string> revision_body(SQLite::Database& db, const std::string& name,
+                                         int revision) {
   SQLite::Statement query(db,
-                          "SELECT s.id, s.request, s.input_hash, b.body FROM simulations s "
-                          "LEFT JOIN results b ON b.simulation = s.id");
+                          "SELECT v.body FROM revisions v JOIN resources r ON r.id = v.resource "
+                          "WHERE r.name = ? AND v.revision = ?");
+  query.bind(1, name);
+  query.bind(2, revision);
+  if (!query.executeStep()) return std::nullopt;
+  return query.getColumn(0).getString();
+}
+
+void check_simulations(SQLite::Database& db, const HashInputs& hash_inputs, Problems& problems) {
+  const FindRevision find = [&db](const std::string& name, int revision) {
+    return revision_body(db, name, revision);
+  };
+  SQLite::Statement query(
+      db,
+      "SELECT s.id, s.request, s.input_hash, b.body, "
+      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.lubricant), "
+      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.gear_set), "
+      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.surface), "
+      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.vehicle) "
+      "FROM simulations s LEFT JOIN results b ON b.simulation = s.id");
   while (problems.size() < kMaximumProblems && query.executeStep()) {
     const std::string name = "simulations/" + query.getColumn(0).getString();
+    const std::string hash = query.getColumn(2).getString();
     v1::Simulation request;
     if (!request.ParseFromString(query.getColumn(1).getString())) {
       problems.push_back(name + ": its request cannot be read");
@@ -158,8 +178,15 @@ void check_simulations(SQLite::Database& db, Problems& problems) {
     v1::SimulationResult result;
     if (!result.ParseFromString(query.getColumn(3).getString())) {
       problems.push_back(name + ": its result cannot be read");
-    } else if (result.input_hash() != query.getColumn(2).getString()) {
+    } else if (result.input_hash() != hash) {
       problems.push_back(name + ": its result is of other inputs");
+    } else if (hash_inputs) {
+      request.set_lubricant(query.getColumn(4).getString());
+      request.set_gear_set(query.getColumn(5).getString());
+      request.set_surface(query.getColumn(6).getString());
+      request.set_vehicle(query.getColumn(7).getString());
+      const auto again = hash_inputs(request, result.model_version(), find);
+      if (again && *again != hash) problems.push_back(name + ": its inputs have another hash");
     }
   }
 }
@@ -175,7 +202,8 @@ void check_identity(SQLite::Database& db, const std::filesystem::path& path) {
   }
 }
 
-Problems problems_of(SQLite::Database& db, const std::filesystem::path& path) {
+Problems problems_of(SQLite::Database& db, const std::filesystem::path& path,
+                     const HashInputs& hash_inputs = nullptr) {
   check_identity(db, path);
   Problems problems;
   check_file(db, problems);
@@ -185,7 +213,7 @@ Problems problems_of(SQLite::Database& db, const std::filesystem::path& path) {
   check_rows(db, problems);
   check_bodies(db, problems);
   check_properties(db, problems);
-  check_simulations(db, problems);
+  check_simulations(db, hash_inputs, problems);
   db.exec("COMMIT");
   return problems;
 }
@@ -267,10 +295,11 @@ void restore_database(const std::filesystem::path& copy, const std::filesystem::
   });
 }
 
-std::vector<std::string> check_database(const std::filesystem::path& database) {
+std::vector<std::string> check_database(const std::filesystem::path& database,
+                                        const HashInputs& hash_inputs) {
   return translated(database, [&] {
     SQLite::Database db = open(database, SQLite::OPEN_READONLY);
-    return problems_of(db, database);
+    return problems_of(db, database, hash_inputs);
   });
 }
 

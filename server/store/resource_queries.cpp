@@ -107,8 +107,8 @@ const Restriction* most_selective(SQLite::Database& db, const ResourceQuery& que
   return best;
 }
 
-constexpr char kJoinedRows[] =
-    " CROSS JOIN resources r ON r.id = d.resource CROSS JOIN revisions v ON v.id = r.present WHERE";
+constexpr char kJoined[] =
+    " CROSS JOIN resources r ON r.id = d.resource CROSS JOIN revisions v ON v.id = r.present";
 
 /// Where a page that is ordered by `columns` goes on.
 void add_start_and_order(Clause& sql, const ResourceQuery& query, const std::string& value_column,
@@ -150,18 +150,14 @@ Clause statement(SQLite::Database& db, const ResourceQuery& query) {
   }
   if (leading != nullptr) {
     const Clause rows = selected(query.collection, *leading);
-    sql.add(std::string("FROM properties d") + kJoinedRows + rows.sql, rows.values);
-    add_conditions(sql, query, leading);
-    if (by_name) {
-      add_start_and_order(sql, query, "", sorted ? "+d.name" : "d.name");
-    } else {
-      sql.add(" AND r.id IN (SELECT resource FROM properties WHERE key = ?)", {query.order_key});
-      add_start_and_order(
-          sql, query,
-          "(SELECT o.value FROM properties o WHERE o.resource = r.id AND o.key = '" +
-              query.order_key + "')",
-          "d.name");
+    sql.add(std::string("FROM properties d") + kJoined);
+    if (!by_name) {
+      sql.add(" CROSS JOIN properties o ON o.resource = r.id AND o.key = ?", {query.order_key});
     }
+    sql.add(" WHERE" + rows.sql, rows.values);
+    add_conditions(sql, query, leading);
+    // A sorted name is written so that no index is taken for its order.
+    add_start_and_order(sql, query, "o.value", sorted ? "+d.name" : "d.name");
     return sql;
   }
   if (by_name) {
@@ -171,7 +167,7 @@ Clause statement(SQLite::Database& db, const ResourceQuery& query) {
     add_start_and_order(sql, query, "", "r.name");
     return sql;
   }
-  sql.add(std::string("FROM properties d") + kJoinedRows + " d.collection = ? AND d.key = ?",
+  sql.add(std::string("FROM properties d") + kJoined + " WHERE d.collection = ? AND d.key = ?",
           {query.collection, query.order_key});
   add_conditions(sql, query, nullptr);
   add_start_and_order(sql, query, "d.value", "d.name");

@@ -8,8 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "server/app/resources.h"
-#include "server/convert/output_only.h"
+#include "server/app/stored_inputs.h"
 #include "server/store/schema.h"
 #include "server/store/seeds.h"
 #include "tests/service/support.h"
@@ -17,7 +16,6 @@
 namespace tribodyn::server {
 namespace {
 
-using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -128,6 +126,21 @@ TEST_F(MaintenanceTest, ADamagedBackupIsNotRestored) {
   EXPECT_THROW(restore_database(path(), path()), StoreError);
   EXPECT_FALSE(std::filesystem::exists(path() + ".replaced"));
   EXPECT_THAT(check_database(path()), IsEmpty());
+}
+
+TEST(Inputs, OfAStoredSimulationStillHaveTheirHash) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("old.db");
+  std::filesystem::copy_file(std::string(TRIBODYN_TEST_DATA) + "/schemas/schema_1.sqlite", file);
+  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+  { const Store migrated(file); }
+  EXPECT_THAT(check_database(file, hash_stored_inputs), IsEmpty());
+  SQLite::Database raw(file, SQLite::OPEN_READWRITE);
+  raw.exec(
+      "UPDATE simulations SET lubricant = "
+      "(SELECT revision_id FROM revision_names WHERE name = 'lubricants/3')");
+  EXPECT_THAT(check_database(file, hash_stored_inputs),
+              Contains(HasSubstr("its inputs have another hash")));
 }
 
 TEST_F(MaintenanceTest, CheckFindsWhatIsWrong) {
