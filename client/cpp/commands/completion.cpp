@@ -62,8 +62,9 @@ std::vector<std::string> starting_with(const std::string& start,
   return result;
 }
 
-/// Ids of a collection. Whatever goes wrong: none.
-std::vector<std::string> names_of(const std::string& collection, const CommonOptions& options) {
+/// Ids of a collection, at least those that begin with `start`. Whatever goes wrong: none.
+std::vector<std::string> names_of(const std::string& collection, const std::string& start,
+                                  const CommonOptions& options) {
   std::vector<std::string> names;
   try {
     Connection connection(server_address(options.server), kPatience);
@@ -77,6 +78,10 @@ std::vector<std::string> names_of(const std::string& collection, const CommonOpt
       ListOptions list;
       list.limit = kMostNames;
       list.basic = true;
+      // Of many, the server sends only those that may be meant.
+      if (!start.empty() && start.find_first_of("\"\\") == std::string::npos) {
+        list.filter = "name:\"" + start + "\"";
+      }
       for (const auto& resource : kind.calls->list(connection, list).resources) {
         names.push_back(resource_id(text_field(*resource, "name")));
       }
@@ -94,7 +99,9 @@ std::vector<std::string> values_of(const Flag& flag, const std::string& start,
   const std::size_t comma = flag.is_repeatable ? start.rfind(',') : std::string::npos;
   const std::string head = comma == std::string::npos ? "" : start.substr(0, comma + 1);
   std::vector<std::string> words = flag.words;
-  if (!flag.collection.empty()) words = names_of(flag.collection, options);
+  if (!flag.collection.empty()) {
+    words = names_of(flag.collection, start.substr(head.size()), options);
+  }
   for (std::string& word : words) word.insert(0, head);
   return starting_with(start, words);
 }

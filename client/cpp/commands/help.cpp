@@ -98,7 +98,7 @@ std::string page(const std::vector<std::string>& words, const CommonOptions& opt
     known.push_back(command.path);
     known.push_back(group_of(command));
   }
-  const std::string group = group_text(name, commands);
+  std::string group = group_text(name, commands);
   if (!group.empty()) return group;
   const std::string meant = nearest(name, known);
   throw Failure(kExitUsage, "there is no help on '" + printable(name) + "'" +

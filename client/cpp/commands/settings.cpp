@@ -66,7 +66,7 @@ void apply_file(const FlagList& common_flags, Complaints& complaints) {
 }  // namespace
 
 std::string settings_path() {
-  if (const std::string path = environment(kPathVariable); !path.empty()) return path;
+  if (std::string path = environment(kPathVariable); !path.empty()) return path;
   if (const std::string folder = environment("XDG_CONFIG_HOME"); !folder.empty()) {
     return folder + "/tribodyn/config";
   }
