@@ -143,6 +143,20 @@ err_has 'is measurements meant'
 expect 1 validate half.json units.json
 out_has 'units.json: valid'
 
+fluid='"measurements": {"kinematic_viscosity_40_celsius_square_millimetres_per_second": 73,
+  "kinematic_viscosity_100_celsius_square_millimetres_per_second": 9,
+  "density_15_celsius_kilograms_per_cubic_metre": 870}'
+printf '{"lubricants": [{"name": "lubricants/drained", "derived_from": "lubricants/filled", %s},
+  {"name": "lubricants/filled", %s}]}' "$fluid" "$fluid" >derived.json
+expect 0 lubricants import derived.json
+expect 0 lubricants get drained
+out_has 'derived from +lubricants/filled'
+printf '{"lubricants": [{"name": "lubricants/twice", %s}, {"name": "lubricants/twice", %s}]}' \
+  "$fluid" "$fluid" >twice.json
+expect 2 lubricants import twice.json
+err_has 'lubricants\[0\] and in .*lubricants\[1\]'
+expect 1 lubricants get twice
+
 echo "--- tables of gear sets and surfaces"
 expect 0 gear-sets export A --tooth-contact contact.csv --series series.csv
 expect 0 gear-sets import contact.csv --series series.csv --id table --like A

@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "client/cpp/commands/json_import.h"
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/report/resource_report.h"
 #include "client/cpp/resources/json_input.h"
@@ -32,36 +33,8 @@ struct ExportFlags {
 
 bool is_csv(const std::string& path) { return std::filesystem::path(path).extension() == ".csv"; }
 
-/// "my-oil" of "fluids/my oil.csv".
-std::string id_of_file(const std::string& path) {
-  std::string id = std::filesystem::path(path).stem().string();
-  for (char& c : id) {
-    if (c == ' ') c = '-';
-  }
-  return id;
-}
-
-std::string id_of(const FileResource& from, const std::string& given) {
-  if (!given.empty()) return given;
-  const std::string name = text_field(*from.resource, "name");
-  return name.empty() ? id_of_file(from.origin) : resource_id(name.substr(0, name.find('@')));
-}
-
-ResourcePointer write(Connection& connection, const ResourceKind& kind, const FileResource& from,
-                      const std::string& id, bool replace, bool validate_only) {
-  Message& resource = *from.resource;
-  clear_output_only(resource);
-  const auto* name = resource.GetDescriptor()->FindFieldByName("name");
-  resource.GetReflection()->SetString(&resource, name, kind.name_of(id));
-  if (!replace) return kind.calls->create(connection, resource, id, validate_only);
-  UpdateOptions options;
-  options.allow_missing = true;
-  options.validate_only = validate_only;
-  return kind.calls->update(connection, resource, options);
-}
-
-[[noreturn]] void refuse_all(const std::vector<std::string>& refusals) {
-  throw Failure(kExitFailed, joined(refusals, "\n") + "\n  Nothing was written.");
+ProgressDisplay progress_of(const CommonOptions& options) {
+  return {std::cerr, options.progress_form(), standard_error_width()};
 }
 
 /// Everything is checked before anything is written.
@@ -69,6 +42,7 @@ int import_json(const ResourceKind& kind, const ImportFlags& flags, const Common
   std::vector<FileResource> resources;
   for (const std::string& path : flags.files) {
     for (auto& each : read_resources(read_file(path), path, &kind)) {
+      flags.edits.apply(*each.resource);
       resources.push_back(std::move(each));
     }
   }
@@ -76,25 +50,12 @@ int import_json(const ResourceKind& kind, const ImportFlags& flags, const Common
     throw Failure(kExitUsage, "--id names one " + kind.singular + ", but there are " +
                                   std::to_string(resources.size()));
   }
+  const JsonImport import(kind, std::move(resources), flags.id);
   Connection connection = options.connect();
-  std::vector<std::string> refusals;
-  std::vector<ResourcePointer> done;
-  for (const FileResource& each : resources) {
-    flags.edits.apply(*each.resource);
-    try {
-      done.push_back(write(connection, kind, each, id_of(each, flags.id), flags.replace, true));
-    } catch (const ServiceError& error) {
-      if (error.kind() != ServiceError::Kind::kRefused) throw;
-      refusals.push_back(each.origin + ": " + error.what());
-    }
-  }
-  if (!refusals.empty()) refuse_all(refusals);
-  if (!flags.validate_only) {
-    done.clear();
-    for (const FileResource& each : resources) {
-      done.push_back(write(connection, kind, each, id_of(each, flags.id), flags.replace, false));
-    }
-  }
+  ProgressDisplay progress = progress_of(options);
+  std::vector<ResourcePointer> done = import.check(connection, flags.replace, progress);
+  if (!flags.validate_only) done = import.write(connection, flags.replace, progress);
+  progress.finish();
   if (options.output_format != OutputFormat::kTable) {
     std::cout << resources_text(kind, done, options.output_format, false);
     return kExitOk;
