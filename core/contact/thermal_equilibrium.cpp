@@ -12,14 +12,29 @@ namespace {
 
 /// Whether ln tau falls with temperature at every pressure between two temperatures, from
 /// d ln tau/dT <= -(1 - alpha beta) A1/(T - T0)^2 + alpha beta max(0, 1/T + rho'/rho).
+/// Both terms fall in size with temperature: over a short span the one at its hot end and the other
+/// at its cold end are a proof.
 bool provably_falling(const ShearedFilm& film, double cold, double hot) {
   if (film.newtonian) return true;
   const Lubricant& oil = *film.lubricant;
   const double product = oil.havriliak_negami_alpha * oil.havriliak_negami_beta;
-  const double above = hot - oil.vogel_reference_temperature;
-  const double rise = 1 / cold + oil.density_temperature_slope / density(oil, cold);
-  return (1 - product) * oil.vogel_temperature_coefficient / (above * above) >
-         product * std::max(0.0, rise);
+  constexpr int kMostSpans = 16;
+  const double from = cold - oil.vogel_reference_temperature;
+  const double widest = std::pow((hot - oil.vogel_reference_temperature) / from, 1.0 / kMostSpans);
+  const double widening = std::max(1.1, widest);
+  for (double above = from, temperature = cold; temperature < hot;) {
+    const double rise = 1 / temperature + oil.density_temperature_slope / density(oil, temperature);
+    if (product >= 0 && product < 1 && rise <= 0) return true;  // it falls from here on
+    above = std::min(above * widening, hot - oil.vogel_reference_temperature);
+    if (!((1 - product) * oil.vogel_temperature_coefficient / (above * above) >
+          product * std::max(0.0, rise))) {
+      return false;
+    }
+    const double next = std::min(oil.vogel_reference_temperature + above, hot);
+    if (!(next > temperature)) return true;
+    temperature = next;
+  }
+  return true;
 }
 
 /// w with w e^w = z, z >= 0, to a few digits: the start of the iteration only.

@@ -60,10 +60,11 @@ struct MarchStep {
 /// the right-hand side is smooth; steps end exactly on breakpoints and on events, so the order is
 /// that of the pair everywhere (Dormand and Prince, J. Comput. Appl. Math. 6, 1980, 19).
 ///
-/// Corners: a piece may begin or end like a power t^p, 0 < p < 1, of the distance (friction under a
-/// load that starts from zero). The embedded estimate sees only a part of the error there. Steps
-/// that touch a corner are tested more sharply, so that steps shrink towards it and the error of
-/// the whole stays in proportion to the tolerance.
+/// Corners: a piece may end at an event like a power t^p, 0 < p < 1, of the distance (friction
+/// under a load that comes to zero). The embedded estimate sees only a part of the error there.
+/// Steps that come near such an event are tested more sharply, so that they shrink towards it and
+/// the error of the whole stays in proportion to the tolerance. Corners in known places are better
+/// taken out of the right-hand side by a substitution.
 ///
 /// System provides
 ///   static constexpr int kSize, kEvents; using State = std::array<double, kSize>;
@@ -75,11 +76,8 @@ struct MarchStep {
 ///   double next_breakpoint(double s)  first point beyond s where the right-hand side has a kink
 ///   void on_breakpoint(double s)      s was reached
 ///   double scale(int i)               size of component i for the error test; infinity: not tested
-/// and may provide, all or none,
-///   bool corner_behind()              the piece that starts here starts with a corner
-///   bool corner_ahead()               the piece ends with one at the next breakpoint
-///   bool corner_at(int index)         the piece ends with one at this event
-/// and
+/// and may provide
+///   bool corner_at(int index)         the piece ends with a corner at this event
 ///   void on_no_step()                 no step however short succeeds: may throw the reason
 /// No allocation; throws Refusal CHATTER, NOT_FINITE, WORK_LIMIT, and Cancelled.
 template <class System>
@@ -99,7 +97,7 @@ class EventExactMarch {
     if (next_step_ <= 0) next_step_ = std::min(breakpoint - s, options_.maximum_step);
     int chatter = 0;
     long attempts = 0;
-    bool from_corner = corner_behind();
+    bool towards_corner = false;
     while (s < end) {
       if (++attempts % 256 == 0) {
         if (attempts > options_.maximum_steps) {
@@ -114,20 +112,10 @@ class EventExactMarch {
       if (h > 0.999999 * room) {
         h = room;
         at_breakpoint = true;
-      } else if (h > 0.5 * room && !corner_ahead()) {
+      } else if (h > 0.5 * room && !towards_corner) {
         h = 0.5 * room;  // two even steps instead of a long and a sliver
       }
       const double error = attempt(s, y, h);
-      if (from_corner && error <= 1 && error * kUnseenAfterCorner > 1) {
-        ++statistics_.rejected_steps;
-        next_step_ = h * nearer_corner(error * kUnseenAfterCorner);
-        continue;
-      }
-      if (at_breakpoint && error <= 1 && error * kUnseenBeforeCorner > 1 && corner_ahead()) {
-        ++statistics_.rejected_steps;
-        next_step_ = h * (1 - nearer_corner(error * kUnseenBeforeCorner));
-        continue;
-      }
       if (!(error <= 1)) {
         ++statistics_.rejected_steps;
         next_step_ = h * (std::isfinite(error) ? std::max(0.2, 0.9 * std::pow(error, -0.2)) : 0.1);
@@ -147,6 +135,12 @@ class EventExactMarch {
           event_step_ > 1e-9 * h) {
         ++statistics_.rejected_steps;
         next_step_ = event_step_ * (1 - nearer_corner(event_error_ * kUnseenBeforeCorner));
+        towards_corner = true;
+        continue;
+      }
+      if (event < 0 && towards_corner && error * kUnseenBeforeCorner > 1) {
+        ++statistics_.rejected_steps;
+        next_step_ = 0.5 * h;
         continue;
       }
       if (event >= 0) {
@@ -154,7 +148,6 @@ class EventExactMarch {
         suggested = std::max(suggested, next_step_);
       }
       finish_step(s, y, event >= 0 ? event_step_ : h, on_step);
-      from_corner = false;
       if (at_breakpoint) s = breakpoint;
       if (event >= 0) {
         ++statistics_.events;
@@ -162,7 +155,7 @@ class EventExactMarch {
         if (chatter > 50) throw Refusal("CHATTER", "contact opens and closes without end");
         system_.on_event(event, s, y);
         evaluate(s, y, k_[0]);
-        from_corner = corner_behind();
+        towards_corner = false;
       } else {
         chatter = 0;
       }
@@ -170,7 +163,7 @@ class EventExactMarch {
       if (at_breakpoint && s < end) {
         system_.on_breakpoint(s);
         breakpoint = std::min(end, system_.next_breakpoint(s));
-        from_corner = corner_behind();
+        towards_corner = false;
       }
     }
   }
@@ -183,20 +176,11 @@ class EventExactMarch {
   void restart() { next_step_ = 0; }
 
  private:
-  /// Error over estimate for t^p, 0.6 < p < 1, on a step that starts or ends at the corner.
-  static constexpr double kUnseenAfterCorner = 30, kUnseenBeforeCorner = 6;
-  static constexpr bool kHasCorners = requires(System & system) { system.corner_ahead(); };
+  /// Error over estimate for t^p, 0.6 < p < 1, on a step that ends at the corner.
+  static constexpr double kUnseenBeforeCorner = 100;
 
-  bool corner_behind() const {
-    if constexpr (kHasCorners) return system_.corner_behind();
-    return false;
-  }
-  bool corner_ahead() const {
-    if constexpr (kHasCorners) return system_.corner_ahead();
-    return false;
-  }
   bool corner_at(int event) const {
-    if constexpr (kHasCorners) return system_.corner_at(event);
+    if constexpr (requires { system_.corner_at(event); }) return system_.corner_at(event);
     return false;
   }
   /// By how much a step must come nearer to a corner, where errors fall like h^(1 + p) only.

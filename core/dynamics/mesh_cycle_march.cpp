@@ -39,6 +39,9 @@ double MarchScales::of(const MeshData& mesh, int component) const {
     case kWheelSpeed:
       return speed * r_p / r_g;
     case kLossWork:
+    case kShaftDampingWork:
+    case kMeshDampingWork:
+    case kParametricWork:
       return loss_work;
     case kLossShareSquared:
       return loss_squared;

@@ -7,6 +7,7 @@
 
 #include "core/dynamics/event_exact_march.h"
 #include "core/dynamics/gear_pair_system.h"
+#include "core/dynamics/graded_piece.h"
 
 namespace tribodyn {
 
@@ -15,7 +16,7 @@ struct MarchScales {
   double length;        ///< static mesh deflection [m]
   double speed;         ///< pinion speed of a free vibration that large [rad/s]
   double torque;        ///< [N m]
-  double loss_work;     ///< 1 % of the input work of a mesh cycle [J]
+  double loss_work;     ///< 1 % of the input work of a mesh cycle [J]; of each work in the balance
   double loss_squared;  ///< the same for kLossShareSquared
   double time;          ///< in which the pinion turns by length/R_p0 [s]
   double of(const MeshData& mesh, int component) const;
@@ -33,7 +34,8 @@ struct GapEvent {
 void throw_if_refused(ContactStatus status);
 void throw_if_refused(const GearPairSystem& system);
 
-/// The gear pair as EventExactMarch sees it, over mesh phase in [0, 1].
+/// The gear pair as EventExactMarch sees it, over progress through a mesh cycle in [0, 1]: mesh
+/// phase, but stretched where a flank pair takes or gives up its load (GradedPiece).
 /// kRecord adds the integrals of RecordComponent.
 template <bool kRecord>
 class PhaseSystem {
@@ -46,21 +48,27 @@ class PhaseSystem {
   PhaseSystem(GearPairSystem& system, const MarchScales& scales)
       : system_(system), scales_(scales) {
     for (int i = 0; i < kSize; ++i) {
-      scale_[i] = i < kMarchComponents ? scales.of(system.mesh(), i)
-                                       : std::numeric_limits<double>::infinity();
+      scale_[i] = scales.of(system.mesh(), i);
     }
     system_.set_interval(0);
+    piece_ = GradedPiece(0, 0, next_breakpoint(0), takes_load(), gives_load());
   }
 
-  void derivative(double phase, const State& y, State& dy) {
+  /// Where the march is in the mesh cycle [cycles], and back; of the piece that it is in.
+  double phase(double progress) const { return piece_.phase(progress); }
+  double progress(double phase) const { return piece_.progress(phase); }
+
+  void derivative(double progress, const State& y, State& dy) {
     constexpr double kNoRate = std::numeric_limits<double>::quiet_NaN();  // fails the step
     if (std::isfinite(y[kPinionSpeed])) pinion_speed_ = y[kPinionSpeed];
     if (y[kPinionSpeed] <= 0) {
       dy.fill(kNoRate);
       return;
     }
-    system_.evaluate(phase, y.data(), instant_);
+    system_.evaluate(phase(progress), y.data(), instant_);
     system_.derivative(y.data(), instant_, kRecord, dy.data());
+    const double slope = piece_.slope(progress);
+    for (double& rate : dy) rate *= slope;
     // A refused contact fails the step: the wild stages of one that is too long mean nothing.
     const ContactStatus status = system_.take_refusal();
     if (status == ContactStatus::kOk) {
@@ -80,9 +88,9 @@ class PhaseSystem {
     throw_if_refused(refusal_);
   }
 
-  void events(double phase, const State& y, std::array<double, kEvents>& g) const {
+  void events(double progress, const State& y, std::array<double, kEvents>& g) const {
     Instant at;
-    system_.kinematics(phase, y.data(), at);
+    system_.kinematics(phase(progress), y.data(), at);
     const double b = system_.dynamics().half_backlash;
     const ContactRegime& regime = system_.regime;
     if (regime.side == 0) {
@@ -96,47 +104,54 @@ class PhaseSystem {
          regime.loaded ? -force : force};
   }
 
-  void on_event(int index, double phase, const State& y) {
-    ContactRegime& regime = system_.regime;
-    const int before = regime.side;
-    if (regime.side == 0) {
-      regime.side = index == 0 ? 1 : -1;
-    } else if (index == 1) {
-      regime.loaded = load_begins_ = !regime.loaded;
-      return;
-    } else {
-      regime.side = system_.dynamics().half_backlash > 0 ? 0 : -regime.side;
-    }
-    Instant at;
-    system_.kinematics(phase, y.data(), at);
-    // Deflection is nothing here; the damper alone decides whether load starts at once.
-    regime.loaded = regime.side != 0 && regime.side * at.transmission_velocity > 0 &&
-                    system_.dynamics().mesh_damping > 0;
-    if (gap_events != nullptr && (before == 0) != (regime.side == 0)) {
-      gap_events->push_back({phase, y[kTime], regime.side == 0});
-    }
+  void on_event(int index, double progress, const State& y) {
+    const double at_phase = phase(progress);
+    const bool load_begins = change_regime(index, at_phase, y);
+    piece_ = GradedPiece(progress, at_phase, next_breakpoint(progress), load_begins, gives_load());
   }
 
   double next_breakpoint(double) const {
     return static_cast<double>(system_.interval() + 1) / system_.mesh().intervals();
   }
-  void on_breakpoint(double) {
+  void on_breakpoint(double progress) {
     system_.set_interval(system_.interval() + 1);
-    load_begins_ = false;
+    piece_ = GradedPiece(progress, progress, next_breakpoint(progress), takes_load(), gives_load());
   }
   double scale(int i) const { return scale_[i]; }
-
-  /// Friction goes like W^0.74 near W = 0: where a pair takes or gives up its share of the load,
-  /// and where the load of all begins or ends.
-  bool corner_behind() const { return system_.regime.loaded && (load_begins_ || share_is_zero(0)); }
-  bool corner_ahead() const { return system_.regime.loaded && share_is_zero(1); }
+  /// The load of all ends where the event is, like a power: friction goes like W^0.74 there.
   bool corner_at(int) const { return system_.regime.loaded; }
 
   std::vector<GapEvent>* gap_events = nullptr;
 
  private:
-  /// Whether a pair has no load at that end (0 or 1) of the interval but has inside.
+  /// True if the load begins here, from zero.
+  bool change_regime(int index, double at_phase, const State& y) {
+    ContactRegime& regime = system_.regime;
+    const int before = regime.side;
+    if (regime.side == 0) {
+      regime.side = index == 0 ? 1 : -1;
+    } else if (index == 1) {
+      regime.loaded = !regime.loaded;
+      return regime.loaded;
+    } else {
+      regime.side = system_.dynamics().half_backlash > 0 ? 0 : -regime.side;
+    }
+    Instant at;
+    system_.kinematics(at_phase, y.data(), at);
+    // Deflection is nothing here; the damper alone decides whether load starts at once.
+    regime.loaded = regime.side != 0 && regime.side * at.transmission_velocity > 0 &&
+                    system_.dynamics().mesh_damping > 0;
+    if (gap_events != nullptr && (before == 0) != (regime.side == 0)) {
+      gap_events->push_back({at_phase, y[kTime], regime.side == 0});
+    }
+    return false;
+  }
+
+  bool takes_load() const { return share_is_zero(0); }
+  bool gives_load() const { return share_is_zero(1); }
+  /// Whether a loaded pair has no load at that end (0 or 1) of the interval but has inside.
   bool share_is_zero(int end) const {
+    if (!system_.regime.loaded) return false;
     constexpr double kNothing = 1e-12;
     const int interval = system_.interval();
     const double count = system_.mesh().intervals();
@@ -152,8 +167,8 @@ class PhaseSystem {
   GearPairSystem& system_;
   MarchScales scales_;
   State scale_;
+  GradedPiece piece_;
   double pinion_speed_ = 0;                     ///< in the last evaluation
-  bool load_begins_ = false;                    ///< at the start of this piece, from zero
   ContactStatus refusal_ = ContactStatus::kOk;  ///< of the last evaluations
   Instant instant_;
 };

@@ -229,7 +229,8 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
   // An extrapolated residual is about (1 - slowest multiplier) times the error, 0.01 at worst.
   const double wanted = 0.01 * request.tolerance;
   constexpr double kNone = 1e300;
-  int period = 1, failures = 0, plain_left = kFirstCycles, confirmed = 0, without_gain = 0;
+  int period = request.first_period, failures = 0, plain_left = kFirstCycles, confirmed = 0,
+      without_gain = 0;
   double best = kNone, reported = 0;
   Vector best_image, marched = map.pack(state);
   Extrapolation extrapolation;

@@ -10,6 +10,8 @@ namespace tribodyn {
 struct SteadyStateRequest {
   double mean_pinion_speed = 0;     ///< held exactly [rad/s]
   bool solve_wheel_torque = false;  ///< T_w is the unknown instead of T_s
+  int first_period =
+      1;  ///< tried first [mesh cycles]: that of the response the start is taken from
   MarchOptions march;
   double tolerance = 1e-6;  ///< of the response, see PointOptions::settling_tolerance
   int maximum_mesh_cycles = 4000;

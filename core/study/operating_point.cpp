@@ -106,8 +106,10 @@ PointResult empty_result(const Target& target, PointModel model) {
 }
 
 PointResult solve_full(GearPairSystem& system, const Target& target, const PointOptions& options,
-                       const MarchState& start, const HistoryRequest& history_request) {
+                       const MarchState& start, int first_period,
+                       const HistoryRequest& history_request) {
   SteadyStateRequest request;
+  request.first_period = first_period;
   request.mean_pinion_speed = target.mean_pinion_speed;
   request.solve_wheel_torque = target.solve_wheel_torque;
   request.march.relative_tolerance = options.relative_tolerance;
@@ -132,10 +134,14 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
   const MarchScales scales = march_scales(system, target.mean_pinion_speed);
   ResponseRecord record(scales.torque / system.mesh().mean_pinion_contact_radius());
   HistorySampler history(history_request);
-  record_response(system, steady, out.recorded_mesh_cycles, request.march, scales, record, history,
+  // A speed that is wrong within its tolerance counts I omega times in the energy balance.
+  MarchOptions sharper = request.march;
+  sharper.relative_tolerance = std::max(0.01 * options.relative_tolerance, 1e-12);
+  record_response(system, steady, out.recorded_mesh_cycles, sharper, scales, record, history,
                   out.statistics, options.progress);
   out.statistics.contact_solutions += system.contact_solutions();
   record.fill(system.torques(), out.recorded_mesh_cycles, steady.settled, out);
+  system.regime = record.end_regime;
   const double end_energy = system.stored_energy(0, record.integrals.data());
   system.regime = steady.regime;
   out.power_balance.stored = end_energy - system.stored_energy(0, steady.state.data());
@@ -205,7 +211,8 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
                  : point_start(system, target,
                                start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0,
                                options.progress);
-        result = solve_full(system, target, options, state, history);
+        const int first_period = from ? std::max(1, from->period) : 1;
+        result = solve_full(system, target, options, state, first_period, history);
       }
       result.statistics.mesh_cycles += spent.mesh_cycles;
       result.statistics.right_hand_sides += spent.right_hand_sides;
@@ -218,7 +225,7 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
       spent = result.statistics;
       data_torque = result.pinion_torque;
       from = CarriedState{result.section_state, result.mean_pinion_speed, result.pinion_torque,
-                          result.wheel_torque};
+                          result.wheel_torque, result.period_in_mesh_cycles};
     }
   };
 

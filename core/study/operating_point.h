@@ -45,6 +45,7 @@ struct CarriedState {
   double mean_pinion_speed = 0;  ///< [rad/s]
   double pinion_torque = 0;      ///< T_s there [N m]
   double wheel_torque = 0;       ///< T_w there [N m]
+  int period = 1;                ///< of the response there [mesh cycles]; 0: none found
 };
 
 struct PointOptions {

@@ -24,11 +24,8 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
   std::array<Instant, ResponseRecord::kSamples> samples;
   int cycle = 0;
   bool recording = true;
+  const Phases* place = nullptr;  // of the cycle that is marched
   const auto on_step = [&](const MarchStep<kSize>& step) {
-    if (!(step.to[kPinionSpeed] > 0)) {
-      throw Refusal("NO_FORWARD_ROTATION",
-                    "the pinion comes to a stop: the march over mesh phase needs forward rotation");
-    }
     probe.regime = system.regime;
     probe.set_interval(system.interval());
     if (recording) {
@@ -37,13 +34,15 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
         const auto at = i == 0                              ? step.from
                         : i + 1 == ResponseRecord::kSamples ? step.to
                                                             : step.at(theta);
-        probe.evaluate(step.start + theta * step.length, at.data(), samples[i]);
+        probe.evaluate(place->phase(step.start + theta * step.length), at.data(), samples[i]);
       }
       record.add_step(samples);
     }
-    while (history.wanted() && history.next_phase() < cycle + step.start + step.length) {
+    const double end = place->phase(step.start + step.length);
+    while (history.wanted() && history.next_phase() < cycle + end) {
       const double inside = history.next_phase() - cycle;
-      const auto at = step.at(std::clamp((inside - step.start) / step.length, 0.0, 1.0));
+      const double theta = (place->progress(inside) - step.start) / step.length;
+      const auto at = step.at(std::clamp(theta, 0.0, 1.0));
       probe.evaluate(inside, at.data(), samples[0]);
       history.add(cycle + inside, at.data(), samples[0], system.torques().pinion);
     }
@@ -51,6 +50,7 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
   for (; cycle < cycles || history.wanted(); ++cycle) {
     if (progress && !progress(1)) throw Cancelled();
     Phases phases(system, scales);
+    place = &phases;
     std::vector<GapEvent> events;
     phases.gap_events = &events;
     recording = cycle < cycles;
@@ -69,7 +69,10 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
         record.gap_events.push_back(event);
       }
     }
-    if (cycle + 1 == cycles) std::copy(y.begin(), y.end(), record.integrals.begin());
+    if (cycle + 1 == cycles) {
+      std::copy(y.begin(), y.end(), record.integrals.begin());
+      record.end_regime = system.regime;
+    }
   }
   statistics.contact_solutions += probe.contact_solutions() - solved_before;
 }

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "core/gear/mesh_data.h"
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "run_length.h"
@@ -41,7 +43,15 @@ void expect_finite(const Extremes& e, const char* what) {
   EXPECT_LE(e.mean, e.maximum + slack) << what;
 }
 
-void expect_sound(const PointResult& r, const PointOptions& options) {
+double kinetic_energy(const Scene& scene, const PointResult& r) {
+  const DrivelineDynamics& d = scene.gear_set.dynamics;
+  const double pinion = r.mean_pinion_speed;
+  const double wheel = pinion * scene.gear_set.pinion_teeth / scene.gear_set.gear_teeth;
+  return 0.5 * ((d.pinion_shaft_inertia + d.pinion_inertia) * pinion * pinion +
+                (d.gear_inertia + d.wheel_inertia) * wheel * wheel);
+}
+
+void expect_sound(const Scene& scene, const PointResult& r, const PointOptions& options) {
   expect_finite(r.dynamic_transmission_error, "DTE");
   expect_finite(r.mesh_force, "mesh force");
   expect_finite(r.pinion_friction_torque, "pinion friction torque");
@@ -70,11 +80,13 @@ void expect_sound(const PointResult& r, const PointOptions& options) {
     EXPECT_LT(r.statistics.largest_multiplier, 1.001);
   }
   const PowerBalance& b = r.power_balance;
-  // The floor is rounding of the stored kinetic energy, hundreds of joules.
   const double flow = std::abs(b.input) + std::abs(b.output) + b.friction;
+  // Each step rounds the speeds, and there is one at least in every interval of the tables.
+  const double rounding = std::numeric_limits<double>::epsilon() * kinetic_energy(scene, r) *
+                          r.recorded_mesh_cycles * MeshData(scene.gear_set).intervals();
   EXPECT_NEAR(
       b.input - b.output - b.friction - b.shaft_damping - b.mesh_damping - b.stored - b.parametric,
-      0, 1e-10 + 1e-8 * flow);
+      0, 1e-8 * flow + rounding);
   // A few periods may be marched beyond the limit: multipliers, probes of the period, the record.
   EXPECT_LE(r.statistics.mesh_cycles, options.maximum_mesh_cycles + 50 + r.recorded_mesh_cycles);
 }
@@ -84,7 +96,7 @@ bool expect_an_answer(const Scene& scene, const OperatingCondition& condition,
                       PointOptions options = {}) {
   try {
     const PointResult r = solve_operating_point(scene, condition, options);
-    expect_sound(r, options);
+    expect_sound(scene, r, options);
     return r.settled;
   } catch (const Refusal& refusal) {
     const std::string& name = refusal.reason();
@@ -151,12 +163,13 @@ TEST(HardPoints, SpeedsFromOneTo300) {
   }
 }
 
-TEST(HardPoints, ArcticSumpIsSlowOilButAnswers) {
-  // Contacts of film at -20 C are solved a hundred times more slowly at speed: one speed will do.
-  Scene scene = reference_scene(1, -40);
-  EXPECT_TRUE(expect_an_answer(scene, cruise(20)));
-  if (full_run()) {
-    EXPECT_TRUE(expect_an_answer(scene, cruise(140)));
+TEST(HardPoints, ArcticSump) {
+  for (const double celsius : {-64.0, -40.0}) {
+    for (const double speed : {20.0, 140.0, 190.0}) {
+      if (kShortRun && speed != 20) continue;
+      SCOPED_TRACE(std::to_string(celsius) + " C at " + std::to_string(speed));
+      EXPECT_TRUE(expect_an_answer(reference_scene(1, celsius), cruise(speed)));
+    }
   }
 }
 
@@ -166,7 +179,7 @@ TEST(HardPoints, CoastRunsOnTheOtherFlanks) {
       if (kShortRun && speed != 72.5) continue;
       SCOPED_TRACE(std::to_string(torque) + " N m at " + std::to_string(speed));
       const PointResult r = solve_operating_point(reference_scene(), prescribed(torque, speed), {});
-      expect_sound(r, {});
+      expect_sound(reference_scene(), r, {});
       EXPECT_TRUE(r.settled);
       EXPECT_TRUE(r.coast_side_contact);
       EXPECT_LT(r.dynamic_transmission_error.minimum, -75e-6);
@@ -193,7 +206,7 @@ TEST(HardPoints, NoTorqueFloatsAndSaysThatItHasNotSettled) {
   options.maximum_mesh_cycles = 150;
   options.recorded_mesh_cycles = 5;
   const PointResult r = solve_operating_point(reference_scene(), prescribed(0, 72.5), options);
-  expect_sound(r, options);
+  expect_sound(reference_scene(), r, options);
   EXPECT_FALSE(r.settled);
   EXPECT_FALSE(r.inefficiency_rms.has_value());
   EXPECT_FALSE(r.inefficiency_energy_mean.has_value());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/dynamics/event_exact_march.h"
+#include "core/dynamics/graded_piece.h"
 #include "tests/support/reference_data.h"
 
 namespace tribodyn {
@@ -167,44 +168,107 @@ TEST(March, TouchingWithoutCrossingIsNoEvent) {
   EXPECT_EQ(march.statistics().events, 0);
 }
 
-/// y' = |s - k|^0.74 between corners at every whole k: what a load from zero does to friction.
+/// y' = (1 - s)^0.74 up to an event at s = 1, where the rate jumps: what a load that comes to zero
+/// does to friction.
 template <bool kTold>
-struct Corners {
+struct EndsInCorner {
   static constexpr int kSize = 1, kEvents = 1;
   using State = std::array<double, kSize>;
-  double corner = 0;
-  bool rising = true;
+  bool behind = false;
   void derivative(double s, const State&, State& dy) const {
-    dy = {std::pow(std::max(0.0, rising ? s - corner : corner + 1 - s), 0.74)};
+    dy = {behind ? 1 : std::pow(std::max(0.0, 1 - s), 0.74)};
+  }
+  void events(double s, const State&, std::array<double, kEvents>& g) const {
+    g = {behind ? -1 : s - 1};
+  }
+  void on_event(int, double, const State&) { behind = true; }
+  double next_breakpoint(double) const { return 2; }
+  void on_breakpoint(double) {}
+  double scale(int) const { return 1; }
+  bool corner_at(int) const requires kTold { return true; }
+};
+
+/// Largest over many starts: a single one may be exact by luck.
+template <bool kTold>
+double error_at_corner(double tolerance) {
+  double worst = 0;
+  for (int i = 0; i < 50; ++i) {
+    EndsInCorner<kTold> system;
+    EventExactMarch<EndsInCorner<kTold>> march(system, steps_of(tolerance));
+    const double start = -0.02 * i;
+    double s = start;
+    typename EndsInCorner<kTold>::State y{0};
+    march.run(s, y, 2);
+    worst = std::max(worst, std::abs(y[0] - 1 - std::pow(1 - start, 1.74) / 1.74));
+  }
+  return worst;
+}
+
+TEST(March, EventsAtCornersOfFractionalPowersKeepTheErrorInProportionToTheTolerance) {
+  for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    EXPECT_LT(error_at_corner<true>(tolerance), 5 * tolerance) << tolerance;
+    EXPECT_GT(error_at_corner<false>(tolerance), 10 * tolerance) << "the embedded estimate alone";
+  }
+}
+
+/// y' = 1 over phase, marched over the graded progress; also f = distance^0.74 from each corner.
+struct Graded {
+  static constexpr int kSize = 2, kEvents = 1;
+  using State = std::array<double, kSize>;
+  GradedPiece piece;
+  bool at_start, at_end;
+  void derivative(double progress, const State&, State& dy) const {
+    const double phase = piece.phase(progress), slope = piece.slope(progress);
+    double power = 1;
+    if (at_start) power *= std::pow(phase - 1, 0.74);
+    if (at_end) power *= std::pow(1.5 - phase, 0.74);
+    dy = {slope, slope * power};
   }
   void events(double, const State&, std::array<double, kEvents>& g) const { g = {-1}; }
   void on_event(int, double, const State&) {}
-  double next_breakpoint(double) const { return corner + 1; }
-  void on_breakpoint(double) {
-    corner += 1;
-    rising = !rising;
-  }
+  double next_breakpoint(double) const { return 1.5; }
+  void on_breakpoint(double) {}
   double scale(int) const { return 1; }
-  bool corner_behind() const { return rising; }
-  bool corner_ahead() const requires kTold { return !rising; }
-  bool corner_at(int) const { return false; }
 };
 
-template <bool kTold>
-double error_over_corners(double tolerance) {
-  Corners<kTold> system;
-  EventExactMarch<Corners<kTold>> march(system, steps_of(tolerance));
-  double s = 0;
-  typename Corners<kTold>::State y{0};
-  march.run(s, y, 4);
-  return std::abs(y[0] - 4 / 1.74);
+TEST(March, GradedPiecesKeepTheFifthOrderOfEvenStepsAtCornersInKnownPlaces) {
+  struct Case {
+    bool at_start, at_end;
+    double exact;
+  };
+  const double one = std::pow(0.5, 1.74) / 1.74;
+  const double both =
+      std::pow(0.5, 2.48) * std::tgamma(1.74) * std::tgamma(1.74) / std::tgamma(3.48);
+  for (const Case c : {Case{true, false, one}, {false, true, one}, {true, true, both}}) {
+    const auto error = [&](double steps, bool graded) {
+      const GradedPiece piece(0.7, 1, 1.5, graded && c.at_start, graded && c.at_end);
+      Graded system{piece, c.at_start, c.at_end};
+      EventExactMarch<Graded> march(system, steps_of(1e300, 0.8 / steps * (1 + 1e-12)));
+      double progress = 0.7;
+      Graded::State y{0, 0};
+      march.run(progress, y, 1.5);
+      EXPECT_NEAR(y[0], 0.5, 1e-4);
+      return std::abs(y[1] - c.exact);
+    };
+    EXPECT_NEAR(std::log2(error(8, true) / error(32, true)) / 2, 5, 0.5);
+    EXPECT_LT(std::log2(error(8, false) / error(32, false)) / 2, 2);
+  }
 }
 
-TEST(March, CornersOfFractionalPowersKeepTheErrorInProportionToTheTolerance) {
-  for (const double tolerance : {1e-5, 1e-7, 1e-9, 1e-11}) {
-    EXPECT_LT(error_over_corners<true>(tolerance), 6 * tolerance) << tolerance;
-    EXPECT_GT(error_over_corners<false>(tolerance), 10 * tolerance)
-        << "the embedded estimate alone";
+TEST(March, PhaseAndProgressOfAGradedPieceAreEachOthersInverse) {
+  for (const bool at_start : {false, true}) {
+    for (const bool at_end : {false, true}) {
+      const GradedPiece piece(0.7, 1, 1.5, at_start, at_end);
+      EXPECT_EQ(piece.phase(1.5), 1.5);
+      EXPECT_EQ(piece.phase(0.7), 1);
+      for (const double phase : {1.0, 1.001, 1.1, 1.25, 1.4, 1.499, 1.5}) {
+        EXPECT_NEAR(piece.phase(piece.progress(phase)), phase, 4e-16);
+      }
+      for (const double at : {0.75, 1.1, 1.45}) {
+        EXPECT_NEAR((piece.phase(at + 1e-6) - piece.phase(at - 1e-6)) / 2e-6, piece.slope(at),
+                    1e-8);
+      }
+    }
   }
 }
 

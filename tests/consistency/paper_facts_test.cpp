@@ -46,7 +46,7 @@ void expect_printed(double value, double printed, double digit) {
   EXPECT_NEAR(value, printed, 0.5001 * digit);
 }
 
-TEST(Figure6And7, ContactIsLostNearTheFirstResonanceAndGoneAbove80) {
+TEST(Figure6And7, ContactIsLostNearTheFirstResonanceAndGoneFrom81) {
   const Curve up = sweep(reference_scene(), {67, 68, 69, 70, 71, 72, 73, 76, 79, 80, 81, 82});
   const Curve down = sweep(reference_scene(), {64, 65, 66, 67, 68, 70, 73, 76, 79, 80, 81, 82},
                            SweepDirection::kDown);
@@ -79,6 +79,31 @@ TEST(Figure6And7, ContactIsLostNearTheFirstResonanceAndGoneAbove80) {
       EXPECT_LT(r.pinion_friction_torque.maximum, -0.01) << speed;
     }
   }
+}
+
+// To half a kilometre per hour: 71.5 to 80.5 on the way up, 65.5 to 80.5 at 30.1 to 37.0 N m on the
+// way down.
+TEST(Figure6And7, EdgesOfContactLossToHalfAKilometrePerHour) {
+  const auto lost = [](std::vector<double> kilometers_per_hour, SweepDirection direction) {
+    for (double& speed : kilometers_per_hour) speed /= 3.6;
+    SweepOptions options;
+    options.direction = direction;
+    std::map<double, double> torque_where_lost;
+    for (const SweepPoint& at : sweep_speed(reference_scene(), kilometers_per_hour, 0, options)) {
+      if (!at.result->contact_loss) continue;
+      torque_where_lost[std::round(36 * at.vehicle_speed) / 10] = at.result->pinion_torque;
+    }
+    return torque_where_lost;
+  };
+  const auto up = lost({70, 70.5, 71, 71.5, 72, 76, 80, 80.5, 81}, SweepDirection::kUp);
+  EXPECT_EQ(up.begin()->first, 71.5);
+  EXPECT_EQ(up.rbegin()->first, 80.5);
+  const auto down =
+      lost({64.5, 65, 65.5, 66, 66.5, 67, 68, 70, 73, 76, 80, 80.5, 81}, SweepDirection::kDown);
+  EXPECT_EQ(down.begin()->first, 65.5);
+  EXPECT_EQ(down.rbegin()->first, 80.5);
+  EXPECT_NEAR(down.begin()->second, 30.1, 0.05);
+  EXPECT_NEAR(down.rbegin()->second, 37.0, 0.05);
 }
 
 TEST(Figure8, BoundaryShareFallsWithSpeedAndFluid2IsClearlyLowest) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/study/operating_point.h"
+#include "core/study/speed_sweep.h"
 #include "run_length.h"
 #include "tests/support/reference_scene.h"
 
@@ -101,6 +102,22 @@ TEST(SteadyStates, OneMeshCycleStaysOneCloseToTheDoubling) {
   EXPECT_EQ(quiet.period_in_mesh_cycles, 1);
   EXPECT_FALSE(quiet.contact_loss);
   EXPECT_NEAR(quiet.statistics.largest_multiplier, 0.995, 1e-3);
+}
+
+TEST(SteadyStates, TheDoubledPeriodIsFollowedDownToWhereTheSingleOneAttractsToo) {
+  SweepOptions options;
+  options.direction = SweepDirection::kDown;
+  const std::vector<SweepPoint> down =
+      sweep_speed(reference_scene(), {149 / 3.6, 149.5 / 3.6, 150 / 3.6}, 0, options);
+  for (const SweepPoint& at : down) {
+    SCOPED_TRACE(at.vehicle_speed * 3.6);
+    ASSERT_TRUE(at.result.has_value());
+    EXPECT_TRUE(at.result->settled);
+    EXPECT_EQ(at.result->period_in_mesh_cycles, 2);
+    EXPECT_TRUE(at.result->contact_loss);
+    EXPECT_LT(at.result->statistics.largest_multiplier, 1);
+    EXPECT_LE(at.result->statistics.mesh_cycles, 400);
+  }
 }
 
 TEST(SteadyStates, ARepellingOrbitIsLeft) {

@@ -73,6 +73,7 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   EXPECT_EQ(result.input_hash(), store.simulation(1)->input_hash);
   EXPECT_EQ(store.history_shape(2).rows, 8);
   EXPECT_THAT(store.requeue_unfinished(), SizeIs(2));
+  EXPECT_THAT(check_database(file, hash_stored_inputs), IsEmpty());
   SQLite::Database raw(file, SQLite::OPEN_READONLY);
   EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), kSchemaVersion);
 }
@@ -129,17 +130,15 @@ TEST_F(MaintenanceTest, ADamagedBackupIsNotRestored) {
 }
 
 TEST(Inputs, OfAStoredSimulationStillHaveTheirHash) {
-  const TemporaryFolder folder;
-  const std::string file = folder.file("old.db");
-  std::filesystem::copy_file(std::string(TRIBODYN_TEST_DATA) + "/schemas/schema_1.sqlite", file);
-  std::filesystem::permissions(file, std::filesystem::perms::owner_all);
-  { const Store migrated(file); }
-  EXPECT_THAT(check_database(file, hash_stored_inputs), IsEmpty());
-  SQLite::Database raw(file, SQLite::OPEN_READWRITE);
+  Bench bench;
+  ASSERT_TRUE(bench.reaches(bench.create(point_simulation()), v1::Simulation::SUCCEEDED));
+  bench.jobs().stop();
+  EXPECT_THAT(check_database(bench.database(), hash_stored_inputs), IsEmpty());
+  SQLite::Database raw(bench.database(), SQLite::OPEN_READWRITE);
   raw.exec(
       "UPDATE simulations SET lubricant = "
       "(SELECT revision_id FROM revision_names WHERE name = 'lubricants/3')");
-  EXPECT_THAT(check_database(file, hash_stored_inputs),
+  EXPECT_THAT(check_database(bench.database(), hash_stored_inputs),
               Contains(HasSubstr("its inputs have another hash")));
 }
 

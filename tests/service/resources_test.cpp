@@ -5,10 +5,14 @@
 #include <google/protobuf/util/message_differencer.h>
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
 #include "server/app/contacts.h"
+#include "server/app/schemas.h"
 #include "server/app/simulations.h"
+#include "server/convert/constraints.h"
 #include "server/convert/output_only.h"
 #include "server/convert/provenance.h"
 #include "server/store/deadline.h"
@@ -21,6 +25,7 @@ using google::protobuf::util::MessageDifferencer;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// All that a BadRequest says.
 std::string complaints(const google::rpc::Status& status) {
@@ -453,6 +458,36 @@ TEST_F(ResourcesTest, EveryKindGoesTheSameWay) {
   v1::ListGearSetsRequest list;
   list.set_view(v1::GEAR_SET_VIEW_BASIC);
   EXPECT_EQ(list_gear_sets(app_, list).message().gear_sets(0).flank_slots_size(), 0);
+}
+
+TEST_F(ResourcesTest, TheSchemaIsTheTableAndTheWordsThatAreAccepted) {
+  const v1::Schema schema = get_schema(app_, {}).message();
+  ASSERT_EQ(static_cast<std::size_t>(schema.constraints_size()), constraints().size());
+  for (int i = 0; i < schema.constraints_size(); ++i) {
+    EXPECT_EQ(schema.constraints(i).field(), constraints()[static_cast<std::size_t>(i)].field);
+    EXPECT_EQ(schema.constraints(i).maximum(), constraints()[static_cast<std::size_t>(i)].maximum);
+  }
+  std::map<std::string, std::vector<std::string>> words;
+  for (const auto& each : schema.vocabularies()) {
+    words[each.name()] = {each.words().begin(), each.words().end()};
+    EXPECT_THAT(each.words(), Not(IsEmpty())) << each.name();
+  }
+  EXPECT_THAT(words["history.columns"], testing::Contains("mesh_force_newtons"));
+  EXPECT_THAT(words["Lubricant.BaseOilClass"], testing::Contains("POLYALPHAOLEFIN"));
+  for (const std::string& field : words["lubricants.filter"]) {
+    if (field.find("KEY") != std::string::npos) continue;
+    EXPECT_TRUE(list_lubricants(app_,
+                                [&] {
+                                  v1::ListLubricantsRequest request;
+                                  request.set_order_by(field);
+                                  return request;
+                                }())
+                    .ok())
+        << field;
+  }
+  v1::GetSchemaRequest one;
+  one.set_message("Vehicle");
+  EXPECT_EQ(get_schema(app_, one).message().constraints_size(), 7);
 }
 
 TEST_F(ResourcesTest, ABadGearSetTableIsNamedByItsSample) {

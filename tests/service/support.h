@@ -61,6 +61,7 @@ class Bench {
                  std::size_t maximum_waiting = kMaximumWaitingSimulations);
 
   Store& store() { return *store_; }
+  std::string database() const { return folder_.file("tribodyn.db"); }
   SimulationJobs& jobs() { return *jobs_; }
   Application application() { return {*store_, *jobs_}; }
 

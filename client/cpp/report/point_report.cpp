@@ -103,6 +103,9 @@ void add_contact(const v1::PointResult& result, bool probed, Sheet& sheet) {
                  "from mesh phase " + fixed(loss.start_mesh_phase(), 4) + " to " +
                      fixed(loss.end_mesh_phase(), 4) + " cycles");
     }
+    if (result.contact_losses_left_out() > 0) {
+      sheet.line("  and more of them", std::to_string(result.contact_losses_left_out()));
+    }
   }
   sheet.line("coast side contact", result.coast_side_contact() ? "yes" : "no");
   sheet.line("limiting stress at a centre", fixed(100 * result.limiting_stress_time_share(), 2),
