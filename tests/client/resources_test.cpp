@@ -103,6 +103,20 @@ TEST(Edits, ANewValueVoidsWhatWasKnownOfTheOld) {
   EXPECT_EQ(unset.provenance_size(), 0);
 }
 
+TEST(Edits, UnsetMakesRoomForWhatIsSet) {
+  const v1::Lubricant old = edited({{"--density", "100=815"}, {"--label", "a=1"}});
+  const v1::Lubricant added = edited({{"--density", "60=840"}}, old);
+  EXPECT_EQ(added.measurements().densities_size(), 2);
+  const v1::Lubricant anew = edited({{"--density", "60=840"},
+                                     {"--unset", "measurements"},
+                                     {"--label", "a=2"},
+                                     {"--remove-label", "a"}},
+                                    old);
+  ASSERT_EQ(anew.measurements().densities_size(), 1);
+  EXPECT_EQ(anew.measurements().densities(0).temperature_celsius(), 60);
+  EXPECT_EQ(anew.labels(0).value(), "2");
+}
+
 TEST(Edits, ComplainOfEachMistake) {
   Complaints complaints;
   edited({{"--kv40", "thick"},

@@ -11,8 +11,6 @@
 namespace tribodyn::client {
 namespace {
 
-using google::protobuf::Message;
-
 struct ImportFlags {
   std::vector<std::string> files;
   std::string id;

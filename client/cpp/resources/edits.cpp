@@ -253,6 +253,11 @@ void ResourceEdits::add(const std::string& field, Edit edit) {
   edits_.push_back(std::move(edit));
 }
 
+void ResourceEdits::add_removal(const std::string& field, Edit edit) {
+  fields_.insert(field);
+  removals_.push_back(std::move(edit));
+}
+
 bool ResourceEdits::add_once(const std::string& key, const std::string& field, Edit edit) {
   if (!keys_.insert(key).second) return false;
   add(field, std::move(edit));
@@ -260,6 +265,7 @@ bool ResourceEdits::add_once(const std::string& key, const std::string& field, E
 }
 
 void ResourceEdits::apply(Message& resource) const {
+  for (const Edit& edit : removals_) edit(resource);
   for (const Edit& edit : edits_) edit(resource);
 }
 
@@ -309,9 +315,10 @@ void add_edit_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& ed
 
 void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& edits) {
   flags.group("Take away");
-  Flag& unset = flags.raw("--unset", "FIELD",
-                          "Clear a field, so that a parameter is fitted or estimated again; "
-                          "repeatable.");
+  Flag& unset =
+      flags.raw("--unset", "FIELD",
+                "Clear a field before the other flags are applied, so that a parameter is "
+                "fitted or estimated again, or measurements are entered anew; repeatable.");
   unset.is_repeatable = true;
   const auto& type = *kind.prototype->GetDescriptor();
   for (int i = 0; i < type.field_count(); ++i) {
@@ -333,7 +340,7 @@ void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits&
                              kind.singular + (meant.empty() ? "" : " (is " + meant + " meant?)"));
         continue;
       }
-      edits.add(field->name(), [field](Message& resource) {
+      edits.add_removal(field->name(), [field](Message& resource) {
         resource.GetReflection()->ClearField(&resource, field);
         drop_provenance(resource, field->name());
       });
@@ -344,7 +351,7 @@ void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits&
   label.is_repeatable = true;
   label.read = [&edits](const std::vector<std::string>& texts, Complaints&) {
     for (const std::string& key : texts) {
-      edits.add("labels", [key](Message& resource) { set_label(resource, key, nullptr); });
+      edits.add_removal("labels", [key](Message& resource) { set_label(resource, key, nullptr); });
     }
   };
 }

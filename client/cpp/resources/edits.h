@@ -19,14 +19,17 @@ class ResourceEdits {
   void add(const std::string& field, Edit edit);
   /// As add; false when the same thing (`key`) has been set before.
   bool add_once(const std::string& key, const std::string& field, Edit edit);
+  /// An edit that comes before all others: --unset makes room for what other flags set.
+  void add_removal(const std::string& field, Edit edit);
   /// Another edit changes this top-level field too.
   void touch(const std::string& field) { fields_.insert(field); }
-  bool empty() const { return edits_.empty(); }
+  bool empty() const { return edits_.empty() && removals_.empty(); }
   void apply(google::protobuf::Message& resource) const;
   /// Top-level fields that were changed: the mask of an update.
   std::vector<std::string> fields() const { return {fields_.begin(), fields_.end()}; }
 
  private:
+  std::vector<Edit> removals_;
   std::vector<Edit> edits_;
   std::set<std::string> fields_;
   std::set<std::string> keys_;
