@@ -156,7 +156,6 @@ void add_benchmarks() {
                                    [each, count](benchmark::State& state) {
                                      Library& all = library(count);
                                      each.run(all);
-                                     // NOLINTNEXTLINE(clang-analyzer-*): in benchmark.h
                                      for (auto _ : state) each.run(all);
                                    })
           ->Unit(benchmark::kMicrosecond)
