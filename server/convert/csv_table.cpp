@@ -60,7 +60,7 @@ std::optional<std::vector<std::string>> split(std::string_view line, char separa
     }
     cells.push_back(std::move(cell));
     line = rest.substr(i + 1);
-    const std::size_t next = line.find_first_not_of(" ");
+    const std::size_t next = line.find_first_not_of(' ');
     if (next == std::string_view::npos) return cells;
     if (line[next] != separator) return std::nullopt;
     line.remove_prefix(next + 1);

@@ -22,7 +22,6 @@
 namespace tribodyn::server {
 namespace {
 
-using google::protobuf::FieldDescriptor;
 using google::protobuf::FileDescriptor;
 using google::protobuf::Message;
 using google::protobuf::MethodDescriptor;
