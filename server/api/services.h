@@ -11,7 +11,8 @@
 namespace tribodyn::server {
 
 /// The gRPC services of tribodyn.v1: a thin shell, one line a method, over server/app. Unary
-/// methods run where gRPC calls them, as none takes long. `application` and `live` must outlive
+/// methods run where gRPC calls them, as none takes long, and end at their client's deadline or
+/// after 30 s. `application` and `live` must outlive
 /// them.
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(Application& application,
                                                           LiveStreams& live);

@@ -19,6 +19,10 @@ Outcome<Message> guarded(const Body& body) {
   } catch (const Refusal& refusal) {
     return error(google::rpc::INVALID_ARGUMENT, refusal.reason(), refusal.what());
   } catch (const StoreError& failure) {
+    if (failure.kind() == StoreError::Kind::kDeadline) {
+      return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
+                   "it took longer than the call may take; nothing has changed");
+    }
     spdlog::error("{}", failure.what());
     return error(google::rpc::UNAVAILABLE, "STORE_FAILED",
                  "the database could not be read or written");

@@ -32,16 +32,15 @@ std::size_t edits(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// The start of a client's text as plain ASCII: never half a UTF-8 character, never a control code.
-std::string excerpt(std::string_view text) {
+}  // namespace
+
+std::string plain_excerpt(std::string_view text) {
   std::string out(text.substr(0, 60));
   for (char& c : out) {
     if (c < ' ' || c > '~') c = '?';
   }
   return text.size() > 60 ? out + "..." : out;
 }
-
-}  // namespace
 
 bool is_resource_name(std::string_view name, std::string_view collection) {
   if (name.size() > static_cast<std::size_t>(kMaximumTextLength)) return false;
@@ -51,6 +50,28 @@ bool is_resource_name(std::string_view name, std::string_view collection) {
   }
   const std::string_view id = name.substr(collection.size() + 1);
   return std::all_of(id.begin(), id.end(), is_id_character);
+}
+
+std::optional<RevisionName> parse_revision_name(std::string_view name,
+                                                std::string_view collection) {
+  const std::size_t at = name.find('@');
+  if (!is_resource_name(name.substr(0, at), collection)) return std::nullopt;
+  RevisionName out{std::string(name.substr(0, at)), 0};
+  if (at == std::string_view::npos) return out;
+  const std::string_view digits = name.substr(at + 1);
+  const auto [end, error] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), out.revision);
+  const bool is_canonical = std::to_string(out.revision) == digits;
+  if (error != std::errc() || !is_canonical || out.revision < 1) return std::nullopt;
+  return out;
+}
+
+std::string revision_name(std::string_view name, int revision) {
+  return fmt::format("{}@{}", name, revision);
+}
+
+std::string deleted_name_text(std::string_view name) {
+  return fmt::format("\"{}\" is deleted; undelete it to use it", plain_excerpt(name));
 }
 
 std::optional<std::int64_t> simulation_id(std::string_view name) {
@@ -66,6 +87,9 @@ std::string simulation_name(std::int64_t id) { return fmt::format("{}/{}", kSimu
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {
   const std::string_view compared = name.substr(0, kMaximumTextLength);
+  for (const std::string& each : existing) {
+    if (!name.empty() && each.starts_with(name)) return each;  // its unit was left out
+  }
   const auto nearest = std::min_element(existing.begin(), existing.end(),
                                         [&](const std::string& a, const std::string& b) {
                                           return edits(compared, a) < edits(compared, b);
@@ -77,11 +101,11 @@ std::string unknown_name_text(std::string_view name, std::string_view collection
                               const std::vector<std::string>& existing) {
   const std::string nearest = nearest_name(name, existing);
   const std::string hint = nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
-  if (is_resource_name(name, collection)) {
-    return fmt::format("\"{}\" does not exist{}", excerpt(name), hint);
+  if (parse_revision_name(name, collection)) {
+    return fmt::format("\"{}\" does not exist{}", plain_excerpt(name), hint);
   }
-  return fmt::format("\"{}\" is not a name of the form \"{}/{{id}}\"{}", excerpt(name), collection,
-                     hint);
+  return fmt::format("\"{}\" is not a name of the form \"{}/{{id}}\"{}", plain_excerpt(name),
+                     collection, hint);
 }
 
 }  // namespace tribodyn::server

@@ -223,7 +223,7 @@ TEST(ProgressBar, FitsTheTerminal) {
 
 TEST(ProgressDisplay, IsSparseOffTerminals) {
   std::ostringstream out;
-  ProgressDisplay display(out, false, 80);
+  ProgressDisplay display(out, ProgressForm::kLines, 80);
   JobProgress job{"lubricants/1", "running", "settling", 0, false};
   for (int i = 0; i <= 100; ++i) {
     job.fraction = 0.01 * i;
@@ -241,7 +241,7 @@ TEST(ProgressDisplay, IsSparseOffTerminals) {
 
 TEST(ProgressDisplay, RedrawsOnTerminals) {
   std::ostringstream out;
-  ProgressDisplay display(out, true, 80);
+  ProgressDisplay display(out, ProgressForm::kBars, 80);
   const JobProgress job{"a", "running", "", 0.1, false};
   display.show({job, job});
   display.show({job, job});

@@ -59,18 +59,27 @@ std::string failure_text(const v1::Simulation& simulation) {
 void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   v1::Simulation& simulation = scenario.simulation;
   flags.group("Fluid, hardware, temperatures");
-  flags.texts("--lubricant,-l", "NAME",
-              "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` shows them).",
-              [&](const std::string& name) { scenario.lubricants.push_back(name); });
-  flags.text(
-      "--gear-set", "NAME", "Gear set in its driveline. Default: A.",
-      [&](const std::string& name) { simulation.set_gear_set(resource_name("gearSets", name)); });
-  flags.text(
-      "--surface", "NAME", "Composite roughness of the flanks. Default: run-in.",
-      [&](const std::string& name) { simulation.set_surface(resource_name("surfaces", name)); });
-  flags.text(
-      "--vehicle", "NAME", "Road load. Default: passenger-car.",
-      [&](const std::string& name) { simulation.set_vehicle(resource_name("vehicles", name)); });
+  flags
+      .texts("--lubricant,-l", "NAME",
+             "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` shows them).",
+             [&](const std::string& name) { scenario.lubricants.push_back(name); })
+      .collection = "lubricants";
+  flags
+      .text("--gear-set", "NAME", "Gear set in its driveline. Default: A.",
+            [&](const std::string& name) {
+              simulation.set_gear_set(resource_name("gearSets", name));
+            })
+      .collection = "gearSets";
+  flags
+      .text(
+          "--surface", "NAME", "Composite roughness of the flanks. Default: run-in.",
+          [&](const std::string& name) { simulation.set_surface(resource_name("surfaces", name)); })
+      .collection = "surfaces";
+  flags
+      .text(
+          "--vehicle", "NAME", "Road load. Default: passenger-car.",
+          [&](const std::string& name) { simulation.set_vehicle(resource_name("vehicles", name)); })
+      .collection = "vehicles";
   flags.number("--sump-temperature-celsius,--sump", {"C", "-70 to 200", "40"},
                "Temperature of the oil bath",
                [&](double value) { simulation.set_sump_temperature_celsius(value); });
@@ -105,7 +114,8 @@ std::vector<v1::Simulation> simulations_of(const Scenario& scenario) {
   return simulations;
 }
 
-std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection) {
+std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection,
+                                         ProgressForm progress) {
   std::vector<v1::Simulation> submitted;
   std::vector<std::string> labels;
   Complaints refusals;
@@ -113,16 +123,16 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
     try {
       submitted.push_back(connection.create_simulation(simulation));
       labels.push_back(simulation.lubricant());
-    } catch (const Failure& failure) {
-      if (failure.exit_code() != kExitFailed) throw;
-      const std::string refusal = failure.what();
+    } catch (const ServiceError& error) {
+      if (error.kind() != ServiceError::Kind::kRefused) throw;
+      const std::string refusal = Failure(error).what();
       if (std::find(refusals.begin(), refusals.end(), refusal) == refusals.end()) {
         refusals.push_back(refusal);
       }
     }
   }
   if (!refusals.empty()) withdraw(submitted, refusals, connection);
-  if (!scenario.detach) return follow(connection, submitted, labels);
+  if (!scenario.detach) return follow(connection, submitted, labels, progress);
   for (const v1::Simulation& simulation : submitted) {
     std::cout << simulation.name() << "  " << state_text(simulation.state())
               << "  follow: tribodyn jobs watch " << resource_id(simulation.name()) << "\n";

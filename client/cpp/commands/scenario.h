@@ -27,12 +27,13 @@ std::vector<v1::Simulation> simulations_of(const Scenario& scenario);
 
 /// Submits all, follows them together (unless detached: then prints how to follow and returns
 /// nothing), and returns them as they ended.
-std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection);
+std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection,
+                                         ProgressForm progress);
 
 /// Prints on standard error which simulations have nothing to show and why; kExitFailed if any has.
 int report_failures(const std::vector<v1::Simulation>& simulations);
 
-/// The flag of a field: "--no-limiting-shear-stress" from "no_limiting_shear_stress".
+/// A flag for each switch of the model: "--no-limiting-shear-stress" of "no_limiting_shear_stress".
 void add_model_flags(FlagList& flags, v1::ModelOptions& options);
 
 }  // namespace tribodyn::client

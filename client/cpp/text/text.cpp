@@ -97,6 +97,15 @@ std::vector<std::string> split(std::string_view text, char separator) {
   return parts;
 }
 
+std::string joined(const std::vector<std::string>& parts, std::string_view separator) {
+  std::string text;
+  for (const std::string& part : parts) {
+    if (!text.empty()) text += separator;
+    text += part;
+  }
+  return text;
+}
+
 std::string resource_name(std::string_view collection, std::string_view id_or_name) {
   if (id_or_name.find('/') != std::string_view::npos) return std::string(id_or_name);
   return std::string(collection) + "/" + std::string(id_or_name);

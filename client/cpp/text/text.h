@@ -31,6 +31,9 @@ std::string wrapped(std::string_view text, int indent, int width = 100);
 /// The parts between separators; an empty text has no parts.
 std::vector<std::string> split(std::string_view text, char separator);
 
+/// The parts with a separator between them.
+std::string joined(const std::vector<std::string>& parts, std::string_view separator);
+
 /// "lubricants/1" from "1" or "lubricants/1".
 std::string resource_name(std::string_view collection, std::string_view id_or_name);
 
