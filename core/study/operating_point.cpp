@@ -181,7 +181,7 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system, const Targe
   const PeriodicOrbit& orbit = refined->orbit;
 
   PointResult out = empty_result(target, PointModel::kFull);
-  out.method = SteadyStateMethod::kAutomatic;
+  out.method = SteadyStateMethod::kShooting;
   out.settled = true;
   out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
   out.estimated_relative_error = refined->estimated_error;

@@ -42,7 +42,8 @@ enum class PointStart {
 /// How the steady state of the full model is found.
 enum class SteadyStateMethod {
   kAutomatic,  ///< by shooting; marched where shooting finds no attracting response
-  kMarch,      ///< marched to the end
+  kShooting,   ///< found by shooting; only in results
+  kMarch,      ///< marched until it repeats
 };
 
 /// A neighbour's steady state, to start from. Speeds and wind-up are shifted to the new point.
@@ -63,7 +64,7 @@ struct PointOptions {
   SteadyStateMethod method = SteadyStateMethod::kAutomatic;
   /// Of shooting: wanted relative error of both inefficiencies, the torque and the extremes of the
   /// transmission error [1e-8, 1e-2]
-  double tolerance = 1e-5;
+  double tolerance = 1e-6;
   double relative_tolerance = 1e-7;  ///< of the march, per step [1e-11, 1e-3]
   double settling_tolerance =
       1e-6;  ///< relative change of the response per period that counts as settled
@@ -165,7 +166,7 @@ struct PointResult {
   double limiting_stress_area_share = 0;  ///< load-time mean of the area share on tau_L [-]
 
   PointModel model = PointModel::kFull;
-  SteadyStateMethod method = SteadyStateMethod::kMarch;  ///< kAutomatic: found by shooting
+  SteadyStateMethod method = SteadyStateMethod::kMarch;
   bool settled = false;
   int period_in_mesh_cycles = 0;  ///< 0: none found; results are then averages over the record
   int recorded_mesh_cycles = 0;

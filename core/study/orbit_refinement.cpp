@@ -6,8 +6,8 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kSafety = 1.5;    // on the error that two step lengths tell
-constexpr double kRepels = 0.998;  // multipliers under lagged friction are good to 5e-4
+constexpr double kSafety = 2.5;    // on the error that two step lengths tell
+constexpr double kRepels = 0.994;  // multipliers under lagged friction are good to 3e-3
 constexpr int kCoarsest = 24;      // steps per mesh cycle, about
 constexpr int kFinest = 4000;
 
@@ -78,7 +78,7 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const OrbitSear
       double gain = finer * finer;
       const bool halving = request.steps == 2 * best.steps_per_mesh_cycle;
       if (halving && halving_difference > 0) {
-        gain = std::clamp(halving_difference / std::max(difference, 1e-300), gain, 12.0);
+        gain = std::clamp(halving_difference / std::max(difference, 1e-300), 3.0, 5.0);
       }
       best.estimated_error = kSafety * difference / (gain - 1) + orbit.unsettled;
       halving_difference = halving ? difference : 0;

@@ -57,8 +57,17 @@ void ResponseRecord::add_all(const std::array<Instant, kCount>& instants) {
         add_samples(instants, range, [&](const Instant& i) { return i.contact[k].*member; });
         return;
       }
-      for (const Instant& i : instants) {
+      for (std::size_t n = 0; n < kCount; ++n) {
+        const Instant& i = instants[n];
         if (counts(i, k)) range.add(i.contact[k].*member, i.contact[k].*member);
+        if (n == 0 || counts(i, k) == counts(instants[n - 1], k)) continue;
+        // Where the load that counts is crossed.
+        const Instant& before = instants[n - 1];
+        if (!(i.load[k] > 0 && before.load[k] > 0)) continue;
+        const double t = (load_floor_ - before.load[k]) / (i.load[k] - before.load[k]);
+        const double value = before.contact[k].*member +
+                             t * (i.contact[k].*member - before.contact[k].*member);
+        range.add(value, value);
       }
     };
     add(film_, &ContactSolution::central_film_thickness);

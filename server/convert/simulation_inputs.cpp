@@ -32,6 +32,8 @@ void fill_solver(v1::SolverOptions* solver) {
   if (solver->settling_tolerance() == 0) {
     solver->set_settling_tolerance(defaults.settling_tolerance);
   }
+  if (solver->tolerance() == 0) solver->set_tolerance(defaults.tolerance);
+  if (solver->method() == v1::STEADY_STATE_METHOD_UNSPECIFIED) solver->set_method(v1::AUTOMATIC);
   if (solver->maximum_mesh_cycles() == 0) {
     solver->set_maximum_mesh_cycles(defaults.maximum_mesh_cycles);
   }
@@ -123,6 +125,9 @@ PointOptions point_options(const v1::SolverOptions& solver, v1::PointModel model
   PointOptions out;
   out.model = model == v1::QUASI_STATIC ? PointModel::kQuasiStatic : PointModel::kFull;
   out.start = start == v1::LARGE_VIBRATION ? PointStart::kLargeVibration : PointStart::kQuasiStatic;
+  out.method = solver.method() == v1::MARCH ? SteadyStateMethod::kMarch
+                                            : SteadyStateMethod::kAutomatic;
+  out.tolerance = solver.tolerance();
   out.relative_tolerance = solver.relative_tolerance();
   out.settling_tolerance = solver.settling_tolerance();
   out.maximum_mesh_cycles = solver.maximum_mesh_cycles();

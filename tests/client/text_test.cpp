@@ -127,7 +127,7 @@ TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
   for (const char* part :
        {"Mesh loss (conjunctional", "inefficiency, energy mean", "eq 30", "72.5 km/h", "T_s",
         "film ratio lambda", "contact loss                 yes", "0.6000 ms", "1.2e-06", "abc123",
-        "tribodyn-model-1", "isothermal, as published eq17_atan", "FILM_RATIO_LOW",
+        "tribodyn-model-2", "isothermal, as published eq17_atan", "FILM_RATIO_LOW",
         "Another steady state", "1 assumed (all: --assumptions)"}) {
     EXPECT_TRUE(holds(text, part));
   }
