@@ -28,7 +28,7 @@ struct OperatingCondition {
 };
 
 enum class PointModel {
-  kFull,         ///< 4-DoF march to the steady state, friction in the loop
+  kFull,         ///< steady state of the 4-DoF system, friction in the loop
   kQuasiStatic,  ///< static equilibrium at constant speed, phase by phase
 };
 
@@ -97,7 +97,7 @@ struct SolverStatistics {
   long accepted_steps = 0;
   long rejected_steps = 0;
   long events = 0;                ///< exact locations of contact loss, regain and load onset
-  long mesh_cycles = 0;           ///< marched in all
+  long mesh_cycles = 0;           ///< marched in all, under lagged friction or full
   long accelerations = 0;         ///< accepted extrapolations towards the steady state
   double periodicity_defect = 0;  ///< relative change of the section state over the last period
   double largest_multiplier = 0;  ///< Floquet, modulus; below 1: the response is attracting
