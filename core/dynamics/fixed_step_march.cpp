@@ -198,6 +198,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
         take(phase, h);
       }
       if (!(std::isfinite(to[kPinionSpeed]) && to[kPinionSpeed] > 0)) return false;
+      ++taken_;
       if (pieces != nullptr) {
         pieces->push_back({phase, h, system_.regime, y, middle(y, to, h), to});
       }

@@ -44,6 +44,7 @@ class FixedStepMarch {
            std::vector<OrbitPiece>* pieces);
 
   long evaluations() const { return evaluations_; }
+  long steps() const { return taken_; }
   long events() const { return events_; }
 
  private:
@@ -65,7 +66,7 @@ class FixedStepMarch {
   const MarchScales& scales_;
   int steps_, period_;
   bool solve_wheel_torque_;
-  long evaluations_ = 0, events_ = 0;
+  long evaluations_ = 0, taken_ = 0, events_ = 0;
   Instant at_;
   double load_ = 0;
   Rates first_rate_{}, last_rate_{};

@@ -228,6 +228,7 @@ bool solve_periodic_orbit(GearPairSystem& system, const OrbitRequest& request, P
   const auto finish = [&](bool good) {
     const FixedStepMarch& march = shooting.marches();
     statistics.right_hand_sides += march.evaluations();
+    statistics.accepted_steps += march.steps();
     statistics.events += march.events();
     orbit.torques = system.torques();
     return good;
@@ -254,6 +255,7 @@ bool solve_periodic_orbit(GearPairSystem& system, const OrbitRequest& request, P
       const double step = shooting.newton();
       if (!(step < 1e9)) return finish(false);
       found = step < enough;
+      orbit.defect = step;
     }
     if (!found || !shooting.evaluate_friction()) return finish(false);
     const double change = sweep == 0 ? 1 : orbit.figures.distance(previous);

@@ -34,6 +34,7 @@ struct PeriodicOrbit {
   LaggedFriction friction;
   std::vector<SolvedPiece> pieces;
   OrbitFigures figures;
+  double defect = 0;              ///< scaled change of the state in the last step of Newton
   double unsettled = 0;           ///< estimate of what further sweeps would still change, relative
   double largest_multiplier = 0;  ///< Floquet, modulus
   bool contact_loss = false;

@@ -197,7 +197,9 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system, const Targe
   sample_orbit(system, orbit, history);
   out.history = history.take();
   out.statistics.right_hand_sides = statistics.right_hand_sides;
+  out.statistics.accepted_steps = statistics.accepted_steps;
   out.statistics.events = statistics.events;
+  out.statistics.periodicity_defect = orbit.defect;
   out.statistics.mesh_cycles = cycles;
   out.statistics.contact_solutions = system.contact_solutions();
   out.statistics.largest_multiplier = orbit.largest_multiplier;

@@ -65,8 +65,8 @@ void ResponseRecord::add_all(const std::array<Instant, kCount>& instants) {
         const Instant& before = instants[n - 1];
         if (!(i.load[k] > 0 && before.load[k] > 0)) continue;
         const double t = (load_floor_ - before.load[k]) / (i.load[k] - before.load[k]);
-        const double value = before.contact[k].*member +
-                             t * (i.contact[k].*member - before.contact[k].*member);
+        const double value =
+            before.contact[k].*member + t * (i.contact[k].*member - before.contact[k].*member);
         range.add(value, value);
       }
     };
