@@ -41,6 +41,8 @@ struct Flags {
   int threads = 0;
   std::string port_file;
   std::string log_level = "info";
+  double call_limit_seconds = 30;
+  double stream_limit_seconds = 3600;
 };
 
 /// Subcommands take the place of serving; each needs --database.
@@ -88,6 +90,14 @@ void add_flags(CLI::App& app, Flags& flags) {
   app.add_option("--threads", flags.threads,
                  "Simulations at a time; 0: one per processor. Recommended: 0")
       ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_option("--call-limit-seconds", flags.call_limit_seconds,
+                 "A call ends after this long, whatever its client allows. Recommended: 30")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+  app.add_option("--stream-limit-seconds", flags.stream_limit_seconds,
+                 "So does a watch or the reading of a history; clients watch on. Recommended: 3600")
+      ->check(CLI::Range(0.0, 86400.0))
       ->capture_default_str();
   app.add_option("--port-file", flags.port_file,
                  "Write the address here once the server answers; removed at the end");
@@ -142,7 +152,12 @@ void serve(const Flags& flags, const ListenAddress& address, const sigset_t& sig
   Application application{store, jobs};
   const std::size_t resumed = jobs.resume();  // before a client can add to the queue
   if (resumed > 0) spdlog::info("{} unfinished simulations are queued again", resumed);
-  GrpcServer server(application, address);
+  const auto milliseconds = [](double seconds) {
+    return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds));
+  };
+  GrpcServer server(
+      application, address,
+      {milliseconds(flags.call_limit_seconds), milliseconds(flags.stream_limit_seconds)});
   spdlog::info("tribodynd " TRIBODYN_VERSION " ({}) listens on {} with {} threads", kModelVersion,
                server.address(), options.threads);
   if (!flags.port_file.empty()) write_port_file(flags.port_file, server.address());

@@ -45,7 +45,7 @@ Estimate relative(double value, double relative_uncertainty, std::string source,
 }
 
 std::string per_gigapascal(const Estimate& estimate) {
-  return number_text(estimate.value * 1e9) + " 1/GPa";
+  return known_text(1e9 * estimate.value, 1e9 * estimate.standard_uncertainty) + " 1/GPa";
 }
 
 }  // namespace

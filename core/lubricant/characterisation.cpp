@@ -112,8 +112,9 @@ class Assembly {
       set_density(Provenance::kAssumed, "density at 15 C " + typical.source +
                                             "; expansion by ASTM D1250, lubricating oils");
       warn("DENSITY_ESTIMATED", "density_at_zero_kelvin",
-           "No density is given: " + number_text(typical.value) + " kg/m3 at 15 C within " +
-               number_text(typical.standard_uncertainty) + ", " + typical.source + ".");
+           "No density is given: " + known_text(typical.value, typical.standard_uncertainty) +
+               " kg/m3 at 15 C within " + number_text(typical.standard_uncertainty, 2) + ", " +
+               typical.source + ".");
       return;
     }
     const auto [coldest, warmest] = std::minmax_element(
@@ -131,9 +132,9 @@ class Assembly {
     set_density(Provenance::kDerived, "density measured at " + celsius(coldest->temperature) +
                                           "; expansion by ASTM D1250, lubricating oils");
     warn("EXPANSION_ESTIMATED", "density_temperature_slope",
-         "Density is known at one temperature; it changes by " + number_text(density_.slope) +
-             " kg/(m3 K) within " + number_text(density_.slope_uncertainty) +
-             " (ASTM D1250, lubricating oils).");
+         "Density is known at one temperature; it changes by " +
+             known_text(density_.slope, density_.slope_uncertainty) + " kg/(m3 K) within " +
+             number_text(density_.slope_uncertainty, 2) + " (ASTM D1250, lubricating oils).");
   }
 
   void set_density(Provenance provenance, const std::string& source) {
@@ -211,17 +212,18 @@ class Assembly {
         assumed ? "typical of gear oils: the viscosities leave it open" : source};
     if (assumed) {
       warn("VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature",
-           "The viscosities given do not determine T_0; " + number_text(fit.reference_temperature) +
-               " K within " + number_text(deviation(2)) +
+           "The viscosities given do not determine T_0; " +
+               known_text(fit.reference_temperature, deviation(2)) + " K within " +
+               number_text(deviation(2), 2) +
                " is used. A third temperature well apart, best a cold one, settles it.");
     }
     if (kinematic_alone) {
       constexpr double kCold = 263.15;
       warn("VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature",
            "Two viscosities do not determine T_0; that which follows ASTM D341 is used, " +
-               number_text(fit.reference_temperature) + " K within " + number_text(deviation(2)) +
-               ", and leaves the viscosity at " + celsius(kCold) + " known to " +
-               number_text(100 * relative_viscosity_uncertainty(fit, kCold)) +
+               known_text(fit.reference_temperature, deviation(2)) + " K within " +
+               number_text(deviation(2), 2) + ", and leaves the viscosity at " + celsius(kCold) +
+               " known to " + number_text(100 * relative_viscosity_uncertainty(fit, kCold), 2) +
                " %. A cold viscosity settles it.");
     }
     warn_of_misfits(fit);
@@ -297,9 +299,9 @@ class Assembly {
     out_.parameters.*known = {estimate.value, estimate.standard_uncertainty, Provenance::kAssumed,
                               std::string(name(fluid_.base_oil)) + " base oil: " + estimate.source};
     warn("PARAMETER_ESTIMATED", parameter,
-         std::string(parameter) + " is not measured: " + number_text(in_unit * estimate.value) +
-             " within " + number_text(in_unit * estimate.standard_uncertainty) + unit + " (" +
-             name(fluid_.base_oil) + " base oil; " + estimate.source + ").");
+         std::string(parameter) + " is not measured: " +
+             within_text(in_unit * estimate.value, in_unit * estimate.standard_uncertainty) + unit +
+             " (" + name(fluid_.base_oil) + " base oil; " + estimate.source + ").");
     if (!estimate.inside_range) {
       warn("ESTIMATE_OUT_OF_RANGE", parameter,
            std::string("The estimate of ") + parameter +

@@ -7,8 +7,6 @@
 
 #include <chrono>
 
-#include "server/api/services.h"
-
 namespace tribodyn::server {
 namespace {
 
@@ -25,8 +23,11 @@ constexpr auto kShutdownGrace = std::chrono::seconds(1);
 
 }  // namespace
 
-GrpcServer::GrpcServer(Application& application, const ListenAddress& address)
-    : acceptor_(address), live_(kMaximumOpenStreams), services_(grpc_services(application, live_)) {
+GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
+                       const TimeLimits& limits)
+    : acceptor_(address),
+      live_(kMaximumOpenStreams),
+      services_(grpc_services(application, live_, limits)) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;

@@ -27,29 +27,45 @@ namespace {
 using Context = grpc::CallbackServerContext;
 using Unary = grpc::ServerUnaryReactor;
 
-constexpr auto kLongestCall = std::chrono::seconds(30);  // whatever its client allows
+using Clock = std::chrono::system_clock;
 
-/// Runs the body of a unary method under its deadline.
-template <class Message, class Body>
-Unary* answer(Context* context, Message* response, const Body& body) {
-  Unary* reactor = context->DefaultReactor();
-  const DeadlineScope deadline(
-      DeadlineScope::Clock::now() +
-      std::min<std::chrono::system_clock::duration>(
-          context->deadline() - std::chrono::system_clock::now(), kLongestCall));
-  Outcome<Message> outcome = body();
-  if (outcome.ok()) {
-    *response = std::move(outcome.message());
-    reactor->Finish(grpc::Status::OK);
-  } else {
-    reactor->Finish(to_grpc(outcome.error()));
-  }
-  return reactor;
+/// What its client and the server allow of a call.
+Clock::time_point end_of(const Context& context, std::chrono::milliseconds limit) {
+  return std::min(context.deadline(), Clock::now() + limit);
 }
 
-class LubricantsService final : public v1::Lubricants::CallbackService {
+/// Bodies of unary methods, each under its deadline.
+class UnaryService {
  public:
-  explicit LubricantsService(Application& application) : application_(application) {}
+  UnaryService(Application& application, const TimeLimits& limits)
+      : application_(application), limit_(limits.call) {}
+
+ protected:
+  template <class Message, class Body>
+  Unary* answer(Context* context, Message* response, const Body& body) const {
+    Unary* reactor = context->DefaultReactor();
+    const DeadlineScope deadline(DeadlineScope::Clock::now() +
+                                 (end_of(*context, limit_) - Clock::now()));
+    Outcome<Message> outcome =
+        DeadlineScope::has_passed() ? Outcome<Message>(deadline_exceeded()) : body();
+    if (outcome.ok()) {
+      *response = std::move(outcome.message());
+      reactor->Finish(grpc::Status::OK);
+    } else {
+      reactor->Finish(to_grpc(outcome.error()));
+    }
+    return reactor;
+  }
+
+  Application& application_;
+
+ private:
+  const std::chrono::milliseconds limit_;
+};
+
+class LubricantsService final : public v1::Lubricants::CallbackService, UnaryService {
+ public:
+  using UnaryService::UnaryService;
   Unary* CreateLubricant(Context* context, const v1::CreateLubricantRequest* request,
                          v1::Lubricant* response) override {
     return answer(context, response, [&] { return create_lubricant(application_, *request); });
@@ -83,14 +99,11 @@ class LubricantsService final : public v1::Lubricants::CallbackService {
                            v1::Lubricant* response) override {
     return answer(context, response, [&] { return undelete_lubricant(application_, *request); });
   }
-
- private:
-  Application& application_;
 };
 
-class GearSetsService final : public v1::GearSets::CallbackService {
+class GearSetsService final : public v1::GearSets::CallbackService, UnaryService {
  public:
-  explicit GearSetsService(Application& application) : application_(application) {}
+  using UnaryService::UnaryService;
   Unary* CreateGearSet(Context* context, const v1::CreateGearSetRequest* request,
                        v1::GearSet* response) override {
     return answer(context, response, [&] { return create_gear_set(application_, *request); });
@@ -124,14 +137,11 @@ class GearSetsService final : public v1::GearSets::CallbackService {
                          v1::GearSet* response) override {
     return answer(context, response, [&] { return undelete_gear_set(application_, *request); });
   }
-
- private:
-  Application& application_;
 };
 
-class SurfacesService final : public v1::Surfaces::CallbackService {
+class SurfacesService final : public v1::Surfaces::CallbackService, UnaryService {
  public:
-  explicit SurfacesService(Application& application) : application_(application) {}
+  using UnaryService::UnaryService;
   Unary* CreateSurface(Context* context, const v1::CreateSurfaceRequest* request,
                        v1::Surface* response) override {
     return answer(context, response, [&] { return create_surface(application_, *request); });
@@ -166,14 +176,11 @@ class SurfacesService final : public v1::Surfaces::CallbackService {
                          v1::Surface* response) override {
     return answer(context, response, [&] { return undelete_surface(application_, *request); });
   }
-
- private:
-  Application& application_;
 };
 
-class VehiclesService final : public v1::Vehicles::CallbackService {
+class VehiclesService final : public v1::Vehicles::CallbackService, UnaryService {
  public:
-  explicit VehiclesService(Application& application) : application_(application) {}
+  using UnaryService::UnaryService;
   Unary* CreateVehicle(Context* context, const v1::CreateVehicleRequest* request,
                        v1::Vehicle* response) override {
     return answer(context, response, [&] { return create_vehicle(application_, *request); });
@@ -203,39 +210,30 @@ class VehiclesService final : public v1::Vehicles::CallbackService {
                          v1::Vehicle* response) override {
     return answer(context, response, [&] { return undelete_vehicle(application_, *request); });
   }
-
- private:
-  Application& application_;
 };
 
-class SchemasService final : public v1::Schemas::CallbackService {
+class SchemasService final : public v1::Schemas::CallbackService, UnaryService {
  public:
-  explicit SchemasService(Application& application) : application_(application) {}
+  using UnaryService::UnaryService;
   Unary* GetSchema(Context* context, const v1::GetSchemaRequest* request,
                    v1::Schema* response) override {
     return answer(context, response, [&] { return get_schema(application_, *request); });
   }
-
- private:
-  Application& application_;
 };
 
-class ContactsService final : public v1::Contacts::CallbackService {
+class ContactsService final : public v1::Contacts::CallbackService, UnaryService {
  public:
-  explicit ContactsService(Application& application) : application_(application) {}
+  using UnaryService::UnaryService;
   Unary* EvaluateContact(Context* context, const v1::EvaluateContactRequest* request,
                          v1::EvaluateContactResponse* response) override {
     return answer(context, response, [&] { return evaluate_contact(application_, *request); });
   }
-
- private:
-  Application& application_;
 };
 
-class SimulationsService final : public v1::Simulations::CallbackService {
+class SimulationsService final : public v1::Simulations::CallbackService, UnaryService {
  public:
-  SimulationsService(Application& application, LiveStreams& live)
-      : application_(application), live_(live) {}
+  SimulationsService(Application& application, const TimeLimits& limits, LiveStreams& live)
+      : UnaryService(application, limits), limit_(limits.stream), live_(live) {}
   Unary* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                           v1::Simulation* response) override {
     return answer(context, response, [&] { return create_simulation(application_, *request); });
@@ -253,32 +251,36 @@ class SimulationsService final : public v1::Simulations::CallbackService {
     return answer(context, response, [&] { return cancel_simulation(application_, *request); });
   }
   grpc::ServerWriteReactor<v1::SimulationEvent>* WatchSimulation(
-      Context*, const v1::WatchSimulationRequest* request) override {
-    return StreamReactor<v1::SimulationEvent>::start(live_,
-                                                     watch_simulation(application_, *request));
+      Context* context, const v1::WatchSimulationRequest* request) override {
+    return StreamReactor<v1::SimulationEvent>::start(
+        live_, *context, end_of(*context, limit_),
+        [&] { return watch_simulation(application_, *request); });
   }
   grpc::ServerWriteReactor<v1::HistoryChunk>* ReadHistory(
-      Context*, const v1::ReadHistoryRequest* request) override {
-    return StreamReactor<v1::HistoryChunk>::start(live_, read_history(application_, *request));
+      Context* context, const v1::ReadHistoryRequest* request) override {
+    return StreamReactor<v1::HistoryChunk>::start(live_, *context, end_of(*context, limit_), [&] {
+      return read_history(application_, *request);
+    });
   }
 
  private:
-  Application& application_;
+  const std::chrono::milliseconds limit_;
   LiveStreams& live_;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(Application& application,
-                                                          LiveStreams& live) {
+                                                          LiveStreams& live,
+                                                          const TimeLimits& limits) {
   std::vector<std::unique_ptr<grpc::Service>> out;
-  out.push_back(std::make_unique<LubricantsService>(application));
-  out.push_back(std::make_unique<GearSetsService>(application));
-  out.push_back(std::make_unique<SurfacesService>(application));
-  out.push_back(std::make_unique<VehiclesService>(application));
-  out.push_back(std::make_unique<SchemasService>(application));
-  out.push_back(std::make_unique<ContactsService>(application));
-  out.push_back(std::make_unique<SimulationsService>(application, live));
+  out.push_back(std::make_unique<LubricantsService>(application, limits));
+  out.push_back(std::make_unique<GearSetsService>(application, limits));
+  out.push_back(std::make_unique<SurfacesService>(application, limits));
+  out.push_back(std::make_unique<VehiclesService>(application, limits));
+  out.push_back(std::make_unique<SchemasService>(application, limits));
+  out.push_back(std::make_unique<ContactsService>(application, limits));
+  out.push_back(std::make_unique<SimulationsService>(application, limits, live));
   return out;
 }
 

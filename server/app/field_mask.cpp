@@ -69,8 +69,8 @@ void merge(const Message& source, const google::protobuf::FieldMask& mask, Messa
     if (field == nullptr) {
       violations.push_back(
           {"update_mask",
-           fmt::format("\"{}\" is no field of {}; did you mean \"{}\"?", plain_excerpt(path),
-                       descriptor.name(), nearest_name(path, settable_fields(descriptor)))});
+           fmt::format("\"{}\" is no field of {}{}", plain_excerpt(path), descriptor.name(),
+                       meant_text(path, settable_fields(descriptor)))});
       continue;
     }
     if (is_output_only(*field)) continue;

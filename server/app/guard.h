@@ -20,8 +20,7 @@ Outcome<Message> guarded(const Body& body) {
     return error(google::rpc::INVALID_ARGUMENT, refusal.reason(), refusal.what());
   } catch (const StoreError& failure) {
     if (failure.kind() == StoreError::Kind::kDeadline) {
-      return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
-                   "it took longer than the call may take; nothing has changed");
+      return deadline_exceeded();
     }
     spdlog::error("{}", failure.what());
     return error(google::rpc::UNAVAILABLE, "STORE_FAILED",

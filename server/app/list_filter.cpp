@@ -110,8 +110,8 @@ std::optional<PropertyKind> kind_of(const std::string& key, const std::string& c
 }
 
 std::string unknown_field_text(const std::string& key, const std::string& collection) {
-  return fmt::format("\"{}\" is no field of a filter on {}; did you mean \"{}\"?",
-                     plain_excerpt(key), collection, nearest_name(key, filter_fields(collection)));
+  return fmt::format("\"{}\" is no field of a filter on {}{}", plain_excerpt(key), collection,
+                     meant_text(key, filter_fields(collection)));
 }
 
 std::optional<PropertyValue> number_value(const std::string& text) {
@@ -220,8 +220,8 @@ class FilterReader {
   void read_enum(const Token& value, Restriction& out) {
     const std::vector<std::string> names = enum_names(out.key, collection_);
     if (std::find(names.begin(), names.end(), value.text) == names.end()) {
-      return complain(fmt::format("{} = \"{}\" is unknown; did you mean {}?", out.key,
-                                  plain_excerpt(value.text), nearest_name(value.text, names)));
+      return complain(fmt::format("{} = \"{}\" is unknown{}", out.key, plain_excerpt(value.text),
+                                  meant_text(value.text, names)));
     }
     out.value = value.text;
   }
@@ -256,9 +256,8 @@ Order parse_order(std::string_view order_by, const std::string& collection,
     std::vector<std::string> fields = filter_fields(collection);
     std::erase(fields, "labels.KEY");
     violations.push_back(
-        {"order_by",
-         fmt::format("\"{}\" is nothing to order {} by; did you mean \"{}\"?",
-                     plain_excerpt(out.key), collection, nearest_name(out.key, fields))});
+        {"order_by", fmt::format("\"{}\" is nothing to order {} by{}", plain_excerpt(out.key),
+                                 collection, meant_text(out.key, fields))});
   }
   if (!scanner.at_end() || (!direction.empty() && direction != "asc" && direction != "desc")) {
     violations.push_back({"order_by", "legal: one field, then nothing, asc or desc"});

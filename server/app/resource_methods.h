@@ -52,6 +52,14 @@ inline void add_characterisation(v1::GearSet&) {}
 inline void add_characterisation(v1::Surface&) {}
 inline void add_characterisation(v1::Vehicle&) {}
 
+/// What a lubricant shows in a list.
+inline void add_list_figures(v1::Lubricant& lubricant) {
+  *lubricant.mutable_characterisation() = brief_characterisation(lubricant);
+}
+inline void add_list_figures(v1::GearSet&) {}
+inline void add_list_figures(v1::Surface&) {}
+inline void add_list_figures(v1::Vehicle&) {}
+
 template <class Resource>
 Outcome<Resource> answer(const std::optional<StoredResource>& stored, const std::string& name) {
   if (!stored) return error(google::rpc::INTERNAL, "INTERNAL", name + " is gone");
@@ -210,6 +218,7 @@ google::rpc::Status append(const Page<StoredResource>& page, Response& response)
   for (const StoredResource& row : page.rows) {
     auto message = to_message<Resource>(row);
     if (!message) return unreadable(row.name);
+    add_list_figures(*message);
     *Kind<Resource>::add(response) = std::move(*message);
   }
   return {};

@@ -89,9 +89,9 @@ Outcome<v1::Schema> get_schema(Application&, const v1::GetSchemaRequest& request
       if (request.message().empty() || request.message() == row.message) add_constraint(row, out);
     }
     if (out.constraints().empty()) {
-      return invalid({{"message", fmt::format("\"{}\" has no constraints; did you mean \"{}\"?",
-                                              plain_excerpt(request.message()),
-                                              nearest_name(request.message(), known_messages()))}});
+      return invalid(
+          {{"message", fmt::format("\"{}\" has no constraints{}", plain_excerpt(request.message()),
+                                   meant_text(request.message(), known_messages()))}});
     }
     if (request.message().empty()) add_vocabularies(out);
     return out;

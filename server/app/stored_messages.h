@@ -26,6 +26,8 @@ std::optional<Resource> to_message(const StoredResource& stored) {
   using google::protobuf::util::TimeUtil;
   Resource out;
   if (!out.ParseFromString(stored.body)) return std::nullopt;
+  // Bodies of earlier versions may lack entries; an export of them is the same once imported.
+  complete_provenance(out, *out.mutable_provenance());
   fill_units(*Resource::descriptor(), *out.mutable_provenance());
   out.set_name(stored.is_present ? stored.name : revision_name(stored.name, stored.revision));
   out.set_etag(etag_of(stored));

@@ -52,7 +52,22 @@ const char* collection_of(const v1::GearSet&) { return kGearSets; }
 const char* collection_of(const v1::Surface&) { return kSurfaces; }
 const char* collection_of(const v1::Vehicle&) { return kVehicles; }
 
-/// A resource may descend from a deleted one, never from itself.
+/// Whether what is stored under `name` descends from `ancestor`. Rings cannot be stored; names seen
+/// before end the search all the same.
+template <class Resource>
+bool descends(std::string name, const std::string& ancestor, const ResourceLookup& lookup) {
+  std::set<std::string> seen;
+  while (!name.empty() && seen.insert(name).second) {
+    if (name == ancestor) return true;
+    const auto found = lookup.find({name, 0});
+    Resource resource;
+    if (!found || !resource.ParseFromString(found->body)) return false;
+    name = resource.derived_from().substr(0, resource.derived_from().find('@'));
+  }
+  return false;
+}
+
+/// A resource may descend from a deleted one, never from itself or its own descendants.
 template <class Resource>
 void check_descent(const Resource& stated, const ResourceLookup& lookup, const std::string& path,
                    Violations& violations) {
@@ -64,6 +79,8 @@ void check_descent(const Resource& stated, const ResourceLookup& lookup, const s
     violations.push_back({path, fmt::format("{} is the resource itself", name)});
   } else if (!parsed || !lookup.find({parsed->name, 0})) {  // revisions number anew on import
     violations.push_back({path, unknown_name_text(name, collection, lookup.names(collection))});
+  } else if (descends<Resource>(parsed->name, stated.name(), lookup)) {
+    violations.push_back({path, fmt::format("{} itself descends from {}", name, stated.name())});
   }
 }
 
@@ -205,6 +222,21 @@ std::optional<v1::Vehicle> accept(const v1::Vehicle& stated, const v1::Vehicle*,
   v1::Vehicle out = begin(stated, lookup, path, Missing::kViolation, violations);
   if (violations.size() > before) return std::nullopt;
   return end(std::move(out));
+}
+
+void check_stated(const v1::Lubricant& stated, const ResourceLookup& lookup,
+                  const std::string& path, Violations& violations) {
+  begin(stated, lookup, path, Missing::kAllowed, violations);
+}
+
+void check_stated(const v1::GearSet& stated, const ResourceLookup& lookup, const std::string& path,
+                  Violations& violations) {
+  begin(stated, lookup, path, Missing::kViolation, violations);
+}
+
+void check_stated(const v1::Surface& stated, const ResourceLookup& lookup, const std::string& path,
+                  Violations& violations) {
+  begin(stated, lookup, path, Missing::kAllowed, violations);
 }
 
 }  // namespace tribodyn::server

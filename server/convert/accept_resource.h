@@ -33,6 +33,15 @@ std::optional<v1::Vehicle> accept(const v1::Vehicle& stated, const v1::Vehicle* 
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations);
 
+/// Only the checks of what a client states beside a table that cannot be taken: so that all
+/// violations come at once.
+void check_stated(const v1::Lubricant& stated, const ResourceLookup& lookup,
+                  const std::string& path, Violations& violations);
+void check_stated(const v1::GearSet& stated, const ResourceLookup& lookup, const std::string& path,
+                  Violations& violations);
+void check_stated(const v1::Surface& stated, const ResourceLookup& lookup, const std::string& path,
+                  Violations& violations);
+
 /// A gear set whose tables a client sent as text; `locate` says where in it.
 std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample& locate,
                                   const ResourceLookup& lookup, const std::string& path,

@@ -139,6 +139,10 @@ std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name
     return std::nullopt;
   }
   const std::size_t before = violations.size();
+  if (text.find('\0') != std::string_view::npos) {
+    violations.push_back({name, "is no text: it holds zero bytes"});
+    return std::nullopt;
+  }
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   CsvTable table;
   table.name = name;
@@ -148,12 +152,11 @@ std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name
     reader.read(text.substr(0, end), number);
     text.remove_prefix(std::min(end + 1, text.size()));
   }
-  if (violations.size() > before) return std::nullopt;
-  if (table.rows.empty()) {
+  if (!table.rows.empty()) return table;
+  if (violations.size() == before) {
     violations.push_back({name, "has no rows; legal: a header and at least one row"});
-    return std::nullopt;
   }
-  return table;
+  return std::nullopt;
 }
 
 std::string csv_place(const CsvTable& table, int line, std::string_view column) {
@@ -172,8 +175,8 @@ std::vector<CsvColumn> match_columns(const CsvTable& table, std::span<const CsvC
     });
     if (form == forms.end()) {
       violations.push_back({fmt::format("{} column {}", table.name, i + 1),
-                            fmt::format("\"{}\" is no known header; did you mean \"{}\"?",
-                                        plain_excerpt(header), nearest_name(header, known))});
+                            fmt::format("\"{}\" is no known header{}", plain_excerpt(header),
+                                        meant_text(header, known))});
     } else if (find_column(out, form->quantity) != nullptr) {
       violations.push_back({fmt::format("{} column {}", table.name, header),
                             fmt::format("{} is given twice", form->quantity)});

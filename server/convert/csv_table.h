@@ -28,7 +28,8 @@ inline constexpr std::size_t kMaximumProfileBytes = 3 << 20;  ///< of all profil
 inline constexpr std::size_t kMaximumCsvColumns = 64;
 inline constexpr std::size_t kMaximumCsvViolations = 100;
 
-/// Reads a table; nothing, and violations that name the rows, when it is none.
+/// Reads a table; violations name the rows that are left out of it because they cannot be read.
+/// Nothing when none can.
 std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name,
                                   std::size_t maximum_bytes, Violations& violations);
 

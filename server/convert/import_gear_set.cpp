@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "core/gear/gear_set.h"
@@ -78,14 +79,18 @@ class ToothContactReader {
     columns_ = match_columns(table_, kToothContactForms, violations_);
     check_columns();
     if (violations_.size() > before) return false;
+    read_cells();
     if (find_column(columns_, kPhase) != nullptr) {
       lay_out_by_phase();
     } else {
       lay_out_by_roll();
     }
-    if (violations_.size() > before) return false;
+    if (violations_.size() > before) {
+      check_cells();
+      return false;
+    }
     fill();
-    return violations_.size() == before;
+    return true;
   }
 
   std::string locate(int slot, int sample, std::string_view column) const {
@@ -131,6 +136,31 @@ class ToothContactReader {
     return numbers(table_, *find_column(columns_, quantity), EmptyCells::kViolation, violations_);
   }
 
+  void read_cells() {
+    const auto& descriptor = *v1::FlankSlot::descriptor();
+    for (int i = 0; i < descriptor.field_count(); ++i) {
+      const std::string& name = descriptor.field(i)->name();
+      if (has(name)) cells_[name] = column(name);
+    }
+  }
+
+  /// Names numbers out of range by row, as the checks of the finished gear set do where a table can
+  /// be laid out.
+  void check_cells() {
+    std::size_t count = 0;
+    for (const auto& [name, values] : cells_) {
+      const Constraint& row = *find_constraint("FlankSlot", name);
+      const std::string_view header = find_column(columns_, name)->form.header;
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool in_range = values[i] >= row.minimum && values[i] <= row.maximum;
+        if (in_range || std::isnan(values[i])) continue;
+        if (++count > kMaximumCsvViolations) return;
+        violations_.push_back(
+            {csv_place(table_, table_.rows[i].line, header), out_of_range_text(row, values[i])});
+      }
+    }
+  }
+
   /// One pair from roll -1.5 to 1.5: the last sample of a slot is the first of the next.
   void lay_out_by_roll() {
     const bool by_angle = has(kRollAngle);
@@ -150,7 +180,7 @@ class ToothContactReader {
     const CsvColumn& header = *find_column(columns_, by_angle ? kRollAngle : kRoll);
     for (std::size_t i = 0; i < rows; ++i) {
       const double expected = -1.5 + step * static_cast<double>(i);
-      if (near(roll[i], expected, kSpacingTolerance)) continue;
+      if (std::isnan(roll[i]) || near(roll[i], expected, kSpacingTolerance)) continue;
       violations_.push_back({csv_place(table_, table_.rows[i].line, header.form.header),
                              fmt::format("roll {} pitches; legal: {}, evenly spaced from -1.5 to "
                                          "1.5",
@@ -170,7 +200,10 @@ class ToothContactReader {
     const std::vector<double> phase = column(kPhase);
     const std::vector<double> slot = column(kSlot);
     std::array<std::vector<std::size_t>, kFlankPairs> rows;
+    bool all_known = true;
     for (std::size_t i = 0; i < slot.size(); ++i) {
+      all_known = all_known && !std::isnan(slot[i]);
+      if (std::isnan(slot[i])) continue;
       if (slot[i] == 0 || slot[i] == 1 || slot[i] == 2) {
         rows[static_cast<std::size_t>(slot[i])].push_back(i);
       } else {
@@ -180,6 +213,7 @@ class ToothContactReader {
       }
     }
     const std::size_t samples = rows[0].size();
+    if (!all_known) return;
     if (samples < 2 || rows[1].size() != samples || rows[2].size() != samples) {
       return complain(
           fmt::format("slots of {}, {} and {} rows; legal: as many in each, two or more",
@@ -190,7 +224,9 @@ class ToothContactReader {
       for (std::size_t j = 0; j < samples; ++j) {
         const double expected = static_cast<double>(j) / static_cast<double>(samples - 1);
         layout_.row.push_back(of_slot[j]);
-        if (near(phase[of_slot[j]], expected, kSpacingTolerance)) continue;
+        if (std::isnan(phase[of_slot[j]]) || near(phase[of_slot[j]], expected, kSpacingTolerance)) {
+          continue;
+        }
         violations_.push_back(
             {csv_place(table_, table_.rows[of_slot[j]].line, kPhase),
              fmt::format("{}; legal: {}, evenly spaced from 0 to 1", phase[of_slot[j]], expected)});
@@ -205,8 +241,9 @@ class ToothContactReader {
     const auto& descriptor = *v1::FlankSlot::descriptor();
     for (int i = 0; i < descriptor.field_count(); ++i) {
       const FieldDescriptor& field = *descriptor.field(i);
-      std::vector<double> values(table_.rows.size(), 0.0);
-      if (has(field.name())) values = column(field.name());
+      const auto known = cells_.find(field.name());
+      const std::vector<double> values =
+          known != cells_.end() ? known->second : std::vector<double>(table_.rows.size(), 0.0);
       for (int k = 0; k < kFlankPairs; ++k) {
         v1::FlankSlot* slot = gear_set_.mutable_flank_slots(k);
         for (int j = 0; j < layout_.samples; ++j) {
@@ -258,6 +295,7 @@ class ToothContactReader {
   v1::GearSet& gear_set_;
   Violations& violations_;
   std::vector<CsvColumn> columns_;
+  std::map<std::string, std::vector<double>> cells_;  ///< by field of FlankSlot
   Layout layout_;
 };
 
@@ -304,10 +342,9 @@ void read_series(const CsvTable& table, v1::GearSet& gear_set, Violations& viola
     const std::string& quantity = row.cells[find_column(columns, "quantity")->index];
     const FieldDescriptor* field = series_field(quantity);
     if (field == nullptr) {
-      violations.push_back(
-          {csv_place(table, row.line, "quantity"),
-           fmt::format("\"{}\" is unknown; did you mean \"{}\"?", plain_excerpt(quantity),
-                       nearest_name(quantity, series_quantities()))});
+      violations.push_back({csv_place(table, row.line, "quantity"),
+                            fmt::format("\"{}\" is unknown{}", plain_excerpt(quantity),
+                                        meant_text(quantity, series_quantities()))});
       continue;
     }
     int& expected = next.at(static_cast<std::size_t>(field->index()));
@@ -389,9 +426,16 @@ std::optional<v1::GearSet> import_gear_set(const v1::ImportGearSetRequest& reque
   if (violations.size() == before) snap_ratio(gear_set);
   const auto table =
       parse_csv(request.tooth_contact_csv(), "tooth_contact_csv", kMaximumCsvBytes, violations);
-  if (!table) return std::nullopt;
+  const auto refuse = [&]() -> std::optional<v1::GearSet> {
+    check_stated(gear_set, lookup, "gear_set", violations);
+    if (gear_set.has_series()) {
+      check_series(gear_set.series(), gear_set, "gear_set.series", violations);
+    }
+    return std::nullopt;
+  };
+  if (!table) return refuse();
   ToothContactReader reader(*table, gear_set, violations);
-  if (!reader.read() || violations.size() > before) return std::nullopt;
+  if (!reader.read() || violations.size() > before) return refuse();
   const auto locate = [&reader](int slot, int sample, std::string_view column) {
     return reader.locate(slot, sample, column);
   };

@@ -60,10 +60,13 @@ void read_table(const CsvTable& table, v1::LubricantMeasurements& out, Violation
   const auto dynamic = cells(table, columns, kDynamic, violations);
   const auto uncertainty = cells(table, columns, kUncertainty, violations);
   const auto density = cells(table, columns, kDensity, violations);
-  if (violations.size() > before) return;
+  // A cell that is no number has been named; the rest of its row is still checked.
+  const auto set_temperature = [&](auto& row, std::size_t i) {
+    if (!std::isnan(temperature[i])) row.set_temperature_celsius(temperature[i]);
+  };
   const auto add_viscosity = [&](std::size_t i, bool is_kinematic) {
     v1::ViscosityMeasurement* row = out.add_viscosities();
-    row->set_temperature_celsius(temperature[i]);
+    set_temperature(*row, i);
     if (is_kinematic) {
       row->set_kinematic_viscosity_square_millimetres_per_second(kinematic[i]);
     } else {
@@ -77,7 +80,7 @@ void read_table(const CsvTable& table, v1::LubricantMeasurements& out, Violation
     if (!std::isnan(dynamic[i])) add_viscosity(i, false);
     if (std::isnan(density[i])) continue;
     v1::DensityMeasurement* row = out.add_densities();
-    row->set_temperature_celsius(temperature[i]);
+    set_temperature(*row, i);
     row->set_density_kilograms_per_cubic_metre(density[i]);
     check_row(*row, table, table.rows[i].line, columns, violations);
   }
@@ -100,7 +103,10 @@ std::optional<v1::Lubricant> import_lubricant(const v1::ImportLubricantRequest& 
   const auto table =
       parse_csv(request.viscosity_table_csv(), "viscosity_table_csv", kMaximumCsvBytes, violations);
   if (table) read_table(*table, *lubricant.mutable_measurements(), violations);
-  if (violations.size() > before) return std::nullopt;
+  if (violations.size() > before) {
+    check_stated(request.lubricant(), lookup, "lubricant", violations);
+    return std::nullopt;
+  }
   return accept(lubricant, static_cast<const v1::Lubricant*>(nullptr), lookup, "lubricant",
                 violations);
 }

@@ -225,7 +225,10 @@ std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest
         measure(request.profiles(i), levelling, fmt::format("profiles[{}].csv", i), violations);
     if (measured) *surface.add_measurements() = std::move(*measured);
   }
-  if (violations.size() > before) return std::nullopt;
+  if (violations.size() > before) {
+    check_stated(request.surface(), lookup, "surface", violations);
+    return std::nullopt;
+  }
   try {
     set_parameters(surface);
   } catch (const Refusal& refusal) {

@@ -326,4 +326,12 @@ v1::LubricantCharacterisation characterisation(const v1::Lubricant& lubricant) {
   return out;
 }
 
+v1::LubricantCharacterisation brief_characterisation(const v1::Lubricant& lubricant) {
+  v1::LubricantCharacterisation out = characterisation(lubricant);
+  out.clear_viscosity_residuals();
+  out.clear_walther_comparison();
+  out.clear_warnings();
+  return out;
+}
+
 }  // namespace tribodyn::server

@@ -18,5 +18,7 @@ void forget_computed(v1::Lubricant& lubricant);
 
 /// What the parameters amount to and how well they fit the measurements. `lubricant` is complete.
 v1::LubricantCharacterisation characterisation(const v1::Lubricant& lubricant);
+/// Only the figures that a list shows: viscosities, index, density and grades.
+v1::LubricantCharacterisation brief_characterisation(const v1::Lubricant& lubricant);
 
 }  // namespace tribodyn::server

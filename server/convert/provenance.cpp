@@ -91,9 +91,8 @@ void check_provenance(const Descriptor& resource, const Provenances& all, const 
     const std::string here = fmt::format("{}[{}]", path, i);
     if (!contains(known, entry.field())) {
       violations.push_back(
-          {here + ".field",
-           fmt::format("\"{}\" is no parameter; did you mean \"{}\"?", plain_excerpt(entry.field()),
-                       nearest_name(entry.field(), known))});
+          {here + ".field", fmt::format("\"{}\" is no parameter{}", plain_excerpt(entry.field()),
+                                        meant_text(entry.field(), known))});
       continue;
     }
     if (!seen.insert(entry.field()).second) {

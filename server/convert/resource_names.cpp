@@ -16,8 +16,13 @@ bool is_id_character(char c) {
          c == '_' || c == '.';
 }
 
-/// Levenshtein distance.
-std::size_t edits(std::string_view a, std::string_view b) {
+/// Edits (Levenshtein) from one text to all of another, and to that beginning of it which is next.
+struct Edits {
+  std::size_t whole = 0;
+  std::size_t beginning = 0;
+};
+
+Edits edits(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -29,8 +34,11 @@ std::size_t edits(std::string_view a, std::string_view b) {
       row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
     }
   }
-  return row[b.size()];
+  return {row.back(), *std::min_element(row.begin(), row.end())};
 }
+
+/// The part after "lubricants/": the collection says nothing about which name is meant.
+std::string_view id_of(std::string_view name) { return name.substr(name.find('/') + 1); }
 
 }  // namespace
 
@@ -86,15 +94,28 @@ std::optional<std::int64_t> simulation_id(std::string_view name) {
 std::string simulation_name(std::int64_t id) { return fmt::format("{}/{}", kSimulations, id); }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {
-  const std::string_view compared = name.substr(0, kMaximumTextLength);
+  const std::string_view compared = id_of(name).substr(0, kMaximumTextLength);
+  if (compared.empty()) return {};
+  const std::size_t few = std::max<std::size_t>(2, compared.size() / 3);
+  const std::size_t few_in_beginning = compared.size() / 4;  // of one letter, any name begins so
+  std::string nearest;
+  std::size_t fewest = few + 1;
   for (const std::string& each : existing) {
-    if (!name.empty() && each.starts_with(name)) return each;  // its unit was left out
+    const Edits found = edits(compared, id_of(each));
+    std::size_t count = found.whole;
+    if (id_of(each).starts_with(compared)) count = 0;
+    if (found.beginning <= few_in_beginning) count = std::min(count, found.beginning + 1);
+    if (count >= fewest) continue;
+    fewest = count;
+    nearest = each;
   }
-  const auto nearest = std::min_element(existing.begin(), existing.end(),
-                                        [&](const std::string& a, const std::string& b) {
-                                          return edits(compared, a) < edits(compared, b);
-                                        });
-  return nearest == existing.end() ? std::string() : *nearest;
+  return nearest;
+}
+
+std::string meant_text(std::string_view name, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(name, known);
+  if (!nearest.empty()) return fmt::format("; did you mean \"{}\"?", nearest);
+  return fmt::format("; legal: {}", fmt::join(known, ", "));
 }
 
 std::string unknown_name_text(std::string_view name, std::string_view collection,

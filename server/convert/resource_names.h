@@ -56,9 +56,12 @@ std::string simulation_name(std::int64_t id);
 /// The start of a client's text as plain ASCII: never half a UTF-8 character, never a control code.
 std::string plain_excerpt(std::string_view text);
 
-/// The first of `existing` that begins with `name`, else the one with the fewest edits from it;
-/// empty when there is none.
+/// Which of `existing` may be meant by `name`: the one with the fewest edits from it, its end (the
+/// unit of a field) left out where that helps. Empty when none is near.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing);
+
+/// "; did you mean \"lims_id\"?", or where nothing is near "; legal: " and all of `known`.
+std::string meant_text(std::string_view name, const std::vector<std::string>& known);
 
 /// "lubricants/7 does not exist; did you mean lubricants/1?", or what a name must look like.
 std::string unknown_name_text(std::string_view name, std::string_view collection,

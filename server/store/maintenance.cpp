@@ -218,15 +218,51 @@ Problems problems_of(SQLite::Database& db, const std::filesystem::path& path,
   return problems;
 }
 
+/// SQLite's and the file system's failures as StoreError.
+template <class Action>
+auto translated(const std::filesystem::path& path, const Action& action) {
+  try {
+    return action();
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path);
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw StoreError(StoreError::Kind::kFailed, error.what());
+  }
+}
+
+/// A file under construction beside the one that it is to be: gone unless it is finished.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(const std::filesystem::path& target)
+      : target_(target), path_(target.string() + ".new") {
+    std::filesystem::remove(path_);
+  }
+  ~UnfinishedFile() {
+    std::error_code ignored;
+    for (const char* suffix : {"", "-journal", "-wal", "-shm"}) {
+      std::filesystem::remove(path_.string() + suffix, ignored);
+    }
+  }
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  void finish() const { std::filesystem::rename(path_, target_); }
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path path_;
+};
+
 /// Copies page by page into a new file and has it on disk when it returns.
 void copy_pages(SQLite::Database& from, const std::filesystem::path& to) {
-  {
+  translated(to, [&] {
     SQLite::Database target = open(to, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     SQLite::Backup backup(target, from);
     while (backup.executeStep(kPagesAtATime) != SQLITE_DONE) {
       if (backup.getRemainingPageCount() > 0) usleep(1000);
     }
-  }
+  });
   const int descriptor = ::open(to.c_str(), O_RDONLY | O_CLOEXEC);
   const bool saved = descriptor >= 0 && fsync(descriptor) == 0;
   if (descriptor >= 0) close(descriptor);
@@ -243,18 +279,6 @@ void move_aside(const std::filesystem::path& database) {
   }
 }
 
-/// SQLite's and the file system's failures as StoreError.
-template <class Action>
-auto translated(const std::filesystem::path& path, const Action& action) {
-  try {
-    return action();
-  } catch (const SQLite::Exception& error) {
-    throw translate_error(error, path);
-  } catch (const std::filesystem::filesystem_error& error) {
-    throw StoreError(StoreError::Kind::kFailed, error.what());
-  }
-}
-
 }  // namespace
 
 void backup_database(const std::filesystem::path& database, const std::filesystem::path& copy) {
@@ -265,10 +289,17 @@ void backup_database(const std::filesystem::path& database, const std::filesyste
     }
     SQLite::Database source = open(database, SQLite::OPEN_READONLY);
     check_identity(source, database);
-    const std::filesystem::path unfinished = copy.string() + ".new";
-    std::filesystem::remove(unfinished);
-    copy_pages(source, unfinished);
-    std::filesystem::rename(unfinished, copy);
+    const UnfinishedFile unfinished(copy);
+    copy_pages(source, unfinished.path());
+    SQLite::Database copied = open(unfinished.path(), SQLite::OPEN_READONLY);
+    const Problems problems = problems_of(copied, unfinished.path());
+    if (!problems.empty()) {
+      throw StoreError(StoreError::Kind::kCorrupt, database.string() +
+                                                       " is damaged, no backup was "
+                                                       "made: " +
+                                                       problems.front());
+    }
+    unfinished.finish();
   });
 }
 
@@ -287,11 +318,10 @@ void restore_database(const std::filesystem::path& copy, const std::filesystem::
       throw StoreError(StoreError::Kind::kCorrupt,
                        copy.string() + " is damaged: " + problems.front());
     }
-    const std::filesystem::path unfinished = target.string() + ".new";
-    std::filesystem::remove(unfinished);
-    copy_pages(source, unfinished);
+    const UnfinishedFile unfinished(target);
+    copy_pages(source, unfinished.path());
     move_aside(target);
-    std::filesystem::rename(unfinished, target);
+    unfinished.finish();
   });
 }
 

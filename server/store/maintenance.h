@@ -11,7 +11,8 @@
 namespace tribodyn::server {
 
 /// Copies a database, also while a server runs on it, as it is at one moment. The copy is whole
-/// when its file appears. Throws StoreError; refuses to write over a file.
+/// when its file appears. Throws StoreError and leaves nothing behind when that cannot be; refuses
+/// to write over a file, and to back up a damaged database as if it were whole.
 void backup_database(const std::filesystem::path& database, const std::filesystem::path& copy);
 
 /// Puts a backup in the place of a database, which is kept beside it as "<database>.replaced" (an

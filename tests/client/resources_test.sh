@@ -157,6 +157,46 @@ expect 2 lubricants import twice.json
 err_has 'lubricants\[0\] and in .*lubricants\[1\]'
 expect 1 lubricants get twice
 
+echo "--- a fluid a row"
+cat >rows.csv <<'END'
+name;kinematic_viscosity_40_celsius_square_millimetres_per_second;kinematic_viscosity_100_celsius_square_millimetres_per_second;base_oil_class;condition;derived_from;labels.project;display_name
+row-used;70;8.6;pao;used;row-fresh;axle;
+row-fresh;73.3;8.86;pao;fresh;;axle;"An ""oil""; fresh"
+END
+expect 0 validate rows.csv
+expect 1 lubricants get row-used
+expect 0 lubricants import rows.csv
+expect 0 lubricants get row-used
+out_has 'derived from +lubricants/row-fresh'
+expect 0 lubricants export row-fresh row-used --output csv --file rows-2.csv
+err_has 'no room for how each number is known'
+expect 0 lubricants import rows-2.csv --replace
+expect 0 lubricants export row-fresh row-used --output csv --file rows-3.csv
+cmp -s rows-2.csv rows-3.csv || fail "rows: export, import, export is not identical"
+expect 0 lubricants revisions row-used
+! grep -q 'row-used@2' "$folder/out" || fail "an import of what is there makes a revision"
+sed -e 's/;73.3;/;73,3;/; s/;used;/;usd;/; s/display_name/display_nme/' rows.csv >rows-bad.csv
+expect 2 lubricants import rows-bad.csv --replace
+err_has "row 2 column condition: 'usd' is not one of"
+err_has "row 3 column kinematic_viscosity_40.*: '73,3' is not a number with a decimal point"
+err_has 'is display_name meant'
+sed -e 's/;73.3;/;1e9;/; s/;8.6;/;-1;/' rows.csv >rows-bad.csv
+expect 1 lubricants import rows-bad.csv --replace
+err_has 'row 2: .*'
+err_has 'kinematic_viscosity_100_celsius_square_millimetres_per_second = -1 mm2/s'
+err_has 'kinematic_viscosity_40_celsius_square_millimetres_per_second = 1000000000 mm2/s'
+printf 'name,display_name\nlatin,\351l\n' >latin.csv
+expect 2 lubricants import latin.csv
+err_has 'not UTF-8'
+expect 2 lubricants create latin --kv40 73.3 --kv100 8.86 --title "$(printf '\351l')"
+err_has 'not UTF-8'
+expect 0 lubricants list
+out_has 'SAE J306'
+out_has '^row-fresh .* 92\.4 '
+expect 0 lubricants delete row-fresh
+expect 0 lubricants export --all --file all.json
+grep -q 'lubricants/row-fresh"' all.json || fail "an export lacks the deleted parent of a fluid"
+
 echo "--- tables of gear sets and surfaces"
 expect 0 gear-sets export A --tooth-contact contact.csv --series series.csv
 expect 0 gear-sets import contact.csv --series series.csv --id table --like A

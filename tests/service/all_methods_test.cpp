@@ -61,12 +61,15 @@ std::string path_of(const MethodDescriptor& method) {
 class EveryMethod : public testing::TestWithParam<const MethodDescriptor*> {
  protected:
   static void SetUpTestSuite() {
-    server_ = new Server;
+    server_ = new Server({});
     server_->start();
+    hasty_server_ = new Server({"--call-limit-seconds", "0", "--stream-limit-seconds", "0"});
+    hasty_server_->start();
   }
   static void TearDownTestSuite() {
     delete server_;
-    server_ = nullptr;
+    delete hasty_server_;
+    server_ = hasty_server_ = nullptr;
   }
 
   std::unique_ptr<Message> request() const {
@@ -85,9 +88,36 @@ class EveryMethod : public testing::TestWithParam<const MethodDescriptor*> {
     bool has_reason = false;
     std::string text;
   };
-  Answer call(const Message& message) const {
+  Answer call(const Message& message) const { return call(*server_, message); }
+  Answer call_hasty_server(const Message& message) const { return call(*hasty_server_, message); }
+
+  void expect_refused(const Message& message, const std::string& part) const {
+    const Answer answer = call(message);
+    EXPECT_THAT(answer.status.error_code(),
+                testing::AnyOf(grpc::StatusCode::INVALID_ARGUMENT, grpc::StatusCode::NOT_FOUND))
+        << answer.text;
+    EXPECT_TRUE(answer.has_reason) << "no ErrorInfo";
+    EXPECT_THAT(answer.text, HasSubstr(part));
+  }
+
+ private:
+  /// One server for all of them.
+  class Server : public GrpcTest {
+   public:
+    explicit Server(std::vector<std::string> flags) { more_flags_ = std::move(flags); }
+    void start() {
+      GrpcTest::start();
+      client_ = std::make_unique<RawClient>(channel_);
+    }
+    RawClient& client() { return *client_; }
+    void TestBody() override {}
+
+   private:
+    std::unique_ptr<RawClient> client_;
+  };
+  Answer call(Server& server, const Message& message) const {
     Answer out;
-    out.status = server_->client().call(path_of(*GetParam()), message.SerializeAsString()).first;
+    out.status = server.client().call(path_of(*GetParam()), message.SerializeAsString()).first;
     google::rpc::Status details;
     details.ParseFromString(out.status.error_details());
     out.text = out.status.error_message();
@@ -103,33 +133,12 @@ class EveryMethod : public testing::TestWithParam<const MethodDescriptor*> {
     return out;
   }
 
-  void expect_refused(const Message& message, const std::string& part) const {
-    const Answer answer = call(message);
-    EXPECT_THAT(answer.status.error_code(),
-                testing::AnyOf(grpc::StatusCode::INVALID_ARGUMENT, grpc::StatusCode::NOT_FOUND))
-        << answer.text;
-    EXPECT_TRUE(answer.has_reason) << "no ErrorInfo";
-    EXPECT_THAT(answer.text, HasSubstr(part));
-  }
-
- private:
-  /// One server for all of them.
-  class Server : public GrpcTest {
-   public:
-    void start() {
-      GrpcTest::start();
-      client_ = std::make_unique<RawClient>(channel_);
-    }
-    RawClient& client() { return *client_; }
-    void TestBody() override {}
-
-   private:
-    std::unique_ptr<RawClient> client_;
-  };
   static Server* server_;
+  static Server* hasty_server_;  // allows no call any time
 };
 
 EveryMethod::Server* EveryMethod::server_ = nullptr;
+EveryMethod::Server* EveryMethod::hasty_server_ = nullptr;
 
 TEST_P(EveryMethod, IsServedAndChecksAnEmptyRequest) {
   const Answer answer = call(*request());
@@ -143,6 +152,12 @@ TEST_P(EveryMethod, IsServedAndChecksAnEmptyRequest) {
   }
   EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << answer.text;
   EXPECT_TRUE(answer.has_reason);
+}
+
+TEST_P(EveryMethod, EndsAtADeadlineOfTheServersOwn) {
+  const Answer answer = call_hasty_server(*request());
+  EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED) << answer.text;
+  EXPECT_TRUE(answer.has_reason) << "by the server, not by the client";
 }
 
 /// Text fields that name something that must exist, at the top or one message below.

@@ -218,6 +218,28 @@ TEST_F(GrpcTest, ARunningSimulationIsCancelledAndItsWatcherSeesTheEnd) {
   EXPECT_TRUE(eventually([&] { return get(next.name()).state() == v1::Simulation::SUCCEEDED; }));
 }
 
+class HastyStreamsTest : public GrpcTest {
+ protected:
+  void SetUp() override {
+    more_flags_ = {"--stream-limit-seconds", "0.5"};
+    start();
+  }
+};
+
+TEST_F(HastyStreamsTest, AWatchEndsAtItsDeadlineAndMayBeTakenUpAgain) {
+  v1::Simulation running;
+  ASSERT_TRUE(create(long_simulation(), &running).ok());
+  for (int again = 0; again < 2; ++again) {
+    grpc::Status status;
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_FALSE(watch(running.name(), &status).empty());
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED) << status.error_message();
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(450));
+  }
+  EXPECT_EQ(get(running.name()).state(), v1::Simulation::RUNNING);
+  cancel(running.name());
+}
+
 TEST_F(GrpcTest, AWatcherThatNeverReadsHoldsUpNobody) {
   v1::Simulation running;
   ASSERT_TRUE(create(long_simulation(), &running).ok());

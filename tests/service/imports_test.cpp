@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <sstream>
 
 #include "google/rpc/error_details.pb.h"
 #include "server/app/resources.h"
@@ -19,6 +20,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string complaints(const google::rpc::Status& status) {
   std::string out;
@@ -45,7 +47,10 @@ TEST(Csv, ReadsWhatSpreadsheetsWrite) {
 
 TEST(Csv, NamesTheRowsThatAreWrong) {
   Violations violations;
-  EXPECT_FALSE(parse_csv("a,b\n1,2\n3\n4,5,6\n\"7,8\n", "t", 1000, violations));
+  const auto rest = parse_csv("a,b\n1,2\n3\n4,5,6\n\"7,8\n", "t", 1000, violations);
+  ASSERT_TRUE(rest);
+  ASSERT_EQ(rest->rows.size(), 1U) << "what can be read is there to be checked as well";
+  EXPECT_THAT(rest->rows[0].cells, ElementsAre("1", "2"));
   ASSERT_EQ(violations.size(), 3U);
   EXPECT_EQ(violations[0].field, "t row 3");
   EXPECT_EQ(violations[1].field, "t row 4");
@@ -57,6 +62,7 @@ TEST(Csv, NamesTheRowsThatAreWrong) {
   }
   violations.clear();
   EXPECT_FALSE(parse_csv(std::string(1001, 'x'), "t", 1000, violations));
+  EXPECT_FALSE(parse_csv(std::string("a\n1\0\n", 5), "t", 1000, violations)) << "no text";
   EXPECT_FALSE(parse_csv("a\n" + std::string(49'999, '"'), "t", 100'000, violations));
   violations.clear();
   std::string many = "a\n";
@@ -254,6 +260,50 @@ TEST_F(GearSetImportTest, TextsThatAreNoSuchTableAreRefused) {
               HasSubstr("did you mean \"mesh_stiffness_newtons_per_metre\"?"));
   EXPECT_THAT(said(good, "quantity,harmonic,sine,cosine\nmesh_stiffness_newtons_per_metre,1,0,1\n"),
               HasSubstr("series_csv row 2 column harmonic: 1; legal: 0"));
+}
+
+TEST_F(GearSetImportTest, CellsThatAreNoNumberHideNoOtherViolation) {
+  v1::ImportGearSetRequest asked = request();
+  std::string text = by_phase(original_);
+  const auto line_2 = text.find('\n') + 1;
+  const auto line_3 = text.find('\n', line_2) + 1;
+  std::vector<std::string> cells;
+  std::stringstream row(text.substr(line_2, line_3 - line_2 - 1));
+  for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+  cells[2] = "half";
+  cells[3] = "-1";
+  std::string changed;
+  for (const std::string& cell : cells) changed += (changed.empty() ? "" : ",") + cell;
+  text.replace(line_2, line_3 - line_2 - 1, changed);
+  asked.set_tooth_contact_csv(text);
+  asked.mutable_gear_set()->set_youngs_modulus_pascals(1);
+  asked.mutable_gear_set()->mutable_series()->mutable_gear_contact_radius_metres()->set_mean(1);
+  const std::string said = refused(asked);
+  EXPECT_THAT(said, HasSubstr("row 2 column load_share: \"half\"; legal: a finite number"));
+  EXPECT_THAT(said, HasSubstr("row 2 column radius_x_metres: radius_x_metres = -1"));
+  EXPECT_THAT(said, HasSubstr("youngs_modulus_pascals = 1 Pa"));
+  EXPECT_THAT(said, HasSubstr("R_p0 N_g/N_p"));
+}
+
+TEST_F(ImportTest, AllThatIsWrongWithAViscosityTableIsSaidAtOnce) {
+  v1::ImportLubricantRequest asked;
+  asked.set_lubricant_id("oil");
+  asked.mutable_lubricant()
+      ->mutable_measurements()
+      ->set_density_15_celsius_kilograms_per_cubic_metre(-5);
+  asked.set_viscosity_table_csv(
+      "temperature_celsius,kinematic_viscosity_square_millimetres_per_second\n"
+      "40,73.3\nforty,8\n100,nan\n80,-2\n900,3\n1\nwarm,-7\n");
+  const std::string said = complaints(import_lubricant(app_, asked).error());
+  for (const char* each :
+       {"row 3 column temperature_celsius: \"forty\"", "row 4 column kinematic",
+        "row 5 column kinematic", "row 6 column temperature_celsius: temperature_celsius = 900",
+        "row 7: 1 cells", "row 8 column temperature_celsius: \"warm\"", "row 8 column kinematic",
+        "density_15_celsius_kilograms_per_cubic_metre = -5"}) {
+    EXPECT_THAT(said, HasSubstr(each));
+  }
+  EXPECT_THAT(said, Not(HasSubstr("row 2")));
+  EXPECT_FALSE(bench_.store().resource("lubricants/oil")) << "nothing half-written";
 }
 
 std::string waves(double amplitude, double wave_length, int samples,

@@ -109,6 +109,15 @@ TEST_F(MaintenanceTest, ABackupOfARunningServerIsWholeAndComesBack) {
   EXPECT_EQ(store.history_rows(1, "a", 0, 2), (std::vector<double>{1, 2}));
 }
 
+TEST_F(MaintenanceTest, ADamagedDatabaseIsNotBackedUpAsIfItWereWhole) {
+  make();
+  damage("UPDATE revisions SET body = x'00' WHERE id = 1");
+  const std::string copy = folder_.file("copy.db");
+  EXPECT_THROW(backup_database(path(), copy), StoreError);
+  EXPECT_FALSE(std::filesystem::exists(copy));
+  EXPECT_FALSE(std::filesystem::exists(copy + ".new"));
+}
+
 TEST_F(MaintenanceTest, ADamagedBackupIsNotRestored) {
   make();
   const auto bytes = std::filesystem::file_size(path());

@@ -387,6 +387,61 @@ TEST_F(ListTest, OrdersHoldOverPages) {
   EXPECT_THAT(ids("", "update_time", 3).size(), 8U);
 }
 
+TEST_F(ListTest, EveryFluidShowsItsFigures) {
+  const auto page = list_lubricants(app_, {});
+  ASSERT_TRUE(page.ok());
+  for (const v1::Lubricant& each : page.message().lubricants()) {
+    const v1::Lubricant whole = get(each.name()).message();
+    const auto& shown = each.characterisation();
+    EXPECT_EQ(shown.viscosity_index(), whole.characterisation().viscosity_index()) << each.name();
+    EXPECT_GT(shown.viscosity_index(), 50);
+    EXPECT_GT(shown.kinematic_viscosity_40_celsius_square_millimetres_per_second(),
+              shown.kinematic_viscosity_100_celsius_square_millimetres_per_second());
+    EXPECT_EQ(shown.warnings_size() + shown.walther_comparison_size(), 0) << "for Get";
+  }
+}
+
+TEST_F(ResourcesTest, AnExportOfABodyThatEarlierVersionsWroteComesBackTheSame) {
+  auto old = seed<v1::GearSet>("gearSets/A");
+  old.set_name("gearSets/old");
+  auto& entries = *old.mutable_provenance();
+  for (int i = entries.size() - 1; i >= 0; --i) {
+    if (entries.Get(i).field().ends_with("by_torque")) entries.DeleteSubrange(i, 1);
+  }
+  bench_.store().add_resources({{old.name(), old.SerializeAsString()}}, 0);
+  v1::GetGearSetRequest request;
+  request.set_name(old.name());
+  v1::GearSet first = get_gear_set(app_, request).message();
+  keep_client_part(first);
+  v1::CreateGearSetRequest copy;
+  *copy.mutable_gear_set() = first;
+  copy.set_gear_set_id("copy");
+  v1::GearSet second = create_gear_set(app_, copy).message();
+  keep_client_part(second);
+  second.set_name(first.name());
+  EXPECT_EQ(second.SerializeAsString(), first.SerializeAsString());
+}
+
+TEST_F(ResourcesTest, NothingDescendsFromWhatIsMissingOrFromItsOwnDescendants) {
+  const auto derive = [&](const std::string& name, const std::string& parent) {
+    v1::UpdateLubricantRequest request;
+    request.set_allow_missing(true);
+    *request.mutable_lubricant() = seed<v1::Lubricant>("lubricants/1");
+    request.mutable_lubricant()->set_name("lubricants/" + name);
+    request.mutable_lubricant()->set_derived_from("lubricants/" + parent);
+    const auto outcome = update_lubricant(app_, request);
+    return outcome.ok() ? "" : complaints(outcome.error());
+  };
+  EXPECT_THAT(derive("sheared", "frehs"), HasSubstr("\"lubricants/frehs\" does not exist"));
+  EXPECT_EQ(derive("fresh", "1"), "");
+  EXPECT_EQ(derive("sheared", "fresh@7"), "") << "revisions number anew on import";
+  EXPECT_EQ(derive("used", "sheared"), "");
+  EXPECT_THAT(derive("fresh", "used"),
+              HasSubstr("lubricants/used itself descends from lubricants/fresh"));
+  EXPECT_THAT(derive("fresh", "fresh@1"), HasSubstr("is the resource itself"));
+  EXPECT_THAT(derive("sheared", "frehs"), HasSubstr("did you mean \"lubricants/fresh\"?"));
+}
+
 TEST_F(ListTest, UnknownWordsNameTheNearest) {
   const auto said = [&](const std::string& filter, const std::string& order) {
     v1::ListLubricantsRequest request;
@@ -395,7 +450,11 @@ TEST_F(ListTest, UnknownWordsNameTheNearest) {
     return complaints(list_lubricants(app_, request).error());
   };
   EXPECT_THAT(said("conditon = USED", ""), HasSubstr("did you mean \"condition\"?"));
-  EXPECT_THAT(said("condition = USD", ""), HasSubstr("did you mean USED?"));
+  EXPECT_THAT(said("pressure_viscosty > 1", ""),
+              HasSubstr("did you mean \"pressure_viscosity_coefficient_per_pascal\"?"));
+  EXPECT_THAT(said("colour = red", ""), HasSubstr("legal: base_oil_class, condition"));
+  EXPECT_THAT(said("colour = red", ""), Not(HasSubstr("did you mean")));
+  EXPECT_THAT(said("condition = USD", ""), HasSubstr("did you mean \"USED\"?"));
   EXPECT_THAT(said("thermal_conductivity_watts_per_metre_kelvin = warm", ""),
               HasSubstr("a finite number"));
   EXPECT_THAT(said("create_time > yesterday", ""), HasSubstr("2026-01-31T12:00:00Z"));

@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "google/rpc/code.pb.h"
@@ -60,62 +61,6 @@ void vary_numbers(Message& message) {
       message.GetReflection()->SetDouble(&message, field, *legal_number(*row));
     }
   }
-}
-
-template <class Resource>
-void vary_words(Resource& resource) {
-  resource.set_display_name(any_text());
-  resource.set_lims_id(any_text());
-  resource.clear_labels();
-  for (int i = *rc::gen::inRange(0, 3); i > 0; --i) {
-    v1::Label* label = resource.add_labels();
-    label->set_key("key" + std::to_string(i));
-    label->set_value(any_text());
-  }
-}
-
-/// A lubricant known by its parameters, or by measurements.
-v1::Lubricant any_lubricant() {
-  v1::Lubricant out;
-  if (*rc::gen::arbitrary<bool>()) {
-    out = seed<v1::Lubricant>("lubricants/" + std::to_string(*rc::gen::inRange(1, 4)));
-    vary_numbers(out);
-  } else {
-    auto* measured = out.mutable_measurements();
-    measured->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(
-        *rc::gen::inRange(4, 40));
-    measured->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
-        measured->kinematic_viscosity_100_celsius_square_millimetres_per_second() *
-        *rc::gen::inRange(5, 12));
-    if (*rc::gen::arbitrary<bool>()) {
-      measured->set_density_15_celsius_kilograms_per_cubic_metre(*rc::gen::inRange(820, 1000));
-    }
-    out.set_base_oil_class(static_cast<v1::Lubricant::BaseOilClass>(*rc::gen::inRange(0, 8)));
-  }
-  out.set_condition(static_cast<v1::Lubricant::Condition>(*rc::gen::inRange(0, 4)));
-  vary_words(out);
-  return out;
-}
-
-v1::Vehicle any_vehicle() {
-  auto out = seed<v1::Vehicle>("vehicles/passenger-car");
-  vary_numbers(out);
-  vary_words(out);
-  return out;
-}
-
-v1::Surface any_surface() {
-  auto out = seed<v1::Surface>("surfaces/run-in");
-  vary_numbers(out);
-  vary_words(out);
-  return out;
-}
-
-v1::GearSet any_gear_set() {
-  auto out = seed<v1::GearSet>("gearSets/B");
-  vary_numbers(*out.mutable_dynamics());
-  vary_words(out);
-  return out;
 }
 
 /// The methods of one kind, for tests that go through all of them alike.
@@ -186,6 +131,67 @@ struct Methods<v1::Vehicle> {
   static constexpr char kCollection[] = "vehicles/";
 };
 
+template <class Resource>
+void vary_words(Resource& resource) {
+  resource.set_display_name(any_text());
+  resource.set_lims_id(any_text());
+  // Often one that is not there, or a ring: refused.
+  const std::string parent =
+      Methods<Resource>::kCollection + std::to_string(*rc::gen::inRange(0, 5));
+  resource.set_derived_from(
+      *rc::gen::element(std::string(), parent, parent, parent + "@1", parent + "@2"));
+  resource.clear_labels();
+  for (int i = *rc::gen::inRange(0, 3); i > 0; --i) {
+    v1::Label* label = resource.add_labels();
+    label->set_key("key" + std::to_string(i));
+    label->set_value(any_text());
+  }
+}
+
+/// A lubricant known by its parameters, or by measurements.
+v1::Lubricant any_lubricant() {
+  v1::Lubricant out;
+  if (*rc::gen::arbitrary<bool>()) {
+    out = seed<v1::Lubricant>("lubricants/" + std::to_string(*rc::gen::inRange(1, 4)));
+    vary_numbers(out);
+  } else {
+    auto* measured = out.mutable_measurements();
+    measured->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(
+        *rc::gen::inRange(4, 40));
+    measured->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
+        measured->kinematic_viscosity_100_celsius_square_millimetres_per_second() *
+        *rc::gen::inRange(5, 12));
+    if (*rc::gen::arbitrary<bool>()) {
+      measured->set_density_15_celsius_kilograms_per_cubic_metre(*rc::gen::inRange(820, 1000));
+    }
+    out.set_base_oil_class(static_cast<v1::Lubricant::BaseOilClass>(*rc::gen::inRange(0, 8)));
+  }
+  out.set_condition(static_cast<v1::Lubricant::Condition>(*rc::gen::inRange(0, 4)));
+  vary_words(out);
+  return out;
+}
+
+v1::Vehicle any_vehicle() {
+  auto out = seed<v1::Vehicle>("vehicles/passenger-car");
+  vary_numbers(out);
+  vary_words(out);
+  return out;
+}
+
+v1::Surface any_surface() {
+  auto out = seed<v1::Surface>("surfaces/run-in");
+  vary_numbers(out);
+  vary_words(out);
+  return out;
+}
+
+v1::GearSet any_gear_set() {
+  auto out = seed<v1::GearSet>("gearSets/B");
+  vary_numbers(*out.mutable_dynamics());
+  vary_words(out);
+  return out;
+}
+
 /// Revisions of every name, which may only grow.
 using Revisions = std::map<std::string, int>;
 
@@ -236,34 +242,50 @@ void operate(Application& app, const Resource& resource, Revisions& revisions) {
   }
 }
 
-/// JSON of everything that is not deleted, without what only the server sets.
+std::string without_revision(const std::string& name) { return name.substr(0, name.find('@')); }
+
+/// JSON of everything that is not deleted, and of what that descends from, without what only the
+/// server sets; by name.
 template <class Resource>
-std::vector<std::string> exported(Application& app) {
-  std::vector<std::string> out;
+std::map<std::string, std::string> exported(Application& app) {
+  std::map<std::string, Resource> all;
   typename Methods<Resource>::List request;
   request.set_page_size(3);
+  request.set_show_deleted(true);
   do {
     const auto page = Methods<Resource>::kList(app, request);
     RC_ASSERT(page.ok());
-    for (Resource each : Methods<Resource>::all(page.message())) {
-      keep_client_part(each);
-      std::string json;
-      RC_ASSERT(MessageToJsonString(each, &json).ok());
-      out.push_back(json);
-    }
+    for (const Resource& each : Methods<Resource>::all(page.message())) all[each.name()] = each;
     request.set_page_token(page.message().next_page_token());
   } while (!request.page_token().empty());
+  std::map<std::string, std::string> out;
+  for (const auto& [name, resource] : all) {
+    if (resource.has_delete_time()) continue;
+    for (std::string next = name; !next.empty() && out.count(next) == 0;) {
+      Resource each = all.at(next);
+      keep_client_part(each);
+      RC_ASSERT(MessageToJsonString(each, &out[next]).ok());
+      next = without_revision(each.derived_from());
+    }
+  }
   return out;
 }
 
+/// Parents first.
 template <class Resource>
-void imported(Application& app, const std::vector<std::string>& all) {
-  for (const std::string& json : all) {
+void imported(Application& app, std::map<std::string, std::string> all) {
+  const std::function<void(const std::string&)> take = [&](const std::string& name) {
+    const auto found = all.find(name);
+    if (found == all.end()) return;
     typename Methods<Resource>::Create request;
+    const std::string json = found->second;
+    all.erase(found);
     RC_ASSERT(JsonStringToMessage(json, Methods<Resource>::of(request)).ok());
+    take(without_revision(Methods<Resource>::of(request)->derived_from()));
     const auto outcome = Methods<Resource>::kCreate(app, request);
     if (!outcome.ok()) RC_FAIL(outcome.error().message() + json);
-  }
+  };
+  while (!all.empty()) take(all.begin()->first);
 }
 
 template <class Resource>

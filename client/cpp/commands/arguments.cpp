@@ -144,7 +144,12 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
   for (const FlagList* list : {&parsed.command->flags, &common_flags}) {
     for (const Flag& flag : list->flags()) {
       const auto texts = given.find(&flag);
-      if (texts != given.end()) flag.read(texts->second, parsed.complaints);
+      if (texts == given.end()) continue;
+      if (!flag.is_file() && !std::all_of(texts->second.begin(), texts->second.end(), is_utf8)) {
+        parsed.complaints.push_back(flag.first_name() + ": is not UTF-8 text");
+      } else {
+        flag.read(texts->second, parsed.complaints);
+      }
     }
   }
   if (parsed.command->check) parsed.command->check(parsed.complaints);

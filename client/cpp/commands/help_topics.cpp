@@ -42,6 +42,11 @@ Tables are CSV with a header; the order of columns is free.
       20,200
       40,73.3
       100,8.86
+  One lubricant, surface or vehicle a row: a column "name" makes a table one of these. The other
+    columns are fields as JSON names them, those of measurements too, and labels.KEY; empty cells
+    are not set. `export --all --output csv` writes it.
+      name,kinematic_viscosity_40_celsius_square_millimetres_per_second,base_oil_class,labels.project
+      my-oil,73.3,group-iii,axle
   Tooth contact (gear sets): roll_pitches, pinion_roll_radians or pinion_roll_degrees (one pair from
     -1.5 to 1.5 pitches), or mesh_phase and slot; then load_share, radius_x_metres, radius_y_metres,
     pinion_velocity_x_metres, pinion_velocity_y_metres, gear_velocity_x_metres,
@@ -52,7 +57,9 @@ Tables are CSV with a header; the order of columns is free.
     mesh_stiffness_newtons_per_metre, static_transmission_error_metres.
   Profiles (surfaces): position and height, each in _metres, _millimetres or _micrometres, height
     also in _nanometres; positions evenly spaced.
-Every violation is named with its row and column. Nothing is written unless all is legal.
+Every violation is named with its row and column. Nothing is written unless all is legal. When the
+server is lost while several are being written, the message says how many were: give --replace to
+write all of them again, which makes no revision of what is the same.
 )"},
       {"filters", "which resources a list shows, and in which order",
        R"(Filters of lists

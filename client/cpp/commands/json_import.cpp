@@ -72,7 +72,8 @@ JsonImport::JsonImport(const ResourceKind& kind, std::vector<FileResource> resou
   for (const std::string& name : order) take(name);
 }
 
-ResourcePointer JsonImport::send(Connection& connection, const Message& resource, bool replace,
+ResourcePointer JsonImport::send(Connection& connection, const Message& resource,
+                                 const std::vector<std::string>& fields, bool replace,
                                  bool validate_only) const {
   if (!replace) {
     return kind_.calls->create(connection, resource, resource_id(text_field(resource, "name")),
@@ -81,6 +82,7 @@ ResourcePointer JsonImport::send(Connection& connection, const Message& resource
   UpdateOptions options;
   options.allow_missing = true;
   options.validate_only = validate_only;
+  options.update_mask = fields;
   return kind_.calls->update(connection, resource, options);
 }
 
@@ -96,7 +98,7 @@ std::vector<ResourcePointer> JsonImport::check(Connection& connection, bool repl
     if (before.count(text_field(*copy, "derived_from")) != 0) set_text(*copy, "derived_from", "");
     before.insert(text_field(*copy, "name"));
     try {
-      checked.push_back(send(connection, *copy, replace, true));
+      checked.push_back(send(connection, *copy, each.fields, replace, true));
     } catch (const ServiceError& error) {
       if (error.kind() != ServiceError::Kind::kRefused) throw;
       refusals.push_back(each.origin + ": " + error.what());
@@ -113,7 +115,16 @@ std::vector<ResourcePointer> JsonImport::write(Connection& connection, bool repl
                                                ProgressDisplay& progress) const {
   std::vector<ResourcePointer> written;
   for (const FileResource& each : resources_) {
-    written.push_back(send(connection, *each.resource, replace, false));
+    try {
+      written.push_back(send(connection, *each.resource, each.fields, replace, false));
+    } catch (const ServiceError& error) {
+      const Failure failure(error);
+      throw Failure(
+          failure.exit_code(),
+          std::string(failure.what()) + "\n  Written were " + std::to_string(written.size()) +
+              " of " + std::to_string(resources_.size()) + ", the first that were not: " +
+              text_field(*each.resource, "name") + ". Import with --replace to write all of them.");
+    }
     show(progress, "writing", written.size(), resources_.size());
   }
   return written;

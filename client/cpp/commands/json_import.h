@@ -27,7 +27,8 @@ class JsonImport {
 
  private:
   ResourcePointer send(Connection& connection, const google::protobuf::Message& resource,
-                       bool replace, bool validate_only) const;
+                       const std::vector<std::string>& fields, bool replace,
+                       bool validate_only) const;
 
   const ResourceKind& kind_;
   std::vector<FileResource> resources_;

@@ -1,10 +1,13 @@
 #include <filesystem>
 #include <iostream>
+#include <map>
+#include <set>
 
 #include "client/cpp/commands/json_import.h"
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/report/resource_report.h"
 #include "client/cpp/resources/json_input.h"
+#include "client/cpp/resources/row_table.h"
 #include "client/cpp/resources/table_files.h"
 #include "client/cpp/text/text.h"
 
@@ -36,10 +39,13 @@ ProgressDisplay progress_of(const CommonOptions& options) {
 }
 
 /// Everything is checked before anything is written.
-int import_json(const ResourceKind& kind, const ImportFlags& flags, const CommonOptions& options) {
+int import_resources(const ResourceKind& kind, const ImportFlags& flags,
+                     const CommonOptions& options) {
   std::vector<FileResource> resources;
   for (const std::string& path : flags.files) {
-    for (auto& each : read_resources(read_file(path), path, &kind)) {
+    const std::string text = read_file(path);
+    for (auto& each :
+         is_csv(path) ? read_row_table(text, path, kind) : read_resources(text, path, &kind)) {
       flags.edits.apply(*each.resource);
       resources.push_back(std::move(each));
     }
@@ -71,6 +77,13 @@ int import_json(const ResourceKind& kind, const ImportFlags& flags, const Common
 
 int import_tables(const ResourceKind& kind, const ImportFlags& flags,
                   const CommonOptions& options) {
+  if (flags.files.size() > 1 && kind.word != "surfaces") {
+    throw Failure(kExitUsage, "one table at a time");
+  }
+  if (flags.replace) {
+    throw Failure(kExitUsage,
+                  "--replace is for JSON files and tables of one " + kind.singular + " a row");
+  }
   TableFiles tables = flags.tables;
   for (const std::string& path : flags.files) add_table(kind, path, tables);
   const std::string id = !flags.id.empty() ? flags.id : id_of_file(flags.files.front());
@@ -98,21 +111,36 @@ void check_import(const ResourceKind& kind, const ImportFlags& flags, Complaints
   if (tables > 0 && tables < flags.files.size()) {
     complaints.emplace_back("either JSON files or tables (.csv), not both at once");
   }
-  if (tables > 1 && kind.word != "surfaces") {
-    complaints.emplace_back("one table at a time");
-  }
-  if (tables > 0 && kind.word == "vehicles") complaints.emplace_back("vehicles have no tables");
-  if (flags.replace && (tables > 0 || !flags.tables.empty())) {
-    complaints.emplace_back("--replace is for JSON files");
-  }
   if (flags.files.empty() && flags.id.empty()) complaints.emplace_back("--id is missing");
+}
+
+/// All that are not deleted, and of the deleted ones those that others descend from: an import
+/// wants them.
+std::vector<ResourcePointer> all_to_export(Connection& connection, const ResourceKind& kind) {
+  ListOptions options;
+  options.show_deleted = true;
+  std::vector<ResourcePointer> resources = kind.calls->list(connection, options).resources;
+  std::map<std::string, const google::protobuf::Message*> by_name;
+  for (const ResourcePointer& each : resources) by_name[text_field(*each, "name")] = each.get();
+  std::set<const google::protobuf::Message*> wanted;
+  for (const ResourcePointer& each : resources) {
+    if (is_deleted(*each)) continue;
+    const google::protobuf::Message* next = each.get();
+    while (next != nullptr && wanted.insert(next).second) {
+      const std::string parent = text_field(*next, "derived_from");
+      const auto found = by_name.find(parent.substr(0, parent.find('@')));
+      next = found == by_name.end() ? nullptr : found->second;
+    }
+  }
+  std::erase_if(resources, [&](const auto& each) { return wanted.count(each.get()) == 0; });
+  return resources;
 }
 
 int run_export(const ResourceKind& kind, const ExportFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   std::vector<ResourcePointer> resources;
   if (flags.all) {
-    resources = kind.calls->list(connection, {}).resources;
+    resources = all_to_export(connection, kind);
   } else {
     for (const std::string& name : flags.names) {
       resources.push_back(kind.calls->get(connection, kind.name_of(name)));
@@ -127,9 +155,15 @@ int run_export(const ResourceKind& kind, const ExportFlags& flags, const CommonO
     if (flags.file.empty()) return kExitOk;
   }
   std::string text;
-  if (options.output_format == OutputFormat::kCsv && kind.word == "lubricants" &&
-      resources.size() == 1) {
+  const bool csv = options.output_format == OutputFormat::kCsv;
+  if (csv && kind.word == "lubricants" && !flags.all && resources.size() == 1) {
     text = viscosity_table_csv(dynamic_cast<const v1::Lubricant&>(*resources.front()));
+  } else if (csv && kind.word == "gear-sets") {
+    throw Failure(kExitUsage, "a gear set has tables of its own: --tooth-contact and --series");
+  } else if (csv) {
+    std::string lost;
+    text = row_table(kind, resources, lost);
+    std::cerr << "tribodyn: a table has no room for " << lost << "; JSON has\n";
   } else {
     text = export_text(kind, resources);
   }
@@ -148,12 +182,16 @@ Command import_command(const ResourceKind& kind) {
   Command command{kind.word + " import",
                   kind.plural + " from files",
                   "Adds " + kind.plural +
-                      " from JSON files as export writes them, several at once: all of them or "
-                      "none.",
+                      " from files as export writes them, several at once. All are checked before "
+                      "the first one is written.",
                   {"tribodyn " + kind.word + " import " + kind.plural.substr(0, 4) + ".json"},
                   {},
                   {},
                   {}};
+  if (kind.word != "gear-sets") {
+    command.about +=
+        " JSON, or a CSV table with a column \"name\": one " + kind.singular + " a row.";
+  }
   if (kind.word == "lubricants") {
     command.about +=
         " Or from a table of viscosities (CSV), whose Vogel law is fitted by least "
@@ -196,9 +234,11 @@ Command import_command(const ResourceKind& kind) {
     check_import(kind, *flags, complaints);
   };
   command.run = [&kind, flags](const CommonOptions& options) {
-    const bool tables =
-        !flags->tables.empty() || (!flags->files.empty() && is_csv(flags->files.front()));
-    return tables ? import_tables(kind, *flags, options) : import_json(kind, *flags, options);
+    const bool table =
+        !flags->tables.empty() ||
+        (is_csv(flags->files.front()) &&
+         (kind.word == "gear-sets" || !is_row_table(read_file(flags->files.front()))));
+    return table ? import_tables(kind, *flags, options) : import_resources(kind, *flags, options);
   };
   return command;
 }
@@ -221,7 +261,8 @@ Command export_command(const ResourceKind& kind) {
              [flags](const std::string& name) { flags->names.push_back(name); })
       .collection = kind.collection;
   command.flags.group("Options");
-  command.flags.toggle("--all", "All there are.", [flags] { flags->all = true; });
+  command.flags.toggle("--all", "All there are, and deleted ones that others are derived from.",
+                       [flags] { flags->all = true; });
   command.flags.text("--file,-f", "FILE", "Write to this file. Default: standard output.",
                      [flags](const std::string& path) { flags->file = path; });
   if (kind.word == "gear-sets") {
@@ -234,7 +275,9 @@ Command export_command(const ResourceKind& kind) {
   } else if (kind.word == "lubricants") {
     command.about +=
         " With --output csv, one fluid's measured viscosities as the table that "
-        "import reads.";
+        "import reads, or of several a row each.";
+  } else {
+    command.about += " With --output csv, a row each.";
   }
   command.check = [flags, &kind](Complaints& complaints) {
     if (flags->names.empty() != flags->all) {

@@ -110,7 +110,7 @@ ResourcePointer create_with_tables(Connection& connection, const ResourceKind& k
     v1::ImportLubricantRequest request;
     request.mutable_lubricant()->CopyFrom(resource);
     request.set_lubricant_id(id);
-    request.set_viscosity_table_csv(read_file(tables.viscosity_table));
+    request.set_viscosity_table_csv(read_file(tables.viscosity_table, kLargestTable));
     request.set_validate_only(validate_only);
     return std::make_unique<v1::Lubricant>(connection.import_lubricant(request));
   }
@@ -118,8 +118,8 @@ ResourcePointer create_with_tables(Connection& connection, const ResourceKind& k
     v1::ImportGearSetRequest request;
     request.mutable_gear_set()->CopyFrom(resource);
     request.set_gear_set_id(id);
-    request.set_tooth_contact_csv(read_file(tables.tooth_contact));
-    if (!tables.series.empty()) request.set_series_csv(read_file(tables.series));
+    request.set_tooth_contact_csv(read_file(tables.tooth_contact, kLargestTable));
+    if (!tables.series.empty()) request.set_series_csv(read_file(tables.series, kLargestTable));
     request.set_validate_only(validate_only);
     return std::make_unique<v1::GearSet>(connection.import_gear_set(request));
   }
@@ -131,7 +131,7 @@ ResourcePointer create_with_tables(Connection& connection, const ResourceKind& k
       v1::SurfaceProfile& profile = *request.add_profiles();
       profile.set_member(table.member);
       profile.set_direction(table.direction);
-      profile.set_csv(read_file(table.path));
+      profile.set_csv(read_file(table.path, kLargestTable));
     }
     request.set_levelling(tables.levelling);
     request.set_validate_only(validate_only);

@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <set>
 
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/resources/json_input.h"
+#include "client/cpp/resources/row_table.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -23,6 +26,17 @@ const ResourceKind* kind_of_table(const std::string& text) {
   return nullptr;
 }
 
+/// The kind that the columns of a table of rows belong to.
+const ResourceKind& kind_of_rows(const std::string& text) {
+  const std::string header = text.substr(0, text.find('\n'));
+  const auto has = [&](const char* word) { return header.find(word) != std::string::npos; };
+  const char* kind = has("asperity")                ? "surfaces"
+                     : has("mass_") || has("wheel") ? "vehicles"
+                                                    : "lubricants";
+  return *std::find_if(resource_kinds().begin(), resource_kinds().end(),
+                       [&](const ResourceKind& each) { return each.word == kind; });
+}
+
 /// The id that a file stands for when it names none.
 constexpr char kAnyId[] = "validated";
 
@@ -38,7 +52,9 @@ void validate(Connection& connection, const std::string& path, std::vector<std::
     }
   };
   const std::string text = read_file(path);
-  if (std::filesystem::path(path).extension() == ".csv") {
+  const bool is_csv = std::filesystem::path(path).extension() == ".csv";
+  const bool rows = is_csv && is_row_table(text);
+  if (is_csv && !rows) {
     const ResourceKind* kind = kind_of_table(text);
     if (kind == nullptr) {
       wrong.push_back(path +
@@ -55,7 +71,16 @@ void validate(Connection& connection, const std::string& path, std::vector<std::
     check(path, [&] { create_with_tables(connection, *kind, *rest, kAnyId, tables, true); });
     return;
   }
-  for (const FileResource& each : read_resources(text, path, nullptr)) {
+  const auto resources =
+      rows ? read_row_table(text, path, kind_of_rows(text)) : read_resources(text, path, nullptr);
+  std::set<std::string> names;
+  for (const FileResource& each : resources) names.insert(text_field(*each.resource, "name"));
+  for (const FileResource& each : resources) {
+    if (names.count(text_field(*each.resource, "derived_from")) != 0) {
+      // It will be there once this one is written.
+      each.resource->GetReflection()->ClearField(
+          each.resource.get(), each.resource->GetDescriptor()->FindFieldByName("derived_from"));
+    }
     clear_output_only(*each.resource);
     const auto* name = each.resource->GetDescriptor()->FindFieldByName("name");
     if (text_field(*each.resource, "name").empty()) {

@@ -87,6 +87,8 @@ v1::Simulation Connection::wait_for_end(
     }
     const grpc::Status status = reader->Finish();
     if (ended || stop.stop_requested()) break;
+    // The server limits how long one watch may last.
+    if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) continue;
     const bool broken = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE;
     if (!broken) throw service_error(status, address());
     if (tries_left-- == 0) {

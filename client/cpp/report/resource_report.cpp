@@ -224,20 +224,25 @@ std::string profiles_text(const v1::Surface& surface) {
   return "\n" + table.text();
 }
 
-/// A column of a kind's table, beside name and title: a number, perhaps inside a block.
+/// A column of a kind's table, beside name and title: a number or text, perhaps inside a block.
 struct ListColumn {
   const char* header;
   const char* block;  ///< null: at the top
   const char* field;
+  int digits = 5;
 };
+
+constexpr char kComputed[] = "characterisation";
 
 const std::vector<ListColumn>& list_columns(const ResourceKind& kind) {
   static const std::map<std::string, std::vector<ListColumn>> kColumns = {
       {"lubricants",
-       {{"KV40", "measurements", "kinematic_viscosity_40_celsius_square_millimetres_per_second"},
-        {"KV100", "measurements", "kinematic_viscosity_100_celsius_square_millimetres_per_second"},
-        {"alpha*", nullptr, "pressure_viscosity_coefficient_per_pascal"},
-        {"Vogel A_1", nullptr, "vogel_temperature_coefficient_kelvin"}}},
+       {{"KV40", kComputed, "kinematic_viscosity_40_celsius_square_millimetres_per_second"},
+        {"KV100", kComputed, "kinematic_viscosity_100_celsius_square_millimetres_per_second"},
+        {"VI", kComputed, "viscosity_index", 3},
+        {"density 15 C", kComputed, "density_15_celsius_kilograms_per_cubic_metre", 4},
+        {"SAE J306", kComputed, "sae_j306_grade"},
+        {"alpha*", nullptr, "pressure_viscosity_coefficient_per_pascal", 3}}},
       {"gear-sets",
        {{"pinion teeth", nullptr, "pinion_teeth"}, {"gear teeth", nullptr, "gear_teeth"}}},
       {"surfaces",
@@ -259,9 +264,13 @@ std::string list_cell(const Message& resource, const ListColumn& column) {
         resource, resource.GetDescriptor()->FindFieldByName(column.block));
   }
   const Parameter parameter{parent->GetDescriptor()->FindFieldByName(column.field), parent, ""};
+  if (parameter.field->cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
+    const std::string text = text_field(*parent, column.field);
+    return text.empty() ? "-" : text;
+  }
   const double value = number_of(parameter);
   const bool stated = parameter.field->has_presence() ? is_known(parameter) : value != 0;
-  return stated ? significant(in_trade_unit(column.field, value)) : "-";
+  return stated ? significant(in_trade_unit(column.field, value), column.digits) : "-";
 }
 
 std::string list_json(const ResourceKind& kind, const std::vector<ResourcePointer>& resources) {

@@ -24,8 +24,6 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Struct;
 using google::protobuf::Value;
 
-constexpr std::size_t kLargestFile = std::size_t{64} << 20U;
-
 std::string path_below(const std::string& path, const std::string& name) {
   return path.empty() ? name : path + "." + name;
 }
@@ -145,7 +143,7 @@ const google::protobuf::ListValue* list_in(const Struct& object, const ResourceK
 
 }  // namespace
 
-std::string read_file(const std::string& path) {
+std::string read_file(const std::string& path, std::size_t most_bytes) {
   std::ifstream file;
   if (path != "-") {
     file.open(path, std::ios::binary);
@@ -156,7 +154,10 @@ std::string read_file(const std::string& path) {
   std::array<char, 65536> buffer;
   while (in.read(buffer.data(), buffer.size()) || in.gcount() > 0) {
     text.append(buffer.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kLargestFile) throw Failure(kExitUsage, path + " is larger than 64 MiB");
+    if (text.size() > most_bytes) {
+      throw Failure(kExitUsage,
+                    path + " is larger than " + std::to_string(most_bytes >> 20U) + " MiB");
+    }
   }
   if (in.bad()) throw Failure(kExitUsage, "cannot read " + path + ": " + std::strerror(errno));
   return text;

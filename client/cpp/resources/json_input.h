@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -7,14 +8,18 @@
 
 namespace tribodyn::client {
 
+inline constexpr std::size_t kLargestFile = std::size_t{64} << 20U;
+inline constexpr std::size_t kLargestTable = std::size_t{3} << 20U;  ///< that a server takes
+
 /// The whole text of a file; "-" is standard input. Throws Failure.
-std::string read_file(const std::string& path);
+std::string read_file(const std::string& path, std::size_t most_bytes = kLargestFile);
 
 /// A resource as read from a file, and where it stands in it.
 struct FileResource {
   const ResourceKind* kind;
   ResourcePointer resource;
-  std::string origin;  ///< "fluids.json", "fluids.json, lubricants[2]"
+  std::string origin;  ///< "fluids.json", "fluids.json, lubricants[2]", "fluids.csv row 3"
+  std::vector<std::string> fields = {};  ///< that it can tell of; empty: all
 };
 
 /// The resources of a JSON text in the protos' JSON form (names in camelCase or as in the protos):

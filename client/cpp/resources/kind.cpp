@@ -133,6 +133,11 @@ std::string text_field(const Message& resource, const std::string& field) {
   return descriptor == nullptr ? "" : resource.GetReflection()->GetString(resource, descriptor);
 }
 
+bool is_deleted(const Message& resource) {
+  return resource.GetReflection()->HasField(
+      resource, resource.GetDescriptor()->FindFieldByName("delete_time"));
+}
+
 bool is_output_only(const google::protobuf::FieldDescriptor& field) {
   return field.options().GetExtension(v1::output_only);
 }

@@ -59,6 +59,9 @@ const ResourceKind& kind_of(const google::protobuf::Descriptor& type);
 /// A text field of a resource, e.g. "name"; empty when it has none of that name.
 std::string text_field(const google::protobuf::Message& resource, const std::string& field);
 
+/// Whether it was deleted, and not undeleted.
+bool is_deleted(const google::protobuf::Message& resource);
+
 // What every kind has.
 using Labels = google::protobuf::RepeatedPtrField<v1::Label>;
 using ProvenanceEntries = google::protobuf::RepeatedPtrField<v1::ParameterProvenance>;

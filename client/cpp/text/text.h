@@ -13,6 +13,9 @@ int display_width(std::string_view text);
 /// a server or another user wrote can steer the terminal.
 std::string printable(std::string_view text);
 
+/// Whether the text is UTF-8, as a server wants all texts.
+bool is_utf8(std::string_view text);
+
 /// Rounded to `decimals` places, never "-0.00"; "-" when not finite.
 std::string fixed(double value, int decimals);
 
