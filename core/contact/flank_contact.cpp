@@ -20,7 +20,6 @@
 namespace tribodyn {
 namespace {
 
-
 bool all_finite(std::initializer_list<double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }

@@ -27,6 +27,8 @@ enum MarchComponent {
   kMarchComponents
 };
 
+using MarchState = std::array<double, kMarchComponents>;
+
 /// Integrals that only a recorded march carries, after the components above.
 enum RecordComponent {
   kFlankViscousWork0 = kMarchComponents,  ///< one per slot [J]

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dynamics/period_correction.h"
+
 namespace tribodyn {
 namespace {
 
@@ -50,31 +52,11 @@ class Shooting {
 
   /// Marches on, with the torque that the train's momentum asks for and the mean speed put back.
   bool let_run(int cycles) {
-    const DrivelineDynamics& d = system_.dynamics();
-    const MeshData& mesh = system_.mesh();
-    const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
-    const auto momentum = [&](const MarchState& y) {
-      return d.pinion_shaft_inertia * y[kPinionShaftSpeed] + d.pinion_inertia * y[kPinionSpeed] +
-             ratio * (d.gear_inertia * y[kGearSpeed] + d.wheel_inertia * y[kWheelSpeed]);
-    };
     for (int i = 0; i < cycles; ++i) {
       MarchState y = orbit_.state;
       if (!march(y, nullptr)) return false;
-      const double excess = (momentum(y) - momentum(orbit_.state)) / y[kTime];
-      if (request_.solve_wheel_torque) {
-        add_to_unknown(excess / ratio);
-        y[kGearShaftTwist] += excess / ratio / d.gear_shaft_stiffness;
-      } else {
-        add_to_unknown(-excess);
-        y[kPinionShaftTwist] -= excess / d.pinion_shaft_stiffness;
-        y[kWinding] -= excess / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
-      }
-      const double shift =
-          request_.mean_pinion_speed - orbit_.period * system_.cycle_angle() / y[kTime];
-      y[kPinionShaftSpeed] += shift;
-      y[kPinionSpeed] += shift;
-      y[kGearSpeed] += ratio * shift;
-      y[kWheelSpeed] += ratio * shift;
+      correct_period(system_, orbit_.state, orbit_.period, request_.mean_pinion_speed,
+                     request_.solve_wheel_torque, y);
       orbit_.state = y;
     }
     return true;

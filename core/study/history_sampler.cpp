@@ -112,7 +112,8 @@ void HistorySampler::add(double phase, const double* state, const Instant& at,
 void HistorySampler::repeat_first_cycles(int cycles, double period) {
   const long first = static_cast<long>(cycles) * request_.samples_per_mesh_cycle;
   for (; wanted(); ++next_) {
-    const double passed = static_cast<double>(next_ / first);
+    const long periods_before = next_ / first;
+    const double passed = static_cast<double>(periods_before);
     std::size_t slot = 0;
     for (const HistoryColumn column : request_.columns) {
       const int copies = is_per_flank(column) ? kFlankPairs : 1;

@@ -125,8 +125,8 @@ PointOptions point_options(const v1::SolverOptions& solver, v1::PointModel model
   PointOptions out;
   out.model = model == v1::QUASI_STATIC ? PointModel::kQuasiStatic : PointModel::kFull;
   out.start = start == v1::LARGE_VIBRATION ? PointStart::kLargeVibration : PointStart::kQuasiStatic;
-  out.method = solver.method() == v1::MARCH ? SteadyStateMethod::kMarch
-                                            : SteadyStateMethod::kAutomatic;
+  out.method =
+      solver.method() == v1::MARCH ? SteadyStateMethod::kMarch : SteadyStateMethod::kAutomatic;
   out.tolerance = solver.tolerance();
   out.relative_tolerance = solver.relative_tolerance();
   out.settling_tolerance = solver.settling_tolerance();

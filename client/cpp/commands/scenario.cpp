@@ -11,12 +11,11 @@ namespace {
 
 void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
   flags.group("Solver");
-  flags.choice("--method", {"automatic", "march"},
-               "How the steady state is found: by shooting where that works, or marched",
-               [&](int index) {
-                 simulation.mutable_solver_options()->set_method(index == 1 ? v1::MARCH
-                                                                            : v1::AUTOMATIC);
-               });
+  flags.choice(
+      "--method", {"automatic", "march"},
+      "How the steady state is found: by shooting where that works, or marched", [&](int index) {
+        simulation.mutable_solver_options()->set_method(index == 1 ? v1::MARCH : v1::AUTOMATIC);
+      });
   flags.number("--tolerance", {"-", "1e-8 to 0.01", "1e-6"},
                "Wanted relative error of what shooting finds",
                [&](double value) { simulation.mutable_solver_options()->set_tolerance(value); });
