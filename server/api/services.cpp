@@ -44,8 +44,9 @@ class UnaryService {
   template <class Message, class Body>
   Unary* answer(Context* context, Message* response, const Body& body) const {
     Unary* reactor = context->DefaultReactor();
-    const DeadlineScope deadline(DeadlineScope::Clock::now() +
-                                 (end_of(*context, limit_) - Clock::now()));
+    // A limit of nothing must have passed whatever happens between two looks at the clock.
+    const auto left = std::min<Clock::duration>(context->deadline() - Clock::now(), limit_);
+    const DeadlineScope deadline(DeadlineScope::Clock::now() + left);
     Outcome<Message> outcome =
         DeadlineScope::has_passed() ? Outcome<Message>(deadline_exceeded()) : body();
     if (outcome.ok()) {

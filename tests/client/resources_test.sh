@@ -157,6 +157,17 @@ expect 2 lubricants import twice.json
 err_has 'lubricants\[0\] and in .*lubricants\[1\]'
 expect 1 lubricants get twice
 
+echo "--- a simulation that is only checked"
+expect 0 curve --lubricant 1 --lubricant my-oil --validate-only
+out_has '^valid, not run: lubricants/my-oil$'
+expect 1 point --lubricant 1 --speed 4000 --validate-only
+err_has 'legal: 0.1 to 400 km/h'
+expect 0 jobs list --output csv
+jobs_before=$(cat "$folder/out")
+expect 0 point --lubricant 1 --speed 40 --validate-only
+expect 0 jobs list --output csv
+[ "$(cat "$folder/out")" = "$jobs_before" ] || fail "--validate-only runs something"
+
 echo "--- a fluid a row"
 cat >rows.csv <<'END'
 name;kinematic_viscosity_40_celsius_square_millimetres_per_second;kinematic_viscosity_100_celsius_square_millimetres_per_second;base_oil_class;condition;derived_from;labels.project;display_name

@@ -57,9 +57,9 @@ Tables are CSV with a header; the order of columns is free.
     mesh_stiffness_newtons_per_metre, static_transmission_error_metres.
   Profiles (surfaces): position and height, each in _metres, _millimetres or _micrometres, height
     also in _nanometres; positions evenly spaced.
-Every violation is named with its row and column. Nothing is written unless all is legal. When the
-server is lost while several are being written, the message says how many were: give --replace to
-write all of them again, which makes no revision of what is the same.
+Every violation is named with its row and column. Nothing is written unless all is legal. When an
+import of several is interrupted or loses the server, the message says how many were written: give
+--replace to write all of them again, which makes no revision of what is the same.
 )"},
       {"filters", "which resources a list shows, and in which order",
        R"(Filters of lists

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "client/cpp/failure.h"
+#include "client/cpp/service/interrupt.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -113,17 +114,21 @@ std::vector<ResourcePointer> JsonImport::check(Connection& connection, bool repl
 
 std::vector<ResourcePointer> JsonImport::write(Connection& connection, bool replace,
                                                ProgressDisplay& progress) const {
+  const InterruptGuard interrupts;
   std::vector<ResourcePointer> written;
+  const auto stopped = [&](ExitCode code, const std::string& why) {
+    return Failure(code, why + "\n  Written were " + std::to_string(written.size()) + " of " +
+                             std::to_string(resources_.size()) + ", the next one would have been " +
+                             text_field(*resources_[written.size()].resource, "name") +
+                             ". Import with --replace to write all of them.");
+  };
   for (const FileResource& each : resources_) {
+    if (InterruptGuard::interrupted()) throw stopped(kExitInterrupted, "interrupted.");
     try {
       written.push_back(send(connection, *each.resource, each.fields, replace, false));
     } catch (const ServiceError& error) {
       const Failure failure(error);
-      throw Failure(
-          failure.exit_code(),
-          std::string(failure.what()) + "\n  Written were " + std::to_string(written.size()) +
-              " of " + std::to_string(resources_.size()) + ", the first that were not: " +
-              text_field(*each.resource, "name") + ". Import with --replace to write all of them.");
+      throw stopped(failure.exit_code(), failure.what());
     }
     show(progress, "writing", written.size(), resources_.size());
   }

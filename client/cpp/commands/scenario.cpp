@@ -100,6 +100,8 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   flags.text("--display-name", "TEXT", "A title for the job, shown by `tribodyn jobs list`.",
              [&](const std::string& text) { simulation.set_display_name(text); });
   flags.toggle("--detach", "Submit the job and return at once.", [&] { scenario.detach = true; });
+  flags.toggle("--validate-only", "Have the server check everything; run nothing.",
+               [&] { scenario.validate_only = true; });
   flags.toggle("--assumptions", "Print every assumption the result rests on.",
                [&] { scenario.shows_assumptions = true; });
 }
@@ -129,7 +131,7 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
   Complaints refusals;
   for (const v1::Simulation& simulation : simulations_of(scenario)) {
     try {
-      submitted.push_back(connection.create_simulation(simulation));
+      submitted.push_back(connection.create_simulation(simulation, scenario.validate_only));
       labels.push_back(simulation.lubricant());
     } catch (const ServiceError& error) {
       if (error.kind() != ServiceError::Kind::kRefused) throw;
@@ -138,6 +140,11 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
         refusals.push_back(refusal);
       }
     }
+  }
+  if (scenario.validate_only) {
+    if (!refusals.empty()) throw Failure(kExitFailed, joined(refusals, "\n"));
+    for (const std::string& label : labels) std::cout << "valid, not run: " << label << "\n";
+    return {};
   }
   if (!refusals.empty()) withdraw(submitted, refusals, connection);
   if (!scenario.detach) return follow(connection, submitted, labels, progress);
