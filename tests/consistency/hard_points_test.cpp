@@ -94,7 +94,7 @@ void expect_sound(const Scene& scene, const PointResult& r, const PointOptions& 
 
 /// Settled, or sound and honest, or refused by name. Returns whether it settled.
 bool expect_an_answer(const Scene& scene, const OperatingCondition& condition,
-                      PointOptions options = {}) {
+                      const PointOptions& options = {}) {
   try {
     const PointResult r = solve_operating_point(scene, condition, options);
     expect_sound(scene, r, options);
