@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 namespace tribodyn {
@@ -11,6 +13,28 @@ inline std::string number_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;
+}
+
+/// A number rounded to so many significant digits, and no more of them printed.
+inline std::string number_text(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
+  std::snprintf(text, sizeof text, "%.10g", std::strtod(text, nullptr));
+  return text;
+}
+
+/// A number to the second digit of its standard uncertainty: 0.637864 known to 0.0956795 is
+/// "0.638".
+inline std::string known_text(double value, double uncertainty) {
+  if (!(uncertainty > 0) || !std::isfinite(uncertainty) || value == 0) return number_text(value);
+  const double digits =
+      std::floor(std::log10(std::abs(value))) - std::floor(std::log10(uncertainty)) + 2;
+  return number_text(value, digits < 1 ? 1 : digits > 6 ? 6 : static_cast<int>(digits));
+}
+
+/// "0.638 within 0.096".
+inline std::string within_text(double value, double uncertainty) {
+  return known_text(value, uncertainty) + " within " + number_text(uncertainty, 2);
 }
 
 }  // namespace tribodyn

@@ -4,19 +4,33 @@
 #include <vector>
 
 #include "client/cpp/commands/arguments.h"
+#include "client/cpp/commands/completion.h"
 #include "client/cpp/commands/help.h"
+#include "client/cpp/commands/settings.h"
 #include "client/cpp/failure.h"
+#include "client/cpp/text/colour.h"
 
 namespace tribodyn::client {
 namespace {
 
 int complain(const Parsed& parsed) {
-  const std::string command = parsed.command != nullptr ? " " + parsed.command->path : "";
+  std::string command;
+  if (parsed.command != nullptr) command = " " + parsed.command->path;
+  if (parsed.command == nullptr && !parsed.group.empty()) command = " " + parsed.group;
   for (const std::string& complaint : parsed.complaints) {
-    std::cerr << "tribodyn" << command << ": " << complaint << "\n";
+    std::cerr << alarm("tribodyn" + command + ":") << " " << complaint << "\n";
   }
   std::cerr << "See tribodyn" << command << " --help\n";
   return kExitUsage;
+}
+
+std::string help_of(const Parsed& parsed, const std::vector<Command>& commands,
+                    const FlagList& common_flags, const CommonOptions& options) {
+  if (parsed.command != nullptr) {
+    const auto schema = schema_for_help(*parsed.command, options);
+    return help_text(*parsed.command, common_flags, schema ? &*schema : nullptr);
+  }
+  return parsed.group.empty() ? overview_text(commands) : group_text(parsed.group, commands);
 }
 
 int run(const std::vector<std::string>& arguments) {
@@ -24,25 +38,41 @@ int run(const std::vector<std::string>& arguments) {
   FlagList common_flags;
   add_common_flags(common_flags, options);
   const std::vector<Command> commands = all_commands();
+  Complaints of_settings;
+  apply_settings(common_flags, of_settings);
+  if (!arguments.empty() && arguments.front() == kCompleteWord) {
+    const std::vector<std::string> words(arguments.begin() + 1, arguments.end());
+    for (const std::string& word : completions(words, commands, common_flags, options)) {
+      std::cout << word << "\n";
+    }
+    return kExitOk;
+  }
   Parsed parsed = parse_arguments(arguments, commands, common_flags);
+  set_colours(options.colour);
   if (parsed.wants_version) {
     std::cout << "tribodyn " << TRIBODYN_VERSION << "\n";
     return kExitOk;
   }
   if (parsed.wants_help) {
-    std::cout << (parsed.command != nullptr ? help_text(*parsed.command, common_flags)
-                                            : overview_text(commands));
+    std::cout << help_of(parsed, commands, common_flags, options);
     return kExitOk;
   }
+  parsed.complaints.insert(parsed.complaints.begin(), of_settings.begin(), of_settings.end());
   if (!(options.timeout_seconds > 0 && options.timeout_seconds <= 86400)) {
     parsed.complaints.emplace_back("--timeout-seconds must be above 0 and at most 86400");
   }
   if (!parsed.complaints.empty()) return complain(parsed);
   if (parsed.command == nullptr) {
-    std::cerr << overview_text(commands);
+    std::cerr << help_of(parsed, commands, common_flags, options);
     return kExitUsage;
   }
   return parsed.command->run(options);
+}
+
+int end(const Failure& failure) {
+  std::cout.flush();
+  std::cerr << alarm("tribodyn:") << " " << failure.what() << "\n";
+  return failure.exit_code();
 }
 
 }  // namespace
@@ -55,11 +85,10 @@ int main(int argc, char** argv) {
     if (!std::cout.flush()) throw Failure(kExitFailed, "cannot write the result");
     return exit_code;
   } catch (const Failure& failure) {
-    std::cout.flush();
-    std::cerr << "tribodyn: " << failure.what() << "\n";
-    return failure.exit_code();
+    return end(failure);
+  } catch (const ServiceError& error) {
+    return end(Failure(error));
   } catch (const std::exception& error) {
-    std::cerr << "tribodyn: " << error.what() << "\n";
-    return kExitFailed;
+    return end(Failure(kExitFailed, error.what()));
   }
 }

@@ -20,8 +20,6 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 bool all_finite(std::initializer_list<double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }

@@ -47,7 +47,7 @@ ContactRegime GearPairSystem::regime_of(double phase, const double* y) const {
   return r;
 }
 
-void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
+void GearPairSystem::mechanics(double phase, const double* y, Instant& out) const {
   kinematics(phase, y, out);
   const DrivelineDynamics& d = dynamics_;
   out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
@@ -55,6 +55,10 @@ void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
   out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
                           d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
   out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
+}
+
+void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
+  mechanics(phase, y, out);
 
   std::array<FlankKinematics, kFlankPairs> flanks;
   mesh_.flanks(interval_, phase, flanks);

@@ -27,6 +27,8 @@ enum MarchComponent {
   kMarchComponents
 };
 
+using MarchState = std::array<double, kMarchComponents>;
+
 /// Integrals that only a recorded march carries, after the components above.
 enum RecordComponent {
   kFlankViscousWork0 = kMarchComponents,  ///< one per slot [J]
@@ -102,6 +104,8 @@ class GearPairSystem {
 
   /// Regime that a state is in by its x and xdot.
   ContactRegime regime_of(double phase, const double* state) const;
+  /// x, mesh force and shaft torques, without friction.
+  void mechanics(double phase, const double* state, Instant& out) const;
   /// All of eqs 1-11 and the friction of each loaded flank at mesh phase [cycles]. Counts contacts.
   void evaluate(double phase, const double* state, Instant& out);
   /// d state / d phase of the first kMarchComponents from an instant, and of the record if asked.

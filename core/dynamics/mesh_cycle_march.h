@@ -173,8 +173,6 @@ class PhaseSystem {
   Instant instant_;
 };
 
-using MarchState = std::array<double, kMarchComponents>;
-
 /// Marches one mesh cycle from phase 0; time and work start from zero. Adds to `statistics`.
 /// Throws Refusal NO_FORWARD_ROTATION when the pinion comes to a stop, and the name of a contact's
 /// refusal when one is met.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/dynamics/period_correction.h"
+
 namespace tribodyn {
 namespace {
 
@@ -57,30 +59,9 @@ class PeriodMap {
   /// One period from `state`, corrected for speed and torque.
   void advance(MarchState& state, int period) {
     const MarchState before = state;
-    const double time = march(state, period);
-    const DrivelineDynamics& d = system_.dynamics();
-    const MeshData& mesh = system_.mesh();
-    const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
-    // Momentum gained by the whole train, as the pinion feels it, must come from the torque.
-    const auto momentum = [&](const MarchState& y) {
-      return d.pinion_shaft_inertia * y[kPinionShaftSpeed] + d.pinion_inertia * y[kPinionSpeed] +
-             ratio * (d.gear_inertia * y[kGearSpeed] + d.wheel_inertia * y[kWheelSpeed]);
-    };
-    const double excess = (momentum(state) - momentum(before)) / time;
-    if (request_.solve_wheel_torque) {
-      const double change = excess / ratio;
-      set_unknown_torque(unknown_torque() + change);
-      state[kGearShaftTwist] += change / d.gear_shaft_stiffness;
-    } else {
-      set_unknown_torque(unknown_torque() - excess);
-      state[kPinionShaftTwist] -= excess / d.pinion_shaft_stiffness;
-      state[kWinding] -= excess / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
-    }
-    const double shift = request_.mean_pinion_speed - period * system_.cycle_angle() / time;
-    state[kPinionShaftSpeed] += shift;
-    state[kPinionSpeed] += shift;
-    state[kGearSpeed] += ratio * shift;
-    state[kWheelSpeed] += ratio * shift;
+    state[kTime] = march(state, period);
+    correct_period(system_, before, period, request_.mean_pinion_speed, request_.solve_wheel_torque,
+                   state);
     const ContactRegime kept = system_.regime;
     system_.regime = system_.regime_of(0, state.data());
     if (system_.regime.side == kept.side) system_.regime = kept;

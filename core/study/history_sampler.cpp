@@ -109,18 +109,18 @@ void HistorySampler::add(double phase, const double* state, const Instant& at,
   ++next_;
 }
 
-void HistorySampler::repeat_first_cycle(double period) {
-  const long cycle = request_.samples_per_mesh_cycle;
+void HistorySampler::repeat_first_cycles(int cycles, double period) {
+  const long first = static_cast<long>(cycles) * request_.samples_per_mesh_cycle;
   for (; wanted(); ++next_) {
-    const long cycles_before = next_ / cycle;
-    const double passed = static_cast<double>(cycles_before);
+    const long periods_before = next_ / first;
+    const double passed = static_cast<double>(periods_before);
     std::size_t slot = 0;
     for (const HistoryColumn column : request_.columns) {
       const int copies = is_per_flank(column) ? kFlankPairs : 1;
       for (int k = 0; k < copies; ++k, ++slot) {
-        double value = history_.values[slot][static_cast<std::size_t>(next_ % cycle)];
+        double value = history_.values[slot][static_cast<std::size_t>(next_ % first)];
         if (column == HistoryColumn::kTime) value += passed * period;
-        if (column == HistoryColumn::kMeshPhase) value += passed;
+        if (column == HistoryColumn::kMeshPhase) value += passed * cycles;
         history_.values[slot].push_back(value);
       }
     }

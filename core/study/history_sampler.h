@@ -14,10 +14,13 @@ class HistorySampler {
   /// Mesh phase of the next sample, cycles since the start of the record.
   double next_phase() const { return static_cast<double>(next_) / request_.samples_per_mesh_cycle; }
   void add(double phase, const double* state, const Instant& at, double pinion_torque);
-  /// Fills what is still wanted with copies of the first mesh cycle, `period` [s] later each time.
-  void repeat_first_cycle(double period);
-  /// Samples of the first mesh cycle still to come.
-  bool wanted_in_first_cycle() const { return wanted() && next_ < request_.samples_per_mesh_cycle; }
+  /// Fills what is still wanted with copies of the first `cycles` mesh cycles, `period` [s] later
+  /// each time.
+  void repeat_first_cycles(int cycles, double period);
+  /// Samples of the first mesh cycles still to come.
+  bool wanted_in_first_cycles(int cycles) const {
+    return wanted() && next_ < static_cast<long>(cycles) * request_.samples_per_mesh_cycle;
+  }
   History take() { return std::move(history_); }
 
  private:

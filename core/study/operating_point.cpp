@@ -8,6 +8,8 @@
 #include "core/number_text.h"
 #include "core/refusal.h"
 #include "core/study/history_sampler.h"
+#include "core/study/orbit_record.h"
+#include "core/study/orbit_refinement.h"
 #include "core/study/quasi_static.h"
 #include "core/study/range_warnings.h"
 #include "core/study/recorded_march.h"
@@ -150,6 +152,60 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
   return out;
 }
 
+/// By shooting, from a state or else from the static one. Nothing where marching must decide.
+std::optional<PointResult> solve_by_shooting(GearPairSystem& system, const Target& target,
+                                             const PointOptions& options, PointStart start,
+                                             const std::optional<CarriedState>& from,
+                                             const HistoryRequest& history_request) {
+  if (system.torques().pinion == 0) return std::nullopt;  // nothing holds the flanks together
+  OrbitSearch search;
+  search.mean_pinion_speed = target.mean_pinion_speed;
+  search.solve_wheel_torque = target.solve_wheel_torque;
+  search.tolerance = options.tolerance;
+  if (options.progress) search.interrupted = [&] { return !options.progress(0); };
+  if (from) {
+    if (from->period == 0) return std::nullopt;
+    search.start = carried_start(system, *from, target.mean_pinion_speed);
+    search.period = from->period;
+    search.try_contact_first = !from->contact_loss;
+  } else {
+    const bool loud = start == PointStart::kLargeVibration;
+    search.start =
+        static_start(system, target.mean_pinion_speed, 0, 0, loud ? kLargeVibrationDeflection : 0);
+    search.try_contact_first = !loud;
+  }
+  MarchStatistics statistics;
+  long cycles = 0;
+  const std::optional<RefinedOrbit> refined = refine_orbit(system, search, statistics, cycles);
+  if (!refined) return std::nullopt;
+  const PeriodicOrbit& orbit = refined->orbit;
+
+  PointResult out = empty_result(target, PointModel::kFull);
+  out.method = SteadyStateMethod::kShooting;
+  out.settled = true;
+  out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
+  out.estimated_relative_error = refined->estimated_error;
+  system.set_torques(orbit.torques);
+  ResponseRecord record(march_scales(system, target.mean_pinion_speed).torque /
+                        system.mesh().mean_pinion_contact_radius());
+  record_orbit(system, orbit, record);
+  record.fill(system.torques(), orbit.period, true, out);
+  out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().piece.end.data()) -
+                             system.stored_energy(0, orbit.pieces.front().piece.start.data());
+  out.section_state = system.to_section(orbit.pieces.front().piece.start.data());
+  HistorySampler history(history_request);
+  sample_orbit(system, orbit, history);
+  out.history = history.take();
+  out.statistics.right_hand_sides = statistics.right_hand_sides;
+  out.statistics.accepted_steps = statistics.accepted_steps;
+  out.statistics.events = statistics.events;
+  out.statistics.periodicity_defect = orbit.defect;
+  out.statistics.mesh_cycles = cycles;
+  out.statistics.contact_solutions = system.contact_solutions();
+  out.statistics.largest_multiplier = orbit.largest_multiplier;
+  return out;
+}
+
 PointResult solve_quasi_static_point(GearPairSystem& system, const Target& target,
                                      const PointOptions& options) {
   PointResult out = empty_result(target, PointModel::kQuasiStatic);
@@ -205,7 +261,12 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
       PointResult result;
       if (options.model == PointModel::kQuasiStatic) {
         result = solve_quasi_static_point(system, target, options);
+      } else if (std::optional<PointResult> shot;
+                 options.method == SteadyStateMethod::kAutomatic &&
+                 (shot = solve_by_shooting(system, target, options, start, from, history))) {
+        result = *std::move(shot);
       } else {
+        system.set_torques(target.torques);
         const MarchState state =
             from ? carried_start(system, *from, target.mean_pinion_speed)
                  : point_start(system, target,
@@ -224,8 +285,8 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
       if (last_pass || change <= 1e-10 * std::abs(result.pinion_torque)) return result;
       spent = result.statistics;
       data_torque = result.pinion_torque;
-      from = CarriedState{result.section_state, result.mean_pinion_speed, result.pinion_torque,
-                          result.wheel_torque, result.period_in_mesh_cycles};
+      from = CarriedState{result.section_state, result.mean_pinion_speed,     result.pinion_torque,
+                          result.wheel_torque,  result.period_in_mesh_cycles, result.contact_loss};
     }
   };
 

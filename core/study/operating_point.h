@@ -28,7 +28,7 @@ struct OperatingCondition {
 };
 
 enum class PointModel {
-  kFull,         ///< 4-DoF march to the steady state, friction in the loop
+  kFull,         ///< steady state of the 4-DoF system, friction in the loop
   kQuasiStatic,  ///< static equilibrium at constant speed, phase by phase
 };
 
@@ -39,6 +39,13 @@ enum class PointStart {
                     ///< where it exists
 };
 
+/// How the steady state of the full model is found.
+enum class SteadyStateMethod {
+  kAutomatic,  ///< by shooting; marched where shooting finds no attracting response
+  kShooting,   ///< found by shooting; only in results
+  kMarch,      ///< marched until it repeats
+};
+
 /// A neighbour's steady state, to start from. Speeds and wind-up are shifted to the new point.
 struct CarriedState {
   SectionState section_state;
@@ -46,6 +53,7 @@ struct CarriedState {
   double pinion_torque = 0;      ///< T_s there [N m]
   double wheel_torque = 0;       ///< T_w there [N m]
   int period = 1;                ///< of the response there [mesh cycles]; 0: none found
+  bool contact_loss = false;     ///< there
 };
 
 struct PointOptions {
@@ -53,7 +61,11 @@ struct PointOptions {
   PointStart start = PointStart::kQuasiStatic;
   std::optional<CarriedState> carried_state;  ///< overrides start
   bool probe_coexisting_response = false;     ///< also settle from the other start and compare
-  double relative_tolerance = 1e-7;           ///< of the march, per step [1e-11, 1e-3]
+  SteadyStateMethod method = SteadyStateMethod::kAutomatic;
+  /// Of shooting: wanted relative error of both inefficiencies, the torque and the extremes of the
+  /// transmission error [1e-8, 1e-2]
+  double tolerance = 1e-6;
+  double relative_tolerance = 1e-7;  ///< of the march, per step [1e-11, 1e-3]
   double settling_tolerance =
       1e-6;  ///< relative change of the response per period that counts as settled
   int maximum_mesh_cycles = 4000;  ///< work limit of the search for the steady state
@@ -85,7 +97,7 @@ struct SolverStatistics {
   long accepted_steps = 0;
   long rejected_steps = 0;
   long events = 0;                ///< exact locations of contact loss, regain and load onset
-  long mesh_cycles = 0;           ///< marched in all
+  long mesh_cycles = 0;           ///< marched in all, under lagged friction or full
   long accelerations = 0;         ///< accepted extrapolations towards the steady state
   double periodicity_defect = 0;  ///< relative change of the section state over the last period
   double largest_multiplier = 0;  ///< Floquet, modulus; below 1: the response is attracting
@@ -154,6 +166,7 @@ struct PointResult {
   double limiting_stress_area_share = 0;  ///< load-time mean of the area share on tau_L [-]
 
   PointModel model = PointModel::kFull;
+  SteadyStateMethod method = SteadyStateMethod::kMarch;
   bool settled = false;
   int period_in_mesh_cycles = 0;  ///< 0: none found; results are then averages over the record
   int recorded_mesh_cycles = 0;

@@ -92,7 +92,7 @@ QuasiStatic solve_quasi_static(GearPairSystem& system, double speed, bool solve_
     for (int c = 0; c < kRecordComponents; ++c) record.integrals[c] += rate[c] / points;
     record.add_instant(at);
   }
-  while (history.wanted_in_first_cycle()) {
+  while (history.wanted_in_first_cycles(1)) {
     if (progress && !progress(1)) throw Cancelled();
     const double phase = history.next_phase();
     const int interval = std::min(static_cast<int>(phase * intervals), intervals - 1);
@@ -101,7 +101,7 @@ QuasiStatic solve_quasi_static(GearPairSystem& system, double speed, bool solve_
     state[kTime] = phase * system.cycle_angle() / speed;
     history.add(phase, state.data(), at, system.torques().pinion);
   }
-  history.repeat_first_cycle(system.cycle_angle() / speed);
+  history.repeat_first_cycles(1, system.cycle_angle() / speed);
   throw_if_refused(system);
   double torque = friction_torque[0];
   for (int i = 0; i < 8; ++i) solve_at(0, 0, torque);

@@ -6,11 +6,12 @@
 namespace tribodyn {
 namespace {
 
-/// Extreme of a smooth function sampled at 0, 1, .. 4: the largest sample, or the vertex of the
+/// Extreme of a smooth function sampled at even distances: the largest sample, or the vertex of the
 /// parabola through it and its neighbours where that lies inside the step.
-double refined_maximum(const std::array<double, ResponseRecord::kSamples>& v) {
+template <std::size_t kCount>
+double refined_maximum(const std::array<double, kCount>& v) {
   const auto top = std::max_element(v.begin(), v.end());
-  const int middle = std::clamp(static_cast<int>(top - v.begin()), 1, ResponseRecord::kSamples - 2);
+  const int middle = std::clamp(static_cast<int>(top - v.begin()), 1, static_cast<int>(kCount) - 2);
   const double curvature = v[middle - 1] - 2 * v[middle] + v[middle + 1];
   if (!(curvature < 0)) return *top;
   const double shift = 0.5 * (v[middle - 1] - v[middle + 1]) / curvature;
@@ -19,8 +20,8 @@ double refined_maximum(const std::array<double, ResponseRecord::kSamples>& v) {
   return inside ? std::max(*top, vertex) : *top;
 }
 
-std::array<double, ResponseRecord::kSamples> negated(
-    std::array<double, ResponseRecord::kSamples> v) {
+template <std::size_t kCount>
+std::array<double, kCount> negated(std::array<double, kCount> v) {
   for (double& x : v) x = -x;
   return v;
 }
@@ -33,15 +34,16 @@ void ResponseRecord::Range::add(double low_value, double high_value) {
   seen = true;
 }
 
-template <class Value>
-void ResponseRecord::add_samples(const std::array<Instant, kSamples>& instants, Range& range,
+template <std::size_t kCount, class Value>
+void ResponseRecord::add_samples(const std::array<Instant, kCount>& instants, Range& range,
                                  Value value) {
-  std::array<double, kSamples> v;
-  for (int i = 0; i < kSamples; ++i) v[i] = value(instants[i]);
+  std::array<double, kCount> v;
+  for (std::size_t i = 0; i < kCount; ++i) v[i] = value(instants[i]);
   range.add(-refined_maximum(negated(v)), refined_maximum(v));
 }
 
-void ResponseRecord::add_step(const std::array<Instant, kSamples>& instants) {
+template <std::size_t kCount>
+void ResponseRecord::add_all(const std::array<Instant, kCount>& instants) {
   add_samples(instants, transmission_error_, [](const Instant& i) { return i.transmission_error; });
   add_samples(instants, mesh_force_, [](const Instant& i) { return i.mesh_force; });
   add_samples(instants, pinion_friction_,
@@ -55,8 +57,17 @@ void ResponseRecord::add_step(const std::array<Instant, kSamples>& instants) {
         add_samples(instants, range, [&](const Instant& i) { return i.contact[k].*member; });
         return;
       }
-      for (const Instant& i : instants) {
+      for (std::size_t n = 0; n < kCount; ++n) {
+        const Instant& i = instants[n];
         if (counts(i, k)) range.add(i.contact[k].*member, i.contact[k].*member);
+        if (n == 0 || counts(i, k) == counts(instants[n - 1], k)) continue;
+        // Where the load that counts is crossed.
+        const Instant& before = instants[n - 1];
+        if (!(i.load[k] > 0 && before.load[k] > 0)) continue;
+        const double t = (load_floor_ - before.load[k]) / (i.load[k] - before.load[k]);
+        const double value =
+            before.contact[k].*member + t * (i.contact[k].*member - before.contact[k].*member);
+        range.add(value, value);
       }
     };
     add(film_, &ContactSolution::central_film_thickness);
@@ -65,6 +76,14 @@ void ResponseRecord::add_step(const std::array<Instant, kSamples>& instants) {
     add(pressure_, &ContactSolution::maximum_pressure);
     add(shear_rate_, &ContactSolution::shear_rate);
   }
+}
+
+void ResponseRecord::add_step(const std::array<Instant, kSamples>& instants) { add_all(instants); }
+
+void ResponseRecord::add_piece(const std::array<Instant, 3>& instants) { add_all(instants); }
+
+void ResponseRecord::set_transmission_error_range(double minimum, double maximum) {
+  transmission_error_ = {minimum, maximum, true};
 }
 
 void ResponseRecord::add_instant(const Instant& instant) {

@@ -21,6 +21,9 @@ class ResponseRecord {
 
   void add_step(const std::array<Instant, kSamples>& instants);
   void add_instant(const Instant& instant);
+  /// Start, middle and end of a smooth piece.
+  void add_piece(const std::array<Instant, 3>& instants);
+  void set_transmission_error_range(double minimum, double maximum);
 
   Integrals integrals{};
   std::vector<GapEvent> gap_events;
@@ -37,8 +40,10 @@ class ResponseRecord {
     void add(double low_value, double high_value);
   };
   static Extremes extremes(const Range& range, double mean);
-  template <class Value>
-  static void add_samples(const std::array<Instant, kSamples>& instants, Range& range, Value value);
+  template <std::size_t kCount, class Value>
+  static void add_samples(const std::array<Instant, kCount>& instants, Range& range, Value value);
+  template <std::size_t kCount>
+  void add_all(const std::array<Instant, kCount>& instants);
   bool counts(const Instant& instant, int flank) const {
     return instant.load[flank] > 0 && instant.load[flank] >= load_floor_;
   }

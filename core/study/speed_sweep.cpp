@@ -34,8 +34,8 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
     try {
       next.result = solve_operating_point(scene, condition, point);
       const PointResult& r = *next.result;
-      point.carried_state = CarriedState{r.section_state, r.mean_pinion_speed, r.pinion_torque,
-                                         r.wheel_torque, r.period_in_mesh_cycles};
+      point.carried_state = CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
+                                         r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
     } catch (const Refusal& refusal) {
       next.refusal_reason = refusal.reason();
       next.refusal_sentence = refusal.what();

@@ -7,14 +7,12 @@
 
 #include <chrono>
 
-#include "server/api/services.h"
-
 namespace tribodyn::server {
 namespace {
 
 using ExternalConnections = grpc::experimental::ExternalConnectionAcceptor;
 
-constexpr int kMaximumRequestBytes = 1 << 20;
+constexpr int kMaximumRequestBytes = 4 << 20;  // surface profiles of 3 MiB, and what is beside them
 constexpr int kMaximumResponseBytes = 16 << 20;
 constexpr int kMaximumStreamsPerConnection = 1000;
 constexpr std::size_t kMaximumOpenStreams = 10'000;
@@ -25,8 +23,11 @@ constexpr auto kShutdownGrace = std::chrono::seconds(1);
 
 }  // namespace
 
-GrpcServer::GrpcServer(Application& application, const ListenAddress& address)
-    : acceptor_(address), live_(kMaximumOpenStreams), services_(grpc_services(application, live_)) {
+GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
+                       const TimeLimits& limits)
+    : acceptor_(address),
+      live_(kMaximumOpenStreams),
+      services_(grpc_services(application, live_, limits)) {
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;

@@ -9,6 +9,7 @@
 #include "server/api/acceptor.h"
 #include "server/api/listen_address.h"
 #include "server/api/live_streams.h"
+#include "server/api/services.h"
 #include "server/app/application.h"
 
 namespace tribodyn::server {
@@ -18,7 +19,7 @@ namespace tribodyn::server {
 class GrpcServer {
  public:
   /// Throws ListenError. `application` must outlive the object.
-  GrpcServer(Application& application, const ListenAddress& address);
+  GrpcServer(Application& application, const ListenAddress& address, const TimeLimits& limits = {});
   ~GrpcServer();
   GrpcServer(const GrpcServer&) = delete;
   GrpcServer& operator=(const GrpcServer&) = delete;

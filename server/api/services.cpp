@@ -1,16 +1,22 @@
 #include "server/api/services.h"
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "server/api/grpc_status.h"
 #include "server/api/stream_reactor.h"
 #include "server/app/contacts.h"
+#include "server/app/imports.h"
 #include "server/app/resources.h"
+#include "server/app/schemas.h"
 #include "server/app/simulations.h"
 #include "server/app/streams.h"
+#include "server/store/deadline.h"
 #include "tribodyn/v1/contacts.grpc.pb.h"
 #include "tribodyn/v1/gear_sets.grpc.pb.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
+#include "tribodyn/v1/schemas.grpc.pb.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
 #include "tribodyn/v1/surfaces.grpc.pb.h"
 #include "tribodyn/v1/vehicles.grpc.pb.h"
@@ -21,140 +27,261 @@ namespace {
 using Context = grpc::CallbackServerContext;
 using Unary = grpc::ServerUnaryReactor;
 
-template <class Message>
-Unary* answer(Context* context, Message* response, Outcome<Message> outcome) {
-  Unary* reactor = context->DefaultReactor();
-  if (outcome.ok()) {
-    *response = std::move(outcome.message());
-    reactor->Finish(grpc::Status::OK);
-  } else {
-    reactor->Finish(to_grpc(outcome.error()));
-  }
-  return reactor;
+using Clock = std::chrono::system_clock;
+
+/// What its client and the server allow of a call.
+Clock::time_point end_of(const Context& context, std::chrono::milliseconds limit) {
+  return std::min(context.deadline(), Clock::now() + limit);
 }
 
-class LubricantsService final : public v1::Lubricants::CallbackService {
+/// Bodies of unary methods, each under its deadline.
+class UnaryService {
  public:
-  explicit LubricantsService(Application& application) : application_(application) {}
+  UnaryService(Application& application, const TimeLimits& limits)
+      : application_(application), limit_(limits.call) {}
+
+ protected:
+  template <class Message, class Body>
+  Unary* answer(Context* context, Message* response, const Body& body) const {
+    Unary* reactor = context->DefaultReactor();
+    // A limit of nothing must have passed whatever happens between two looks at the clock.
+    const auto left = std::min<Clock::duration>(context->deadline() - Clock::now(), limit_);
+    const DeadlineScope deadline(DeadlineScope::Clock::now() + left);
+    Outcome<Message> outcome =
+        DeadlineScope::has_passed() ? Outcome<Message>(deadline_exceeded()) : body();
+    if (outcome.ok()) {
+      *response = std::move(outcome.message());
+      reactor->Finish(grpc::Status::OK);
+    } else {
+      reactor->Finish(to_grpc(outcome.error()));
+    }
+    return reactor;
+  }
+
+  Application& application_;
+
+ private:
+  const std::chrono::milliseconds limit_;
+};
+
+class LubricantsService final : public v1::Lubricants::CallbackService, UnaryService {
+ public:
+  using UnaryService::UnaryService;
+  Unary* CreateLubricant(Context* context, const v1::CreateLubricantRequest* request,
+                         v1::Lubricant* response) override {
+    return answer(context, response, [&] { return create_lubricant(application_, *request); });
+  }
+  Unary* ImportLubricant(Context* context, const v1::ImportLubricantRequest* request,
+                         v1::Lubricant* response) override {
+    return answer(context, response, [&] { return import_lubricant(application_, *request); });
+  }
   Unary* GetLubricant(Context* context, const v1::GetLubricantRequest* request,
                       v1::Lubricant* response) override {
-    return answer(context, response, get_lubricant(application_, *request));
+    return answer(context, response, [&] { return get_lubricant(application_, *request); });
   }
   Unary* ListLubricants(Context* context, const v1::ListLubricantsRequest* request,
                         v1::ListLubricantsResponse* response) override {
-    return answer(context, response, list_lubricants(application_, *request));
+    return answer(context, response, [&] { return list_lubricants(application_, *request); });
   }
-
- private:
-  Application& application_;
+  Unary* UpdateLubricant(Context* context, const v1::UpdateLubricantRequest* request,
+                         v1::Lubricant* response) override {
+    return answer(context, response, [&] { return update_lubricant(application_, *request); });
+  }
+  Unary* ListLubricantRevisions(Context* context, const v1::ListLubricantRevisionsRequest* request,
+                                v1::ListLubricantRevisionsResponse* response) override {
+    return answer(context, response,
+                  [&] { return list_lubricant_revisions(application_, *request); });
+  }
+  Unary* DeleteLubricant(Context* context, const v1::DeleteLubricantRequest* request,
+                         v1::Lubricant* response) override {
+    return answer(context, response, [&] { return delete_lubricant(application_, *request); });
+  }
+  Unary* UndeleteLubricant(Context* context, const v1::UndeleteLubricantRequest* request,
+                           v1::Lubricant* response) override {
+    return answer(context, response, [&] { return undelete_lubricant(application_, *request); });
+  }
 };
 
-class GearSetsService final : public v1::GearSets::CallbackService {
+class GearSetsService final : public v1::GearSets::CallbackService, UnaryService {
  public:
-  explicit GearSetsService(Application& application) : application_(application) {}
+  using UnaryService::UnaryService;
+  Unary* CreateGearSet(Context* context, const v1::CreateGearSetRequest* request,
+                       v1::GearSet* response) override {
+    return answer(context, response, [&] { return create_gear_set(application_, *request); });
+  }
+  Unary* ImportGearSet(Context* context, const v1::ImportGearSetRequest* request,
+                       v1::GearSet* response) override {
+    return answer(context, response, [&] { return import_gear_set(application_, *request); });
+  }
   Unary* GetGearSet(Context* context, const v1::GetGearSetRequest* request,
                     v1::GearSet* response) override {
-    return answer(context, response, get_gear_set(application_, *request));
+    return answer(context, response, [&] { return get_gear_set(application_, *request); });
   }
   Unary* ListGearSets(Context* context, const v1::ListGearSetsRequest* request,
                       v1::ListGearSetsResponse* response) override {
-    return answer(context, response, list_gear_sets(application_, *request));
+    return answer(context, response, [&] { return list_gear_sets(application_, *request); });
   }
-
- private:
-  Application& application_;
+  Unary* UpdateGearSet(Context* context, const v1::UpdateGearSetRequest* request,
+                       v1::GearSet* response) override {
+    return answer(context, response, [&] { return update_gear_set(application_, *request); });
+  }
+  Unary* ListGearSetRevisions(Context* context, const v1::ListGearSetRevisionsRequest* request,
+                              v1::ListGearSetRevisionsResponse* response) override {
+    return answer(context, response,
+                  [&] { return list_gear_set_revisions(application_, *request); });
+  }
+  Unary* DeleteGearSet(Context* context, const v1::DeleteGearSetRequest* request,
+                       v1::GearSet* response) override {
+    return answer(context, response, [&] { return delete_gear_set(application_, *request); });
+  }
+  Unary* UndeleteGearSet(Context* context, const v1::UndeleteGearSetRequest* request,
+                         v1::GearSet* response) override {
+    return answer(context, response, [&] { return undelete_gear_set(application_, *request); });
+  }
 };
 
-class SurfacesService final : public v1::Surfaces::CallbackService {
+class SurfacesService final : public v1::Surfaces::CallbackService, UnaryService {
  public:
-  explicit SurfacesService(Application& application) : application_(application) {}
+  using UnaryService::UnaryService;
+  Unary* CreateSurface(Context* context, const v1::CreateSurfaceRequest* request,
+                       v1::Surface* response) override {
+    return answer(context, response, [&] { return create_surface(application_, *request); });
+  }
+  Unary* ImportSurfaceProfiles(Context* context, const v1::ImportSurfaceProfilesRequest* request,
+                               v1::Surface* response) override {
+    return answer(context, response,
+                  [&] { return import_surface_profiles(application_, *request); });
+  }
   Unary* GetSurface(Context* context, const v1::GetSurfaceRequest* request,
                     v1::Surface* response) override {
-    return answer(context, response, get_surface(application_, *request));
+    return answer(context, response, [&] { return get_surface(application_, *request); });
   }
   Unary* ListSurfaces(Context* context, const v1::ListSurfacesRequest* request,
                       v1::ListSurfacesResponse* response) override {
-    return answer(context, response, list_surfaces(application_, *request));
+    return answer(context, response, [&] { return list_surfaces(application_, *request); });
   }
-
- private:
-  Application& application_;
+  Unary* UpdateSurface(Context* context, const v1::UpdateSurfaceRequest* request,
+                       v1::Surface* response) override {
+    return answer(context, response, [&] { return update_surface(application_, *request); });
+  }
+  Unary* ListSurfaceRevisions(Context* context, const v1::ListSurfaceRevisionsRequest* request,
+                              v1::ListSurfaceRevisionsResponse* response) override {
+    return answer(context, response,
+                  [&] { return list_surface_revisions(application_, *request); });
+  }
+  Unary* DeleteSurface(Context* context, const v1::DeleteSurfaceRequest* request,
+                       v1::Surface* response) override {
+    return answer(context, response, [&] { return delete_surface(application_, *request); });
+  }
+  Unary* UndeleteSurface(Context* context, const v1::UndeleteSurfaceRequest* request,
+                         v1::Surface* response) override {
+    return answer(context, response, [&] { return undelete_surface(application_, *request); });
+  }
 };
 
-class VehiclesService final : public v1::Vehicles::CallbackService {
+class VehiclesService final : public v1::Vehicles::CallbackService, UnaryService {
  public:
-  explicit VehiclesService(Application& application) : application_(application) {}
+  using UnaryService::UnaryService;
+  Unary* CreateVehicle(Context* context, const v1::CreateVehicleRequest* request,
+                       v1::Vehicle* response) override {
+    return answer(context, response, [&] { return create_vehicle(application_, *request); });
+  }
   Unary* GetVehicle(Context* context, const v1::GetVehicleRequest* request,
                     v1::Vehicle* response) override {
-    return answer(context, response, get_vehicle(application_, *request));
+    return answer(context, response, [&] { return get_vehicle(application_, *request); });
   }
   Unary* ListVehicles(Context* context, const v1::ListVehiclesRequest* request,
                       v1::ListVehiclesResponse* response) override {
-    return answer(context, response, list_vehicles(application_, *request));
+    return answer(context, response, [&] { return list_vehicles(application_, *request); });
   }
-
- private:
-  Application& application_;
+  Unary* UpdateVehicle(Context* context, const v1::UpdateVehicleRequest* request,
+                       v1::Vehicle* response) override {
+    return answer(context, response, [&] { return update_vehicle(application_, *request); });
+  }
+  Unary* ListVehicleRevisions(Context* context, const v1::ListVehicleRevisionsRequest* request,
+                              v1::ListVehicleRevisionsResponse* response) override {
+    return answer(context, response,
+                  [&] { return list_vehicle_revisions(application_, *request); });
+  }
+  Unary* DeleteVehicle(Context* context, const v1::DeleteVehicleRequest* request,
+                       v1::Vehicle* response) override {
+    return answer(context, response, [&] { return delete_vehicle(application_, *request); });
+  }
+  Unary* UndeleteVehicle(Context* context, const v1::UndeleteVehicleRequest* request,
+                         v1::Vehicle* response) override {
+    return answer(context, response, [&] { return undelete_vehicle(application_, *request); });
+  }
 };
 
-class ContactsService final : public v1::Contacts::CallbackService {
+class SchemasService final : public v1::Schemas::CallbackService, UnaryService {
  public:
-  explicit ContactsService(Application& application) : application_(application) {}
+  using UnaryService::UnaryService;
+  Unary* GetSchema(Context* context, const v1::GetSchemaRequest* request,
+                   v1::Schema* response) override {
+    return answer(context, response, [&] { return get_schema(application_, *request); });
+  }
+};
+
+class ContactsService final : public v1::Contacts::CallbackService, UnaryService {
+ public:
+  using UnaryService::UnaryService;
   Unary* EvaluateContact(Context* context, const v1::EvaluateContactRequest* request,
                          v1::EvaluateContactResponse* response) override {
-    return answer(context, response, evaluate_contact(application_, *request));
+    return answer(context, response, [&] { return evaluate_contact(application_, *request); });
   }
-
- private:
-  Application& application_;
 };
 
-class SimulationsService final : public v1::Simulations::CallbackService {
+class SimulationsService final : public v1::Simulations::CallbackService, UnaryService {
  public:
-  SimulationsService(Application& application, LiveStreams& live)
-      : application_(application), live_(live) {}
+  SimulationsService(Application& application, const TimeLimits& limits, LiveStreams& live)
+      : UnaryService(application, limits), limit_(limits.stream), live_(live) {}
   Unary* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                           v1::Simulation* response) override {
-    return answer(context, response, create_simulation(application_, *request));
+    return answer(context, response, [&] { return create_simulation(application_, *request); });
   }
   Unary* GetSimulation(Context* context, const v1::GetSimulationRequest* request,
                        v1::Simulation* response) override {
-    return answer(context, response, get_simulation(application_, *request));
+    return answer(context, response, [&] { return get_simulation(application_, *request); });
   }
   Unary* ListSimulations(Context* context, const v1::ListSimulationsRequest* request,
                          v1::ListSimulationsResponse* response) override {
-    return answer(context, response, list_simulations(application_, *request));
+    return answer(context, response, [&] { return list_simulations(application_, *request); });
   }
   Unary* CancelSimulation(Context* context, const v1::CancelSimulationRequest* request,
                           v1::Simulation* response) override {
-    return answer(context, response, cancel_simulation(application_, *request));
+    return answer(context, response, [&] { return cancel_simulation(application_, *request); });
   }
   grpc::ServerWriteReactor<v1::SimulationEvent>* WatchSimulation(
-      Context*, const v1::WatchSimulationRequest* request) override {
-    return StreamReactor<v1::SimulationEvent>::start(live_,
-                                                     watch_simulation(application_, *request));
+      Context* context, const v1::WatchSimulationRequest* request) override {
+    return StreamReactor<v1::SimulationEvent>::start(
+        live_, *context, end_of(*context, limit_),
+        [&] { return watch_simulation(application_, *request); });
   }
   grpc::ServerWriteReactor<v1::HistoryChunk>* ReadHistory(
-      Context*, const v1::ReadHistoryRequest* request) override {
-    return StreamReactor<v1::HistoryChunk>::start(live_, read_history(application_, *request));
+      Context* context, const v1::ReadHistoryRequest* request) override {
+    return StreamReactor<v1::HistoryChunk>::start(live_, *context, end_of(*context, limit_), [&] {
+      return read_history(application_, *request);
+    });
   }
 
  private:
-  Application& application_;
+  const std::chrono::milliseconds limit_;
   LiveStreams& live_;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(Application& application,
-                                                          LiveStreams& live) {
+                                                          LiveStreams& live,
+                                                          const TimeLimits& limits) {
   std::vector<std::unique_ptr<grpc::Service>> out;
-  out.push_back(std::make_unique<LubricantsService>(application));
-  out.push_back(std::make_unique<GearSetsService>(application));
-  out.push_back(std::make_unique<SurfacesService>(application));
-  out.push_back(std::make_unique<VehiclesService>(application));
-  out.push_back(std::make_unique<ContactsService>(application));
-  out.push_back(std::make_unique<SimulationsService>(application, live));
+  out.push_back(std::make_unique<LubricantsService>(application, limits));
+  out.push_back(std::make_unique<GearSetsService>(application, limits));
+  out.push_back(std::make_unique<SurfacesService>(application, limits));
+  out.push_back(std::make_unique<VehiclesService>(application, limits));
+  out.push_back(std::make_unique<SchemasService>(application, limits));
+  out.push_back(std::make_unique<ContactsService>(application, limits));
+  out.push_back(std::make_unique<SimulationsService>(application, limits, live));
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <grpcpp/impl/codegen/service_type.h>
 
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -10,10 +11,19 @@
 
 namespace tribodyn::server {
 
+/// How long a method may take, whatever deadline its client sets. A unary one answers
+/// DEADLINE_EXCEEDED; so does a stream, whether its client reads it or not: a simulation takes
+/// longer than one watch may last, and its client watches on.
+struct TimeLimits {
+  std::chrono::milliseconds call = std::chrono::seconds(30);
+  std::chrono::milliseconds stream = std::chrono::hours(1);
+};
+
 /// The gRPC services of tribodyn.v1: a thin shell, one line a method, over server/app. Unary
 /// methods run where gRPC calls them, as none takes long. `application` and `live` must outlive
 /// them.
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(Application& application,
-                                                          LiveStreams& live);
+                                                          LiveStreams& live,
+                                                          const TimeLimits& limits);
 
 }  // namespace tribodyn::server

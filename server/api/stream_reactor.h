@@ -1,7 +1,10 @@
 #pragma once
 
+#include <grpcpp/alarm.h>
+#include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,7 +21,8 @@ namespace tribodyn::server {
 /// Pumps a MessageSource into a gRPC stream: one message under way at a time, the next one only
 /// from OnWriteDone or, when the source had nothing, when the source says that something changed.
 /// Safe for concurrent access: whoever holds `busy_` owns source and stream; nobody holds the mutex
-/// while calling into gRPC. Keeps itself alive until OnDone.
+/// while calling into gRPC. Keeps itself alive until OnDone. At its end it is closed with
+/// DEADLINE_EXCEEDED; a client that reads nothing, so that a write stays under way, is cut off.
 template <class Message>
 class StreamReactor final : public grpc::ServerWriteReactor<Message>,
                             public ProgressObserver,
@@ -27,13 +31,21 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
  public:
   using Source = std::shared_ptr<MessageSource<Message>>;
 
-  explicit StreamReactor(LiveStreams& live) : live_(live) {}
+  using Clock = std::chrono::system_clock;
 
-  /// A stream of the source's messages, or one that ends at once with the error.
-  static grpc::ServerWriteReactor<Message>* start(LiveStreams& live, Outcome<Source> outcome) {
-    auto reactor = std::make_shared<StreamReactor>(live);
+  StreamReactor(LiveStreams& live, grpc::CallbackServerContext& context)
+      : live_(live), context_(&context) {}
+
+  /// A stream of the messages of the source that `open` gives, or one that ends at once with the
+  /// error.
+  template <class Open>
+  static grpc::ServerWriteReactor<Message>* start(LiveStreams& live,
+                                                  grpc::CallbackServerContext& context,
+                                                  Clock::time_point end, const Open& open) {
+    auto reactor = std::make_shared<StreamReactor>(live, context);
     reactor->self_ = reactor;
     std::optional<google::rpc::Status> refused;
+    Outcome<Source> outcome = Clock::now() >= end ? Outcome<Source>(deadline_exceeded()) : open();
     if (outcome.ok()) {
       refused = live.add(reactor);
     } else {
@@ -45,6 +57,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
     }
     reactor->source_ = std::move(outcome.message());
     reactor->source_->observe(reactor);
+    reactor->end_at(end);
     reactor->changed();
     return reactor.get();
   }
@@ -83,11 +96,37 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   }
 
   void OnDone() override {
+    {
+      const std::lock_guard lock(context_mutex_);
+      context_ = nullptr;
+    }
     live_.remove(this);
     const auto last = std::move(self_);  // may destroy this object on leaving
   }
 
  private:
+  static constexpr auto kLastWrite = std::chrono::seconds(5);
+
+  void end_at(Clock::time_point end) {
+    const std::weak_ptr<StreamReactor> weak = this->weak_from_this();
+    alarm_.Set(end, [weak, end](bool rings) {
+      const auto self = rings ? weak.lock() : nullptr;
+      if (!self) return;
+      self->close(deadline_exceeded());
+      self->cut_off_at(std::max(end, Clock::now()) + kLastWrite);
+    });
+  }
+
+  void cut_off_at(Clock::time_point time) {
+    const std::weak_ptr<StreamReactor> weak = this->weak_from_this();
+    last_alarm_.Set(time, [weak](bool rings) {
+      const auto self = rings ? weak.lock() : nullptr;
+      if (!self) return;
+      const std::lock_guard lock(self->context_mutex_);
+      if (self->context_ != nullptr) self->context_->TryCancel();
+    });
+  }
+
   using Step = typename MessageSource<Message>::Step;
 
   /// The owner of `busy_` sends a message, ends the stream, or gives `busy_` back.
@@ -135,6 +174,11 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   }
 
   LiveStreams& live_;
+  // Recursive: TryCancel may call OnDone before it returns.
+  std::recursive_mutex context_mutex_;
+  grpc::CallbackServerContext* context_;  // guarded by context_mutex_; null once done
+  grpc::Alarm alarm_;
+  grpc::Alarm last_alarm_;   // set by alarm_ alone
   Source source_;            // owner of busy_
   Message message_;          // owner of busy_
   google::rpc::Status end_;  // owner of busy_

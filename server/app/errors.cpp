@@ -68,6 +68,11 @@ google::rpc::Status exhausted(const std::string& message, int retry_seconds) {
   return status;
 }
 
+google::rpc::Status deadline_exceeded() {
+  return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
+               "it took longer than the call may take; nothing has changed");
+}
+
 google::rpc::Status shutting_down() {
   return error(google::rpc::UNAVAILABLE, "SHUTTING_DOWN", "the server is shutting down");
 }

@@ -25,6 +25,9 @@ google::rpc::Status not_found(const std::string& type, const std::string& name,
 /// RESOURCE_EXHAUSTED with RetryInfo.
 google::rpc::Status exhausted(const std::string& message, int retry_seconds);
 
+/// DEADLINE_EXCEEDED, by the server's own limit or the client's.
+google::rpc::Status deadline_exceeded();
+
 /// UNAVAILABLE, SHUTTING_DOWN.
 google::rpc::Status shutting_down();
 

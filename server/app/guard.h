@@ -19,6 +19,9 @@ Outcome<Message> guarded(const Body& body) {
   } catch (const Refusal& refusal) {
     return error(google::rpc::INVALID_ARGUMENT, refusal.reason(), refusal.what());
   } catch (const StoreError& failure) {
+    if (failure.kind() == StoreError::Kind::kDeadline) {
+      return deadline_exceeded();
+    }
     spdlog::error("{}", failure.what());
     return error(google::rpc::UNAVAILABLE, "STORE_FAILED",
                  "the database could not be read or written");

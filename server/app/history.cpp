@@ -76,9 +76,9 @@ std::optional<Window> window(const v1::ReadHistoryRequest& request,
   for (int i = 0; i < asked; ++i) {
     const std::vector<std::string> meant = expand(request.columns(i), shape.names);
     if (meant.empty()) {
-      violations.push_back({fmt::format("columns[{}]", i),
-                            fmt::format("no such column here; did you mean \"{}\"?",
-                                        nearest_name(request.columns(i), shape.names))});
+      violations.push_back(
+          {fmt::format("columns[{}]", i),
+           fmt::format("no such column here{}", meant_text(request.columns(i), shape.names))});
     }
     for (const std::string& name : meant) {
       if (std::find(out.columns.begin(), out.columns.end(), name) == out.columns.end()) {

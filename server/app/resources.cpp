@@ -1,98 +1,213 @@
 #include "server/app/resources.h"
 
-#include "server/app/guard.h"
-#include "server/app/paging.h"
-#include "server/convert/resource_names.h"
+#include "server/app/resource_methods.h"
 
 namespace tribodyn::server {
 namespace {
 
-constexpr int kDefaultPageSize = 100;
-
-template <class Resource>
-Outcome<Resource> get(Application& application, const std::string& name,
-                      const std::string& collection) {
-  return guarded<Resource>([&]() -> Outcome<Resource> {
-    const auto explain = [&] {
-      return unknown_name_text(name, collection, application.store.resource_names(collection));
-    };
-    if (!is_resource_name(name, collection)) return invalid({{"name", explain()}});
-    const auto body = application.store.resource(name);
-    if (!body) return not_found(Resource::descriptor()->full_name(), name, explain());
-    Resource resource;
-    if (!resource.ParseFromString(*body)) {
-      return error(google::rpc::DATA_LOSS, "STORED_RESOURCE_UNREADABLE",
-                   name + " cannot be read from the database");
-    }
-    return resource;
-  });
-}
-
-/// `add` appends a new element to the response and returns it.
-template <class Response, class Request, class Add>
-Outcome<Response> list(Application& application, const Request& request,
-                       const std::string& collection, const Add& add) {
-  return guarded<Response>([&]() -> Outcome<Response> {
-    Violations violations;
-    const int size = page_size(request.page_size(), kDefaultPageSize, violations);
-    if (!request.page_token().empty() && !is_resource_name(request.page_token(), collection)) {
-      add_bad_page_token(violations);
-    }
-    if (!violations.empty()) return invalid(violations);
-    const Page<StoredResource> page =
-        application.store.resources(collection, request.page_token(), size, kMaximumPageBytes);
-    Response response;
-    for (const StoredResource& row : page.rows) add(response)->ParseFromString(row.body);
-    if (page.more) response.set_next_page_token(page.rows.back().name);
-    return response;
-  });
+void clear_tables(v1::ListGearSetsResponse& response) {
+  for (v1::GearSet& gear_set : *response.mutable_gear_sets()) {
+    gear_set.clear_series();
+    gear_set.clear_flank_slots();
+    gear_set.clear_series_by_torque();
+    gear_set.clear_load_share_by_torque();
+  }
 }
 
 }  // namespace
 
+Outcome<v1::Lubricant> create_lubricant(Application& application,
+                                        const v1::CreateLubricantRequest& request) {
+  return guarded<v1::Lubricant>([&]() -> Outcome<v1::Lubricant> {
+    return create_resource<v1::Lubricant>(application, request);
+  });
+}
+
 Outcome<v1::Lubricant> get_lubricant(Application& application,
                                      const v1::GetLubricantRequest& request) {
-  return get<v1::Lubricant>(application, request.name(), kLubricants);
+  return guarded<v1::Lubricant>([&]() -> Outcome<v1::Lubricant> {
+    return get_resource<v1::Lubricant>(application, request.name());
+  });
 }
 
 Outcome<v1::ListLubricantsResponse> list_lubricants(Application& application,
                                                     const v1::ListLubricantsRequest& request) {
-  return list<v1::ListLubricantsResponse>(
-      application, request, kLubricants,
-      [](v1::ListLubricantsResponse& response) { return response.add_lubricants(); });
+  return guarded<v1::ListLubricantsResponse>([&]() -> Outcome<v1::ListLubricantsResponse> {
+    return list_resources<v1::Lubricant, v1::ListLubricantsResponse>(application, request);
+  });
+}
+
+Outcome<v1::Lubricant> update_lubricant(Application& application,
+                                        const v1::UpdateLubricantRequest& request) {
+  return guarded<v1::Lubricant>([&]() -> Outcome<v1::Lubricant> {
+    return update_resource<v1::Lubricant>(application, request);
+  });
+}
+
+Outcome<v1::ListLubricantRevisionsResponse> list_lubricant_revisions(
+    Application& application, const v1::ListLubricantRevisionsRequest& request) {
+  return guarded<v1::ListLubricantRevisionsResponse>(
+      [&]() -> Outcome<v1::ListLubricantRevisionsResponse> {
+        return list_revisions<v1::Lubricant, v1::ListLubricantRevisionsResponse>(application,
+                                                                                 request);
+      });
+}
+
+Outcome<v1::Lubricant> delete_lubricant(Application& application,
+                                        const v1::DeleteLubricantRequest& request) {
+  return guarded<v1::Lubricant>([&]() -> Outcome<v1::Lubricant> {
+    return set_deleted<v1::Lubricant>(application, request, true);
+  });
+}
+
+Outcome<v1::Lubricant> undelete_lubricant(Application& application,
+                                          const v1::UndeleteLubricantRequest& request) {
+  return guarded<v1::Lubricant>([&]() -> Outcome<v1::Lubricant> {
+    return set_deleted<v1::Lubricant>(application, request, false);
+  });
+}
+
+Outcome<v1::GearSet> create_gear_set(Application& application,
+                                     const v1::CreateGearSetRequest& request) {
+  return guarded<v1::GearSet>(
+      [&]() -> Outcome<v1::GearSet> { return create_resource<v1::GearSet>(application, request); });
 }
 
 Outcome<v1::GearSet> get_gear_set(Application& application, const v1::GetGearSetRequest& request) {
-  return get<v1::GearSet>(application, request.name(), kGearSets);
+  return guarded<v1::GearSet>([&]() -> Outcome<v1::GearSet> {
+    return get_resource<v1::GearSet>(application, request.name());
+  });
 }
 
 Outcome<v1::ListGearSetsResponse> list_gear_sets(Application& application,
                                                  const v1::ListGearSetsRequest& request) {
-  return list<v1::ListGearSetsResponse>(
-      application, request, kGearSets,
-      [](v1::ListGearSetsResponse& response) { return response.add_gear_sets(); });
+  return guarded<v1::ListGearSetsResponse>([&]() -> Outcome<v1::ListGearSetsResponse> {
+    auto out = list_resources<v1::GearSet, v1::ListGearSetsResponse>(application, request);
+    if (out.ok() && request.view() == v1::GEAR_SET_VIEW_BASIC) clear_tables(out.message());
+    return out;
+  });
+}
+
+Outcome<v1::GearSet> update_gear_set(Application& application,
+                                     const v1::UpdateGearSetRequest& request) {
+  return guarded<v1::GearSet>(
+      [&]() -> Outcome<v1::GearSet> { return update_resource<v1::GearSet>(application, request); });
+}
+
+Outcome<v1::ListGearSetRevisionsResponse> list_gear_set_revisions(
+    Application& application, const v1::ListGearSetRevisionsRequest& request) {
+  return guarded<v1::ListGearSetRevisionsResponse>(
+      [&]() -> Outcome<v1::ListGearSetRevisionsResponse> {
+        return list_revisions<v1::GearSet, v1::ListGearSetRevisionsResponse>(application, request);
+      });
+}
+
+Outcome<v1::GearSet> delete_gear_set(Application& application,
+                                     const v1::DeleteGearSetRequest& request) {
+  return guarded<v1::GearSet>([&]() -> Outcome<v1::GearSet> {
+    return set_deleted<v1::GearSet>(application, request, true);
+  });
+}
+
+Outcome<v1::GearSet> undelete_gear_set(Application& application,
+                                       const v1::UndeleteGearSetRequest& request) {
+  return guarded<v1::GearSet>([&]() -> Outcome<v1::GearSet> {
+    return set_deleted<v1::GearSet>(application, request, false);
+  });
+}
+
+Outcome<v1::Surface> create_surface(Application& application,
+                                    const v1::CreateSurfaceRequest& request) {
+  return guarded<v1::Surface>(
+      [&]() -> Outcome<v1::Surface> { return create_resource<v1::Surface>(application, request); });
 }
 
 Outcome<v1::Surface> get_surface(Application& application, const v1::GetSurfaceRequest& request) {
-  return get<v1::Surface>(application, request.name(), kSurfaces);
+  return guarded<v1::Surface>([&]() -> Outcome<v1::Surface> {
+    return get_resource<v1::Surface>(application, request.name());
+  });
 }
 
 Outcome<v1::ListSurfacesResponse> list_surfaces(Application& application,
                                                 const v1::ListSurfacesRequest& request) {
-  return list<v1::ListSurfacesResponse>(
-      application, request, kSurfaces,
-      [](v1::ListSurfacesResponse& response) { return response.add_surfaces(); });
+  return guarded<v1::ListSurfacesResponse>([&]() -> Outcome<v1::ListSurfacesResponse> {
+    return list_resources<v1::Surface, v1::ListSurfacesResponse>(application, request);
+  });
+}
+
+Outcome<v1::Surface> update_surface(Application& application,
+                                    const v1::UpdateSurfaceRequest& request) {
+  return guarded<v1::Surface>(
+      [&]() -> Outcome<v1::Surface> { return update_resource<v1::Surface>(application, request); });
+}
+
+Outcome<v1::ListSurfaceRevisionsResponse> list_surface_revisions(
+    Application& application, const v1::ListSurfaceRevisionsRequest& request) {
+  return guarded<v1::ListSurfaceRevisionsResponse>(
+      [&]() -> Outcome<v1::ListSurfaceRevisionsResponse> {
+        return list_revisions<v1::Surface, v1::ListSurfaceRevisionsResponse>(application, request);
+      });
+}
+
+Outcome<v1::Surface> delete_surface(Application& application,
+                                    const v1::DeleteSurfaceRequest& request) {
+  return guarded<v1::Surface>([&]() -> Outcome<v1::Surface> {
+    return set_deleted<v1::Surface>(application, request, true);
+  });
+}
+
+Outcome<v1::Surface> undelete_surface(Application& application,
+                                      const v1::UndeleteSurfaceRequest& request) {
+  return guarded<v1::Surface>([&]() -> Outcome<v1::Surface> {
+    return set_deleted<v1::Surface>(application, request, false);
+  });
+}
+
+Outcome<v1::Vehicle> create_vehicle(Application& application,
+                                    const v1::CreateVehicleRequest& request) {
+  return guarded<v1::Vehicle>(
+      [&]() -> Outcome<v1::Vehicle> { return create_resource<v1::Vehicle>(application, request); });
 }
 
 Outcome<v1::Vehicle> get_vehicle(Application& application, const v1::GetVehicleRequest& request) {
-  return get<v1::Vehicle>(application, request.name(), kVehicles);
+  return guarded<v1::Vehicle>([&]() -> Outcome<v1::Vehicle> {
+    return get_resource<v1::Vehicle>(application, request.name());
+  });
 }
 
 Outcome<v1::ListVehiclesResponse> list_vehicles(Application& application,
                                                 const v1::ListVehiclesRequest& request) {
-  return list<v1::ListVehiclesResponse>(
-      application, request, kVehicles,
-      [](v1::ListVehiclesResponse& response) { return response.add_vehicles(); });
+  return guarded<v1::ListVehiclesResponse>([&]() -> Outcome<v1::ListVehiclesResponse> {
+    return list_resources<v1::Vehicle, v1::ListVehiclesResponse>(application, request);
+  });
+}
+
+Outcome<v1::Vehicle> update_vehicle(Application& application,
+                                    const v1::UpdateVehicleRequest& request) {
+  return guarded<v1::Vehicle>(
+      [&]() -> Outcome<v1::Vehicle> { return update_resource<v1::Vehicle>(application, request); });
+}
+
+Outcome<v1::ListVehicleRevisionsResponse> list_vehicle_revisions(
+    Application& application, const v1::ListVehicleRevisionsRequest& request) {
+  return guarded<v1::ListVehicleRevisionsResponse>(
+      [&]() -> Outcome<v1::ListVehicleRevisionsResponse> {
+        return list_revisions<v1::Vehicle, v1::ListVehicleRevisionsResponse>(application, request);
+      });
+}
+
+Outcome<v1::Vehicle> delete_vehicle(Application& application,
+                                    const v1::DeleteVehicleRequest& request) {
+  return guarded<v1::Vehicle>([&]() -> Outcome<v1::Vehicle> {
+    return set_deleted<v1::Vehicle>(application, request, true);
+  });
+}
+
+Outcome<v1::Vehicle> undelete_vehicle(Application& application,
+                                      const v1::UndeleteVehicleRequest& request) {
+  return guarded<v1::Vehicle>([&]() -> Outcome<v1::Vehicle> {
+    return set_deleted<v1::Vehicle>(application, request, false);
+  });
 }
 
 }  // namespace tribodyn::server

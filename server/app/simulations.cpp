@@ -25,12 +25,29 @@ static_assert(static_cast<int>(StoredState::kCancelled) == v1::Simulation::CANCE
 
 using google::protobuf::util::TimeUtil;
 
+template <class Row>
+void set_revisions(const Row& row, v1::Simulation& out) {
+  out.set_lubricant_revision(row.lubricant_revision);
+  out.set_gear_set_revision(row.gear_set_revision);
+  out.set_surface_revision(row.surface_revision);
+  out.set_vehicle_revision(row.vehicle_revision);
+}
+
+/// What a request that is only checked would become; without a name.
+v1::Simulation preview(const v1::Simulation& requested, const NewSimulation& simulation) {
+  v1::Simulation out = requested;
+  set_revisions(simulation, out);
+  out.set_state(v1::Simulation::QUEUED);
+  return out;
+}
+
 /// The stored row as a message, without its result.
 v1::Simulation to_message(Application& application, const StoredSimulation& stored) {
   v1::Simulation out;
   out.ParseFromString(stored.request);
   out.set_name(simulation_name(stored.id));
   out.set_state(static_cast<v1::Simulation::State>(stored.state));
+  set_revisions(stored, out);
   *out.mutable_create_time() = TimeUtil::MicrosecondsToTimestamp(stored.create_time);
   if (stored.start_time) {
     *out.mutable_start_time() = TimeUtil::MicrosecondsToTimestamp(*stored.start_time);
@@ -61,8 +78,15 @@ Outcome<v1::Simulation> create_simulation(Application& application,
     const auto inputs = read_simulation(request.simulation(), resource_lookup(application.store),
                                         "simulation", violations);
     if (!inputs) return invalid(violations);
-    const auto id =
-        application.jobs.submit(inputs->requested.SerializeAsString(), input_hash(*inputs));
+    const v1::Simulation& effective = inputs->effective;
+    NewSimulation simulation{.request = inputs->requested.SerializeAsString(),
+                             .input_hash = input_hash(*inputs),
+                             .lubricant_revision = effective.lubricant_revision(),
+                             .gear_set_revision = effective.gear_set_revision(),
+                             .surface_revision = effective.surface_revision(),
+                             .vehicle_revision = effective.vehicle_revision()};
+    if (request.validate_only()) return preview(inputs->requested, simulation);
+    const auto id = application.jobs.submit(simulation);
     if (!id) {
       return exhausted("too many simulations wait already; try again later", kRetrySeconds);
     }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "server/convert/constraints.h"
+#include "server/convert/output_only.h"
 
 namespace tribodyn::server {
 namespace {
@@ -19,6 +20,7 @@ struct Place {
   const FieldDescriptor& field;
   std::string path;
   Violations& violations;
+  Missing missing;
 };
 
 void check_number(const Place& place, double value) {
@@ -52,11 +54,27 @@ void check_enum(const Place& place, int value) {
 
 void check_text(const Place& place, const std::string& value) {
   const std::string& name = place.field.name();
-  const int longest =
-      name == "description" || name == "source" ? kMaximumProseLength : kMaximumTextLength;
+  const int longest = name == "description" || name == "source" || name == "warning"
+                          ? kMaximumProseLength
+                          : kMaximumTextLength;
   if (value.size() <= static_cast<std::size_t>(longest)) return;
   place.violations.push_back(
       {place.path, fmt::format("{} has {} bytes; legal: at most {}", name, value.size(), longest)});
+}
+
+/// An unset field that could have been set.
+void check_missing(const Place& place) {
+  const Constraint* row =
+      find_constraint(place.field.containing_type()->name(), place.field.name());
+  if (row == nullptr || !is_required(*row)) return;
+  place.violations.push_back({place.path, not_set_text(*row)});
+}
+
+/// Tables of a gear set have checks that name row and column: gear_set_checks.h.
+bool is_table(const FieldDescriptor& field) {
+  if (field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) return false;
+  const std::string& type = field.message_type()->name();
+  return type == "MeshSeries" || type == "FlankSlot" || type == "LoadShareAtTorque";
 }
 
 void check_singular(const Message& message, const Reflection& reflection, const Place& place) {
@@ -71,7 +89,7 @@ void check_singular(const Message& message, const Reflection& reflection, const 
       return check_text(place, reflection.GetString(message, &place.field));
     case FieldDescriptor::CPPTYPE_MESSAGE:
       return check_message(reflection.GetMessage(message, &place.field), place.path,
-                           place.violations);
+                           place.violations, place.missing);
     default:
       return;
   }
@@ -86,19 +104,22 @@ void check_element(const Message& message, const Reflection& reflection, int ind
       return check_text(place, reflection.GetRepeatedString(message, &place.field, index));
     case FieldDescriptor::CPPTYPE_MESSAGE:
       return check_message(reflection.GetRepeatedMessage(message, &place.field, index), place.path,
-                           place.violations);
+                           place.violations, place.missing);
     default:
       return;
   }
 }
 
 /// Elements up to the longest list the service accepts, and a limited number of complaints.
-void check_repeated(const Message& message, const Reflection& reflection,
-                    const FieldDescriptor& field, const std::string& path, Violations& violations) {
+void check_repeated(const Message& message, const Reflection& reflection, const Place& place) {
+  const FieldDescriptor& field = place.field;
+  const std::string& path = place.path;
+  Violations& violations = place.violations;
   const int count = std::min(reflection.FieldSize(message, &field), kMaximumCurvePoints);
   Violations found;
   for (int i = 0; i < count; ++i) {
-    check_element(message, reflection, i, {field, fmt::format("{}[{}]", path, i), found});
+    check_element(message, reflection, i,
+                  {field, fmt::format("{}[{}]", path, i), found, place.missing});
   }
   const std::size_t reported =
       std::min(found.size(), static_cast<std::size_t>(kMaximumReportedElements));
@@ -145,16 +166,20 @@ std::string first_not_finite(const Message& message, bool infinity_allowed) {
 
 }  // namespace
 
-void check_message(const Message& message, const std::string& path, Violations& violations) {
+void check_message(const Message& message, const std::string& path, Violations& violations,
+                   Missing missing) {
   const Reflection& reflection = *message.GetReflection();
   const auto& descriptor = *message.GetDescriptor();
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor& field = *descriptor.field(i);
-    const std::string field_path = join_path(path, field.name());
+    if (is_output_only(field) || is_table(field)) continue;
+    const Place place{field, join_path(path, field.name()), violations, missing};
     if (field.is_repeated()) {
-      check_repeated(message, reflection, field, field_path, violations);
+      check_repeated(message, reflection, place);
     } else if (!field.has_presence() || reflection.HasField(message, &field)) {
-      check_singular(message, reflection, {field, field_path, violations});
+      check_singular(message, reflection, place);
+    } else if (missing == Missing::kViolation) {
+      check_missing(place);
     }
   }
 }

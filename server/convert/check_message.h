@@ -8,12 +8,19 @@
 
 namespace tribodyn::server {
 
+/// What an unset parameter that the model needs is.
+enum class Missing {
+  kViolation,
+  kAllowed,  ///< something else will fill it in
+};
+
 /// Checks every number, enum and text inside a message, nested messages too, against the table of
 /// constraints: finite, inside its legal range, a value the enum has, a text of sensible length.
 /// Adds all violations, in field order. A number without a row in the table is only checked to be
-/// finite; unset optional fields and unset messages are left alone.
+/// finite; other unset optional fields, unset messages and what only the server sets are left
+/// alone.
 void check_message(const google::protobuf::Message& message, const std::string& path,
-                   Violations& violations);
+                   Violations& violations, Missing missing = Missing::kViolation);
 
 /// Path of the first number that is NaN, or infinite where that has no documented meaning; empty
 /// when there is none. A shear rate without film and the thermal resistance of a surface at rest

@@ -28,6 +28,29 @@ constexpr Constraint kConstraints[] = {
      ""},
     {"Lubricant", "density_slope_kilograms_per_cubic_metre_kelvin", "kg/(m3 K)", -100, 100, "eq 26",
      ""},
+    {"LubricantMeasurements", "kinematic_viscosity_40_celsius_square_millimetres_per_second",
+     "mm2/s", 1, 1e5, "eq 34, KV40", "ASTM D341 and D2270 begin at 2 mm2/s", Zero::kUnset},
+    {"LubricantMeasurements", "kinematic_viscosity_100_celsius_square_millimetres_per_second",
+     "mm2/s", 0.5, 1e4, "eq 34, KV100", "", Zero::kUnset},
+    {"LubricantMeasurements",
+     "sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second", "mm2/s", 0.5, 1e4,
+     "SAE J306-2019", "CEC L-45-A-99", Zero::kUnset},
+    {"LubricantMeasurements", "density_15_celsius_kilograms_per_cubic_metre", "kg/m3", 500, 2000,
+     "eq 26", "", Zero::kUnset},
+    {"BrookfieldViscosity", "temperature_celsius", "C", -70, 20, "SAE J306-2019", "ASTM D2983"},
+    {"BrookfieldViscosity", "dynamic_viscosity_millipascal_seconds", "mPa s", 10, 1e7,
+     "SAE J306-2019", "ASTM D2983"},
+    {"ViscosityMeasurement", "temperature_celsius", "C", -70, 250, "eq 34", ""},
+    {"ViscosityMeasurement", "kinematic_viscosity_square_millimetres_per_second", "mm2/s", 0.1, 1e7,
+     "eq 34", ""},
+    {"ViscosityMeasurement", "dynamic_viscosity_millipascal_seconds", "mPa s", 0.1, 1e7, "eq 34",
+     ""},
+    {"ViscosityMeasurement", "relative_standard_uncertainty", "", 0, 1, "eq 34",
+     "0 means not stated"},
+    {"DensityMeasurement", "temperature_celsius", "C", -70, 250, "eq 26", ""},
+    {"DensityMeasurement", "density_kilograms_per_cubic_metre", "kg/m3", 500, 2000, "eq 26", ""},
+    {"ParameterProvenance", "standard_uncertainty", "", 0, 1e16, "",
+     "in the unit of the parameter; 0 means not known"},
 
     {"Surface", "asperity_density_per_square_metre", "1/m2", 1e3, 1e16, "eq 41, eta_G", ""},
     {"Surface", "asperity_radius_metres", "m", 1e-9, 1, "eq 41, beta_G", ""},
@@ -35,6 +58,12 @@ constexpr Constraint kConstraints[] = {
      "the film ratio divides by it"},
     {"Surface", "tribofilm_shear_strength_pascals", "Pa", 0, 1e10, "eq 40, tau_0", ""},
     {"Surface", "asperity_friction_coefficient", "", 0, 10, "eq 40, zeta", ""},
+    {"SurfaceMeasurement", "samples", "", 5, 1000000, "eq 45", ""},
+    {"SurfaceMeasurement", "spacing_metres", "m", 1e-10, 1e-2, "eq 45", ""},
+    {"SurfaceMeasurement", "mean_square_height_square_metres", "m2", 1e-24, 1e-4, "eq 45, m0", ""},
+    {"SurfaceMeasurement", "mean_square_slope", "", 1e-16, 1e4, "eq 45, m2", ""},
+    {"SurfaceMeasurement", "mean_square_curvature_per_square_metre", "1/m2", 1e-8, 1e20,
+     "eq 45, m4", ""},
 
     {"Vehicle", "mass_kilograms", "kg", 1, 1e6, "eq 7, m_v", ""},
     {"Vehicle", "rolling_resistance_coefficient", "", 0, 1, "eq 7, f_r", ""},
@@ -72,6 +101,24 @@ constexpr Constraint kConstraints[] = {
     {"DrivelineDynamics", "mesh_damping_newton_seconds_per_metre", "N s/m", 0, 1e9, "eqs 2, 3, c",
      ""},
     {"DrivelineDynamics", "half_backlash_metres", "m", 0, 1e-2, "eq 5, b", ""},
+
+    {"MeshSeries", "pinion_torque_newton_metres", "N m", 0, 1e5, "eqs 8-11", ""},
+    {"FourierSeries", "mean", "", -1e12, 1e12, "eqs 8-11", "in the unit of the series"},
+    {"FourierSeries", "sine", "", -1e12, 1e12, "eqs 8-11", "in the unit of the series"},
+    {"FourierSeries", "cosine", "", -1e12, 1e12, "eqs 8-11", "in the unit of the series"},
+    {"FlankSlot", "load_share", "", 0, 1.001, "eq 29", "a share of the mesh force"},
+    {"FlankSlot", "radius_x_metres", "m", 1e-5, 1e4, "eqs 15, 20, R_zx", ""},
+    {"FlankSlot", "radius_y_metres", "m", 1e-5, 1e4, "eqs 15, 20, R_zy", ""},
+    {"FlankSlot", "pinion_velocity_x_metres", "m", -10, 10, "eq 17, A_up", ""},
+    {"FlankSlot", "pinion_velocity_y_metres", "m", -10, 10, "eq 17, A_vp", ""},
+    {"FlankSlot", "gear_velocity_x_metres", "m", -10, 10, "eq 17, A_ug", ""},
+    {"FlankSlot", "gear_velocity_y_metres", "m", -10, 10, "eq 17, A_vg", ""},
+    {"FlankSlot", "contact_point_velocity_x_metres", "m", -10, 10, "eq 17", ""},
+    {"FlankSlot", "contact_point_velocity_y_metres", "m", -10, 10, "eq 17", ""},
+    {"FlankSlot", "pinion_friction_arm_metres", "m", -10, 10, "eq 2, r_fr,p", ""},
+    {"FlankSlot", "gear_friction_arm_metres", "m", -10, 10, "eq 3, r_fr,g", ""},
+    {"LoadShareAtTorque", "pinion_torque_newton_metres", "N m", 0, 1e5, "eq 29", ""},
+    {"LoadShareAtTorque.Slot", "load_share", "", 0, 1.001, "eq 29", "a share of the mesh force"},
 
     {"EvaluateContactRequest", "load_newtons", "N", 0, 1e6, "eq 41, W", ""},
     {"EvaluateContactRequest", "radius_x_metres", "m", 1e-5, 1e4, "eqs 15, 20, R_zx", ""},
@@ -125,14 +172,28 @@ constexpr Constraint kConstraints[] = {
     {"InefficiencyCurveStudy", "ascent_angle_degrees", "degrees", -45, 45, "eq 7", ""},
     {"SolverOptions", "relative_tolerance", "", 1e-11, 1e-3, "eqs 1-6",
      "below it lies round-off, above it no steady state", Zero::kUnset},
+    {"SolverOptions", "tolerance", "", 1e-8, 1e-2, "eq 30", "what shooting can estimate and keep",
+     Zero::kUnset},
     {"SolverOptions", "settling_tolerance", "", 1e-12, 1e-1, "eq 30", "", Zero::kUnset},
     {"SolverOptions", "maximum_mesh_cycles", "", 1, 100000, "work limit", "", Zero::kUnset},
     {"SolverOptions", "recorded_mesh_cycles", "", 1, 1000, "work limit", "", Zero::kUnset},
 };
 
+/// "legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".
+std::string legal_text(const Constraint& row) {
+  return fmt::format("legal: {} to {} ({}{}{})", number_text(row.minimum),
+                     quantity_text(row.maximum, row.unit), row.equation,
+                     row.equation.empty() || row.reason.empty() ? "" : ": ", row.reason);
+}
+
 }  // namespace
 
 std::span<const Constraint> constraints() { return kConstraints; }
+
+bool is_required(const Constraint& row) {
+  return row.message == "Lubricant" || row.message == "GearSet" ||
+         row.message == "DrivelineDynamics" || row.message == "Surface" || row.message == "Vehicle";
+}
 
 const Constraint* find_constraint(std::string_view message, std::string_view field) {
   for (const Constraint& row : kConstraints) {
@@ -148,9 +209,11 @@ std::string quantity_text(double value, std::string_view unit) {
 }
 
 std::string out_of_range_text(const Constraint& row, double value) {
-  return fmt::format("{} = {}; legal: {} to {} ({}{}{})", row.field, quantity_text(value, row.unit),
-                     number_text(row.minimum), quantity_text(row.maximum, row.unit), row.equation,
-                     row.reason.empty() ? "" : ": ", row.reason);
+  return fmt::format("{} = {}; {}", row.field, quantity_text(value, row.unit), legal_text(row));
+}
+
+std::string not_set_text(const Constraint& row) {
+  return fmt::format("{} is not set; {}", row.field, legal_text(row));
 }
 
 }  // namespace tribodyn::server

@@ -15,7 +15,7 @@ enum class Zero {
 /// One row of the table that drives every range check and its message. The range is closed and wide
 /// enough for hard cases: it keeps out what no law of the model can mean, not what is unusual.
 struct Constraint {
-  std::string_view message;  ///< message of tribodyn.v1, e.g. "Lubricant"
+  std::string_view message;  ///< message of tribodyn.v1, e.g. "Lubricant", "LoadShareAtTorque.Slot"
   std::string_view field;    ///< its field, e.g. "relaxation_time_seconds"
   std::string_view unit;     ///< symbol for people, e.g. "s"; empty for a pure number
   double minimum;
@@ -28,6 +28,9 @@ struct Constraint {
 /// All rows, grouped by message.
 std::span<const Constraint> constraints();
 
+/// True for a parameter that the model needs: unset, it is a violation.
+bool is_required(const Constraint& row);
+
 /// The row of a field, or null.
 const Constraint* find_constraint(std::string_view message, std::string_view field);
 
@@ -39,6 +42,9 @@ std::string quantity_text(double value, std::string_view unit);
 
 /// "radius_x_metres = -1 m; legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".
 std::string out_of_range_text(const Constraint& constraint, double value);
+
+/// "radius_x_metres is not set; legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".
+std::string not_set_text(const Constraint& constraint);
 
 // Limits on counts, so that no request can starve the server.
 inline constexpr int kMaximumCurvePoints = 1000;

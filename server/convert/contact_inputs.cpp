@@ -18,8 +18,9 @@ std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& requ
     lubricant = request.lubricant_parameters();
   } else if (request.fluid_case() == v1::EvaluateContactRequest::kLubricant) {
     path = "lubricant";
-    lubricant =
+    auto found =
         find_resource<v1::Lubricant>(lookup, request.lubricant(), kLubricants, path, violations);
+    if (found) lubricant = std::move(found->resource);
   } else {
     violations.push_back({"fluid", "not set; legal: lubricant or lubricant_parameters"});
   }

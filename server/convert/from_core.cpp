@@ -90,6 +90,10 @@ void set_losses(v1::PointResult* out, const PointResult& result) {
 
 void set_solver(v1::PointResult* out, const PointResult& result) {
   out->set_model(result.model == PointModel::kQuasiStatic ? v1::QUASI_STATIC : v1::FULL);
+  if (result.model == PointModel::kFull) {
+    out->set_steady_state_method(result.method == SteadyStateMethod::kShooting ? v1::SHOOTING
+                                                                               : v1::MARCH);
+  }
   out->set_settled(result.settled);
   out->set_period_in_mesh_cycles(result.period_in_mesh_cycles);
   out->set_recorded_mesh_cycles(result.recorded_mesh_cycles);

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 #include <google/protobuf/message.h>
-#include <openssl/evp.h>
 
-#include <array>
 #include <set>
 #include <stdexcept>
 
 #include "core/version.h"
+#include "server/convert/output_only.h"
+#include "server/hash/sha256.h"
 
 namespace tribodyn::server {
 namespace {
@@ -16,12 +16,17 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// Fields that say what a thing is called or where it comes from, never what it is.
-bool is_label(const std::string& field) {
-  static const std::set<std::string> kLabels = {"name",       "display_name", "description",
-                                                "provenance", "lubricant",    "gear_set",
-                                                "surface",    "vehicle"};
-  return kLabels.contains(field);
+/// Fields that say what a thing is called, where it comes from or what only the server sets; never
+/// what the model computes with.
+bool is_label(const FieldDescriptor& field) {
+  static const std::set<std::string> kLabels = {
+      "name",      "display_name",   "description",  "provenance", "lubricant",
+      "gear_set",  "surface",        "vehicle",      "labels",     "derived_from",
+      "condition", "base_oil_class", "measurements", "lims_id",    "external_sample_id"};
+  // Constant lines in the text of every simulation; without them stored hashes would be others.
+  static const std::set<std::string> kConstant = {"state", "progress_fraction"};
+  return kLabels.contains(field.name()) ||
+         (is_output_only(field) && !kConstant.contains(field.name()));
 }
 
 void add_line(std::string& text, const std::string& path, const std::string& value) {
@@ -68,7 +73,7 @@ void add_message(std::string& text, const Message& message, const std::string& p
   const auto& reflection = *message.GetReflection();
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor& field = *descriptor.field(i);
-    if (is_label(field.name())) continue;
+    if (is_label(field)) continue;
     const std::string field_path = path + "." + field.name();
     if (field.is_repeated()) {
       for (int k = 0; k < reflection.FieldSize(message, &field); ++k) {
@@ -93,16 +98,6 @@ std::string canonical_inputs(const SimulationInputs& inputs) {
   return text;
 }
 
-std::string input_hash(const SimulationInputs& inputs) {
-  const std::string text = canonical_inputs(inputs);
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-  unsigned int length = 0;
-  if (EVP_Digest(text.data(), text.size(), digest.data(), &length, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("SHA-256 is not available");
-  }
-  std::string hex;
-  for (unsigned int i = 0; i < length; ++i) hex += fmt::format("{:02x}", digest[i]);
-  return hex;
-}
+std::string input_hash(const SimulationInputs& inputs) { return sha256(canonical_inputs(inputs)); }
 
 }  // namespace tribodyn::server

@@ -5,6 +5,8 @@
 #include <string>
 
 #include "server/convert/constraints.h"
+#include "server/convert/output_only.h"
+#include "server/convert/provenance.h"
 #include "server/convert/solver_defaults.h"
 
 namespace tribodyn::server {
@@ -12,7 +14,6 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
-using Provenances = google::protobuf::RepeatedPtrField<v1::ParameterProvenance>;
 using Ledger = std::vector<v1::Assumption>;
 
 void add(Ledger& ledger, const std::string& resource, const std::string& field,
@@ -24,17 +25,6 @@ void add(Ledger& ledger, const std::string& resource, const std::string& field,
   entry.set_provenance(provenance);
   entry.set_source(source);
   ledger.push_back(std::move(entry));
-}
-
-/// The entry of the field itself, of the block it lies in ("dynamics" for "dynamics.x"), or "*".
-const v1::ParameterProvenance* find_provenance(const Provenances& all, const std::string& field) {
-  const std::string block = field.substr(0, field.find('.'));
-  for (const std::string& key : {field, block, std::string("*")}) {
-    for (const v1::ParameterProvenance& entry : all) {
-      if (entry.field() == key) return &entry;
-    }
-  }
-  return nullptr;
 }
 
 void add(Ledger& ledger, const std::string& resource, const Provenances& all,
@@ -53,7 +43,7 @@ void add_numbers(Ledger& ledger, const std::string& resource, const Provenances&
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor& field = *descriptor.field(i);
     const Constraint* row = find_constraint(descriptor.name(), field.name());
-    if (field.is_repeated() || row == nullptr) continue;
+    if (field.is_repeated() || is_output_only(field) || row == nullptr) continue;
     const double value = field.cpp_type() == FieldDescriptor::CPPTYPE_INT32
                              ? reflection.GetInt32(message, &field)
                              : reflection.GetDouble(message, &field);

@@ -16,8 +16,13 @@ bool is_id_character(char c) {
          c == '_' || c == '.';
 }
 
-/// Levenshtein distance.
-std::size_t edits(std::string_view a, std::string_view b) {
+/// Edits (Levenshtein) from one text to all of another, and to that beginning of it which is next.
+struct Edits {
+  std::size_t whole = 0;
+  std::size_t beginning = 0;
+};
+
+Edits edits(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -29,19 +34,21 @@ std::size_t edits(std::string_view a, std::string_view b) {
       row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
     }
   }
-  return row[b.size()];
+  return {row.back(), *std::min_element(row.begin(), row.end())};
 }
 
-/// The start of a client's text as plain ASCII: never half a UTF-8 character, never a control code.
-std::string excerpt(std::string_view text) {
+/// The part after "lubricants/": the collection says nothing about which name is meant.
+std::string_view id_of(std::string_view name) { return name.substr(name.find('/') + 1); }
+
+}  // namespace
+
+std::string plain_excerpt(std::string_view text) {
   std::string out(text.substr(0, 60));
   for (char& c : out) {
     if (c < ' ' || c > '~') c = '?';
   }
   return text.size() > 60 ? out + "..." : out;
 }
-
-}  // namespace
 
 bool is_resource_name(std::string_view name, std::string_view collection) {
   if (name.size() > static_cast<std::size_t>(kMaximumTextLength)) return false;
@@ -51,6 +58,28 @@ bool is_resource_name(std::string_view name, std::string_view collection) {
   }
   const std::string_view id = name.substr(collection.size() + 1);
   return std::all_of(id.begin(), id.end(), is_id_character);
+}
+
+std::optional<RevisionName> parse_revision_name(std::string_view name,
+                                                std::string_view collection) {
+  const std::size_t at = name.find('@');
+  if (!is_resource_name(name.substr(0, at), collection)) return std::nullopt;
+  RevisionName out{std::string(name.substr(0, at)), 0};
+  if (at == std::string_view::npos) return out;
+  const std::string_view digits = name.substr(at + 1);
+  const auto [end, error] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), out.revision);
+  const bool is_canonical = std::to_string(out.revision) == digits;
+  if (error != std::errc() || !is_canonical || out.revision < 1) return std::nullopt;
+  return out;
+}
+
+std::string revision_name(std::string_view name, int revision) {
+  return fmt::format("{}@{}", name, revision);
+}
+
+std::string deleted_name_text(std::string_view name) {
+  return fmt::format("\"{}\" is deleted; undelete it to use it", plain_excerpt(name));
 }
 
 std::optional<std::int64_t> simulation_id(std::string_view name) {
@@ -65,23 +94,39 @@ std::optional<std::int64_t> simulation_id(std::string_view name) {
 std::string simulation_name(std::int64_t id) { return fmt::format("{}/{}", kSimulations, id); }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {
-  const std::string_view compared = name.substr(0, kMaximumTextLength);
-  const auto nearest = std::min_element(existing.begin(), existing.end(),
-                                        [&](const std::string& a, const std::string& b) {
-                                          return edits(compared, a) < edits(compared, b);
-                                        });
-  return nearest == existing.end() ? std::string() : *nearest;
+  const std::string_view compared = id_of(name).substr(0, kMaximumTextLength);
+  if (compared.empty()) return {};
+  const std::size_t few = std::max<std::size_t>(2, compared.size() / 3);
+  const std::size_t few_in_beginning = compared.size() / 4;  // of one letter, any name begins so
+  std::string nearest;
+  std::size_t fewest = few + 1;
+  for (const std::string& each : existing) {
+    const Edits found = edits(compared, id_of(each));
+    std::size_t count = found.whole;
+    if (id_of(each).starts_with(compared)) count = 0;
+    if (found.beginning <= few_in_beginning) count = std::min(count, found.beginning + 1);
+    if (count >= fewest) continue;
+    fewest = count;
+    nearest = each;
+  }
+  return nearest;
+}
+
+std::string meant_text(std::string_view name, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(name, known);
+  if (!nearest.empty()) return fmt::format("; did you mean \"{}\"?", nearest);
+  return fmt::format("; legal: {}", fmt::join(known, ", "));
 }
 
 std::string unknown_name_text(std::string_view name, std::string_view collection,
                               const std::vector<std::string>& existing) {
   const std::string nearest = nearest_name(name, existing);
   const std::string hint = nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
-  if (is_resource_name(name, collection)) {
-    return fmt::format("\"{}\" does not exist{}", excerpt(name), hint);
+  if (parse_revision_name(name, collection)) {
+    return fmt::format("\"{}\" does not exist{}", plain_excerpt(name), hint);
   }
-  return fmt::format("\"{}\" is not a name of the form \"{}/{{id}}\"{}", excerpt(name), collection,
-                     hint);
+  return fmt::format("\"{}\" is not a name of the form \"{}/{{id}}\"{}", plain_excerpt(name),
+                     collection, hint);
 }
 
 }  // namespace tribodyn::server

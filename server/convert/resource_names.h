@@ -21,37 +21,79 @@ inline constexpr char kDefaultGearSet[] = "gearSets/A";
 inline constexpr char kDefaultSurface[] = "surfaces/run-in";
 inline constexpr char kDefaultVehicle[] = "vehicles/passenger-car";
 
+/// "lubricants/1" or "lubricants/1@2".
+struct RevisionName {
+  std::string name;
+  int revision = 0;  ///< 0: the newest
+};
+
+/// One revision of a resource.
+struct FoundResource {
+  int revision = 0;
+  bool is_deleted = false;
+  std::string body;  ///< serialised message
+};
+
 /// Where named resources come from: the store, or a map in a test.
 struct ResourceLookup {
-  /// The serialised message of "collection/id", if there is one.
-  std::function<std::optional<std::string>(const std::string& name)> body;
-  /// All names of a collection, sorted.
+  std::function<std::optional<FoundResource>(const RevisionName& name)> find;
+  /// All names of a collection that are not deleted, sorted.
   std::function<std::vector<std::string>(const std::string& collection)> names;
 };
 
 /// True for "collection/id" with a non-empty id of letters, digits, '-', '_' and '.'.
 bool is_resource_name(std::string_view name, std::string_view collection);
 
+/// "collection/id" or "collection/id@revision", or nothing when it is neither.
+std::optional<RevisionName> parse_revision_name(std::string_view name, std::string_view collection);
+/// "lubricants/1@2".
+std::string revision_name(std::string_view name, int revision);
+
 /// The number behind "simulations/{id}", or nothing when it is not such a name.
 std::optional<std::int64_t> simulation_id(std::string_view name);
 std::string simulation_name(std::int64_t id);
 
-/// The name among `existing` with the fewest edits from `name`; empty when there is none.
+/// The start of a client's text as plain ASCII: never half a UTF-8 character, never a control code.
+std::string plain_excerpt(std::string_view text);
+
+/// Which of `existing` may be meant by `name`: the one with the fewest edits from it, its end (the
+/// unit of a field) left out where that helps. Empty when none is near.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing);
+
+/// "; did you mean \"lims_id\"?", or where nothing is near "; legal: " and all of `known`.
+std::string meant_text(std::string_view name, const std::vector<std::string>& known);
 
 /// "lubricants/7 does not exist; did you mean lubricants/1?", or what a name must look like.
 std::string unknown_name_text(std::string_view name, std::string_view collection,
                               const std::vector<std::string>& existing);
 
-/// The resource of that name; a violation at `path` and nothing when there is none.
+/// "lubricants/1 is deleted; undelete it to use it".
+std::string deleted_name_text(std::string_view name);
+
+/// A resource, and which revision of it this is.
 template <class Resource>
-std::optional<Resource> find_resource(const ResourceLookup& lookup, const std::string& name,
-                                      const std::string& collection, const std::string& path,
-                                      Violations& violations) {
-  if (is_resource_name(name, collection)) {
-    if (const auto body = lookup.body(name)) {
-      Resource resource;
-      if (resource.ParseFromString(*body)) return resource;
+struct NamedResource {
+  Resource resource;
+  std::string revision_name;
+};
+
+/// The resource of that name; a violation at `path` and nothing when there is none or it is
+/// deleted.
+template <class Resource>
+std::optional<NamedResource<Resource>> find_resource(const ResourceLookup& lookup,
+                                                     const std::string& name,
+                                                     const std::string& collection,
+                                                     const std::string& path,
+                                                     Violations& violations) {
+  if (const auto parsed = parse_revision_name(name, collection)) {
+    if (const auto found = lookup.find(*parsed)) {
+      NamedResource<Resource> out;
+      if (found->is_deleted) {
+        violations.push_back({path, deleted_name_text(parsed->name)});
+        return std::nullopt;
+      }
+      out.revision_name = revision_name(parsed->name, found->revision);
+      if (out.resource.ParseFromString(found->body)) return out;
     }
   }
   violations.push_back({path, unknown_name_text(name, collection, lookup.names(collection))});

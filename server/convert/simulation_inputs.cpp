@@ -4,6 +4,7 @@
 
 #include "server/convert/check_message.h"
 #include "server/convert/history_columns.h"
+#include "server/convert/output_only.h"
 #include "server/convert/solver_defaults.h"
 #include "server/convert/study_checks.h"
 #include "server/convert/to_core.h"
@@ -31,6 +32,8 @@ void fill_solver(v1::SolverOptions* solver) {
   if (solver->settling_tolerance() == 0) {
     solver->set_settling_tolerance(defaults.settling_tolerance);
   }
+  if (solver->tolerance() == 0) solver->set_tolerance(defaults.tolerance);
+  if (solver->method() == v1::STEADY_STATE_METHOD_UNSPECIFIED) solver->set_method(v1::AUTOMATIC);
   if (solver->maximum_mesh_cycles() == 0) {
     solver->set_maximum_mesh_cycles(defaults.maximum_mesh_cycles);
   }
@@ -122,6 +125,9 @@ PointOptions point_options(const v1::SolverOptions& solver, v1::PointModel model
   PointOptions out;
   out.model = model == v1::QUASI_STATIC ? PointModel::kQuasiStatic : PointModel::kFull;
   out.start = start == v1::LARGE_VIBRATION ? PointStart::kLargeVibration : PointStart::kQuasiStatic;
+  out.method =
+      solver.method() == v1::MARCH ? SteadyStateMethod::kMarch : SteadyStateMethod::kAutomatic;
+  out.tolerance = solver.tolerance();
   out.relative_tolerance = solver.relative_tolerance();
   out.settling_tolerance = solver.settling_tolerance();
   out.maximum_mesh_cycles = solver.maximum_mesh_cycles();
@@ -143,15 +149,7 @@ HistoryRequest history_request(const v1::HistoryRequest& message) {
 
 v1::Simulation client_part(const v1::Simulation& simulation) {
   v1::Simulation out = simulation;
-  out.clear_name();
-  out.clear_state();
-  out.clear_progress_fraction();
-  out.clear_create_time();
-  out.clear_start_time();
-  out.clear_end_time();
-  out.clear_error();
-  out.clear_result();
-  out.DiscardUnknownFields();
+  keep_client_part(out);
   return out;
 }
 
@@ -170,16 +168,19 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
                                         const char* field) {
     auto found = find_resource<Resource>(lookup, name.empty() ? otherwise : name, collection,
                                          join_path(path, field), violations);
-    if (found) *out = std::move(*found);
-    return found.has_value();
+    if (!found) return std::string();
+    *out = std::move(found->resource);
+    return found->revision_name;
   };
-  const bool has_lubricant =
+  const std::string lubricant =
       find(&inputs.lubricant, asked.lubricant(), "", kLubricants, "lubricant");
-  const bool has_gear_set =
+  const std::string gear_set =
       find(&inputs.gear_set, asked.gear_set(), kDefaultGearSet, kGearSets, "gear_set");
-  find(&inputs.surface, asked.surface(), kDefaultSurface, kSurfaces, "surface");
-  find(&inputs.vehicle, asked.vehicle(), kDefaultVehicle, kVehicles, "vehicle");
-  if (has_lubricant) {
+  const std::string surface =
+      find(&inputs.surface, asked.surface(), kDefaultSurface, kSurfaces, "surface");
+  const std::string vehicle =
+      find(&inputs.vehicle, asked.vehicle(), kDefaultVehicle, kVehicles, "vehicle");
+  if (!lubricant.empty()) {
     const double sump = asked.has_sump_temperature_celsius() ? asked.sump_temperature_celsius()
                                                              : kDefaultSumpTemperatureCelsius;
     const double rise = asked.has_inlet_temperature_rise_kelvin()
@@ -187,12 +188,16 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
                             : kDefaultInletTemperatureRiseKelvin;
     check_fluid_at_inlet(inputs.lubricant, sump, rise, join_path(path, "lubricant"), violations);
   }
-  if (has_gear_set) {
+  if (!gear_set.empty()) {
     check_mesh_data(inputs.gear_set, asked.model_options(),
                     join_path(path, "model_options.load_dependent_mesh_data"), violations);
   }
   if (violations.size() > before) return std::nullopt;
   inputs.effective = with_defaults(inputs.requested);
+  inputs.effective.set_lubricant_revision(lubricant);
+  inputs.effective.set_gear_set_revision(gear_set);
+  inputs.effective.set_surface_revision(surface);
+  inputs.effective.set_vehicle_revision(vehicle);
   return inputs;
 }
 

@@ -19,7 +19,8 @@
 namespace tribodyn::server {
 
 /// All that a simulation rests on: the request as it came, the same with every default written out
-/// (explicit speeds in ascending order, no zero that means a default), and the named resources.
+/// (explicit speeds in ascending order, no zero that means a default) and the revisions that names
+/// mean, and these resources.
 struct SimulationInputs {
   v1::Simulation requested;
   v1::Simulation effective;

@@ -67,8 +67,7 @@ void check_columns(const v1::HistoryRequest& history, const std::string& path,
     const std::string& name = history.columns(i);
     const std::string element = fmt::format("{}.columns[{}]", path, i);
     if (!history_column(name)) {
-      violations.push_back({element, fmt::format("no such column; did you mean \"{}\"?",
-                                                 nearest_name(name, known))});
+      violations.push_back({element, fmt::format("no such column{}", meant_text(name, known))});
     } else if (!seen.insert(name).second) {
       violations.push_back({element, fmt::format("\"{}\" is named twice", name)});
     }

@@ -18,12 +18,11 @@ std::size_t SimulationJobs::resume() {
   return ids.size();
 }
 
-std::optional<std::int64_t> SimulationJobs::submit(const std::string& request,
-                                                   const std::string& input_hash) {
+std::optional<std::int64_t> SimulationJobs::submit(const NewSimulation& simulation) {
   if (!queue_.reserve()) return std::nullopt;
   std::int64_t id = 0;
   try {
-    id = store_.add_simulation(request, input_hash, clock_());
+    id = store_.add_simulation(simulation, clock_());
     board_.open(id);
   } catch (...) {
     queue_.release();

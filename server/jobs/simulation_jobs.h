@@ -33,7 +33,7 @@ class SimulationJobs {
   std::size_t resume();
 
   /// Writes a simulation down and queues it; its id, or nothing when too many wait.
-  std::optional<std::int64_t> submit(const std::string& request, const std::string& input_hash);
+  std::optional<std::int64_t> submit(const NewSimulation& simulation);
 
   /// At once CANCELLED in the store; a worker on it stops at its next step. No effect on what has
   /// ended.

@@ -37,20 +37,41 @@ class Reporter {
 
 }  // namespace
 
-Microseconds system_time() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 Progress end_of(const StoredSimulation& stored) {
   return {stored.state, stored.state == StoredState::kSucceeded ? 1.0 : 0.0, "",
           stored.error_reason, stored.error_message};
 }
 
 ResourceLookup resource_lookup(Store& store) {
-  return {[&store](const std::string& name) { return store.resource(name); },
+  return {[&store](const RevisionName& name) -> std::optional<FoundResource> {
+            auto found = name.revision == 0 ? store.resource(name.name)
+                                            : store.revision(name.name, name.revision);
+            if (!found) return std::nullopt;
+            return FoundResource{found->revision, found->delete_time.has_value(),
+                                 std::move(found->body)};
+          },
           [&store](const std::string& collection) { return store.resource_names(collection); }};
+}
+
+ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation) {
+  ResourceLookup out = resource_lookup(store);
+  std::vector<RevisionName> accepted;
+  const auto add = [&accepted](const std::string& name, const char* collection) {
+    if (const auto parsed = parse_revision_name(name, collection)) accepted.push_back(*parsed);
+  };
+  add(simulation.lubricant_revision, kLubricants);
+  add(simulation.gear_set_revision, kGearSets);
+  add(simulation.surface_revision, kSurfaces);
+  add(simulation.vehicle_revision, kVehicles);
+  out.find = [find = out.find, accepted](RevisionName name) {
+    for (const RevisionName& each : accepted) {
+      if (each.name == name.name) name = each;
+    }
+    auto found = find(name);
+    if (found) found->is_deleted = false;
+    return found;
+  };
+  return out;
 }
 
 SimulationRunner::SimulationRunner(Store& store, ProgressBoard& board, Clock clock,
@@ -86,7 +107,8 @@ void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop)
   const std::shared_ptr<ProgressChannel> channel = board_.open(id);
   channel->publish({StoredState::kRunning, 0, "", "", ""});
   Violations violations;
-  const auto inputs = read_simulation(request, resource_lookup(store_), "simulation", violations);
+  const auto inputs =
+      read_simulation(request, accepted_lookup(store_, *stored), "simulation", violations);
   if (!inputs) {
     throw Refusal("INVALID_ARGUMENT",
                   violations.front().field + ": " + violations.front().description);

@@ -13,13 +13,15 @@ namespace tribodyn::server {
 
 /// Wall-clock time for records.
 using Clock = std::function<Microseconds()>;
-Microseconds system_time();
 
 /// What a watcher sees of a simulation that has ended.
 Progress end_of(const StoredSimulation& stored);
 
 /// Resources of the store.
 ResourceLookup resource_lookup(Store& store);
+
+/// The revisions that a simulation was accepted with, deleted since or not.
+ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation);
 
 /// Carries one simulation from QUEUED to its end: inputs from the store, the study in the core, the
 /// result back into the store, progress on the board. Whatever goes wrong ends in the store, never

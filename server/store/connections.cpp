@@ -1,9 +1,20 @@
 #include "server/store/connections.h"
 
+#include <sqlite3.h>
+
+#include "server/store/deadline.h"
+
 namespace tribodyn::server {
 
 ReaderPool::ReaderPool(std::filesystem::path database, int maximum)
     : database_(std::move(database)), maximum_(maximum) {}
+
+void heed_deadlines(SQLite::Database& connection) {
+  constexpr int kInstructions = 1000;  // about 10 us between looks at the clock
+  sqlite3_progress_handler(
+      connection.getHandle(), kInstructions,
+      [](void*) { return DeadlineScope::has_passed() ? 1 : 0; }, nullptr);
+}
 
 ReaderPool::Loan ReaderPool::borrow() {
   {
@@ -22,6 +33,7 @@ ReaderPool::Loan ReaderPool::borrow() {
     auto connection = std::make_unique<SQLite::Database>(database_.string(), SQLite::OPEN_READWRITE,
                                                          kBusyTimeoutMilliseconds);
     connection->exec("PRAGMA query_only = ON");
+    heed_deadlines(*connection);
     return Loan(*this, std::move(connection));
   } catch (...) {
     give_back(nullptr);

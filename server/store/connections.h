@@ -45,6 +45,9 @@ class ReaderPool {
   int open_ = 0;                                         // guarded by mutex_
 };
 
+/// Makes statements of a connection end when the deadline of their thread passes (deadline.h).
+void heed_deadlines(SQLite::Database& connection);
+
 /// How long a statement waits for another connection before it fails [ms].
 inline constexpr int kBusyTimeoutMilliseconds = 5000;
 

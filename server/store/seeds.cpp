@@ -15,7 +15,7 @@ namespace tribodyn::server {
 namespace {
 
 template <class Resource>
-StoredResource parse(std::string_view file, std::string_view json) {
+NewResource parse(std::string_view file, std::string_view json) {
   Resource resource;
   const auto status = google::protobuf::util::JsonStringToMessage(
       google::protobuf::StringPiece(json.data(), json.size()), &resource);
@@ -25,7 +25,7 @@ StoredResource parse(std::string_view file, std::string_view json) {
   return {resource.name(), resource.SerializeAsString()};
 }
 
-StoredResource parse(std::string_view file, std::string_view json) {
+NewResource parse(std::string_view file, std::string_view json) {
   if (file.starts_with("lubricant_")) return parse<v1::Lubricant>(file, json);
   if (file.starts_with("gear_set_")) return parse<v1::GearSet>(file, json);
   if (file.starts_with("surface_")) return parse<v1::Surface>(file, json);
@@ -35,8 +35,8 @@ StoredResource parse(std::string_view file, std::string_view json) {
 
 }  // namespace
 
-std::vector<StoredResource> seed_resources() {
-  std::vector<StoredResource> out;
+std::vector<NewResource> seed_resources() {
+  std::vector<NewResource> out;
   for (const EmbeddedSeed& seed : embedded_seeds()) out.push_back(parse(seed.file, seed.json));
   return out;
 }

@@ -8,7 +8,11 @@
 #include <bit>
 #include <limits>
 
+#include "server/store/deadline.h"
+#include "server/store/resource_queries.h"
+#include "server/store/resource_rows.h"
 #include "server/store/schema.h"
+#include "server/store/translate_error.h"
 
 static_assert(std::endian::native == std::endian::little, "history columns are little-endian");
 
@@ -17,26 +21,6 @@ namespace {
 
 constexpr int kReaderConnections = 8;
 
-StoreError translate(const SQLite::Exception& error, const std::filesystem::path& path) {
-  const std::string name = "database " + path.string();
-  switch (error.getErrorCode()) {
-    case SQLITE_NOTADB:
-    case SQLITE_CORRUPT:
-      return {StoreError::Kind::kCorrupt,
-              name + " is damaged or no SQLite database: " + error.what()};
-    case SQLITE_READONLY:
-    case SQLITE_PERM:
-      return {StoreError::Kind::kReadOnly, name + " cannot be written: " + error.what()};
-    case SQLITE_BUSY:
-    case SQLITE_LOCKED:
-      return {StoreError::Kind::kInUse, name + " is locked by another program: " + error.what()};
-    case SQLITE_CANTOPEN:
-      return {StoreError::Kind::kCannotOpen, name + " cannot be opened: " + error.what()};
-    default:
-      return {StoreError::Kind::kFailed, name + ": " + error.what()};
-  }
-}
-
 /// One path for one file, so that two spellings of it meet in one lock.
 std::filesystem::path one_path(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -44,10 +28,17 @@ std::filesystem::path one_path(const std::filesystem::path& path) {
   return found.empty() ? path : found;
 }
 
+void check_deadline(const std::filesystem::path& path) {
+  if (DeadlineScope::has_passed()) {
+    throw StoreError(StoreError::Kind::kDeadline,
+                     "database " + path.string() + ": the deadline has passed");
+  }
+}
+
 SQLite::Database open_writer(const std::filesystem::path& path) try {
   return {path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMilliseconds};
 } catch (const SQLite::Exception& error) {
-  throw translate(error, path);
+  throw translate_error(error, path);
 }
 
 StoredSimulation row(const SQLite::Statement& query) {
@@ -61,34 +52,31 @@ StoredSimulation row(const SQLite::Statement& query) {
   out.input_hash = query.getColumn(6).getString();
   out.error_reason = query.getColumn(7).getString();
   out.error_message = query.getColumn(8).getString();
+  out.lubricant_revision = query.getColumn(9).getString();
+  out.gear_set_revision = query.getColumn(10).getString();
+  out.surface_revision = query.getColumn(11).getString();
+  out.vehicle_revision = query.getColumn(12).getString();
   return out;
 }
 
 constexpr char kSimulationColumns[] =
     "SELECT id, state, create_time, start_time, end_time, request, input_hash, error_reason, "
-    "error_message FROM simulations ";
+    "error_message, "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle) "
+    "FROM simulations ";
 
-/// Reads rows until `limit` of them or `byte_limit` bytes of the column that is large.
-template <class Row, class Read>
-Page<Row> page(SQLite::Statement& query, int limit, std::size_t byte_limit, int large_column,
-               const Read& read_row) {
-  Page<Row> out;
-  std::size_t bytes = 0;
-  while (query.executeStep()) {
-    bytes += static_cast<std::size_t>(query.getColumn(large_column).getBytes());
-    const bool full =
-        static_cast<int>(out.rows.size()) == limit || (!out.rows.empty() && bytes > byte_limit);
-    if (full) {
-      out.more = true;
-      break;
-    }
-    out.rows.push_back(read_row(query));
-  }
-  return out;
-}
-
-void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes) {
-  statement.bind(index, bytes.data(), static_cast<int>(bytes.size()));
+/// Row of "lubricants/1@2" in revisions.
+std::int64_t revision_row(SQLite::Database& db, const std::string& name) {
+  SQLite::Statement query(
+      db,
+      "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
+      "name = substr(?1, 1, instr(?1, '@') - 1)");
+  query.bind(1, name);
+  if (!query.executeStep()) throw SQLite::Exception("no such revision");
+  return query.getColumn(0).getInt64();
 }
 
 /// Incremental reading of one blob.
@@ -123,20 +111,22 @@ class BlobReader {
 template <class Action>
 auto Store::write(const Action& action) {
   const std::lock_guard lock(writer_mutex_);
+  check_deadline(path_);
   try {
     return action(writer_);
   } catch (const SQLite::Exception& error) {
-    throw translate(error, path_);
+    throw translate_error(error, path_);
   }
 }
 
 template <class Action>
 auto Store::read(const Action& action) {
+  check_deadline(path_);
   try {
     ReaderPool::Loan loan = readers_.borrow();
     return action(*loan);
   } catch (const SQLite::Exception& error) {
-    throw translate(error, path_);
+    throw translate_error(error, path_);
   }
 }
 
@@ -146,6 +136,7 @@ Store::Store(const std::filesystem::path& database)
       writer_(open_writer(path_)),
       readers_(path_, kReaderConnections) {
   open_schema();
+  heed_deadlines(writer_);
 }
 
 void Store::open_schema() {
@@ -173,74 +164,144 @@ void Store::open_schema() {
     db.execAndGet("PRAGMA journal_mode = WAL");
     db.exec("PRAGMA synchronous = FULL");
     db.exec("PRAGMA foreign_keys = ON");
-    if (empty) {
-      SQLite::Transaction transaction(db);
-      db.exec(kSchema);
-      db.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
-      db.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
-      transaction.commit();
-    }
+    if (version < kSchemaVersion) migrate(db, version, system_time());
   });
 }
 
-void Store::add_resources(const std::vector<StoredResource>& resources) {
+void Store::add_resources(const std::vector<NewResource>& resources, Microseconds now) {
   write([&](SQLite::Database& db) {
     SQLite::Transaction transaction(db);
-    SQLite::Statement insert(db, "INSERT INTO resources VALUES (?, ?) ON CONFLICT DO NOTHING");
+    SQLite::Statement taken(db, "SELECT 1 FROM resources WHERE name = ?");
     for (const auto& [name, body] : resources) {
-      insert.bind(1, name);
-      bind_blob(insert, 2, body);
-      insert.exec();
-      insert.reset();
+      taken.bind(1, name);
+      if (!taken.executeStep()) insert_resource(db, name, body, now);
+      taken.reset();
     }
     transaction.commit();
   });
 }
 
-std::optional<std::string> Store::resource(const std::string& name) {
-  return read([&](SQLite::Database& db) -> std::optional<std::string> {
-    SQLite::Statement query(db, "SELECT body FROM resources WHERE name = ?");
+std::optional<StoredResource> Store::resource(const std::string& name) {
+  return read([&](SQLite::Database& db) -> std::optional<StoredResource> {
+    SQLite::Statement query(
+        db, std::string(kResourceColumns) +
+                "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?");
     query.bind(1, name);
     if (!query.executeStep()) return std::nullopt;
-    return query.getColumn(0).getString();
+    return stored_resource(query);
   });
 }
 
-Page<StoredResource> Store::resources(const std::string& collection, const std::string& after,
-                                      int limit, std::size_t byte_limit) {
+std::optional<StoredResource> Store::revision(const std::string& name, int revision) {
+  return read([&](SQLite::Database& db) -> std::optional<StoredResource> {
+    SQLite::Statement query(db, std::string(kResourceColumns) +
+                                    "FROM resources r JOIN revisions v ON v.resource = r.id "
+                                    "WHERE r.name = ? AND v.revision = ?");
+    query.bind(1, name);
+    query.bind(2, revision);
+    if (!query.executeStep()) return std::nullopt;
+    return stored_resource(query);
+  });
+}
+
+Page<StoredResource> Store::resources(const ResourceQuery& query) {
+  return read([&](SQLite::Database& db) { return query_resources(db, query); });
+}
+
+Page<StoredResource> Store::revisions(const std::string& name, int before, int limit,
+                                      std::size_t byte_limit) {
   return read([&](SQLite::Database& db) {
-    SQLite::Statement query(
-        db, "SELECT name, body FROM resources WHERE name > ? AND name < ? ORDER BY name LIMIT ?");
-    query.bind(1, std::max(after, collection + "/"));
-    query.bind(2, collection + "0");  // '0' follows '/'
+    SQLite::Statement query(db, std::string(kResourceColumns) +
+                                    "FROM resources r JOIN revisions v ON v.resource = r.id "
+                                    "WHERE r.name = ? AND v.revision < ? "
+                                    "ORDER BY v.revision DESC LIMIT ?");
+    query.bind(1, name);
+    query.bind(2, before == 0 ? std::numeric_limits<int>::max() : before);
     query.bind(3, limit + 1);
-    return page<StoredResource>(query, limit, byte_limit, 1, [](const SQLite::Statement& found) {
-      return StoredResource{found.getColumn(0).getString(), found.getColumn(1).getString()};
-    });
+    return read_page<StoredResource>(query, limit, byte_limit, kBodyColumn, stored_resource);
   });
 }
 
 std::vector<std::string> Store::resource_names(const std::string& collection) {
   return read([&](SQLite::Database& db) {
-    SQLite::Statement query(db,
-                            "SELECT name FROM resources WHERE name > ? AND name < ? ORDER BY name");
-    query.bind(1, collection + "/");
-    query.bind(2, collection + "0");
+    SQLite::Statement query(
+        db,
+        "SELECT name FROM resources WHERE collection = ? AND delete_time IS NULL ORDER BY name");
+    query.bind(1, collection);
     std::vector<std::string> names;
     while (query.executeStep()) names.push_back(query.getColumn(0).getString());
     return names;
   });
 }
 
-std::int64_t Store::add_simulation(const std::string& request, const std::string& input_hash,
-                                   Microseconds now) {
+bool Store::create_resource(const NewResource& resource, Microseconds now) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Transaction transaction(db);
+    SQLite::Statement taken(db, "SELECT 1 FROM resources WHERE name = ?");
+    taken.bind(1, resource.name);
+    if (taken.executeStep()) return false;
+    insert_resource(db, resource.name, resource.body, now);
+    transaction.commit();
+    return true;
+  });
+}
+
+template <class Change>
+bool Store::change(const StoredResource& present, const Change& change) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Transaction transaction(db);
+    SQLite::Statement unchanged(db,
+                                "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
+                                "WHERE r.id = ? AND v.revision = ? AND "
+                                "(r.delete_time IS NULL) = ?");
+    unchanged.bind(1, present.id);
+    unchanged.bind(2, present.revision);
+    unchanged.bind(3, present.delete_time ? 0 : 1);
+    if (!unchanged.executeStep()) return false;
+    unchanged.reset();
+    change(db);
+    transaction.commit();
+    return true;
+  });
+}
+
+bool Store::update_resource(const StoredResource& present, const std::string& body,
+                            Microseconds now) {
+  return change(present, [&](SQLite::Database& db) { insert_revision(db, present, body, now); });
+}
+
+bool Store::delete_resource(const StoredResource& present, Microseconds now) {
+  return change(present, [&](SQLite::Database& db) {
+    SQLite::Statement mark(db, "UPDATE resources SET delete_time = ? WHERE id = ?");
+    mark.bind(1, now);
+    mark.bind(2, present.id);
+    mark.exec();
+  });
+}
+
+bool Store::undelete_resource(const StoredResource& present) {
+  return change(present, [&](SQLite::Database& db) {
+    SQLite::Statement mark(db, "UPDATE resources SET delete_time = NULL WHERE id = ?");
+    mark.bind(1, present.id);
+    mark.exec();
+  });
+}
+
+std::int64_t Store::add_simulation(const NewSimulation& simulation, Microseconds now) {
   return write([&](SQLite::Database& db) -> std::int64_t {
     SQLite::Statement insert(
         db,
-        "INSERT INTO simulations (state, create_time, request, input_hash) VALUES (1, ?, ?, ?)");
+        "INSERT INTO simulations (state, create_time, request, input_hash, lubricant, gear_set, "
+        "surface, vehicle) VALUES (1, ?, ?, ?, ?, ?, ?, ?)");
     insert.bind(1, now);
-    bind_blob(insert, 2, request);
-    insert.bind(3, input_hash);
+    bind_blob(insert, 2, simulation.request);
+    insert.bind(3, simulation.input_hash);
+    int index = 3;
+    for (const std::string* each : {&simulation.lubricant_revision, &simulation.gear_set_revision,
+                                    &simulation.surface_revision, &simulation.vehicle_revision}) {
+      ++index;
+      if (!each->empty()) insert.bind(index, revision_row(db, *each));
+    }
     insert.exec();
     return db.getLastInsertRowid();
   });
@@ -261,7 +322,7 @@ Page<StoredSimulation> Store::simulations(std::int64_t before, int limit, std::s
         db, std::string(kSimulationColumns) + "WHERE id < ? ORDER BY id DESC LIMIT ?");
     query.bind(1, before == 0 ? std::numeric_limits<std::int64_t>::max() : before);
     query.bind(2, limit + 1);
-    return page<StoredSimulation>(query, limit, byte_limit, 5, row);
+    return read_page<StoredSimulation>(query, limit, byte_limit, 5, row);
   });
 }
 

@@ -12,6 +12,7 @@
 #include "server/store/connections.h"
 #include "server/store/database_lock.h"
 #include "server/store/store_error.h"
+#include "server/store/stored_resource.h"
 
 namespace tribodyn::server {
 
@@ -20,8 +21,6 @@ enum class StoredState { kQueued = 1, kRunning = 2, kSucceeded = 3, kFailed = 4,
 
 /// True when nothing more will happen to the simulation.
 inline bool has_ended(StoredState state) { return state >= StoredState::kSucceeded; }
-
-using Microseconds = std::int64_t;  ///< since 1970, UTC
 
 struct StoredSimulation {
   std::int64_t id = 0;
@@ -33,18 +32,22 @@ struct StoredSimulation {
   std::string input_hash;
   std::string error_reason;
   std::string error_message;
+  // What it rests on, "lubricants/1@2"; empty where that is not known.
+  std::string lubricant_revision;
+  std::string gear_set_revision;
+  std::string surface_revision;
+  std::string vehicle_revision;
 };
 
-/// Part of a list, and whether there is more after it.
-template <class Row>
-struct Page {
-  std::vector<Row> rows;
-  bool more = false;
-};
-
-struct StoredResource {
-  std::string name;
-  std::string body;  ///< serialised message
+/// A simulation to be stored.
+struct NewSimulation {
+  std::string request;  ///< serialised Simulation
+  std::string input_hash;
+  // Revisions as above; each exists or is empty.
+  std::string lubricant_revision = {};
+  std::string gear_set_revision = {};
+  std::string surface_revision = {};
+  std::string vehicle_revision = {};
 };
 
 struct StoredColumn {
@@ -60,20 +63,31 @@ class Store {
   /// Opens or creates the database and keeps other servers away from it.
   explicit Store(const std::filesystem::path& database);
 
-  /// Adds what is missing in one transaction; what exists stays as it is.
-  void add_resources(const std::vector<StoredResource>& resources);
-  std::optional<std::string> resource(const std::string& name);
-  /// "collection/..." in the order of names after `after`: `limit` rows, or fewer so that they stay
-  /// within `byte_limit`, but at least one.
-  Page<StoredResource> resources(const std::string& collection, const std::string& after, int limit,
+  /// Adds what is missing in one transaction; what exists, deleted or not, stays as it is.
+  void add_resources(const std::vector<NewResource>& resources, Microseconds now);
+  /// The present revision, of a deleted resource too.
+  std::optional<StoredResource> resource(const std::string& name);
+  std::optional<StoredResource> revision(const std::string& name, int revision);
+  Page<StoredResource> resources(const ResourceQuery& query);
+  /// Newest first, those before `before` (0: from the newest): `limit` rows, or fewer so that they
+  /// stay within `byte_limit`, but at least one.
+  Page<StoredResource> revisions(const std::string& name, int before, int limit,
                                  std::size_t byte_limit);
+  /// All that are not deleted, sorted.
   std::vector<std::string> resource_names(const std::string& collection);
 
+  /// False, and nothing is changed, when the name is taken, if only by a deleted resource.
+  bool create_resource(const NewResource& resource, Microseconds now);
+  // Changes of `present`, as it was read. Each returns false, and changes nothing, when the
+  // resource has changed since.
+  bool update_resource(const StoredResource& present, const std::string& body, Microseconds now);
+  bool delete_resource(const StoredResource& present, Microseconds now);
+  bool undelete_resource(const StoredResource& present);
+
   /// A new simulation, QUEUED; its id.
-  std::int64_t add_simulation(const std::string& request, const std::string& input_hash,
-                              Microseconds now);
+  std::int64_t add_simulation(const NewSimulation& simulation, Microseconds now);
   std::optional<StoredSimulation> simulation(std::int64_t id);
-  /// Newest first, ids below `before` (0: from the newest); limits as above.
+  /// Newest first, ids below `before` (0: from the newest); limits as of revisions.
   Page<StoredSimulation> simulations(std::int64_t before, int limit, std::size_t byte_limit);
 
   // Changes of state. Each returns false, and changes nothing, when the simulation is not in a
@@ -103,6 +117,9 @@ class Store {
 
  private:
   void open_schema();
+  /// Changes the row of resources only if `present` is what is there.
+  template <class Change>
+  bool change(const StoredResource& present, const Change& change);
   template <class Action>
   auto write(const Action& action);
   template <class Action>

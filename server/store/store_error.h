@@ -16,7 +16,8 @@ class StoreError : public std::runtime_error {
     kForeign,      ///< a database of another program
     kCorrupt,
     kReadOnly,
-    kFailed,  ///< a statement failed: disk full, I/O error
+    kDeadline,  ///< took longer than the caller had (deadline.h); nothing has changed
+    kFailed,    ///< a statement failed: disk full, I/O error
   };
   StoreError(Kind kind, const std::string& sentence) : std::runtime_error(sentence), kind_(kind) {}
   Kind kind() const { return kind_; }

@@ -9,7 +9,6 @@
 
 #include "client/cpp/commands/help.h"
 #include "client/cpp/commands/scenario.h"
-#include "client/cpp/service/errors.h"
 
 namespace tribodyn::client {
 namespace {
@@ -86,7 +85,7 @@ TEST(Help, EveryNumberHasARangeAndEveryCommandAnExample) {
   for (const Command& command : all_commands()) {
     ASSERT_FALSE(command.examples.empty()) << command.path;
     EXPECT_EQ(command.examples.front().rfind("tribodyn " + command.path, 0), 0U);
-    const std::string help = help_text(command, {});
+    const std::string help = help_text(command, {}, nullptr);
     EXPECT_NE(help.find(command.examples.front()), std::string::npos);
     for (const Flag& flag : command.flags.flags()) {
       EXPECT_FALSE(flag.description.empty()) << flag.names;

@@ -1,14 +1,21 @@
-#include "client/cpp/service/errors.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "client/cpp/commands/flags.h"
+#include "client/cpp/failure.h"
+#include "client/cpp/library/status.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 
 namespace tribodyn::client {
 namespace {
+
+std::string readable_error(const grpc::Status& status) { return service_error(status, "x").what(); }
+
+Failure to_failure(const grpc::Status& status, const std::string& address) {
+  return Failure(service_error(status, address));
+}
 
 grpc::Status refusal_with_violations() {
   google::rpc::Status details;

@@ -88,7 +88,7 @@ TEST(Follow, ReturnsEverySimulationOnceAllHaveEnded) {
   ScriptedServer server;
   server.scripts = {{{v1::Simulation::RUNNING, v1::Simulation::SUCCEEDED}, grpc::Status::OK}};
   Connection connection(server.address(), std::chrono::seconds(10));
-  const auto ended = follow(connection, queued({"a", "b"}), {"a", "b"});
+  const auto ended = follow(connection, queued({"a", "b"}), {"a", "b"}, ProgressForm::kNone);
   ASSERT_EQ(ended.size(), 2U);
   EXPECT_EQ(ended[1].name(), "simulations/b");
 }
@@ -99,7 +99,7 @@ TEST(Follow, TakesABrokenStreamUpAgain) {
                     {{}, grpc::Status::OK},
                     {{v1::Simulation::SUCCEEDED}, grpc::Status::OK}};
   Connection connection(server.address(), std::chrono::seconds(10));
-  EXPECT_EQ(follow(connection, queued({"a"}), {"a"}).size(), 1U);
+  EXPECT_EQ(follow(connection, queued({"a"}), {"a"}, ProgressForm::kNone).size(), 1U);
   EXPECT_EQ(server.watches(), 3);
 }
 
@@ -108,7 +108,7 @@ TEST(Follow, EndsOnARefusal) {
   server.scripts = {{{}, {grpc::StatusCode::NOT_FOUND, "no such simulation"}}};
   Connection connection(server.address(), std::chrono::seconds(10));
   try {
-    follow(connection, queued({"a"}), {"a"});
+    follow(connection, queued({"a"}), {"a"}, ProgressForm::kNone);
     FAIL() << "a refusal passed";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.exit_code(), kExitFailed);
@@ -125,7 +125,7 @@ TEST(Follow, CtrlCSaysHowToGoOn) {
     std::raise(SIGINT);
   });
   try {
-    follow(connection, queued({"job1"}), {"lubricants/1"});
+    follow(connection, queued({"job1"}), {"lubricants/1"}, ProgressForm::kNone);
     ADD_FAILURE() << "Ctrl-C passed unnoticed";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.exit_code(), kExitInterrupted);

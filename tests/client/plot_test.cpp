@@ -84,7 +84,7 @@ TEST(CurvePlot, ShowsEveryFluidTheBandsAndTheCaption) {
   keep("curve.svg", svg);
   EXPECT_TRUE(is_well_formed(svg));
   for (const char* text :
-       {"Lubricant 1", "ester-olefin copolymer", "Lubricant 2", "lubricant 3", "tribodyn-model-1",
+       {"Lubricant 1", "ester-olefin copolymer", "Lubricant 2", "lubricant 3", "tribodyn-model-2",
         "sump 40 \xC2\xB0\x43", "up-sweep", "Mesh loss, W"}) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   }

@@ -53,7 +53,7 @@ void succeed(v1::Simulation& simulation) {
   simulation.set_state(v1::Simulation::SUCCEEDED);
   simulation.mutable_start_time()->set_seconds(100);
   simulation.mutable_end_time()->set_seconds(103);
-  simulation.mutable_result()->set_model_version("tribodyn-model-1");
+  simulation.mutable_result()->set_model_version("tribodyn-model-2");
   simulation.mutable_result()->set_input_hash("abc123");
 }
 

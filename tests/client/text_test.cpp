@@ -127,7 +127,7 @@ TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
   for (const char* part :
        {"Mesh loss (conjunctional", "inefficiency, energy mean", "eq 30", "72.5 km/h", "T_s",
         "film ratio lambda", "contact loss                 yes", "0.6000 ms", "1.2e-06", "abc123",
-        "tribodyn-model-1", "isothermal, as published eq17_atan", "FILM_RATIO_LOW",
+        "tribodyn-model-2", "isothermal, as published eq17_atan", "FILM_RATIO_LOW",
         "Another steady state", "1 assumed (all: --assumptions)"}) {
     EXPECT_TRUE(holds(text, part));
   }
@@ -223,7 +223,7 @@ TEST(ProgressBar, FitsTheTerminal) {
 
 TEST(ProgressDisplay, IsSparseOffTerminals) {
   std::ostringstream out;
-  ProgressDisplay display(out, false, 80);
+  ProgressDisplay display(out, ProgressForm::kLines, 80);
   JobProgress job{"lubricants/1", "running", "settling", 0, false};
   for (int i = 0; i <= 100; ++i) {
     job.fraction = 0.01 * i;
@@ -241,7 +241,7 @@ TEST(ProgressDisplay, IsSparseOffTerminals) {
 
 TEST(ProgressDisplay, RedrawsOnTerminals) {
   std::ostringstream out;
-  ProgressDisplay display(out, true, 80);
+  ProgressDisplay display(out, ProgressForm::kBars, 80);
   const JobProgress job{"a", "running", "", 0.1, false};
   display.show({job, job});
   display.show({job, job});

@@ -315,17 +315,23 @@ TEST_P(PowerBalanceIdentities, ClosesInTheReportOfAPoint) {
   const PowerCase p = GetParam();
   Scene scene = reference_scene();
   scene.options.energy_consistent = p.energy_consistent;
-  PointOptions options;
-  options.relative_tolerance = 1e-8;
-  const PointResult point = solve_operating_point(scene, cruise(p.kilometers_per_hour), options);
-  const PowerBalance& w = point.power_balance;
-  const double residual =
-      w.input - w.output - w.friction - w.shaft_damping - w.mesh_damping - w.stored - w.parametric;
-  std::cout << "reported: residual " << residual / w.input << " of the input\n";
-  EXPECT_NEAR(residual, 0, 1e-8 * w.input);
-  const double cycle_time = point.recorded_mesh_cycles / point.mesh_frequency;
-  EXPECT_NEAR(w.input, point.input_power * cycle_time, 1e-12 * w.input);
-  EXPECT_NEAR(w.friction, point.mesh_loss_power * cycle_time, 1e-12 * w.input);
+  for (const SteadyStateMethod method :
+       {SteadyStateMethod::kMarch, SteadyStateMethod::kAutomatic}) {
+    PointOptions options;
+    options.method = method;
+    options.relative_tolerance = 1e-8;
+    const PointResult point = solve_operating_point(scene, cruise(p.kilometers_per_hour), options);
+    const PowerBalance& w = point.power_balance;
+    const double residual = w.input - w.output - w.friction - w.shaft_damping - w.mesh_damping -
+                            w.stored - w.parametric;
+    std::cout << "reported: residual " << residual / w.input << " of the input\n";
+    const bool shot = method == SteadyStateMethod::kAutomatic;
+    ASSERT_EQ(point.method == SteadyStateMethod::kShooting, shot);
+    EXPECT_NEAR(residual, 0, (shot ? point.estimated_relative_error.value() : 1e-8) * w.input);
+    const double cycle_time = point.recorded_mesh_cycles / point.mesh_frequency;
+    EXPECT_NEAR(w.input, point.input_power * cycle_time, 1e-12 * w.input);
+    EXPECT_NEAR(w.friction, point.mesh_loss_power * cycle_time, 1e-12 * w.input);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Points, PowerBalanceIdentities,

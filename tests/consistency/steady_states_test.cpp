@@ -131,6 +131,7 @@ TEST(SteadyStates, ARepellingOrbitIsLeft) {
 
 TEST(SteadyStates, WithoutWorkToSettleTheAnswerSaysSo) {
   PointOptions options;
+  options.method = SteadyStateMethod::kMarch;
   options.maximum_mesh_cycles = 5;
   options.recorded_mesh_cycles = 3;
   const PointResult r = solve_operating_point(reference_scene(), cruise(72.5), options);

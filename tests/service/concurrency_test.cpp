@@ -3,6 +3,7 @@
 
 #include <thread>
 
+#include "google/rpc/code.pb.h"
 #include "server/app/contacts.h"
 #include "server/app/resources.h"
 #include "server/app/simulations.h"
@@ -134,6 +135,40 @@ TEST(Concurrency, StoppingWhileWatchedAndFed) {
   for (const std::string& name : names) {
     EXPECT_EQ(bench.get(name).state(), v1::Simulation::QUEUED);
   }
+}
+
+TEST(Concurrency, NoUpdateIsLostAndNoRevisionIsMadeTwice) {
+  Bench bench;
+  Application app = bench.application();
+  constexpr int kThreads = 4;
+  constexpr int kRounds = 15;
+  std::atomic<int> updated = 0;
+  on_threads(kThreads, [&](int thread) {
+    for (int round = 0; round < kRounds; ++round) {
+      v1::UpdateLubricantRequest update;
+      update.mutable_lubricant()->set_name("lubricants/1");
+      update.mutable_lubricant()->set_lims_id(std::to_string(thread) + "." + std::to_string(round));
+      update.mutable_update_mask()->add_paths("lims_id");
+      const auto outcome = update_lubricant(app, update);
+      if (outcome.ok()) {
+        ++updated;
+      } else {
+        EXPECT_EQ(outcome.error().code(), google::rpc::ABORTED) << "others keep changing it";
+      }
+      v1::ListLubricantsRequest list;
+      list.set_filter("lims_id:" + std::to_string(thread) + ".");
+      EXPECT_TRUE(list_lubricants(app, list).ok());
+      v1::DeleteVehicleRequest remove;
+      remove.set_name("vehicles/passenger-car");
+      EXPECT_TRUE(delete_vehicle(app, remove).ok());
+      v1::UndeleteVehicleRequest restore;
+      restore.set_name(remove.name());
+      EXPECT_TRUE(undelete_vehicle(app, restore).ok());
+    }
+  });
+  v1::GetLubricantRequest get;
+  get.set_name("lubricants/1");
+  EXPECT_EQ(get_lubricant(app, get).message().revision(), 1 + updated);
 }
 
 TEST(Concurrency, ContactsAreEvaluatedSideBySideWithEqualBits) {

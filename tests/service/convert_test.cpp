@@ -5,6 +5,7 @@
 
 #include "core/version.h"
 #include "server/convert/from_core.h"
+#include "server/convert/output_only.h"
 #include "server/convert/to_core.h"
 #include "tests/service/support.h"
 
@@ -20,7 +21,7 @@ int fill(Message* message, int next = 1) {
   const auto& reflection = *message->GetReflection();
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor* field = descriptor.field(i);
-    if (field->is_repeated()) continue;
+    if (field->is_repeated() || is_output_only(*field)) continue;
     if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
       reflection.SetDouble(message, field, next++);
     } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_INT32) {

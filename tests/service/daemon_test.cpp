@@ -56,6 +56,33 @@ TEST_F(DaemonTest, ATerminationEndsStreamsAndKeepsWorkForTheNextStart) {
   cancel(running.name());
 }
 
+TEST_F(DaemonTest, ABackupIsTakenWhileItRunsAndRestoredOnceItHasStopped) {
+  const std::string database = folder_.file("tribodyn.db");
+  const auto run = [&](const std::vector<std::string>& arguments) {
+    std::filesystem::remove(folder_.file("command.log"));
+    ServerProcess command(arguments, folder_.file("command.log"));
+    const int code = command.wait();
+    return std::to_string(code) + " " + command.log();
+  };
+  EXPECT_EQ(run({"backup", "--database", database, folder_.file("copy")}), "0 ");
+  EXPECT_EQ(run({"check", "--database", database}), "0 ");
+  v1::Simulation simulation;
+  ASSERT_TRUE(create(point_simulation(), &simulation).ok());
+  EXPECT_THAT(run({"restore", "--database", database, folder_.file("copy")}),
+              HasSubstr("in use by another tribodynd"));
+  process_->signal(SIGTERM);
+  process_->wait();
+  EXPECT_EQ(run({"restore", "--database", database, folder_.file("copy")}), "0 ");
+  start();
+  v1::ListSimulationsResponse list;
+  grpc::ClientContext context;
+  ASSERT_TRUE(simulations_->ListSimulations(&context, {}, &list).ok());
+  EXPECT_EQ(list.simulations_size(), 0) << "made after the backup";
+  EXPECT_THAT(run({"check", "--database", folder_.file("nothing")}), HasSubstr("3 "));
+  EXPECT_THAT(run({"backup", "--database", database}), HasSubstr("FILE is required"));
+  EXPECT_THAT(run({}), HasSubstr("--database is required"));
+}
+
 TEST_F(DaemonTest, ASecondServerOnTheSameDatabaseOrPortSaysSo) {
   ServerProcess same_database(
       {"--listen", "127.0.0.1:0", "--database", folder_.file("tribodyn.db")},

@@ -20,6 +20,12 @@ class GrpcTest : public testing::Test {
   void SetUp() override { start(); }
 
   std::vector<std::string> flags() const {
+    std::vector<std::string> out = more_flags_;
+    for (const std::string& each : common_flags()) out.push_back(each);
+    return out;
+  }
+
+  std::vector<std::string> common_flags() const {
     return {"--listen",    listen_,
             "--database",  folder_.file("tribodyn.db"),
             "--port-file", folder_.file("port"),
@@ -89,6 +95,7 @@ class GrpcTest : public testing::Test {
 
   TemporaryFolder folder_;
   std::string listen_ = "127.0.0.1:0";
+  std::vector<std::string> more_flags_;
   int maximum_files_ = 0;  // no limit of its own
   std::unique_ptr<ServerProcess> process_;
   std::string address_;

@@ -11,6 +11,8 @@
 
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "server/convert/output_only.h"
+#include "server/convert/provenance.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
 #include "tribodyn/v1/contacts.grpc.pb.h"
@@ -75,6 +77,9 @@ TEST_F(GrpcTest, ResourcesAreServed) {
     request.set_name("gearSets/A");
     v1::GearSet response;
     ASSERT_TRUE(v1::GearSets::NewStub(channel_)->GetGearSet(&context, request, &response).ok());
+    EXPECT_EQ(response.revision(), 1);
+    keep_client_part(response);
+    clear_units(*response.mutable_provenance());
     EXPECT_EQ(response.SerializeAsString(), seed<v1::GearSet>("gearSets/A").SerializeAsString());
   }
   {
@@ -213,6 +218,28 @@ TEST_F(GrpcTest, ARunningSimulationIsCancelledAndItsWatcherSeesTheEnd) {
   EXPECT_TRUE(eventually([&] { return get(next.name()).state() == v1::Simulation::SUCCEEDED; }));
 }
 
+class HastyStreamsTest : public GrpcTest {
+ protected:
+  void SetUp() override {
+    more_flags_ = {"--stream-limit-seconds", "0.5"};
+    start();
+  }
+};
+
+TEST_F(HastyStreamsTest, AWatchEndsAtItsDeadlineAndMayBeTakenUpAgain) {
+  v1::Simulation running;
+  ASSERT_TRUE(create(long_simulation(), &running).ok());
+  for (int again = 0; again < 2; ++again) {
+    grpc::Status status;
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_FALSE(watch(running.name(), &status).empty());
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED) << status.error_message();
+    EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(450));
+  }
+  EXPECT_EQ(get(running.name()).state(), v1::Simulation::RUNNING);
+  cancel(running.name());
+}
+
 TEST_F(GrpcTest, AWatcherThatNeverReadsHoldsUpNobody) {
   v1::Simulation running;
   ASSERT_TRUE(create(long_simulation(), &running).ok());
@@ -258,7 +285,7 @@ TEST_F(GrpcTest, GarbageNeitherCrashesNorHangsIt) {
       client.call("/tribodyn.v1." + std::string(method), bytes);
     }
   }
-  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/EvaluateContact", std::string(2'000'000, 'x'))
+  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/EvaluateContact", std::string(5'000'000, 'x'))
                 .first.error_code(),
             grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_EQ(client.call("/tribodyn.v1.Contacts/NoSuchMethod", "").first.error_code(),

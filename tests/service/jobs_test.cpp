@@ -260,7 +260,7 @@ TEST(SimulationJobs, TooManyWaitingAreTurnedAway) {
   ASSERT_TRUE(bench.reaches(running, v1::Simulation::RUNNING));
   bench.create(point_simulation());
   bench.create(point_simulation());
-  EXPECT_FALSE(bench.jobs().submit("request", std::string(64, 'a')));
+  EXPECT_FALSE(bench.jobs().submit({.request = "request", .input_hash = std::string(64, 'a')}));
   *release = true;
 }
 

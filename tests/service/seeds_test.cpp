@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/gear/gear_set.h"
+#include "server/convert/accept_resource.h"
 #include "server/convert/check_message.h"
 #include "server/convert/to_core.h"
 #include "tests/service/reference_data.h"
@@ -236,6 +237,24 @@ TEST(Seeds, EveryParameterStatesWhereItComesFrom) {
   for (const auto& name : seed_lookup().names(kGearSets)) expect_provenance<v1::GearSet>(name);
   for (const auto& name : seed_lookup().names(kSurfaces)) expect_provenance<v1::Surface>(name);
   for (const auto& name : seed_lookup().names(kVehicles)) expect_provenance<v1::Vehicle>(name);
+}
+
+template <class Resource>
+void expect_accepted_as_they_are(const char* collection) {
+  for (const std::string& name : seed_lookup().names(collection)) {
+    Violations violations;
+    const auto accepted = accept(seed<Resource>(name), static_cast<const Resource*>(nullptr),
+                                 seed_lookup(), name, violations);
+    ASSERT_TRUE(accepted) << violations.front().field << ": " << violations.front().description;
+    EXPECT_EQ(accepted->SerializeAsString(), seed<Resource>(name).SerializeAsString()) << name;
+  }
+}
+
+TEST(Seeds, AreAsIfAClientHadCreatedThem) {
+  expect_accepted_as_they_are<v1::Lubricant>(kLubricants);
+  expect_accepted_as_they_are<v1::GearSet>(kGearSets);
+  expect_accepted_as_they_are<v1::Surface>(kSurfaces);
+  expect_accepted_as_they_are<v1::Vehicle>(kVehicles);
 }
 
 TEST(Seeds, ObeyTheServersOwnConstraints) {

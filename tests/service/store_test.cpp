@@ -34,35 +34,79 @@ class StoreTest : public testing::Test {
 
 TEST_F(StoreTest, SeedsAreAddedOnceAndNeverOverwritten) {
   Store store(path());
-  store.add_resources({{"lubricants/1", "first"}});
-  store.add_resources({{"lubricants/1", "second"}, {"lubricants/2", "other"}});
-  EXPECT_EQ(store.resource("lubricants/1"), "first");
-  EXPECT_EQ(store.resource("lubricants/2"), "other");
+  store.add_resources({{"lubricants/1", "first"}}, 1);
+  store.add_resources({{"lubricants/1", "second"}, {"lubricants/2", "other"}}, 2);
+  EXPECT_EQ(store.resource("lubricants/1")->body, "first");
+  EXPECT_EQ(store.resource("lubricants/2")->body, "other");
   EXPECT_EQ(store.resource("lubricants/3"), std::nullopt);
+}
+
+ResourceQuery all_of_b(int limit, std::size_t byte_limit, const std::string& after = "") {
+  ResourceQuery query;
+  query.collection = "b";
+  query.limit = limit;
+  query.byte_limit = byte_limit;
+  if (!after.empty()) query.after = PageStart{{}, after};
+  return query;
 }
 
 TEST_F(StoreTest, ResourcesArePagedByNumberAndBytesWithinTheirCollection) {
   Store store(path());
   store.add_resources(
-      {{"a/1", "x"}, {"b/1", "x"}, {"b/2", std::string(100, 'x')}, {"b/3", "x"}, {"c/1", "x"}});
-  auto page = store.resources("b", "", 2, 1000);
+      {{"a/1", "x"}, {"b/1", "x"}, {"b/2", std::string(100, 'x')}, {"b/3", "x"}, {"c/1", "x"}}, 1);
+  auto page = store.resources(all_of_b(2, 1000));
   ASSERT_EQ(page.rows.size(), 2U);
   EXPECT_EQ(page.rows.front().name, "b/1");
   EXPECT_TRUE(page.more);
-  page = store.resources("b", "b/2", 2, 1000);
+  page = store.resources(all_of_b(2, 1000, "b/2"));
   ASSERT_EQ(page.rows.size(), 1U);
   EXPECT_FALSE(page.more);
-  page = store.resources("b", "", 10, 50);
+  page = store.resources(all_of_b(10, 50));
   EXPECT_EQ(page.rows.size(), 1U);
   EXPECT_TRUE(page.more);
-  page = store.resources("b", "b/1", 10, 50);
+  page = store.resources(all_of_b(10, 50, "b/1"));
   EXPECT_EQ(page.rows.size(), 1U) << "one row always comes, however large";
   EXPECT_EQ(store.resource_names("b").size(), 3U);
 }
 
+TEST_F(StoreTest, AnUpdateMakesARevisionAndLosesNone) {
+  Store store(path());
+  ASSERT_TRUE(store.create_resource({"lubricants/x", "first"}, 1));
+  EXPECT_FALSE(store.create_resource({"lubricants/x", "again"}, 2));
+  const StoredResource first = *store.resource("lubricants/x");
+  EXPECT_TRUE(store.update_resource(first, "second", 3));
+  EXPECT_FALSE(store.update_resource(first, "third", 4)) << "somebody else was faster";
+  EXPECT_FALSE(store.delete_resource(first, 4));
+  const StoredResource second = *store.resource("lubricants/x");
+  EXPECT_EQ(second.revision, 2);
+  EXPECT_EQ(second.body, "second");
+  EXPECT_EQ(second.create_time, 1);
+  EXPECT_EQ(second.revision_create_time, 3);
+  EXPECT_EQ(store.revision("lubricants/x", 1)->body, "first");
+  EXPECT_FALSE(store.revision("lubricants/x", 1)->is_present);
+  EXPECT_EQ(store.revision("lubricants/x", 3), std::nullopt);
+  EXPECT_EQ(store.revisions("lubricants/x", 0, 10, 1000).rows.size(), 2U);
+  EXPECT_EQ(store.revisions("lubricants/x", 2, 10, 1000).rows.front().body, "first");
+}
+
+TEST_F(StoreTest, ADeletedResourceIsOutOfListsAndComesBackWhole) {
+  Store store(path());
+  store.create_resource({"b/1", "body"}, 1);
+  ASSERT_TRUE(store.delete_resource(*store.resource("b/1"), 5));
+  EXPECT_EQ(store.resource("b/1")->delete_time, 5);
+  EXPECT_TRUE(store.resources(all_of_b(10, 1000)).rows.empty());
+  EXPECT_TRUE(store.resource_names("b").empty());
+  ResourceQuery with_deleted = all_of_b(10, 1000);
+  with_deleted.show_deleted = true;
+  EXPECT_EQ(store.resources(with_deleted).rows.size(), 1U);
+  ASSERT_TRUE(store.undelete_resource(*store.resource("b/1")));
+  EXPECT_EQ(store.resources(all_of_b(10, 1000)).rows.size(), 1U);
+}
+
 TEST_F(StoreTest, ASimulationGoesThroughItsStatesAndKeepsItsResult) {
   Store store(path());
-  const auto id = store.add_simulation(std::string("re\0quest", 8), kHash, 10);
+  const auto id =
+      store.add_simulation({.request = std::string("re\0quest", 8), .input_hash = kHash}, 10);
   EXPECT_EQ(store.simulation(id)->state, StoredState::kQueued);
   EXPECT_TRUE(store.mark_running(id, 20));
   EXPECT_FALSE(store.mark_running(id, 20)) << "only one worker gets it";
@@ -83,7 +127,7 @@ TEST_F(StoreTest, ASimulationGoesThroughItsStatesAndKeepsItsResult) {
 
 TEST_F(StoreTest, ACancelledSimulationTakesNoResult) {
   Store store(path());
-  const auto id = store.add_simulation("request", kHash, 1);
+  const auto id = store.add_simulation({.request = "request", .input_hash = kHash}, 1);
   store.mark_running(id, 2);
   EXPECT_TRUE(store.mark_cancelled(id, 3));
   EXPECT_FALSE(store.mark_succeeded(id, 4, "result", {{"a", {1}}}));
@@ -95,9 +139,9 @@ TEST_F(StoreTest, WhatACrashInterruptedIsQueuedAgainAndResultsStay) {
   std::int64_t queued = 0, running = 0, done = 0;
   {
     Store store(path());
-    queued = store.add_simulation("q", kHash, 1);
-    running = store.add_simulation("r", kHash, 2);
-    done = store.add_simulation("d", kHash, 3);
+    queued = store.add_simulation({.request = "q", .input_hash = kHash}, 1);
+    running = store.add_simulation({.request = "r", .input_hash = kHash}, 2);
+    done = store.add_simulation({.request = "d", .input_hash = kHash}, 3);
     store.mark_running(running, 4);
     store.mark_running(done, 4);
     store.mark_succeeded(done, 5, "result", {});
@@ -111,7 +155,7 @@ TEST_F(StoreTest, WhatACrashInterruptedIsQueuedAgainAndResultsStay) {
 
 TEST_F(StoreTest, IdsAreNeverUsedAgainAndListsAreNewestFirst) {
   Store store(path());
-  for (int i = 0; i < 5; ++i) store.add_simulation("r", kHash, i);
+  for (int i = 0; i < 5; ++i) store.add_simulation({.request = "r", .input_hash = kHash}, i);
   const auto page = store.simulations(0, 2, 1000);
   ASSERT_EQ(page.rows.size(), 2U);
   EXPECT_TRUE(page.more);
@@ -122,13 +166,21 @@ TEST_F(StoreTest, IdsAreNeverUsedAgainAndListsAreNewestFirst) {
 
 TEST_F(StoreTest, TheSchemaKeepsOutWhatMakesNoSense) {
   Store store(path());
-  EXPECT_THROW(store.add_simulation("r", "short hash", 1), StoreError);
+  EXPECT_THROW(store.add_simulation({.request = "r", .input_hash = "short hash"}, 1), StoreError);
   SQLite::Database raw(path(), SQLite::OPEN_READWRITE);
   raw.exec("PRAGMA foreign_keys = ON");
+  const auto id = store.add_simulation({.request = "r", .input_hash = kHash}, 1);
   EXPECT_THROW(raw.exec("INSERT INTO results VALUES (77, x'00')"), SQLite::Exception);
-  EXPECT_THROW(raw.exec("INSERT INTO resources VALUES ('a/1', 'text is no blob')"),
-               SQLite::Exception);
-  const auto id = store.add_simulation("r", kHash, 1);
+  store.create_resource({"a/1", "body"}, 1);
+  for (const char* illegal :
+       {"INSERT INTO revisions VALUES (9, 1, 2, 1, printf('%064d', 0), 'text is no blob')",
+        "INSERT INTO revisions VALUES (9, 1, 3, 1, printf('%064d', 0), x'00')",
+        "INSERT INTO revisions VALUES (9, 7, 1, 1, printf('%064d', 0), x'00')",
+        "UPDATE revisions SET body = x'00'", "DELETE FROM revisions",
+        "UPDATE resources SET present = 77", "UPDATE resources SET name = 'c/1'",
+        "UPDATE simulations SET lubricant = 77 WHERE id = 1"}) {
+    EXPECT_THROW(raw.exec(illegal), SQLite::Exception) << illegal;
+  }
   EXPECT_THROW(raw.exec("UPDATE simulations SET state = 9 WHERE id = " + std::to_string(id)),
                SQLite::Exception);
   EXPECT_THROW(raw.exec("UPDATE simulations SET state = 4 WHERE id = " + std::to_string(id)),
@@ -188,7 +240,7 @@ TEST_F(StoreTest, RefusesAReadOnlyFile) {
 
 TEST_F(StoreTest, EverySeedParsesAndHasItsOwnName) {
   std::set<std::string> names;
-  for (const StoredResource& seed : seed_resources()) names.insert(seed.name);
+  for (const NewResource& seed : seed_resources()) names.insert(seed.name);
   EXPECT_EQ(names, (std::set<std::string>{"lubricants/1", "lubricants/2", "lubricants/3",
                                           "gearSets/A", "gearSets/B", "gearSets/A-conformal",
                                           "surfaces/run-in", "vehicles/passenger-car"}));

@@ -55,16 +55,18 @@ TemporaryFolder::~TemporaryFolder() {
 }
 
 ResourceLookup seed_lookup() {
-  static const std::vector<StoredResource> kSeeds = seed_resources();
-  return {[](const std::string& name) -> std::optional<std::string> {
-            for (const StoredResource& seed : kSeeds) {
-              if (seed.name == name) return seed.body;
+  static const std::vector<NewResource> kSeeds = seed_resources();
+  return {[](const RevisionName& name) -> std::optional<FoundResource> {
+            for (const NewResource& seed : kSeeds) {
+              if (seed.name == name.name && name.revision <= 1) {
+                return FoundResource{1, false, seed.body};
+              }
             }
             return std::nullopt;
           },
           [](const std::string& collection) {
             std::vector<std::string> names;
-            for (const StoredResource& seed : kSeeds) {
+            for (const NewResource& seed : kSeeds) {
               if (seed.name.starts_with(collection + "/")) names.push_back(seed.name);
             }
             return names;
@@ -174,7 +176,7 @@ Bench::Bench(StudyFunctions studies, int threads, std::size_t maximum_waiting)
 
 void Bench::open(StudyFunctions studies) {
   store_ = std::make_unique<Store>(folder_.file("tribodyn.db"));
-  store_->add_resources(seed_resources());
+  store_->add_resources(seed_resources(), system_time());
   SimulationJobs::Options options;
   options.threads = threads_;
   options.maximum_waiting = maximum_waiting_;

@@ -36,7 +36,7 @@ ResourceLookup seed_lookup();
 template <class Resource>
 Resource seed(const std::string& name) {
   Resource resource;
-  resource.ParseFromString(*seed_lookup().body(name));
+  resource.ParseFromString(seed_lookup().find({name, 0})->body);
   return resource;
 }
 
@@ -61,6 +61,7 @@ class Bench {
                  std::size_t maximum_waiting = kMaximumWaitingSimulations);
 
   Store& store() { return *store_; }
+  std::string database() const { return folder_.file("tribodyn.db"); }
   SimulationJobs& jobs() { return *jobs_; }
   Application application() { return {*store_, *jobs_}; }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "client/cpp/commands/help.h"
+#include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -39,6 +39,7 @@ CLI::App& add_command(CLI::App& root, const Command& command) {
         app->get_subcommands([&](const CLI::App* each) { return each->get_name() == word; });
     app = below.empty() ? app->add_subcommand(word) : below.front();
     app->allow_extras();
+    app->require_subcommand(0, 1);
   }
   return *app;
 }
@@ -79,15 +80,33 @@ void complain_of_extras(const CLI::App& root, const CLI::App& app, const Command
                            (meant.empty() ? "" : " (is " + meant + " meant?)"));
     }
     follows_option = is_option && extra.find('=') == std::string::npos;
+    if (!is_option && command == nullptr) break;  // what follows belongs to the unknown command
   }
 }
 
 }  // namespace
 
+std::vector<std::pair<std::string, std::string>> parse_settings(std::istream& in,
+                                                                const std::string& path,
+                                                                Complaints& complaints) {
+  std::vector<std::pair<std::string, std::string>> settings;
+  try {
+    for (const CLI::ConfigItem& item : CLI::ConfigINI().from_config(in)) {
+      if (item.name == "++" || item.name == "--") continue;  // section marks
+      settings.emplace_back(item.fullname(), item.inputs.empty() ? "" : item.inputs.front());
+    }
+  } catch (const CLI::Error& error) {
+    complaints.push_back(path + ": " + error.what());
+  }
+  return settings;
+}
+
 Parsed parse_arguments(const std::vector<std::string>& arguments,
                        const std::vector<Command>& commands, const FlagList& common_flags) {
   CLI::App root;
   root.allow_extras();
+  // Else a resource whose name is that of a command would be taken for the command.
+  root.require_subcommand(0, 1);
   bool version = false;
   root.add_flag("--version", version);
   GivenTexts given;
@@ -113,7 +132,11 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
   const CLI::App* app = &root;
   while (!app->get_subcommands().empty()) app = app->get_subcommands().back();
   const auto found = by_app.find(app);
-  if (found != by_app.end()) parsed.command = found->second;
+  if (found != by_app.end()) {
+    parsed.command = found->second;
+  } else if (app != &root) {
+    parsed.group = app->get_name();
+  }
   if (parsed.wants_help || parsed.wants_version) return parsed;
 
   complain_of_extras(root, *app, parsed.command, commands, common_flags, parsed.complaints);
@@ -121,7 +144,12 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
   for (const FlagList* list : {&parsed.command->flags, &common_flags}) {
     for (const Flag& flag : list->flags()) {
       const auto texts = given.find(&flag);
-      if (texts != given.end()) flag.read(texts->second, parsed.complaints);
+      if (texts == given.end()) continue;
+      if (!flag.is_file() && !std::all_of(texts->second.begin(), texts->second.end(), is_utf8)) {
+        parsed.complaints.push_back(flag.first_name() + ": is not UTF-8 text");
+      } else {
+        flag.read(texts->second, parsed.complaints);
+      }
     }
   }
   if (parsed.command->check) parsed.command->check(parsed.complaints);

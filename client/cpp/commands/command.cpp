@@ -1,12 +1,20 @@
 #include "client/cpp/commands/command.h"
 
+#include "client/cpp/resources/kind.h"
+
 namespace tribodyn::client {
+
+ProgressForm CommonOptions::progress_form() const {
+  if (progress == ProgressChoice::kLines) return ProgressForm::kLines;
+  if (progress == ProgressChoice::kNone) return ProgressForm::kNone;
+  return standard_error_is_terminal() ? ProgressForm::kBars : ProgressForm::kNone;
+}
 
 void add_common_flags(FlagList& flags, CommonOptions& options) {
   flags.group("Every command");
   flags.text("--server", "HOST:PORT",
-             "Where tribodynd listens; unix:PATH for a socket. Default: TRIBODYN_SERVER, else "
-             "127.0.0.1:50651.",
+             "Where tribodynd listens; unix:PATH for a socket. Default: TRIBODYN_SERVER, else the "
+             "configuration file, else 127.0.0.1:50651.",
              [&](const std::string& text) { options.server = text; });
   flags.number("--timeout-seconds", {"s", "above 0 to 86400", "30"},
                "Longest wait for one answer; a simulation may take as long as it needs",
@@ -15,20 +23,35 @@ void add_common_flags(FlagList& flags, CommonOptions& options) {
                "Form of the result on standard output; progress and errors go to standard error. "
                "json is the protos' JSON. Default: table.",
                [&](int index) { options.output_format = static_cast<OutputFormat>(index); });
+  flags.choice("--progress", {"auto", "lines", "none"},
+               "auto: bars on a terminal, nothing elsewhere; lines: a line now and then, for logs. "
+               "Default: auto.",
+               [&](int index) { options.progress = static_cast<ProgressChoice>(index); });
+  flags.choice("--color", {"auto", "always", "never"},
+               "auto: on a terminal, unless NO_COLOR is set. Default: auto.",
+               [&](int index) { options.colour = static_cast<ColourChoice>(index); });
+  flags.toggle("--no-color", "The same as --color never.",
+               [&] { options.colour = ColourChoice::kNever; });
 }
 
 std::vector<Command> all_commands() {
   std::vector<Command> commands;
-  commands.push_back(point_command());
   commands.push_back(curve_command());
+  commands.push_back(point_command());
   commands.push_back(history_command());
   commands.push_back(contact_command());
-  commands.push_back(lubricants_list_command());
-  commands.push_back(lubricants_get_command());
+  for (const ResourceKind& kind : resource_kinds()) {
+    for (Command& command : resource_commands(kind)) commands.push_back(std::move(command));
+  }
+  commands.push_back(diff_command());
+  commands.push_back(validate_command());
+  commands.push_back(schema_command());
   commands.push_back(jobs_list_command());
   commands.push_back(jobs_get_command());
   commands.push_back(jobs_watch_command());
   commands.push_back(jobs_cancel_command());
+  commands.push_back(help_command());
+  commands.push_back(completion_command());
   return commands;
 }
 

@@ -1,21 +1,32 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "client/cpp/commands/flags.h"
 #include "client/cpp/failure.h"
-#include "client/cpp/service/connection.h"
+#include "client/cpp/text/colour.h"
 #include "client/cpp/text/output.h"
+#include "client/cpp/text/progress.h"
+#include "tribodyn/client/connection.h"
 
 namespace tribodyn::client {
+
+struct ResourceKind;
+
+enum class ProgressChoice { kAuto, kLines, kNone };
 
 /// What every command has: the server and the form of its output.
 struct CommonOptions {
   std::string server;
   double timeout_seconds = 30;
   OutputFormat output_format = OutputFormat::kTable;
+  ColourChoice colour = ColourChoice::kAuto;
+  ProgressChoice progress = ProgressChoice::kAuto;
+
+  ProgressForm progress_form() const;
 
   Connection connect() const {
     return Connection(server_address(server), std::chrono::duration<double>(timeout_seconds));
@@ -39,12 +50,18 @@ void add_common_flags(FlagList& flags, CommonOptions& options);
 /// Every command, in the order of the help.
 std::vector<Command> all_commands();
 
+/// list, get, create, update, delete, undelete, revisions, import and export of one kind.
+std::vector<Command> resource_commands(const ResourceKind& kind);
+
 Command point_command();
 Command curve_command();
 Command history_command();
 Command contact_command();
-Command lubricants_list_command();
-Command lubricants_get_command();
+Command diff_command();
+Command validate_command();
+Command schema_command();
+Command completion_command();
+Command help_command();
 Command jobs_list_command();
 Command jobs_get_command();
 Command jobs_watch_command();

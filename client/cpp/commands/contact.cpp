@@ -6,7 +6,6 @@
 
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/report/contact_report.h"
-#include "client/cpp/service/errors.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/text.h"
 

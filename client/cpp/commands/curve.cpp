@@ -59,8 +59,8 @@ std::map<std::string, std::string> titles_of(const std::vector<v1::Simulation>& 
   for (const v1::Simulation& simulation : simulations) {
     try {
       titles[simulation.lubricant()] =
-          connection.get_lubricant(simulation.lubricant()).display_name();
-    } catch (const Failure&) {
+          connection.get<v1::Lubricant>(simulation.lubricant()).display_name();
+    } catch (const ServiceError&) {
       continue;
     }
   }
@@ -70,7 +70,7 @@ std::map<std::string, std::string> titles_of(const std::vector<v1::Simulation>& 
 int run_curve(CurveFlags& flags, const CommonOptions& options) {
   *flags.scenario.simulation.mutable_inefficiency_curve() = flags.study;
   Connection connection = options.connect();
-  const auto ended = run_scenario(flags.scenario, connection);
+  const auto ended = run_scenario(flags.scenario, connection, options.progress_form());
   if (ended.empty()) return kExitOk;
   std::cout << results_text(ended, options.output_format, false, flags.scenario.shows_assumptions);
   std::vector<v1::Simulation> succeeded;

@@ -29,6 +29,13 @@ std::string value_name_of(const NumberText& text) {
 
 }  // namespace
 
+std::string flag_of_field(const std::string& field_path) {
+  std::string flag = field_path.substr(field_path.rfind('.') + 1);
+  flag = flag.substr(0, flag.find('['));
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return "--" + flag;
+}
+
 std::optional<double> parse_number(const std::string& text) {
   const char* first = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
   const char* last = text.data() + text.size();
@@ -50,6 +57,12 @@ void FlagList::add(const std::string& names, const std::string& value_name,
     for (const std::string& text : texts) read(text, complaints);
   };
   flags_.push_back(std::move(flag));
+}
+
+Flag& FlagList::raw(const std::string& names, const std::string& value_name,
+                    const std::string& description) {
+  flags_.push_back({names, value_name, description, group_});
+  return flags_.back();
 }
 
 void FlagList::number(const std::string& names, const NumberText& text,
@@ -82,23 +95,25 @@ void FlagList::whole_number(const std::string& names, const NumberText& text,
       });
 }
 
-void FlagList::text(const std::string& names, const std::string& value_name,
-                    const std::string& description,
-                    const std::function<void(const std::string&)>& set) {
+Flag& FlagList::text(const std::string& names, const std::string& value_name,
+                     const std::string& description,
+                     const std::function<void(const std::string&)>& set) {
   const std::string name = names.substr(0, names.find(','));
   add(names, value_name, description, [=](const std::string& given, Complaints& complaints) {
     if (given.empty()) complaints.push_back(name + " is empty");
     set(given);
   });
+  return flags_.back();
 }
 
-void FlagList::texts(const std::string& names, const std::string& value_name,
-                     const std::string& description,
-                     const std::function<void(const std::string&)>& add_value) {
+Flag& FlagList::texts(const std::string& names, const std::string& value_name,
+                      const std::string& description,
+                      const std::function<void(const std::string&)>& add_value) {
   choices(names, value_name, description, [add_value](const std::string& value) {
     add_value(value);
     return true;
   });
+  return flags_.back();
 }
 
 void FlagList::choices(const std::string& names, const std::string& words,
@@ -119,6 +134,8 @@ void FlagList::choices(const std::string& names, const std::string& words,
       }
     }
   };
+  flag.words = split(words, '|');
+  if (flag.words.size() == 1) flag.words.clear();  // a placeholder such as NAMES
   flags_.push_back(std::move(flag));
 }
 
@@ -138,6 +155,7 @@ void FlagList::choice(const std::string& names, const std::vector<std::string>& 
       set(static_cast<int>(found - words.begin()));
     }
   });
+  flags_.back().words = words;
 }
 
 void FlagList::toggle(const std::string& names, const std::string& description,

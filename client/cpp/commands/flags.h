@@ -20,6 +20,15 @@ struct Flag {
   bool is_repeatable = false;
   /// Takes every text given (never empty; {"true"} for a switch).
   std::function<void(const std::vector<std::string>&, Complaints&)> read = {};
+  /// Another spelling of a flag that the help shows already.
+  bool is_hidden = false;
+  // Row of the server's constraint table, for the help; empty: none.
+  std::string constraint_message = {};
+  std::string constraint_field = {};
+  // What completion offers for the value.
+  std::vector<std::string> words = {};  ///< one of these
+  std::string collection = {};          ///< the name of a resource, e.g. of "gearSets"
+  bool is_file() const { return value_name.rfind("FILE", 0) == 0; }
 
   bool is_positional() const { return names.front() != '-'; }
   std::string first_name() const { return names.substr(0, names.find(',')); }
@@ -43,11 +52,11 @@ class FlagList {
               const std::function<void(double)>& set);
   void whole_number(const std::string& names, const NumberText& text,
                     const std::string& description, const std::function<void(int)>& set);
-  void text(const std::string& names, const std::string& value_name, const std::string& description,
-            const std::function<void(const std::string&)>& set);
+  Flag& text(const std::string& names, const std::string& value_name,
+             const std::string& description, const std::function<void(const std::string&)>& set);
   /// Repeatable; each text may also hold several values separated by commas.
-  void texts(const std::string& names, const std::string& value_name,
-             const std::string& description, const std::function<void(const std::string&)>& add);
+  Flag& texts(const std::string& names, const std::string& value_name,
+              const std::string& description, const std::function<void(const std::string&)>& add);
   /// One of `words`; `set` gets its index.
   void choice(const std::string& names, const std::vector<std::string>& words,
               const std::string& description, const std::function<void(int)>& set);
@@ -56,6 +65,11 @@ class FlagList {
                const std::function<bool(const std::string&)>& add);
   void toggle(const std::string& names, const std::string& description,
               const std::function<void()>& set);
+
+  /// A flag whose `read` and other members the caller sets at once; the reference does not outlive
+  /// the next flag.
+  Flag& raw(const std::string& names, const std::string& value_name,
+            const std::string& description);
 
   const std::vector<Flag>& flags() const { return flags_; }
 
@@ -66,6 +80,10 @@ class FlagList {
   std::string group_ = "Options";
   std::vector<Flag> flags_;
 };
+
+/// "--sump-temperature-celsius" from "simulation.sump_temperature_celsius": flags are named after
+/// the fields they set.
+std::string flag_of_field(const std::string& field_path);
 
 /// The whole text as a finite number; nothing else will do.
 std::optional<double> parse_number(const std::string& text);

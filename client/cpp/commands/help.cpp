@@ -1,14 +1,35 @@
 #include "client/cpp/commands/help.h"
 
 #include <algorithm>
-#include <numeric>
+#include <iostream>
+#include <memory>
 
+#include "client/cpp/commands/help_topics.h"
+#include "client/cpp/text/colour.h"
+#include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
 
-std::string flag_text(const Flag& flag) {
+constexpr std::chrono::milliseconds kPatience(500);
+
+/// " Legal: 0.1 to 1000 1/GPa (eq 33, alpha*)." as the server's table has it; empty when unknown.
+std::string legal_range(const Flag& flag, const v1::Schema* schema) {
+  if (schema == nullptr || flag.constraint_field.empty()) return "";
+  for (const v1::Constraint& row : schema->constraints()) {
+    if (row.message() != flag.constraint_message || row.field() != flag.constraint_field) continue;
+    const std::string unit = trade_unit_of_field(row.field());
+    return " Legal: " + significant(in_trade_unit(row.field(), row.minimum()), 6) + " to " +
+           significant(in_trade_unit(row.field(), row.maximum()), 6) +
+           (unit.empty() ? "" : " " + unit) +
+           (row.equation().empty() ? "" : " (" + row.equation() + ")") + ".";
+  }
+  return "";
+}
+
+std::string flag_text(const Flag& flag, const v1::Schema* schema) {
   std::string names;
   for (const std::string& name : split(flag.names, ',')) {
     names += (names.empty() ? "" : ", ") + name;
@@ -18,80 +39,168 @@ std::string flag_text(const Flag& flag) {
   } else if (!flag.is_switch) {
     names += " <" + flag.value_name + ">";
   }
-  return "  " + names + "\n" + wrapped(flag.description, 6);
+  return "  " + names + "\n" + wrapped(flag.description + legal_range(flag, schema), 6);
 }
 
-std::string flags_text(const FlagList& list) {
+std::string flags_text(const FlagList& list, const v1::Schema* schema) {
   std::string text;
   std::string group;
   for (const Flag& flag : list.flags()) {
-    if (flag.group != group) text += "\n" + flag.group + "\n";
+    if (flag.is_hidden) continue;
+    if (flag.group != group) text += "\n" + heading(flag.group) + "\n";
     group = flag.group;
-    text += flag_text(flag);
+    text += flag_text(flag, schema);
   }
   return text;
 }
 
-int edit_distance(const std::string& a, const std::string& b) {
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    int diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const int substitution = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitution});
-    }
+std::string group_of(const Command& command) {
+  const std::size_t blank = command.path.find(' ');
+  return blank == std::string::npos ? "" : command.path.substr(0, blank);
+}
+
+/// A line a command, the names in one column.
+std::string lines_text(const std::vector<std::pair<std::string, std::string>>& lines) {
+  std::size_t width = 0;
+  for (const auto& [name, summary] : lines) width = std::max(width, name.size());
+  std::string text;
+  for (const auto& [name, summary] : lines) {
+    text += "  " + name + std::string(width - name.size() + 2, ' ') + summary + "\n";
   }
-  return row.back();
+  return text;
+}
+
+std::string topics_text() {
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const HelpTopic& topic : help_topics())
+    lines.emplace_back("help " + topic.name, topic.summary);
+  return lines_text(lines);
+}
+
+/// A topic, a command or a group.
+std::string page(const std::vector<std::string>& words, const CommonOptions& options) {
+  const std::vector<Command> commands = all_commands();
+  if (words.empty()) return overview_text(commands);
+  const std::string name = joined(words, " ");
+  std::vector<std::string> known;
+  for (const HelpTopic& topic : help_topics()) {
+    if (topic.name == name) return topic.text;
+    known.push_back(topic.name);
+  }
+  CommonOptions unused;
+  FlagList common_flags;
+  add_common_flags(common_flags, unused);
+  for (const Command& command : commands) {
+    if (command.path == name) {
+      const auto schema = schema_for_help(command, options);
+      return help_text(command, common_flags, schema ? &*schema : nullptr);
+    }
+    known.push_back(command.path);
+    known.push_back(group_of(command));
+  }
+  std::string group = group_text(name, commands);
+  if (!group.empty()) return group;
+  const std::string meant = nearest(name, known);
+  throw Failure(kExitUsage, "there is no help on '" + printable(name) + "'" +
+                                (meant.empty() ? "" : " (is " + meant + " meant?)") + "\nTopics\n" +
+                                topics_text());
 }
 
 }  // namespace
 
-std::string overview_text(const std::vector<Command>& commands) {
-  std::string text =
-      "tribodyn: what a gear oil costs in a hypoid axle, and why\n\n"
-      "Asks a tribodynd server for mesh (conjunctional) losses; bearings, churning and seals are\n"
-      "not in them.\n\n"
-      "usage: tribodyn COMMAND [options]\n"
-      "       tribodyn COMMAND --help     units, legal ranges and defaults of every option\n\n"
-      "Commands\n";
-  std::size_t width = 0;
-  for (const Command& command : commands) width = std::max(width, command.path.size());
-  for (const Command& command : commands) {
-    text += "  " + command.path + std::string(width - command.path.size() + 2, ' ') +
-            command.summary + "\n";
+std::optional<v1::Schema> schema_for_help(const Command& command, const CommonOptions& options) {
+  const auto& flags = command.flags.flags();
+  const bool needed = std::any_of(flags.begin(), flags.end(),
+                                  [](const Flag& flag) { return !flag.constraint_field.empty(); });
+  if (!needed) return std::nullopt;
+  try {
+    return Connection(server_address(options.server), kPatience).schema();
+  } catch (const ServiceError&) {
+    return std::nullopt;  // help must not depend on a server
   }
-  text += "\nExamples\n";
-  for (const Command& command : commands) text += "  " + command.examples.front() + "\n";
-  return text +
+}
+
+std::string overview_text(const std::vector<Command>& commands) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  std::string group;
+  for (const Command& command : commands) {
+    const std::string own = group_of(command);
+    if (own.empty()) {
+      lines.emplace_back(command.path, command.summary);
+      group = own;
+      continue;
+    }
+    const std::string verb = command.path.substr(own.size() + 1);
+    if (own == group) {
+      lines.back().second += ", " + verb;
+    } else {
+      lines.emplace_back(own, verb);
+    }
+    group = own;
+  }
+  return "tribodyn: what a gear oil costs in a hypoid axle, and why\n\n"
+         "Asks a tribodynd server for mesh (conjunctional) losses; bearings, churning and seals "
+         "are\nnot in them.\n\n"
+         "usage: tribodyn COMMAND [options]\n"
+         "       tribodyn COMMAND --help     units, legal ranges and defaults of every option\n\n" +
+         heading("Commands") + "\n" + lines_text(lines) + "\n" + heading("Topics") + "\n" +
+         topics_text() + "\n" + heading("From three numbers to a curve") + "\n" +
+         "  tribodyn lubricants create my-oil --kv40 73.3 --kv100 8.86 --density15 870\n"
+         "  tribodyn curve --lubricant my-oil --plot curve.svg\n"
          "\nExit codes: 0 done, 1 refused or failed, 2 wrong usage, 3 no server, 130 "
          "interrupted.\n";
 }
 
-std::string help_text(const Command& command, const FlagList& common_flags) {
+std::string group_text(const std::string& group, const std::vector<Command>& commands) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  for (const Command& command : commands) {
+    if (group_of(command) == group) lines.emplace_back(command.path, command.summary);
+  }
+  if (lines.empty()) return "";
+  return heading("Commands") + "\n" + lines_text(lines) + "\n`tribodyn " + lines.front().first +
+         " --help` and so on tell every option.\n";
+}
+
+std::string help_text(const Command& command, const FlagList& common_flags,
+                      const v1::Schema* schema) {
   std::string usage = "usage: tribodyn " + command.path;
   for (const Flag& flag : command.flags.flags()) {
     if (flag.is_positional()) usage += " " + flag.value_name + (flag.is_repeatable ? "..." : "");
   }
+  const auto& flags = command.flags.flags();
+  const bool lacks_ranges =
+      schema == nullptr && std::any_of(flags.begin(), flags.end(), [](const Flag& flag) {
+        return !flag.constraint_field.empty();
+      });
   std::string text = "tribodyn " + command.path + ": " + command.summary + "\n\n" + usage +
-                     " [options]\n\n" + wrapped(command.about, 0) + flags_text(command.flags) +
-                     flags_text(common_flags) + "\nExamples\n";
+                     " [options]\n\n" + wrapped(command.about, 0) +
+                     flags_text(command.flags, schema) + flags_text(common_flags, schema) + "\n" +
+                     heading("Examples") + "\n";
   for (const std::string& example : command.examples) text += "  " + example + "\n";
+  if (lacks_ranges) {
+    text += "\nNo server answers: with one, legal ranges stand here too (tribodyn schema).\n";
+  }
   return text;
 }
 
-std::string nearest(const std::string& word, const std::vector<std::string>& known) {
-  std::string best;
-  int least = static_cast<int>(std::max<std::size_t>(2, word.size() / 3)) + 1;
-  for (const std::string& candidate : known) {
-    const int distance = edit_distance(word, candidate);
-    if (distance < least) {
-      least = distance;
-      best = candidate;
-    }
-  }
-  return best;
+Command help_command() {
+  const auto words = std::make_shared<std::vector<std::string>>();
+  Command command{"help",
+                  "a topic below, or a command",
+                  "Prints a topic or the help of a command.",
+                  {"tribodyn help units", "tribodyn help lubricants create"},
+                  {},
+                  {},
+                  {}};
+  command.flags.group("Arguments");
+  Flag& flag = command.flags.texts("topic", "TOPIC", "A topic or the words of a command.",
+                                   [words](const std::string& word) { words->push_back(word); });
+  for (const HelpTopic& topic : help_topics()) flag.words.push_back(topic.name);
+  command.run = [words](const CommonOptions& options) {
+    std::cout << page(*words, options);
+    return kExitOk;
+  };
+  return command;
 }
 
 }  // namespace tribodyn::client

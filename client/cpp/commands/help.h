@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,13 +8,20 @@
 
 namespace tribodyn::client {
 
-/// `tribodyn --help`: what it is, every command with its summary and an example.
+/// `tribodyn --help`: what it is, every command with its summary and examples.
 std::string overview_text(const std::vector<Command>& commands);
 
-/// `tribodyn COMMAND --help`: every flag with unit, legal range and default, then examples.
-std::string help_text(const Command& command, const FlagList& common_flags);
+/// `tribodyn lubricants --help`: the commands of a group.
+std::string group_text(const std::string& group, const std::vector<Command>& commands);
 
-/// The known name nearest to a mistyped one, if it is near enough to be meant.
-std::string nearest(const std::string& word, const std::vector<std::string>& known);
+/// `tribodyn COMMAND --help`: every flag with unit, legal range and default, then examples.
+/// Ranges of parameters come from `schema`; without it (no server) the help says where to find
+/// them.
+std::string help_text(const Command& command, const FlagList& common_flags,
+                      const v1::Schema* schema);
+
+/// The server's table of constraints if the help of this command shows some of it and the server
+/// answers at once.
+std::optional<v1::Schema> schema_for_help(const Command& command, const CommonOptions& options);
 
 }  // namespace tribodyn::client

@@ -47,7 +47,7 @@ void add_history_flags(FlagList& list, HistoryFlags& flags) {
             [&](const std::string& path) { flags.plot_path = path; });
 }
 
-v1::Simulation computed(HistoryFlags& flags, Connection& connection) {
+v1::Simulation computed(HistoryFlags& flags, Connection& connection, ProgressForm progress) {
   v1::HistoryRequest& history = flags.history;
   if (history.columns_size() == 0) {
     history.add_columns("dynamic_transmission_error_metres");
@@ -63,7 +63,7 @@ v1::Simulation computed(HistoryFlags& flags, Connection& connection) {
   auto& study = *flags.scenario.simulation.mutable_operating_point();
   study = operating_point_study(flags.point);
   *study.mutable_history() = history;
-  const auto ended = run_scenario(flags.scenario, connection);
+  const auto ended = run_scenario(flags.scenario, connection, progress);
   return ended.empty() ? v1::Simulation() : ended.front();
 }
 
@@ -71,7 +71,7 @@ int run_history(HistoryFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   const v1::Simulation simulation =
       flags.simulation.empty()
-          ? computed(flags, connection)
+          ? computed(flags, connection, options.progress_form())
           : connection.get_simulation(resource_name("simulations", flags.simulation));
   if (simulation.name().empty()) return kExitOk;  // detached
   if (simulation.state() != v1::Simulation::SUCCEEDED) return report_failures({simulation});

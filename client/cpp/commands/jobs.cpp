@@ -87,9 +87,8 @@ std::string jobs_text(const std::vector<v1::Simulation>& simulations, OutputForm
 
 int run_list(const JobFlags& flags, const CommonOptions& options) {
   const auto list = options.connect().list_simulations(flags.limit);
-  std::cout << jobs_text({list.simulations().begin(), list.simulations().end()},
-                         options.output_format, false);
-  if (!list.next_page_token().empty() && options.output_format == OutputFormat::kTable) {
+  std::cout << jobs_text(list.resources, options.output_format, false);
+  if (list.has_more && options.output_format == OutputFormat::kTable) {
     std::cerr << "There are more; --limit raises their number.\n";
   }
   return kExitOk;
@@ -115,7 +114,7 @@ int run_watch(const JobFlags& flags, const CommonOptions& options) {
     jobs.push_back(connection.get_simulation(resource_name("simulations", name)));
     labels.push_back(jobs.back().lubricant());
   }
-  const auto ended = follow(connection, jobs, labels);
+  const auto ended = follow(connection, jobs, labels, options.progress_form());
   std::cout << results_text(ended, options.output_format, false, flags.shows_assumptions);
   return report_failures(ended);
 }
@@ -139,9 +138,9 @@ Command job_command(const char* path, const char* summary, const char* about, co
   const char* description = "The job, e.g. 12 or simulations/12 (`tribodyn jobs list`).";
   const auto add = [flags](const std::string& name) { flags->names.push_back(name); };
   if (several) {
-    command.flags.texts("name", "NAME", description, add);
+    command.flags.texts("name", "NAME", description, add).collection = "simulations";
   } else {
-    command.flags.text("name", "NAME", description, add);
+    command.flags.text("name", "NAME", description, add).collection = "simulations";
   }
   if (shows_results) {
     command.flags.group("Options");

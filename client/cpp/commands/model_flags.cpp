@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "client/cpp/commands/scenario.h"
-#include "client/cpp/service/errors.h"
 
 namespace tribodyn::client {
 namespace {

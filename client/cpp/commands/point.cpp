@@ -16,7 +16,7 @@ struct PointFlags {
 int run_point(PointFlags& flags, const CommonOptions& options) {
   *flags.scenario.simulation.mutable_operating_point() = operating_point_study(flags.point);
   Connection connection = options.connect();
-  const auto ended = run_scenario(flags.scenario, connection);
+  const auto ended = run_scenario(flags.scenario, connection, options.progress_form());
   std::cout << results_text(ended, options.output_format, true, flags.scenario.shows_assumptions);
   return report_failures(ended);
 }

@@ -11,6 +11,14 @@ namespace {
 
 void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
   flags.group("Solver");
+  flags.choice(
+      "--method", {"automatic", "march"},
+      "How the steady state is found: by shooting where that works, or marched", [&](int index) {
+        simulation.mutable_solver_options()->set_method(index == 1 ? v1::MARCH : v1::AUTOMATIC);
+      });
+  flags.number("--tolerance", {"-", "1e-8 to 0.01", "1e-6"},
+               "Wanted relative error of what shooting finds",
+               [&](double value) { simulation.mutable_solver_options()->set_tolerance(value); });
   flags.number(
       "--relative-tolerance", {"-", "1e-11 to 1e-3", "1e-7"}, "Error of the time march, per step",
       [&](double value) { simulation.mutable_solver_options()->set_relative_tolerance(value); });
@@ -59,18 +67,27 @@ std::string failure_text(const v1::Simulation& simulation) {
 void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   v1::Simulation& simulation = scenario.simulation;
   flags.group("Fluid, hardware, temperatures");
-  flags.texts("--lubricant,-l", "NAME",
-              "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` shows them).",
-              [&](const std::string& name) { scenario.lubricants.push_back(name); });
-  flags.text(
-      "--gear-set", "NAME", "Gear set in its driveline. Default: A.",
-      [&](const std::string& name) { simulation.set_gear_set(resource_name("gearSets", name)); });
-  flags.text(
-      "--surface", "NAME", "Composite roughness of the flanks. Default: run-in.",
-      [&](const std::string& name) { simulation.set_surface(resource_name("surfaces", name)); });
-  flags.text(
-      "--vehicle", "NAME", "Road load. Default: passenger-car.",
-      [&](const std::string& name) { simulation.set_vehicle(resource_name("vehicles", name)); });
+  flags
+      .texts("--lubricant,-l", "NAME",
+             "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` shows them).",
+             [&](const std::string& name) { scenario.lubricants.push_back(name); })
+      .collection = "lubricants";
+  flags
+      .text("--gear-set", "NAME", "Gear set in its driveline. Default: A.",
+            [&](const std::string& name) {
+              simulation.set_gear_set(resource_name("gearSets", name));
+            })
+      .collection = "gearSets";
+  flags
+      .text(
+          "--surface", "NAME", "Composite roughness of the flanks. Default: run-in.",
+          [&](const std::string& name) { simulation.set_surface(resource_name("surfaces", name)); })
+      .collection = "surfaces";
+  flags
+      .text(
+          "--vehicle", "NAME", "Road load. Default: passenger-car.",
+          [&](const std::string& name) { simulation.set_vehicle(resource_name("vehicles", name)); })
+      .collection = "vehicles";
   flags.number("--sump-temperature-celsius,--sump", {"C", "-70 to 200", "40"},
                "Temperature of the oil bath",
                [&](double value) { simulation.set_sump_temperature_celsius(value); });
@@ -83,6 +100,8 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   flags.text("--display-name", "TEXT", "A title for the job, shown by `tribodyn jobs list`.",
              [&](const std::string& text) { simulation.set_display_name(text); });
   flags.toggle("--detach", "Submit the job and return at once.", [&] { scenario.detach = true; });
+  flags.toggle("--validate-only", "Have the server check everything; run nothing.",
+               [&] { scenario.validate_only = true; });
   flags.toggle("--assumptions", "Print every assumption the result rests on.",
                [&] { scenario.shows_assumptions = true; });
 }
@@ -105,24 +124,30 @@ std::vector<v1::Simulation> simulations_of(const Scenario& scenario) {
   return simulations;
 }
 
-std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection) {
+std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection,
+                                         ProgressForm progress) {
   std::vector<v1::Simulation> submitted;
   std::vector<std::string> labels;
   Complaints refusals;
   for (const v1::Simulation& simulation : simulations_of(scenario)) {
     try {
-      submitted.push_back(connection.create_simulation(simulation));
+      submitted.push_back(connection.create_simulation(simulation, scenario.validate_only));
       labels.push_back(simulation.lubricant());
-    } catch (const Failure& failure) {
-      if (failure.exit_code() != kExitFailed) throw;
-      const std::string refusal = failure.what();
+    } catch (const ServiceError& error) {
+      if (error.kind() != ServiceError::Kind::kRefused) throw;
+      const std::string refusal = Failure(error).what();
       if (std::find(refusals.begin(), refusals.end(), refusal) == refusals.end()) {
         refusals.push_back(refusal);
       }
     }
   }
+  if (scenario.validate_only) {
+    if (!refusals.empty()) throw Failure(kExitFailed, joined(refusals, "\n"));
+    for (const std::string& label : labels) std::cout << "valid, not run: " << label << "\n";
+    return {};
+  }
   if (!refusals.empty()) withdraw(submitted, refusals, connection);
-  if (!scenario.detach) return follow(connection, submitted, labels);
+  if (!scenario.detach) return follow(connection, submitted, labels, progress);
   for (const v1::Simulation& simulation : submitted) {
     std::cout << simulation.name() << "  " << state_text(simulation.state())
               << "  follow: tribodyn jobs watch " << resource_id(simulation.name()) << "\n";

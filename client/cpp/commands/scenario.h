@@ -14,6 +14,7 @@ struct Scenario {
   std::vector<std::string> lubricants;  ///< as given: "1" or "lubricants/1"
   v1::Simulation simulation;
   bool detach = false;             ///< submit, say how to follow, and return
+  bool validate_only = false;      ///< have the server check everything and run nothing
   bool shows_assumptions = false;  ///< print the whole ledger
 };
 
@@ -25,14 +26,15 @@ void check_scenario(const Scenario& scenario, bool several_lubricants, Complaint
 /// One Simulation per lubricant.
 std::vector<v1::Simulation> simulations_of(const Scenario& scenario);
 
-/// Submits all, follows them together (unless detached: then prints how to follow and returns
-/// nothing), and returns them as they ended.
-std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection);
+/// Submits all, follows them together and returns them as they ended. Detached or only to be
+/// validated, it says so on standard output and returns nothing.
+std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection,
+                                         ProgressForm progress);
 
 /// Prints on standard error which simulations have nothing to show and why; kExitFailed if any has.
 int report_failures(const std::vector<v1::Simulation>& simulations);
 
-/// The flag of a field: "--no-limiting-shear-stress" from "no_limiting_shear_stress".
+/// A flag for each switch of the model: "--no-limiting-shear-stress" of "no_limiting_shear_stress".
 void add_model_flags(FlagList& flags, v1::ModelOptions& options);
 
 }  // namespace tribodyn::client

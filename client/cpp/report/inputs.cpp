@@ -8,6 +8,7 @@
 #include <map>
 
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
@@ -66,6 +67,34 @@ std::string curve_text(const v1::InefficiencyCurveStudy& study) {
   return "inefficiency curve from " + significant(study.first_speed_kilometers_per_hour()) +
          " to " + significant(study.last_speed_kilometers_per_hour()) + " km/h by " +
          significant(study.speed_step_kilometers_per_hour()) + direction + ascent;
+}
+
+/// "20.525 1/GPa" of "2.0525e-08 1/Pa"; what cannot be read stays as it is.
+std::string in_trade_unit_text(const v1::Assumption& assumption) {
+  const std::string& field = assumption.field();
+  const std::string unit = unit_of_field(field);
+  std::string wrong;
+  const auto value =
+      read_quantity(assumption.value(), unit, unit, is_temperature_field(field), wrong);
+  if (!value) return assumption.value();
+  const std::string trade = trade_unit_of_field(field);
+  return significant(in_trade_unit(field, *value)) + (trade.empty() ? "" : " " + trade);
+}
+
+/// What a result that compares fluids rests on most: never left out.
+void add_assumed_of_lubricant(const v1::SimulationResult& result, Sheet& sheet) {
+  std::string text;
+  for (const auto& assumption : result.assumptions()) {
+    if (assumption.provenance() != v1::PROVENANCE_ASSUMED ||
+        assumption.resource().rfind("lubricants/", 0) != 0) {
+      continue;
+    }
+    text += (text.empty() ? "" : "; ") + label_of_field(assumption.field()) + " " +
+            in_trade_unit_text(assumption);
+  }
+  if (text.empty()) return;
+  sheet.heading("Assumed of the lubricant, not measured");
+  sheet.remark(text);
 }
 
 }  // namespace
@@ -132,6 +161,7 @@ void add_provenance(const v1::SimulationResult& result, bool shows_all, Sheet& s
               provenance_word(static_cast<v1::Provenance>(provenance));
     }
     sheet.line("parameters", text.empty() ? "none stated" : text + " (all: --assumptions)");
+    add_assumed_of_lubricant(result, sheet);
     return;
   }
   std::map<int, std::vector<const v1::Assumption*>> groups;

@@ -131,6 +131,11 @@ void add_solver(const v1::PointResult& result, Sheet& sheet) {
   sheet.heading("Solver");
   sheet.line("model used",
              result.model() == v1::QUASI_STATIC ? "quasi-static" : "full (4 degrees of freedom)");
+  if (result.steady_state_method() != v1::STEADY_STATE_METHOD_UNSPECIFIED) {
+    sheet.line("steady state by", result.steady_state_method() == v1::SHOOTING
+                                      ? "shooting under lagged friction"
+                                      : "marching");
+  }
   sheet.line("estimated relative error", result.has_estimated_relative_error()
                                              ? significant(result.estimated_relative_error(), 2)
                                              : "not estimated");

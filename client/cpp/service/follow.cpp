@@ -4,12 +4,12 @@
 #include <chrono>
 #include <condition_variable>
 #include <iostream>
-#include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <thread>
 
-#include "client/cpp/service/errors.h"
+#include "client/cpp/failure.h"
 #include "client/cpp/service/interrupt.h"
 #include "client/cpp/text/progress.h"
 #include "client/cpp/text/text.h"
@@ -20,28 +20,18 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kRedraw(150);
-constexpr milliseconds kFirstRetry(250);
-constexpr int kRetries = 6;  // about 16 s in all: long enough for a server that restarts
 
 /// What the watching threads tell the displaying one. Safe for concurrent use.
 class Watches {
  public:
   Watches(const std::vector<v1::Simulation>& simulations, const std::vector<std::string>& labels)
-      : contexts_(simulations.size()), failures_(simulations.size()) {
+      : failures_(simulations.size()) {
     for (std::size_t i = 0; i < simulations.size(); ++i) {
       const bool ended = has_ended(simulations[i].state());
       jobs_.push_back({labels[i], state_text(simulations[i].state()), "",
                        ended ? 1 : simulations[i].progress_fraction(), ended});
     }
     open_ = simulations.size();
-  }
-
-  /// A fresh context for a watch; null once everything is to stop.
-  std::shared_ptr<grpc::ClientContext> start(std::size_t index) {
-    const std::lock_guard lock(mutex_);
-    if (stopping_) return nullptr;
-    contexts_[index] = std::make_shared<grpc::ClientContext>();
-    return contexts_[index];
   }
 
   void note(std::size_t index, const v1::SimulationEvent& event) {
@@ -53,18 +43,7 @@ class Watches {
     job.fraction = event.state() == v1::Simulation::SUCCEEDED ? 1 : event.progress_fraction();
   }
 
-  bool ended(std::size_t index) {
-    const std::lock_guard lock(mutex_);
-    return jobs_[index].ended;
-  }
-
-  /// Waits between two tries; false when everything is to stop.
-  bool pause(milliseconds time) {
-    std::unique_lock lock(mutex_);
-    return !changed_.wait_for(lock, time, [&] { return stopping_; });
-  }
-
-  void close(std::size_t index, std::optional<Failure> failure) {
+  void close(std::size_t index, std::optional<ServiceError> failure) {
     const std::lock_guard lock(mutex_);
     failures_[index] = std::move(failure);
     --open_;
@@ -79,16 +58,7 @@ class Watches {
     return open_ > 0;
   }
 
-  void stop() {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-    for (const auto& context : contexts_) {
-      if (context) context->TryCancel();
-    }
-    changed_.notify_all();
-  }
-
-  std::optional<Failure> first_failure() {
+  std::optional<ServiceError> first_failure() {
     const std::lock_guard lock(mutex_);
     for (const auto& failure : failures_) {
       if (failure) return failure;
@@ -100,40 +70,9 @@ class Watches {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<JobProgress> jobs_;
-  std::vector<std::shared_ptr<grpc::ClientContext>> contexts_;
-  std::vector<std::optional<Failure>> failures_;
+  std::vector<std::optional<ServiceError>> failures_;
   std::size_t open_ = 0;
-  bool stopping_ = false;
 };
-
-/// Runs in a thread of its own. A stream that breaks before the last event is opened again.
-std::optional<Failure> watch_to_the_end(Connection& connection, const std::string& name,
-                                        Watches& watches, std::size_t index) {
-  milliseconds wait = kFirstRetry;
-  for (int tries_left = kRetries; !watches.ended(index);) {
-    const auto context = watches.start(index);
-    if (!context) return std::nullopt;
-    bool heard = false;
-    const grpc::Status status =
-        connection.watch(name, *context, [&](const v1::SimulationEvent& event) {
-          heard = true;
-          watches.note(index, event);
-        });
-    if (watches.ended(index) || status.error_code() == grpc::StatusCode::CANCELLED) break;
-    const bool broken = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE;
-    if (heard) {
-      tries_left = kRetries;
-      wait = kFirstRetry;
-    }
-    if (!broken) return to_failure(status, connection.address());
-    if (tries_left-- == 0) {
-      return Failure(kExitCannotConnect, "lost the server at " + connection.address() + ".");
-    }
-    if (!watches.pause(wait)) break;
-    wait *= 2;
-  }
-  return std::nullopt;
-}
 
 std::string how_to_go_on(const std::vector<v1::Simulation>& simulations,
                          const std::vector<JobProgress>& picture) {
@@ -165,21 +104,26 @@ std::string state_text(v1::Simulation::State state) {
   }
 }
 
-bool has_ended(v1::Simulation::State state) {
-  return state == v1::Simulation::SUCCEEDED || state == v1::Simulation::FAILED ||
-         state == v1::Simulation::CANCELLED;
-}
-
 std::vector<v1::Simulation> follow(Connection& connection,
                                    const std::vector<v1::Simulation>& simulations,
-                                   const std::vector<std::string>& labels) {
+                                   const std::vector<std::string>& labels, ProgressForm form) {
   const InterruptGuard interrupts;
   Watches watches(simulations, labels);
-  ProgressDisplay display(std::cerr, standard_error_is_terminal(), standard_error_width());
-  std::vector<std::thread> threads;
+  ProgressDisplay display(std::cerr, form, standard_error_width());
+  std::vector<v1::Simulation> ended(simulations.size());
+  std::stop_source stop;
+  std::vector<std::jthread> threads;
   for (std::size_t i = 0; i < simulations.size(); ++i) {
     threads.emplace_back([&, i] {
-      watches.close(i, watch_to_the_end(connection, simulations[i].name(), watches, i));
+      std::optional<ServiceError> failure;
+      try {
+        ended[i] = connection.wait_for_end(
+            simulations[i].name(),
+            [&](const v1::SimulationEvent& event) { watches.note(i, event); }, stop.get_token());
+      } catch (const ServiceError& error) {
+        failure = error;
+      }
+      watches.close(i, failure);
     });
   }
   std::vector<JobProgress> picture;
@@ -189,19 +133,15 @@ std::vector<v1::Simulation> follow(Connection& connection,
     display.show(picture);
   }
   display.finish();
-  watches.stop();
-  for (std::thread& thread : threads) thread.join();
+  stop.request_stop();
+  threads.clear();
 
   if (open) {
     throw Failure(kExitInterrupted, "interrupted." + how_to_go_on(simulations, picture));
   }
-  if (const auto failure = watches.first_failure()) {
-    throw Failure(failure->exit_code(), failure->what() + how_to_go_on(simulations, picture));
-  }
-  std::vector<v1::Simulation> ended;
-  ended.reserve(simulations.size());
-  for (const auto& simulation : simulations) {
-    ended.push_back(connection.get_simulation(simulation.name()));
+  if (const auto error = watches.first_failure()) {
+    const Failure failure(*error);
+    throw Failure(failure.exit_code(), failure.what() + how_to_go_on(simulations, picture));
   }
   return ended;
 }

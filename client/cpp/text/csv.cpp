@@ -4,6 +4,8 @@
 #include <google/protobuf/timestamp.pb.h>
 #include <google/protobuf/util/time_util.h>
 
+#include <algorithm>
+
 #include "client/cpp/text/text.h"
 #include "tribodyn/v1/results.pb.h"
 
@@ -128,6 +130,89 @@ std::string csv_text(const std::vector<CsvRow>& rows) {
     text += csv_line(cells);
   }
   return text;
+}
+
+namespace {
+
+/// Reads cell after cell of a text.
+class CsvReader {
+ public:
+  explicit CsvReader(std::string_view text) : rest_(text) {
+    if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
+    const std::string_view header = rest_.substr(0, rest_.find('\n'));
+    std::ptrdiff_t most = 0;
+    for (const char each : {',', ';', '\t'}) {
+      const std::ptrdiff_t count = std::count(header.begin(), header.end(), each);
+      if (count <= most) continue;
+      most = count;
+      separator_ = each;
+    }
+  }
+
+  bool at_end() const { return rest_.empty(); }
+
+  CsvLine line() {
+    CsvLine out{line_, {}};
+    while (add_cell(out.cells)) {
+    }
+    return out;
+  }
+
+  /// Skips an empty line or a note; false when there is none.
+  bool skip() {
+    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    const std::string_view line = rest_.substr(0, end);
+    const std::size_t first = line.find_first_not_of(" \r");
+    if (first != std::string_view::npos && line[first] != '#') return false;
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    ++line_;
+    return true;
+  }
+
+ private:
+  /// False after the last cell of a line.
+  bool add_cell(std::vector<std::string>& cells) {
+    std::string& cell = cells.emplace_back();
+    while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
+    const bool quoted = !rest_.empty() && rest_.front() == '"';
+    if (quoted) read_quoted(cell);
+    const std::size_t end =
+        std::min(rest_.find_first_of(std::string{separator_, '\n'}), rest_.size());
+    cell += rest_.substr(0, end);
+    const bool more = end < rest_.size() && rest_[end] == separator_;
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    if (!more) ++line_;
+    const auto is_blank = [](char c) { return c == ' ' || c == '\r'; };
+    while (!quoted && !cell.empty() && is_blank(cell.back())) cell.pop_back();
+    if (quoted && cell.ends_with('\r')) cell.pop_back();
+    return more;
+  }
+
+  void read_quoted(std::string& cell) {
+    std::size_t at = 1;
+    for (; at < rest_.size(); ++at) {
+      if (rest_[at] == '"' && (at + 1 >= rest_.size() || rest_[++at] != '"')) break;
+      if (rest_[at] == '\n') ++line_;
+      cell += rest_[at];
+    }
+    rest_.remove_prefix(std::min(at, rest_.size()));
+    if (!rest_.empty() && rest_.front() == '"') rest_.remove_prefix(1);
+  }
+
+  std::string_view rest_;
+  char separator_ = ',';
+  int line_ = 1;
+};
+
+}  // namespace
+
+std::vector<CsvLine> read_csv(std::string_view text, std::size_t most) {
+  CsvReader reader(text);
+  std::vector<CsvLine> lines;
+  while (!reader.at_end() && lines.size() < most) {
+    if (!reader.skip()) lines.push_back(reader.line());
+  }
+  return lines;
 }
 
 }  // namespace tribodyn::client

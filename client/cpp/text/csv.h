@@ -2,6 +2,8 @@
 
 #include <google/protobuf/message.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -11,6 +13,17 @@ namespace tribodyn::client {
 
 /// One CSV line (RFC 4180 with a plain line feed): cells with a comma, quote or line break quoted.
 std::string csv_line(const std::vector<std::string>& cells);
+
+/// A line of a CSV text that was read.
+struct CsvLine {
+  int number = 0;  ///< of its first line in the text, from 1
+  std::vector<std::string> cells;
+};
+
+/// The lines of a CSV text, at most so many: cells separated by commas, semicolons or tabs,
+/// whichever the first line has most of; in quotes they may hold anything. Empty lines and those
+/// that begin with '#' are left out, as are blanks around cells and a byte order mark.
+std::vector<CsvLine> read_csv(std::string_view text, std::size_t most = SIZE_MAX);
 
 /// A row under construction: each cell with its header.
 using CsvRow = std::vector<std::pair<std::string, std::string>>;

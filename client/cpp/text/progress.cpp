@@ -51,16 +51,19 @@ std::string progress_bar_line(const JobProgress& job, int label_width, double el
   return line.substr(0, end);
 }
 
-ProgressDisplay::ProgressDisplay(std::ostream& out, bool terminal, int width)
-    : out_(out), terminal_(terminal), width_(width), start_(std::chrono::steady_clock::now()) {}
+ProgressDisplay::ProgressDisplay(std::ostream& out, ProgressForm form, int width)
+    : out_(out), form_(form), width_(width), start_(std::chrono::steady_clock::now()) {}
 
 void ProgressDisplay::show(const std::vector<JobProgress>& jobs) {
   const double elapsed =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  if (terminal_) {
-    redraw(jobs, elapsed);
-  } else {
-    log_changes(jobs, elapsed);
+  switch (form_) {
+    case ProgressForm::kBars:
+      return redraw(jobs, elapsed);
+    case ProgressForm::kLines:
+      return log_changes(jobs, elapsed);
+    case ProgressForm::kNone:
+      break;
   }
 }
 

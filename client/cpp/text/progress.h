@@ -20,14 +20,19 @@ struct JobProgress {
 std::string progress_bar_line(const JobProgress& job, int label_width, double elapsed_seconds,
                               int width);
 
-/// Shows several jobs: bars redrawn in place on a terminal; elsewhere a line when a job changes
-/// state or has come another 10 %. Not thread safe.
+/// How progress is shown.
+enum class ProgressForm {
+  kNone,
+  kBars,   ///< redrawn in place: for a terminal
+  kLines,  ///< a line when a job changes state or has come another 10 %: for a log
+};
+
+/// Shows several jobs. Not thread safe.
 class ProgressDisplay {
  public:
-  /// `terminal`: whether `out` understands cursor movements.
-  ProgressDisplay(std::ostream& out, bool terminal, int width);
+  ProgressDisplay(std::ostream& out, ProgressForm form, int width);
   void show(const std::vector<JobProgress>& jobs);
-  /// Leaves the last picture standing (terminal) and ends the display.
+  /// Leaves the last picture standing (bars) and ends the display.
   void finish();
 
  private:
@@ -35,7 +40,7 @@ class ProgressDisplay {
   void log_changes(const std::vector<JobProgress>& jobs, double elapsed_seconds);
 
   std::ostream& out_;
-  bool terminal_;
+  ProgressForm form_;
   int width_;
   std::chrono::steady_clock::time_point start_;
   std::size_t lines_drawn_ = 0;

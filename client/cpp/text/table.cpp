@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "client/cpp/text/colour.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -84,7 +85,7 @@ std::string Sheet::text() const {
   for (const Line& line : lines_) {
     switch (line.kind) {
       case Line::Kind::kHeading:
-        result += (result.empty() ? "" : "\n") + line.label + "\n";
+        result += (result.empty() ? "" : "\n") + tribodyn::client::heading(line.label) + "\n";
         break;
       case Line::Kind::kRemark:
         result += wrapped(line.label, 2);

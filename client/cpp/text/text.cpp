@@ -15,6 +15,27 @@ int display_width(std::string_view text) {
   }));
 }
 
+bool is_utf8(std::string_view text) {
+  const auto byte = [&](std::size_t at) {
+    return at < text.size() ? static_cast<unsigned char>(text[at]) : 0U;
+  };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned first = byte(i);
+    const std::size_t size = first < 0x80 ? 1 : first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+    if (size > 1 && (first < 0xc2 || first > 0xf4)) return false;
+    for (std::size_t k = 1; k < size; ++k) {
+      if ((byte(i + k) & 0xc0U) != 0x80U) return false;
+    }
+    const unsigned second = byte(i + 1);
+    const bool overlong = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
+    const bool surrogate = first == 0xed && second > 0x9f;
+    const bool too_large = first == 0xf4 && second > 0x8f;
+    if (overlong || surrogate || too_large) return false;
+    i += size;
+  }
+  return true;
+}
+
 std::string printable(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -95,6 +116,15 @@ std::vector<std::string> split(std::string_view text, char separator) {
     if (text.empty()) parts.emplace_back();
   }
   return parts;
+}
+
+std::string joined(const std::vector<std::string>& parts, std::string_view separator) {
+  std::string text;
+  for (const std::string& part : parts) {
+    if (!text.empty()) text += separator;
+    text += part;
+  }
+  return text;
 }
 
 std::string resource_name(std::string_view collection, std::string_view id_or_name) {

@@ -13,6 +13,9 @@ int display_width(std::string_view text);
 /// a server or another user wrote can steer the terminal.
 std::string printable(std::string_view text);
 
+/// Whether the text is UTF-8, as a server wants all texts.
+bool is_utf8(std::string_view text);
+
 /// Rounded to `decimals` places, never "-0.00"; "-" when not finite.
 std::string fixed(double value, int decimals);
 
@@ -30,6 +33,9 @@ std::string wrapped(std::string_view text, int indent, int width = 100);
 
 /// The parts between separators; an empty text has no parts.
 std::vector<std::string> split(std::string_view text, char separator);
+
+/// The parts with a separator between them.
+std::string joined(const std::vector<std::string>& parts, std::string_view separator);
 
 /// "lubricants/1" from "1" or "lubricants/1".
 std::string resource_name(std::string_view collection, std::string_view id_or_name);

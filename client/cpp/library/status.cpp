@@ -1,8 +1,8 @@
-#include "client/cpp/service/errors.h"
+#include "client/cpp/library/status.h"
 
-#include <algorithm>
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "client/cpp/text/text.h"
 #include "google/rpc/error_details.pb.h"
@@ -11,6 +11,8 @@
 namespace tribodyn::client {
 namespace {
 
+using Kind = ServiceError::Kind;
+
 template <class Detail>
 std::optional<Detail> find_detail(const google::rpc::Status& status) {
   for (const google::protobuf::Any& any : status.details()) {
@@ -18,12 +20,6 @@ std::optional<Detail> find_detail(const google::rpc::Status& status) {
     if (any.Is<Detail>() && any.UnpackTo(&detail)) return detail;
   }
   return std::nullopt;
-}
-
-google::rpc::Status details_of(const grpc::Status& status) {
-  google::rpc::Status details;
-  if (!details.ParseFromString(status.error_details())) details.Clear();
-  return details;
 }
 
 std::string code_name(grpc::StatusCode code) {
@@ -50,64 +46,62 @@ std::string code_name(grpc::StatusCode code) {
 
 /// The server's sentences mostly begin with the field's own name, which is that of a flag; the path
 /// in front of it would only hide it.
-std::string violation_text(const google::rpc::BadRequest::FieldViolation& violation) {
-  const std::string& path = violation.field();
-  const std::string leaf = path.substr(path.rfind('.') + 1);
-  if (violation.description().rfind(leaf + " ", 0) == 0) return printable(violation.description());
-  return printable(path) + ": " + printable(violation.description());
+std::string violation_text(const FieldViolation& violation) {
+  const std::string leaf = violation.field.substr(violation.field.rfind('.') + 1);
+  if (violation.description.rfind(leaf + " ", 0) == 0) return violation.description;
+  return violation.field + ": " + violation.description;
 }
 
-}  // namespace
-
-std::string flag_of_field(const std::string& field_path) {
-  std::string flag = field_path.substr(field_path.rfind('.') + 1);
-  flag = flag.substr(0, flag.find('['));
-  std::replace(flag.begin(), flag.end(), '_', '-');
-  return "--" + flag;
-}
-
-std::string readable_error(const grpc::Status& status) {
-  const google::rpc::Status details = details_of(status);
+ServiceError refusal(const grpc::Status& status) {
+  google::rpc::Status details;
+  if (!details.ParseFromString(status.error_details())) details.Clear();
   const auto info = find_detail<google::rpc::ErrorInfo>(details);
   const auto bad_request = find_detail<google::rpc::BadRequest>(details);
   const auto retry = find_detail<google::rpc::RetryInfo>(details);
 
-  const int violations = bad_request ? bad_request->field_violations_size() : 0;
+  std::vector<FieldViolation> violations;
+  if (bad_request) {
+    for (const auto& violation : bad_request->field_violations()) {
+      violations.push_back({printable(violation.field()), printable(violation.description())});
+    }
+  }
   std::string text = printable(status.error_message());
   // The server's message repeats the first violation, which follows anyway.
-  if (violations > 0) {
-    text = std::to_string(violations) + (violations == 1 ? " illegal field" : " illegal fields");
+  if (!violations.empty()) {
+    text = std::to_string(violations.size()) +
+           (violations.size() == 1 ? " illegal field" : " illegal fields");
   } else if (text.empty()) {
     text = "no message";
   }
-  text += " [" + (info ? printable(info->reason()) : code_name(status.error_code())) + "]";
-  if (bad_request) {
-    for (const auto& violation : bad_request->field_violations()) {
-      text += "\n  " + violation_text(violation);
-    }
-  }
+  const std::string reason = info ? printable(info->reason()) : "";
+  text += " [" + (reason.empty() ? code_name(status.error_code()) : reason) + "]";
+  for (const FieldViolation& violation : violations) text += "\n  " + violation_text(violation);
+  std::optional<double> delay;
   if (retry) {
-    const double seconds =
+    delay =
         static_cast<double>(retry->retry_delay().seconds()) + 1e-9 * retry->retry_delay().nanos();
-    text += "\n  try again in " + duration_text(seconds);
+    text += "\n  try again in " + duration_text(*delay);
   }
-  return text;
+  return {text, static_cast<int>(status.error_code()), reason, violations, delay};
 }
 
-Failure to_failure(const grpc::Status& status, const std::string& address) {
+}  // namespace
+
+ServiceError service_error(const grpc::Status& status, const std::string& address) {
   const bool answered = !status.error_details().empty();
   if (status.error_code() == grpc::StatusCode::UNAVAILABLE && !answered) {
-    return Failure(kExitCannotConnect,
-                   "cannot connect to the server at " + address + " (" +
-                       printable(status.error_message()) +
-                       ")\n  Start one with `tribodynd`, or name another with --server or "
-                       "TRIBODYN_SERVER.");
+    return {Kind::kCannotConnect, "cannot connect to the server at " + address + " (" +
+                                      printable(status.error_message()) + ")"};
   }
   if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED && !answered) {
-    return Failure(kExitCannotConnect, "no answer in time from the server at " + address +
-                                           "\n  A longer wait: --timeout-seconds.");
+    return {Kind::kNoAnswer, "no answer in time from the server at " + address};
   }
-  return Failure(kExitFailed, "the server refused: " + readable_error(status));
+  return refusal(status);
+}
+
+bool never_connected(const grpc::Status& status) {
+  return status.error_code() == grpc::StatusCode::UNAVAILABLE &&
+         status.error_message().rfind("failed to connect to all addresses", 0) == 0;
 }
 
 }  // namespace tribodyn::client

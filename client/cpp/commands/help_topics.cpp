@@ -1,0 +1,122 @@
+#include "client/cpp/commands/help_topics.h"
+
+namespace tribodyn::client {
+
+const std::vector<HelpTopic>& help_topics() {
+  static const std::vector<HelpTopic> kTopics = {
+      {"units", "how to write numbers with their units",
+       R"(Numbers with units
+
+A flag whose name ends in a unit takes a plain number in that unit:
+  --sump-temperature-celsius 90      --pressure-viscosity-coefficient-per-pascal 2e-8
+Others take the unit with the number, with or without a blank:
+  --pressure-viscosity 20/GPa        --relaxation-time 450ns
+  --pressure-viscosity-temperature 40C
+  --limiting-shear-stress-at-zero-pressure '4 MPa'
+The trade's own flags take a plain number in the trade's unit:
+  --kv40 73.3 (mm2/s)   --kv100 8.86 (mm2/s)   --density15 870 (kg/m3)   --brookfield -40=150000 (mPa s)
+
+Understood are products of powers of
+  m g s K Pa N J W rad deg St P bar l t h min %      with G M k d c m u n p before them
+in any usual spelling: mm2/s = mm^2/s = cSt, mPas = mPa s = cP, 1/GPa = GPa^-1 = /GPa,
+W/(m K) = W/mK = W/m/K, g/cm3 = kg/l. Temperatures are in C, K or F.
+
+Printed are the units of the trade (mm2/s, mPa s, 1/GPa, MPa, C, um). CSV and JSON are in the unit
+that ends each name, SI as a rule, every digit kept.
+)"},
+      {"files", "what import, export and validate read and write",
+       R"(Files
+
+JSON holds a resource as the protos name its fields (snake_case or camelCase), or a list of them:
+  {"name": "lubricants/my-oil", "measurements": {
+     "kinematic_viscosity_40_celsius_square_millimetres_per_second": 73.3, ...}}
+  {"lubricants": [ ... ]}
+A misspelt name is refused, and the one that may be meant is named. `export` writes it, `import`,
+`create --file`, `update --file` and `validate` read it; "-" is standard input.
+
+Tables are CSV with a header; the order of columns is free.
+  Viscosities (lubricants): temperature_celsius or temperature_kelvin; and one or more of
+    kinematic_viscosity_square_millimetres_per_second, dynamic_viscosity_millipascal_seconds,
+    dynamic_viscosity_pascal_seconds, density_kilograms_per_cubic_metre. Empty cells are left out.
+      temperature_celsius,kinematic_viscosity_square_millimetres_per_second
+      20,200
+      40,73.3
+      100,8.86
+  One lubricant, surface or vehicle a row: a column "name" makes a table one of these. The other
+    columns are fields as JSON names them, those of measurements too, and labels.KEY; empty cells
+    are not set. `export --all --output csv` writes it.
+      name,kinematic_viscosity_40_celsius_square_millimetres_per_second,base_oil_class,labels.project
+      my-oil,73.3,group-iii,axle
+  Tooth contact (gear sets): roll_pitches, pinion_roll_radians or pinion_roll_degrees (one pair from
+    -1.5 to 1.5 pitches), or mesh_phase and slot; then load_share, radius_x_metres, radius_y_metres,
+    pinion_velocity_x_metres, pinion_velocity_y_metres, gear_velocity_x_metres,
+    gear_velocity_y_metres; if known contact_point_velocity_x_metres,
+    contact_point_velocity_y_metres, pinion_friction_arm_metres, gear_friction_arm_metres.
+  Series (gear sets): quantity, harmonic, sine, cosine; the cosine of harmonic 0 is the mean.
+    Quantities: pinion_contact_radius_metres, gear_contact_radius_metres,
+    mesh_stiffness_newtons_per_metre, static_transmission_error_metres.
+  Profiles (surfaces): position and height, each in _metres, _millimetres or _micrometres, height
+    also in _nanometres; positions evenly spaced.
+Every violation is named with its row and column. Nothing is written unless all is legal. When an
+import of several is interrupted or loses the server, the message says how many were written: give
+--replace to write all of them again, which makes no revision of what is the same.
+)"},
+      {"filters", "which resources a list shows, and in which order",
+       R"(Filters of lists
+
+  tribodyn lubricants list --filter 'labels.project = "axle" AND condition = SHEARED'
+  tribodyn lubricants list --filter 'pressure_viscosity_coefficient_per_pascal > 1.5e-8'
+  tribodyn lubricants list --label project=axle --order-by 'create_time desc' --limit 20
+
+Restrictions are joined by AND. Operators: = != < <= > >= and ":" (contains; `labels.key:*` means:
+is there). Texts with blanks stand in double quotes. Numbers are in the unit of the field's name.
+`tribodyn schema` lists the fields under "lubricants.filter" and so on.
+)"},
+      {"configuration", "configuration file and environment",
+       R"(Configuration
+
+A flag wins over the environment, the environment over the file.
+  file:         $XDG_CONFIG_HOME/tribodyn/config, else ~/.config/tribodyn/config;
+                TRIBODYN_CONFIG names another one
+  environment:  TRIBODYN_SERVER, TRIBODYN_TIMEOUT_SECONDS, TRIBODYN_OUTPUT, TRIBODYN_PROGRESS,
+                TRIBODYN_COLOR; NO_COLOR turns colours off
+
+The file holds the flags that every command has, one a line, without dashes in front:
+  # the plant's server
+  server = 127.0.0.1:50651
+  timeout-seconds = 60
+  output = table
+  progress = auto
+  color = auto
+)"},
+      {"options", "what is common to all commands",
+       R"(Options of every command
+
+  --server HOST:PORT   another server than 127.0.0.1:50651; unix:PATH for a socket
+  --timeout-seconds S  longest wait for one answer (30)
+  --output, -o FORM    table for people, csv and json for programs
+  --progress FORM      bars on a terminal and nothing elsewhere (auto), lines for a log, or none
+  --color WHEN         auto, always or never; --no-color
+
+Results go to standard output, progress and errors to standard error. No pager is started and
+nothing is asked. An option may stand before or after the command; --name=value is --name value.
+Names of resources may be given with or without their collection: 1 or lubricants/1; 1@2 is
+revision 2. `tribodyn completion bash` completes commands, options and names.
+)"},
+      {"exit-codes", "what scripts can rely on",
+       R"(Exit codes
+
+    0  done
+    1  the server refused, or a simulation failed or was cancelled
+    2  the command line, the configuration or a file is wrong; nothing was sent
+    3  no server at the address, or no answer in time
+    4  diff --exit-code: the fluids differ
+  130  interrupted (Ctrl-C); simulations go on, and the way to follow or cancel them is printed
+
+All complaints of a kind come at once, on standard error.
+)"},
+  };
+  return kTopics;
+}
+
+}  // namespace tribodyn::client

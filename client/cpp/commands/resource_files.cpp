@@ -1,0 +1,297 @@
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <set>
+
+#include "client/cpp/commands/json_import.h"
+#include "client/cpp/commands/resource_writes.h"
+#include "client/cpp/report/resource_report.h"
+#include "client/cpp/resources/json_input.h"
+#include "client/cpp/resources/row_table.h"
+#include "client/cpp/resources/table_files.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+struct ImportFlags {
+  std::vector<std::string> files;
+  std::string id;
+  std::string like;
+  ResourceEdits edits;
+  TableFiles tables;
+  bool replace = false;
+  bool validate_only = false;
+};
+
+struct ExportFlags {
+  std::vector<std::string> names;
+  std::string file;
+  std::string tooth_contact;
+  std::string series;
+  bool all = false;
+};
+
+bool is_csv(const std::string& path) { return std::filesystem::path(path).extension() == ".csv"; }
+
+ProgressDisplay progress_of(const CommonOptions& options) {
+  return {std::cerr, options.progress_form(), standard_error_width()};
+}
+
+/// Everything is checked before anything is written.
+int import_resources(const ResourceKind& kind, const ImportFlags& flags,
+                     const CommonOptions& options) {
+  std::vector<FileResource> resources;
+  for (const std::string& path : flags.files) {
+    const std::string text = read_file(path);
+    for (auto& each :
+         is_csv(path) ? read_row_table(text, path, kind) : read_resources(text, path, &kind)) {
+      flags.edits.apply(*each.resource);
+      resources.push_back(std::move(each));
+    }
+  }
+  if (resources.size() > 1 && !flags.id.empty()) {
+    throw Failure(kExitUsage, "--id names one " + kind.singular + ", but there are " +
+                                  std::to_string(resources.size()));
+  }
+  const JsonImport import(kind, std::move(resources), flags.id);
+  Connection connection = options.connect();
+  ProgressDisplay progress = progress_of(options);
+  std::vector<ResourcePointer> done = import.check(connection, flags.replace, progress);
+  if (!flags.validate_only) done = import.write(connection, flags.replace, progress);
+  progress.finish();
+  if (options.output_format != OutputFormat::kTable) {
+    std::cout << resources_text(kind, done, options.output_format, false);
+    return kExitOk;
+  }
+  if (done.size() == 1) {
+    show_written("imported", *done.front(), flags.validate_only, options.output_format);
+    return kExitOk;
+  }
+  for (const ResourcePointer& each : done) {
+    std::cout << (flags.validate_only ? "valid, not written: " : "imported ")
+              << printable(text_field(*each, "name")) << "\n";
+  }
+  return kExitOk;
+}
+
+int import_tables(const ResourceKind& kind, const ImportFlags& flags,
+                  const CommonOptions& options) {
+  if (flags.files.size() > 1 && kind.word != "surfaces") {
+    throw Failure(kExitUsage, "one table at a time");
+  }
+  if (flags.replace) {
+    throw Failure(kExitUsage,
+                  "--replace is for JSON files and tables of one " + kind.singular + " a row");
+  }
+  TableFiles tables = flags.tables;
+  for (const std::string& path : flags.files) add_table(kind, path, tables);
+  const std::string id = !flags.id.empty() ? flags.id : id_of_file(flags.files.front());
+  Connection connection = options.connect();
+  const ResourcePointer resource =
+      flags.like.empty() ? kind.make() : copy_of(connection, kind, flags.like, tables);
+  flags.edits.apply(*resource);
+  const ResourcePointer imported =
+      create_with_tables(connection, kind, *resource, id, tables, flags.validate_only);
+  show_written("imported", *imported, flags.validate_only, options.output_format);
+  if (kind.word == "lubricants" && options.output_format == OutputFormat::kTable &&
+      !flags.validate_only) {
+    std::cout << "\nNext:  tribodyn curve --lubricant " << id << "\n";
+  }
+  return kExitOk;
+}
+
+void check_import(const ResourceKind& kind, const ImportFlags& flags, Complaints& complaints) {
+  if (flags.files.empty() && flags.tables.empty()) {
+    complaints.emplace_back("FILE is missing, e.g. tribodyn " + kind.word + " import file.json");
+    return;
+  }
+  std::size_t tables = 0;
+  for (const std::string& path : flags.files) tables += is_csv(path) ? 1 : 0;
+  if (tables > 0 && tables < flags.files.size()) {
+    complaints.emplace_back("either JSON files or tables (.csv), not both at once");
+  }
+  if (flags.files.empty() && flags.id.empty()) complaints.emplace_back("--id is missing");
+}
+
+/// All that are not deleted, and of the deleted ones those that others descend from: an import
+/// wants them.
+std::vector<ResourcePointer> all_to_export(Connection& connection, const ResourceKind& kind) {
+  ListOptions options;
+  options.show_deleted = true;
+  std::vector<ResourcePointer> resources = kind.calls->list(connection, options).resources;
+  std::map<std::string, const google::protobuf::Message*> by_name;
+  for (const ResourcePointer& each : resources) by_name[text_field(*each, "name")] = each.get();
+  std::set<const google::protobuf::Message*> wanted;
+  for (const ResourcePointer& each : resources) {
+    if (is_deleted(*each)) continue;
+    const google::protobuf::Message* next = each.get();
+    while (next != nullptr && wanted.insert(next).second) {
+      const std::string parent = text_field(*next, "derived_from");
+      const auto found = by_name.find(parent.substr(0, parent.find('@')));
+      next = found == by_name.end() ? nullptr : found->second;
+    }
+  }
+  std::erase_if(resources, [&](const auto& each) { return wanted.count(each.get()) == 0; });
+  return resources;
+}
+
+int run_export(const ResourceKind& kind, const ExportFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  std::vector<ResourcePointer> resources;
+  if (flags.all) {
+    resources = all_to_export(connection, kind);
+  } else {
+    for (const std::string& name : flags.names) {
+      resources.push_back(kind.calls->get(connection, kind.name_of(name)));
+    }
+  }
+  if (!flags.tooth_contact.empty() || !flags.series.empty()) {
+    const auto& gear_set = dynamic_cast<const v1::GearSet&>(*resources.front());
+    if (!flags.tooth_contact.empty()) {
+      write_file(flags.tooth_contact, tooth_contact_csv(gear_set));
+    }
+    if (!flags.series.empty()) write_file(flags.series, series_csv(gear_set));
+    if (flags.file.empty()) return kExitOk;
+  }
+  std::string text;
+  const bool csv = options.output_format == OutputFormat::kCsv;
+  if (csv && kind.word == "lubricants" && !flags.all && resources.size() == 1) {
+    text = viscosity_table_csv(dynamic_cast<const v1::Lubricant&>(*resources.front()));
+  } else if (csv && kind.word == "gear-sets") {
+    throw Failure(kExitUsage, "a gear set has tables of its own: --tooth-contact and --series");
+  } else if (csv) {
+    std::string lost;
+    text = row_table(kind, resources, lost);
+    std::cerr << "tribodyn: a table has no room for " << lost << "; JSON has\n";
+  } else {
+    text = export_text(kind, resources);
+  }
+  if (flags.file.empty()) {
+    std::cout << text;
+  } else {
+    write_file(flags.file, text);
+  }
+  return kExitOk;
+}
+
+}  // namespace
+
+Command import_command(const ResourceKind& kind) {
+  const auto flags = std::make_shared<ImportFlags>();
+  Command command{kind.word + " import",
+                  kind.plural + " from files",
+                  "Adds " + kind.plural +
+                      " from files as export writes them, several at once. All are checked before "
+                      "the first one is written.",
+                  {"tribodyn " + kind.word + " import " + kind.plural.substr(0, 4) + ".json"},
+                  {},
+                  {},
+                  {}};
+  if (kind.word != "gear-sets") {
+    command.about +=
+        " JSON, or a CSV table with a column \"name\": one " + kind.singular + " a row.";
+  }
+  if (kind.word == "lubricants") {
+    command.about +=
+        " Or from a table of viscosities (CSV), whose Vogel law is fitted by least "
+        "squares; the residuals are shown.";
+    command.examples = {"tribodyn lubricants import my-oil.csv",
+                        "tribodyn lubricants import fluids.json --replace",
+                        "tribodyn lubricants import table.csv --id my-oil --density15 870 "
+                        "--base-oil-class polyalphaolefin"};
+  } else if (kind.word == "gear-sets") {
+    command.about += " Or from tooth contact data computed elsewhere (CSV).";
+    command.examples.emplace_back(
+        "tribodyn gear-sets import contact.csv --series series.csv --id mine --like A");
+  } else if (kind.word == "surfaces") {
+    command.about += " Or from measured profiles (CSV).";
+    command.examples.emplace_back(
+        "tribodyn surfaces import --id mine --profile pinion,axial,p.csv --profile "
+        "gear,axial,g.csv");
+  }
+  command.flags.group("Arguments");
+  command.flags.texts("file", "FILE",
+                      "JSON, or a table whose name ends in .csv; - is standard "
+                      "input.",
+                      [flags](const std::string& path) { flags->files.push_back(path); });
+  command.flags.group("Options");
+  command.flags.text("--id", "NAME",
+                     "Its id. Default: the name in the file, else the file's own name.",
+                     [flags](const std::string& text) { flags->id = resource_id(text); });
+  command.flags
+      .text("--like", "NAME",
+            "Of a table: what it does not tell is as in this " + kind.singular + ".",
+            [flags](const std::string& text) { flags->like = text; })
+      .collection = kind.collection;
+  command.flags.toggle("--replace", "Make a new revision of what is there already.",
+                       [flags] { flags->replace = true; });
+  command.flags.toggle("--validate-only", "Check everything and show the outcome; write nothing.",
+                       [flags] { flags->validate_only = true; });
+  add_table_flags(command.flags, kind, flags->tables);
+  add_edit_flags(command.flags, kind, flags->edits);
+  command.check = [flags, &kind](Complaints& complaints) {
+    check_import(kind, *flags, complaints);
+  };
+  command.run = [&kind, flags](const CommonOptions& options) {
+    const bool table =
+        !flags->tables.empty() ||
+        (is_csv(flags->files.front()) &&
+         (kind.word == "gear-sets" || !is_row_table(read_file(flags->files.front()))));
+    return table ? import_tables(kind, *flags, options) : import_resources(kind, *flags, options);
+  };
+  return command;
+}
+
+Command export_command(const ResourceKind& kind) {
+  const auto flags = std::make_shared<ExportFlags>();
+  Command command{
+      kind.word + " export",
+      kind.plural + " as JSON that import reads",
+      "Writes " + kind.plural +
+          " as JSON, every number exact. Revision, times and etag stay with the server.",
+      {"tribodyn " + kind.word + " export " + kind.example + " --file " + kind.example + ".json",
+       "tribodyn " + kind.word + " export --all"},
+      {},
+      {},
+      {}};
+  command.flags.group("Arguments");
+  command.flags
+      .texts("name", "NAME", "The " + kind.plural + "; NAME@REVISION is an older revision.",
+             [flags](const std::string& name) { flags->names.push_back(name); })
+      .collection = kind.collection;
+  command.flags.group("Options");
+  command.flags.toggle("--all", "All there are, and deleted ones that others are derived from.",
+                       [flags] { flags->all = true; });
+  command.flags.text("--file,-f", "FILE", "Write to this file. Default: standard output.",
+                     [flags](const std::string& path) { flags->file = path; });
+  if (kind.word == "gear-sets") {
+    command.flags.text("--tooth-contact", "FILE.csv",
+                       "Write the tooth contact data as the table that import reads.",
+                       [flags](const std::string& path) { flags->tooth_contact = path; });
+    command.flags.text("--series", "FILE.csv",
+                       "Write the Fourier series as the table that import reads.",
+                       [flags](const std::string& path) { flags->series = path; });
+  } else if (kind.word == "lubricants") {
+    command.about +=
+        " With --output csv, one fluid's measured viscosities as the table that "
+        "import reads, or of several a row each.";
+  } else {
+    command.about += " With --output csv, a row each.";
+  }
+  command.check = [flags, &kind](Complaints& complaints) {
+    if (flags->names.empty() != flags->all) {
+      complaints.emplace_back(flags->all ? "either NAME or --all"
+                                         : "NAME is missing; --all exports all " + kind.plural);
+    }
+    if ((!flags->tooth_contact.empty() || !flags->series.empty()) && flags->names.size() != 1) {
+      complaints.emplace_back("tables are of one gear set: give one NAME");
+    }
+  };
+  command.run = [&kind, flags](const CommonOptions& options) {
+    return run_export(kind, *flags, options);
+  };
+  return command;
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,143 @@
+#include <algorithm>
+
+#include "client/cpp/commands/resource_writes.h"
+#include "client/cpp/resources/json_input.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+/// "pinion,axial,FILE"; member and direction may be missing.
+bool read_profile(const std::string& text, TableFiles::Profile& profile) {
+  std::vector<std::string> parts = split(text, ',');
+  if (parts.empty()) return false;
+  profile.path = parts.back();
+  parts.pop_back();
+  for (const std::string& part : parts) {
+    if (part == "pinion") {
+      profile.member = v1::PINION;
+    } else if (part == "gear") {
+      profile.member = v1::GEAR;
+    } else if (part == "axial") {
+      profile.direction = v1::AXIAL;
+    } else if (part == "radial") {
+      profile.direction = v1::RADIAL;
+    } else {
+      return false;
+    }
+  }
+  return !profile.path.empty();
+}
+
+}  // namespace
+
+void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tables) {
+  if (kind.word == "vehicles") return;
+  flags.group("Tables (CSV; `tribodyn help files` names their columns)");
+  if (kind.word == "lubricants") {
+    flags.text("--viscosity-table", "FILE.csv",
+               "Viscosities, and densities if known, at several temperatures.",
+               [&](const std::string& path) { tables.viscosity_table = path; });
+  } else if (kind.word == "gear-sets") {
+    flags.text("--tooth-contact", "FILE.csv",
+               "Tooth contact data computed elsewhere, by roll or by mesh phase and slot.",
+               [&](const std::string& path) { tables.tooth_contact = path; });
+    flags.text("--series", "FILE.csv",
+               "Fourier series of contact radii, mesh stiffness and transmission error.",
+               [&](const std::string& path) { tables.series = path; });
+  } else {
+    Flag& profile = flags.raw("--profile", "[pinion|gear,][axial|radial,]FILE.csv",
+                              "A measured profile of a flank; repeatable.");
+    profile.is_repeatable = true;
+    profile.read = [&](const std::vector<std::string>& texts, Complaints& complaints) {
+      for (const std::string& text : texts) {
+        if (!read_profile(text, tables.profiles.emplace_back())) {
+          complaints.push_back("--profile: '" + printable(text) +
+                               "' is not [pinion|gear,][axial|radial,]FILE");
+        }
+      }
+    };
+    flags.choice(
+        "--levelling", {"mean", "least-squares-line"},
+        "What is taken off a profile before its moments are formed. Default: "
+        "least-squares-line.",
+        [&](int index) { tables.levelling = index == 0 ? v1::MEAN : v1::LEAST_SQUARES_LINE; });
+  }
+}
+
+void add_table(const ResourceKind& kind, const std::string& path, TableFiles& tables) {
+  if (kind.word == "lubricants") {
+    tables.viscosity_table = path;
+  } else if (kind.word == "gear-sets") {
+    tables.tooth_contact = path;
+  } else if (kind.word == "surfaces") {
+    tables.profiles.emplace_back().path = path;
+  } else {
+    throw Failure(kExitUsage, path + ": there are no tables of " + kind.plural);
+  }
+}
+
+ResourcePointer copy_of(Connection& connection, const ResourceKind& kind, const std::string& name,
+                        const TableFiles& tables) {
+  ResourcePointer resource = kind.calls->get(connection, kind.name_of(name));
+  clear_output_only(*resource);
+  const auto clear = [&](std::initializer_list<const char*> fields) {
+    for (const char* field : fields) {
+      resource->GetReflection()->ClearField(resource.get(),
+                                            resource->GetDescriptor()->FindFieldByName(field));
+    }
+  };
+  clear({"name", "derived_from"});
+  if (!tables.tooth_contact.empty()) {
+    clear({"flank_slots", "series_by_torque", "load_share_by_torque"});
+  }
+  if (!tables.series.empty()) clear({"series"});
+  if (!tables.profiles.empty()) {
+    clear({"measurements", "asperity_density_per_square_metre", "asperity_radius_metres",
+           "composite_rms_height_metres"});
+    for (const char* field : {"asperity_density_per_square_metre", "asperity_radius_metres",
+                              "composite_rms_height_metres"}) {
+      drop_provenance(*resource, field);
+    }
+  }
+  return resource;
+}
+
+ResourcePointer create_with_tables(Connection& connection, const ResourceKind& kind,
+                                   const google::protobuf::Message& resource, const std::string& id,
+                                   const TableFiles& tables, bool validate_only) {
+  if (!tables.viscosity_table.empty()) {
+    v1::ImportLubricantRequest request;
+    request.mutable_lubricant()->CopyFrom(resource);
+    request.set_lubricant_id(id);
+    request.set_viscosity_table_csv(read_file(tables.viscosity_table, kLargestTable));
+    request.set_validate_only(validate_only);
+    return std::make_unique<v1::Lubricant>(connection.import_lubricant(request));
+  }
+  if (!tables.tooth_contact.empty()) {
+    v1::ImportGearSetRequest request;
+    request.mutable_gear_set()->CopyFrom(resource);
+    request.set_gear_set_id(id);
+    request.set_tooth_contact_csv(read_file(tables.tooth_contact, kLargestTable));
+    if (!tables.series.empty()) request.set_series_csv(read_file(tables.series, kLargestTable));
+    request.set_validate_only(validate_only);
+    return std::make_unique<v1::GearSet>(connection.import_gear_set(request));
+  }
+  if (!tables.profiles.empty()) {
+    v1::ImportSurfaceProfilesRequest request;
+    request.mutable_surface()->CopyFrom(resource);
+    request.set_surface_id(id);
+    for (const TableFiles::Profile& table : tables.profiles) {
+      v1::SurfaceProfile& profile = *request.add_profiles();
+      profile.set_member(table.member);
+      profile.set_direction(table.direction);
+      profile.set_csv(read_file(table.path, kLargestTable));
+    }
+    request.set_levelling(tables.levelling);
+    request.set_validate_only(validate_only);
+    return std::make_unique<v1::Surface>(connection.import_surface_profiles(request));
+  }
+  return kind.calls->create(connection, resource, id, validate_only);
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,222 @@
+#include "client/cpp/commands/resource_writes.h"
+
+#include <algorithm>
+#include <iostream>
+
+#include "client/cpp/report/resource_report.h"
+#include "client/cpp/resources/json_input.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+using google::protobuf::Message;
+
+struct WriteFlags {
+  std::string name;
+  std::string file;
+  std::string like;
+  std::string etag;
+  ResourceEdits edits;
+  TableFiles tables;
+  bool validate_only = false;
+  bool allow_missing = false;
+};
+
+void set_text(Message& resource, const char* field, const std::string& text) {
+  resource.GetReflection()->SetString(&resource, resource.GetDescriptor()->FindFieldByName(field),
+                                      text);
+}
+
+/// The one resource of a file.
+ResourcePointer read_one(const ResourceKind& kind, const std::string& path) {
+  auto resources = read_resources(read_file(path), path, &kind);
+  if (resources.size() != 1) {
+    throw Failure(kExitUsage, path + " holds " + std::to_string(resources.size()) + " " +
+                                  kind.plural + "; `tribodyn " + kind.word +
+                                  " import` takes several");
+  }
+  clear_output_only(*resources.front().resource);
+  return std::move(resources.front().resource);
+}
+
+void add_name(Command& command, const ResourceKind& kind, const std::shared_ptr<WriteFlags>& flags,
+              const std::string& description, bool exists) {
+  command.flags.group("Arguments");
+  Flag& name = command.flags.text("name", "NAME", description,
+                                  [flags](const std::string& text) { flags->name = text; });
+  if (exists) name.collection = kind.collection;
+}
+
+void add_write_flags(Command& command, const std::shared_ptr<WriteFlags>& flags,
+                     const std::string& file_description) {
+  command.flags.group("Options");
+  command.flags.text("--file,-f", "FILE.json", file_description,
+                     [flags](const std::string& path) { flags->file = path; });
+  command.flags.toggle("--validate-only", "Check everything and show the outcome; write nothing.",
+                       [flags] { flags->validate_only = true; });
+}
+
+/// What the flags of create change.
+ResourcePointer start_of(Connection& connection, const ResourceKind& kind,
+                         const WriteFlags& flags) {
+  if (!flags.file.empty()) return read_one(kind, flags.file);
+  if (!flags.like.empty()) return copy_of(connection, kind, flags.like, flags.tables);
+  return kind.make();
+}
+
+int run_create(const ResourceKind& kind, const WriteFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  const ResourcePointer resource = start_of(connection, kind, flags);
+  flags.edits.apply(*resource);
+  set_text(*resource, "name", "");
+  const ResourcePointer created = create_with_tables(
+      connection, kind, *resource, resource_id(flags.name), flags.tables, flags.validate_only);
+  show_written("created", *created, flags.validate_only, options.output_format);
+  if (kind.word == "lubricants" && options.output_format == OutputFormat::kTable &&
+      !flags.validate_only) {
+    std::cout << "\nNext:  tribodyn curve --lubricant " << resource_id(flags.name) << "\n";
+  }
+  return kExitOk;
+}
+
+/// Reads the present revision, changes it, and sends it back with its etag: what somebody else has
+/// changed meanwhile is not overwritten.
+int run_update(const ResourceKind& kind, const WriteFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  const std::string name = kind.name_of(flags.name);
+  UpdateOptions update;
+  update.validate_only = flags.validate_only;
+  update.allow_missing = flags.allow_missing;
+  ResourcePointer resource;
+  if (flags.file.empty()) {
+    resource = kind.calls->get(connection, name);
+    update.update_mask = flags.edits.fields();
+  } else {
+    resource = read_one(kind, flags.file);
+  }
+  flags.edits.apply(*resource);
+  set_text(*resource, "name", name);
+  if (!flags.etag.empty()) set_text(*resource, "etag", flags.etag);
+  const ResourcePointer updated = kind.calls->update(connection, *resource, update);
+  show_written("updated", *updated, flags.validate_only, options.output_format);
+  return kExitOk;
+}
+
+}  // namespace
+
+void show_written(const char* done, const Message& resource, bool validate_only,
+                  OutputFormat format) {
+  if (format == OutputFormat::kTable) {
+    const auto* revision = resource.GetDescriptor()->FindFieldByName("revision");
+    std::cout << (validate_only ? "valid, not written: " : std::string(done) + " ")
+              << printable(text_field(resource, "name"));
+    if (!validate_only) {
+      std::cout << ", revision " << resource.GetReflection()->GetInt32(resource, revision);
+    }
+    std::cout << "\n\n";
+  }
+  std::cout << resource_text(resource, format);
+}
+
+Command create_command(const ResourceKind& kind) {
+  const auto flags = std::make_shared<WriteFlags>();
+  Command command{kind.word + " create", "a new " + kind.singular, "", {}, {}, {}, {}};
+  if (kind.word == "lubricants") {
+    command.about =
+        "Adds a gear oil as a laboratory reports it: KV40, KV100 and the density at 15 C are "
+        "enough. What the model needs beyond them is fitted, or estimated from the base-oil class, "
+        "and shown with its uncertainty and source. Values carry their unit: 8.86mm2/s, 40C, "
+        "20/GPa, 150mPas; `tribodyn help units` lists them.";
+    command.examples = {
+        "tribodyn lubricants create my-oil --kv40 73.3 --kv100 8.86 --density15 870 "
+        "--base-oil-class group-iii",
+        "tribodyn lubricants create my-oil --viscosity-table my-oil.csv --density15 870",
+        "tribodyn lubricants create my-oil --file my-oil.json --pressure-viscosity 20/GPa "
+        "--label project=axle"};
+  } else {
+    command.about = "Adds a " + kind.singular +
+                    ". Values carry their unit, e.g. 0.4um; `tribodyn help units` lists them.";
+    command.examples = {"tribodyn " + kind.word + " create mine --like " + kind.example,
+                        "tribodyn " + kind.word + " create mine --file mine.json"};
+    if (kind.word == "gear-sets") {
+      command.examples.emplace_back(
+          "tribodyn gear-sets create mine --like A --tooth-contact contact.csv --series "
+          "series.csv");
+    } else if (kind.word == "surfaces") {
+      command.examples.emplace_back(
+          "tribodyn surfaces create mine --like run-in --profile pinion,axial,p.csv --profile "
+          "gear,axial,g.csv");
+    }
+  }
+  add_name(command, kind, flags, "Its id: letters, digits, '-', '_', '.'; e.g. mine.", false);
+  add_table_flags(command.flags, kind, flags->tables);
+  add_edit_flags(command.flags, kind, flags->edits);
+  add_write_flags(command, flags,
+                  "Start from this JSON file, as export writes it; flags go before.");
+  command.flags
+      .text("--like", "NAME", "Start from a copy of this " + kind.singular + "; flags go before.",
+            [flags](const std::string& text) { flags->like = text; })
+      .collection = kind.collection;
+  command.check = [flags, &kind](Complaints& complaints) {
+    if (flags->name.empty()) {
+      complaints.emplace_back("NAME is missing, e.g. tribodyn " + kind.word + " create mine");
+    }
+    if (!flags->like.empty() && !flags->file.empty()) {
+      complaints.emplace_back("either --like or --file");
+    }
+    if (flags->edits.empty() && flags->file.empty() && flags->like.empty() &&
+        flags->tables.empty()) {
+      complaints.emplace_back("nothing is said of it; see `tribodyn " + kind.word +
+                              " create --help`");
+    }
+  };
+  command.run = [&kind, flags](const CommonOptions& options) {
+    return run_create(kind, *flags, options);
+  };
+  return command;
+}
+
+Command update_command(const ResourceKind& kind) {
+  const auto flags = std::make_shared<WriteFlags>();
+  Command command{
+      kind.word + " update",
+      "a new revision of a " + kind.singular,
+      "Changes what the flags say and leaves the rest. That makes a new revision; results of older "
+      "ones keep theirs. What was fitted or estimated from what is changed is computed again.",
+      {"tribodyn " + kind.word + " update " + kind.example + " --label project=axle"},
+      {},
+      {},
+      {}};
+  if (kind.word == "lubricants") {
+    command.examples.emplace_back(
+        "tribodyn lubricants update 1 --pressure-viscosity 18/GPa "
+        "--provenance pressure-viscosity=measured:report-12");
+  }
+  add_name(command, kind, flags, "The " + kind.singular + ", e.g. " + kind.example + ".", true);
+  add_edit_flags(command.flags, kind, flags->edits);
+  add_removal_flags(command.flags, kind, flags->edits);
+  add_write_flags(command, flags, "Replace all of it by this JSON file.");
+  command.flags.toggle("--allow-missing", "With --file: create it if there is none.",
+                       [flags] { flags->allow_missing = true; });
+  command.flags.text("--etag", "ETAG", "Refuse if it has changed since it had this etag.",
+                     [flags](const std::string& text) { flags->etag = text; });
+  command.check = [flags, &kind](Complaints& complaints) {
+    if (flags->name.empty()) {
+      complaints.emplace_back("NAME is missing; `tribodyn " + kind.word + " list` shows them");
+    }
+    if (flags->edits.empty() && flags->file.empty()) {
+      complaints.emplace_back("nothing is to be changed; see `tribodyn " + kind.word +
+                              " update --help`");
+    }
+    if (flags->allow_missing && flags->file.empty()) {
+      complaints.emplace_back("--allow-missing needs --file");
+    }
+  };
+  command.run = [&kind, flags](const CommonOptions& options) {
+    return run_update(kind, *flags, options);
+  };
+  return command;
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,202 @@
+#include <iostream>
+#include <memory>
+
+#include "client/cpp/commands/command.h"
+#include "client/cpp/commands/resource_writes.h"
+#include "client/cpp/report/resource_report.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+struct ListFlags {
+  ListOptions options;
+  int limit = 100;
+  std::vector<std::string> labels;
+};
+
+struct NameFlags {
+  std::vector<std::string> names;
+  std::string etag;
+  int limit = 100;
+};
+
+/// `labels.project = "axle"` of "project=axle", `labels.project:*` of "project".
+std::string label_restriction(const std::string& label) {
+  const std::size_t mark = label.find('=');
+  if (mark == std::string::npos) return "labels." + label + ":*";
+  std::string value;
+  for (const char c : label.substr(mark + 1)) {
+    if (c == '"' || c == '\\') value += '\\';
+    value += c;
+  }
+  return "labels." + label.substr(0, mark) + " = \"" + value + "\"";
+}
+
+int run_list(const ResourceKind& kind, const ListFlags& flags, const CommonOptions& options) {
+  ListOptions list_options = flags.options;
+  for (const std::string& label : flags.labels) {
+    list_options.filter += (list_options.filter.empty() ? "" : " AND ") + label_restriction(label);
+  }
+  list_options.limit = flags.limit;
+  list_options.basic = options.output_format == OutputFormat::kTable;
+  Connection connection = options.connect();
+  const ResourceList list = kind.calls->list(connection, list_options);
+  std::cout << resources_text(kind, list.resources, options.output_format, false);
+  if (list.has_more) {
+    std::cerr << "There are more than " << flags.limit
+              << "; --limit raises their number, --limit 0 lists all.\n";
+  }
+  return kExitOk;
+}
+
+Command list_command(const ResourceKind& kind) {
+  const auto flags = std::make_shared<ListFlags>();
+  Command command{kind.word + " list",
+                  "the " + kind.plural + " the server knows",
+                  "Lists " + kind.plural + " in the order of their names.",
+                  {"tribodyn " + kind.word + " list",
+                   "tribodyn " + kind.word + " list --filter name:1 --order-by name --output csv"},
+                  {},
+                  {},
+                  {}};
+  command.flags.text("--filter", "FILTER",
+                     "Restrictions joined by AND, e.g. 'labels.project = \"axle\" AND "
+                     "revision > 1'; `tribodyn help filters` tells more.",
+                     [flags](const std::string& text) { flags->options.filter = text; });
+  command.flags.texts("--label", "KEY[=VALUE]", "Only those with this label; repeatable.",
+                      [flags](const std::string& text) { flags->labels.push_back(text); });
+  command.flags.text("--order-by", "FIELD", "A field of the filter, e.g. name or 'name desc'.",
+                     [flags](const std::string& text) { flags->options.order_by = text; });
+  command.flags.whole_number("--limit,-n", {kind.plural, "0 to 1000000", "100"},
+                             "How many at most; 0: all",
+                             [flags](int value) { flags->limit = value; });
+  command.flags.toggle("--show-deleted", "Also those that were deleted.",
+                       [flags] { flags->options.show_deleted = true; });
+  command.check = [flags](Complaints& complaints) {
+    if (flags->limit < 0 || flags->limit > 1000000) {
+      complaints.emplace_back("--limit must be 0 to 1000000");
+    }
+  };
+  command.run = [&kind, flags](const CommonOptions& options) {
+    return run_list(kind, *flags, options);
+  };
+  return command;
+}
+
+/// A command on resources that exist.
+Command name_command(const ResourceKind& kind, const char* verb, const std::string& summary,
+                     const std::string& about, const std::shared_ptr<NameFlags>& flags,
+                     bool several) {
+  Command command{kind.word + " " + verb,
+                  summary,
+                  about,
+                  {"tribodyn " + kind.word + " " + verb + " " + kind.example},
+                  {},
+                  {},
+                  {}};
+  command.flags.group("Arguments");
+  const std::string description = "The " + kind.singular + ", e.g. " + kind.example + " or " +
+                                  kind.collection + "/" + kind.example + ".";
+  const auto add = [flags](const std::string& name) { flags->names.push_back(name); };
+  Flag& name = several ? command.flags.texts("name", "NAME", description, add)
+                       : command.flags.text("name", "NAME", description, add);
+  name.collection = kind.collection;
+  command.check = [flags, word = kind.word](Complaints& complaints) {
+    if (flags->names.empty()) {
+      complaints.emplace_back("NAME is missing; `tribodyn " + word + " list` shows them");
+    }
+  };
+  return command;
+}
+
+Command get_command(const ResourceKind& kind) {
+  const auto flags = std::make_shared<NameFlags>();
+  Command command = name_command(
+      kind, "get", "one " + kind.singular + ", each parameter with where it comes from",
+      "Prints one " + kind.singular +
+          ": every parameter, its value, its uncertainty and how it is known. NAME@REVISION is an "
+          "older revision.",
+      flags, false);
+  command.run = [&kind, flags](const CommonOptions& options) {
+    Connection connection = options.connect();
+    const auto resource = kind.calls->get(connection, kind.name_of(flags->names.front()));
+    std::cout << resource_text(*resource, options.output_format);
+    return kExitOk;
+  };
+  return command;
+}
+
+Command revisions_command(const ResourceKind& kind) {
+  const auto flags = std::make_shared<NameFlags>();
+  Command command = name_command(kind, "revisions", "every revision of one " + kind.singular,
+                                 "Lists the revisions of a " + kind.singular +
+                                     ", newest first. None ever changes; results keep pointing at "
+                                     "theirs.",
+                                 flags, false);
+  command.flags.group("Options");
+  command.flags.whole_number("--limit,-n", {"revisions", "0 to 1000000", "100"},
+                             "How many at most; 0: all",
+                             [flags](int value) { flags->limit = value; });
+  command.run = [&kind, flags](const CommonOptions& options) {
+    Connection connection = options.connect();
+    const ResourceList list =
+        kind.calls->revisions(connection, kind.name_of(flags->names.front()), flags->limit);
+    std::cout << resources_text(kind, list.resources, options.output_format, true);
+    if (list.has_more) std::cerr << "There are older ones; --limit 0 lists all.\n";
+    return kExitOk;
+  };
+  return command;
+}
+
+/// delete and undelete: a line a resource.
+Command deletion_command(const ResourceKind& kind, bool undelete) {
+  const auto flags = std::make_shared<NameFlags>();
+  Command command = name_command(
+      kind, undelete ? "undelete" : "delete",
+      undelete ? "bring back what was deleted" : "hide " + kind.plural + "; nothing is lost",
+      undelete ? "Brings deleted " + kind.plural + " back."
+               : "Hides " + kind.plural +
+                     " from lists and from new simulations. Results keep theirs, and undelete "
+                     "brings them back.",
+      flags, true);
+  command.flags.group("Options");
+  command.flags.text("--etag", "ETAG", "Refuse if it has changed since it had this etag.",
+                     [flags](const std::string& text) { flags->etag = text; });
+  command.run = [&kind, flags, undelete](const CommonOptions& options) {
+    Connection connection = options.connect();
+    std::vector<ResourcePointer> resources;
+    for (const std::string& name : flags->names) {
+      resources.push_back(undelete
+                              ? kind.calls->undelete(connection, kind.name_of(name), flags->etag)
+                              : kind.calls->remove(connection, kind.name_of(name), flags->etag));
+      if (options.output_format == OutputFormat::kTable) {
+        std::cout << (undelete ? "undeleted " : "deleted ")
+                  << printable(text_field(*resources.back(), "name")) << "\n";
+      }
+    }
+    if (options.output_format != OutputFormat::kTable) {
+      std::cout << resources_text(kind, resources, options.output_format, false);
+    }
+    return kExitOk;
+  };
+  return command;
+}
+
+}  // namespace
+
+std::vector<Command> resource_commands(const ResourceKind& kind) {
+  std::vector<Command> commands;
+  commands.push_back(list_command(kind));
+  commands.push_back(get_command(kind));
+  commands.push_back(create_command(kind));
+  commands.push_back(update_command(kind));
+  commands.push_back(deletion_command(kind, false));
+  commands.push_back(deletion_command(kind, true));
+  commands.push_back(revisions_command(kind));
+  commands.push_back(import_command(kind));
+  commands.push_back(export_command(kind));
+  return commands;
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <set>
+
+#include "client/cpp/commands/resource_writes.h"
+#include "client/cpp/resources/json_input.h"
+#include "client/cpp/resources/row_table.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+/// The kind whose table has a header like this; null when none has.
+const ResourceKind* kind_of_table(const std::string& text) {
+  const std::string header = text.substr(0, text.find('\n'));
+  const auto has = [&](const char* word) { return header.find(word) != std::string::npos; };
+  const auto* kind = has("load_share")    ? "gear-sets"
+                     : has("temperature") ? "lubricants"
+                     : has("height")      ? "surfaces"
+                                          : "";
+  for (const ResourceKind& each : resource_kinds()) {
+    if (each.word == kind) return &each;
+  }
+  return nullptr;
+}
+
+/// The kind that the columns of a table of rows belong to.
+const ResourceKind& kind_of_rows(const std::string& text) {
+  const std::string header = text.substr(0, text.find('\n'));
+  const auto has = [&](const char* word) { return header.find(word) != std::string::npos; };
+  const char* kind = has("asperity")                ? "surfaces"
+                     : has("mass_") || has("wheel") ? "vehicles"
+                                                    : "lubricants";
+  return *std::find_if(resource_kinds().begin(), resource_kinds().end(),
+                       [&](const ResourceKind& each) { return each.word == kind; });
+}
+
+/// The id that a file stands for when it names none.
+constexpr char kAnyId[] = "validated";
+
+/// What is wrong with a file, a complaint each; says what is right on standard output.
+void validate(Connection& connection, const std::string& path, std::vector<std::string>& wrong) {
+  const auto check = [&](const std::string& origin, const auto& call) {
+    try {
+      call();
+      std::cout << origin << ": valid\n";
+    } catch (const ServiceError& error) {
+      if (error.kind() != ServiceError::Kind::kRefused) throw;
+      wrong.push_back(origin + ": " + error.what());
+    }
+  };
+  const std::string text = read_file(path);
+  const bool is_csv = std::filesystem::path(path).extension() == ".csv";
+  const bool rows = is_csv && is_row_table(text);
+  if (is_csv && !rows) {
+    const ResourceKind* kind = kind_of_table(text);
+    if (kind == nullptr) {
+      wrong.push_back(path +
+                      ": no table that the server reads; `tribodyn help files` names the "
+                      "columns");
+      return;
+    }
+    TableFiles tables;
+    add_table(*kind, path, tables);
+    // The table alone is to be judged: what it does not tell is as in hardware that is legal.
+    const ResourcePointer rest = kind->word == "lubricants"
+                                     ? kind->make()
+                                     : copy_of(connection, *kind, kind->example, tables);
+    check(path, [&] { create_with_tables(connection, *kind, *rest, kAnyId, tables, true); });
+    return;
+  }
+  const auto resources =
+      rows ? read_row_table(text, path, kind_of_rows(text)) : read_resources(text, path, nullptr);
+  std::set<std::string> names;
+  for (const FileResource& each : resources) names.insert(text_field(*each.resource, "name"));
+  for (const FileResource& each : resources) {
+    if (names.count(text_field(*each.resource, "derived_from")) != 0) {
+      // It will be there once this one is written.
+      each.resource->GetReflection()->ClearField(
+          each.resource.get(), each.resource->GetDescriptor()->FindFieldByName("derived_from"));
+    }
+    clear_output_only(*each.resource);
+    const auto* name = each.resource->GetDescriptor()->FindFieldByName("name");
+    if (text_field(*each.resource, "name").empty()) {
+      each.resource->GetReflection()->SetString(each.resource.get(), name,
+                                                each.kind->name_of(kAnyId));
+    }
+    UpdateOptions options;
+    options.allow_missing = true;
+    options.validate_only = true;
+    check(each.origin, [&] { each.kind->calls->update(connection, *each.resource, options); });
+  }
+}
+
+int run(const std::vector<std::string>& files, const CommonOptions& options) {
+  Connection connection = options.connect();
+  std::vector<std::string> wrong;
+  ExitCode exit_code = kExitOk;
+  for (const std::string& path : files) {
+    try {
+      validate(connection, path, wrong);
+    } catch (const Failure& failure) {
+      wrong.emplace_back(failure.what());
+      exit_code = failure.exit_code();
+    }
+  }
+  if (wrong.empty()) return kExitOk;
+  throw Failure(exit_code == kExitOk ? kExitFailed : exit_code, joined(wrong, "\n"));
+}
+
+}  // namespace
+
+Command validate_command() {
+  const auto files = std::make_shared<std::vector<std::string>>();
+  Command command{
+      "validate",
+      "check files against everything the server checks, and write nothing",
+      "Checks files as an import would: lubricants, gear sets, surfaces and vehicles as JSON, and "
+      "tables as CSV. Every violation is named, with value, unit and legal range.",
+      {"tribodyn validate fluids.json", "tribodyn validate my-oil.csv"},
+      {},
+      {},
+      {}};
+  command.flags.group("Arguments");
+  command.flags.texts("file", "FILE",
+                      "JSON, or a table whose name ends in .csv; - is standard "
+                      "input.",
+                      [files](const std::string& path) { files->push_back(path); });
+  command.check = [files](Complaints& complaints) {
+    if (files->empty()) complaints.emplace_back("FILE is missing");
+  };
+  command.run = [files](const CommonOptions& options) { return run(*files, options); };
+  return command;
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,75 @@
+// What two gear oils cost at one speed, and what is assumed of them: an example of the client
+// library.
+// usage: compare_fluids HOST:PORT [LUBRICANT LUBRICANT]
+#include <tribodyn/client/connection.h>
+
+#include <cstdlib>
+#include <iostream>
+
+namespace {
+
+using namespace tribodyn;
+
+/// A fluid of which only a data sheet is known; what else the model needs, the server estimates.
+v1::Lubricant fluid_of_a_data_sheet() {
+  v1::Lubricant fluid;
+  fluid.set_display_name("Data sheet: 73.3 and 8.86 mm2/s, 870 kg/m3");
+  fluid.set_base_oil_class(v1::Lubricant::GROUP_III);
+  auto& measured = *fluid.mutable_measurements();
+  measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73.3);
+  measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(8.86);
+  measured.set_density_15_celsius_kilograms_per_cubic_metre(870);
+  return fluid;
+}
+
+v1::Simulation cruise(const std::string& lubricant) {
+  v1::Simulation simulation;
+  simulation.set_lubricant(lubricant);
+  auto& study = *simulation.mutable_operating_point();
+  study.mutable_cruise()->set_speed_kilometers_per_hour(50);
+  study.set_model(v1::QUASI_STATIC);
+  return simulation;
+}
+
+void compare(client::Connection& connection, const std::vector<std::string>& lubricants) {
+  for (const std::string& lubricant : lubricants) {
+    const v1::Simulation job = connection.create_simulation(cruise(lubricant));
+    const v1::Simulation ended = connection.wait_for_end(job.name());
+    if (ended.state() != v1::Simulation::SUCCEEDED) {
+      throw std::runtime_error(lubricant + ": " + ended.error().message());
+    }
+    std::cout << lubricant << ": " << ended.result().points(0).result().mesh_loss_power_watts()
+              << " W\n";
+    for (const auto& assumption : ended.result().assumptions()) {
+      if (assumption.provenance() != v1::PROVENANCE_ASSUMED) continue;
+      std::cout << "  assumed: " << assumption.resource() << " " << assumption.field() << " = "
+                << assumption.value() << "\n";
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    client::Connection connection(client::server_address(argc > 1 ? argv[1] : ""));
+    if (argc > 3) {
+      compare(connection, {argv[2], argv[3]});
+      return EXIT_SUCCESS;
+    }
+    // Checked as if it were created, but not written: a program that may run any number of times.
+    const v1::Lubricant fluid = connection.create(fluid_of_a_data_sheet(), "data-sheet", true);
+    std::cout << fluid.display_name() << ": viscosity index "
+              << fluid.characterisation().viscosity_index() << "\n";
+    compare(connection, {"lubricants/1", "lubricants/2"});
+    return EXIT_SUCCESS;
+  } catch (const client::ServiceError& error) {
+    std::cerr << error.what() << "\n";
+    for (const client::FieldViolation& violation : error.violations()) {
+      std::cerr << "  " << violation.field << "\n";
+    }
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+  }
+  return EXIT_FAILURE;
+}

@@ -1,0 +1,120 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "tribodyn/client/error.h"
+#include "tribodyn/v1/contacts.pb.h"
+#include "tribodyn/v1/gear_sets.pb.h"
+#include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/schemas.pb.h"
+#include "tribodyn/v1/simulations.pb.h"
+#include "tribodyn/v1/surfaces.pb.h"
+#include "tribodyn/v1/vehicles.pb.h"
+
+namespace tribodyn::client {
+
+inline constexpr char kDefaultServer[] = "127.0.0.1:50651";
+inline constexpr char kServerVariable[] = "TRIBODYN_SERVER";
+
+/// The address to use: `address` unless empty, else the environment variable TRIBODYN_SERVER, else
+/// 127.0.0.1:50651. "unix:PATH" is a socket.
+std::string server_address(const std::string& address = "");
+
+/// Which resources to list, and in which order.
+struct ListOptions {
+  /// AIP-160: restrictions joined by AND, e.g. `labels.project = "axle" AND condition = SHEARED`.
+  std::string filter;
+  std::string order_by;       ///< "name", or a field of the filter; " desc" turns it round
+  bool show_deleted = false;  ///< also those that were deleted
+  int limit = 0;              ///< at most so many; 0: all
+  bool basic = false;         ///< gear sets without their tables
+};
+
+/// Resources, over as many pages as it took.
+template <class Resource>
+struct Listing {
+  std::vector<Resource> resources;
+  bool has_more = false;  ///< `limit` ended it
+};
+
+/// How an update is made.
+struct UpdateOptions {
+  std::vector<std::string> update_mask;  ///< top-level fields to take over; empty: all
+  bool allow_missing = false;            ///< create it if there is none
+  bool validate_only = false;            ///< check everything, write nothing
+};
+
+/// A server and its services. Safe for concurrent use. Nothing is sent before the first call; every
+/// call throws ServiceError. `Resource` is v1::Lubricant, v1::GearSet, v1::Surface or v1::Vehicle.
+class Connection {
+ public:
+  /// `timeout` bounds every call but wait_for_end() and read_history().
+  explicit Connection(std::string address,
+                      std::chrono::duration<double> timeout = std::chrono::seconds(30));
+  ~Connection();
+  Connection(Connection&& other) noexcept;
+  Connection& operator=(Connection&& other) noexcept;
+
+  const std::string& address() const;
+
+  /// Adds a resource under `id` (empty: the id in its name) and returns it as the server keeps it:
+  /// with what was fitted and estimated, each parameter with its provenance.
+  template <class Resource>
+  Resource create(const Resource& resource, const std::string& id, bool validate_only = false);
+  /// "lubricants/{id}" for the newest revision, "lubricants/{id}@{revision}" for another one.
+  template <class Resource>
+  Resource get(const std::string& name);
+  template <class Resource>
+  Listing<Resource> list(const ListOptions& options = {});
+  /// Makes a new revision of the resource of that name; one that changes nothing makes none. If
+  /// `resource` has an etag that is no longer the present one, the update is refused (ABORTED).
+  template <class Resource>
+  Resource update(const Resource& resource, const UpdateOptions& options = {});
+  /// Newest first; limit 0: all.
+  template <class Resource>
+  Listing<Resource> revisions(const std::string& name, int limit = 0);
+  /// Hides it from lists and from new simulations; nothing is lost.
+  template <class Resource>
+  Resource remove(const std::string& name, const std::string& etag = "");
+  template <class Resource>
+  Resource undelete(const std::string& name, const std::string& etag = "");
+
+  // From tables of numbers, given as CSV texts; see the requests for their columns.
+  v1::Lubricant import_lubricant(const v1::ImportLubricantRequest& request);
+  v1::GearSet import_gear_set(const v1::ImportGearSetRequest& request);
+  v1::Surface import_surface_profiles(const v1::ImportSurfaceProfilesRequest& request);
+
+  /// What the server accepts: the constraints of one message, e.g. "Lubricant", or everything.
+  v1::Schema schema(const std::string& message = "");
+
+  /// Returns at once; with `validate_only` the server checks everything and runs nothing.
+  v1::Simulation create_simulation(const v1::Simulation& simulation, bool validate_only = false);
+  v1::Simulation get_simulation(const std::string& name);
+  v1::Simulation cancel_simulation(const std::string& name);
+  /// Newest first; limit 0: all.
+  Listing<v1::Simulation> list_simulations(int limit = 0);
+  /// Blocks until the simulation has ended and returns it with its result. `on_event` hears of each
+  /// change, in the calling thread. A stream that breaks is taken up again for a while. When `stop`
+  /// is requested, the simulation is returned as it stands.
+  v1::Simulation wait_for_end(const std::string& name,
+                              const std::function<void(const v1::SimulationEvent&)>& on_event = {},
+                              const std::stop_token& stop = {});
+  /// All rows of all columns, joined into one chunk.
+  v1::HistoryChunk read_history(const std::string& name);
+
+  v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request);
+
+ private:
+  struct Services;
+  std::unique_ptr<Services> services_;
+};
+
+/// Whether nothing will change any more: succeeded, failed or cancelled.
+bool has_ended(v1::Simulation::State state);
+
+}  // namespace tribodyn::client

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tribodyn::client {
+
+/// One thing that the server found wrong with a request.
+struct FieldViolation {
+  std::string field;  ///< path in the request, e.g. "lubricant.measurements.densities[2]"
+  /// Value, unit, legal range and the equation that needs it, e.g. "sump_temperature_celsius = 900
+  /// C; legal: -70 to 200 C (eq 14)".
+  std::string description;
+};
+
+/// Why a call brought no answer, or not the one hoped for. what() is the whole text for a person,
+/// of several lines when there are several violations, free of control characters.
+class ServiceError : public std::runtime_error {
+ public:
+  enum class Kind {
+    kCannotConnect,  ///< nothing listens at the address, or the server was lost
+    kNoAnswer,       ///< none within the time limit
+    kRefused,        ///< the server did answer: with an error
+  };
+
+  ServiceError(Kind kind, const std::string& text) : std::runtime_error(text), kind_(kind) {}
+  /// A refusal.
+  ServiceError(const std::string& text, int status_code, std::string reason,
+               std::vector<FieldViolation> violations, std::optional<double> retry_delay_seconds)
+      : std::runtime_error(text),
+        kind_(Kind::kRefused),
+        status_code_(status_code),
+        reason_(std::move(reason)),
+        violations_(std::move(violations)),
+        retry_delay_seconds_(retry_delay_seconds) {}
+
+  Kind kind() const { return kind_; }
+  /// As in grpc::StatusCode, e.g. 5 for NOT_FOUND; 0 unless refused.
+  int status_code() const { return status_code_; }
+  /// The stable word for it, e.g. "RESOURCE_NOT_FOUND"; may be empty.
+  const std::string& reason() const { return reason_; }
+  /// All of them at once.
+  const std::vector<FieldViolation>& violations() const { return violations_; }
+  /// When to try again, where the server says so.
+  std::optional<double> retry_delay_seconds() const { return retry_delay_seconds_; }
+
+ private:
+  Kind kind_;
+  int status_code_ = 0;
+  std::string reason_;
+  std::vector<FieldViolation> violations_;
+  std::optional<double> retry_delay_seconds_;
+};
+
+}  // namespace tribodyn::client

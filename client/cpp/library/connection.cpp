@@ -1,0 +1,54 @@
+#include "tribodyn/client/connection.h"
+
+#include <cstdlib>
+#include <utility>
+
+#include "client/cpp/library/services.h"
+
+namespace tribodyn::client {
+
+std::string server_address(const std::string& address) {
+  if (!address.empty()) return address;
+  const char* environment = std::getenv(kServerVariable);
+  return environment != nullptr && *environment != '\0' ? environment : kDefaultServer;
+}
+
+Connection::Connection(std::string address, std::chrono::duration<double> timeout)
+    : services_(std::make_unique<Services>()) {
+  grpc::ChannelArguments arguments;
+  // An unread watch stream must not make the transport buffer megabytes of it.
+  arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+  // http_proxy is for the web; a server on loopback or in the same plant is not behind it.
+  arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 200);
+  services_->address = std::move(address);
+  services_->timeout = timeout;
+  services_->channel =
+      grpc::CreateCustomChannel(services_->address, grpc::InsecureChannelCredentials(), arguments);
+  services_->lubricants = v1::Lubricants::NewStub(services_->channel);
+  services_->gear_sets = v1::GearSets::NewStub(services_->channel);
+  services_->surfaces = v1::Surfaces::NewStub(services_->channel);
+  services_->vehicles = v1::Vehicles::NewStub(services_->channel);
+  services_->simulations = v1::Simulations::NewStub(services_->channel);
+  services_->contacts = v1::Contacts::NewStub(services_->channel);
+  services_->schemas = v1::Schemas::NewStub(services_->channel);
+}
+
+Connection::~Connection() = default;
+Connection::Connection(Connection&& other) noexcept = default;
+Connection& Connection::operator=(Connection&& other) noexcept = default;
+
+const std::string& Connection::address() const { return services_->address; }
+
+v1::Schema Connection::schema(const std::string& message) {
+  v1::GetSchemaRequest request;
+  request.set_message(message);
+  return services_->call(*services_->schemas, &v1::Schemas::Stub::GetSchema, request);
+}
+
+v1::EvaluateContactResponse Connection::evaluate_contact(
+    const v1::EvaluateContactRequest& request) {
+  return services_->call(*services_->contacts, &v1::Contacts::Stub::EvaluateContact, request);
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,124 @@
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+
+#include "client/cpp/library/services.h"
+
+namespace tribodyn::client {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kFirstRetry(250);
+constexpr int kRetries = 6;  // about 16 s in all: long enough for a server that restarts
+constexpr int kLargestPage = 1000;
+
+/// False when `stop` was requested meanwhile.
+bool pause(milliseconds time, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  never.wait_for(lock, stop, time, [] { return false; });
+  return !stop.stop_requested();
+}
+
+}  // namespace
+
+bool has_ended(v1::Simulation::State state) {
+  return state == v1::Simulation::SUCCEEDED || state == v1::Simulation::FAILED ||
+         state == v1::Simulation::CANCELLED;
+}
+
+v1::Simulation Connection::create_simulation(const v1::Simulation& simulation, bool validate_only) {
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = simulation;
+  request.set_validate_only(validate_only);
+  return services_->call(*services_->simulations, &v1::Simulations::Stub::CreateSimulation,
+                         request);
+}
+
+v1::Simulation Connection::get_simulation(const std::string& name) {
+  v1::GetSimulationRequest request;
+  request.set_name(name);
+  return services_->call(*services_->simulations, &v1::Simulations::Stub::GetSimulation, request);
+}
+
+v1::Simulation Connection::cancel_simulation(const std::string& name) {
+  v1::CancelSimulationRequest request;
+  request.set_name(name);
+  return services_->call(*services_->simulations, &v1::Simulations::Stub::CancelSimulation,
+                         request);
+}
+
+Listing<v1::Simulation> Connection::list_simulations(int limit) {
+  Listing<v1::Simulation> all;
+  v1::ListSimulationsRequest request;
+  do {
+    const int missing = limit - static_cast<int>(all.resources.size());
+    request.set_page_size(limit == 0 ? kLargestPage : std::min(missing, kLargestPage));
+    const auto page =
+        services_->call(*services_->simulations, &v1::Simulations::Stub::ListSimulations, request);
+    all.resources.insert(all.resources.end(), page.simulations().begin(), page.simulations().end());
+    request.set_page_token(page.next_page_token());
+  } while (!request.page_token().empty() &&
+           (limit == 0 || static_cast<int>(all.resources.size()) < limit));
+  all.has_more = !request.page_token().empty();
+  return all;
+}
+
+v1::Simulation Connection::wait_for_end(
+    const std::string& name, const std::function<void(const v1::SimulationEvent&)>& on_event,
+    const std::stop_token& stop) {
+  v1::WatchSimulationRequest request;
+  request.set_name(name);
+  bool ended = false;
+  milliseconds wait = kFirstRetry;
+  for (int tries_left = kRetries; !ended && !stop.stop_requested();) {
+    grpc::ClientContext context;
+    const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
+    const auto reader = services_->simulations->WatchSimulation(&context, request);
+    v1::SimulationEvent event;
+    while (reader->Read(&event)) {
+      tries_left = kRetries;
+      wait = kFirstRetry;
+      ended = has_ended(event.state());
+      if (on_event) on_event(event);
+    }
+    const grpc::Status status = reader->Finish();
+    if (ended || stop.stop_requested()) break;
+    // The server limits how long one watch may last.
+    if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) continue;
+    const bool broken = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE;
+    if (!broken) throw service_error(status, address());
+    if (tries_left-- == 0) {
+      throw ServiceError(ServiceError::Kind::kCannotConnect, "lost the server at " + address());
+    }
+    if (!pause(wait, stop)) break;
+    wait *= 2;
+  }
+  return get_simulation(name);
+}
+
+v1::HistoryChunk Connection::read_history(const std::string& name) {
+  v1::ReadHistoryRequest request;
+  request.set_name(name);
+  grpc::ClientContext context;
+  const auto reader = services_->simulations->ReadHistory(&context, request);
+  v1::HistoryChunk all;
+  v1::HistoryChunk chunk;
+  while (reader->Read(&chunk)) {
+    if (all.columns_size() == 0) {
+      all = chunk;
+      continue;
+    }
+    for (int c = 0; c < std::min(all.columns_size(), chunk.columns_size()); ++c) {
+      all.mutable_columns(c)->mutable_values()->MergeFrom(chunk.columns(c).values());
+    }
+  }
+  const grpc::Status status = reader->Finish();
+  if (!status.ok()) throw service_error(status, address());
+  return all;
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,394 @@
+#include "client/cpp/report/resource_report.h"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/util/json_util.h>
+#include <google/protobuf/util/time_util.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "client/cpp/failure.h"
+#include "client/cpp/report/inputs.h"
+#include "client/cpp/resources/edits.h"
+#include "client/cpp/text/colour.h"
+#include "client/cpp/text/csv.h"
+#include "client/cpp/text/table.h"
+#include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
+
+namespace tribodyn::client {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::Timestamp;
+using google::protobuf::util::TimeUtil;
+
+std::string time_text(const Message& resource, const char* name) {
+  const auto* field = resource.GetDescriptor()->FindFieldByName(name);
+  if (field == nullptr || !resource.GetReflection()->HasField(resource, field)) return "";
+  const auto& time =
+      dynamic_cast<const Timestamp&>(resource.GetReflection()->GetMessage(resource, field));
+  return TimeUtil::ToString(TimeUtil::SecondsToTimestamp(time.seconds()));
+}
+
+int revision_of(const Message& resource) {
+  return resource.GetReflection()->GetInt32(resource,
+                                            resource.GetDescriptor()->FindFieldByName("revision"));
+}
+
+std::string enum_text(const Message& resource, const char* name) {
+  const auto* field = resource.GetDescriptor()->FindFieldByName(name);
+  if (field == nullptr) return "";
+  const auto* value = resource.GetReflection()->GetEnum(resource, field);
+  return value->number() == 0 ? "" : enum_word(*value);
+}
+
+std::string labels_text(const Message& resource) {
+  std::string text;
+  for (const v1::Label& label : labels_of(resource)) {
+    text += (text.empty() ? "" : ", ") + label.key() + "=" + label.value();
+  }
+  return text;
+}
+
+/// A number that the model takes from the resource.
+struct Parameter {
+  const FieldDescriptor* field;
+  const Message* parent;
+  std::string provenance_field;
+};
+
+void collect_parameters(const Message& message, const std::string& block,
+                        std::vector<Parameter>& parameters) {
+  const auto* type = message.GetDescriptor();
+  const auto& reflection = *message.GetReflection();
+  for (int i = 0; i < type->field_count(); ++i) {
+    const FieldDescriptor& field = *type->field(i);
+    if (field.is_repeated() || is_output_only(field)) continue;
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ||
+        field.cpp_type() == FieldDescriptor::CPPTYPE_INT32) {
+      parameters.push_back({&field, &message, block.empty() ? field.name() : block});
+    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE &&
+               field.message_type() == v1::DrivelineDynamics::descriptor() &&
+               reflection.HasField(message, &field)) {
+      collect_parameters(reflection.GetMessage(message, &field), field.name(), parameters);
+    }
+  }
+}
+
+double number_of(const Parameter& parameter) {
+  const auto& reflection = *parameter.parent->GetReflection();
+  return parameter.field->cpp_type() == FieldDescriptor::CPPTYPE_INT32
+             ? reflection.GetInt32(*parameter.parent, parameter.field)
+             : reflection.GetDouble(*parameter.parent, parameter.field);
+}
+
+bool is_known(const Parameter& parameter) {
+  return !parameter.field->has_presence() ||
+         parameter.parent->GetReflection()->HasField(*parameter.parent, parameter.field);
+}
+
+/// Notes that several lines share, numbered in the order in which they come up.
+class Notes {
+ public:
+  std::string mark(const std::string& note) {
+    if (note.empty()) return "";
+    auto found = std::find(notes_.begin(), notes_.end(), note);
+    if (found == notes_.end()) found = notes_.insert(notes_.end(), note);
+    return "[" + std::to_string(found - notes_.begin() + 1) + "]";
+  }
+  std::string text() const {
+    std::string text;
+    for (std::size_t i = 0; i < notes_.size(); ++i) {
+      text += wrapped("[" + std::to_string(i + 1) + "] " + printable(notes_[i]), 2);
+    }
+    return text;
+  }
+
+ private:
+  std::vector<std::string> notes_;
+};
+
+/// Two digits.
+std::string uncertainty_text(double uncertainty) {
+  if (uncertainty <= 0) return "";
+  return uncertainty >= 10 ? fixed(uncertainty, 0) : significant(uncertainty, 2);
+}
+
+/// Whether the warning stands among those of the fluid already.
+bool is_said(const Message& resource, const v1::ParameterProvenance& known) {
+  const auto* lubricant = dynamic_cast<const v1::Lubricant*>(&resource);
+  if (lubricant == nullptr) return false;
+  const auto& warnings = lubricant->characterisation().warnings();
+  return std::any_of(warnings.begin(), warnings.end(),
+                     [&](const auto& warning) { return warning.sentence() == known.warning(); });
+}
+
+std::string parameter_table(const Message& resource) {
+  std::vector<Parameter> parameters;
+  collect_parameters(resource, "", parameters);
+  Table table({{"Parameter", "", Table::Align::kLeft},
+               {"Value", ""},
+               {"Unit", "", Table::Align::kLeft},
+               {"+/-", ""},
+               {"Known", "", Table::Align::kLeft},
+               {"Source", "", Table::Align::kLeft}});
+  Notes notes;
+  for (const Parameter& parameter : parameters) {
+    const std::string& name = parameter.field->name();
+    if (!is_known(parameter)) {
+      table.add_row({label_of_field(name), "-", unit_of_field(name), "", "not stated"});
+      continue;
+    }
+    const double value = number_of(parameter);
+    const std::string unit = trade_unit_of_field(name);
+    const std::string shown = significant(in_trade_unit(name, value));
+    const auto* known = provenance_of(resource, parameter.provenance_field);
+    if (known == nullptr) {
+      table.add_row({label_of_field(name), shown, unit});
+      continue;
+    }
+    const double uncertainty = difference_in_trade_unit(name, known->standard_uncertainty());
+    std::string note = known->source();
+    if (!known->warning().empty() && !is_said(resource, *known)) {
+      note += (note.empty() ? "" : ". ") + known->warning();
+    }
+    table.add_row({label_of_field(name), shown, unit, uncertainty_text(uncertainty),
+                   provenance_word(known->provenance()), notes.mark(note)});
+  }
+  return table.text() + "\n" + notes.text();
+}
+
+void add_identity(const Message& resource, Sheet& sheet) {
+  sheet.heading(text_field(resource, "name") + (text_field(resource, "display_name").empty()
+                                                    ? ""
+                                                    : ": " + text_field(resource, "display_name")));
+  if (const std::string text = text_field(resource, "description"); !text.empty()) {
+    sheet.remark(text);
+  }
+  const auto line = [&](const char* label, const std::string& value) {
+    if (!value.empty()) sheet.line(label, value);
+  };
+  line("base oil", enum_text(resource, "base_oil_class"));
+  line("condition", enum_text(resource, "condition"));
+  line("derived from", text_field(resource, "derived_from"));
+  line("sample", text_field(resource, "external_sample_id"));
+  line("LIMS id", text_field(resource, "lims_id"));
+  line("labels", labels_text(resource));
+  const int revision = revision_of(resource);
+  if (revision > 0) {
+    const std::string time = time_text(resource, "revision_create_time");
+    line("revision", std::to_string(revision) + (time.empty() ? "" : ", " + time));
+  }
+  line("deleted", time_text(resource, "delete_time"));
+}
+
+std::string gear_set_tables_text(const v1::GearSet& gear_set) {
+  Sheet sheet;
+  sheet.heading("Tooth contact data");
+  const int samples =
+      gear_set.flank_slots_size() > 0 ? gear_set.flank_slots(0).load_share_size() : 0;
+  sheet.line("flank slots", std::to_string(gear_set.flank_slots_size()) + " of " +
+                                std::to_string(samples) + " samples");
+  sheet.line("mesh harmonics",
+             std::to_string(gear_set.series().mesh_stiffness_newtons_per_metre().cosine_size()));
+  sheet.line("pinion torques of series", std::to_string(gear_set.series_by_torque_size()));
+  sheet.line("pinion torques of load shares", std::to_string(gear_set.load_share_by_torque_size()));
+  return sheet.text();
+}
+
+std::string profiles_text(const v1::Surface& surface) {
+  if (surface.measurements().empty()) return "";
+  Table table({{"Profile of", "", Table::Align::kLeft},
+               {"along", "", Table::Align::kLeft},
+               {"samples", ""},
+               {"spacing", "um"},
+               {"RMS height", "um"},
+               {"RMS slope", "-"},
+               {"RMS curvature", "1/um"}});
+  for (const auto& profile : surface.measurements()) {
+    table.add_row(
+        {profile.member() == 0
+             ? "both flanks"
+             : enum_word(*v1::FlankMember_descriptor()->FindValueByNumber(profile.member())),
+         profile.direction() == 0 ? "-"
+                                  : enum_word(*v1::ProfileDirection_descriptor()->FindValueByNumber(
+                                        profile.direction())),
+         std::to_string(profile.samples()), significant(1e6 * profile.spacing_metres()),
+         significant(1e6 * std::sqrt(profile.mean_square_height_square_metres()), 4),
+         significant(std::sqrt(profile.mean_square_slope()), 4),
+         significant(1e-6 * std::sqrt(profile.mean_square_curvature_per_square_metre()), 4)});
+  }
+  return "\n" + table.text();
+}
+
+/// A column of a kind's table, beside name and title: a number or text, perhaps inside a block.
+struct ListColumn {
+  const char* header;
+  const char* block;  ///< null: at the top
+  const char* field;
+  int digits = 5;
+};
+
+constexpr char kComputed[] = "characterisation";
+
+const std::vector<ListColumn>& list_columns(const ResourceKind& kind) {
+  static const std::map<std::string, std::vector<ListColumn>> kColumns = {
+      {"lubricants",
+       {{"KV40", kComputed, "kinematic_viscosity_40_celsius_square_millimetres_per_second"},
+        {"KV100", kComputed, "kinematic_viscosity_100_celsius_square_millimetres_per_second"},
+        {"VI", kComputed, "viscosity_index", 3},
+        {"density 15 C", kComputed, "density_15_celsius_kilograms_per_cubic_metre", 4},
+        {"SAE J306", kComputed, "sae_j306_grade"},
+        {"alpha*", nullptr, "pressure_viscosity_coefficient_per_pascal", 3}}},
+      {"gear-sets",
+       {{"pinion teeth", nullptr, "pinion_teeth"}, {"gear teeth", nullptr, "gear_teeth"}}},
+      {"surfaces",
+       {{"RMS height", nullptr, "composite_rms_height_metres"},
+        {"asperity friction", nullptr, "asperity_friction_coefficient"}}},
+      {"vehicles",
+       {{"mass", nullptr, "mass_kilograms"},
+        {"drag", nullptr, "drag_coefficient"},
+        {"wheel radius", nullptr, "wheel_radius_metres"}}},
+  };
+  return kColumns.at(kind.word);
+}
+
+/// "-" where nothing is stated.
+std::string list_cell(const Message& resource, const ListColumn& column) {
+  const Message* parent = &resource;
+  if (column.block != nullptr) {
+    parent = &resource.GetReflection()->GetMessage(
+        resource, resource.GetDescriptor()->FindFieldByName(column.block));
+  }
+  const Parameter parameter{parent->GetDescriptor()->FindFieldByName(column.field), parent, ""};
+  if (parameter.field->cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
+    const std::string text = text_field(*parent, column.field);
+    return text.empty() ? "-" : text;
+  }
+  const double value = number_of(parameter);
+  const bool stated = parameter.field->has_presence() ? is_known(parameter) : value != 0;
+  return stated ? significant(in_trade_unit(column.field, value), column.digits) : "-";
+}
+
+std::string list_json(const ResourceKind& kind, const std::vector<ResourcePointer>& resources) {
+  std::string text = "{\n \"" + kind.collection + "\": [";
+  for (std::size_t i = 0; i < resources.size(); ++i) {
+    std::string part = json_text(*resources[i]);
+    part.erase(part.find_last_not_of('\n') + 1);
+    text += (i == 0 ? "\n" : ",\n") + part;
+  }
+  return text + (resources.empty() ? "]\n}\n" : "\n ]\n}\n");
+}
+
+/// What import reads: exact, and without what was never set.
+std::string import_json(const Message& resource) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.add_whitespace = true;
+  options.preserve_proto_field_names = true;
+  std::string text;
+  const auto status = google::protobuf::util::MessageToJsonString(resource, &text, options);
+  if (!status.ok()) throw Failure(kExitFailed, "cannot write JSON: " + status.ToString());
+  return text;
+}
+
+}  // namespace
+
+const v1::ParameterProvenance* provenance_of(const Message& resource, const std::string& field) {
+  const v1::ParameterProvenance* of_all = nullptr;
+  for (const v1::ParameterProvenance& entry : provenance_entries_of(resource)) {
+    if (entry.field() == field) return &entry;
+    if (entry.field() == "*") of_all = &entry;
+  }
+  return of_all;
+}
+
+std::string resource_sheet(const Message& resource) {
+  Sheet sheet;
+  add_identity(resource, sheet);
+  std::string text = sheet.text();
+  if (const auto* lubricant = dynamic_cast<const v1::Lubricant*>(&resource)) {
+    text += characterisation_sheet(*lubricant);
+  }
+  text += "\n" + parameter_table(resource);
+  if (const auto* gear_set = dynamic_cast<const v1::GearSet*>(&resource)) {
+    text += "\n" + gear_set_tables_text(*gear_set);
+  }
+  if (const auto* surface = dynamic_cast<const v1::Surface*>(&resource)) {
+    text += profiles_text(*surface);
+  }
+  return text;
+}
+
+std::string resource_table(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,
+                           bool as_revisions) {
+  std::vector<Table::Column> columns = {
+      {"Name", "", Table::Align::kLeft}, {"rev.", ""}, {"Changed", "UTC", Table::Align::kLeft}};
+  for (const ListColumn& column : list_columns(kind)) {
+    columns.push_back({column.header, trade_unit_of_field(column.field)});
+  }
+  columns.push_back({"Title", "", Table::Align::kLeft});
+  Table table(columns);
+  for (const ResourcePointer& resource : resources) {
+    const std::string deleted =
+        time_text(*resource, "delete_time").empty() || as_revisions ? "" : " (deleted)";
+    std::vector<std::string> cells = {resource_id(text_field(*resource, "name")) + deleted,
+                                      std::to_string(revision_of(*resource)),
+                                      time_text(*resource, "revision_create_time")};
+    for (const ListColumn& column : list_columns(kind)) {
+      cells.push_back(list_cell(*resource, column));
+    }
+    cells.push_back(text_field(*resource, "display_name"));
+    table.add_row(std::move(cells));
+  }
+  return table.text();
+}
+
+std::string resource_text(const Message& resource, OutputFormat format) {
+  switch (format) {
+    case OutputFormat::kJson:
+      return json_text(resource);
+    case OutputFormat::kCsv: {
+      CsvRow row;
+      append_fields(resource, "", row);
+      return csv_text({row});
+    }
+    case OutputFormat::kTable:
+      break;
+  }
+  return resource_sheet(resource);
+}
+
+std::string resources_text(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,
+                           OutputFormat format, bool as_revisions) {
+  switch (format) {
+    case OutputFormat::kJson:
+      return list_json(kind, resources);
+    case OutputFormat::kCsv: {
+      std::vector<CsvRow> rows;
+      for (const ResourcePointer& resource : resources)
+        append_fields(*resource, "", rows.emplace_back());
+      return csv_text(rows);
+    }
+    case OutputFormat::kTable:
+      break;
+  }
+  return resource_table(kind, resources, as_revisions);
+}
+
+std::string export_text(const ResourceKind& kind, const std::vector<ResourcePointer>& resources) {
+  std::vector<std::string> parts;
+  for (const ResourcePointer& resource : resources) {
+    const ResourcePointer copy(resource->New());
+    copy->CopyFrom(*resource);
+    clear_output_only(*copy);
+    parts.push_back(import_json(*copy));
+    parts.back().erase(parts.back().find_last_not_of('\n') + 1);
+  }
+  if (parts.size() == 1) return parts.front() + "\n";
+  return "{\n\"" + kind.list_field + "\": [\n" + joined(parts, ",\n") + "\n]\n}\n";
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,153 @@
+#include "client/cpp/resources/kind.h"
+
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "client/cpp/text/text.h"
+#include "tribodyn/v1/annotations.pb.h"
+
+namespace tribodyn::client {
+namespace {
+
+using google::protobuf::Message;
+
+template <class Resource>
+class TypedCalls final : public ResourceCalls {
+ public:
+  ResourcePointer create(Connection& connection, const Message& resource, const std::string& id,
+                         bool validate_only) const override {
+    return own(connection.create(typed(resource), id, validate_only));
+  }
+  ResourcePointer get(Connection& connection, const std::string& name) const override {
+    return own(connection.get<Resource>(name));
+  }
+  ResourceList list(Connection& connection, const ListOptions& options) const override {
+    return own_all(connection.list<Resource>(options));
+  }
+  ResourcePointer update(Connection& connection, const Message& resource,
+                         const UpdateOptions& options) const override {
+    return own(connection.update(typed(resource), options));
+  }
+  ResourceList revisions(Connection& connection, const std::string& name,
+                         int limit) const override {
+    return own_all(connection.revisions<Resource>(name, limit));
+  }
+  ResourcePointer remove(Connection& connection, const std::string& name,
+                         const std::string& etag) const override {
+    return own(connection.remove<Resource>(name, etag));
+  }
+  ResourcePointer undelete(Connection& connection, const std::string& name,
+                           const std::string& etag) const override {
+    return own(connection.undelete<Resource>(name, etag));
+  }
+
+ private:
+  static const Resource& typed(const Message& message) {
+    return dynamic_cast<const Resource&>(message);
+  }
+  static ResourcePointer own(Resource&& resource) {
+    return std::make_unique<Resource>(std::move(resource));
+  }
+  static ResourceList own_all(Listing<Resource>&& listing) {
+    ResourceList list;
+    for (Resource& resource : listing.resources) list.resources.push_back(own(std::move(resource)));
+    list.has_more = listing.has_more;
+    return list;
+  }
+};
+
+template <class Resource>
+ResourceKind make_kind(const char* word, const char* singular, const char* plural,
+                       const char* collection, const char* list_field, const char* example) {
+  return {word,
+          singular,
+          plural,
+          collection,
+          list_field,
+          example,
+          &Resource::default_instance(),
+          std::make_shared<TypedCalls<Resource>>()};
+}
+
+/// The visitor's answer for the resource in its own type.
+template <class Answer, class Resource, class Visitor>
+Answer& visit(Resource& resource, const Visitor& visitor) {
+  const auto try_type = [&](auto* as) -> Answer* {
+    return as == nullptr ? nullptr : &visitor(*as);
+  };
+  constexpr bool kConst = std::is_const_v<Resource>;
+  using Lubricant = std::conditional_t<kConst, const v1::Lubricant, v1::Lubricant>;
+  using GearSet = std::conditional_t<kConst, const v1::GearSet, v1::GearSet>;
+  using Surface = std::conditional_t<kConst, const v1::Surface, v1::Surface>;
+  using Vehicle = std::conditional_t<kConst, const v1::Vehicle, v1::Vehicle>;
+  if (Answer* answer = try_type(dynamic_cast<Lubricant*>(&resource))) return *answer;
+  if (Answer* answer = try_type(dynamic_cast<GearSet*>(&resource))) return *answer;
+  if (Answer* answer = try_type(dynamic_cast<Surface*>(&resource))) return *answer;
+  if (Answer* answer = try_type(dynamic_cast<Vehicle*>(&resource))) return *answer;
+  throw std::logic_error(resource.GetTypeName() + " is no resource");
+}
+
+}  // namespace
+
+Labels& labels_of(Message& resource) {
+  return visit<Labels>(resource, [](auto& as) -> Labels& { return *as.mutable_labels(); });
+}
+const Labels& labels_of(const Message& resource) {
+  return visit<const Labels>(resource, [](auto& as) -> const Labels& { return as.labels(); });
+}
+ProvenanceEntries& provenance_entries_of(Message& resource) {
+  return visit<ProvenanceEntries>(
+      resource, [](auto& as) -> ProvenanceEntries& { return *as.mutable_provenance(); });
+}
+const ProvenanceEntries& provenance_entries_of(const Message& resource) {
+  return visit<const ProvenanceEntries>(
+      resource, [](auto& as) -> const ProvenanceEntries& { return as.provenance(); });
+}
+
+std::string ResourceKind::name_of(const std::string& id_or_name) const {
+  return resource_name(collection, id_or_name);
+}
+
+const std::vector<ResourceKind>& resource_kinds() {
+  static const std::vector<ResourceKind> kKinds = {
+      make_kind<v1::Lubricant>("lubricants", "lubricant", "lubricants", "lubricants", "lubricants",
+                               "1"),
+      make_kind<v1::GearSet>("gear-sets", "gear set", "gear sets", "gearSets", "gear_sets", "A"),
+      make_kind<v1::Surface>("surfaces", "surface", "surfaces", "surfaces", "surfaces", "run-in"),
+      make_kind<v1::Vehicle>("vehicles", "vehicle", "vehicles", "vehicles", "vehicles",
+                             "passenger-car"),
+  };
+  return kKinds;
+}
+
+const ResourceKind& kind_of(const google::protobuf::Descriptor& type) {
+  for (const ResourceKind& kind : resource_kinds()) {
+    if (kind.prototype->GetDescriptor() == &type) return kind;
+  }
+  throw std::logic_error(type.full_name() + " is no resource");
+}
+
+std::string text_field(const Message& resource, const std::string& field) {
+  const auto* descriptor = resource.GetDescriptor()->FindFieldByName(field);
+  return descriptor == nullptr ? "" : resource.GetReflection()->GetString(resource, descriptor);
+}
+
+bool is_deleted(const Message& resource) {
+  return resource.GetReflection()->HasField(
+      resource, resource.GetDescriptor()->FindFieldByName("delete_time"));
+}
+
+bool is_output_only(const google::protobuf::FieldDescriptor& field) {
+  return field.options().GetExtension(v1::output_only);
+}
+
+void clear_output_only(Message& resource) {
+  const auto* descriptor = resource.GetDescriptor();
+  for (int i = 0; i < descriptor->field_count(); ++i) {
+    const auto* field = descriptor->field(i);
+    if (is_output_only(*field)) resource.GetReflection()->ClearField(&resource, field);
+  }
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,215 @@
+#include "core/dynamics/fixed_step_march.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tribodyn {
+namespace {
+
+constexpr int kStates = 8;  // time and the seven of the section
+constexpr int kTorque = 7;  // column of the unknown torque
+
+/// Phase in the tables: the end of a period is an end there too.
+double inside_cycle(double phase) { return phase - std::floor(phase); }
+
+}  // namespace
+
+void FixedStepMarch::rates(double phase, const MarchState& y, const FrictionPerLoad& friction,
+                           Rates& dy) {
+  ++evaluations_;
+  system_.mechanics(inside_cycle(phase), y.data(), at_);
+  const ContactRegime& r = system_.regime;
+  load_ = r.side != 0 && r.loaded ? std::max(0.0, r.side * at_.mesh_force) : 0;
+  at_.pinion_friction_torque = friction.pinion * load_;
+  at_.gear_friction_torque = friction.gear * load_;
+  MarchState all;
+  system_.derivative(y.data(), at_, false, all.data());
+  std::copy_n(all.begin(), kStates, dy.begin());
+}
+
+void FixedStepMarch::sensitivity_rates(const MarchState& y, const FrictionPerLoad& friction,
+                                       const Rates& dy, const Sensitivity& s,
+                                       Sensitivity& ds) const {
+  using Row = Eigen::Array<double, 1, 8>;
+  const DrivelineDynamics& d = system_.dynamics();
+  const MeshFunctions& m = at_.mesh;
+  const ContactRegime& r = system_.regime;
+  const double stiffness = r.side == 0 ? 0 : m.mesh_stiffness;
+  const double damping =
+      r.side == 0 && system_.options().damping_in_contact_only ? 0 : d.mesh_damping;
+  const Row force =
+      stiffness * s[kWinding] +
+      damping * ((m.pinion_contact_radius - m.static_transmission_error_slope) * s[kPinionSpeed] -
+                 m.gear_contact_radius * s[kGearSpeed]);
+  const double load_by_force = load_ > 0 ? r.side : 0;
+  const Row pinion_shaft = d.pinion_shaft_stiffness * s[kPinionShaftTwist] +
+                           d.pinion_shaft_damping * (s[kPinionShaftSpeed] - s[kPinionSpeed]);
+  const Row gear_shaft = d.gear_shaft_stiffness * s[kGearShaftTwist] +
+                         d.gear_shaft_damping * (s[kGearSpeed] - s[kWheelSpeed]);
+  Row pinion_torque =
+      (load_by_force * friction.pinion - m.pinion_contact_radius) * force + pinion_shaft;
+  if (system_.options().energy_consistent) {
+    pinion_torque += m.static_transmission_error_slope * force;
+    if (r.side != 0) pinion_torque -= m.mesh_stiffness_slope * at_.deflection * s[kWinding];
+  }
+  ds[kTime].setZero();
+  ds[kPinionShaftTwist] = s[kPinionShaftSpeed] - s[kPinionSpeed];
+  ds[kWinding] = system_.mesh().mean_pinion_contact_radius() * s[kPinionSpeed] -
+                 system_.mesh().mean_gear_contact_radius() * s[kGearSpeed];
+  ds[kGearShaftTwist] = s[kGearSpeed] - s[kWheelSpeed];
+  ds[kPinionShaftSpeed] = -pinion_shaft / d.pinion_shaft_inertia;
+  ds[kPinionSpeed] = pinion_torque / d.pinion_inertia;
+  ds[kGearSpeed] = ((m.gear_contact_radius + load_by_force * friction.gear) * force - gear_shaft) /
+                   d.gear_inertia;
+  ds[kWheelSpeed] = gear_shaft / d.wheel_inertia;
+  if (solve_wheel_torque_) {
+    ds[kWheelSpeed](kTorque) -= 1 / d.wheel_inertia;
+  } else {
+    ds[kPinionShaftSpeed](kTorque) += 1 / d.pinion_shaft_inertia;
+  }
+  // From time to phase.
+  const double to_phase = system_.cycle_angle() / y[kPinionSpeed];
+  const Row faster = s[kPinionSpeed] / y[kPinionSpeed];
+  for (int i = 0; i < kStates; ++i) ds[i] = to_phase * ds[i] - dy[i] * faster;
+}
+
+void FixedStepMarch::step(LaggedFriction& friction, double phase, double h, const MarchState& y,
+                          const Sensitivity* s, MarchState& to, Sensitivity* s_to) {
+  constexpr double kNode[4] = {0, 0.5, 0.5, 1}, kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  MarchState stage = y;
+  Rates rate{};
+  Sensitivity s_stage, s_rate;
+  to = y;
+  if (s != nullptr) s_stage = *s_to = *s;
+  for (int i = 0; i < 4; ++i) {
+    if (i > 0) {
+      for (int j = 0; j < kStates; ++j) stage[j] = y[j] + kNode[i] * h * rate[j];
+      if (s != nullptr) {
+        for (int j = 0; j < kStates; ++j) s_stage[j] = (*s)[j] + kNode[i] * h * s_rate[j];
+      }
+    }
+    const FrictionPerLoad here = friction.at(phase + kNode[i] * h);
+    rates(phase + kNode[i] * h, stage, here, rate);
+    for (int j = 0; j < kStates; ++j) to[j] += kWeight[i] * h * rate[j];
+    if (s != nullptr) {
+      sensitivity_rates(stage, here, rate, s_stage, s_rate);
+      for (int j = 0; j < kStates; ++j) (*s_to)[j] += kWeight[i] * h * s_rate[j];
+    }
+    if (i == 0) first_rate_ = rate;
+  }
+  last_rate_ = rate;
+}
+
+MarchState FixedStepMarch::middle(const MarchState& from, const MarchState& to, double h) const {
+  MarchState out{};
+  for (int i = 0; i < kStates; ++i) {
+    out[i] = 0.5 * (from[i] + to[i]) + h / 8 * (first_rate_[i] - last_rate_[i]);
+  }
+  return out;
+}
+
+FixedStepMarch::Event FixedStepMarch::next_event(double phase, const MarchState& y) const {
+  Instant at;
+  system_.kinematics(inside_cycle(phase), y.data(), at);
+  const double b = system_.dynamics().half_backlash;
+  const ContactRegime& r = system_.regime;
+  if (r.side == 0) {
+    const double drive = (at.transmission_error - b) / scales_.length;
+    const double coast = (-b - at.transmission_error) / scales_.length;
+    return drive > coast ? Event{drive, 0} : Event{coast, 2};
+  }
+  const double parting = (b - r.side * at.transmission_error) / scales_.length;
+  const double force =
+      r.side * at.mesh_force * system_.mesh().mean_pinion_contact_radius() / scales_.torque;
+  const double turning = r.loaded ? -force : force;
+  return parting > turning ? Event{parting, 0} : Event{turning, 1};
+}
+
+void FixedStepMarch::change_regime(int index, double phase, const MarchState& y) {
+  ContactRegime& r = system_.regime;
+  ++events_;
+  if (r.side != 0 && index == 1) {
+    r.loaded = !r.loaded;
+    return;
+  }
+  if (r.side == 0) {
+    r.side = index == 0 ? 1 : -1;
+  } else {
+    r.side = system_.dynamics().half_backlash > 0 ? 0 : -r.side;
+  }
+  Instant at;
+  system_.kinematics(inside_cycle(phase), y.data(), at);
+  r.loaded =
+      r.side != 0 && r.side * at.transmission_velocity > 0 && system_.dynamics().mesh_damping > 0;
+}
+
+bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState& y, Sensitivity* s,
+                         std::vector<OrbitPiece>* pieces) {
+  constexpr double kNothing = 1e-12;
+  constexpr int kMostPieces = 20;  // of one step
+  if (pieces != nullptr) pieces->clear();
+  y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
+  if (s != nullptr) {
+    for (auto& row : *s) row.setZero();
+    for (int i = 0; i < kTorque; ++i) (*s)[i + 1](i) = 1;
+  }
+  MarchState to{};
+  Sensitivity s_to;
+  const auto take = [&](double phase, double h) {
+    step(friction, phase, h, y, s, to, s != nullptr ? &s_to : nullptr);
+  };
+  for (int i = 0; i < steps_ * period_; ++i) {
+    double phase = static_cast<double>(i) / steps_;
+    const double end = static_cast<double>(i + 1) / steps_;
+    for (int piece = 0; phase < end; ++piece) {
+      if (piece == kMostPieces) return false;
+      const double room = end - phase;
+      double h = room;
+      take(phase, h);
+      Event event = keep_contact ? Event{-1, 0} : next_event(end, to);
+      double high = h;
+      if (!keep_contact && !(event.value > kNothing)) {
+        const Event inside = next_event(phase + 0.5 * h, middle(y, to, h));
+        if (inside.value > 1e-10) {
+          event = inside;
+          high = 0.5 * h;
+        }
+      }
+      const bool happens = event.value > kNothing;
+      if (happens) {
+        // Regula falsi with bisection now and then, on true steps.
+        double low = 0, g_low = std::min(next_event(phase, y).value, 0.0), g_high = event.value;
+        for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
+          double x = g_low < 0 ? low - g_low * (high - low) / (g_high - g_low) : 0.5 * (low + high);
+          if (k % 4 == 3 || !(x > low && x < high)) x = 0.5 * (low + high);
+          step(friction, phase, x, y, nullptr, to, nullptr);
+          const Event at = next_event(phase + x, to);
+          h = x;
+          if (at.value > 0) {
+            high = x;
+            g_high = at.value;
+            event.index = at.index;
+          } else {
+            low = x;
+            g_low = at.value;
+          }
+          if (std::abs(at.value) <= kNothing) break;
+        }
+        take(phase, h);
+      }
+      if (!(std::isfinite(to[kPinionSpeed]) && to[kPinionSpeed] > 0)) return false;
+      ++taken_;
+      if (pieces != nullptr) {
+        pieces->push_back({phase, h, system_.regime, y, middle(y, to, h), to});
+      }
+      y = to;
+      if (s != nullptr) *s = s_to;
+      phase += h;
+      if (happens) change_regime(event.index, phase, y);
+      if (!happens || end - phase < 1e-13) phase = end;
+    }
+  }
+  return true;
+}
+
+}  // namespace tribodyn

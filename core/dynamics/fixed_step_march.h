@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "core/dynamics/gear_pair_system.h"
+#include "core/dynamics/lagged_friction.h"
+#include "core/dynamics/mesh_cycle_march.h"
+
+namespace tribodyn {
+
+/// A smooth piece of a response: one step, or the part of one up to or from an event. States at
+/// its start, middle and end; the middle by the cubic through both ends.
+struct OrbitPiece {
+  double phase;   ///< of its start [cycles], counted through the whole period
+  double length;  ///< [cycles]
+  ContactRegime regime;
+  MarchState start, middle, end;
+};
+
+/// Derivatives of time and the seven states, in the order of MarchComponent, by the seven states at
+/// the section and by the unknown torque.
+using Sensitivity = std::array<Eigen::Array<double, 1, 8>, 8>;
+
+/// Classical Runge-Kutta steps of even length over mesh phase, under lagged friction. Steps end on
+/// contact loss, regain and load events, which are located on true steps; derivatives by the start
+/// come along by the variational equations (rates are continuous at events, so nothing jumps).
+class FixedStepMarch {
+ public:
+  /// `steps` in each of `period` mesh cycles. Keeps the reference.
+  FixedStepMarch(GearPairSystem& system, const MarchScales& scales, int steps, int period,
+                 bool solve_wheel_torque)
+      : system_(system),
+        scales_(scales),
+        steps_(steps),
+        period_(period),
+        solve_wheel_torque_(solve_wheel_torque) {}
+
+  /// One period from `state`, in the system's regime or in steady contact of one side however the
+  /// force may turn (`keep_contact`). Time and works start from zero. False where it breaks down:
+  /// the pinion stops, events without end, numbers without meaning.
+  bool run(LaggedFriction& friction, bool keep_contact, MarchState& state, Sensitivity* sensitivity,
+           std::vector<OrbitPiece>* pieces);
+
+  long evaluations() const { return evaluations_; }
+  long steps() const { return taken_; }
+  long events() const { return events_; }
+
+ private:
+  using Rates = std::array<double, 8>;
+  struct Event {
+    double value;  ///< positive once it has happened
+    int index;     ///< 0: flanks part or meet; 1: load ends or begins; 2: meet on the coast side
+  };
+  void rates(double phase, const MarchState& y, const FrictionPerLoad& friction, Rates& dy);
+  void sensitivity_rates(const MarchState& y, const FrictionPerLoad& friction, const Rates& dy,
+                         const Sensitivity& s, Sensitivity& ds) const;
+  void step(LaggedFriction& friction, double phase, double h, const MarchState& y,
+            const Sensitivity* s, MarchState& to, Sensitivity* s_to);
+  MarchState middle(const MarchState& from, const MarchState& to, double h) const;
+  Event next_event(double phase, const MarchState& y) const;
+  void change_regime(int index, double phase, const MarchState& y);
+
+  GearPairSystem& system_;
+  const MarchScales& scales_;
+  int steps_, period_;
+  bool solve_wheel_torque_;
+  long evaluations_ = 0, taken_ = 0, events_ = 0;
+  Instant at_;
+  double load_ = 0;
+  Rates first_rate_{}, last_rate_{};
+};
+
+}  // namespace tribodyn

@@ -1,0 +1,418 @@
+#include "core/lubricant/characterisation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <iterator>
+
+#include "core/lubricant/viscosity.h"
+#include "core/lubricant/viscosity_index.h"
+#include "core/lubricant/walther_vogel.h"
+#include "core/number_text.h"
+#include "core/refusal.h"
+
+namespace tribodyn {
+namespace {
+
+constexpr double kZeroCelsius = 273.15;
+constexpr double kFortyCelsius = 313.15, kHundredCelsius = 373.15;
+constexpr double kKinematicUncertainty = 0.005;        // relative, ASTM D445
+constexpr double kBrookfieldUncertainty = 0.05;        // relative, ASTM D2983
+constexpr double kWaltherTemperatureUncertainty = 15;  // of the T_0 that follows D341 [K]
+constexpr double kColdLimit = 150;                     // Pa s, SAE J306
+constexpr double kMisfit = 3;                          // standard deviations worth a warning
+
+using Stated = LubricantParameters<std::optional<KnownParameter>>;
+using Known = LubricantParameters<KnownParameter>;
+
+std::string celsius(double temperature) { return number_text(temperature - kZeroCelsius) + " C"; }
+
+// Gathers a fluid step by step: density, viscosity, then what rests on both.
+class Assembly {
+ public:
+  explicit Assembly(const FluidMeasurements& fluid) : fluid_(fluid) {}
+
+  CharacterisedFluid result() {
+    check_measurements();
+    check_stated_parameters(fluid_.stated);
+    if (fluid_.base_oil == BaseOilClass::kUnspecified) {
+      warn("BASE_OIL_UNSPECIFIED", "",
+           "The class of base oil is not stated; estimates are for the middle of all lubricating "
+           "oils.");
+    }
+    settle_density();
+    settle_viscosity();
+    out_.lubricant = values_of(out_.parameters);
+    check_law();
+    settle_pressure_viscosity();
+    settle_rheology();
+    settle_rest();
+    out_.lubricant = values_of(out_.parameters);
+    describe();
+    return std::move(out_);
+  }
+
+ private:
+  void warn(const char* code, const char* parameter, const std::string& sentence) {
+    out_.warnings.push_back({code, parameter, sentence});
+  }
+
+  void check_kinematic(const std::optional<double>& viscosity, const char* field) const {
+    if (!viscosity ||
+        (*viscosity >= kLowestKinematicViscosity && *viscosity <= kHighestKinematicViscosity)) {
+      return;
+    }
+    throw Refusal("PARAMETER_OUT_OF_RANGE", std::string(field) + " of " +
+                                                number_text(1e6 * *viscosity) +
+                                                " mm2/s is outside 0.21 to 2e7 mm2/s.");
+  }
+
+  void check_measurements() const {
+    check_kinematic(fluid_.kinematic_viscosity_40, "kinematic_viscosity_40");
+    check_kinematic(fluid_.kinematic_viscosity_100, "kinematic_viscosity_100");
+    check_kinematic(fluid_.sheared_kinematic_viscosity_100, "sheared_kinematic_viscosity_100");
+  }
+
+  // True when the whole set is stated, false when nothing of it is.
+  bool stated_set(std::initializer_list<std::optional<KnownParameter> Stated::*> members,
+                  const char* set) const {
+    const auto given =
+        static_cast<std::size_t>(std::count_if(members.begin(), members.end(), [&](auto member) {
+          return (fluid_.stated.*member).has_value();
+        }));
+    if (given != 0 && given != members.size()) {
+      throw Refusal("PARAMETER_INCOMPLETE", std::string(set) + " count only together; " +
+                                                std::to_string(given) + " of " +
+                                                std::to_string(members.size()) + " are stated.");
+    }
+    return given != 0;
+  }
+
+  void settle_density() {
+    Known& p = out_.parameters;
+    if (stated_set({&Stated::density_at_zero_kelvin, &Stated::density_temperature_slope},
+                   "The two parameters of the density law")) {
+      p.density_at_zero_kelvin = *fluid_.stated.density_at_zero_kelvin;
+      p.density_temperature_slope = *fluid_.stated.density_temperature_slope;
+      density_ = {p.density_at_zero_kelvin.value, p.density_temperature_slope.value,
+                  p.density_at_zero_kelvin.standard_uncertainty.value_or(0),
+                  p.density_temperature_slope.standard_uncertainty.value_or(0)};
+      return;
+    }
+    std::vector<DensityPoint> points = fluid_.densities;
+    if (fluid_.density_15) points.insert(points.begin(), {288.15, *fluid_.density_15});
+    if (points.empty()) {
+      const Estimate typical = estimate_density_15(fluid_.base_oil);
+      density_ = density_law(typical.value, fluid_.base_oil);
+      if (fluid_.kinematic_viscosity_40 || fluid_.kinematic_viscosity_100) {
+        estimated_density_uncertainty_ = typical.standard_uncertainty / typical.value;
+      }
+      density_.density_at_zero_uncertainty =
+          std::hypot(density_.density_at_zero_uncertainty, typical.standard_uncertainty);
+      set_density(Provenance::kAssumed, "density at 15 C " + typical.source +
+                                            "; expansion by ASTM D1250, lubricating oils");
+      warn("DENSITY_ESTIMATED", "density_at_zero_kelvin",
+           "No density is given: " + known_text(typical.value, typical.standard_uncertainty) +
+               " kg/m3 at 15 C within " + number_text(typical.standard_uncertainty, 2) + ", " +
+               typical.source + ".");
+      return;
+    }
+    const auto [coldest, warmest] = std::minmax_element(
+        points.begin(), points.end(),
+        [](const DensityPoint& a, const DensityPoint& b) { return a.temperature < b.temperature; });
+    // density_law refuses what is out of range, so read the temperatures only after it
+    density_ = points.size() == 1 && fluid_.density_15
+                   ? density_law(*fluid_.density_15, fluid_.base_oil)
+                   : density_law(points, fluid_.base_oil);
+    if (warmest->temperature - coldest->temperature >= 1) {
+      set_density(Provenance::kFitted,
+                  "least squares through " + std::to_string(points.size()) + " densities");
+      return;
+    }
+    set_density(Provenance::kDerived, "density measured at " + celsius(coldest->temperature) +
+                                          "; expansion by ASTM D1250, lubricating oils");
+    warn("EXPANSION_ESTIMATED", "density_temperature_slope",
+         "Density is known at one temperature; it changes by " +
+             known_text(density_.slope, density_.slope_uncertainty) + " kg/(m3 K) within " +
+             number_text(density_.slope_uncertainty, 2) + " (ASTM D1250, lubricating oils).");
+  }
+
+  void set_density(Provenance provenance, const std::string& source) {
+    out_.parameters.density_at_zero_kelvin = {
+        density_.density_at_zero_kelvin, density_.density_at_zero_uncertainty, provenance, source};
+    out_.parameters.density_temperature_slope = {density_.slope, density_.slope_uncertainty,
+                                                 provenance, source};
+  }
+
+  double density_at(double temperature) const {
+    return density_.density_at_zero_kelvin + density_.slope * temperature;
+  }
+
+  void add_kinematic(const std::optional<double>& viscosity, double temperature) {
+    if (!viscosity) return;
+    out_.fitted_points.push_back(
+        {temperature, *viscosity * density_at(temperature), kKinematicUncertainty});
+  }
+
+  void settle_viscosity() {
+    Known& p = out_.parameters;
+    if (stated_set({&Stated::vogel_viscosity_prefactor, &Stated::vogel_temperature_coefficient,
+                    &Stated::vogel_reference_temperature},
+                   "The three Vogel parameters")) {
+      p.vogel_viscosity_prefactor = *fluid_.stated.vogel_viscosity_prefactor;
+      p.vogel_temperature_coefficient = *fluid_.stated.vogel_temperature_coefficient;
+      p.vogel_reference_temperature = *fluid_.stated.vogel_reference_temperature;
+      return;
+    }
+    add_kinematic(fluid_.kinematic_viscosity_40, kFortyCelsius);
+    add_kinematic(fluid_.kinematic_viscosity_100, kHundredCelsius);
+    for (const ViscosityPoint& point : fluid_.viscosities) {
+      out_.fitted_points.push_back(point);
+      double& u = out_.fitted_points.back().relative_standard_uncertainty;
+      if (u == 0) u = kTypicalViscosityUncertainty;
+    }
+    for (const ViscosityPoint& point : fluid_.cold_viscosities) {
+      out_.fitted_points.push_back(point);
+      double& u = out_.fitted_points.back().relative_standard_uncertainty;
+      if (u == 0) u = kBrookfieldUncertainty;
+    }
+    if (out_.fitted_points.size() < 2) {
+      throw Refusal("FLUID_UNDERDETERMINED",
+                    "A fluid wants viscosities at two temperatures at least, e.g. kinematic ones "
+                    "at 40 and 100 C; " +
+                        std::to_string(out_.fitted_points.size()) + " given.");
+    }
+    std::optional<ViscosityTemperatureLine> line;
+    if (fluid_.kinematic_viscosity_40 && fluid_.kinematic_viscosity_100) {
+      line = viscosity_temperature_line({kFortyCelsius, *fluid_.kinematic_viscosity_40},
+                                        {kHundredCelsius, *fluid_.kinematic_viscosity_100});
+    }
+    const bool kinematic_alone = line && out_.fitted_points.size() == 2;
+    std::string source;
+    if (kinematic_alone) {
+      out_.viscosity_fit =
+          fit_vogel_at(out_.fitted_points, walther_reference_temperature(*line, density_),
+                       kWaltherTemperatureUncertainty);
+      source = "through the kinematic viscosities at 40 and 100 C, T_0 following ASTM D341";
+    } else {
+      out_.viscosity_fit = fit_vogel(out_.fitted_points);
+      source =
+          "least squares through " + std::to_string(out_.fitted_points.size()) + " viscosities";
+    }
+    const VogelFit& fit = *out_.viscosity_fit;
+    const auto deviation = [&](int i) { return std::sqrt(fit.covariance(i, i)); };
+    p.vogel_viscosity_prefactor = {fit.viscosity_prefactor, fit.viscosity_prefactor * deviation(0),
+                                   Provenance::kFitted, source};
+    p.vogel_temperature_coefficient = {fit.temperature_coefficient, deviation(1),
+                                       Provenance::kFitted, source};
+    const bool assumed = fit.reference_temperature_assumed && !kinematic_alone;
+    p.vogel_reference_temperature = {
+        fit.reference_temperature, deviation(2),
+        assumed ? Provenance::kAssumed : Provenance::kFitted,
+        assumed ? "typical of gear oils: the viscosities leave it open" : source};
+    if (assumed) {
+      warn("VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature",
+           "The viscosities given do not determine T_0; " +
+               known_text(fit.reference_temperature, deviation(2)) + " K within " +
+               number_text(deviation(2), 2) +
+               " is used. A third temperature well apart, best a cold one, settles it.");
+    }
+    if (kinematic_alone) {
+      constexpr double kCold = 263.15;
+      warn("VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature",
+           "Two viscosities do not determine T_0; that which follows ASTM D341 is used, " +
+               known_text(fit.reference_temperature, deviation(2)) + " K within " +
+               number_text(deviation(2), 2) + ", and leaves the viscosity at " + celsius(kCold) +
+               " known to " + number_text(100 * relative_viscosity_uncertainty(fit, kCold), 2) +
+               " %. A cold viscosity settles it.");
+    }
+    warn_of_misfits(fit);
+    warn_of_extrapolation();
+    if (line) compare_with_walther(*line, fit);
+  }
+
+  void warn_of_misfits(const VogelFit& fit) {
+    for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
+      const ViscosityPoint& point = out_.fitted_points[i];
+      const double residual = std::expm1(fit.residuals[i]);
+      if (std::abs(fit.residuals[i]) <= kMisfit * point.relative_standard_uncertainty) continue;
+      warn("VISCOSITY_MISFIT", "vogel_viscosity_prefactor",
+           "The viscosity at " + celsius(point.temperature) + " lies " +
+               number_text(100 * std::abs(residual)) + " % " + (residual > 0 ? "above" : "below") +
+               " the fitted law, more than three times its uncertainty.");
+    }
+  }
+
+  void warn_of_extrapolation() {
+    const auto [coldest, warmest] =
+        std::minmax_element(out_.fitted_points.begin(), out_.fitted_points.end(),
+                            [](const ViscosityPoint& a, const ViscosityPoint& b) {
+                              return a.temperature < b.temperature;
+                            });
+    if (coldest->temperature <= kFortyCelsius + 0.5 &&
+        warmest->temperature >= kHundredCelsius - 0.5) {
+      return;
+    }
+    warn("VISCOSITY_EXTRAPOLATED", "vogel_viscosity_prefactor",
+         "Viscosity was measured from " + celsius(coldest->temperature) + " to " +
+             celsius(warmest->temperature) +
+             "; axle oil works from below 40 to above 100 C, where the law extrapolates.");
+  }
+
+  void compare_with_walther(const ViscosityTemperatureLine& line, const VogelFit& fit) {
+    for (int celsius = -10; celsius <= 150; celsius += 10) {
+      const double temperature = kZeroCelsius + celsius;
+      if (temperature <= fit.reference_temperature) continue;
+      try {
+        const double walther =
+            tribodyn::kinematic_viscosity(line, temperature) * density_at(temperature);
+        const double vogel = std::exp(log_viscosity(fit, temperature));
+        if (std::isfinite(vogel)) out_.walther_comparison.push_back({temperature, walther, vogel});
+      } catch (const Refusal&) {  // the line ends here
+      }
+    }
+  }
+
+  // The laws must hold where everything else is evaluated.
+  void check_law() const {
+    const Lubricant& fluid = out_.lubricant;
+    for (const double temperature : {kFortyCelsius, kTypicalRheologyTemperature, kHundredCelsius}) {
+      const bool warm = temperature > fluid.vogel_reference_temperature;
+      const double viscosity = warm ? ambient_viscosity(fluid, temperature) : 0;
+      const double rho = density(fluid, temperature);
+      if (warm && std::isnormal(viscosity) && viscosity < 1e12 && rho > 0) continue;
+      throw Refusal("PARAMETER_OUT_OF_RANGE",
+                    "At " + celsius(temperature) + " the laws of viscosity and density give " +
+                        (warm ? number_text(viscosity) + " Pa s" : "no viscosity") + " and " +
+                        number_text(rho) + " kg/m3.");
+    }
+  }
+
+  // A stated parameter, or an estimate with its warning.
+  void settle(std::optional<KnownParameter> Stated::*stated, KnownParameter Known::*known,
+              const char* parameter, double in_unit, const char* unit, const auto& estimator) {
+    if (fluid_.stated.*stated) {
+      out_.parameters.*known = *(fluid_.stated.*stated);
+      return;
+    }
+    const Estimate estimate = estimator();
+    out_.parameters.*known = {estimate.value, estimate.standard_uncertainty, Provenance::kAssumed,
+                              std::string(name(fluid_.base_oil)) + " base oil: " + estimate.source};
+    warn("PARAMETER_ESTIMATED", parameter,
+         std::string(parameter) + " is not measured: " +
+             within_text(in_unit * estimate.value, in_unit * estimate.standard_uncertainty) + unit +
+             " (" + name(fluid_.base_oil) + " base oil; " + estimate.source + ").");
+    if (!estimate.inside_range) {
+      warn("ESTIMATE_OUT_OF_RANGE", parameter,
+           std::string("The estimate of ") + parameter +
+               " is for the edge of its range: the fluid lies outside.");
+    }
+  }
+
+  // A temperature that belongs to another parameter.
+  void settle_temperature(std::optional<KnownParameter> Stated::*temperature,
+                          KnownParameter Known::*known, const char* parameter, bool belongs,
+                          double typical) {
+    if (fluid_.stated.*temperature && belongs) {
+      out_.parameters.*known = *(fluid_.stated.*temperature);
+      return;
+    }
+    out_.parameters.*known = {typical, std::nullopt, Provenance::kAssumed,
+                              belongs ? "not stated" : "where the estimate was made"};
+    if (belongs) {
+      warn("TEMPERATURE_ASSUMED", parameter,
+           std::string(parameter) + " is not stated; " + celsius(typical) + " is taken.");
+    }
+  }
+
+  void settle_pressure_viscosity() {
+    settle_temperature(&Stated::pressure_viscosity_temperature,
+                       &Known::pressure_viscosity_temperature, "pressure_viscosity_temperature",
+                       fluid_.stated.pressure_viscosity_coefficient.has_value(), kFortyCelsius);
+    settle(&Stated::pressure_viscosity_coefficient, &Known::pressure_viscosity_coefficient,
+           "pressure_viscosity_coefficient", 1e9, " 1/GPa", [&] {
+             const double v40 = kinematic_viscosity(out_.lubricant, kFortyCelsius);
+             return estimate_pressure_viscosity_coefficient(
+                 fluid_.base_oil, v40, density_at(kFortyCelsius), line_slope(v40));
+           });
+  }
+
+  // B of ASTM D341 for the law itself; NaN, and so outside every range, where D341 has no line.
+  double line_slope(double v40) const {
+    try {
+      const double v100 = kinematic_viscosity(out_.lubricant, kHundredCelsius);
+      return viscosity_temperature_line({kFortyCelsius, v40}, {kHundredCelsius, v100}).slope;
+    } catch (const Refusal&) {
+      return NAN;
+    }
+  }
+
+  void settle_rheology() {
+    settle_temperature(&Stated::rheology_reference_temperature,
+                       &Known::rheology_reference_temperature, "rheology_reference_temperature",
+                       fluid_.stated.relaxation_time.has_value(), kTypicalRheologyTemperature);
+    settle(&Stated::relaxation_time, &Known::relaxation_time, "relaxation_time", 1e6, " us", [&] {
+      return estimate_relaxation_time(
+          ambient_viscosity(out_.lubricant, kTypicalRheologyTemperature));
+    });
+    settle(&Stated::havriliak_negami_alpha, &Known::havriliak_negami_alpha,
+           "havriliak_negami_alpha", 1, "", estimate_havriliak_negami_alpha);
+    settle(&Stated::havriliak_negami_beta, &Known::havriliak_negami_beta, "havriliak_negami_beta",
+           1, "", estimate_havriliak_negami_beta);
+  }
+
+  void settle_rest() {
+    settle(&Stated::limiting_shear_stress_at_zero_pressure,
+           &Known::limiting_shear_stress_at_zero_pressure, "limiting_shear_stress_at_zero_pressure",
+           1e-6, " MPa", estimate_limiting_shear_stress_at_zero_pressure);
+    settle(&Stated::limiting_shear_stress_coefficient, &Known::limiting_shear_stress_coefficient,
+           "limiting_shear_stress_coefficient", 1, "",
+           [&] { return estimate_limiting_shear_stress_coefficient(fluid_.base_oil); });
+    settle(&Stated::thermal_conductivity, &Known::thermal_conductivity, "thermal_conductivity", 1,
+           " W/(m K)", [&] {
+             return estimate_thermal_conductivity(fluid_.base_oil, density_at(288.15),
+                                                  kFortyCelsius);
+           });
+  }
+
+  void describe() {
+    const Lubricant& fluid = out_.lubricant;
+    out_.kinematic_viscosity_40 =
+        fluid_.kinematic_viscosity_40.value_or(kinematic_viscosity(fluid, kFortyCelsius));
+    out_.kinematic_viscosity_100 =
+        fluid_.kinematic_viscosity_100.value_or(kinematic_viscosity(fluid, kHundredCelsius));
+    try {
+      out_.viscosity_index =
+          viscosity_index(1e6 * out_.kinematic_viscosity_40, 1e6 * out_.kinematic_viscosity_100);
+    } catch (const Refusal& refusal) {
+      warn("VISCOSITY_INDEX_UNDEFINED", "", refusal.what());
+    }
+    const std::optional<double>& sheared = fluid_.sheared_kinematic_viscosity_100;
+    const std::optional<double> for_grade = sheared ? sheared : fluid_.kinematic_viscosity_100;
+    std::vector<ViscosityPoint> cold = fluid_.cold_viscosities;
+    std::copy_if(fluid_.viscosities.begin(), fluid_.viscosities.end(), std::back_inserter(cold),
+                 [](const ViscosityPoint& point) { return point.temperature < kZeroCelsius; });
+    out_.grade = gear_viscosity_grade(for_grade, cold);
+    if (!sheared && !out_.grade.designation.empty()) {
+      out_.grade.note += (out_.grade.note.empty() ? "" : " ");
+      out_.grade.note +=
+          "By the fresh oil: the limits at 100 C hold after the 20 h KRL shear test (CEC L-45).";
+    }
+    out_.temperature_of_150_pascal_seconds = kColdLimit > fluid.vogel_viscosity_prefactor
+                                                 ? temperature_of_viscosity(fluid, kColdLimit)
+                                                 : fluid.vogel_reference_temperature;
+    out_.expected_low_temperature_grade = low_temperature_grade_of(
+        out_.temperature_of_150_pascal_seconds, for_grade.value_or(out_.kinematic_viscosity_100));
+  }
+
+  const FluidMeasurements& fluid_;
+  CharacterisedFluid out_{};
+  DensityLaw density_{};
+  double estimated_density_uncertainty_ = 0;  // relative
+};
+
+}  // namespace
+
+CharacterisedFluid characterise(const FluidMeasurements& fluid) { return Assembly(fluid).result(); }
+
+}  // namespace tribodyn

@@ -1,0 +1,62 @@
+#include "core/study/orbit_record.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tribodyn {
+
+void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, ResponseRecord& record) {
+  record.integrals = {};
+  std::array<double, kRecordComponents> rate{};
+  const SolvedPiece* before = nullptr;
+  record.starts_in_gap = orbit.pieces.front().piece.regime.side == 0;
+  for (const SolvedPiece& solved : orbit.pieces) {
+    const OrbitPiece& p = solved.piece;
+    system.regime = p.regime;
+    const MarchState* states[3] = {&p.start, &p.middle, &p.end};
+    for (int n = 0; n < 3; ++n) {
+      system.derivative(states[n]->data(), solved.at[n], true, rate.data());
+      const double weight = p.length * (n == 1 ? 4 : 1) / 6;
+      for (int i = 0; i < kRecordComponents; ++i) record.integrals[i] += weight * rate[i];
+    }
+    record.add_piece(solved.at);
+    if (before != nullptr && (before->piece.regime.side == 0) != (p.regime.side == 0)) {
+      record.gap_events.push_back({p.phase, p.start[kTime], p.regime.side == 0});
+    }
+    before = &solved;
+  }
+  // The first components are the state itself, at the end.
+  const MarchState& end = orbit.pieces.back().piece.end;
+  for (int i = kTime; i <= kWheelSpeed; ++i) record.integrals[i] = end[i];
+  record.end_regime = before->piece.regime;
+  record.set_transmission_error_range(orbit.figures.dte_minimum, orbit.figures.dte_maximum);
+  system.regime = orbit.regime;
+}
+
+void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, HistorySampler& history) {
+  MarchState slope_start, slope_end, at{};
+  Instant instant;
+  auto solved = orbit.pieces.begin();
+  while (history.wanted_in_first_cycles(orbit.period)) {
+    const double phase = history.next_phase();
+    while (solved + 1 != orbit.pieces.end() && (solved + 1)->piece.phase <= phase) ++solved;
+    const OrbitPiece& p = solved->piece;
+    system.regime = p.regime;
+    system.derivative(p.start.data(), solved->at[0], false, slope_start.data());
+    system.derivative(p.end.data(), solved->at[2], false, slope_end.data());
+    const double t = std::clamp((phase - p.phase) / p.length, 0.0, 1.0), u = 1 - t;
+    for (int i = kTime; i <= kWheelSpeed; ++i) {
+      at[i] = u * u * (1 + 2 * t) * p.start[i] + t * t * (1 + 2 * u) * p.end[i] +
+              p.length * t * u * (u * slope_start[i] - t * slope_end[i]);
+    }
+    const double inside = std::min(phase - std::floor(p.phase + 1e-9), 1.0);
+    const int intervals = system.mesh().intervals();
+    system.set_interval(std::clamp(static_cast<int>(inside * intervals), 0, intervals - 1));
+    system.evaluate(inside, at.data(), instant);
+    history.add(phase, at.data(), instant, system.torques().pinion);
+  }
+  history.repeat_first_cycles(orbit.period, orbit.pieces.back().piece.end[kTime]);
+  system.regime = orbit.regime;
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "core/dynamics/periodic_orbit.h"
+#include "core/study/history_sampler.h"
+#include "core/study/response_record.h"
+
+namespace tribodyn {
+
+/// Gathers what the pieces of a periodic orbit tell: integrals by Simpson's rule over each piece,
+/// extremes, openings of the gap. Leaves the system in the regime at the section.
+void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, ResponseRecord& record);
+
+/// Samples of the history: states by the cubic through the ends of a piece with their rates,
+/// friction solved at each; then copies of the period.
+void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, HistorySampler& history);
+
+}  // namespace tribodyn

@@ -1,0 +1,98 @@
+#include "core/study/orbit_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tribodyn {
+namespace {
+
+constexpr double kSafety = 2.5;    // on the error that two step lengths tell
+constexpr double kRepels = 0.994;  // multipliers under lagged friction are good to 3e-3
+constexpr int kCoarsest = 24;      // steps per mesh cycle, about
+constexpr int kFinest = 4000;
+
+/// Numbers of steps per mesh cycle. The first end on samples of the tables and the second do not:
+/// else both would see the kinks there in the same way and agree on the same error. From the third
+/// on no step has a kink inside.
+int next_steps(int steps, int intervals) {
+  int coarsest = intervals;
+  while (coarsest % 2 == 0 && coarsest > kCoarsest) coarsest /= 2;
+  while (coarsest < kCoarsest) coarsest *= 2;
+  if (steps == 0) return coarsest;
+  if (steps == coarsest) return coarsest * 5 / 3;
+  if (steps % intervals == 0) return 2 * steps;
+  int next = intervals;
+  while (next < 2 * steps) next *= 2;
+  return next;
+}
+
+}  // namespace
+
+std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const OrbitSearch& search,
+                                         MarchStatistics& statistics, long& marched_cycles) {
+  OrbitRequest request;
+  request.mean_pinion_speed = search.mean_pinion_speed;
+  request.solve_wheel_torque = search.solve_wheel_torque;
+  request.interrupted = search.interrupted;
+  request.keep_contact = search.try_contact_first;
+
+  PeriodicOrbit origin;
+  origin.state = search.start;
+  origin.torques = system.torques();
+  origin.period = search.period;
+
+  RefinedOrbit best;
+  bool have_coarser = false;
+  double halving_difference = 0;
+  const int intervals = system.mesh().intervals();
+  for (request.steps = next_steps(0, intervals); request.steps <= kFinest;
+       request.steps = next_steps(request.steps, intervals)) {
+    // Sweeps go on until what they leave is well below what the step length can give.
+    request.tolerance = std::max(0.2 * search.tolerance, have_coarser ? 0.0 : 1e-4);
+    PeriodicOrbit orbit = have_coarser ? best.orbit : origin;
+    bool found = false;
+    if (request.keep_contact) {
+      found = solve_periodic_orbit(system, request, orbit, statistics, marched_cycles) &&
+              !orbit.tension;
+      if (!found) {
+        if (system.take_refusal() != ContactStatus::kOk) return std::nullopt;
+        // Flanks would have to pull: contact is lost, and the start decides how.
+        request.keep_contact = false;
+        have_coarser = false;
+        orbit = origin;
+      }
+    }
+    if (!request.keep_contact) {
+      request.first_cycles = have_coarser ? 0 : search.first_cycles;
+      found = solve_periodic_orbit(system, request, orbit, statistics, marched_cycles);
+    }
+    if (!found) {
+      if (system.take_refusal() != ContactStatus::kOk) return std::nullopt;
+      have_coarser = false;
+      continue;
+    }
+    if (have_coarser) {
+      const double difference = orbit.figures.distance(best.orbit.figures);
+      // Second order at kinks and events; more only where two halvings have shown it.
+      const double finer = static_cast<double>(request.steps) / best.steps_per_mesh_cycle;
+      double gain = finer * finer;
+      const bool halving = request.steps == 2 * best.steps_per_mesh_cycle;
+      if (halving && halving_difference > 0) {
+        gain = std::clamp(halving_difference / std::max(difference, 1e-300), 3.0, 5.0);
+      }
+      best.estimated_error = kSafety * difference / (gain - 1) + orbit.unsettled;
+      halving_difference = halving ? difference : 0;
+    }
+    const bool had_coarser = have_coarser;
+    best.orbit = std::move(orbit);
+    best.steps_per_mesh_cycle = request.steps;
+    have_coarser = true;
+    if (had_coarser && best.estimated_error <= search.tolerance) {
+      if (!(best.orbit.largest_multiplier < kRepels)) return std::nullopt;
+      return best;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace tribodyn

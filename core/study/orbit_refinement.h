@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "core/dynamics/periodic_orbit.h"
+
+namespace tribodyn {
+
+/// Where a response is looked for.
+struct OrbitSearch {
+  double mean_pinion_speed = 0;     ///< held exactly [rad/s]
+  bool solve_wheel_torque = false;  ///< T_w is the unknown instead of T_s
+  MarchState start{};               ///< at mesh phase 0
+  int period = 1;                   ///< [mesh cycles]
+  bool try_contact_first = true;    ///< the response without contact loss, if there is one
+  int first_cycles = 60;            ///< marched from the start when there is none
+  double tolerance = 1e-5;          ///< wanted, of the figures; see RefinedOrbit::estimated_error
+  std::function<bool()> interrupted;
+};
+
+struct RefinedOrbit {
+  PeriodicOrbit orbit;
+  int steps_per_mesh_cycle = 0;
+  /// Of loss (RMS and energy), torque and extremes of the transmission error, relative: what the
+  /// last halving of the steps changed, less what its order took away, and what sweeps left.
+  double estimated_error = 0;
+};
+
+/// An attracting periodic response on a sequence of step lengths, each half the one before, until
+/// the estimated error is below the tolerance. None where shooting does not converge, the response
+/// repels or nearly so, or the tolerance asks for more than the shortest steps: marching decides
+/// then. Adds to `statistics`.
+std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const OrbitSearch& search,
+                                         MarchStatistics& statistics, long& marched_cycles);
+
+}  // namespace tribodyn

@@ -1,0 +1,242 @@
+#include "server/convert/accept_resource.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/util/message_differencer.h>
+
+#include <algorithm>
+#include <set>
+
+#include "server/convert/check_message.h"
+#include "server/convert/constraints.h"
+#include "server/convert/lubricant_parameters.h"
+#include "server/convert/output_only.h"
+#include "server/convert/provenance.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::util::MessageDifferencer;
+using Labels = google::protobuf::RepeatedPtrField<v1::Label>;
+
+bool is_key(const std::string& key) {
+  return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+           c == '_' || c == '.';
+  });
+}
+
+template <class Repeated>
+bool check_count(const Repeated& list, int maximum, const std::string& path,
+                 Violations& violations) {
+  if (list.size() <= maximum) return true;
+  violations.push_back({path, fmt::format("{} entries; legal: at most {}", list.size(), maximum)});
+  return false;
+}
+
+void check_labels(const Labels& labels, const std::string& path, Violations& violations) {
+  std::set<std::string> keys;
+  for (int i = 0; i < labels.size(); ++i) {
+    const std::string& key = labels.Get(i).key();
+    const std::string here = fmt::format("{}[{}].key", path, i);
+    if (!is_key(key)) {
+      violations.push_back({here, fmt::format("\"{}\"; legal: letters, digits, '-', '_' and '.'",
+                                              plain_excerpt(key))});
+    } else if (!keys.insert(key).second) {
+      violations.push_back({here, fmt::format("\"{}\" is named twice", key)});
+    }
+  }
+}
+
+const char* collection_of(const v1::Lubricant&) { return kLubricants; }
+const char* collection_of(const v1::GearSet&) { return kGearSets; }
+const char* collection_of(const v1::Surface&) { return kSurfaces; }
+const char* collection_of(const v1::Vehicle&) { return kVehicles; }
+
+/// Whether what is stored under `name` descends from `ancestor`. Rings cannot be stored; names seen
+/// before end the search all the same.
+template <class Resource>
+bool descends(std::string name, const std::string& ancestor, const ResourceLookup& lookup) {
+  std::set<std::string> seen;
+  while (!name.empty() && seen.insert(name).second) {
+    if (name == ancestor) return true;
+    const auto found = lookup.find({name, 0});
+    Resource resource;
+    if (!found || !resource.ParseFromString(found->body)) return false;
+    name = resource.derived_from().substr(0, resource.derived_from().find('@'));
+  }
+  return false;
+}
+
+/// A resource may descend from a deleted one, never from itself or its own descendants.
+template <class Resource>
+void check_descent(const Resource& stated, const ResourceLookup& lookup, const std::string& path,
+                   Violations& violations) {
+  const std::string& name = stated.derived_from();
+  if (name.empty()) return;
+  const std::string collection = collection_of(stated);
+  const auto parsed = parse_revision_name(name, collection);
+  if (parsed && parsed->name == stated.name()) {
+    violations.push_back({path, fmt::format("{} is the resource itself", name)});
+  } else if (!parsed || !lookup.find({parsed->name, 0})) {  // revisions number anew on import
+    violations.push_back({path, unknown_name_text(name, collection, lookup.names(collection))});
+  } else if (descends<Resource>(parsed->name, stated.name(), lookup)) {
+    violations.push_back({path, fmt::format("{} itself descends from {}", name, stated.name())});
+  }
+}
+
+/// What all kinds have in common, before what is particular to one.
+template <class Resource>
+Resource begin(const Resource& stated, const ResourceLookup& lookup, const std::string& path,
+               Missing missing, Violations& violations) {
+  Resource out = stated;
+  keep_client_part(out);
+  if (!check_count(out.labels(), kMaximumLabels, join_path(path, "labels"), violations) ||
+      !check_count(out.provenance(), kMaximumProvenances, join_path(path, "provenance"),
+                   violations)) {
+    return out;
+  }
+  check_message(out, path, violations, missing);
+  check_labels(out.labels(), join_path(path, "labels"), violations);
+  check_provenance(*Resource::descriptor(), out.provenance(), join_path(path, "provenance"),
+                   violations);
+  check_descent(out, lookup, join_path(path, "derived_from"), violations);
+  return out;
+}
+
+template <class Resource>
+Resource end(Resource out) {
+  std::sort(out.mutable_labels()->begin(), out.mutable_labels()->end(),
+            [](const v1::Label& a, const v1::Label& b) { return a.key() < b.key(); });
+  clear_units(*out.mutable_provenance());
+  complete_provenance(out, *out.mutable_provenance());
+  return out;
+}
+
+/// What a lubricant's computed parameters were computed from.
+bool has_other_grounds(const v1::Lubricant& stated, const v1::Lubricant& present) {
+  const auto grounds = [](v1::Lubricant lubricant) {
+    forget_computed(lubricant);
+    v1::Lubricant out;
+    *out.mutable_measurements() = lubricant.measurements();
+    out.set_base_oil_class(lubricant.base_oil_class());
+    const auto& reflection = *lubricant.GetReflection();
+    for (const std::string& field : parameter_paths(*v1::Lubricant::descriptor()).numbers) {
+      const auto* descriptor = v1::Lubricant::descriptor()->FindFieldByName(field);
+      if (!reflection.HasField(lubricant, descriptor)) continue;
+      reflection.SetDouble(&out, descriptor, reflection.GetDouble(lubricant, descriptor));
+    }
+    return out;
+  };
+  return !MessageDifferencer::Equals(grounds(stated), grounds(present));
+}
+
+void check_measurements(const v1::LubricantMeasurements& measurements, const std::string& path,
+                        Violations& violations) {
+  check_count(measurements.brookfield_viscosities(), kMaximumMeasurements,
+              join_path(path, "brookfield_viscosities"), violations);
+  check_count(measurements.densities(), kMaximumMeasurements, join_path(path, "densities"),
+              violations);
+  const std::string viscosities = join_path(path, "viscosities");
+  if (!check_count(measurements.viscosities(), kMaximumMeasurements, viscosities, violations)) {
+    return;
+  }
+  for (int i = 0; i < measurements.viscosities_size(); ++i) {
+    if (measurements.viscosities(i).viscosity_case() !=
+        v1::ViscosityMeasurement::VISCOSITY_NOT_SET) {
+      continue;
+    }
+    violations.push_back({fmt::format("{}[{}].viscosity", viscosities, i),
+                          "not set; legal: a kinematic or a dynamic viscosity (eq 34)"});
+  }
+}
+
+/// A computed parameter that the client changed is the client's from then on.
+void take_over_changed(v1::Lubricant& lubricant, const v1::Lubricant& present) {
+  const auto& reflection = *lubricant.GetReflection();
+  auto& entries = *lubricant.mutable_provenance();
+  for (int i = entries.size() - 1; i >= 0; --i) {
+    const auto* field = v1::Lubricant::descriptor()->FindFieldByName(entries.Get(i).field());
+    if (!entries.Get(i).computed() || field == nullptr || !field->has_presence()) continue;
+    const bool changed =
+        reflection.HasField(lubricant, field) && reflection.HasField(present, field) &&
+        reflection.GetDouble(lubricant, field) != reflection.GetDouble(present, field);
+    if (changed) entries.DeleteSubrange(i, 1);
+  }
+}
+
+}  // namespace
+
+std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubricant* present,
+                                    const ResourceLookup& lookup, const std::string& path,
+                                    Violations& violations) {
+  const std::size_t before = violations.size();
+  v1::Lubricant out = begin(stated, lookup, path, Missing::kAllowed, violations);
+  check_measurements(out.measurements(), join_path(path, "measurements"), violations);
+  if (violations.size() > before) return std::nullopt;
+  if (present != nullptr) {
+    take_over_changed(out, *present);
+    if (has_other_grounds(out, *present)) forget_computed(out);
+  }
+  complete_parameters(out, path, violations);
+  if (violations.size() > before) return std::nullopt;
+  check_message(out, path, violations);
+  if (violations.size() > before) return std::nullopt;
+  return end(std::move(out));
+}
+
+std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample& locate,
+                                  const ResourceLookup& lookup, const std::string& path,
+                                  Violations& violations) {
+  const std::size_t before = violations.size();
+  v1::GearSet out = begin(stated, lookup, path, Missing::kViolation, violations);
+  if (locate) {
+    check_gear_set(out, locate, path, violations);
+  } else {
+    check_gear_set(out, path, violations);
+  }
+  if (violations.size() > before) return std::nullopt;
+  return end(std::move(out));
+}
+
+std::optional<v1::GearSet> accept(const v1::GearSet& stated, const v1::GearSet*,
+                                  const ResourceLookup& lookup, const std::string& path,
+                                  Violations& violations) {
+  return accept(stated, LocateSample(), lookup, path, violations);
+}
+
+std::optional<v1::Surface> accept(const v1::Surface& stated, const v1::Surface*,
+                                  const ResourceLookup& lookup, const std::string& path,
+                                  Violations& violations) {
+  const std::size_t before = violations.size();
+  v1::Surface out = begin(stated, lookup, path, Missing::kViolation, violations);
+  check_count(out.measurements(), kMaximumMeasurements, join_path(path, "measurements"),
+              violations);
+  if (violations.size() > before) return std::nullopt;
+  return end(std::move(out));
+}
+
+std::optional<v1::Vehicle> accept(const v1::Vehicle& stated, const v1::Vehicle*,
+                                  const ResourceLookup& lookup, const std::string& path,
+                                  Violations& violations) {
+  const std::size_t before = violations.size();
+  v1::Vehicle out = begin(stated, lookup, path, Missing::kViolation, violations);
+  if (violations.size() > before) return std::nullopt;
+  return end(std::move(out));
+}
+
+void check_stated(const v1::Lubricant& stated, const ResourceLookup& lookup,
+                  const std::string& path, Violations& violations) {
+  begin(stated, lookup, path, Missing::kAllowed, violations);
+}
+
+void check_stated(const v1::GearSet& stated, const ResourceLookup& lookup, const std::string& path,
+                  Violations& violations) {
+  begin(stated, lookup, path, Missing::kViolation, violations);
+}
+
+void check_stated(const v1::Surface& stated, const ResourceLookup& lookup, const std::string& path,
+                  Violations& violations) {
+  begin(stated, lookup, path, Missing::kAllowed, violations);
+}
+
+}  // namespace tribodyn::server

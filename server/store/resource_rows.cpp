@@ -1,0 +1,90 @@
+#include "server/store/resource_rows.h"
+
+#include "server/hash/sha256.h"
+#include "server/store/resource_types.h"
+
+namespace tribodyn::server {
+namespace {
+
+void insert_properties(SQLite::Database& db, std::int64_t resource, const std::string& name,
+                       const std::string& body, Microseconds create_time,
+                       Microseconds update_time) {
+  const std::string collection = collection_of(name);
+  SQLite::Statement insert(db, "INSERT INTO properties VALUES (?, ?, ?, ?, ?)");
+  for (const Property& each : properties_of(collection, body, create_time, update_time)) {
+    insert.bind(1, resource);
+    insert.bind(2, each.key);
+    bind_value(insert, 3, each.value);
+    insert.bind(4, collection);
+    insert.bind(5, name);
+    insert.exec();
+    insert.reset();
+  }
+}
+
+/// Adds the row and makes it the present one.
+void add_revision(SQLite::Database& db, std::int64_t resource, int revision,
+                  const std::string& body, Microseconds now) {
+  SQLite::Statement insert(
+      db,
+      "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
+      "VALUES (?, ?, ?, ?, ?)");
+  insert.bind(1, resource);
+  insert.bind(2, revision);
+  insert.bind(3, now);
+  insert.bind(4, sha256(body));
+  bind_blob(insert, 5, body);
+  insert.exec();
+  SQLite::Statement present(db, "UPDATE resources SET present = ? WHERE id = ?");
+  present.bind(1, db.getLastInsertRowid());
+  present.bind(2, resource);
+  present.exec();
+}
+
+}  // namespace
+
+void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes) {
+  statement.bind(index, bytes.data(), static_cast<int>(bytes.size()));
+}
+
+void bind_value(SQLite::Statement& statement, int index, const PropertyValue& value) {
+  std::visit([&](const auto& held) { statement.bind(index, held); }, value);
+}
+
+void insert_resource(SQLite::Database& db, const std::string& name, const std::string& body,
+                     Microseconds now) {
+  SQLite::Statement insert(
+      db, "INSERT INTO resources (name, collection, present, create_time) VALUES (?, ?, 0, ?)");
+  insert.bind(1, name);
+  insert.bind(2, collection_of(name));
+  insert.bind(3, now);
+  insert.exec();
+  const std::int64_t id = db.getLastInsertRowid();
+  add_revision(db, id, 1, body, now);
+  insert_properties(db, id, name, body, now, now);
+}
+
+void insert_revision(SQLite::Database& db, const StoredResource& present, const std::string& body,
+                     Microseconds now) {
+  add_revision(db, present.id, present.revision + 1, body, now);
+  SQLite::Statement clear(db, "DELETE FROM properties WHERE resource = ?");
+  clear.bind(1, present.id);
+  clear.exec();
+  insert_properties(db, present.id, present.name, body, present.create_time, now);
+}
+
+StoredResource stored_resource(const SQLite::Statement& query) {
+  StoredResource out;
+  out.id = query.getColumn(0).getInt64();
+  out.name = query.getColumn(1).getString();
+  out.revision = query.getColumn(2).getInt();
+  out.is_present = query.getColumn(3).getInt() != 0;
+  out.create_time = query.getColumn(4).getInt64();
+  out.revision_create_time = query.getColumn(5).getInt64();
+  if (!query.getColumn(6).isNull()) out.delete_time = query.getColumn(6).getInt64();
+  out.content_hash = query.getColumn(7).getString();
+  out.body = query.getColumn(8).getString();
+  return out;
+}
+
+}  // namespace tribodyn::server

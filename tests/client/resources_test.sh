@@ -1,0 +1,299 @@
+#!/usr/bin/env bash
+# What a formulator does with resources, against a real tribodynd: from a data sheet or a table to a
+# curve, revisions, files there and back, mistakes, completion, configuration.
+# usage: resources_test.sh TRIBODYND TRIBODYN
+# shellcheck source=tests/client/support.sh
+. "$(dirname "${BASH_SOURCE[0]}")/support.sh"
+start_server
+here=$PWD
+cd "$folder" || exit 1
+
+err_is_empty() { [ ! -s "$folder/err" ] || fail "tribodyn $asked: standard error is not empty"; }
+out_lacks() { ! grep -qE -- "$1" "$folder/out" || fail "tribodyn $asked: '$1' on standard output"; }
+
+echo "--- from three numbers to a curve"
+expect 0 lubricants create my-oil --kv40 73.3 --kv100 8.86 --density15 870
+for part in 'viscosity index +92 ' 'SAE J306 grade +80' 'Not measured but estimated' \
+  'pressure viscosity coefficient +20\.5[0-9]* +1/GPa +5\.1 +assumed' 'thermal conductivity .* assumed' \
+  'T_0' 'tribodyn curve --lubricant my-oil'; do
+  out_has "$part"
+done
+err_is_empty
+expect 0 curve --lubricant my-oil --first-speed 40 --last-speed 60 --speed-step 10
+out_has 'Assumed of the lubricant, not measured'
+out_has 'pressure viscosity coefficient 20\.5'
+err_is_empty
+
+echo "--- from a table to a curve"
+cat >table-oil.csv <<END
+temperature_celsius,kinematic_viscosity_square_millimetres_per_second,density_kilograms_per_cubic_metre
+0,750,
+20,205,
+40,73.3,855
+100,8.86,
+END
+expect 0 lubricants import table-oil.csv --base-oil-class group-iii
+out_has 'imported lubricants/table-oil'
+out_has 'root mean square +[0-9.]+ %'
+expect 0 curve --lubricant table-oil --first-speed 40 --last-speed 50 --speed-step 10 \
+  --model quasi-static
+expect 0 lubricants create table-2 --viscosity-table table-oil.csv
+expect 1 lubricants import table-oil.csv
+err_has 'ALREADY_EXISTS|already exists'
+sed 's/205/thick/; s/8.86/x/' table-oil.csv >broken.csv
+expect 1 lubricants import broken.csv
+err_has 'row 3 column kinematic.*thick'
+err_has 'row 5 column kinematic'
+expect 1 lubricants get broken
+
+echo "--- units in, units out"
+expect 0 lubricants create units --kv40 73.3cSt --kv100 '8.86 mm^2/s' --density15 '0.87 g/cm3' \
+  --pressure-viscosity 20/GPa --pressure-viscosity-temperature 40C --thermal-conductivity 0.14W/mK \
+  --limiting-shear-stress-at-zero-pressure '4 MPa' --relaxation-time 450ns --brookfield -40=140000 \
+  --provenance 'pressure-viscosity=measured:Laboratory X' --uncertainty pressure-viscosity=0.5/GPa
+out_has 'pressure viscosity coefficient +20 +1/GPa +0.5 +measured'
+out_has 'relaxation time +0.45 +us +user'
+out_has 'SAE J306 grade +75W-80'
+expect 0 lubricants get units --output json
+out_has '"pressureViscosityCoefficientPerPascal": 2e-0?8'
+out_has '"relaxationTimeSeconds": 4.5e-0?7'
+
+echo "--- mistakes: all at once, with what may be meant"
+expect 2 lubricants create x --kv40 thick --pressure-viscosity 20 --densty15 8
+err_has "'thick' is not a number in mm2/s"
+err_has 'e.g. 20/GPa'
+err_has 'is --density15 meant'
+expect 1 lubricants create x --kv40 0.1 --density15 0.87 --pressure-viscosity 1e6/GPa
+for part in 'kinematic_viscosity_40_celsius.* legal: 1 to' 'density_15_celsius.* legal: 500 to' \
+  'pressure_viscosity_coefficient_per_pascal.* legal'; do
+  err_has "$part"
+done
+expect 1 lubricants get my-oill
+err_has 'my-oil"'
+expect 1 lubricants list --filter 'condicion = USED'
+err_has 'condition'
+expect 2 lubricants create
+expect 2 lubricants update my-oil
+expect 2 lubricants frobnicate
+expect 2 gear-sets import nothing.json
+err_has 'No such file'
+
+echo "--- revisions"
+expect 0 lubricants update my-oil --pressure-viscosity 18/GPa --label project=axle
+out_has 'updated lubricants/my-oil, revision 2'
+out_has 'pressure viscosity coefficient +18 .*user'
+expect 0 lubricants revisions my-oil
+out_has '^my-oil@2'
+out_has '^my-oil@1'
+expect 0 lubricants get my-oil@1
+out_has 'pressure viscosity coefficient +20\.5'
+expect 0 diff my-oil@1 my-oil
+out_has 'pressure viscosity coefficient +20\.5[0-9]* +18 +1/GPa +-12\.[0-9]+ +assumed / user'
+out_lacks 'thermal conductivity'
+expect 4 diff my-oil@1 my-oil --exit-code --output csv
+out_is_csv
+expect 0 diff my-oil my-oil --exit-code
+expect 0 diff 1 2 --all --output json
+out_is_json
+out_has 'sae_j306_grade'
+expect 0 lubricants update my-oil --unset pressure-viscosity-coefficient
+out_has 'pressure viscosity coefficient +20\.5.*assumed'
+expect 1 lubricants update my-oil --title x --etag stale
+err_has 'ABORTED|etag'
+expect 0 lubricants list --label project=axle --output csv
+out_lines 2
+expect 0 lubricants list --filter 'labels.project:*' --order-by 'name desc' --limit 1
+expect 0 lubricants delete my-oil
+expect 0 lubricants list
+out_lacks '^my-oil '
+expect 0 lubricants list --show-deleted
+out_has '^my-oil \(deleted\)'
+expect 1 point --lubricant my-oil --speed 50
+expect 0 lubricants undelete my-oil
+expect 0 lubricants list
+out_has '^my-oil '
+
+echo "--- files there and back"
+for kind in lubricants gear-sets surfaces vehicles; do
+  expect 0 "$kind" list
+  # What came with the server states its provenance with its first import; from then on nothing
+  # changes.
+  expect 0 "$kind" export --all --file first.json
+  expect 0 "$kind" import first.json --replace
+  expect 0 "$kind" export --all --file "$kind.json"
+  expect 0 validate "$kind.json"
+  expect 0 "$kind" import "$kind.json" --replace
+  expect 0 "$kind" export --all --file again.json
+  cmp -s "$kind.json" again.json || fail "$kind: export, import, export is not identical"
+done
+expect 0 lubricants export units --file units.json
+sed 's,lubricants/units,lubricants/units-2,' units.json >units-2.json
+expect 0 lubricants import units-2.json
+expect 0 diff units units-2
+out_has 'do not differ'
+printf '{"lubricants": [{"name": "lubricants/half", "measurements": {
+  "kinematic_viscosity_40_celsius_square_millimetres_per_second": 73}},
+  {"name": "lubricants/other", "relaxation_time_seconds": -1}]}' >half.json
+expect 1 lubricants import half.json
+err_has 'lubricants\[1\].*' && err_has 'Nothing was written'
+expect 1 lubricants get half
+printf '{"name": "lubricants/q", "measurments": {}}' >misspelt.json
+expect 2 validate misspelt.json
+err_has 'is measurements meant'
+expect 1 validate half.json units.json
+out_has 'units.json: valid'
+
+fluid='"measurements": {"kinematic_viscosity_40_celsius_square_millimetres_per_second": 73,
+  "kinematic_viscosity_100_celsius_square_millimetres_per_second": 9,
+  "density_15_celsius_kilograms_per_cubic_metre": 870}'
+printf '{"lubricants": [{"name": "lubricants/drained", "derived_from": "lubricants/filled", %s},
+  {"name": "lubricants/filled", %s}]}' "$fluid" "$fluid" >derived.json
+expect 0 lubricants import derived.json
+expect 0 lubricants get drained
+out_has 'derived from +lubricants/filled'
+printf '{"lubricants": [{"name": "lubricants/twice", %s}, {"name": "lubricants/twice", %s}]}' \
+  "$fluid" "$fluid" >twice.json
+expect 2 lubricants import twice.json
+err_has 'lubricants\[0\] and in .*lubricants\[1\]'
+expect 1 lubricants get twice
+
+echo "--- a simulation that is only checked"
+expect 0 curve --lubricant 1 --lubricant my-oil --validate-only
+out_has '^valid, not run: lubricants/my-oil$'
+expect 1 point --lubricant 1 --speed 4000 --validate-only
+err_has 'legal: 0.1 to 400 km/h'
+expect 0 jobs list --output csv
+jobs_before=$(cat "$folder/out")
+expect 0 point --lubricant 1 --speed 40 --validate-only
+expect 0 jobs list --output csv
+[ "$(cat "$folder/out")" = "$jobs_before" ] || fail "--validate-only runs something"
+
+echo "--- a fluid a row"
+cat >rows.csv <<'END'
+name;kinematic_viscosity_40_celsius_square_millimetres_per_second;kinematic_viscosity_100_celsius_square_millimetres_per_second;base_oil_class;condition;derived_from;labels.project;display_name
+row-used;70;8.6;pao;used;row-fresh;axle;
+row-fresh;73.3;8.86;pao;fresh;;axle;"An ""oil""; fresh"
+END
+expect 0 validate rows.csv
+expect 1 lubricants get row-used
+expect 0 lubricants import rows.csv
+expect 0 lubricants get row-used
+out_has 'derived from +lubricants/row-fresh'
+expect 0 lubricants export row-fresh row-used --output csv --file rows-2.csv
+err_has 'no room for how each number is known'
+expect 0 lubricants import rows-2.csv --replace
+expect 0 lubricants export row-fresh row-used --output csv --file rows-3.csv
+cmp -s rows-2.csv rows-3.csv || fail "rows: export, import, export is not identical"
+expect 0 lubricants revisions row-used
+! grep -q 'row-used@2' "$folder/out" || fail "an import of what is there makes a revision"
+sed -e 's/;73.3;/;73,3;/; s/;used;/;usd;/; s/display_name/display_nme/' rows.csv >rows-bad.csv
+expect 2 lubricants import rows-bad.csv --replace
+err_has "row 2 column condition: 'usd' is not one of"
+err_has "row 3 column kinematic_viscosity_40.*: '73,3' is not a number with a decimal point"
+err_has 'is display_name meant'
+sed -e 's/;73.3;/;1e9;/; s/;8.6;/;-1;/' rows.csv >rows-bad.csv
+expect 1 lubricants import rows-bad.csv --replace
+err_has 'row 2: .*'
+err_has 'kinematic_viscosity_100_celsius_square_millimetres_per_second = -1 mm2/s'
+err_has 'kinematic_viscosity_40_celsius_square_millimetres_per_second = 1000000000 mm2/s'
+printf 'name,display_name\nlatin,\351l\n' >latin.csv
+expect 2 lubricants import latin.csv
+err_has 'not UTF-8'
+expect 2 lubricants create latin --kv40 73.3 --kv100 8.86 --title "$(printf '\351l')"
+err_has 'not UTF-8'
+expect 0 lubricants list
+out_has 'SAE J306'
+out_has '^row-fresh .* 92\.4 '
+expect 0 lubricants delete row-fresh
+expect 0 lubricants export --all --file all.json
+grep -q 'lubricants/row-fresh"' all.json || fail "an export lacks the deleted parent of a fluid"
+
+echo "--- tables of gear sets and surfaces"
+expect 0 gear-sets export A --tooth-contact contact.csv --series series.csv
+expect 0 gear-sets import contact.csv --series series.csv --id table --like A
+expect 0 gear-sets export table --tooth-contact contact-2.csv --series series-2.csv
+cmp -s contact.csv contact-2.csv || fail "tooth contact: export, import, export is not identical"
+cmp -s series.csv series-2.csv || fail "series: export, import, export is not identical"
+awk -F, -v OFS=, 'NR == 5 { $3 = 7 } { print }' contact.csv >bent.csv
+expect 1 gear-sets create bent --like A --tooth-contact bent.csv --gear-teeth 37
+err_has 'row 5 column load_share'
+err_has 'R_g0'
+awk 'BEGIN { print "position_micrometres,height_nanometres"
+  for (i = 0; i < 300; i++) print i * 0.5 "," 300 * sin(i / 7) + 40 * sin(i * i) }' >profile.csv
+expect 0 surfaces create rough --like run-in --profile pinion,axial,profile.csv \
+  --profile gear,radial,profile.csv
+out_has '^pinion +axial +300'
+out_has 'composite rms height .* fitted'
+expect 0 validate contact.csv profile.csv table-oil.csv
+expect 0 vehicles create van --like passenger-car --mass '2.1 t'
+out_has 'mass +2100 +kg .*user'
+
+echo "--- schema and help"
+expect 0 schema lubricants
+out_has 'thermal_conductivity_watts_per_metre_kelvin +0.001 +100 +W/\(m K\) +eq 35'
+expect 0 schema --output csv
+out_has '^Surface,asperity_radius_metres,'
+expect 1 schema lubrcant
+err_has 'did you mean "Lubricant"'
+expect 0 lubricants create --help
+out_has 'Legal: 0.1 to 1000 1/GPa \(eq 33'
+TRIBODYN_SERVER=127.0.0.1:9 expect 0 lubricants create --help
+out_has 'No server answers'
+for topic in units files filters configuration options exit-codes; do expect 0 help $topic; done
+expect 0 help lubricants create
+expect 2 help unitz
+err_has 'is units meant'
+
+echo "--- configuration: flag, environment, file"
+mkdir -p "$XDG_CONFIG_HOME/tribodyn"
+printf '# mine\noutput = csv\nserver = 127.0.0.1:9\n' >"$XDG_CONFIG_HOME/tribodyn/config"
+expect 0 vehicles list
+out_is_csv
+TRIBODYN_OUTPUT=json expect 0 vehicles list
+out_is_json
+TRIBODYN_OUTPUT=json expect 0 vehicles list -o table
+out_has '^passenger-car'
+address=$TRIBODYN_SERVER
+unset TRIBODYN_SERVER
+expect 3 vehicles list
+export TRIBODYN_SERVER=$address
+printf 'outptu = csv\n' >"$XDG_CONFIG_HOME/tribodyn/config"
+expect 2 vehicles list
+err_has 'is output meant'
+rm "$XDG_CONFIG_HOME/tribodyn/config"
+TRIBODYN_CONFIG=/nonexistent expect 2 vehicles list
+
+echo "--- colours only where they are wanted"
+expect 0 lubricants get my-oil --color always
+grep -q $'\x1b' out || fail "no colours with --color always"
+expect 0 lubricants get my-oil
+! grep -q $'\x1b' out || fail "colours in a pipe"
+if command -v script >/dev/null; then
+  on_terminal() { TERM=xterm script -qec "$*" /dev/null </dev/null >"$folder/terminal"; }
+  on_terminal "'$client' lubricants get my-oil"
+  grep -q $'\x1b' terminal || fail "no colours on a terminal"
+  on_terminal "NO_COLOR=1 '$client' lubricants get my-oil"
+  ! grep -q $'\x1b' terminal || fail "colours with NO_COLOR"
+  on_terminal "'$client' lubricants get my-oil --no-color"
+  ! grep -q $'\x1b' terminal || fail "colours with --no-color"
+  on_terminal "'$client' curve -l 1 --first-speed 50 --last-speed 60 --speed-step 5"
+  grep -q '\] *[0-9]* %' terminal || fail "no progress on a terminal"
+fi
+
+echo "--- bash completion"
+expect 0 completion zsh
+if command -v zsh >/dev/null; then zsh -n "$folder/out" || fail "zsh cannot read its script"; fi
+expect 0 completion bash
+completed() {
+  PATH="$(dirname "$client"):$PATH" bash -c '
+    . "$1"; COMP_LINE=$2; COMP_POINT=${#2}; _tribodyn 2>/dev/null; printf "%s " "${COMPREPLY[@]}"' \
+    bash "$folder/out" "$1"
+}
+[ "$(completed 'tribodyn lubricants get my')" = 'my-oil ' ] || fail "completion of a name"
+[ "$(completed 'tribodyn curve --lubricant 1,my')" = '1,my-oil ' ] || fail "completion of a second name"
+[ "$(completed 'tribodyn curve --surface=run')" = 'run-in ' ] || fail "completion after ="
+[ "$(completed 'tribodyn gear-sets exp')" = 'export ' ] || fail "completion of a command"
+[ "$(completed 'tribodyn validate units-')" = 'units-2.json ' ] || fail "completion of a file"
+
+cd "$here" || exit 1
+finish

@@ -1,0 +1,191 @@
+// The client library against a real tribodynd on a free port of loopback.
+#include <gtest/gtest.h>
+#include <tribodyn/client/connection.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "client/cpp/resources/kind.h"
+#include "client/cpp/text/units.h"
+#include "tests/service/server_process.h"
+
+namespace tribodyn::client {
+namespace {
+
+constexpr int kNotFound = 5;
+constexpr int kAborted = 10;
+
+class Library : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("tribodyn_library_test." + std::to_string(getpid()));
+    std::filesystem::create_directory(folder_);
+    const std::string port_file = folder_ / "port";
+    process_ = std::make_unique<server::ServerProcess>(
+        std::vector<std::string>{"--listen", "127.0.0.1:0", "--database", folder_ / "db.sqlite",
+                                 "--port-file", port_file},
+        folder_ / "log");
+    address_ = server::wait_for_address(port_file, *process_);
+    ASSERT_FALSE(address_.empty()) << process_->log();
+  }
+  static void TearDownTestSuite() {
+    process_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+
+  Connection connection{address_};
+
+ private:
+  static inline std::filesystem::path folder_;
+  static inline std::unique_ptr<server::ServerProcess> process_;
+  static inline std::string address_;
+};
+
+v1::Lubricant data_sheet() {
+  v1::Lubricant fluid;
+  auto& measured = *fluid.mutable_measurements();
+  measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73.3);
+  measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(8.86);
+  measured.set_density_15_celsius_kilograms_per_cubic_metre(870);
+  return fluid;
+}
+
+template <class Call>
+ServiceError refused(const Call& call) {
+  try {
+    call();
+  } catch (const ServiceError& error) {
+    EXPECT_EQ(error.kind(), ServiceError::Kind::kRefused) << error.what();
+    return error;
+  }
+  ADD_FAILURE() << "nothing was refused";
+  return {ServiceError::Kind::kRefused, ""};
+}
+
+TEST_F(Library, ALubricantLivesThroughItsRevisions) {
+  const v1::Lubricant checked = connection.create(data_sheet(), "life", true);
+  EXPECT_NEAR(checked.characterisation().viscosity_index(), 92, 0.5);
+  EXPECT_EQ(refused([&] { connection.get<v1::Lubricant>("lubricants/life"); }).status_code(),
+            kNotFound);
+
+  v1::Lubricant fluid = connection.create(data_sheet(), "life");
+  EXPECT_EQ(fluid.revision(), 1);
+  const std::string first_etag = fluid.etag();
+  fluid.set_display_name("changed");
+  UpdateOptions options;
+  options.update_mask = {"display_name"};
+  EXPECT_EQ(connection.update(fluid, options).revision(), 2);
+  EXPECT_EQ(refused([&] { connection.update(fluid, options); }).status_code(), kAborted);
+  EXPECT_EQ(connection.get<v1::Lubricant>("lubricants/life@1").display_name(), "");
+
+  const auto revisions = connection.revisions<v1::Lubricant>("lubricants/life");
+  ASSERT_EQ(revisions.resources.size(), 2U);
+  EXPECT_EQ(revisions.resources.front().revision(), 2);
+  EXPECT_EQ(refused([&] {
+              connection.remove<v1::Lubricant>("lubricants/life", first_etag);
+            }).status_code(),
+            kAborted);
+  EXPECT_TRUE(connection.remove<v1::Lubricant>("lubricants/life").has_delete_time());
+  for (const auto& each : connection.list<v1::Lubricant>().resources) {
+    EXPECT_NE(each.name(), "lubricants/life");
+  }
+  EXPECT_FALSE(connection.undelete<v1::Lubricant>("lubricants/life").has_delete_time());
+}
+
+TEST_F(Library, AllViolationsComeAtOnce) {
+  v1::Lubricant fluid = data_sheet();
+  fluid.mutable_measurements()->set_density_15_celsius_kilograms_per_cubic_metre(0.87);
+  fluid.set_thermal_conductivity_watts_per_metre_kelvin(1e6);
+  const ServiceError error = refused([&] { connection.create(fluid, "wrong"); });
+  EXPECT_EQ(error.violations().size(), 2U) << error.what();
+  EXPECT_FALSE(error.reason().empty());
+}
+
+TEST_F(Library, PagesAreHidden) {
+  for (int i = 0; i < 12; ++i) connection.create(data_sheet(), "page-" + std::to_string(i));
+  ListOptions options;
+  options.filter = "name:page-";
+  EXPECT_EQ(connection.list<v1::Lubricant>(options).resources.size(), 12U);
+  options.limit = 5;
+  options.order_by = "name desc";
+  const auto some = connection.list<v1::Lubricant>(options);
+  ASSERT_EQ(some.resources.size(), 5U);
+  EXPECT_TRUE(some.has_more);
+  EXPECT_EQ(some.resources.front().name(), "lubricants/page-9");
+}
+
+TEST_F(Library, EveryKindCanBeCopied) {
+  auto gear_set = connection.get<v1::GearSet>("gearSets/A");
+  clear_output_only(gear_set);
+  gear_set.set_name("");
+  EXPECT_EQ(connection.create(gear_set, "copy").name(), "gearSets/copy");
+  ListOptions basic;
+  basic.basic = true;
+  for (const auto& each : connection.list<v1::GearSet>(basic).resources) {
+    EXPECT_EQ(each.flank_slots_size(), 0);
+  }
+  auto surface = connection.get<v1::Surface>("surfaces/run-in");
+  clear_output_only(surface);
+  surface.set_name("");
+  EXPECT_EQ(connection.create(surface, "copy").name(), "surfaces/copy");
+  auto vehicle = connection.get<v1::Vehicle>("vehicles/passenger-car");
+  clear_output_only(vehicle);
+  vehicle.set_name("");
+  EXPECT_EQ(connection.create(vehicle, "copy").name(), "vehicles/copy");
+}
+
+TEST_F(Library, ASimulationIsFollowedToItsEnd) {
+  v1::Simulation simulation;
+  simulation.set_lubricant("lubricants/1");
+  auto& study = *simulation.mutable_operating_point();
+  study.mutable_cruise()->set_speed_kilometers_per_hour(50);
+  study.set_model(v1::QUASI_STATIC);
+  connection.create_simulation(simulation, true);
+  EXPECT_TRUE(connection.list_simulations().resources.empty());
+  int events = 0;
+  const v1::Simulation ended =
+      connection.wait_for_end(connection.create_simulation(simulation).name(),
+                              [&](const v1::SimulationEvent&) { ++events; });
+  EXPECT_EQ(ended.state(), v1::Simulation::SUCCEEDED);
+  EXPECT_GT(events, 0);
+  EXPECT_EQ(ended.lubricant_revision(), "lubricants/1@1");
+  EXPECT_EQ(connection.list_simulations(1).resources.size(), 1U);
+}
+
+// The client tells units from names; the server has them in its table of constraints.
+TEST_F(Library, TheServersUnitsAreThoseOfTheNames) {
+  const v1::Schema schema = connection.schema();
+  EXPECT_GT(schema.constraints_size(), 80);
+  int compared = 0;
+  for (const v1::Constraint& row : schema.constraints()) {
+    const std::string unit = unit_of_field(row.field());
+    if (unit.empty()) continue;
+    if (unit == "C") {  // has a zero of its own, and no ratio
+      EXPECT_EQ(row.unit(), unit) << row.field();
+      continue;
+    }
+    EXPECT_EQ(unit_ratio(unit, row.unit() == "degrees" ? "deg" : row.unit()), 1)
+        << row.message() << "." << row.field() << ": " << unit << ", server " << row.unit();
+    ++compared;
+  }
+  EXPECT_GT(compared, 50);
+  for (const ResourceKind& kind : resource_kinds()) {
+    EXPECT_GT(connection.schema(kind.prototype->GetDescriptor()->name()).constraints_size(), 3);
+  }
+}
+
+TEST(LibraryAlone, AServerThatIsNotThere) {
+  Connection nobody("127.0.0.1:9", std::chrono::seconds(2));
+  try {
+    nobody.list<v1::Vehicle>();
+    FAIL() << "an answer from nobody";
+  } catch (const ServiceError& error) {
+    EXPECT_EQ(error.kind(), ServiceError::Kind::kCannotConnect);
+  }
+}
+
+}  // namespace
+}  // namespace tribodyn::client

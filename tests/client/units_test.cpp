@@ -1,0 +1,97 @@
+#include "client/cpp/text/units.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <tuple>
+
+namespace tribodyn::client {
+namespace {
+
+double read(const std::string& text, const std::string& unit, bool temperature = false) {
+  std::string wrong;
+  const auto value = read_quantity(text, unit, "", temperature, wrong);
+  EXPECT_TRUE(value) << text << " " << wrong;
+  return value.value_or(0);
+}
+
+TEST(Units, EveryUsualSpellingIsTheSame) {
+  for (const char* text :
+       {"20/GPa", "20 1/GPa", "20 GPa^-1", "20GPa-1", "0.02/MPa", "20 GPa\u207b\u00b9"}) {
+    EXPECT_EQ(read(text, "1/Pa"), 2e-8) << text;
+  }
+  for (const char* text : {"8.86mm2/s", "8.86 mm^2/s", "8.86 mm\u00b2/s", "8.86cSt", "0.0886 St"}) {
+    EXPECT_EQ(read(text, "mm2/s"), 8.86) << text;
+  }
+  for (const char* text :
+       {"150mPas", "150 mPa s", "150 mPa*s", "150cP", "0.15Pa s", "150 mPa\u00b7s"}) {
+    // "mPas" without a blank is what laboratory sheets print.
+    EXPECT_EQ(read(text, "mPa s"), 150) << text;
+  }
+  for (const char* text : {"0.14W/(m K)", "0.14 W/mK", "0.14W/m/K", "140 mW/(m K)"}) {
+    EXPECT_EQ(read(text, "W/(m K)"), 0.14) << text;
+  }
+  EXPECT_EQ(read("0.87 g/cm3", "kg/m3"), 870);
+  EXPECT_EQ(read("0.87kg/l", "kg/m3"), 870);
+  EXPECT_EQ(read("-0.63 kg/(m3 K)", "kg/(m3 K)"), -0.63);
+  EXPECT_EQ(read("450ns", "s"), 4.5e-7);
+  EXPECT_EQ(read("4e3 kPa", "Pa"), 4e6);
+}
+
+TEST(Units, DecimalNumbersStayExact) {
+  // Multiplying by a power of ten in binary would be off in the last digit.
+  EXPECT_EQ(read("16.09/GPa", "1/Pa"), 1.609e-8);
+  EXPECT_EQ(read("0.155 mPa s", "Pa s"), 0.000155);
+  EXPECT_EQ(read("0.4um", "m"), 4e-7);
+}
+
+TEST(Units, TemperaturesHaveTheirZeros) {
+  EXPECT_EQ(read("40C", "K", true), 313.15);
+  EXPECT_EQ(read("40 \u00b0C", "K", true), 313.15);
+  EXPECT_EQ(read("313.15 K", "K", true), 313.15);
+  EXPECT_EQ(read("-40 F", "C", true), -40);
+  EXPECT_TRUE(is_temperature_field("pressure_viscosity_temperature_kelvin"));
+  EXPECT_TRUE(is_temperature_field("measurements.temperature_celsius"));
+  EXPECT_FALSE(is_temperature_field("vogel_temperature_coefficient_kelvin"));
+  EXPECT_FALSE(is_temperature_field("inlet_temperature_rise_kelvin"));
+}
+
+TEST(Units, RefuseWhatTheyCannotMean) {
+  std::string wrong;
+  for (const auto& [text, unit, reason] : {
+           std::tuple("20", "1/Pa", "needs its unit, e.g. 20/GPa"),
+           std::tuple("20 MPa", "1/Pa", "is not in 1/Pa or a multiple of it"),
+           std::tuple("7 cSt", "mPa s", "is not in mPa s or a multiple of it"),
+           std::tuple("20 C", "K", "is not in K or a multiple of it"),
+           std::tuple("fast", "K", "is not a number in K"),
+           std::tuple("", "K", "is not a number in K"),
+           std::tuple("1e999K", "K", "is not a number in K"),
+           std::tuple("3 (", "K", "is not in K or a multiple of it"),
+           std::tuple("3 ()()", "K", "is not in K or a multiple of it"),
+           std::tuple("3 m99999999999", "m", "is not in m or a multiple of it"),
+           std::tuple("1,5 K", "K", "is not in K or a multiple of it"),
+       }) {
+    EXPECT_FALSE(read_quantity(text, unit, "", false, wrong)) << text;
+    EXPECT_EQ(wrong, reason) << text;
+  }
+}
+
+TEST(Units, FieldsSayTheirUnit) {
+  EXPECT_EQ(unit_of_field("kinematic_viscosity_40_celsius_square_millimetres_per_second"), "mm2/s");
+  EXPECT_EQ(unit_of_field("density_at_zero_kelvin_kilograms_per_cubic_metre"), "kg/m3");
+  EXPECT_EQ(unit_of_field("density_slope_kilograms_per_cubic_metre_kelvin"), "kg/(m3 K)");
+  EXPECT_EQ(unit_of_field("havriliak_negami_alpha"), "");
+  EXPECT_EQ(label_of_field("thermal_conductivity_watts_per_metre_kelvin"), "thermal conductivity");
+}
+
+TEST(Units, TheTradesUnits) {
+  EXPECT_EQ(trade_unit_of_field("pressure_viscosity_coefficient_per_pascal"), "1/GPa");
+  EXPECT_DOUBLE_EQ(in_trade_unit("pressure_viscosity_coefficient_per_pascal", 2e-8), 20);
+  EXPECT_DOUBLE_EQ(in_trade_unit("pressure_viscosity_temperature_kelvin", 313.15), 40);
+  EXPECT_DOUBLE_EQ(difference_in_trade_unit("pressure_viscosity_temperature_kelvin", 2), 2);
+  EXPECT_DOUBLE_EQ(in_trade_unit("vogel_reference_temperature_kelvin", 159), 159);
+  EXPECT_DOUBLE_EQ(in_trade_unit("wheel_radius_metres", 0.28), 0.28);
+}
+
+}  // namespace
+}  // namespace tribodyn::client

@@ -1,0 +1,251 @@
+// Every method of the contract, found by its descriptor: what one of them may have been forgotten
+// in.
+#include <gmock/gmock.h>
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/dynamic_message.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "tests/service/grpc_fixture.h"
+#include "tests/service/raw_client.h"
+#include "tribodyn/v1/contacts.pb.h"
+#include "tribodyn/v1/gear_sets.pb.h"
+#include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/schemas.pb.h"
+#include "tribodyn/v1/surfaces.pb.h"
+#include "tribodyn/v1/vehicles.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::FileDescriptor;
+using google::protobuf::Message;
+using google::protobuf::MethodDescriptor;
+using testing::HasSubstr;
+
+/// Every file of the contract that has services.
+std::vector<const FileDescriptor*> contract() {
+  return {v1::Lubricant::descriptor()->file(),
+          v1::GearSet::descriptor()->file(),
+          v1::Surface::descriptor()->file(),
+          v1::Vehicle::descriptor()->file(),
+          v1::Simulation::descriptor()->file(),
+          v1::Schema::descriptor()->file(),
+          v1::EvaluateContactRequest::descriptor()->file()};
+}
+
+std::vector<const MethodDescriptor*> all_methods() {
+  std::vector<const MethodDescriptor*> out;
+  for (const FileDescriptor* file : contract()) {
+    for (int i = 0; i < file->service_count(); ++i) {
+      for (int k = 0; k < file->service(i)->method_count(); ++k) {
+        out.push_back(file->service(i)->method(k));
+      }
+    }
+  }
+  return out;
+}
+
+std::string method_name(const testing::TestParamInfo<const MethodDescriptor*>& info) {
+  return info.param->name();
+}
+
+std::string path_of(const MethodDescriptor& method) {
+  return "/" + method.service()->full_name() + "/" + method.name();
+}
+
+class EveryMethod : public testing::TestWithParam<const MethodDescriptor*> {
+ protected:
+  static void SetUpTestSuite() {
+    server_ = new Server({});
+    server_->start();
+    hasty_server_ = new Server({"--call-limit-seconds", "0", "--stream-limit-seconds", "0"});
+    hasty_server_->start();
+  }
+  static void TearDownTestSuite() {
+    delete server_;
+    delete hasty_server_;
+    server_ = hasty_server_ = nullptr;
+  }
+
+  std::unique_ptr<Message> request() const {
+    return std::unique_ptr<Message>(google::protobuf::MessageFactory::generated_factory()
+                                        ->GetPrototype(GetParam()->input_type())
+                                        ->New());
+  }
+  bool has(const std::string& field) const {
+    return GetParam()->input_type()->FindFieldByName(field) != nullptr;
+  }
+  bool is_list() const { return has("page_size"); }
+
+  /// The error as it came, and all that it says.
+  struct Answer {
+    grpc::Status status;
+    bool has_reason = false;
+    std::string text;
+  };
+  Answer call(const Message& message) const { return call(*server_, message); }
+  Answer call_hasty_server(const Message& message) const { return call(*hasty_server_, message); }
+
+  void expect_refused(const Message& message, const std::string& part) const {
+    const Answer answer = call(message);
+    EXPECT_THAT(answer.status.error_code(),
+                testing::AnyOf(grpc::StatusCode::INVALID_ARGUMENT, grpc::StatusCode::NOT_FOUND))
+        << answer.text;
+    EXPECT_TRUE(answer.has_reason) << "no ErrorInfo";
+    EXPECT_THAT(answer.text, HasSubstr(part));
+  }
+
+ private:
+  /// One server for all of them.
+  class Server : public GrpcTest {
+   public:
+    explicit Server(std::vector<std::string> flags) { more_flags_ = std::move(flags); }
+    void start() {
+      GrpcTest::start();
+      client_ = std::make_unique<RawClient>(channel_);
+    }
+    RawClient& client() { return *client_; }
+    void TestBody() override {}
+
+   private:
+    std::unique_ptr<RawClient> client_;
+  };
+  Answer call(Server& server, const Message& message) const {
+    Answer out;
+    out.status = server.client().call(path_of(*GetParam()), message.SerializeAsString()).first;
+    google::rpc::Status details;
+    details.ParseFromString(out.status.error_details());
+    out.text = out.status.error_message();
+    for (const auto& any : details.details()) {
+      google::rpc::BadRequest bad;
+      google::rpc::ErrorInfo info;
+      if (any.UnpackTo(&info)) out.has_reason = !info.reason().empty();
+      if (!any.UnpackTo(&bad)) continue;
+      for (const auto& each : bad.field_violations()) {
+        out.text += "\n" + each.field() + ": " + each.description();
+      }
+    }
+    return out;
+  }
+
+  static Server* server_;
+  static Server* hasty_server_;  // allows no call any time
+};
+
+EveryMethod::Server* EveryMethod::server_ = nullptr;
+EveryMethod::Server* EveryMethod::hasty_server_ = nullptr;
+
+TEST_P(EveryMethod, IsServedAndChecksAnEmptyRequest) {
+  const Answer answer = call(*request());
+  if (is_list() && !has("name")) {
+    EXPECT_TRUE(answer.status.ok()) << "an empty list request means the first page";
+    return;
+  }
+  if (GetParam()->name() == "GetSchema") {
+    EXPECT_TRUE(answer.status.ok());
+    return;
+  }
+  EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << answer.text;
+  EXPECT_TRUE(answer.has_reason);
+}
+
+TEST_P(EveryMethod, EndsAtADeadlineOfTheServersOwn) {
+  const Answer answer = call_hasty_server(*request());
+  EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED) << answer.text;
+  EXPECT_TRUE(answer.has_reason) << "by the server, not by the client";
+}
+
+/// Text fields that name something that must exist, at the top or one message below.
+TEST_P(EveryMethod, NamesTheNearestForAnUnknownName) {
+  const std::string method = GetParam()->name();
+  const auto message = request();
+  const auto set = [&](const std::string& field, const std::string& value) {
+    const auto* descriptor = message->GetDescriptor()->FindFieldByName(field);
+    message->GetReflection()->SetString(message.get(), descriptor, value);
+  };
+  const auto set_inner = [&](const std::string& outer, const std::string& field,
+                             const std::string& value) {
+    Message* inner = message->GetReflection()->MutableMessage(
+        message.get(), message->GetDescriptor()->FindFieldByName(outer));
+    const auto* descriptor = inner->GetDescriptor()->FindFieldByName(field);
+    inner->GetReflection()->SetString(inner, descriptor, value);
+  };
+  static const std::map<std::string, std::string> kCollections = {
+      {"Lubricants", "lubricants/1"},
+      {"GearSets", "gearSets/A"},
+      {"Surfaces", "surfaces/run-in"},
+      {"Vehicles", "vehicles/passenger-car"}};
+  const auto known = kCollections.find(GetParam()->service()->name());
+  if (known == kCollections.end()) {
+    if (has("name")) {
+      set("name", "simulations/99999");
+      return expect_refused(*message, "simulations/99999");
+    }
+    if (method == "GetSchema") {
+      set("message", "Lubricnt");
+      return expect_refused(*message, "did you mean \"Lubricant\"?");
+    }
+    if (method == "EvaluateContact") {
+      set("lubricant", "lubricants/11");
+      return expect_refused(*message, "did you mean \"lubricants/1\"?");
+    }
+    if (method == "CreateSimulation") {
+      set_inner("simulation", "lubricant", "lubricants/11");
+      return expect_refused(*message, "did you mean \"lubricants/1\"?");
+    }
+    if (method == "ListSimulations") {
+      set("page_token", "simulations/x");
+      return expect_refused(*message, "page_token");
+    }
+    FAIL() << "no case for " << method;
+  }
+  const std::string hint = "did you mean \"" + known->second + "\"?";
+  const std::string unknown = known->second + "x";
+  if (has("name")) {
+    set("name", unknown);
+    return expect_refused(*message, hint);
+  }
+  if (has("filter")) {
+    set("filter", "lims = 1");
+    return expect_refused(*message, "did you mean \"lims_id\"?");
+  }
+  const std::string resource = message->GetDescriptor()->field(0)->name();
+  if (method.starts_with("Update")) {
+    set_inner(resource, "name", unknown);
+    return expect_refused(*message, hint);
+  }
+  if (method.starts_with("Create")) {
+    set_inner(resource, "derived_from", unknown);
+    return expect_refused(*message, hint);
+  }
+  ASSERT_TRUE(method.starts_with("Import")) << "no case for " << method;
+  // The headers of tables are the names that an import may get wrong.
+  const auto* text = message->GetDescriptor()->FindFieldByName(
+      method == "ImportLubricant" ? "viscosity_table_csv" : "tooth_contact_csv");
+  if (text != nullptr) {
+    message->GetReflection()->SetString(message.get(), text, "load_shar,temperature_celsiu\n1,2\n");
+    return expect_refused(*message, "did you mean");
+  }
+  auto* import = dynamic_cast<v1::ImportSurfaceProfilesRequest*>(message.get());
+  ASSERT_NE(import, nullptr);
+  import->add_profiles()->set_csv("position_metre,height_metres\n1,2\n");
+  expect_refused(*message, "did you mean \"position_metres\"?");
+}
+
+TEST_P(EveryMethod, RefusesAPageOfNegativeSize) {
+  if (!is_list()) return;
+  const auto message = request();
+  message->GetReflection()->SetInt32(message.get(),
+                                     message->GetDescriptor()->FindFieldByName("page_size"), -1);
+  expect_refused(*message, "page_size = -1; legal: 0");
+}
+
+INSTANTIATE_TEST_SUITE_P(Contract, EveryMethod, testing::ValuesIn(all_methods()), method_name);
+
+}  // namespace
+}  // namespace tribodyn::server

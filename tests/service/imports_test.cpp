@@ -1,0 +1,402 @@
+// Tables that clients send as text: what is wrong in them is named by row and column.
+#include "server/app/imports.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <sstream>
+
+#include "google/rpc/error_details.pb.h"
+#include "server/app/resources.h"
+#include "server/convert/csv_table.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string complaints(const google::rpc::Status& status) {
+  std::string out;
+  for (const auto& any : status.details()) {
+    google::rpc::BadRequest bad;
+    if (!any.UnpackTo(&bad)) continue;
+    for (const auto& each : bad.field_violations()) {
+      out += each.field() + ": " + each.description() + "\n";
+    }
+  }
+  return out;
+}
+
+TEST(Csv, ReadsWhatSpreadsheetsWrite) {
+  Violations violations;
+  const auto table = parse_csv("\xef\xbb\xbf# note\r\n\"a b\" ; c\r\n1;\"x;\"\"y\"\r\n\r\n2; z\r\n",
+                               "t", 1000, violations);
+  ASSERT_TRUE(table) << violations.front().description;
+  EXPECT_THAT(table->columns, ElementsAre("a b", "c"));
+  EXPECT_THAT(table->rows[0].cells, ElementsAre("1", "x;\"y"));
+  EXPECT_EQ(table->rows[1].line, 5);
+  EXPECT_TRUE(parse_csv("a\tb\n1\t\n", "t", 1000, violations));
+}
+
+TEST(Csv, NamesTheRowsThatAreWrong) {
+  Violations violations;
+  const auto rest = parse_csv("a,b\n1,2\n3\n4,5,6\n\"7,8\n", "t", 1000, violations);
+  ASSERT_TRUE(rest);
+  ASSERT_EQ(rest->rows.size(), 1U) << "what can be read is there to be checked as well";
+  EXPECT_THAT(rest->rows[0].cells, ElementsAre("1", "2"));
+  ASSERT_EQ(violations.size(), 3U);
+  EXPECT_EQ(violations[0].field, "t row 3");
+  EXPECT_EQ(violations[1].field, "t row 4");
+  EXPECT_EQ(violations[2].field, "t row 5");
+  for (const char* text : {"", "\n\n", "a,b\n", "#\n"}) {
+    violations.clear();
+    EXPECT_FALSE(parse_csv(text, "t", 1000, violations));
+    EXPECT_EQ(violations.size(), 1U);
+  }
+  violations.clear();
+  EXPECT_FALSE(parse_csv(std::string(1001, 'x'), "t", 1000, violations));
+  EXPECT_FALSE(parse_csv(std::string("a\n1\0\n", 5), "t", 1000, violations)) << "no text";
+  EXPECT_FALSE(parse_csv("a\n" + std::string(49'999, '"'), "t", 100'000, violations));
+  violations.clear();
+  std::string many = "a\n";
+  for (int i = 0; i < 10'000; ++i) many += "1,2\n";
+  EXPECT_FALSE(parse_csv(many, "t", 100'000, violations));
+  EXPECT_LE(violations.size(), kMaximumCsvViolations);
+}
+
+class ImportTest : public testing::Test {
+ protected:
+  Bench bench_;
+  Application app_ = bench_.application();
+};
+
+const char* const kColumns[] = {"load_share",
+                                "radius_x_metres",
+                                "radius_y_metres",
+                                "pinion_velocity_x_metres",
+                                "pinion_velocity_y_metres",
+                                "gear_velocity_x_metres",
+                                "gear_velocity_y_metres",
+                                "contact_point_velocity_x_metres",
+                                "contact_point_velocity_y_metres",
+                                "pinion_friction_arm_metres",
+                                "gear_friction_arm_metres"};
+
+double value(const v1::GearSet& set, int slot, int sample, const std::string& column) {
+  const v1::FlankSlot& from = set.flank_slots(slot);
+  return from.GetReflection()->GetRepeatedDouble(
+      from, v1::FlankSlot::descriptor()->FindFieldByName(column), sample);
+}
+
+/// Rows by mesh phase and slot.
+std::string by_phase(const v1::GearSet& set) {
+  std::string out = "mesh_phase,slot";
+  for (const char* column : kColumns) out += std::string(",") + column;
+  const int samples = set.flank_slots(0).load_share_size();
+  for (int k = 0; k < 3; ++k) {
+    for (int j = 0; j < samples; ++j) {
+      out += fmt::format("\n{},{}", j / (samples - 1.0), k);
+      for (const char* column : kColumns) out += fmt::format(",{}", value(set, k, j, column));
+    }
+  }
+  return out + "\n";
+}
+
+/// One pair over its roll, lengths in millimetres, without what follows from the rest.
+std::string by_roll(const v1::GearSet& set) {
+  std::string out = "pinion_roll_degrees,load_share";
+  for (int c = 1; c < 7; ++c) {
+    const std::string name = kColumns[c];
+    out += "," + name.substr(0, name.size() - 6) + "millimetres";
+  }
+  const int intervals = set.flank_slots(0).load_share_size() - 1;
+  for (int i = 0; i <= 3 * intervals; ++i) {
+    const int slot = std::min(i / intervals, 2);
+    const int sample = i - slot * intervals;
+    out += fmt::format("\n{},{}",
+                       (-1.5 + static_cast<double>(i) / intervals) * 360 / set.pinion_teeth(),
+                       value(set, slot, sample, "load_share"));
+    for (int c = 1; c < 7; ++c)
+      out += fmt::format(",{}", 1e3 * value(set, slot, sample, kColumns[c]));
+  }
+  return out + "\n";
+}
+
+std::string series_text(const v1::GearSet& set) {
+  std::string out = "quantity,harmonic,sine,cosine\n";
+  const auto add = [&](const char* name, const v1::FourierSeries& series) {
+    out += fmt::format("{},0,,{}\n", name, series.mean());
+    for (int i = 0; i < series.sine_size(); ++i) {
+      out += fmt::format("{},{},{},{}\n", name, i + 1, series.sine(i), series.cosine(i));
+    }
+  };
+  add("pinion_contact_radius_metres", set.series().pinion_contact_radius_metres());
+  add("gear_contact_radius_metres", set.series().gear_contact_radius_metres());
+  add("mesh_stiffness_newtons_per_metre", set.series().mesh_stiffness_newtons_per_metre());
+  add("static_transmission_error_metres", set.series().static_transmission_error_metres());
+  return out;
+}
+
+class GearSetImportTest : public ImportTest {
+ protected:
+  v1::ImportGearSetRequest request() const {
+    v1::ImportGearSetRequest out;
+    out.set_gear_set_id("made-elsewhere");
+    v1::GearSet* rest = out.mutable_gear_set();
+    *rest = original_;
+    rest->clear_flank_slots();
+    rest->clear_load_share_by_torque();
+    rest->clear_series_by_torque();
+    out.set_tooth_contact_csv(by_phase(original_));
+    return out;
+  }
+  std::string refused(const v1::ImportGearSetRequest& request) {
+    const auto outcome = import_gear_set(app_, request);
+    if (outcome.ok()) return "accepted";
+    EXPECT_EQ(list_gear_sets(app_, {}).message().gear_sets_size(), 3) << "nothing half-written";
+    return complaints(outcome.error());
+  }
+  /// The tables with one number replaced.
+  std::string with(int slot, int sample, const std::string& column, double number) const {
+    v1::GearSet set = original_;
+    v1::FlankSlot* target = set.mutable_flank_slots(slot);
+    target->GetReflection()->SetRepeatedDouble(
+        target, v1::FlankSlot::descriptor()->FindFieldByName(column), sample, number);
+    return by_phase(set);
+  }
+  const v1::GearSet original_ = seed<v1::GearSet>("gearSets/A");
+};
+
+TEST_F(GearSetImportTest, TablesByPhaseArriveWhole) {
+  v1::ImportGearSetRequest asked = request();
+  asked.set_series_csv(series_text(original_));
+  asked.mutable_gear_set()->clear_series();
+  asked.mutable_gear_set()->mutable_series()->set_pinion_torque_newton_metres(
+      original_.series().pinion_torque_newton_metres());
+  const auto made = import_gear_set(app_, asked);
+  ASSERT_TRUE(made.ok()) << complaints(made.error());
+  EXPECT_EQ(made.message().series().SerializeAsString(), original_.series().SerializeAsString());
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_EQ(made.message().flank_slots(k).SerializeAsString(),
+              original_.flank_slots(k).SerializeAsString());
+  }
+}
+
+TEST_F(GearSetImportTest, ARollTableMakesThreePairsAndItsFrictionArms) {
+  v1::ImportGearSetRequest asked = request();
+  asked.set_tooth_contact_csv(by_roll(original_));
+  const auto made = import_gear_set(app_, asked);
+  ASSERT_TRUE(made.ok()) << complaints(made.error());
+  for (int k = 0; k < 3; ++k) {
+    const v1::FlankSlot& slot = made.message().flank_slots(k);
+    ASSERT_EQ(slot.load_share_size(), original_.flank_slots(k).load_share_size());
+    for (int j = 0; j < slot.load_share_size(); ++j) {
+      EXPECT_NEAR(slot.radius_y_metres(j), original_.flank_slots(k).radius_y_metres(j), 1e-9);
+      EXPECT_NEAR(slot.gear_friction_arm_metres(j),
+                  original_.flank_slots(k).gear_friction_arm_metres(j), 1e-6);
+    }
+  }
+  bool warned = false;
+  for (const auto& entry : made.message().provenance()) {
+    warned = warned || (entry.field() == "flank_slots" &&
+                        entry.warning().find("friction arms computed") != std::string::npos);
+  }
+  EXPECT_TRUE(warned);
+}
+
+TEST_F(GearSetImportTest, EveryViolationNamesRowAndColumn) {
+  const int samples = original_.flank_slots(0).load_share_size();
+  v1::ImportGearSetRequest asked = request();
+  asked.set_tooth_contact_csv(with(1, 4, "load_share", 0.9));
+  // Samples of a slot begin below the header; sums are named in the first slot.
+  EXPECT_THAT(refused(asked), HasSubstr("tooth_contact_csv row 6 column load_share: load shares"));
+  asked.set_tooth_contact_csv(with(0, samples - 1, "radius_x_metres", 0.5));
+  EXPECT_THAT(refused(asked), HasSubstr(fmt::format(
+                                  "tooth_contact_csv row {} column radius_x_metres", samples + 1)));
+  asked.set_tooth_contact_csv(with(2, 3, "gear_friction_arm_metres", 1));
+  EXPECT_THAT(refused(asked),
+              HasSubstr(fmt::format("row {} column pinion_friction_arm_metres: r_fr,p + r_fr,g",
+                                    2 * samples + 5)));
+  asked.set_tooth_contact_csv(with(0, 2, "radius_y_metres", -1));
+  EXPECT_THAT(refused(asked), HasSubstr("row 4 column radius_y_metres: radius_y_metres = -1 m"));
+  asked.set_tooth_contact_csv(with(0, 2, "radius_y_metres", NAN));
+  EXPECT_THAT(refused(asked), HasSubstr("row 4 column radius_y_metres: \"nan\""));
+}
+
+TEST_F(GearSetImportTest, TheRatioOfTheRadiiIsThatOfTheTeeth) {
+  v1::ImportGearSetRequest asked = request();
+  auto* radius = asked.mutable_gear_set()->mutable_series()->mutable_gear_contact_radius_metres();
+  const double exact = radius->mean();
+  radius->set_mean(exact * 1.001);
+  EXPECT_THAT(refused(asked), HasSubstr("R_p0 N_g/N_p"));
+  radius->set_mean(exact * (1 + 1e-7));
+  const auto made = import_gear_set(app_, asked);
+  ASSERT_TRUE(made.ok()) << "as many digits as tables have";
+  EXPECT_NEAR(made.message().series().gear_contact_radius_metres().mean(), exact, 1e-12 * exact);
+}
+
+TEST_F(GearSetImportTest, TextsThatAreNoSuchTableAreRefused) {
+  const auto said = [&](const std::string& tables, const std::string& series = "") {
+    v1::ImportGearSetRequest asked = request();
+    asked.set_tooth_contact_csv(tables);
+    asked.set_series_csv(series);
+    return refused(asked);
+  };
+  const std::string good = by_phase(original_);
+  EXPECT_THAT(said(""), HasSubstr("has no rows"));
+  EXPECT_THAT(said("load_share\n1\n"), HasSubstr("has no column radius_x_metres"));
+  EXPECT_THAT(said("load_share\n1\n"), HasSubstr("exactly one of roll_pitches"));
+  EXPECT_THAT(said("load_shares\n1\n"), HasSubstr("did you mean \"load_share\"?"));
+  EXPECT_THAT(said("load_share,load_share\n1,1\n"), HasSubstr("given twice"));
+  EXPECT_THAT(said(good.substr(0, good.size() / 2)), HasSubstr("cells"));
+  EXPECT_THAT(said(good, "quantity,harmonic,sine,cosine\nmesh_stiffness,0,,1\n"),
+              HasSubstr("did you mean \"mesh_stiffness_newtons_per_metre\"?"));
+  EXPECT_THAT(said(good, "quantity,harmonic,sine,cosine\nmesh_stiffness_newtons_per_metre,1,0,1\n"),
+              HasSubstr("series_csv row 2 column harmonic: 1; legal: 0"));
+}
+
+TEST_F(GearSetImportTest, CellsThatAreNoNumberHideNoOtherViolation) {
+  v1::ImportGearSetRequest asked = request();
+  std::string text = by_phase(original_);
+  const auto line_2 = text.find('\n') + 1;
+  const auto line_3 = text.find('\n', line_2) + 1;
+  std::vector<std::string> cells;
+  std::stringstream row(text.substr(line_2, line_3 - line_2 - 1));
+  for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+  cells[2] = "half";
+  cells[3] = "-1";
+  std::string changed;
+  for (const std::string& cell : cells) changed += (changed.empty() ? "" : ",") + cell;
+  text.replace(line_2, line_3 - line_2 - 1, changed);
+  asked.set_tooth_contact_csv(text);
+  asked.mutable_gear_set()->set_youngs_modulus_pascals(1);
+  asked.mutable_gear_set()->mutable_series()->mutable_gear_contact_radius_metres()->set_mean(1);
+  const std::string said = refused(asked);
+  EXPECT_THAT(said, HasSubstr("row 2 column load_share: \"half\"; legal: a finite number"));
+  EXPECT_THAT(said, HasSubstr("row 2 column radius_x_metres: radius_x_metres = -1"));
+  EXPECT_THAT(said, HasSubstr("youngs_modulus_pascals = 1 Pa"));
+  EXPECT_THAT(said, HasSubstr("R_p0 N_g/N_p"));
+}
+
+TEST_F(ImportTest, AllThatIsWrongWithAViscosityTableIsSaidAtOnce) {
+  v1::ImportLubricantRequest asked;
+  asked.set_lubricant_id("oil");
+  asked.mutable_lubricant()
+      ->mutable_measurements()
+      ->set_density_15_celsius_kilograms_per_cubic_metre(-5);
+  asked.set_viscosity_table_csv(
+      "temperature_celsius,kinematic_viscosity_square_millimetres_per_second\n"
+      "40,73.3\nforty,8\n100,nan\n80,-2\n900,3\n1\nwarm,-7\n");
+  const std::string said = complaints(import_lubricant(app_, asked).error());
+  for (const char* each :
+       {"row 3 column temperature_celsius: \"forty\"", "row 4 column kinematic",
+        "row 5 column kinematic", "row 6 column temperature_celsius: temperature_celsius = 900",
+        "row 7: 1 cells", "row 8 column temperature_celsius: \"warm\"", "row 8 column kinematic",
+        "density_15_celsius_kilograms_per_cubic_metre = -5"}) {
+    EXPECT_THAT(said, HasSubstr(each));
+  }
+  EXPECT_THAT(said, Not(HasSubstr("row 2")));
+  EXPECT_FALSE(bench_.store().resource("lubricants/oil")) << "nothing half-written";
+}
+
+std::string waves(double amplitude, double wave_length, int samples,
+                  const std::string& header = "position_micrometres,height_nanometres") {
+  std::string out = header + "\n";
+  for (int i = 0; i < samples; ++i) {
+    const double x = 0.5 * i;  // micrometres
+    out += fmt::format("{},{}\n", x,
+                       amplitude * std::sin(2 * std::numbers::pi * x / wave_length) + 20 + 0.1 * x);
+  }
+  return out;
+}
+
+TEST_F(ImportTest, AProfileBecomesASurfaceOfItsMoments) {
+  v1::ImportSurfaceProfilesRequest request;
+  request.set_surface_id("measured");
+  request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
+  request.mutable_surface()->set_asperity_friction_coefficient(0.17);
+  request.add_profiles()->set_csv(waves(300, 50, 4001));
+  const auto made = import_surface_profiles(app_, request);
+  ASSERT_TRUE(made.ok()) << complaints(made.error());
+  // Two flanks alike: their mean squares add up.
+  EXPECT_NEAR(made.message().composite_rms_height_metres(), 300e-9, 3e-9);
+  EXPECT_EQ(made.message().measurements(0).samples(), 4001);
+  EXPECT_NEAR(made.message().measurements(0).spacing_metres(), 0.5e-6, 1e-15);
+  bool warned = false;
+  for (const auto& entry : made.message().provenance()) {
+    if (entry.field() == "asperity_radius_metres") {
+      warned = entry.warning().find("both flanks") != std::string::npos;
+      EXPECT_EQ(entry.provenance(), v1::PROVENANCE_FITTED);
+    }
+  }
+  EXPECT_TRUE(warned);
+
+  request.set_surface_id("both");
+  request.mutable_profiles(0)->set_member(v1::PINION);
+  v1::SurfaceProfile* gear = request.add_profiles();
+  gear->set_member(v1::GEAR);
+  gear->set_csv(waves(400, 50, 4001));
+  const auto both = import_surface_profiles(app_, request);
+  ASSERT_TRUE(both.ok()) << complaints(both.error());
+  EXPECT_NEAR(both.message().composite_rms_height_metres(), std::sqrt(0.5) * 500e-9, 5e-9);
+}
+
+TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
+  v1::ImportSurfaceProfilesRequest request;
+  request.set_surface_id("measured");
+  const auto said = [&](const std::string& csv) {
+    request.clear_profiles();
+    request.add_profiles()->set_csv(csv);
+    return complaints(import_surface_profiles(app_, request).error());
+  };
+  EXPECT_THAT(said("position_metres,height_metres\n0,0\n1,0\n5,0\n6,0\n7,0\n"),
+              HasSubstr("profiles[0].csv row 4 column position_metres: a step of 4 m"));
+  EXPECT_THAT(said("position_metres,height_metres\n0,0\n1,x\n"),
+              HasSubstr("profiles[0].csv row 3 column height_metres: \"x\""));
+  EXPECT_THAT(said("position_metres,height_metres\n0,0\n"), HasSubstr("profiles[0].csv"));
+  EXPECT_THAT(said("position_metres,height_metres\n0,0\n1,0\n2,0\n3,0\n4,0\n5,0\n"),
+              HasSubstr("profiles"));
+  EXPECT_THAT(said(waves(300, 50, 100)), HasSubstr("tribofilm_shear_strength_pascals is not set"));
+  request.add_profiles()->set_member(v1::PINION);
+  EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
+              HasSubstr("for all or none"));
+}
+
+TEST_F(ImportTest, AViscosityTableBecomesALubricant) {
+  v1::ImportLubricantRequest request;
+  request.set_lubricant_id("table");
+  request.mutable_lubricant()->set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
+  const v1::Lubricant known = seed<v1::Lubricant>("lubricants/1");
+  std::string csv =
+      "temperature_kelvin,dynamic_viscosity_pascal_seconds,"
+      "density_kilograms_per_cubic_metre\n";
+  for (double t = 263.15; t < 400; t += 20) {
+    csv +=
+        fmt::format("{},{},{}\n", t, 0.000155 * std::exp(944.8 / (t - 159)), 1016.1 - 0.6323 * t);
+  }
+  request.set_viscosity_table_csv(csv);
+  const auto made = import_lubricant(app_, request);
+  ASSERT_TRUE(made.ok()) << complaints(made.error());
+  EXPECT_NEAR(made.message().vogel_reference_temperature_kelvin(), 159, 0.01);
+  EXPECT_NEAR(made.message().vogel_temperature_coefficient_kelvin(), 944.8, 0.1);
+  EXPECT_NEAR(made.message().density_slope_kilograms_per_cubic_metre_kelvin(), -0.6323, 1e-6);
+  EXPECT_LT(made.message().characterisation().root_mean_square_residual(), 1e-6);
+  EXPECT_EQ(made.message().measurements().viscosities_size(), 7);
+
+  request.set_lubricant_id("bad");
+  request.set_viscosity_table_csv(
+      "temperature_celsius,kinematic_viscosity_square_millimetres_per_second\n40,70\n999,-1\n");
+  const std::string said = complaints(import_lubricant(app_, request).error());
+  EXPECT_THAT(said, HasSubstr("viscosity_table_csv row 3 column temperature_celsius"));
+  EXPECT_THAT(said, HasSubstr("viscosity_table_csv row 3 column kinematic_viscosity"));
+}
+
+}  // namespace
+}  // namespace tribodyn::server

@@ -1,0 +1,29 @@
+#include "core/number_text.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace tribodyn {
+namespace {
+
+TEST(NumberText, KeepsAsManyDigitsAsAreKnown) {
+  EXPECT_EQ(within_text(0.637864, 0.0956795), "0.638 within 0.096");
+  EXPECT_EQ(within_text(17.34561, 2.6), "17.3 within 2.6");
+  EXPECT_EQ(within_text(880, 44), "880 within 44");
+  EXPECT_EQ(within_text(-0.63512, 0.0127), "-0.635 within 0.013");
+  EXPECT_EQ(within_text(160, 15), "160 within 15");
+  EXPECT_EQ(within_text(1234567, 34567), "1235000 within 35000");
+  EXPECT_EQ(within_text(4, 40), "4 within 40");
+  EXPECT_EQ(within_text(1.6e-4, 2.4e-4), "0.00016 within 0.00024");
+}
+
+TEST(NumberText, WithoutAnUncertaintyIsSixDigits) {
+  EXPECT_EQ(known_text(1.0 / 3, 0), "0.333333");
+  EXPECT_EQ(known_text(1.0 / 3, std::numeric_limits<double>::quiet_NaN()), "0.333333");
+  EXPECT_EQ(known_text(0, 0.1), "0");
+  EXPECT_EQ(known_text(1.0 / 3, 1e-12), "0.333333");
+}
+
+}  // namespace
+}  // namespace tribodyn
