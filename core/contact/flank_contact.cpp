@@ -116,7 +116,7 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const Solid& so
         reciprocal_asymptotic_coefficient(inlet_factor, roelands_index_);
   }
   inlet_viscosity_ = std::exp(log_inlet_viscosity);
-  reduced_modulus_ = reduced_modulus(solid.youngs_modulus, solid.poissons_ratio);
+  reduced_modulus_ = tribodyn::reduced_modulus(solid.youngs_modulus, solid.poissons_ratio);
   const double product =
       roughness.asperity_density * roughness.asperity_radius * roughness.composite_rms_height;
   asperity_load_factor_ = 8 * std::numbers::sqrt2 / 15 * std::numbers::pi * product * product *

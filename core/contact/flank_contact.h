@@ -100,6 +100,8 @@ class FlankContactModel {
 
   double inlet_temperature() const { return inlet_temperature_; }
   double pressure_viscosity_index() const { return roelands_index_; }
+  double reduced_modulus() const { return reduced_modulus_; }  ///< E', eq 13 [Pa]
+  const ModelOptions& options() const { return options_; }
 
  private:
   friend class FlankContactBatch;

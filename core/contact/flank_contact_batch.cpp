@@ -82,6 +82,17 @@ void ContactGeometries::set(std::size_t i, double radius_x, double radius_y) {
   maximum_pressure_[i] = unit.maximum_pressure;
 }
 
+void ContactGeometries::copy(std::size_t i, const ContactGeometries& from, std::size_t j) {
+  radius_x_[i] = from.radius_x_[j];
+  radius_y_[i] = from.radius_y_[j];
+  curvature_x_[i] = from.curvature_x_[j];
+  curvature_y_[i] = from.curvature_y_[j];
+  unit_area_[i] = from.unit_area_[j];
+  per_semi_x_[i] = from.per_semi_x_[j];
+  per_semi_y_[i] = from.per_semi_y_[j];
+  maximum_pressure_[i] = from.maximum_pressure_[j];
+}
+
 struct FlankContactBatch::Tables : ContactBlockTables {};
 
 FlankContactBatch::FlankContactBatch(const FlankContactModel& model)

@@ -24,6 +24,9 @@ class ContactGeometries {
   /// by name when they are solved.
   void set(std::size_t i, double radius_x, double radius_y);
 
+  /// Contact i: the same as contact j of `from`, which is of the same material and options.
+  void copy(std::size_t i, const ContactGeometries& from, std::size_t j);
+
   double radius_x(std::size_t i) const { return radius_x_[i]; }
   double radius_y(std::size_t i) const { return radius_y_[i]; }
 

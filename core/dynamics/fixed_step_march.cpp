@@ -14,17 +14,15 @@ double inside_cycle(double phase) { return phase - std::floor(phase); }
 
 }  // namespace
 
-void FixedStepMarch::rates(double phase, const MarchState& y, const FrictionPerLoad& friction,
+void FixedStepMarch::rates(const MeshPhase& phase, const MarchState& y, const FrictionPerLoad& friction,
                            Rates& dy) {
   ++evaluations_;
-  system_.mechanics(inside_cycle(phase), y.data(), at_);
+  system_.mechanics(phase, y.data(), at_);
   const ContactRegime& r = system_.regime;
   load_ = r.side != 0 && r.loaded ? std::max(0.0, r.side * at_.mesh_force) : 0;
   at_.pinion_friction_torque = friction.pinion * load_;
   at_.gear_friction_torque = friction.gear * load_;
-  MarchState all;
-  system_.derivative(y.data(), at_, false, all.data());
-  std::copy_n(all.begin(), kStates, dy.begin());
+  system_.motion(y.data(), at_, dy.data());
 }
 
 void FixedStepMarch::sensitivity_rates(const MarchState& y, const FrictionPerLoad& friction,
@@ -73,8 +71,10 @@ void FixedStepMarch::sensitivity_rates(const MarchState& y, const FrictionPerLoa
   for (int i = 0; i < kStates; ++i) ds[i] = to_phase * ds[i] - dy[i] * faster;
 }
 
-void FixedStepMarch::step(LaggedFriction& friction, double phase, double h, const MarchState& y,
+void FixedStepMarch::step(LaggedFriction& friction, const Span& span, const MarchState& y,
                           const Sensitivity* s, MarchState& to, Sensitivity* s_to) {
+  const MeshPhase* const phases[4] = {span.start, span.middle, span.middle, span.end};
+  const double h = span.length;
   constexpr double kNode[4] = {0, 0.5, 0.5, 1}, kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
   MarchState stage = y;
   Rates rate{};
@@ -88,8 +88,8 @@ void FixedStepMarch::step(LaggedFriction& friction, double phase, double h, cons
         for (int j = 0; j < kStates; ++j) s_stage[j] = (*s)[j] + kNode[i] * h * s_rate[j];
       }
     }
-    const FrictionPerLoad here = friction.at(phase + kNode[i] * h);
-    rates(phase + kNode[i] * h, stage, here, rate);
+    const FrictionPerLoad here = friction.at(span.phase + kNode[i] * h);
+    rates(*phases[i], stage, here, rate);
     for (int j = 0; j < kStates; ++j) to[j] += kWeight[i] * h * rate[j];
     if (s != nullptr) {
       sensitivity_rates(stage, here, rate, s_stage, s_rate);
@@ -108,9 +108,9 @@ MarchState FixedStepMarch::middle(const MarchState& from, const MarchState& to, 
   return out;
 }
 
-FixedStepMarch::Event FixedStepMarch::next_event(double phase, const MarchState& y) const {
+FixedStepMarch::Event FixedStepMarch::next_event(const MeshPhase& phase, const MarchState& y) const {
   Instant at;
-  system_.kinematics(inside_cycle(phase), y.data(), at);
+  system_.kinematics(phase, y.data(), at);
   const double b = system_.dynamics().half_backlash;
   const ContactRegime& r = system_.regime;
   if (r.side == 0) {
@@ -125,7 +125,7 @@ FixedStepMarch::Event FixedStepMarch::next_event(double phase, const MarchState&
   return parting > turning ? Event{parting, 0} : Event{turning, 1};
 }
 
-void FixedStepMarch::change_regime(int index, double phase, const MarchState& y) {
+void FixedStepMarch::change_regime(int index, const MeshPhase& phase, const MarchState& y) {
   ContactRegime& r = system_.regime;
   ++events_;
   if (r.side != 0 && index == 1) {
@@ -138,7 +138,7 @@ void FixedStepMarch::change_regime(int index, double phase, const MarchState& y)
     r.side = system_.dynamics().half_backlash > 0 ? 0 : -r.side;
   }
   Instant at;
-  system_.kinematics(inside_cycle(phase), y.data(), at);
+  system_.kinematics(phase, y.data(), at);
   r.loaded =
       r.side != 0 && r.side * at.transmission_velocity > 0 && system_.dynamics().mesh_damping > 0;
 }
@@ -147,6 +147,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
                          std::vector<OrbitPiece>* pieces) {
   constexpr double kNothing = 1e-12;
   constexpr int kMostPieces = 20;  // of one step
+  int index = 0;                   // of an event
   if (pieces != nullptr) pieces->clear();
   y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
   if (s != nullptr) {
@@ -155,57 +156,75 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
   }
   MarchState to{};
   Sensitivity s_to;
-  const auto take = [&](double phase, double h) {
-    step(friction, phase, h, y, s, to, s != nullptr ? &s_to : nullptr);
-  };
-  for (int i = 0; i < steps_ * period_; ++i) {
-    double phase = static_cast<double>(i) / steps_;
-    const double end = static_cast<double>(i + 1) / steps_;
+  for (int i = 0; i < grid_.steps() * period_; ++i) {
+    const int node = 2 * (i % grid_.steps());
+    double phase = static_cast<double>(i) / grid_.steps();
+    const double end = static_cast<double>(i + 1) / grid_.steps();
+    MeshPhase at_start = grid_.at(node), at_middle = grid_.at(node + 1), at_end;
+    const auto part = [&](double length) {
+      at_middle = system_.at_phase(inside_cycle(phase + 0.5 * length));
+      at_end = system_.at_phase(inside_cycle(phase + length));
+      return Span{phase, length, &at_start, &at_middle, &at_end};
+    };
     for (int piece = 0; phase < end; ++piece) {
       if (piece == kMostPieces) return false;
-      const double room = end - phase;
-      double h = room;
-      take(phase, h);
-      Event event = keep_contact ? Event{-1, 0} : next_event(end, to);
-      double high = h;
-      if (!keep_contact && !(event.value > kNothing)) {
-        const Event inside = next_event(phase + 0.5 * h, middle(y, to, h));
-        if (inside.value > 1e-10) {
-          event = inside;
-          high = 0.5 * h;
-        }
-      }
-      const bool happens = event.value > kNothing;
-      if (happens) {
-        // Regula falsi with bisection now and then, on true steps.
-        double low = 0, g_low = std::min(next_event(phase, y).value, 0.0), g_high = event.value;
-        for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
-          double x = g_low < 0 ? low - g_low * (high - low) / (g_high - g_low) : 0.5 * (low + high);
-          if (k % 4 == 3 || !(x > low && x < high)) x = 0.5 * (low + high);
-          step(friction, phase, x, y, nullptr, to, nullptr);
-          const Event at = next_event(phase + x, to);
-          h = x;
-          if (at.value > 0) {
-            high = x;
-            g_high = at.value;
-            event.index = at.index;
-          } else {
-            low = x;
-            g_low = at.value;
+      double h = end - phase;
+      Span span{phase, h, &at_start, &at_middle, &grid_.at(node + 2)};
+      if (piece > 0) at_middle = system_.at_phase(inside_cycle(phase + 0.5 * h));
+      step(friction, span, y, s, to, s != nullptr ? &s_to : nullptr);
+      bool happens = false;
+      MarchState half = middle(y, to, h);
+      if (!keep_contact) {
+        Event event = next_event(*span.end, to);
+        double high = h;
+        if (!(event.value > kNothing)) {
+          const Event inside = next_event(*span.middle, half);
+          if (inside.value > 1e-10) {
+            event = inside;
+            high = 0.5 * h;
           }
-          if (std::abs(at.value) <= kNothing) break;
         }
-        take(phase, h);
+        happens = event.value > kNothing;
+        if (happens) {
+          // Regula falsi with bisection now and then, on true steps.
+          double low = 0, g_low = std::min(next_event(at_start, y).value, 0.0),
+                 g_high = event.value;
+          for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
+            double x =
+                g_low < 0 ? low - g_low * (high - low) / (g_high - g_low) : 0.5 * (low + high);
+            if (k % 4 == 3 || !(x > low && x < high)) x = 0.5 * (low + high);
+            step(friction, part(x), y, nullptr, to, nullptr);
+            const Event at = next_event(at_end, to);
+            h = x;
+            if (at.value > 0) {
+              high = x;
+              g_high = at.value;
+              event.index = at.index;
+            } else {
+              low = x;
+              g_low = at.value;
+            }
+            if (std::abs(at.value) <= kNothing) break;
+          }
+          span = part(h);
+          step(friction, span, y, s, to, s != nullptr ? &s_to : nullptr);
+          half = middle(y, to, h);
+        }
+        if (happens) index = event.index;
       }
       if (!(std::isfinite(to[kPinionSpeed]) && to[kPinionSpeed] > 0)) return false;
       ++taken_;
       if (pieces != nullptr) {
-        pieces->push_back({phase, h, system_.regime, y, middle(y, to, h), to});
+        const bool whole = piece == 0 && !happens;
+        pieces->push_back({phase, h, whole ? node : -1, system_.regime, y, half, to});
       }
       y = to;
       if (s != nullptr) *s = s_to;
       phase += h;
-      if (happens) change_regime(event.index, phase, y);
+      if (happens) {
+        at_start = at_end;
+        change_regime(index, at_start, y);
+      }
       if (!happens || end - phase < 1e-13) phase = end;
     }
   }

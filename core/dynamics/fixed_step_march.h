@@ -7,17 +7,10 @@
 #include "core/dynamics/gear_pair_system.h"
 #include "core/dynamics/lagged_friction.h"
 #include "core/dynamics/mesh_cycle_march.h"
+#include "core/dynamics/mesh_grid.h"
+#include "core/dynamics/orbit_friction.h"
 
 namespace tribodyn {
-
-/// A smooth piece of a response: one step, or the part of one up to or from an event. States at
-/// its start, middle and end; the middle by the cubic through both ends.
-struct OrbitPiece {
-  double phase;   ///< of its start [cycles], counted through the whole period
-  double length;  ///< [cycles]
-  ContactRegime regime;
-  MarchState start, middle, end;
-};
 
 /// Derivatives of time and the seven states, in the order of MarchComponent, by the seven states at
 /// the section and by the unknown torque.
@@ -28,12 +21,12 @@ using Sensitivity = std::array<Eigen::Array<double, 1, 8>, 8>;
 /// come along by the variational equations (rates are continuous at events, so nothing jumps).
 class FixedStepMarch {
  public:
-  /// `steps` in each of `period` mesh cycles. Keeps the reference.
-  FixedStepMarch(GearPairSystem& system, const MarchScales& scales, int steps, int period,
-                 bool solve_wheel_torque)
+  /// The grid's steps in each of `period` mesh cycles. Keeps the references.
+  FixedStepMarch(GearPairSystem& system, const MarchScales& scales, const MeshGrid& grid,
+                 int period, bool solve_wheel_torque)
       : system_(system),
         scales_(scales),
-        steps_(steps),
+        grid_(grid),
         period_(period),
         solve_wheel_torque_(solve_wheel_torque) {}
 
@@ -53,18 +46,25 @@ class FixedStepMarch {
     double value;  ///< positive once it has happened
     int index;     ///< 0: flanks part or meet; 1: load ends or begins; 2: meet on the coast side
   };
-  void rates(double phase, const MarchState& y, const FrictionPerLoad& friction, Rates& dy);
+  /// A step's start, middle and end.
+  struct Span {
+    double phase, length;  ///< [cycles]
+    const MeshPhase *start, *middle, *end;
+  };
+  void rates(const MeshPhase& phase, const MarchState& y, const FrictionPerLoad& friction,
+             Rates& dy);
   void sensitivity_rates(const MarchState& y, const FrictionPerLoad& friction, const Rates& dy,
                          const Sensitivity& s, Sensitivity& ds) const;
-  void step(LaggedFriction& friction, double phase, double h, const MarchState& y,
-            const Sensitivity* s, MarchState& to, Sensitivity* s_to);
+  void step(LaggedFriction& friction, const Span& span, const MarchState& y, const Sensitivity* s,
+            MarchState& to, Sensitivity* s_to);
   MarchState middle(const MarchState& from, const MarchState& to, double h) const;
-  Event next_event(double phase, const MarchState& y) const;
-  void change_regime(int index, double phase, const MarchState& y);
+  Event next_event(const MeshPhase& phase, const MarchState& y) const;
+  void change_regime(int index, const MeshPhase& phase, const MarchState& y);
 
   GearPairSystem& system_;
   const MarchScales& scales_;
-  int steps_, period_;
+  const MeshGrid& grid_;
+  int period_;
   bool solve_wheel_torque_;
   long evaluations_ = 0, taken_ = 0, events_ = 0;
   Instant at_;

@@ -9,19 +9,32 @@ namespace {
 
 double square(double v) { return v * v; }
 
+/// What eq 2 leaves out: F e' - k_m' f^2/2 [N m].
+double parametric_torque(const Instant& at) {
+  return at.mesh_force * at.mesh.static_transmission_error_slope -
+         0.5 * at.mesh.mesh_stiffness_slope * square(at.deflection);
+}
+
 }  // namespace
 
 GearPairSystem::GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
                                const DrivelineDynamics& dynamics, const ModelOptions& options)
-    : mesh_(mesh), contact_(contact), dynamics_(dynamics), options_(options) {}
+    : mesh_(mesh),
+      contact_(contact),
+      dynamics_(dynamics),
+      options_(options),
+      inverse_{1 / dynamics.pinion_shaft_inertia, 1 / dynamics.pinion_inertia,
+               1 / dynamics.gear_inertia, 1 / dynamics.wheel_inertia},
+      lag_per_winding_(mesh.gear_teeth() / mesh.mean_gear_contact_radius()),
+      cycle_angle_(2 * std::numbers::pi / mesh.pinion_teeth()) {}
 
-double GearPairSystem::cycle_angle() const { return 2 * std::numbers::pi / mesh_.pinion_teeth(); }
+MeshPhase GearPairSystem::at_phase(double phase) const {
+  return mesh_.at_phase(2 * std::numbers::pi * phase);
+}
 
-void GearPairSystem::kinematics(double phase, const double* y, Instant& out) const {
+void GearPairSystem::kinematics(const MeshPhase& phase, const double* y, Instant& out) const {
   // N_g phi_g = N_p phi_p - N_g winding/R_g0, because R_g0 N_p = R_p0 N_g.
-  const double theta = 2 * std::numbers::pi * phase;
-  const double lag = mesh_.gear_teeth() / mesh_.mean_gear_contact_radius();
-  out.mesh = mesh_.functions(theta, theta - lag * y[kWinding]);
+  out.mesh = mesh_.functions(phase, lag_per_winding_ * y[kWinding]);
   const MeshFunctions& m = out.mesh;
   const double b = dynamics_.half_backlash;
   out.transmission_error = b + y[kWinding] + m.radius_integral - m.static_transmission_error;
@@ -47,7 +60,7 @@ ContactRegime GearPairSystem::regime_of(double phase, const double* y) const {
   return r;
 }
 
-void GearPairSystem::mechanics(double phase, const double* y, Instant& out) const {
+void GearPairSystem::mechanics(const MeshPhase& phase, const double* y, Instant& out) const {
   kinematics(phase, y, out);
   const DrivelineDynamics& d = dynamics_;
   out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
@@ -55,6 +68,27 @@ void GearPairSystem::mechanics(double phase, const double* y, Instant& out) cons
   out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
                           d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
   out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
+}
+
+ContactConditions GearPairSystem::contact_conditions(const FlankKinematics& flank, double load,
+                                                     const double* y, FlankMotion& motion) const {
+  motion = flank_motion(flank, y[kPinionSpeed], y[kGearSpeed]);
+  if (options_.tabulated_friction_arms) {
+    motion.pinion_friction_arm = flank.pinion_friction_arm;
+    motion.gear_friction_arm = flank.gear_friction_arm;
+  }
+  double drift_x = 0, drift_y = 0;
+  if (options_.subtract_contact_point_motion) {
+    drift_x = flank.contact_point_velocity_x * y[kPinionSpeed];
+    drift_y = flank.contact_point_velocity_y * y[kPinionSpeed];
+  }
+  return {load,
+          flank.radius_x,
+          flank.radius_y,
+          motion.pinion_x - drift_x,
+          motion.pinion_y - drift_y,
+          motion.gear_x - drift_x,
+          motion.gear_y - drift_y};
 }
 
 void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
@@ -73,50 +107,40 @@ void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
       continue;
     }
     FlankMotion& motion = out.motion[k];
-    motion = flank_motion(flank, y[kPinionSpeed], y[kGearSpeed]);
-    if (options_.tabulated_friction_arms) {
-      motion.pinion_friction_arm = flank.pinion_friction_arm;
-      motion.gear_friction_arm = flank.gear_friction_arm;
-    }
-    double drift_x = 0, drift_y = 0;
-    if (options_.subtract_contact_point_motion) {
-      drift_x = flank.contact_point_velocity_x * y[kPinionSpeed];
-      drift_y = flank.contact_point_velocity_y * y[kPinionSpeed];
-    }
     ++contact_solutions_;
-    out.contact[k] = contact_.solve({out.load[k], flank.radius_x, flank.radius_y,
-                                     motion.pinion_x - drift_x, motion.pinion_y - drift_y,
-                                     motion.gear_x - drift_x, motion.gear_y - drift_y});
+    out.contact[k] = contact_.solve(contact_conditions(flank, out.load[k], y, motion));
     const ContactSolution& contact = out.contact[k];
-    if (contact.status != ContactStatus::kOk && refusal_ == ContactStatus::kOk) {
-      refusal_ = contact.status;
-    }
+    if (contact.status != ContactStatus::kOk) refuse(contact.status);
     out.pinion_friction_torque += motion.pinion_friction_arm * contact.friction;
     out.gear_friction_torque += motion.gear_friction_arm * contact.friction;
     out.loss_power += motion.sliding_speed * contact.friction;
   }
 }
 
-void GearPairSystem::derivative(const double* y, const Instant& at, bool record, double* dy) const {
-  const DrivelineDynamics& d = dynamics_;
+void GearPairSystem::motion(const double* y, const Instant& at, double* dy) const {
   const MeshFunctions& m = at.mesh;
-  // Eqs 1-4 in time.
-  const double parametric_torque = at.mesh_force * m.static_transmission_error_slope -
-                                   0.5 * m.mesh_stiffness_slope * square(at.deflection);
   double pinion_torque =
       -m.pinion_contact_radius * at.mesh_force + at.pinion_shaft_torque + at.pinion_friction_torque;
-  if (options_.energy_consistent) pinion_torque += parametric_torque;
-  dy[kTime] = 1;
-  dy[kPinionShaftTwist] = y[kPinionShaftSpeed] - y[kPinionSpeed];
-  dy[kWinding] = mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
-                 mesh_.mean_gear_contact_radius() * y[kGearSpeed];
-  dy[kGearShaftTwist] = y[kGearSpeed] - y[kWheelSpeed];
-  dy[kPinionShaftSpeed] = (torques_.pinion - at.pinion_shaft_torque) / d.pinion_shaft_inertia;
-  dy[kPinionSpeed] = pinion_torque / d.pinion_inertia;
-  dy[kGearSpeed] =
-      (m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque) /
-      d.gear_inertia;
-  dy[kWheelSpeed] = (at.gear_shaft_torque - torques_.wheel) / d.wheel_inertia;
+  if (options_.energy_consistent) pinion_torque += parametric_torque(at);
+  const double gear_torque =
+      m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque;
+  // Eqs 1-4 in time, then by phase.
+  const double time = cycle_angle_ / y[kPinionSpeed];
+  dy[kTime] = time;
+  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+  dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
+                         mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
+  dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
+  dy[kPinionShaftSpeed] =
+      time * ((torques_.pinion - at.pinion_shaft_torque) * inverse_.pinion_shaft_inertia);
+  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);
+  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);
+  dy[kWheelSpeed] = time * ((at.gear_shaft_torque - torques_.wheel) * inverse_.wheel_inertia);
+}
+
+void GearPairSystem::derivative(const double* y, const Instant& at, bool record, double* dy) const {
+  motion(y, at, dy);
+  const DrivelineDynamics& d = dynamics_;
   dy[kLossWork] = at.loss_power;
   dy[kLossShareSquared] = square(at.loss_power / y[kPinionShaftSpeed]);
   int count = kMarchComponents;
@@ -157,10 +181,10 @@ void GearPairSystem::derivative(const double* y, const Instant& at, bool record,
         d.pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]) +
         d.gear_shaft_damping * square(y[kGearSpeed] - y[kWheelSpeed]);
     dy[kMeshDampingWork] = at.damper_force * at.transmission_velocity;
-    if (!options_.energy_consistent) dy[kParametricWork] = parametric_torque * y[kPinionSpeed];
+    if (!options_.energy_consistent) dy[kParametricWork] = parametric_torque(at) * y[kPinionSpeed];
   }
-  const double time_per_phase = cycle_angle() / y[kPinionSpeed];
-  for (int i = 0; i < count; ++i) dy[i] *= time_per_phase;
+  const double time_per_phase = cycle_angle_ / y[kPinionSpeed];
+  for (int i = kLossWork; i < count; ++i) dy[i] *= time_per_phase;
 }
 
 void GearPairSystem::to_march(const SectionState& section, double* y) const {

@@ -105,15 +105,29 @@ class GearPairSystem {
   /// Regime that a state is in by its x and xdot.
   ContactRegime regime_of(double phase, const double* state) const;
   /// x, mesh force and shaft torques, without friction.
-  void mechanics(double phase, const double* state, Instant& out) const;
+  void mechanics(double phase, const double* state, Instant& out) const {
+    mechanics(at_phase(phase), state, out);
+  }
+  void mechanics(const MeshPhase& phase, const double* state, Instant& out) const;
   /// All of eqs 1-11 and the friction of each loaded flank at mesh phase [cycles]. Counts contacts.
   void evaluate(double phase, const double* state, Instant& out);
+  /// Loaded flanks of eqs 2 and 3: what the contact of flank pair k sees under `load` [N] of its own
+  /// in a state, and its sliding and arms.
+  ContactConditions contact_conditions(const FlankKinematics& flank, double load,
+                                       const double* state, FlankMotion& motion) const;
+  /// d state / d phase of time and the seven states of motion.
+  void motion(const double* state, const Instant& at, double* derivative) const;
   /// d state / d phase of the first kMarchComponents from an instant, and of the record if asked.
   void derivative(const double* state, const Instant& at, bool record, double* derivative) const;
   /// x and mesh force without friction: for events.
-  void kinematics(double phase, const double* state, Instant& out) const;
+  void kinematics(double phase, const double* state, Instant& out) const {
+    kinematics(at_phase(phase), state, out);
+  }
+  void kinematics(const MeshPhase& phase, const double* state, Instant& out) const;
+  /// Mesh phase [cycles].
+  MeshPhase at_phase(double phase) const;
 
-  double cycle_angle() const;  ///< phi_p per mesh cycle, 2 pi/N_p
+  double cycle_angle() const { return cycle_angle_; }  ///< phi_p per mesh cycle, 2 pi/N_p
   void to_march(const SectionState& section, double* state) const;
   SectionState to_section(const double* state) const;
   /// Kinetic and elastic energy [J].
@@ -124,6 +138,11 @@ class GearPairSystem {
   const FlankContactModel& contact_model() const { return contact_; }
   const ModelOptions& options() const { return options_; }
   long contact_solutions() const { return contact_solutions_; }
+  /// Contacts of this system that were solved elsewhere, and the refusal of one.
+  void count_contacts(long solved) { contact_solutions_ += solved; }
+  void refuse(ContactStatus status) {
+    if (refusal_ == ContactStatus::kOk) refusal_ = status;
+  }
   /// kOk, or the first refusal met since it was taken.
   ContactStatus refusal() const { return refusal_; }
   ContactStatus take_refusal() { return std::exchange(refusal_, ContactStatus::kOk); }
@@ -134,6 +153,11 @@ class GearPairSystem {
   const DrivelineDynamics& dynamics_;
   ModelOptions options_;
   Torques torques_;
+  struct Inverse {
+    double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;
+  } inverse_;
+  double lag_per_winding_;  // of N_g phi_g behind N_p phi_p [rad/m]
+  double cycle_angle_;
   int interval_ = 0;
   long contact_solutions_ = 0;
   ContactStatus refusal_ = ContactStatus::kOk;

@@ -9,36 +9,21 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kUnknowns = 8;  // seven states and the torque
-using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-
-/// Extremes of the cubic through two values with their slopes, over [0, h].
-void add_cubic_extremes(double x0, double v0, double x1, double v1, double h, double& low,
-                        double& high) {
-  low = std::min({low, x0, x1});
-  high = std::max({high, x0, x1});
-  // x'(t) = v0 + 2 b t + 3 a t^2 with t in [0, 1].
-  const double s0 = v0 * h, s1 = v1 * h, rise = x1 - x0;
-  const double a = s0 + s1 - 2 * rise, b = 3 * rise - 2 * s0 - s1;
-  const double discriminant = b * b - 3 * a * s0;
-  if (!(discriminant > 0)) return;
-  const double root = -(b + std::copysign(std::sqrt(discriminant), b));
-  for (const double t : {root / (3 * a), s0 / root}) {
-    if (!(t > 0 && t < 1)) continue;
-    const double x = x0 + t * (s0 + t * (b + t * a));
-    low = std::min(low, x);
-    high = std::max(high, x);
-  }
-}
+constexpr int kUnknowns = SectionMap::kUnknowns;
+using Vector = SectionMap::Vector;
 
 class Shooting {
  public:
-  Shooting(GearPairSystem& system, const OrbitRequest& request, PeriodicOrbit& orbit)
+  Shooting(GearPairSystem& system, const FlankContactBatch& contacts, const MeshGrid& grid,
+           const OrbitRequest& request, PeriodicOrbit& orbit)
       : system_(system),
+        grid_(grid),
         request_(request),
         orbit_(orbit),
         scales_(march_scales(system, request.mean_pinion_speed)),
-        march_(system, scales_, request.steps, orbit.period, request.solve_wheel_torque) {
+        mean_force_(scales_.torque / system.mesh().mean_pinion_contact_radius()),
+        march_(system, scales_, grid, orbit.period, request.solve_wheel_torque),
+        friction_(system, contacts, 1e-3 * mean_force_) {
     for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system.mesh(), i + 1);
     scale_(kUnknowns - 1) = scales_.torque;
     period_time_ = orbit.period * system.cycle_angle() / request.mean_pinion_speed;
@@ -47,7 +32,7 @@ class Shooting {
   bool march(MarchState& state, Sensitivity* s) {
     if (request_.interrupted && request_.interrupted()) throw Cancelled();
     start_regime(state);
-    return march_.run(orbit_.friction, request_.keep_contact, state, s, &pieces_);
+    return march_.run(orbit_.friction, request_.keep_contact, state, s, &orbit_.pieces);
   }
 
   /// Marches on, with the torque that the train's momentum asks for and the mean speed put back.
@@ -62,98 +47,58 @@ class Shooting {
     return true;
   }
 
-  /// One step of Newton's method; its scaled length, NaN where the march breaks down.
-  double newton() {
+  /// One step of Newton's method, with the derivatives at hand if there are any; its scaled length,
+  /// NaN where the march breaks down. The pieces are those before the step.
+  double improve() {
     MarchState y = orbit_.state;
-    if (!march(y, &sensitivity_)) return std::nan("");
-    Eigen::Matrix<double, kUnknowns, kUnknowns> jacobian;
+    if (orbit_.map) {
+      if (!march(y, nullptr)) return std::nan("");
+    } else {
+      Sensitivity sensitivity;
+      if (!march(y, &sensitivity)) return std::nan("");
+      orbit_.map.emplace(sensitivity, scale_, period_time_);
+    }
     Vector residual;
     for (int i = 0; i + 1 < kUnknowns; ++i) {
-      jacobian.row(i) = sensitivity_[i + 1].matrix();
-      jacobian(i, i) -= 1;
       residual(i) = (y[i + 1] - orbit_.state[i + 1]) / scale_(i);
-      jacobian.row(i) /= scale_(i);
     }
-    jacobian.row(kUnknowns - 1) = sensitivity_[kTime].matrix() / period_time_;
     residual(kUnknowns - 1) = y[kTime] / period_time_ - 1;
-    const Vector step = (jacobian * scale_.asDiagonal()).partialPivLu().solve(-residual);
+    const Vector step = orbit_.map->step(residual);
     for (int i = 0; i + 1 < kUnknowns; ++i) orbit_.state[i + 1] += scale_(i) * step(i);
     add_to_unknown(scale_(kUnknowns - 1) * step(kUnknowns - 1));
     return step.norm();
   }
 
+  /// Improves until a step is shorter than `enough`.
+  bool converge(double enough) {
+    constexpr int kMostSteps = 20;
+    double last = 0;
+    for (int i = 0; i < kMostSteps; ++i) {
+      const bool fresh = !orbit_.map;
+      const double step = orbit_.defect = improve();
+      if (!(step < 1e9)) return false;
+      if (step < enough) return true;
+      // Derivatives from elsewhere have served their time.
+      if (!fresh && i > 0 && step > 0.2 * last) orbit_.map.reset();
+      last = step;
+    }
+    return false;
+  }
+
   /// Friction on the pieces of the last march, and the figures with it. False when refused.
   bool evaluate_friction() {
-    const double light =
-        1e-3 * scales_.torque / system_.mesh().mean_pinion_contact_radius();  // [N]
-    orbit_.friction.clear();
-    orbit_.pieces.resize(pieces_.size());
-    orbit_.contact_loss = orbit_.tension = false;
-    OrbitFigures f;
-    double low = 1e300, high = -1e300, squares = 0, time = 0;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      SolvedPiece& solved = orbit_.pieces[i];
-      const OrbitPiece& p = solved.piece = pieces_[i];
-      system_.regime = p.regime;
-      const bool goes_on = i > 0 && pieces_[i - 1].regime.side == p.regime.side &&
-                           pieces_[i - 1].regime.loaded == p.regime.loaded;
-      const MarchState* states[3] = {&p.start, &p.middle, &p.end};
-      for (int n = 0; n < 3; ++n) {
-        Instant& at = solved.at[n];
-        const double phase = p.phase + 0.5 * n * p.length;
-        if (n == 0 && goes_on && std::floor(p.phase + 1e-9) == std::floor(p.phase - 1e-9)) {
-          at = orbit_.pieces[i - 1].at[2];
-        } else {
-          // A cycle's end is not the next one's start: the pairs hand over their slots.
-          const double inside = std::min(phase - std::floor(p.phase + 1e-9), 1.0);
-          const int intervals = system_.mesh().intervals();
-          system_.set_interval(std::clamp(static_cast<int>(inside * intervals), 0, intervals - 1));
-          system_.evaluate(inside, states[n]->data(), at);
-          if (system_.refusal() != ContactStatus::kOk) return false;
-          const double load = p.regime.side != 0 && p.regime.loaded
-                                  ? std::max(0.0, p.regime.side * at.mesh_force)
-                                  : 0;
-          orbit_.friction.add(phase, load > light
-                                         ? FrictionPerLoad{at.pinion_friction_torque / load,
-                                                           at.gear_friction_torque / load}
-                                         : orbit_.friction.last());
-        }
-        if (p.regime.side != 0 && p.regime.side * at.mesh_force < 0) orbit_.tension = true;
-        const double rate =
-            p.length * (n == 1 ? 4 : 1) / 6 * system_.cycle_angle() / (*states[n])[kPinionSpeed];
-        const double share = at.loss_power / (*states[n])[kPinionShaftSpeed];
-        f.loss_energy += rate * at.loss_power;
-        squares += rate * share * share;
-        time += rate;
-      }
-      if (p.regime.side == 0) orbit_.contact_loss = true;
-      for (int n = 0; n < 2; ++n) {
-        const double h = (*states[n + 1])[kTime] - (*states[n])[kTime];
-        add_cubic_extremes(solved.at[n].transmission_error, solved.at[n].transmission_velocity,
-                           solved.at[n + 1].transmission_error,
-                           solved.at[n + 1].transmission_velocity, h, low, high);
-      }
-    }
-    f.loss_rms = std::sqrt(squares / time);
-    f.dte_minimum = low;
-    f.dte_maximum = high;
-    f.torque = request_.solve_wheel_torque ? system_.torques().wheel : system_.torques().pinion;
-    orbit_.figures = f;
+    if (!friction_.evaluate(grid_, orbit_.pieces, orbit_.friction, orbit_.figures)) return false;
+    orbit_.tension = friction_.least_pressing_force() < 0;
+    orbit_.contact_loss = std::any_of(orbit_.pieces.begin(), orbit_.pieces.end(),
+                                      [](const OrbitPiece& p) { return p.regime.side == 0; });
+    orbit_.figures.torque =
+        request_.solve_wheel_torque ? system_.torques().wheel : system_.torques().pinion;
     return true;
   }
 
-  /// But for the one nearest to 1: the train as a whole runs on at any speed.
-  double largest_multiplier() const {
-    Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy;
-    for (int i = 0; i + 1 < kUnknowns; ++i) {
-      monodromy.row(i) = sensitivity_[i + 1].head<kUnknowns - 1>().matrix();
-    }
-    Eigen::VectorXcd multipliers =
-        Eigen::EigenSolver<Eigen::MatrixXd>(monodromy, false).eigenvalues();
-    Eigen::Index free = 0;
-    (multipliers.array() - 1.0).abs().minCoeff(&free);
-    multipliers(free) = 0;
-    return multipliers.cwiseAbs().maxCoeff();
+  /// Flanks that are kept together would have to pull, by more than friction could change.
+  bool parts_for_sure() const {
+    return request_.keep_contact && friction_.least_pressing_force() < -0.1 * mean_force_;
   }
 
   void start_regime(const MarchState& state) {
@@ -175,82 +120,81 @@ class Shooting {
   }
 
   GearPairSystem& system_;
+  const MeshGrid& grid_;
   const OrbitRequest& request_;
   PeriodicOrbit& orbit_;
   MarchScales scales_;
+  double mean_force_;
   FixedStepMarch march_;
+  OrbitFriction friction_;
   Vector scale_;
   double period_time_;
-  Sensitivity sensitivity_;
-  std::vector<OrbitPiece> pieces_;
 };
-
-double relative(double a, double b) {
-  const double size = std::max(std::abs(a), std::abs(b));
-  return size > 0 ? std::abs(a - b) / size : 0;
-}
 
 }  // namespace
 
-double OrbitFigures::distance(const OrbitFigures& other) const {
-  // Where the transmission error passes through zero its extremes are measured by the larger one.
-  const double dte = std::max({std::abs(dte_minimum), std::abs(dte_maximum),
-                               std::abs(other.dte_minimum), std::abs(other.dte_maximum)});
-  const double extremes = std::max(std::abs(dte_minimum - other.dte_minimum),
-                                   std::abs(dte_maximum - other.dte_maximum));
-  return std::max({relative(loss_rms, other.loss_rms), relative(loss_energy, other.loss_energy),
-                   relative(torque, other.torque), dte > 0 ? extremes / dte : 0});
+SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period) {
+  Eigen::Matrix<double, kUnknowns, kUnknowns> jacobian;
+  for (int i = 0; i + 1 < kUnknowns; ++i) {
+    jacobian.row(i) = sensitivity[i + 1].matrix();
+    monodromy_.row(i) = sensitivity[i + 1].head<kUnknowns - 1>().matrix();
+    jacobian(i, i) -= 1;
+    jacobian.row(i) /= scale(i);
+  }
+  jacobian.row(kUnknowns - 1) = sensitivity[kTime].matrix() / period;
+  factors_.compute(jacobian * scale.asDiagonal());
 }
 
-bool solve_periodic_orbit(GearPairSystem& system, const OrbitRequest& request, PeriodicOrbit& orbit,
+double SectionMap::largest_multiplier() const {
+  Eigen::VectorXcd multipliers =
+      Eigen::EigenSolver<Eigen::MatrixXd>(monodromy_, false).eigenvalues();
+  Eigen::Index free = 0;
+  (multipliers.array() - 1.0).abs().minCoeff(&free);
+  multipliers(free) = 0;
+  return multipliers.cwiseAbs().maxCoeff();
+}
+
+bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
+                          const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit,
                           MarchStatistics& statistics, long& marched_cycles) {
-  constexpr int kMostSweeps = 24, kMostSteps = 14;
-  Shooting shooting(system, request, orbit);
+  constexpr int kMostSweeps = 24;
+  Shooting shooting(system, contacts, grid, request, orbit);
   system.set_torques(orbit.torques);
   const auto finish = [&](bool good) {
     const FixedStepMarch& march = shooting.marches();
     statistics.right_hand_sides += march.evaluations();
     statistics.accepted_steps += march.steps();
     statistics.events += march.events();
+    marched_cycles += march.steps() / grid.steps();
     orbit.torques = system.torques();
     return good;
   };
-  if (orbit.friction.last().pinion == 0) {
+  if (request.first_cycles > 0) {
     // The first friction, on the response's very first period.
     MarchState trial = orbit.state;
-    ++marched_cycles;
-    if (!shooting.march(trial, nullptr) || !shooting.evaluate_friction()) return finish(false);
-  }
-  if (request.first_cycles > 0) {
-    marched_cycles += static_cast<long>(request.first_cycles) * orbit.period;
+    if (orbit.friction.empty() && (!shooting.march(trial, nullptr) || !shooting.evaluate_friction()))
+      return finish(false);
     if (!shooting.let_run(request.first_cycles)) return finish(false);
   }
-  double previous_change = 0;
-  OrbitFigures previous;
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  // Without friction at first; it changes the response by some percent.
+  if (!shooting.converge(1e-3) || !shooting.evaluate_friction()) return finish(false);
+  if (shooting.parts_for_sure()) {
+    orbit.tension = true;
+    return finish(true);
+  }
+  double previous_change = 0.05;
+  OrbitFigures previous = orbit.figures;
+  for (int sweep = 1; sweep < kMostSweeps; ++sweep) {
     // No better than the friction is known.
-    const double enough =
-        std::max({1e-11, 0.02 * request.tolerance, 0.02 * std::min(previous_change, 0.05)});
-    bool found = false;
-    for (int i = 0; i < kMostSteps && !found; ++i) {
-      marched_cycles += orbit.period;
-      const double step = shooting.newton();
-      if (!(step < 1e9)) return finish(false);
-      found = step < enough;
-      orbit.defect = step;
-    }
-    if (!found || !shooting.evaluate_friction()) return finish(false);
-    const double change = sweep == 0 ? 1 : orbit.figures.distance(previous);
+    const double enough = std::max({1e-11, 0.05 * request.tolerance, 0.05 * previous_change});
+    if (!shooting.converge(enough) || !shooting.evaluate_friction()) return finish(false);
+    const double change = orbit.figures.distance(previous);
     previous = orbit.figures;
     // Sweeps contract like a geometric series.
-    const double contraction =
-        previous_change > 0 ? std::clamp(change / previous_change, 0.01, 0.9) : 0.9;
-    previous_change = change;
-    orbit.unsettled = change * contraction / (1 - contraction);
-    if (sweep > 0 && (orbit.unsettled <= request.tolerance || change < 1e-13)) {
-      orbit.largest_multiplier = shooting.largest_multiplier();
-      return finish(true);
-    }
+    const double contraction = std::clamp(change / previous_change, 0.02, 0.9);
+    previous_change = std::min(change, 0.05);
+    orbit.unsettled = change * contraction / (1 - contraction) + orbit.defect;
+    if (orbit.unsettled <= request.tolerance || change < 1e-13) return finish(true);
   }
   return finish(false);
 }

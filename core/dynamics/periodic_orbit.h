@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/LU>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/dynamics/fixed_step_march.h"
@@ -8,21 +10,23 @@
 
 namespace tribodyn {
 
-/// What shooting reports of a response: enough to tell how much an answer moved.
-struct OrbitFigures {
-  double loss_rms = 0;     ///< of sum V_s F_fr / phidot_s [N m]: eq 30 but for T_s
-  double loss_energy = 0;  ///< sum V_s F_fr over the period [J]
-  double dte_minimum = 0;  ///< x [m]
-  double dte_maximum = 0;
-  double torque = 0;  ///< the unknown one [N m]
-  /// Largest relative difference of any.
-  double distance(const OrbitFigures& other) const;
-};
+/// How the state after a period follows the state at the section and the unknown torque.
+class SectionMap {
+ public:
+  static constexpr int kUnknowns = 8;  // the seven states and the torque
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
-/// A piece with everything known at its start, middle and end.
-struct SolvedPiece {
-  OrbitPiece piece;
-  std::array<Instant, 3> at;
+  /// `scale`: of the unknowns. `period`: of the time's residual [s].
+  SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period);
+
+  /// Newton's step from a residual, both scaled.
+  Vector step(const Vector& residual) const { return factors_.solve(-residual); }
+  /// Floquet, modulus; but for the one nearest to 1: the train as a whole runs on at any speed.
+  double largest_multiplier() const;
+
+ private:
+  Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
+  Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;
 };
 
 /// Where shooting begins, and what it has found so far.
@@ -31,12 +35,12 @@ struct PeriodicOrbit {
   ContactRegime regime;  ///< there
   Torques torques;
   int period = 1;  ///< [mesh cycles]
-  LaggedFriction friction;
-  std::vector<SolvedPiece> pieces;
+  LaggedFriction friction;         ///< empty: none
+  std::optional<SectionMap> map;   ///< from here or near; empty: not known
+  std::vector<OrbitPiece> pieces;
   OrbitFigures figures;
-  double defect = 0;              ///< scaled change of the state in the last step of Newton
-  double unsettled = 0;           ///< estimate of what further sweeps would still change, relative
-  double largest_multiplier = 0;  ///< Floquet, modulus
+  double defect = 0;     ///< scaled change of the state in the last step of Newton
+  double unsettled = 0;  ///< estimate of what further sweeps would still change, relative
   bool contact_loss = false;
   bool tension = false;  ///< somewhere the flanks were held together by force
 };
@@ -44,7 +48,6 @@ struct PeriodicOrbit {
 struct OrbitRequest {
   double mean_pinion_speed = 0;     ///< held exactly [rad/s]
   bool solve_wheel_torque = false;  ///< T_w is the unknown instead of T_s
-  int steps = 48;                   ///< in a mesh cycle
   bool keep_contact = false;  ///< flanks stay together whatever the force: the linear response
   int first_cycles = 0;       ///< marched under lagged friction before shooting
   double tolerance = 1e-6;    ///< of the figures, relative: sweeps go on until then
@@ -54,10 +57,12 @@ struct OrbitRequest {
 /// The periodic response of the whole system with the unknown torque, without marching through
 /// transients: Newton's method on the section state (single shooting, variational equations) under
 /// lagged friction, friction evaluated anew on the response found, and so on until neither moves.
-/// At the end friction and motion belong to each other as in the full system; what is left is the
-/// error of the steps. Starts from `orbit` (state, torques, friction) and leaves the response
-/// there. False where it does not converge; the orbit is then of no use. Adds to `statistics`.
-bool solve_periodic_orbit(GearPairSystem& system, const OrbitRequest& request, PeriodicOrbit& orbit,
+/// Derivatives are kept while they serve. At the end friction and motion belong to each other as in
+/// the full system; what is left is the error of the grid's steps. Starts from `orbit` (state,
+/// torques, friction, map) and leaves the response there. False where it does not converge; the
+/// orbit is then of no use. Adds to `statistics`.
+bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
+                          const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit,
                           MarchStatistics& statistics, long& marched_cycles);
 
 }  // namespace tribodyn

@@ -22,6 +22,19 @@ constexpr double FlankKinematics::*kColumns[] = {&FlankKinematics::load_share,
                                                  &FlankKinematics::pinion_friction_arm,
                                                  &FlankKinematics::gear_friction_arm};
 
+struct Turn {
+  double cosine, sine;
+};
+
+/// The gear lags behind by the winding of the mesh alone: mostly some milliradians.
+Turn small_turn(double angle) {
+  if (std::abs(angle) > 0.05) return {std::cos(angle), std::sin(angle)};
+  const double square = angle * angle;
+  // The next terms are below 1e-18.
+  return {1 - square / 2 * (1 - square / 12 * (1 - square / 30 * (1 - square / 56))),
+          angle * (1 - square / 6 * (1 - square / 20 * (1 - square / 42 * (1 - square / 72))))};
+}
+
 }  // namespace
 
 FlankMotion flank_motion(const FlankKinematics& k, double pinion_speed, double gear_speed) {
@@ -60,7 +73,12 @@ MeshData::MeshData(const GearSet& set)
          coefficient(s.gear_contact_radius.cosine, i), coefficient(s.mesh_stiffness.sine, i),
          coefficient(s.mesh_stiffness.cosine, i), coefficient(s.static_transmission_error.sine, i),
          coefficient(s.static_transmission_error.cosine, i)});
+    Harmonic& h = harmonics_.back();
+    const double order = static_cast<double>(i + 1) * gear_teeth_;
+    h.radius_g_sin_per_order = h.radius_g_sin / order;
+    h.radius_g_cos_per_order = h.radius_g_cos / order;
   }
+  gear_harmonics_ = s.gear_contact_radius.sine.size();
   const ToothContactTables& t = set.tables;
   samples_.resize(intervals_ + 1);
   for (int j = 0; j <= intervals_; ++j) {
@@ -83,28 +101,40 @@ MeshData::MeshData(const GearSet& set)
   }
 }
 
-MeshFunctions MeshData::functions(double theta_p, double theta_g) const {
-  const double cos_p = std::cos(theta_p), sin_p = std::sin(theta_p);
-  const double cos_g = std::cos(theta_g), sin_g = std::sin(theta_g);
-  MeshFunctions f{pinion_radius_, gear_radius_, 0, stiffness_, 0, error_, 0};
-  double cp = cos_p, sp = sin_p, cg = cos_g, sg = sin_g;
+MeshPhase MeshData::at_phase(double theta_p) const {
+  MeshPhase at{std::cos(theta_p), std::sin(theta_p),
+               {pinion_radius_, gear_radius_, 0, stiffness_, 0, error_, 0}};
+  MeshFunctions& f = at.pinion;
+  double c = at.cosine, s = at.sine;
   for (std::size_t n = 0; n < harmonics_.size(); ++n) {
     const Harmonic& h = harmonics_[n];
-    const double order = static_cast<double>(n + 1);
-    const double order_p = order * pinion_teeth_, order_g = order * gear_teeth_;
-    f.pinion_contact_radius += h.radius_p_sin * sp + h.radius_p_cos * cp;
-    f.gear_contact_radius += h.radius_g_sin * sg + h.radius_g_cos * cg;
-    f.radius_integral += (h.radius_p_cos * sp - h.radius_p_sin * cp) / order_p -
-                         (h.radius_g_cos * sg - h.radius_g_sin * cg) / order_g;
-    f.mesh_stiffness += h.stiffness_sin * sp + h.stiffness_cos * cp;
-    f.mesh_stiffness_slope += order_p * (h.stiffness_sin * cp - h.stiffness_cos * sp);
-    f.static_transmission_error += h.error_sin * sp + h.error_cos * cp;
-    f.static_transmission_error_slope += order_p * (h.error_sin * cp - h.error_cos * sp);
-    const double next_cp = cp * cos_p - sp * sin_p, next_cg = cg * cos_g - sg * sin_g;
-    sp = sp * cos_p + cp * sin_p;
-    sg = sg * cos_g + cg * sin_g;
-    cp = next_cp;
-    cg = next_cg;
+    const double order = static_cast<double>(n + 1) * pinion_teeth_;
+    f.pinion_contact_radius += h.radius_p_sin * s + h.radius_p_cos * c;
+    f.radius_integral += (h.radius_p_cos * s - h.radius_p_sin * c) / order;
+    f.mesh_stiffness += h.stiffness_sin * s + h.stiffness_cos * c;
+    f.mesh_stiffness_slope += order * (h.stiffness_sin * c - h.stiffness_cos * s);
+    f.static_transmission_error += h.error_sin * s + h.error_cos * c;
+    f.static_transmission_error_slope += order * (h.error_sin * c - h.error_cos * s);
+    const double next = c * at.cosine - s * at.sine;
+    s = s * at.cosine + c * at.sine;
+    c = next;
+  }
+  return at;
+}
+
+MeshFunctions MeshData::functions(const MeshPhase& at, double lag) const {
+  MeshFunctions f = at.pinion;
+  const Turn turn = small_turn(lag);
+  const double cosine = at.cosine * turn.cosine + at.sine * turn.sine;
+  const double sine = at.sine * turn.cosine - at.cosine * turn.sine;
+  double c = cosine, s = sine;
+  for (std::size_t n = 0; n < gear_harmonics_; ++n) {
+    const Harmonic& h = harmonics_[n];
+    f.gear_contact_radius += h.radius_g_sin * s + h.radius_g_cos * c;
+    f.radius_integral -= h.radius_g_cos_per_order * s - h.radius_g_sin_per_order * c;
+    const double next = c * cosine - s * sine;
+    s = s * cosine + c * sine;
+    c = next;
   }
   return f;
 }

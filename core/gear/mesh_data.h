@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "core/gear/gear_set.h"
@@ -17,6 +18,12 @@ struct MeshFunctions {
   double mesh_stiffness_slope;             ///< dk_m/dphi_p [N/m/rad]
   double static_transmission_error;        ///< e [m]
   double static_transmission_error_slope;  ///< de/dphi_p [m/rad]
+};
+
+/// What eqs 8-11 need of the pinion's angle alone: prepared once per phase, used at every state.
+struct MeshPhase {
+  double cosine, sine;   ///< of theta_p
+  MeshFunctions pinion;  ///< R_g its mean, radius_integral the pinion's part
 };
 
 /// One flank pair at one mesh phase; columns of ToothContactTables.
@@ -51,7 +58,12 @@ class MeshData {
   explicit MeshData(const GearSet& gear_set);
 
   /// theta_p = N_p phi_p, theta_g = N_g phi_g [rad].
-  MeshFunctions functions(double theta_p, double theta_g) const;
+  MeshFunctions functions(double theta_p, double theta_g) const {
+    return functions(at_phase(theta_p), theta_p - theta_g);
+  }
+  MeshPhase at_phase(double theta_p) const;
+  /// With theta_g = theta_p - lag.
+  MeshFunctions functions(const MeshPhase& phase, double lag) const;
 
   int intervals() const { return intervals_; }  ///< of the tables per mesh cycle
   /// The pairs at `phase` in [0, 1] cycles, by the straight line of `interval` (continued outside
@@ -68,7 +80,9 @@ class MeshData {
   struct Harmonic {
     double radius_p_sin, radius_p_cos, radius_g_sin, radius_g_cos;
     double stiffness_sin, stiffness_cos, error_sin, error_cos;
+    double radius_g_sin_per_order = 0, radius_g_cos_per_order = 0;  // over n N_g
   };
+  std::size_t gear_harmonics_ = 0;
   int pinion_teeth_, gear_teeth_, intervals_;
   double pinion_radius_, gear_radius_, stiffness_, error_;
   std::vector<Harmonic> harmonics_;

@@ -153,7 +153,9 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
 }
 
 /// By shooting, from a state or else from the static one. Nothing where marching must decide.
-std::optional<PointResult> solve_by_shooting(GearPairSystem& system, const Target& target,
+std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
+                                             const FlankContactBatch& contacts, MeshGrids& grids,
+                                             const Target& target,
                                              const PointOptions& options, PointStart start,
                                              const std::optional<CarriedState>& from,
                                              const HistoryRequest& history_request) {
@@ -176,7 +178,8 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system, const Targe
   }
   MarchStatistics statistics;
   long cycles = 0;
-  const std::optional<RefinedOrbit> refined = refine_orbit(system, search, statistics, cycles);
+  const std::optional<RefinedOrbit> refined =
+      refine_orbit(system, contacts, grids, search, statistics, cycles);
   if (!refined) return std::nullopt;
   const PeriodicOrbit& orbit = refined->orbit;
 
@@ -186,15 +189,21 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system, const Targe
   out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
   out.estimated_relative_error = refined->estimated_error;
   system.set_torques(orbit.torques);
-  ResponseRecord record(march_scales(system, target.mean_pinion_speed).torque /
-                        system.mesh().mean_pinion_contact_radius());
-  record_orbit(system, orbit, record);
+  const double mean_force = march_scales(system, target.mean_pinion_speed).torque /
+                            system.mesh().mean_pinion_contact_radius();
+  std::vector<SolvedPiece> pieces;
+  OrbitFriction friction(system, contacts, 0);
+  if (!friction.solve(grids.with_steps(refined->steps_per_mesh_cycle), orbit.pieces, pieces)) {
+    return std::nullopt;
+  }
+  ResponseRecord record(mean_force);
+  record_orbit(system, orbit, pieces, record);
   record.fill(system.torques(), orbit.period, true, out);
-  out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().piece.end.data()) -
-                             system.stored_energy(0, orbit.pieces.front().piece.start.data());
-  out.section_state = system.to_section(orbit.pieces.front().piece.start.data());
+  out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().end.data()) -
+                             system.stored_energy(0, orbit.pieces.front().start.data());
+  out.section_state = system.to_section(orbit.pieces.front().start.data());
   HistorySampler history(history_request);
-  sample_orbit(system, orbit, history);
+  sample_orbit(system, orbit, pieces, history);
   out.history = history.take();
   out.statistics.right_hand_sides = statistics.right_hand_sides;
   out.statistics.accepted_steps = statistics.accepted_steps;
@@ -202,7 +211,7 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system, const Targe
   out.statistics.periodicity_defect = orbit.defect;
   out.statistics.mesh_cycles = cycles;
   out.statistics.contact_solutions = system.contact_solutions();
-  out.statistics.largest_multiplier = orbit.largest_multiplier;
+  out.statistics.largest_multiplier = refined->largest_multiplier;
   return out;
 }
 
@@ -228,24 +237,19 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const Target& targe
   return out;
 }
 
-/// A response with its own gear data, so that the torque may change them.
-struct Prepared {
-  GearSet gear_set;
-  MeshData mesh;
-  Prepared(const GearSet& base, const ModelOptions& options, double pinion_torque)
-      : gear_set(options.load_dependent_mesh_data ? at_torque(base, pinion_torque) : base),
-        mesh(gear_set) {}
-};
-
 }  // namespace
 
 PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,
                                   const PointOptions& options) {
-  check(scene.gear_set);
+  PreparedScene prepared(scene);
+  return solve_operating_point(prepared, condition, options);
+}
+
+PointResult solve_operating_point(PreparedScene& prepared, const OperatingCondition& condition,
+                                  const PointOptions& options) {
+  const Scene& scene = prepared.scene();
+  const FlankContactBatch& contacts = prepared.contacts();
   const Target target = target_of(scene, condition);
-  const FlankContactModel contact(scene.lubricant, scene.solid, scene.roughness, scene.boundary,
-                                  scene.sump_temperature, scene.inlet_temperature_rise,
-                                  scene.options);
 
   // One response from one start. With mesh data at the torque, the torque is iterated.
   const auto respond = [&](PointStart start, const std::optional<CarriedState>& carried,
@@ -254,8 +258,13 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
     double data_torque = target.torques.pinion;
     SolverStatistics spent;
     for (int pass = 0;; ++pass) {
-      const Prepared prepared(scene.gear_set, scene.options, data_torque);
-      GearPairSystem system(prepared.mesh, contact, prepared.gear_set.dynamics, scene.options);
+      std::optional<PreparedGearSet> at_data_torque;
+      if (scene.options.load_dependent_mesh_data) {
+        at_data_torque.emplace(at_torque(scene.gear_set, data_torque), scene.solid, scene.options);
+      }
+      PreparedGearSet& gear_set = at_data_torque ? *at_data_torque : prepared.gear_set();
+      GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
+                            scene.options);
       system.set_torques(target.torques);
       const bool last_pass = !scene.options.load_dependent_mesh_data || pass >= 12;
       PointResult result;
@@ -263,7 +272,8 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
         result = solve_quasi_static_point(system, target, options);
       } else if (std::optional<PointResult> shot;
                  options.method == SteadyStateMethod::kAutomatic &&
-                 (shot = solve_by_shooting(system, target, options, start, from, history))) {
+                 (shot = solve_by_shooting(system, contacts, gear_set.grids(), target, options,
+                                           start, from, history))) {
         result = *std::move(shot);
       } else {
         system.set_torques(target.torques);

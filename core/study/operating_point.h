@@ -8,6 +8,7 @@
 
 #include "core/dynamics/section_state.h"
 #include "core/study/history.h"
+#include "core/study/prepared_scene.h"
 #include "core/study/scene.h"
 
 namespace tribodyn {
@@ -182,6 +183,9 @@ struct PointResult {
 /// Solves one operating point. Throws Refusal (reasons: contact_status_name, NO_FORWARD_ROTATION,
 /// WORK_LIMIT, ...) or Cancelled.
 PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,
+                                  const PointOptions& options);
+/// The same bits, for many points of one scene.
+PointResult solve_operating_point(PreparedScene& scene, const OperatingCondition& condition,
                                   const PointOptions& options);
 
 }  // namespace tribodyn

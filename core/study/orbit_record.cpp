@@ -5,12 +5,13 @@
 
 namespace tribodyn {
 
-void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, ResponseRecord& record) {
+void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit,
+                  const std::vector<SolvedPiece>& pieces, ResponseRecord& record) {
   record.integrals = {};
   std::array<double, kRecordComponents> rate{};
   const SolvedPiece* before = nullptr;
-  record.starts_in_gap = orbit.pieces.front().piece.regime.side == 0;
-  for (const SolvedPiece& solved : orbit.pieces) {
+  record.starts_in_gap = orbit.pieces.front().regime.side == 0;
+  for (const SolvedPiece& solved : pieces) {
     const OrbitPiece& p = solved.piece;
     system.regime = p.regime;
     const MarchState* states[3] = {&p.start, &p.middle, &p.end};
@@ -26,20 +27,21 @@ void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, ResponseRe
     before = &solved;
   }
   // The first components are the state itself, at the end.
-  const MarchState& end = orbit.pieces.back().piece.end;
+  const MarchState& end = orbit.pieces.back().end;
   for (int i = kTime; i <= kWheelSpeed; ++i) record.integrals[i] = end[i];
   record.end_regime = before->piece.regime;
   record.set_transmission_error_range(orbit.figures.dte_minimum, orbit.figures.dte_maximum);
   system.regime = orbit.regime;
 }
 
-void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, HistorySampler& history) {
+void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit,
+                  const std::vector<SolvedPiece>& pieces, HistorySampler& history) {
   MarchState slope_start, slope_end, at{};
   Instant instant;
-  auto solved = orbit.pieces.begin();
+  auto solved = pieces.begin();
   while (history.wanted_in_first_cycles(orbit.period)) {
     const double phase = history.next_phase();
-    while (solved + 1 != orbit.pieces.end() && (solved + 1)->piece.phase <= phase) ++solved;
+    while (solved + 1 != pieces.end() && (solved + 1)->piece.phase <= phase) ++solved;
     const OrbitPiece& p = solved->piece;
     system.regime = p.regime;
     system.derivative(p.start.data(), solved->at[0], false, slope_start.data());
@@ -55,7 +57,7 @@ void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, HistorySam
     system.evaluate(inside, at.data(), instant);
     history.add(phase, at.data(), instant, system.torques().pinion);
   }
-  history.repeat_first_cycles(orbit.period, orbit.pieces.back().piece.end[kTime]);
+  history.repeat_first_cycles(orbit.period, orbit.pieces.back().end[kTime]);
   system.regime = orbit.regime;
 }
 

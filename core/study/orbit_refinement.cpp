@@ -28,7 +28,8 @@ int next_steps(int steps, int intervals) {
 
 }  // namespace
 
-std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const OrbitSearch& search,
+std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
+                                         MeshGrids& grids, const OrbitSearch& search,
                                          MarchStatistics& statistics, long& marched_cycles) {
   OrbitRequest request;
   request.mean_pinion_speed = search.mean_pinion_speed;
@@ -45,14 +46,15 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const OrbitSear
   bool have_coarser = false;
   double halving_difference = 0;
   const int intervals = system.mesh().intervals();
-  for (request.steps = next_steps(0, intervals); request.steps <= kFinest;
-       request.steps = next_steps(request.steps, intervals)) {
+  for (int steps = next_steps(0, intervals); steps <= kFinest;
+       steps = next_steps(steps, intervals)) {
+    const MeshGrid& grid = grids.with_steps(steps);
     // Sweeps go on until what they leave is well below what the step length can give.
     request.tolerance = std::max(0.2 * search.tolerance, have_coarser ? 0.0 : 1e-4);
     PeriodicOrbit orbit = have_coarser ? best.orbit : origin;
     bool found = false;
     if (request.keep_contact) {
-      found = solve_periodic_orbit(system, request, orbit, statistics, marched_cycles) &&
+      found = solve_periodic_orbit(system, contacts, grid, request, orbit, statistics, marched_cycles) &&
               !orbit.tension;
       if (!found) {
         if (system.take_refusal() != ContactStatus::kOk) return std::nullopt;
@@ -64,7 +66,7 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const OrbitSear
     }
     if (!request.keep_contact) {
       request.first_cycles = have_coarser ? 0 : search.first_cycles;
-      found = solve_periodic_orbit(system, request, orbit, statistics, marched_cycles);
+      found = solve_periodic_orbit(system, contacts, grid, request, orbit, statistics, marched_cycles);
     }
     if (!found) {
       if (system.take_refusal() != ContactStatus::kOk) return std::nullopt;
@@ -74,9 +76,9 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const OrbitSear
     if (have_coarser) {
       const double difference = orbit.figures.distance(best.orbit.figures);
       // Second order at kinks and events; more only where two halvings have shown it.
-      const double finer = static_cast<double>(request.steps) / best.steps_per_mesh_cycle;
+      const double finer = static_cast<double>(steps) / best.steps_per_mesh_cycle;
       double gain = finer * finer;
-      const bool halving = request.steps == 2 * best.steps_per_mesh_cycle;
+      const bool halving = steps == 2 * best.steps_per_mesh_cycle;
       if (halving && halving_difference > 0) {
         gain = std::clamp(halving_difference / std::max(difference, 1e-300), 3.0, 5.0);
       }
@@ -85,10 +87,11 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const OrbitSear
     }
     const bool had_coarser = have_coarser;
     best.orbit = std::move(orbit);
-    best.steps_per_mesh_cycle = request.steps;
+    best.steps_per_mesh_cycle = steps;
     have_coarser = true;
     if (had_coarser && best.estimated_error <= search.tolerance) {
-      if (!(best.orbit.largest_multiplier < kRepels)) return std::nullopt;
+      best.largest_multiplier = best.orbit.map->largest_multiplier();
+      if (!(best.largest_multiplier < kRepels)) return std::nullopt;
       return best;
     }
   }

@@ -25,13 +25,15 @@ struct RefinedOrbit {
   /// Of loss (RMS and energy), torque and extremes of the transmission error, relative: what the
   /// last halving of the steps changed, less what its order took away, and what sweeps left.
   double estimated_error = 0;
+  double largest_multiplier = 0;  ///< Floquet, modulus, under lagged friction
 };
 
 /// An attracting periodic response on a sequence of step lengths, each half the one before, until
 /// the estimated error is below the tolerance. None where shooting does not converge, the response
 /// repels or nearly so, or the tolerance asks for more than the shortest steps: marching decides
 /// then. Adds to `statistics`.
-std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const OrbitSearch& search,
+std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
+                                         MeshGrids& grids, const OrbitSearch& search,
                                          MarchStatistics& statistics, long& marched_cycles);
 
 }  // namespace tribodyn

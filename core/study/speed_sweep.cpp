@@ -15,6 +15,7 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
   if (options.direction == SweepDirection::kDown) {
     std::reverse(vehicle_speeds.begin(), vehicle_speeds.end());
   }
+  std::optional<PreparedScene> prepared;
   std::vector<SweepPoint> out;
   PointOptions point = options.point;
   const double count = static_cast<double>(vehicle_speeds.size());
@@ -32,7 +33,8 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
     SweepPoint next;
     next.vehicle_speed = speed;
     try {
-      next.result = solve_operating_point(scene, condition, point);
+      if (!prepared) prepared.emplace(scene);
+      next.result = solve_operating_point(*prepared, condition, point);
       const PointResult& r = *next.result;
       point.carried_state = CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
                                          r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};

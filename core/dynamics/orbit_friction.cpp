@@ -1,0 +1,273 @@
+#include "core/dynamics/orbit_friction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace tribodyn {
+namespace {
+
+/// Extremes of the cubic through two values with their slopes, over [0, h].
+void add_cubic_extremes(double x0, double v0, double x1, double v1, double h, double& low,
+                        double& high) {
+  low = std::min({low, x0, x1});
+  high = std::max({high, x0, x1});
+  // x'(t) = v0 + 2 b t + 3 a t^2 with t in [0, 1].
+  const double s0 = v0 * h, s1 = v1 * h, rise = x1 - x0;
+  const double a = s0 + s1 - 2 * rise, b = 3 * rise - 2 * s0 - s1;
+  const double discriminant = b * b - 3 * a * s0;
+  if (!(discriminant > 0)) return;
+  const double root = -(b + std::copysign(std::sqrt(discriminant), b));
+  for (const double t : {root / (3 * a), s0 / root}) {
+    if (!(t > 0 && t < 1)) continue;
+    const double x = x0 + t * (s0 + t * (b + t * a));
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+}
+
+double relative(double a, double b) {
+  const double size = std::max(std::abs(a), std::abs(b));
+  return size > 0 ? std::abs(a - b) / size : 0;
+}
+
+/// A cycle's end is not the next one's start: the pairs hand over their slots.
+double cycle_of(const OrbitPiece& piece) { return std::floor(piece.phase + 1e-9); }
+
+/// Whether a piece starts with the contacts that the one before ends with.
+bool goes_on(const OrbitPiece& before, const OrbitPiece& piece) {
+  return before.regime.side == piece.regime.side && before.regime.loaded == piece.regime.loaded &&
+         cycle_of(piece) == std::floor(piece.phase - 1e-9);
+}
+
+std::array<const double*, 3> states(const OrbitPiece& piece) {
+  return {piece.start.data(), piece.middle.data(), piece.end.data()};
+}
+
+}  // namespace
+
+double OrbitFigures::distance(const OrbitFigures& other) const {
+  // Where the transmission error passes through zero its extremes are measured by the larger one.
+  const double dte = std::max({std::abs(dte_minimum), std::abs(dte_maximum),
+                               std::abs(other.dte_minimum), std::abs(other.dte_maximum)});
+  const double extremes = std::max(std::abs(dte_minimum - other.dte_minimum),
+                                   std::abs(dte_maximum - other.dte_maximum));
+  return std::max({relative(loss_rms, other.loss_rms), relative(loss_energy, other.loss_energy),
+                   relative(torque, other.torque), dte > 0 ? extremes / dte : 0});
+}
+
+void OrbitFriction::Arrays::resize(std::size_t size) {
+  for (auto* array : {&load, &pinion_x, &pinion_y, &gear_x, &gear_y, &friction, &sliding_speed,
+                      &pinion_arm, &gear_arm}) {
+    array->resize(size);
+  }
+  status.resize(size);
+}
+
+OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts,
+                             double light)
+    : system_(system),
+      contacts_(contacts),
+      light_(light),
+      geometries_(contacts.model().reduced_modulus(), contacts.model().options()) {}
+
+void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part,
+                                 const double* state, Place& place, Instant& at) {
+  place.first = count_;
+  place.count = 0;
+  const double load = piece.regime.side != 0 && piece.regime.loaded
+                          ? std::max(0.0, piece.regime.side * at.mesh_force)
+                          : 0;
+  place.load = load;
+  at.load = {};
+  if (!(load > 0)) return;
+  std::array<FlankKinematics, kFlankPairs> off_grid;
+  const std::array<FlankKinematics, kFlankPairs>* flanks = &off_grid;
+  if (piece.node >= 0) {
+    flanks = &grid.flanks(piece.node + part);
+  } else {
+    const MeshData& mesh = system_.mesh();
+    const double inside =
+        std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
+    const int interval =
+        std::clamp(static_cast<int>(inside * mesh.intervals()), 0, mesh.intervals() - 1);
+    mesh.flanks(interval, inside, off_grid);
+  }
+  for (int k = 0; k < kFlankPairs; ++k) {
+    const FlankKinematics& flank = (*flanks)[k];
+    at.load[k] = flank.load_share * load;
+    if (!(at.load[k] > 0)) continue;
+    const int i = count_++;
+    ++place.count;
+    FlankMotion& motion = at.motion[k];
+    const ContactConditions c = system_.contact_conditions(flank, at.load[k], state, motion);
+    arrays_.load[i] = c.load;
+    arrays_.pinion_x[i] = c.pinion_velocity_x;
+    arrays_.pinion_y[i] = c.pinion_velocity_y;
+    arrays_.gear_x[i] = c.gear_velocity_x;
+    arrays_.gear_y[i] = c.gear_velocity_y;
+    arrays_.sliding_speed[i] = motion.sliding_speed;
+    arrays_.pinion_arm[i] = motion.pinion_friction_arm;
+    arrays_.gear_arm[i] = motion.gear_friction_arm;
+    if (piece.node >= 0) {
+      geometries_.copy(i, grid.geometries(), kFlankPairs * (piece.node + part) + k);
+    } else {
+      geometries_.set(i, flank.radius_x, flank.radius_y);
+    }
+  }
+}
+
+void OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
+                           std::vector<SolvedPiece>* solved) {
+  const std::size_t most = 3 * kFlankPairs * pieces.size();
+  if (geometries_.size() < most) {
+    geometries_.resize(most);
+    arrays_.resize(most);
+  }
+  places_.resize(3 * pieces.size());
+  count_ = 0;
+  Instant scratch;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const OrbitPiece& p = pieces[i];
+    system_.regime = p.regime;
+    for (int part = 0; part < 3; ++part) {
+      Place& place = places_[3 * i + part];
+      Instant& at = solved != nullptr ? (*solved)[i].at[part] : scratch;
+      if (part == 0 && i > 0 && goes_on(pieces[i - 1], p)) {
+        place = places_[3 * i - 1];
+        if (solved != nullptr) at = (*solved)[i - 1].at[2];
+        continue;
+      }
+      const double* state = states(p)[part];
+      if (p.node >= 0) {
+        system_.mechanics(grid.at(p.node + part), state, at);
+      } else {
+        system_.mechanics(p.phase + 0.5 * part * p.length, state, at);
+      }
+      place.mesh_force = at.mesh_force;
+      place.transmission_error = at.transmission_error;
+      place.transmission_velocity = at.transmission_velocity;
+      add_contacts(grid, p, part, state, place, at);
+    }
+  }
+}
+
+bool OrbitFriction::solve_contacts(FlankContactBatchResults results) {
+  results.friction = arrays_.friction.data();
+  results.status = arrays_.status.data();
+  contacts_.solve(geometries_, 0, count_,
+                  {arrays_.load.data(), arrays_.pinion_x.data(), arrays_.pinion_y.data(),
+                   arrays_.gear_x.data(), arrays_.gear_y.data()},
+                  results);
+  system_.count_contacts(count_);
+  for (int i = 0; i < count_; ++i) {
+    if (arrays_.status[i] != ContactStatus::kOk) system_.refuse(arrays_.status[i]);
+  }
+  return system_.refusal() == ContactStatus::kOk;
+}
+
+bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
+                             LaggedFriction& friction, OrbitFigures& f) {
+  gather(grid, pieces, nullptr);
+  if (!solve_contacts({})) return false;
+  friction.clear();
+  f = {};
+  least_pressing_force_ = 1e300;
+  double low = 1e300, high = -1e300, squares = 0, time = 0, loss = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const OrbitPiece& p = pieces[i];
+    const Place* at = &places_[3 * i];
+    for (int part = 0; part < 3; ++part) {
+      const Place& place = at[part];
+      if (!(part == 0 && i > 0 && goes_on(pieces[i - 1], p))) {
+        loss = 0;
+        FrictionPerLoad torque;
+        for (int n = place.first; n < place.first + place.count; ++n) {
+          torque.pinion += arrays_.pinion_arm[n] * arrays_.friction[n];
+          torque.gear += arrays_.gear_arm[n] * arrays_.friction[n];
+          loss += arrays_.sliding_speed[n] * arrays_.friction[n];
+        }
+        friction.add(p.phase + 0.5 * part * p.length,
+                     place.load > light_
+                         ? FrictionPerLoad{torque.pinion / place.load, torque.gear / place.load}
+                         : friction.last());
+      }
+      if (p.regime.side != 0) {
+        least_pressing_force_ =
+            std::min(least_pressing_force_, p.regime.side * place.mesh_force);
+      }
+      const double* state = states(p)[part];
+      const double duration =
+          p.length * (part == 1 ? 4 : 1) / 6 * system_.cycle_angle() / state[kPinionSpeed];
+      const double share = loss / state[kPinionShaftSpeed];
+      f.loss_energy += duration * loss;
+      squares += duration * share * share;
+      time += duration;
+    }
+    for (int part = 0; part < 2; ++part) {
+      add_cubic_extremes(at[part].transmission_error, at[part].transmission_velocity,
+                         at[part + 1].transmission_error, at[part + 1].transmission_velocity,
+                         states(p)[part + 1][kTime] - states(p)[part][kTime], low, high);
+    }
+  }
+  f.loss_rms = std::sqrt(squares / time);
+  f.dte_minimum = low;
+  f.dte_maximum = high;
+  return true;
+}
+
+bool OrbitFriction::solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
+                          std::vector<SolvedPiece>& solved) {
+  solved.resize(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) solved[i].piece = pieces[i];
+  gather(grid, pieces, &solved);
+  using C = ContactSolution;
+  using R = FlankContactBatchResults;
+  struct Column {
+    double* R::*array;
+    double C::*member;
+  };
+  static constexpr Column kColumns[] = {
+      {&R::viscous_friction, &C::viscous_friction},
+      {&R::boundary_friction, &C::boundary_friction},
+      {&R::contact_temperature, &C::contact_temperature},
+      {&R::central_film_thickness, &C::central_film_thickness},
+      {&R::film_ratio, &C::film_ratio},
+      {&R::maximum_pressure, &C::maximum_pressure},
+      {&R::shear_rate, &C::shear_rate},
+      {&R::limiting_stress_area_share, &C::limiting_stress_area_share}};
+  std::array<std::vector<double>, std::size(kColumns)> columns;
+  R results;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    columns[c].resize(count_);
+    results.*kColumns[c].array = columns[c].data();
+  }
+  const auto at_centre = std::make_unique<bool[]>(count_);
+  results.limiting_stress_at_centre = at_centre.get();
+  if (!solve_contacts(results)) return false;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (int part = 0; part < 3; ++part) {
+      Instant& at = solved[i].at[part];
+      int n = places_[3 * i + part].first;
+      at.pinion_friction_torque = at.gear_friction_torque = at.loss_power = 0;
+      for (int k = 0; k < kFlankPairs; ++k) {
+        at.contact[k] = {};
+        if (!(at.load[k] > 0)) continue;
+        ContactSolution& contact = at.contact[k];
+        contact.status = ContactStatus::kOk;
+        contact.friction = arrays_.friction[n];
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+          contact.*kColumns[c].member = columns[c][n];
+        }
+        contact.limiting_stress_at_centre = at_centre[n];
+        at.pinion_friction_torque += at.motion[k].pinion_friction_arm * contact.friction;
+        at.gear_friction_torque += at.motion[k].gear_friction_arm * contact.friction;
+        at.loss_power += at.motion[k].sliding_speed * contact.friction;
+        ++n;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/contact/flank_contact_batch.h"
+#include "core/dynamics/gear_pair_system.h"
+#include "core/dynamics/lagged_friction.h"
+#include "core/dynamics/mesh_grid.h"
+
+namespace tribodyn {
+
+/// A smooth piece of a response: one step, or the part of one up to or from an event. States at
+/// its start, middle and end; the middle by the cubic through both ends.
+struct OrbitPiece {
+  double phase;   ///< of its start [cycles], counted through the whole period
+  double length;  ///< [cycles]
+  int node;       ///< of the grid at its start, where it is a whole step; or -1
+  ContactRegime regime;
+  MarchState start, middle, end;
+};
+
+/// A piece with everything known at its start, middle and end.
+struct SolvedPiece {
+  OrbitPiece piece;
+  std::array<Instant, 3> at;
+};
+
+/// What a sweep reports of a response: enough to tell how much an answer moved.
+struct OrbitFigures {
+  double loss_rms = 0;     ///< of sum V_s F_fr / phidot_s [N m]: eq 30 but for T_s
+  double loss_energy = 0;  ///< sum V_s F_fr over the period [J]
+  double dte_minimum = 0;  ///< x [m]
+  double dte_maximum = 0;
+  double torque = 0;  ///< the unknown one [N m]
+  /// Largest relative difference of any.
+  double distance(const OrbitFigures& other) const;
+};
+
+/// The contacts of a whole response, solved together.
+class OrbitFriction {
+ public:
+  /// Friction is not told per newton below `light` [N]. Keeps the references.
+  OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts, double light);
+
+  /// Friction on the pieces of a response, and all of its figures but the torque. `grid`: what the
+  /// pieces' nodes are of. False when a contact is refused; the system tells why.
+  bool evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
+                LaggedFriction& friction, OrbitFigures& figures);
+  /// Smallest force that pressed touching flanks together at the instants of the last evaluation;
+  /// negative: they were held together [N].
+  double least_pressing_force() const { return least_pressing_force_; }
+  /// Everything at the pieces' instants. False as above.
+  bool solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
+             std::vector<SolvedPiece>& solved);
+
+ private:
+  struct Place {
+    double mesh_force, transmission_error, transmission_velocity;
+    double load;
+    int first, count;  // contacts
+  };
+  struct Arrays {
+    std::vector<double> load, pinion_x, pinion_y, gear_x, gear_y, friction;
+    std::vector<double> sliding_speed, pinion_arm, gear_arm;
+    std::vector<ContactStatus> status;
+    void resize(std::size_t size);
+  };
+  void gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
+              std::vector<SolvedPiece>* solved);
+  void add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part, const double* state,
+                    Place& place, Instant& at);
+  /// False when one is refused.
+  bool solve_contacts(FlankContactBatchResults results);
+
+  GearPairSystem& system_;
+  const FlankContactBatch& contacts_;
+  double light_;
+  ContactGeometries geometries_;
+  std::vector<Place> places_;  // three of a piece
+  Arrays arrays_;
+  int count_ = 0;  // contacts
+  double least_pressing_force_ = 0;
+};
+
+}  // namespace tribodyn

@@ -1,0 +1,34 @@
+#include "core/study/prepared_scene.h"
+
+#include <utility>
+
+#include "core/contact/hertz.h"
+
+namespace tribodyn {
+namespace {
+
+const GearSet& checked(const GearSet& gear_set) {
+  check(gear_set);
+  return gear_set;
+}
+
+}  // namespace
+
+PreparedGearSet::PreparedGearSet(const GearSet& gear_set, const Solid& solid,
+                                 const ModelOptions& options)
+    : gear_set_(checked(gear_set)),
+      mesh_(gear_set_),
+      grids_(mesh_, reduced_modulus(solid.youngs_modulus, solid.poissons_ratio), options) {}
+
+PreparedScene::PreparedScene(const Scene& scene)
+    : PreparedScene(scene, std::make_shared<PreparedGearSet>(scene.gear_set, scene.solid,
+                                                             scene.options)) {}
+
+PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set)
+    : scene_(scene),
+      contacts_(FlankContactModel(scene.lubricant, scene.solid, scene.roughness, scene.boundary,
+                                  scene.sump_temperature, scene.inlet_temperature_rise,
+                                  scene.options)),
+      gear_set_(std::move(gear_set)) {}
+
+}  // namespace tribodyn

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+
+#include "core/contact/flank_contact_batch.h"
+#include "core/dynamics/mesh_grid.h"
+#include "core/study/scene.h"
+
+namespace tribodyn {
+
+/// What is made of a gear set once, for all fluids, speeds and loads. One thread at a time: what is
+/// asked for is made then. Nothing in it depends on who asked.
+class PreparedGearSet {
+ public:
+  /// Throws Refusal as check(GearSet) does.
+  PreparedGearSet(const GearSet& gear_set, const Solid& solid, const ModelOptions& options);
+  PreparedGearSet(const PreparedGearSet&) = delete;
+  PreparedGearSet& operator=(const PreparedGearSet&) = delete;
+
+  const GearSet& gear_set() const { return gear_set_; }
+  const MeshData& mesh() const { return mesh_; }
+  MeshGrids& grids() { return grids_; }
+
+ private:
+  GearSet gear_set_;
+  MeshData mesh_;
+  MeshGrids grids_;
+};
+
+/// A scene with everything that its points share. One thread at a time. Keeps the scene's reference.
+class PreparedScene {
+ public:
+  /// Throws Refusal as FlankContactModel and PreparedGearSet do.
+  explicit PreparedScene(const Scene& scene);
+  /// With a gear set that other scenes use too; it must be that of the scene, of the same solid and
+  /// options.
+  PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set);
+
+  const Scene& scene() const { return scene_; }
+  const FlankContactBatch& contacts() const { return contacts_; }
+  PreparedGearSet& gear_set() { return *gear_set_; }
+
+ private:
+  const Scene& scene_;
+  FlankContactBatch contacts_;
+  std::shared_ptr<PreparedGearSet> gear_set_;
+};
+
+}  // namespace tribodyn
