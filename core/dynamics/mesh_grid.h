@@ -16,6 +16,9 @@ class MeshGrid {
   /// `steps` in the mesh cycle, at least 1; E' and options as of the contacts. Keeps nothing.
   MeshGrid(const MeshData& mesh, int steps, double reduced_modulus, const ModelOptions& options);
 
+  MeshGrid(const MeshGrid&) = delete;
+  MeshGrid& operator=(const MeshGrid&) = delete;
+
   int steps() const { return steps_; }
   /// Node n is at mesh phase n / (2 steps), n = 0 ... 2 steps.
   const MeshPhase& at(int node) const { return nodes_[node]; }
@@ -26,6 +29,7 @@ class MeshGrid {
  private:
   int steps_;
   std::vector<MeshPhase> nodes_;
+  std::vector<GearRadiusExpansion> expansions_;  // nodes point there
   std::vector<std::array<FlankKinematics, kFlankPairs>> flanks_;
   ContactGeometries geometries_;
 };

@@ -176,24 +176,28 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
       return finish(false);
     if (!shooting.let_run(request.first_cycles)) return finish(false);
   }
-  // Without friction at first; it changes the response by some percent.
-  if (!shooting.converge(1e-3) || !shooting.evaluate_friction()) return finish(false);
-  if (shooting.parts_for_sure()) {
-    orbit.tension = true;
-    return finish(true);
+  double last_change = 0.05;
+  const bool known = orbit.contraction > 0;
+  if (!known) {
+    // Without friction at first; it changes the response by some percent.
+    if (!shooting.converge(1e-3) || !shooting.evaluate_friction()) return finish(false);
+    if (shooting.parts_for_sure()) {
+      orbit.tension = true;
+      return finish(true);
+    }
   }
-  double previous_change = 0.05;
   OrbitFigures previous = orbit.figures;
   for (int sweep = 1; sweep < kMostSweeps; ++sweep) {
     // No better than the friction is known.
-    const double enough = std::max({1e-11, 0.05 * request.tolerance, 0.05 * previous_change});
+    const double enough =
+        std::max({1e-11, 0.05 * request.tolerance, 0.05 * std::min(last_change, 0.05)});
     if (!shooting.converge(enough) || !shooting.evaluate_friction()) return finish(false);
     const double change = orbit.figures.distance(previous);
     previous = orbit.figures;
-    // Sweeps contract like a geometric series.
-    const double contraction = std::clamp(change / previous_change, 0.02, 0.9);
-    previous_change = std::min(change, 0.05);
-    orbit.unsettled = change * contraction / (1 - contraction) + orbit.defect;
+    // Sweeps contract like a geometric series. On a new grid the first change is the grid's.
+    if (!(known && sweep == 1)) orbit.contraction = std::clamp(change / last_change, 0.02, 0.9);
+    last_change = change;
+    orbit.unsettled = change * orbit.contraction / (1 - orbit.contraction) + orbit.defect;
     if (orbit.unsettled <= request.tolerance || change < 1e-13) return finish(true);
   }
   return finish(false);

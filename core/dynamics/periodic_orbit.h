@@ -39,8 +39,9 @@ struct PeriodicOrbit {
   std::optional<SectionMap> map;   ///< from here or near; empty: not known
   std::vector<OrbitPiece> pieces;
   OrbitFigures figures;
-  double defect = 0;     ///< scaled change of the state in the last step of Newton
-  double unsettled = 0;  ///< estimate of what further sweeps would still change, relative
+  double defect = 0;       ///< scaled change of the state in the last step of Newton
+  double contraction = 0;  ///< by which a sweep divides the error; 0: not known
+  double unsettled = 0;    ///< estimate of what further sweeps would still change, relative
   bool contact_loss = false;
   bool tension = false;  ///< somewhere the flanks were held together by force
 };
@@ -57,7 +58,8 @@ struct OrbitRequest {
 /// The periodic response of the whole system with the unknown torque, without marching through
 /// transients: Newton's method on the section state (single shooting, variational equations) under
 /// lagged friction, friction evaluated anew on the response found, and so on until neither moves.
-/// Derivatives are kept while they serve. At the end friction and motion belong to each other as in
+/// Derivatives are kept while they serve. An orbit found before, on another grid, lends its friction
+/// and figures: then one sweep may do. At the end friction and motion belong to each other as in
 /// the full system; what is left is the error of the grid's steps. Starts from `orbit` (state,
 /// torques, friction, map) and leaves the response there. False where it does not converge; the
 /// orbit is then of no use. Adds to `statistics`.

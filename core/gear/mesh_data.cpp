@@ -22,6 +22,12 @@ constexpr double FlankKinematics::*kColumns[] = {&FlankKinematics::load_share,
                                                  &FlankKinematics::pinion_friction_arm,
                                                  &FlankKinematics::gear_friction_arm};
 
+constexpr std::array<double, GearRadiusExpansion::kTerms> kReciprocal = [] {
+  std::array<double, GearRadiusExpansion::kTerms> out{};
+  for (int k = 0; k < GearRadiusExpansion::kTerms; ++k) out[k] = 1.0 / (k + 1);
+  return out;
+}();
+
 struct Turn {
   double cosine, sine;
 };
@@ -79,6 +85,8 @@ MeshData::MeshData(const GearSet& set)
     h.radius_g_cos_per_order = h.radius_g_cos / order;
   }
   gear_harmonics_ = s.gear_contact_radius.sine.size();
+  // The first term left out is below 3e-15 of the ripple.
+  longest_expanded_lag_ = 0.1 / static_cast<double>(std::max<std::size_t>(1, gear_harmonics_));
   const ToothContactTables& t = set.tables;
   samples_.resize(intervals_ + 1);
   for (int j = 0; j <= intervals_; ++j) {
@@ -103,7 +111,8 @@ MeshData::MeshData(const GearSet& set)
 
 MeshPhase MeshData::at_phase(double theta_p) const {
   MeshPhase at{std::cos(theta_p), std::sin(theta_p),
-               {pinion_radius_, gear_radius_, 0, stiffness_, 0, error_, 0}};
+               {pinion_radius_, gear_radius_, 0, stiffness_, 0, error_, 0},
+               nullptr};
   MeshFunctions& f = at.pinion;
   double c = at.cosine, s = at.sine;
   for (std::size_t n = 0; n < harmonics_.size(); ++n) {
@@ -122,8 +131,42 @@ MeshPhase MeshData::at_phase(double theta_p) const {
   return at;
 }
 
+GearRadiusExpansion MeshData::expand_gear_radius(double theta) const {
+  GearRadiusExpansion out{};
+  for (std::size_t n = 0; n < gear_harmonics_; ++n) {
+    const Harmonic& h = harmonics_[n];
+    const double order = static_cast<double>(n + 1);
+    const double c = std::cos(order * theta), s = std::sin(order * theta);
+    out.integral -= h.radius_g_cos_per_order * s - h.radius_g_sin_per_order * c;
+    double value = h.radius_g_sin * s + h.radius_g_cos * c;
+    double slope = order * (h.radius_g_sin * c - h.radius_g_cos * s);
+    double factor = 1;
+    for (int k = 0; k < GearRadiusExpansion::kTerms; k += 2) {
+      out.ripple[k] += value * factor;
+      factor /= k + 1;
+      if (k + 1 < GearRadiusExpansion::kTerms) out.ripple[k + 1] += slope * factor;
+      factor /= k + 2;
+      value *= -order * order;
+      slope *= -order * order;
+    }
+  }
+  return out;
+}
+
 MeshFunctions MeshData::functions(const MeshPhase& at, double lag) const {
   MeshFunctions f = at.pinion;
+  if (at.expansion != nullptr && std::abs(lag) <= longest_expanded_lag_) {
+    const GearRadiusExpansion& g = *at.expansion;
+    constexpr int kLast = GearRadiusExpansion::kTerms - 1;
+    double ripple = g.ripple[kLast], integral = g.ripple[kLast] / (kLast + 1);
+    for (int k = kLast - 1; k >= 0; --k) {
+      ripple = g.ripple[k] - lag * ripple;
+      integral = g.ripple[k] * kReciprocal[k] - lag * integral;
+    }
+    f.gear_contact_radius += ripple;
+    f.radius_integral += g.integral + lag * integral / gear_teeth_;
+    return f;
+  }
   const Turn turn = small_turn(lag);
   const double cosine = at.cosine * turn.cosine + at.sine * turn.sine;
   const double sine = at.sine * turn.cosine - at.cosine * turn.sine;

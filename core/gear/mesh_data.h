@@ -20,10 +20,18 @@ struct MeshFunctions {
   double static_transmission_error_slope;  ///< de/dphi_p [m/rad]
 };
 
+/// R_g's ripple and its derivatives by theta_g over k!, and the gear's part of the radius integral.
+struct GearRadiusExpansion {
+  static constexpr int kTerms = 9;
+  std::array<double, kTerms> ripple;  ///< [m]
+  double integral;                    ///< [m]
+};
+
 /// What eqs 8-11 need of the pinion's angle alone: prepared once per phase, used at every state.
 struct MeshPhase {
   double cosine, sine;   ///< of theta_p
   MeshFunctions pinion;  ///< R_g its mean, radius_integral the pinion's part
+  const GearRadiusExpansion* expansion = nullptr;  ///< at theta_g = theta_p; saves the series of R_g
 };
 
 /// One flank pair at one mesh phase; columns of ToothContactTables.
@@ -62,6 +70,7 @@ class MeshData {
     return functions(at_phase(theta_p), theta_p - theta_g);
   }
   MeshPhase at_phase(double theta_p) const;
+  GearRadiusExpansion expand_gear_radius(double theta) const;
   /// With theta_g = theta_p - lag.
   MeshFunctions functions(const MeshPhase& phase, double lag) const;
 
@@ -83,6 +92,7 @@ class MeshData {
     double radius_g_sin_per_order = 0, radius_g_cos_per_order = 0;  // over n N_g
   };
   std::size_t gear_harmonics_ = 0;
+  double longest_expanded_lag_ = 0;  // up to which GearRadiusExpansion is exact
   int pinion_teeth_, gear_teeth_, intervals_;
   double pinion_radius_, gear_radius_, stiffness_, error_;
   std::vector<Harmonic> harmonics_;

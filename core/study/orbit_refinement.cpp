@@ -8,23 +8,42 @@ namespace {
 
 constexpr double kSafety = 2.5;    // on the error that two step lengths tell
 constexpr double kRepels = 0.994;  // multipliers under lagged friction are good to 3e-3
-constexpr int kCoarsest = 24;      // steps per mesh cycle, about
-constexpr int kFinest = 4000;
+constexpr double kLoose = 3e-4;    // tolerance of which few steps may do
+constexpr int kFinest = 4000;      // steps per mesh cycle
+
+double square(double x) { return x * x; }
+
+/// Oscillations of the mesh on its mean stiffness in a mesh cycle.
+double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed) {
+  const MeshData& mesh = system.mesh();
+  const DrivelineDynamics& d = system.dynamics();
+  const double compliance = square(mesh.mean_pinion_contact_radius()) / d.pinion_inertia +
+                            square(mesh.mean_gear_contact_radius()) / d.gear_inertia;
+  return std::sqrt(mesh.mean_mesh_stiffness() * compliance) /
+         (mean_pinion_speed * mesh.pinion_teeth());
+}
 
 /// Numbers of steps per mesh cycle. The first end on samples of the tables and the second do not:
-/// else both would see the kinks there in the same way and agree on the same error. From the third
-/// on no step has a kink inside.
-int next_steps(int steps, int intervals) {
-  int coarsest = intervals;
-  while (coarsest % 2 == 0 && coarsest > kCoarsest) coarsest /= 2;
-  while (coarsest < kCoarsest) coarsest *= 2;
-  if (steps == 0) return coarsest;
-  if (steps == coarsest) return coarsest * 5 / 3;
-  if (steps % intervals == 0) return 2 * steps;
-  int next = intervals;
-  while (next < 2 * steps) next *= 2;
-  return next;
-}
+/// else both would see the kinks there in the same way and agree on the same error. In the end no
+/// step has a kink inside.
+class StepSequence {
+ public:
+  StepSequence(int intervals, int least) : intervals_(intervals), coarsest_(intervals) {
+    while (coarsest_ % 2 == 0 && coarsest_ / 2 >= least) coarsest_ /= 2;
+    while (coarsest_ < least) coarsest_ *= 2;
+  }
+  int first() const { return coarsest_; }
+  int after(int steps) const {
+    if (steps == coarsest_) return coarsest_ * 5 / 3;
+    if (steps % intervals_ == 0 || 4 * steps < intervals_) return 2 * steps;
+    int next = intervals_;
+    while (next < 2 * steps) next *= 2;
+    return next;
+  }
+
+ private:
+  int intervals_, coarsest_;
+};
 
 }  // namespace
 
@@ -45,9 +64,13 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
   RefinedOrbit best;
   bool have_coarser = false;
   double halving_difference = 0;
-  const int intervals = system.mesh().intervals();
-  for (int steps = next_steps(0, intervals); steps <= kFinest;
-       steps = next_steps(steps, intervals)) {
+  // Six steps for an oscillation tell its height to some percent; fewer tell nothing.
+  const double least =
+      std::max(6 * mesh_oscillations(system, search.mean_pinion_speed),
+               search.tolerance < kLoose || !search.try_contact_first ? 24.0 : 12.0);
+  if (least > kFinest) return std::nullopt;
+  const StepSequence sequence(system.mesh().intervals(), static_cast<int>(least));
+  for (int steps = sequence.first(); steps <= kFinest; steps = sequence.after(steps)) {
     const MeshGrid& grid = grids.with_steps(steps);
     // Sweeps go on until what they leave is well below what the step length can give.
     request.tolerance = std::max(0.2 * search.tolerance, have_coarser ? 0.0 : 1e-4);
