@@ -108,21 +108,18 @@ MarchState FixedStepMarch::middle(const MarchState& from, const MarchState& to, 
   return out;
 }
 
-FixedStepMarch::Event FixedStepMarch::next_event(const MeshPhase& phase, const MarchState& y) const {
+FixedStepMarch::Events FixedStepMarch::events(const MeshPhase& phase, const MarchState& y) const {
   Instant at;
   system_.kinematics(phase, y.data(), at);
   const double b = system_.dynamics().half_backlash;
   const ContactRegime& r = system_.regime;
   if (r.side == 0) {
-    const double drive = (at.transmission_error - b) / scales_.length;
-    const double coast = (-b - at.transmission_error) / scales_.length;
-    return drive > coast ? Event{drive, 0} : Event{coast, 2};
+    return {(at.transmission_error - b) / scales_.length,
+            (-b - at.transmission_error) / scales_.length};
   }
-  const double parting = (b - r.side * at.transmission_error) / scales_.length;
   const double force =
       r.side * at.mesh_force * system_.mesh().mean_pinion_contact_radius() / scales_.torque;
-  const double turning = r.loaded ? -force : force;
-  return parting > turning ? Event{parting, 0} : Event{turning, 1};
+  return {(b - r.side * at.transmission_error) / scales_.length, r.loaded ? -force : force};
 }
 
 void FixedStepMarch::change_regime(int index, const MeshPhase& phase, const MarchState& y) {
@@ -143,9 +140,56 @@ void FixedStepMarch::change_regime(int index, const MeshPhase& phase, const Marc
       r.side != 0 && r.side * at.transmission_velocity > 0 && system_.dynamics().mesh_damping > 0;
 }
 
+namespace {
+
+constexpr double kNothing = 1e-12;
+
+bool happened(const std::array<double, 2>& events) {
+  return events[0] > kNothing || events[1] > kNothing;
+}
+
+/// Where in (0, 1) one of two functions rises above zero, going by the parabola through its values
+/// at 0, 1/2 and 1; 0: nowhere.
+double peak_of(const std::array<double, 2>& first, const std::array<double, 2>& middle,
+               const std::array<double, 2>& last) {
+  for (int i = 0; i < 2; ++i) {
+    const double slope = last[i] - first[i];
+    const double bend = first[i] - 2 * middle[i] + last[i];
+    if (!(bend < 0) || !(std::abs(slope) < -2 * bend)) continue;
+    const double at = 0.5 - 0.25 * slope / bend;
+    if (middle[i] - slope * slope / (8 * bend) > 1e-10 && first[i] <= 0) {
+      return std::clamp(at, 1e-3, 1 - 1e-3);
+    }
+  }
+  return 0;
+}
+
+/// Length at which a function passes through zero, from `first` at 0 to `last` > 0 at `high`: regula
+/// falsi with bisection now and then.
+template <class Function>
+double root_of(double first, double last, double high, Function&& at) {
+  double low = 0, g_low = std::min(first, 0.0), g_high = last, x = high;
+  const double nearest = 1e-6 * high;  // what has just happened is zero at the start
+  for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
+    x = g_low < 0 ? low - g_low * (high - low) / (g_high - g_low) : 0.5 * (low + high);
+    if (k % 4 == 3 || !(x > low && x < high)) x = 0.5 * (low + high);
+    const double value = at(x);
+    if (value > 0) {
+      high = x;
+      g_high = value;
+    } else {
+      low = x;
+      g_low = value;
+    }
+    if (std::abs(value) <= kNothing && x > nearest) break;
+  }
+  return x;
+}
+
+}  // namespace
+
 bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState& y, Sensitivity* s,
                          std::vector<OrbitPiece>* pieces) {
-  constexpr double kNothing = 1e-12;
   constexpr int kMostPieces = 20;  // of one step
   int index = 0;                   // of an event
   if (pieces != nullptr) pieces->clear();
@@ -160,7 +204,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
     const int node = 2 * (i % grid_.steps());
     double phase = static_cast<double>(i) / grid_.steps();
     const double end = static_cast<double>(i + 1) / grid_.steps();
-    MeshPhase at_start = grid_.at(node), at_middle = grid_.at(node + 1), at_end;
+    MeshPhase at_start = grid_.at(node), at_middle, at_end;
     const auto part = [&](double length) {
       at_middle = system_.at_phase(inside_cycle(phase + 0.5 * length));
       at_end = system_.at_phase(inside_cycle(phase + length));
@@ -169,54 +213,58 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
     for (int piece = 0; phase < end; ++piece) {
       if (piece == kMostPieces) return false;
       double h = end - phase;
-      Span span{phase, h, &at_start, &at_middle, &grid_.at(node + 2)};
-      if (piece > 0) at_middle = system_.at_phase(inside_cycle(phase + 0.5 * h));
+      const auto whole = [&] {
+        at_middle = piece == 0 ? grid_.at(node + 1)
+                               : system_.at_phase(inside_cycle(phase + 0.5 * (end - phase)));
+        return Span{phase, end - phase, &at_start, &at_middle, &grid_.at(node + 2)};
+      };
+      Span span = whole();
       step(friction, span, y, s, to, s != nullptr ? &s_to : nullptr);
       bool happens = false;
       MarchState half = middle(y, to, h);
       if (!keep_contact) {
-        Event event = next_event(*span.end, to);
+        const Events at_first = events(at_start, y);
         double high = h;
-        if (!(event.value > kNothing)) {
-          const Event inside = next_event(*span.middle, half);
-          if (inside.value > 1e-10) {
-            event = inside;
-            high = 0.5 * h;
+        Events at_high = events(*span.end, to);
+        if (!happened(at_high)) {
+          // Perhaps it came and went: by the parabola through start, middle and end.
+          const double peak = peak_of(at_first, events(*span.middle, half), at_high);
+          if (peak > 0) {
+            high = peak * h;
+            step(friction, part(high), y, nullptr, to, nullptr);
+            at_high = events(at_end, to);
           }
         }
-        happens = event.value > kNothing;
+        happens = happened(at_high);
         if (happens) {
-          // Regula falsi with bisection now and then, on true steps.
-          double low = 0, g_low = std::min(next_event(at_start, y).value, 0.0),
-                 g_high = event.value;
-          for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
-            double x =
-                g_low < 0 ? low - g_low * (high - low) / (g_high - g_low) : 0.5 * (low + high);
-            if (k % 4 == 3 || !(x > low && x < high)) x = 0.5 * (low + high);
-            step(friction, part(x), y, nullptr, to, nullptr);
-            const Event at = next_event(at_end, to);
-            h = x;
-            if (at.value > 0) {
-              high = x;
-              g_high = at.value;
-              event.index = at.index;
-            } else {
-              low = x;
-              g_low = at.value;
-            }
-            if (std::abs(at.value) <= kNothing) break;
+          // The one that has gone farthest, unless another one has happened before it.
+          index = at_high[0] > at_high[1] ? 0 : 1;
+          for (int tries = 0; tries < 2; ++tries) {
+            Events here{};
+            h = root_of(at_first[index], at_high[index], high, [&](double length) {
+              step(friction, part(length), y, nullptr, to, nullptr);
+              here = events(at_end, to);
+              return here[index];
+            });
+            const int other = 1 - index;
+            if (!(here[other] > kNothing)) break;
+            index = other;
+            high = h;
+            at_high = here;
           }
           span = part(h);
+        }
+        if (happens || high < h) {
+          if (!happens) span = whole();
           step(friction, span, y, s, to, s != nullptr ? &s_to : nullptr);
           half = middle(y, to, h);
         }
-        if (happens) index = event.index;
       }
       if (!(std::isfinite(to[kPinionSpeed]) && to[kPinionSpeed] > 0)) return false;
       ++taken_;
       if (pieces != nullptr) {
-        const bool whole = piece == 0 && !happens;
-        pieces->push_back({phase, h, whole ? node : -1, system_.regime, y, half, to});
+        const bool on_grid = piece == 0 && !happens;
+        pieces->push_back({phase, h, on_grid ? node : -1, system_.regime, y, half, to});
       }
       y = to;
       if (s != nullptr) *s = s_to;

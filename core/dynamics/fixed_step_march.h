@@ -42,10 +42,9 @@ class FixedStepMarch {
 
  private:
   using Rates = std::array<double, 8>;
-  struct Event {
-    double value;  ///< positive once it has happened
-    int index;     ///< 0: flanks part or meet; 1: load ends or begins; 2: meet on the coast side
-  };
+  /// Positive once it has happened: flanks part or meet (on the drive side); the load ends or begins,
+  /// or the flanks meet on the coast side.
+  using Events = std::array<double, 2>;
   /// A step's start, middle and end.
   struct Span {
     double phase, length;  ///< [cycles]
@@ -58,7 +57,7 @@ class FixedStepMarch {
   void step(LaggedFriction& friction, const Span& span, const MarchState& y, const Sensitivity* s,
             MarchState& to, Sensitivity* s_to);
   MarchState middle(const MarchState& from, const MarchState& to, double h) const;
-  Event next_event(const MeshPhase& phase, const MarchState& y) const;
+  Events events(const MeshPhase& phase, const MarchState& y) const;
   void change_regime(int index, const MeshPhase& phase, const MarchState& y);
 
   GearPairSystem& system_;

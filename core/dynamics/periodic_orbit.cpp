@@ -71,15 +71,19 @@ class Shooting {
 
   /// Improves until a step is shorter than `enough`.
   bool converge(double enough) {
-    constexpr int kMostSteps = 20;
+    constexpr int kMostSteps = 20, kMostDerivatives = 6;
     double last = 0;
+    int derivatives = 0;
     for (int i = 0; i < kMostSteps; ++i) {
-      const bool fresh = !orbit_.map;
+      if (!orbit_.map) ++derivatives;
       const double step = orbit_.defect = improve();
       if (!(step < 1e9)) return false;
       if (step < enough) return true;
       // Derivatives from elsewhere have served their time.
-      if (!fresh && i > 0 && step > 0.2 * last) orbit_.map.reset();
+      if (i > 0 && step > 0.2 * last) {
+        if (derivatives >= kMostDerivatives) return false;
+        orbit_.map.reset();
+      }
       last = step;
     }
     return false;
@@ -98,7 +102,7 @@ class Shooting {
 
   /// Flanks that are kept together would have to pull, by more than friction could change.
   bool parts_for_sure() const {
-    return request_.keep_contact && friction_.least_pressing_force() < -0.1 * mean_force_;
+    return request_.keep_contact && friction_.least_pressing_force() < -0.02 * mean_force_;
   }
 
   void start_regime(const MarchState& state) {
@@ -169,36 +173,31 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
     orbit.torques = system.torques();
     return good;
   };
-  if (request.first_cycles > 0) {
-    // The first friction, on the response's very first period.
-    MarchState trial = orbit.state;
-    if (orbit.friction.empty() && (!shooting.march(trial, nullptr) || !shooting.evaluate_friction()))
-      return finish(false);
-    if (!shooting.let_run(request.first_cycles)) return finish(false);
-  }
-  double last_change = 0.05;
-  const bool known = orbit.contraction > 0;
-  if (!known) {
+  if (request.first_cycles > 0 && !shooting.let_run(request.first_cycles)) return finish(false);
+  constexpr double kLikelyContraction = 0.2;
+  double last_change = 0;
+  if (orbit.friction.empty()) {
     // Without friction at first; it changes the response by some percent.
     if (!shooting.converge(1e-3) || !shooting.evaluate_friction()) return finish(false);
-    if (shooting.parts_for_sure()) {
-      orbit.tension = true;
-      return finish(true);
-    }
+    if (shooting.parts_for_sure()) return finish(true);
+    orbit.contraction = kLikelyContraction;
   }
   OrbitFigures previous = orbit.figures;
   for (int sweep = 1; sweep < kMostSweeps; ++sweep) {
     // No better than the friction is known.
     const double enough =
-        std::max({1e-11, 0.05 * request.tolerance, 0.05 * std::min(last_change, 0.05)});
+        std::max({1e-11, 0.1 * request.tolerance, 0.1 * orbit.contraction * last_change});
     if (!shooting.converge(enough) || !shooting.evaluate_friction()) return finish(false);
     const double change = orbit.figures.distance(previous);
     previous = orbit.figures;
-    // Sweeps contract like a geometric series. On a new grid the first change is the grid's.
-    if (!(known && sweep == 1)) orbit.contraction = std::clamp(change / last_change, 0.02, 0.9);
+    // Sweeps contract like a geometric series; the first change is not theirs alone.
+    const bool measured = last_change > 0;
+    if (measured) orbit.contraction = std::clamp(change / last_change, 0.02, 0.9);
     last_change = change;
-    orbit.unsettled = change * orbit.contraction / (1 - orbit.contraction) + orbit.defect;
+    const double contraction = std::max(orbit.contraction, measured ? 0.0 : 0.1);
+    orbit.unsettled = change * contraction / (1 - contraction) + orbit.defect;
     if (orbit.unsettled <= request.tolerance || change < 1e-13) return finish(true);
+    if (request.keep_contact && orbit.tension) return finish(true);
   }
   return finish(false);
 }

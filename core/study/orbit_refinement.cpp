@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kSafety = 2.5;    // on the error that two step lengths tell
 constexpr double kRepels = 0.994;  // multipliers under lagged friction are good to 3e-3
+constexpr int kFewCycles = 12;     // before shooting at a response with contact loss
 constexpr double kLoose = 3e-4;    // tolerance of which few steps may do
 constexpr int kFinest = 4000;      // steps per mesh cycle
 
@@ -64,16 +65,16 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
   RefinedOrbit best;
   bool have_coarser = false;
   double halving_difference = 0;
-  // Six steps for an oscillation tell its height to some percent; fewer tell nothing.
+  // Seven steps for an oscillation tell its height to some percent; fewer tell nothing.
   const double least =
-      std::max(6 * mesh_oscillations(system, search.mean_pinion_speed),
+      std::max(7 * mesh_oscillations(system, search.mean_pinion_speed),
                search.tolerance < kLoose || !search.try_contact_first ? 24.0 : 12.0);
   if (least > kFinest) return std::nullopt;
   const StepSequence sequence(system.mesh().intervals(), static_cast<int>(least));
   for (int steps = sequence.first(); steps <= kFinest; steps = sequence.after(steps)) {
     const MeshGrid& grid = grids.with_steps(steps);
     // Sweeps go on until what they leave is well below what the step length can give.
-    request.tolerance = std::max(0.2 * search.tolerance, have_coarser ? 0.0 : 1e-4);
+    request.tolerance = have_coarser ? 0.2 * search.tolerance : std::max(5 * search.tolerance, 1e-4);
     PeriodicOrbit orbit = have_coarser ? best.orbit : origin;
     bool found = false;
     if (request.keep_contact) {
@@ -88,8 +89,13 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
       }
     }
     if (!request.keep_contact) {
-      request.first_cycles = have_coarser ? 0 : search.first_cycles;
-      found = solve_periodic_orbit(system, contacts, grid, request, orbit, statistics, marched_cycles);
+      // Newton's method leads to the response that is near; further ones are found by patience.
+      for (const int cycles : {kFewCycles, search.first_cycles}) {
+        request.first_cycles = have_coarser ? 0 : cycles;
+        if (!have_coarser) orbit = origin;
+        found = solve_periodic_orbit(system, contacts, grid, request, orbit, statistics, marched_cycles);
+        if (found || have_coarser) break;
+      }
     }
     if (!found) {
       if (system.take_refusal() != ContactStatus::kOk) return std::nullopt;
