@@ -71,6 +71,7 @@ class Shooting {
 
   /// Improves until a step is shorter than `enough`.
   bool converge(double enough) {
+    orbit_.moved = 0;
     constexpr int kMostSteps = 20, kMostDerivatives = 6;
     double last = 0;
     int derivatives = 0;
@@ -78,6 +79,7 @@ class Shooting {
       if (!orbit_.map) ++derivatives;
       const double step = orbit_.defect = improve();
       if (!(step < 1e9)) return false;
+      orbit_.moved = std::max(orbit_.moved, step);
       if (step < enough) return true;
       // Derivatives from elsewhere have served their time.
       if (i > 0 && step > 0.2 * last) {
@@ -92,17 +94,12 @@ class Shooting {
   /// Friction on the pieces of the last march, and the figures with it. False when refused.
   bool evaluate_friction() {
     if (!friction_.evaluate(grid_, orbit_.pieces, orbit_.friction, orbit_.figures)) return false;
-    orbit_.tension = friction_.least_pressing_force() < 0;
+    orbit_.least_pressing_force = friction_.least_pressing_force() / mean_force_;
     orbit_.contact_loss = std::any_of(orbit_.pieces.begin(), orbit_.pieces.end(),
                                       [](const OrbitPiece& p) { return p.regime.side == 0; });
     orbit_.figures.torque =
         request_.solve_wheel_torque ? system_.torques().wheel : system_.torques().pinion;
     return true;
-  }
-
-  /// Flanks that are kept together would have to pull, by more than friction could change.
-  bool parts_for_sure() const {
-    return request_.keep_contact && friction_.least_pressing_force() < -0.02 * mean_force_;
   }
 
   void start_regime(const MarchState& state) {
@@ -174,12 +171,15 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
     return good;
   };
   if (request.first_cycles > 0 && !shooting.let_run(request.first_cycles)) return finish(false);
+  const auto parts_for_sure = [&] {
+    return request.keep_contact && orbit.least_pressing_force < -kClearPull;
+  };
   constexpr double kLikelyContraction = 0.2;
   double last_change = 0;
   if (orbit.friction.empty()) {
     // Without friction at first; it changes the response by some percent.
     if (!shooting.converge(1e-3) || !shooting.evaluate_friction()) return finish(false);
-    if (shooting.parts_for_sure()) return finish(true);
+    if (parts_for_sure()) return finish(true);
     orbit.contraction = kLikelyContraction;
   }
   OrbitFigures previous = orbit.figures;
@@ -195,9 +195,10 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
     if (measured) orbit.contraction = std::clamp(change / last_change, 0.02, 0.9);
     last_change = change;
     const double contraction = std::max(orbit.contraction, measured ? 0.0 : 0.1);
-    orbit.unsettled = change * contraction / (1 - contraction) + orbit.defect;
+    const double moved = measured ? change : std::max(change, 0.1 * orbit.moved);
+    orbit.unsettled = moved * contraction / (1 - contraction) + orbit.defect;
     if (orbit.unsettled <= request.tolerance || change < 1e-13) return finish(true);
-    if (request.keep_contact && orbit.tension) return finish(true);
+    if (parts_for_sure()) return finish(true);
   }
   return finish(false);
 }

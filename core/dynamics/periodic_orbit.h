@@ -40,11 +40,17 @@ struct PeriodicOrbit {
   std::vector<OrbitPiece> pieces;
   OrbitFigures figures;
   double defect = 0;       ///< scaled change of the state in the last step of Newton
+  double moved = 0;        ///< longest step of Newton under the last friction, scaled
   double contraction = 0;  ///< by which a sweep divides the error; 0: not known
   double unsettled = 0;    ///< estimate of what further sweeps would still change, relative
   bool contact_loss = false;
-  bool tension = false;  ///< somewhere the flanks were held together by force
+  /// Smallest force that pressed touching flanks together, over the mean one; negative: they were
+  /// held together.
+  double least_pressing_force = 0;
 };
+
+/// Of the mean force; flanks kept together that pull harder than this do part.
+inline constexpr double kClearPull = 0.02;
 
 struct OrbitRequest {
   double mean_pinion_speed = 0;     ///< held exactly [rad/s]
@@ -62,7 +68,8 @@ struct OrbitRequest {
 /// and figures: then one sweep may do. At the end friction and motion belong to each other as in
 /// the full system; what is left is the error of the grid's steps. Starts from `orbit` (state,
 /// torques, friction, map) and leaves the response there. False where it does not converge; the
-/// orbit is then of no use. Adds to `statistics`.
+/// orbit is then of no use. Where flanks kept together clearly pull, it may end before it converges.
+/// Adds to `statistics`.
 bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
                           const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit,
                           MarchStatistics& statistics, long& marched_cycles);

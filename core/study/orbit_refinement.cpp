@@ -65,6 +65,7 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
   RefinedOrbit best;
   bool have_coarser = false;
   double halving_difference = 0;
+  double doubtful_pull = kClearPull;  // of the mean force: as little may be the steps' error
   // Seven steps for an oscillation tell its height to some percent; fewer tell nothing.
   const double least =
       std::max(7 * mesh_oscillations(system, search.mean_pinion_speed),
@@ -76,24 +77,28 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
     // Sweeps go on until what they leave is well below what the step length can give.
     request.tolerance = have_coarser ? 0.2 * search.tolerance : std::max(5 * search.tolerance, 1e-4);
     PeriodicOrbit orbit = have_coarser ? best.orbit : origin;
+    const auto solve = [&] {
+      return solve_periodic_orbit(system, contacts, grid, request, orbit, statistics,
+                                  marched_cycles);
+    };
     bool found = false;
     if (request.keep_contact) {
-      found = solve_periodic_orbit(system, contacts, grid, request, orbit, statistics, marched_cycles) &&
-              !orbit.tension;
+      request.first_cycles = 0;
+      found = solve() && !(orbit.least_pressing_force < -doubtful_pull);
       if (!found) {
         if (system.take_refusal() != ContactStatus::kOk) return std::nullopt;
         // Flanks would have to pull: contact is lost, and the start decides how.
         request.keep_contact = false;
         have_coarser = false;
-        orbit = origin;
       }
+      doubtful_pull /= 4;
     }
     if (!request.keep_contact) {
-      // Newton's method leads to the response that is near; further ones are found by patience.
+      // Newton's method leads to the response that is near; others are found by patience.
       for (const int cycles : {kFewCycles, search.first_cycles}) {
         request.first_cycles = have_coarser ? 0 : cycles;
         if (!have_coarser) orbit = origin;
-        found = solve_periodic_orbit(system, contacts, grid, request, orbit, statistics, marched_cycles);
+        found = solve();
         if (found || have_coarser) break;
       }
     }
@@ -102,27 +107,30 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
       have_coarser = false;
       continue;
     }
+    double estimate = 0;
     if (have_coarser) {
       const double difference = orbit.figures.distance(best.orbit.figures);
       // Second order at kinks and events; more only where two halvings have shown it.
       const double finer = static_cast<double>(steps) / best.steps_per_mesh_cycle;
-      double gain = finer * finer;
+      double gain = square(finer);
       const bool halving = steps == 2 * best.steps_per_mesh_cycle;
       if (halving && halving_difference > 0) {
         gain = std::clamp(halving_difference / std::max(difference, 1e-300), 3.0, 5.0);
       }
-      best.estimated_error = kSafety * difference / (gain - 1) + orbit.unsettled;
+      // Two step lengths may agree by accident, three rarely do.
+      const double step_error = std::max(kSafety * difference / (gain - 1),
+                                         best.estimated_error / (2 * square(finer)));
+      estimate = step_error + orbit.unsettled;
       halving_difference = halving ? difference : 0;
     }
-    const bool had_coarser = have_coarser;
-    best.orbit = std::move(orbit);
-    best.steps_per_mesh_cycle = steps;
-    have_coarser = true;
-    if (had_coarser && best.estimated_error <= search.tolerance) {
+    best = {std::move(orbit), steps, estimate, 0};
+    const bool pulls = request.keep_contact && best.orbit.least_pressing_force < 0;
+    if (have_coarser && estimate <= search.tolerance && !pulls) {
       best.largest_multiplier = best.orbit.map->largest_multiplier();
       if (!(best.largest_multiplier < kRepels)) return std::nullopt;
       return best;
     }
+    have_coarser = true;
   }
   return std::nullopt;
 }
