@@ -171,15 +171,16 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
     return good;
   };
   if (request.first_cycles > 0 && !shooting.let_run(request.first_cycles)) return finish(false);
-  const auto parts_for_sure = [&] {
-    return request.keep_contact && orbit.least_pressing_force < -kClearPull;
+  const auto parts_for_sure = [&](double pull) {
+    return request.keep_contact && orbit.least_pressing_force < -pull;
   };
-  constexpr double kLikelyContraction = 0.2;
+  constexpr double kLikelyContraction = 0.2, kUnmeasured = 0.3;
   double last_change = 0;
   if (orbit.friction.empty()) {
     // Without friction at first; it changes the response by some percent.
     if (!shooting.converge(1e-3) || !shooting.evaluate_friction()) return finish(false);
-    if (parts_for_sure()) return finish(true);
+    // Friction calms some responses.
+    if (parts_for_sure(0.25)) return finish(true);
     orbit.contraction = kLikelyContraction;
   }
   OrbitFigures previous = orbit.figures;
@@ -194,11 +195,11 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
     const bool measured = last_change > 0;
     if (measured) orbit.contraction = std::clamp(change / last_change, 0.02, 0.9);
     last_change = change;
-    const double contraction = std::max(orbit.contraction, measured ? 0.0 : 0.1);
+    const double contraction = std::max(orbit.contraction, measured ? 0.0 : kUnmeasured);
     const double moved = measured ? change : std::max(change, 0.1 * orbit.moved);
     orbit.unsettled = moved * contraction / (1 - contraction) + orbit.defect;
     if (orbit.unsettled <= request.tolerance || change < 1e-13) return finish(true);
-    if (parts_for_sure()) return finish(true);
+    if (parts_for_sure(kClearPull + change)) return finish(true);
   }
   return finish(false);
 }

@@ -115,7 +115,7 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
       double gain = square(finer);
       const bool halving = steps == 2 * best.steps_per_mesh_cycle;
       if (halving && halving_difference > 0) {
-        gain = std::clamp(halving_difference / std::max(difference, 1e-300), 3.0, 5.0);
+        gain = std::clamp(halving_difference / std::max(difference, 1e-300), 2.5, 4.0);
       }
       // Two step lengths may agree by accident, three rarely do.
       const double step_error = std::max(kSafety * difference / (gain - 1),
