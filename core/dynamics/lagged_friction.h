@@ -28,7 +28,6 @@ class LaggedFriction {
     phases_.push_back(phase);
     values_.push_back(value);
   }
-  bool empty() const { return values_.empty(); }
   /// The last value added, or none.
   FrictionPerLoad last() const { return values_.empty() ? FrictionPerLoad{} : values_.back(); }
 

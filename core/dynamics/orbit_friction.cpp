@@ -187,10 +187,11 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
           torque.gear += arrays_.gear_arm[n] * arrays_.friction[n];
           loss += arrays_.sliding_speed[n] * arrays_.friction[n];
         }
-        friction.add(p.phase + 0.5 * part * p.length,
-                     place.load > light_
-                         ? FrictionPerLoad{torque.pinion / place.load, torque.gear / place.load}
-                         : friction.last());
+        // Across a gap it goes from the value before to that after: no jump where a flank meets.
+        if (place.load > light_) {
+          friction.add(p.phase + 0.5 * part * p.length,
+                       {torque.pinion / place.load, torque.gear / place.load});
+        }
       }
       if (p.regime.side != 0) {
         least_pressing_force_ =

@@ -176,7 +176,7 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
   };
   constexpr double kLikelyContraction = 0.2, kUnmeasured = 0.3;
   double last_change = 0;
-  if (orbit.friction.empty()) {
+  if (orbit.contraction == 0) {
     // Without friction at first; it changes the response by some percent.
     if (!shooting.converge(1e-3) || !shooting.evaluate_friction()) return finish(false);
     // Friction calms some responses.

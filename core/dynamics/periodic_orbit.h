@@ -35,13 +35,13 @@ struct PeriodicOrbit {
   ContactRegime regime;  ///< there
   Torques torques;
   int period = 1;  ///< [mesh cycles]
-  LaggedFriction friction;         ///< empty: none
+  LaggedFriction friction;         
   std::optional<SectionMap> map;   ///< from here or near; empty: not known
   std::vector<OrbitPiece> pieces;
   OrbitFigures figures;
   double defect = 0;       ///< scaled change of the state in the last step of Newton
   double moved = 0;        ///< longest step of Newton under the last friction, scaled
-  double contraction = 0;  ///< by which a sweep divides the error; 0: not known
+  double contraction = 0;  ///< of the error in a sweep; 0: none made yet
   double unsettled = 0;    ///< estimate of what further sweeps would still change, relative
   bool contact_loss = false;
   /// Smallest force that pressed touching flanks together, over the mean one; negative: they were

@@ -29,6 +29,7 @@ TEST(WorkedPoints, OrbitsAreFoundFromAStartOfOurOwnTo1e5) {
     OperatingCondition condition;
     condition.vehicle_speed = orbit.at("speed_kilometers_per_hour").get<double>() / 3.6;
     PointOptions options;
+    options.tolerance = 1e-7;
     if (orbit.at("branch") == "down-sweep") options.start = PointStart::kLargeVibration;
     const PointResult r = solve_operating_point(scene, condition, options);
     ASSERT_TRUE(r.settled);
