@@ -71,6 +71,11 @@ class LubricantsService final : public v1::Lubricants::CallbackService, UnarySer
                          v1::Lubricant* response) override {
     return answer(context, response, [&] { return create_lubricant(application_, *request); });
   }
+  Unary* BatchCreateLubricants(Context* context, const v1::BatchCreateLubricantsRequest* request,
+                               v1::BatchCreateLubricantsResponse* response) override {
+    return answer(context, response,
+                  [&] { return batch_create_lubricants(application_, *request); });
+  }
   Unary* ImportLubricant(Context* context, const v1::ImportLubricantRequest* request,
                          v1::Lubricant* response) override {
     return answer(context, response, [&] { return import_lubricant(application_, *request); });
@@ -86,6 +91,11 @@ class LubricantsService final : public v1::Lubricants::CallbackService, UnarySer
   Unary* UpdateLubricant(Context* context, const v1::UpdateLubricantRequest* request,
                          v1::Lubricant* response) override {
     return answer(context, response, [&] { return update_lubricant(application_, *request); });
+  }
+  Unary* BatchUpdateLubricants(Context* context, const v1::BatchUpdateLubricantsRequest* request,
+                               v1::BatchUpdateLubricantsResponse* response) override {
+    return answer(context, response,
+                  [&] { return batch_update_lubricants(application_, *request); });
   }
   Unary* ListLubricantRevisions(Context* context, const v1::ListLubricantRevisionsRequest* request,
                                 v1::ListLubricantRevisionsResponse* response) override {
@@ -109,6 +119,11 @@ class GearSetsService final : public v1::GearSets::CallbackService, UnaryService
                        v1::GearSet* response) override {
     return answer(context, response, [&] { return create_gear_set(application_, *request); });
   }
+  Unary* BatchCreateGearSets(Context* context, const v1::BatchCreateGearSetsRequest* request,
+                             v1::BatchCreateGearSetsResponse* response) override {
+    return answer(context, response,
+                  [&] { return batch_create_gear_sets(application_, *request); });
+  }
   Unary* ImportGearSet(Context* context, const v1::ImportGearSetRequest* request,
                        v1::GearSet* response) override {
     return answer(context, response, [&] { return import_gear_set(application_, *request); });
@@ -124,6 +139,11 @@ class GearSetsService final : public v1::GearSets::CallbackService, UnaryService
   Unary* UpdateGearSet(Context* context, const v1::UpdateGearSetRequest* request,
                        v1::GearSet* response) override {
     return answer(context, response, [&] { return update_gear_set(application_, *request); });
+  }
+  Unary* BatchUpdateGearSets(Context* context, const v1::BatchUpdateGearSetsRequest* request,
+                             v1::BatchUpdateGearSetsResponse* response) override {
+    return answer(context, response,
+                  [&] { return batch_update_gear_sets(application_, *request); });
   }
   Unary* ListGearSetRevisions(Context* context, const v1::ListGearSetRevisionsRequest* request,
                               v1::ListGearSetRevisionsResponse* response) override {
@@ -147,6 +167,10 @@ class SurfacesService final : public v1::Surfaces::CallbackService, UnaryService
                        v1::Surface* response) override {
     return answer(context, response, [&] { return create_surface(application_, *request); });
   }
+  Unary* BatchCreateSurfaces(Context* context, const v1::BatchCreateSurfacesRequest* request,
+                             v1::BatchCreateSurfacesResponse* response) override {
+    return answer(context, response, [&] { return batch_create_surfaces(application_, *request); });
+  }
   Unary* ImportSurfaceProfiles(Context* context, const v1::ImportSurfaceProfilesRequest* request,
                                v1::Surface* response) override {
     return answer(context, response,
@@ -163,6 +187,10 @@ class SurfacesService final : public v1::Surfaces::CallbackService, UnaryService
   Unary* UpdateSurface(Context* context, const v1::UpdateSurfaceRequest* request,
                        v1::Surface* response) override {
     return answer(context, response, [&] { return update_surface(application_, *request); });
+  }
+  Unary* BatchUpdateSurfaces(Context* context, const v1::BatchUpdateSurfacesRequest* request,
+                             v1::BatchUpdateSurfacesResponse* response) override {
+    return answer(context, response, [&] { return batch_update_surfaces(application_, *request); });
   }
   Unary* ListSurfaceRevisions(Context* context, const v1::ListSurfaceRevisionsRequest* request,
                               v1::ListSurfaceRevisionsResponse* response) override {
@@ -186,6 +214,10 @@ class VehiclesService final : public v1::Vehicles::CallbackService, UnaryService
                        v1::Vehicle* response) override {
     return answer(context, response, [&] { return create_vehicle(application_, *request); });
   }
+  Unary* BatchCreateVehicles(Context* context, const v1::BatchCreateVehiclesRequest* request,
+                             v1::BatchCreateVehiclesResponse* response) override {
+    return answer(context, response, [&] { return batch_create_vehicles(application_, *request); });
+  }
   Unary* GetVehicle(Context* context, const v1::GetVehicleRequest* request,
                     v1::Vehicle* response) override {
     return answer(context, response, [&] { return get_vehicle(application_, *request); });
@@ -197,6 +229,10 @@ class VehiclesService final : public v1::Vehicles::CallbackService, UnaryService
   Unary* UpdateVehicle(Context* context, const v1::UpdateVehicleRequest* request,
                        v1::Vehicle* response) override {
     return answer(context, response, [&] { return update_vehicle(application_, *request); });
+  }
+  Unary* BatchUpdateVehicles(Context* context, const v1::BatchUpdateVehiclesRequest* request,
+                             v1::BatchUpdateVehiclesResponse* response) override {
+    return answer(context, response, [&] { return batch_update_vehicles(application_, *request); });
   }
   Unary* ListVehicleRevisions(Context* context, const v1::ListVehicleRevisionsRequest* request,
                               v1::ListVehicleRevisionsResponse* response) override {
