@@ -57,9 +57,12 @@ Tables are CSV with a header; the order of columns is free.
     mesh_stiffness_newtons_per_metre, static_transmission_error_metres.
   Profiles (surfaces): position and height, each in _metres, _millimetres or _micrometres, height
     also in _nanometres; positions evenly spaced.
-Every violation is named with its row and column. Nothing is written unless all is legal. When an
-import of several is interrupted or loses the server, the message says how many were written: give
---replace to write all of them again, which makes no revision of what is the same.
+Every violation is named with its row and column, or with its place in the list.
+
+An import takes any number of files and writes all that they hold or nothing: not when one of them
+is wrong, nor when it is interrupted or the server is lost on the way. One may be derived from
+another one in any order. Names that are taken are refused, or with --replace get a new revision
+where anything differs. At most 10000 resources and 32 MiB at once.
 )"},
       {"filters", "which resources a list shows, and in which order",
        R"(Filters of lists

@@ -240,6 +240,7 @@ std::vector<FileResource> read_row_table(const std::string& text, const std::str
     }
     if (text_field(*read.resource, "name").empty()) complaints.push_back(row + " has no name");
     read.fields = fields;
+    read.columns = header;
   }
   if (complaints.empty() && resources.empty()) complaints.emplace_back("has no rows");
   if (!complaints.empty()) {
