@@ -193,9 +193,15 @@ err_has "row 3 column kinematic_viscosity_40.*: '73,3' is not a number with a de
 err_has 'is display_name meant'
 sed -e 's/;73.3;/;1e9;/; s/;8.6;/;-1;/' rows.csv >rows-bad.csv
 expect 1 lubricants import rows-bad.csv --replace
-err_has 'row 2: .*'
-err_has 'kinematic_viscosity_100_celsius_square_millimetres_per_second = -1 mm2/s'
-err_has 'kinematic_viscosity_40_celsius_square_millimetres_per_second = 1000000000 mm2/s'
+err_has 'row 2 column kinematic_viscosity_100_.* = -1 mm2/s'
+err_has 'row 3 column kinematic_viscosity_40_.* = 1000000000 mm2/s'
+err_has 'Nothing was written'
+sed 's/;labels.project;/;labels.pro ject;/' rows.csv >rows-bad.csv
+expect 1 lubricants import rows-bad.csv
+err_has 'row 2 column labels.pro ject: "pro ject"; legal: letters'
+printf '{"lubricants": []}' >none.json
+expect 0 lubricants import none.json
+expect 0 validate none.json
 printf 'name,display_name\nlatin,\351l\n' >latin.csv
 expect 2 lubricants import latin.csv
 err_has 'not UTF-8'
