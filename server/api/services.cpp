@@ -29,9 +29,10 @@ using Unary = grpc::ServerUnaryReactor;
 
 using Clock = std::chrono::system_clock;
 
-/// What its client and the server allow of a call.
-Clock::time_point end_of(const Context& context, std::chrono::milliseconds limit) {
-  return std::min(context.deadline(), Clock::now() + limit);
+/// What its client and the server still allow of a call. A limit of nothing leaves nothing,
+/// whatever happens between two looks at the clock.
+Clock::duration time_left(const Context& context, std::chrono::milliseconds limit) {
+  return std::min<Clock::duration>(context.deadline() - Clock::now(), limit);
 }
 
 /// Bodies of unary methods, each under its deadline.
@@ -44,9 +45,7 @@ class UnaryService {
   template <class Message, class Body>
   Unary* answer(Context* context, Message* response, const Body& body) const {
     Unary* reactor = context->DefaultReactor();
-    // A limit of nothing must have passed whatever happens between two looks at the clock.
-    const auto left = std::min<Clock::duration>(context->deadline() - Clock::now(), limit_);
-    const DeadlineScope deadline(DeadlineScope::Clock::now() + left);
+    const DeadlineScope deadline(DeadlineScope::Clock::now() + time_left(*context, limit_));
     Outcome<Message> outcome =
         DeadlineScope::has_passed() ? Outcome<Message>(deadline_exceeded()) : body();
     if (outcome.ok()) {
@@ -270,7 +269,7 @@ class ContactsService final : public v1::Contacts::CallbackService, UnaryService
 class SimulationsService final : public v1::Simulations::CallbackService, UnaryService {
  public:
   SimulationsService(Application& application, const TimeLimits& limits, LiveStreams& live)
-      : UnaryService(application, limits), limit_(limits.stream), live_(live) {}
+      : UnaryService(application, limits), limits_(limits), live_(live) {}
   Unary* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                           v1::Simulation* response) override {
     return answer(context, response, [&] { return create_simulation(application_, *request); });
@@ -290,18 +289,18 @@ class SimulationsService final : public v1::Simulations::CallbackService, UnaryS
   grpc::ServerWriteReactor<v1::SimulationEvent>* WatchSimulation(
       Context* context, const v1::WatchSimulationRequest* request) override {
     return StreamReactor<v1::SimulationEvent>::start(
-        live_, *context, end_of(*context, limit_),
+        live_, *context, time_left(*context, limits_.stream), limits_.unread,
         [&] { return watch_simulation(application_, *request); });
   }
   grpc::ServerWriteReactor<v1::HistoryChunk>* ReadHistory(
       Context* context, const v1::ReadHistoryRequest* request) override {
-    return StreamReactor<v1::HistoryChunk>::start(live_, *context, end_of(*context, limit_), [&] {
-      return read_history(application_, *request);
-    });
+    return StreamReactor<v1::HistoryChunk>::start(
+        live_, *context, time_left(*context, limits_.stream), limits_.unread,
+        [&] { return read_history(application_, *request); });
   }
 
  private:
-  const std::chrono::milliseconds limit_;
+  const TimeLimits limits_;
   LiveStreams& live_;
 };
 
