@@ -428,6 +428,19 @@ TEST_F(ImportTest, AViscosityTableBecomesALubricant) {
   EXPECT_LT(made.message().characterisation().root_mean_square_residual(), 1e-6);
   EXPECT_EQ(made.message().measurements().viscosities_size(), 7);
 
+  request.set_lubricant_id("trade");
+  request.set_viscosity_table_csv(
+      "temperature_celsius,kinematic_viscosity_square_millimetres_per_second\n"
+      "20,205\n40,73.3\n100,8.86\n");
+  const auto trade = import_lubricant(app_, request);
+  ASSERT_TRUE(trade.ok()) << complaints(trade.error());
+  EXPECT_EQ(trade.message().characterisation().sae_j306_grade(), "80") << "KV100 is in the table";
+  EXPECT_EQ(trade.message()
+                .characterisation()
+                .kinematic_viscosity_100_celsius_square_millimetres_per_second(),
+            8.86);
+  EXPECT_EQ(trade.message().characterisation().viscosity_residuals_size(), 3);
+
   request.set_lubricant_id("bad");
   request.set_viscosity_table_csv(
       "temperature_celsius,kinematic_viscosity_square_millimetres_per_second\n40,70\n999,-1\n");

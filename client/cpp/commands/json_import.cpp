@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "client/cpp/failure.h"
 #include "client/cpp/text/text.h"
@@ -133,7 +134,9 @@ std::vector<ResourcePointer> JsonImport::send(Connection& connection, bool repla
     return write(connection, replace, validate_only);
   } catch (const ServiceError& error) {
     if (error.kind() == ServiceError::Kind::kRefused) {
-      throw Failure(kExitFailed, joined(verdict(error).wrong, "\n") + "\n  Nothing was written.");
+      const bool taken = error.reason() == "ALREADY_EXISTS";
+      throw Failure(kExitFailed, joined(verdict(error).wrong, "\n") + "\n  Nothing was written." +
+                                     (taken ? " --replace makes new revisions." : ""));
     }
     if (error.kind() == ServiceError::Kind::kCannotConnect || validate_only) throw;
     const Failure failure(error);

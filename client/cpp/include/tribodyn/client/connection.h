@@ -44,7 +44,7 @@ struct Listing {
 
 /// How an update is made.
 struct UpdateOptions {
-  std::vector<std::string> update_mask;  ///< top-level fields to take over; empty: all
+  std::vector<std::string> update_mask;  ///< fields to take over; empty: all
   bool allow_missing = false;            ///< create it if there is none
   bool validate_only = false;            ///< check everything, write nothing
 };
@@ -53,7 +53,7 @@ struct UpdateOptions {
 template <class Resource>
 struct ResourceUpdate {
   Resource resource;
-  std::vector<std::string> update_mask;  ///< top-level fields to take over; empty: all
+  std::vector<std::string> update_mask;  ///< fields to take over; empty: all
 };
 
 /// A server and its services. Safe for concurrent use. Nothing is sent before the first call; every
