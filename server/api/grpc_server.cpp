@@ -12,7 +12,7 @@ namespace {
 
 using ExternalConnections = grpc::experimental::ExternalConnectionAcceptor;
 
-constexpr int kMaximumRequestBytes = 32 << 20;  // a batch of 10,000 lubricants with provenance
+constexpr int kMaximumRequestBytes = 64 << 20;  // a batch of 10,000 lubricants with provenance
 constexpr int kMaximumResponseBytes = 16 << 20;
 constexpr int kMaximumStreamsPerConnection = 1000;
 constexpr std::size_t kMaximumOpenStreams = 10'000;

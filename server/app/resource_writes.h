@@ -30,10 +30,11 @@ inline google::rpc::Status already_exists(const std::string& name, bool deleted)
                        : name + " exists already; update it or take another name");
 }
 
-/// As if it had been stored.
+/// As if the body had been stored.
 template <class Resource>
-Resource preview(const Resource& accepted) {
-  Resource out = accepted;
+Resource preview(const std::string& body) {
+  Resource out;
+  out.ParseFromString(body);
   fill_units(*Resource::descriptor(), *out.mutable_provenance());
   add_characterisation(out);
   return out;
@@ -64,9 +65,10 @@ Outcome<Resource> store_new(Application& application, const Resource& accepted,
   if (const auto taken = application.store.resource(name)) {
     return already_exists(name, taken->delete_time.has_value());
   }
-  if (validate_only) return preview(accepted);
-  const auto stored = application.store.write_resources(
-      {{{name, accepted.SerializeAsString()}, std::nullopt}}, system_time());
+  const std::string body = accepted.SerializeAsString();
+  if (validate_only) return preview<Resource>(body);
+  const auto stored =
+      application.store.write_resources({{{name, body}, std::nullopt}}, system_time());
   if (!stored) return already_exists(name, false);
   return answer<Resource>(stored->front());
 }
@@ -75,14 +77,15 @@ Outcome<Resource> store_new(Application& application, const Resource& accepted,
 /// resource that is to be stored.
 template <class Resource>
 struct Draft {
-  std::optional<Resource> stated;         ///< whole and with its name; none: it cannot be judged
+  std::string name;                       ///< of the resource; empty where it is wrong
+  std::optional<Resource> stated;         ///< whole; none: not to be judged, or accepted
   std::optional<StoredResource> present;  ///< that an update starts from; none: it is a new one
-  std::optional<Resource> before;         ///< message of `present`
+  std::string body;                       ///< what has been accepted, serialised
   Violations violations;                  ///< paths as in the request
   std::optional<google::rpc::Status> refusal;  ///< why it cannot be, whatever it states
   std::string refused_field;                   ///< what the refusal is about: "lubricant.etag"
-  std::optional<Resource> accepted;            ///< unless there are violations
 
+  bool is_bad() const { return refusal || !violations.empty(); }
   void refuse(const google::rpc::Status& status, const char* field) {
     refusal = status;
     refused_field = join_path(Kind<Resource>::kField, field);
@@ -92,11 +95,12 @@ struct Draft {
 template <class Resource, class Request>
 void draft_create(Application& application, const Request& request, Draft<Resource>& draft) {
   draft.stated = Kind<Resource>::of(request);
-  const std::string name =
+  draft.name =
       new_name<Resource>(Kind<Resource>::id(request), draft.stated->name(), draft.violations);
-  draft.stated->set_name(name);
-  if (const auto taken = application.store.resource(name)) {
-    draft.refuse(already_exists(name, taken->delete_time.has_value()), "name");
+  draft.stated->set_name(draft.name);
+  if (draft.name.empty()) return;
+  if (const auto taken = application.store.resource(draft.name)) {
+    draft.refuse(already_exists(draft.name, taken->delete_time.has_value()), "name");
   }
 }
 
@@ -108,6 +112,7 @@ void draft_update(Application& application, const Request& request, Draft<Resour
     draft.violations.push_back({join_path(Kind<Resource>::kField, "name"), problem});
     return;
   }
+  draft.name = stated.name();
   const auto found = find_named<Resource>(application, stated.name());
   if (!found.ok()) {
     if (!request.allow_missing()) return draft.refuse(found.error(), "name");
@@ -123,16 +128,14 @@ void draft_update(Application& application, const Request& request, Draft<Resour
   if (!stated.etag().empty() && stated.etag() != etag_of(present)) {
     return draft.refuse(etag_mismatch(present.name), "etag");
   }
-  Resource before;
-  if (!before.ParseFromString(present.body)) {
+  Resource merged;
+  if (!merged.ParseFromString(present.body)) {
     return draft.refuse(unreadable(present.name), "name");
   }
-  Resource merged = before;
   merge(stated, request.update_mask(), merged, draft.violations);
   if (!draft.violations.empty()) return;
   merged.set_name(present.name);
   draft.stated = std::move(merged);
-  draft.before = std::move(before);
   draft.present = present;
 }
 
@@ -153,24 +156,31 @@ Draft<Resource> draft_of(Application& application, const Request& request) {
 template <class Resource>
 void accept_draft(const ResourceLookup& lookup, Draft<Resource>& draft) {
   if (!draft.stated) return;
-  const Resource* before = draft.before ? &*draft.before : nullptr;
-  draft.accepted = accept(*draft.stated, before, lookup, Kind<Resource>::kField, draft.violations);
+  std::optional<Resource> before;
+  if (draft.present) before.emplace().ParseFromString(draft.present->body);
+  const auto accepted = accept(*draft.stated, before ? &*before : nullptr, lookup,
+                               Kind<Resource>::kField, draft.violations);
+  if (!accepted) return;
+  draft.body = accepted->SerializeAsString();
+  draft.stated.reset();
 }
 
 /// Stores what has been accepted, all or none, and says what is stored then; what is as it was
 /// makes no revision. Nothing when somebody else has been faster.
 template <class Resource>
-std::optional<std::vector<StoredResource>> store_drafts(
-    Application& application, const std::vector<Draft<Resource>>& drafts) {
-  std::vector<StoredResource> all;
+std::optional<std::vector<StoredResource>> store_drafts(Application& application,
+                                                        std::vector<Draft<Resource>> drafts) {
+  std::vector<StoredResource> all(drafts.size());
   std::vector<ResourceWrite> writes;
   std::vector<std::size_t> places;  // of the writes
-  for (const Draft<Resource>& draft : drafts) {
-    StoredResource& stored = all.emplace_back(draft.present.value_or(StoredResource()));
-    std::string body = draft.accepted->SerializeAsString();
-    if (draft.present && stored.body == body) continue;
-    places.push_back(all.size() - 1);
-    writes.push_back({{draft.accepted->name(), std::move(body)}, draft.present});
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    Draft<Resource>& draft = drafts[i];
+    if (draft.present && draft.present->body == draft.body) {
+      all[i] = std::move(*draft.present);
+    } else {
+      places.push_back(i);
+      writes.push_back({{draft.name, std::move(draft.body)}, std::move(draft.present)});
+    }
   }
   if (writes.empty()) return all;
   auto written = application.store.write_resources(writes, system_time());
@@ -188,8 +198,8 @@ Outcome<Resource> write_resource(Application& application, const Request& reques
     accept_draft(resource_lookup(application.store), draft);
     if (!draft.violations.empty()) return invalid(draft.violations);
     if (draft.refusal) return *draft.refusal;
-    if (request.validate_only()) return preview(*draft.accepted);
-    if (const auto stored = store_drafts(application, drafts)) {
+    if (request.validate_only()) return preview<Resource>(draft.body);
+    if (const auto stored = store_drafts(application, std::move(drafts))) {
       return answer<Resource>(stored->front());
     }
   }
@@ -201,8 +211,8 @@ template <class Resource>
 std::map<std::string, std::size_t> places_of(std::vector<Draft<Resource>>& drafts) {
   std::map<std::string, std::size_t> places;
   for (std::size_t i = 0; i < drafts.size(); ++i) {
-    if (!drafts[i].stated || drafts[i].stated->name().empty()) continue;
-    const std::string& name = drafts[i].stated->name();
+    const std::string& name = drafts[i].name;
+    if (!drafts[i].stated || name.empty()) continue;
     const auto [first, is_new] = places.emplace(name, i);
     if (is_new) continue;
     drafts[i].violations.push_back(
@@ -220,7 +230,9 @@ ResourceLookup lookup_with(const std::vector<Draft<Resource>>& drafts,
   return {[&drafts, &places, stored](const RevisionName& name) -> std::optional<FoundResource> {
             const auto found = places.find(name.name);
             if (found == places.end() || name.revision != 0) return stored.find(name);
-            return FoundResource{0, false, drafts[found->second].stated->SerializeAsString()};
+            const Draft<Resource>& draft = drafts[found->second];
+            return FoundResource{0, false,
+                                 draft.stated ? draft.stated->SerializeAsString() : draft.body};
           },
           [&places, stored](const std::string& collection) {
             std::vector<std::string> names = stored.names(collection);
@@ -251,45 +263,55 @@ std::optional<google::rpc::Status> refusal_of(const std::vector<Draft<Resource>>
   return all_refusals ? with_violations(*first, violations) : invalid(violations);
 }
 
-/// Drafts of all requests, accepted or with what is wrong with them. Throws StoreError.
+/// Drafts of all requests, accepted or with what is wrong with them; of a batch in which much is
+/// wrong perhaps not all. Throws StoreError.
 template <class Resource, class Batch>
 std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& batch) {
   std::vector<Draft<Resource>> drafts;
+  std::size_t bad = 0;
   for (const auto& request : batch.requests()) {
-    drafts.push_back(draft_of<Resource>(application, request));
+    Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request));
     if (request.validate_only() && !batch.validate_only()) {
-      drafts.back().violations.push_back(
+      draft.violations.push_back(
           {"validate_only", "set for one of a batch; legal: for the whole batch"});
     }
+    if (draft.is_bad() && ++bad >= kMaximumBatchViolations) return drafts;
   }
   const auto places = places_of(drafts);
   const ResourceLookup lookup = lookup_with(drafts, places, resource_lookup(application.store));
-  std::size_t violations = 0;
+  bad = 0;
   for (Draft<Resource>& draft : drafts) {
-    if (violations >= kMaximumBatchViolations || DeadlineScope::has_passed()) break;
+    if (DeadlineScope::has_passed()) return drafts;
     accept_draft(lookup, draft);
-    violations += draft.violations.size();
+    if (draft.is_bad() && ++bad >= kMaximumBatchViolations) return drafts;
   }
   return drafts;
 }
 
-/// Resources in the order of a batch; of very many only what tells them apart.
-template <class Resource, class Response>
-Outcome<Response> answer_all(const std::vector<Outcome<Resource>>& resources) {
+/// Resources in the order of a batch; of very many only what tells them apart. `resource_at` gives
+/// one after the other.
+template <class Resource, class Response, class ResourceAt>
+Outcome<Response> answer_all(std::size_t count, const ResourceAt& resource_at) {
+  const auto shorten = [](Resource& resource) {
+    Resource brief;
+    brief.set_name(resource.name());
+    brief.set_etag(resource.etag());
+    brief.set_revision(resource.revision());
+    resource = std::move(brief);
+  };
   Response response;
   std::size_t bytes = 0;
-  for (const Outcome<Resource>& each : resources) {
-    if (!each.ok()) return each.error();
-    bytes += each.message().ByteSizeLong();
-  }
-  for (const Outcome<Resource>& each : resources) {
+  for (std::size_t i = 0; i < count; ++i) {
+    Outcome<Resource> found = resource_at(i);
+    if (!found.ok()) return found.error();
+    const bool was_long = bytes > kMaximumPageBytes;
+    bytes += found.message().ByteSizeLong();
     Resource& added = *Kind<Resource>::add(response);
-    if (bytes <= kMaximumPageBytes) {
-      added = each.message();
-    } else {
-      added.set_name(each.message().name());
-      added.set_etag(each.message().etag());
-      added.set_revision(each.message().revision());
+    added = std::move(found.message());
+    if (was_long) {
+      shorten(added);
+    } else if (bytes > kMaximumPageBytes) {
+      for (Resource& each : *Kind<Resource>::all(response)) shorten(each);
     }
   }
   return response;
@@ -302,17 +324,17 @@ Outcome<Response> write_batch(Application& application, const Batch& batch) {
   check_size(batch, "requests", violations);
   if (!violations.empty()) return invalid(violations);
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
-    const std::vector<Draft<Resource>> drafts = drafts_of<Resource>(application, batch);
+    std::vector<Draft<Resource>> drafts = drafts_of<Resource>(application, batch);
     if (DeadlineScope::has_passed()) return deadline_exceeded();
     if (const auto refusal = refusal_of(drafts)) return *refusal;
-    std::vector<Outcome<Resource>> resources;
     if (batch.validate_only()) {
-      for (const auto& draft : drafts) resources.emplace_back(preview(*draft.accepted));
-      return answer_all<Resource, Response>(resources);
+      return answer_all<Resource, Response>(drafts.size(), [&](std::size_t i) {
+        return Outcome<Resource>(preview<Resource>(drafts[i].body));
+      });
     }
-    if (const auto stored = store_drafts(application, drafts)) {
-      for (const auto& each : *stored) resources.push_back(answer<Resource>(each));
-      return answer_all<Resource, Response>(resources);
+    if (const auto stored = store_drafts(application, std::move(drafts))) {
+      return answer_all<Resource, Response>(
+          stored->size(), [&](std::size_t i) { return answer<Resource>((*stored)[i]); });
     }
   }
   return contention("a resource of the batch");

@@ -273,16 +273,26 @@ TEST_F(BatchTest, TheSizeIsLimitedAndAVeryLargeAnswerIsBrief) {
 }
 
 TEST_F(BatchTest, ThousandsOfViolationsEndInTime) {
-  v1::BatchCreateLubricantsRequest batch = many(kMaximumBatchSize);
-  for (auto& each : *batch.mutable_requests()) {
-    each.mutable_lubricant()->set_derived_from("lubricants/mony-17");
+  ASSERT_TRUE(batch_create_lubricants(app_, many(5000)).ok());
+  v1::BatchCreateLubricantsRequest batch;
+  v1::BatchUpdateLubricantsRequest updates;
+  for (int i = 0; i < kMaximumBatchSize; ++i) {
+    v1::Lubricant* orphan = batch.add_requests()->mutable_lubricant();
+    *orphan = fluid("orphan-" + std::to_string(i));
+    orphan->set_derived_from("lubricants/mony-17");
+    updates.add_requests()->mutable_lubricant()->set_name("lubricants/mony-" + std::to_string(i));
   }
   const auto begin = std::chrono::steady_clock::now();
-  const auto refused = batch_create_lubricants(app_, batch);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
-  ASSERT_FALSE(refused.ok());
-  expect_nothing_written(refused.error(), google::rpc::INVALID_ARGUMENT);
-  EXPECT_THAT(complaints(refused.error()).back(), HasSubstr("more violations"));
+  const auto orphans = batch_create_lubricants(app_, batch);
+  ASSERT_FALSE(orphans.ok());
+  EXPECT_EQ(orphans.error().code(), google::rpc::INVALID_ARGUMENT);
+  EXPECT_THAT(complaints(orphans.error()).back(), HasSubstr("more violations"));
+  const auto unknown = batch_update_lubricants(app_, updates);
+  ASSERT_FALSE(unknown.ok());
+  EXPECT_EQ(unknown.error().code(), google::rpc::NOT_FOUND);
+  EXPECT_THAT(complaints(unknown.error()).back(), HasSubstr("more violations"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
+  EXPECT_EQ(count(), before_ + 5000);
 }
 
 TEST_F(BatchTest, BatchesThatMeetDoNotMix) {
