@@ -258,7 +258,7 @@ TEST_F(BatchTest, TheSizeIsLimitedAndAVeryLargeAnswerIsBrief) {
     expect_nothing_written(refused.error(), google::rpc::INVALID_ARGUMENT);
     EXPECT_THAT(complaints(refused.error()),
                 ElementsAre(StartsWith("requests: requests = " + std::to_string(size) +
-                                       "; legal: 1 to 10000")));
+                                       "; legal: 1 to 20000")));
   }
   const auto made = batch_create_lubricants(app_, many(2000));
   ASSERT_TRUE(made.ok()) << made.error().message();

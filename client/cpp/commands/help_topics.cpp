@@ -62,7 +62,7 @@ Every violation is named with its row and column, or with its place in the list.
 An import takes any number of files and writes all that they hold or nothing: not when one of them
 is wrong, nor when it is interrupted or the server is lost on the way. One may be derived from
 another one in any order. Names that are taken are refused, or with --replace get a new revision
-where anything differs; a table changes only what its columns tell of. At most 10000 resources and
+where anything differs; a table changes only what its columns tell of. At most 20000 resources and
 64 MiB at once.
 )"},
       {"filters", "which resources a list shows, and in which order",
