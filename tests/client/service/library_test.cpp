@@ -95,6 +95,35 @@ TEST_F(Library, ALubricantLivesThroughItsRevisions) {
   EXPECT_FALSE(connection.undelete<v1::Lubricant>("lubricants/life").has_delete_time());
 }
 
+TEST_F(Library, ABatchIsWrittenWholeOrNotAtAll) {
+  std::vector<v1::Lubricant> fluids(2, data_sheet());
+  fluids[0].set_name("lubricants/batch-drained");
+  fluids[0].set_derived_from("lubricants/batch-filled");
+  fluids[1].set_name("lubricants/batch-filled");
+  EXPECT_EQ(connection.create_all(fluids, true).size(), 2U);
+  const auto created = connection.create_all(fluids);
+  ASSERT_EQ(created.size(), 2U);
+  EXPECT_EQ(created[0].name(), "lubricants/batch-drained");
+  EXPECT_NEAR(created[1].characterisation().viscosity_index(), 92, 0.5);
+
+  v1::Lubricant renamed = created[0];
+  renamed.set_display_name("renamed");
+  v1::Lubricant wrong = created[1];
+  wrong.set_relaxation_time_seconds(-1);
+  const ServiceError error = refused([&] {
+    connection.update_all<v1::Lubricant>({{renamed, {"display_name"}}, {wrong, {}}});
+  });
+  ASSERT_EQ(error.violations().size(), 1U) << error.what();
+  EXPECT_EQ(error.violations()[0].field, "requests[1].lubricant.relaxation_time_seconds");
+  EXPECT_EQ(connection.get<v1::Lubricant>(renamed.name()).revision(), 1);
+  v1::Lubricant other = data_sheet();
+  other.set_name("lubricants/batch-new");
+  const auto updated =
+      connection.update_all<v1::Lubricant>({{renamed, {"display_name"}}, {other, {}}}, true);
+  EXPECT_EQ(updated[0].revision(), 2);
+  EXPECT_EQ(updated[1].revision(), 1);
+}
+
 TEST_F(Library, AllViolationsComeAtOnce) {
   v1::Lubricant fluid = data_sheet();
   fluid.mutable_measurements()->set_density_15_celsius_kilograms_per_cubic_metre(0.87);
