@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "client/cpp/commands/help_topics.h"
 #include "client/cpp/resources/kind.h"
 #include "client/cpp/text/units.h"
 #include "tests/service/server_process.h"
@@ -204,6 +205,27 @@ TEST_F(Library, TheServersUnitsAreThoseOfTheNames) {
   for (const ResourceKind& kind : resource_kinds()) {
     EXPECT_GT(connection.schema(kind.prototype->GetDescriptor()->name()).constraints_size(), 3);
   }
+}
+
+// Lengths are known by stem and unit: "radius_x_metres", "each also in _millimetres".
+TEST_F(Library, HelpNamesEveryColumnThatTheServerReads) {
+  std::string help;
+  for (const HelpTopic& topic : help_topics()) help += topic.text;
+  const v1::Schema schema = connection.schema();
+  int compared = 0;
+  for (const v1::Vocabulary& vocabulary : schema.vocabularies()) {
+    if (!vocabulary.name().ends_with("csv")) continue;
+    for (const std::string& column : vocabulary.words()) {
+      const std::size_t unit = column.rfind('_');
+      const bool is_length = column.ends_with("metres") && unit != std::string::npos;
+      const std::string stem = is_length ? column.substr(0, unit) : column;
+      EXPECT_NE(help.find(stem), std::string::npos) << vocabulary.name() << " " << column;
+      const std::string ending = is_length ? column.substr(unit) : "";
+      EXPECT_NE(help.find(ending), std::string::npos) << column;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 30);
 }
 
 TEST(LibraryAlone, AServerThatIsNotThere) {
