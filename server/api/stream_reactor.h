@@ -34,6 +34,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   using Source = std::shared_ptr<MessageSource<Message>>;
 
   using Clock = std::chrono::system_clock;
+  using StopWatch = std::chrono::steady_clock;
 
   StreamReactor(LiveStreams& live, grpc::CallbackServerContext& context, Clock::duration unread)
       : live_(live), context_(&context), unread_(unread) {}
@@ -144,15 +145,14 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
     alarm->Set(time, [weak](bool rings) {
       const auto self = rings ? weak.lock() : nullptr;
       if (!self) return;
-      const Clock::time_point now = Clock::now();
-      Clock::time_point since = now;
+      Clock::duration writing{0};
       {
         const std::lock_guard lock(self->mutex_);
         if (self->finished_) return;
-        since = self->writing_since_.value_or(now);
+        if (self->writing_since_) writing = StopWatch::now() - *self->writing_since_;
       }
-      if (now - since >= self->unread_) return self->cut_off();
-      self->check_writes_at(since + self->unread_);
+      if (writing >= self->unread_) return self->cut_off();
+      self->check_writes_at(Clock::now() + self->unread_ - writing);
     });
   }
 
@@ -177,7 +177,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
         case Step::kMessage: {
           {
             const std::lock_guard lock(mutex_);
-            writing_since_ = Clock::now();
+            writing_since_ = StopWatch::now();
           }
           return this->StartWrite(&message_);
         }
@@ -227,8 +227,8 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   bool busy_ = false;      // guarded by mutex_
   bool again_ = false;     // guarded by mutex_
   bool finished_ = false;  // guarded by mutex_; stays set once Finish is called
-  std::optional<google::rpc::Status> closing_;      // guarded by mutex_
-  std::optional<Clock::time_point> writing_since_;  // guarded by mutex_
+  std::optional<google::rpc::Status> closing_;          // guarded by mutex_
+  std::optional<StopWatch::time_point> writing_since_;  // guarded by mutex_
   std::shared_ptr<StreamReactor> self_;
 };
 
