@@ -49,6 +49,23 @@ void bind_value(SQLite::Statement& statement, int index, const PropertyValue& va
   std::visit([&](const auto& held) { statement.bind(index, held); }, value);
 }
 
+bool is_taken(SQLite::Database& db, const std::string& name) {
+  SQLite::Statement taken(db, "SELECT 1 FROM resources WHERE name = ?");
+  taken.bind(1, name);
+  return taken.executeStep();
+}
+
+bool is_unchanged(SQLite::Database& db, const StoredResource& present) {
+  SQLite::Statement unchanged(db,
+                              "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
+                              "WHERE r.id = ? AND v.revision = ? AND "
+                              "(r.delete_time IS NULL) = ?");
+  unchanged.bind(1, present.id);
+  unchanged.bind(2, present.revision);
+  unchanged.bind(3, present.delete_time ? 0 : 1);
+  return unchanged.executeStep();
+}
+
 StoredResource insert_resource(SQLite::Database& db, const NewResource& resource,
                                Microseconds now) {
   SQLite::Statement insert(

@@ -18,6 +18,12 @@ namespace tribodyn::server {
 void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes);
 void bind_value(SQLite::Statement& statement, int index, const PropertyValue& value);
 
+/// Whether there is a resource of that name, deleted or not.
+bool is_taken(SQLite::Database& db, const std::string& name);
+
+/// Whether a resource is still as it was read.
+bool is_unchanged(SQLite::Database& db, const StoredResource& present);
+
 /// A new resource with its first revision, as it is stored then.
 StoredResource insert_resource(SQLite::Database& db, const NewResource& resource, Microseconds now);
 

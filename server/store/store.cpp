@@ -79,25 +79,6 @@ std::int64_t revision_row(SQLite::Database& db, const std::string& name) {
   return query.getColumn(0).getInt64();
 }
 
-/// Whether there is a resource of that name, deleted or not.
-bool is_taken(SQLite::Database& db, const std::string& name) {
-  SQLite::Statement taken(db, "SELECT 1 FROM resources WHERE name = ?");
-  taken.bind(1, name);
-  return taken.executeStep();
-}
-
-/// Whether a resource is still as it was read.
-bool is_unchanged(SQLite::Database& db, const StoredResource& present) {
-  SQLite::Statement unchanged(db,
-                              "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
-                              "WHERE r.id = ? AND v.revision = ? AND "
-                              "(r.delete_time IS NULL) = ?");
-  unchanged.bind(1, present.id);
-  unchanged.bind(2, present.revision);
-  unchanged.bind(3, present.delete_time ? 0 : 1);
-  return unchanged.executeStep();
-}
-
 /// Incremental reading of one blob.
 class BlobReader {
  public:

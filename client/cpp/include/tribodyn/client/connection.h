@@ -42,18 +42,18 @@ struct Listing {
   bool has_more = false;  ///< `limit` ended it
 };
 
-/// How an update is made.
-struct UpdateOptions {
-  std::vector<std::string> update_mask;  ///< fields to take over; empty: all
-  bool allow_missing = false;            ///< create it if there is none
-  bool validate_only = false;            ///< check everything, write nothing
-};
-
 /// A resource of a batch of updates.
 template <class Resource>
 struct ResourceUpdate {
   Resource resource;
   std::vector<std::string> update_mask;  ///< fields to take over; empty: all
+};
+
+/// How an update is made.
+struct UpdateOptions {
+  std::vector<std::string> update_mask;  ///< fields to take over; empty: all
+  bool allow_missing = false;            ///< create it if there is none
+  bool validate_only = false;            ///< check everything, write nothing
 };
 
 /// A server and its services. Safe for concurrent use. Nothing is sent before the first call; every
