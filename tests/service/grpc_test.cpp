@@ -343,8 +343,9 @@ TEST_F(GrpcTest, GarbageNeitherCrashesNorHangsIt) {
       client.call("/tribodyn.v1." + std::string(method), bytes);
     }
   }
-  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/EvaluateContact", std::string(70'000'000, 'x'))
-                .first.error_code(),
+  std::string huge;
+  huge.resize(70'000'000, 'x');
+  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/EvaluateContact", huge).first.error_code(),
             grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_EQ(client.call("/tribodyn.v1.Contacts/NoSuchMethod", "").first.error_code(),
             grpc::StatusCode::UNIMPLEMENTED);

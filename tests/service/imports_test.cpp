@@ -385,8 +385,7 @@ TEST_F(ImportTest, EverythingWrongWithProfilesComesAtOnce) {
   request.add_profiles()->set_csv("position_metres,height_metre\n0,0\n-1,1\n-2,0\n");
   const std::string said = complaints(import_surface_profiles(app_, request).error());
   for (const char* each :
-       {"surface.composite_rms_height_metres: composite_rms_height_metres follows from the "
-        "profiles",
+       {"surface.composite_rms_height_metres: composite_rms_height_metres follows",
         "profiles: two of one member and direction", "profiles[0].csv row 6: 3 cells; legal: 2",
         "profiles[0].csv row 4 column position_micrometres: \"x\"",
         "profiles[0].csv row 8 column height_nanometres: is empty",
