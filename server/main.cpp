@@ -43,6 +43,7 @@ struct Flags {
   std::string log_level = "info";
   double call_limit_seconds = 30;
   double stream_limit_seconds = 3600;
+  double unread_limit_seconds = 60;
 };
 
 /// Subcommands take the place of serving; each needs --database.
@@ -98,6 +99,10 @@ void add_flags(CLI::App& app, Flags& flags) {
   app.add_option("--stream-limit-seconds", flags.stream_limit_seconds,
                  "So does a watch or the reading of a history; clients watch on. Recommended: 3600")
       ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+  app.add_option("--unread-limit-seconds", flags.unread_limit_seconds,
+                 "A stream whose client takes nothing for this long is cut off. Recommended: 60")
+      ->check(CLI::Range(0.01, 86400.0))
       ->capture_default_str();
   app.add_option("--port-file", flags.port_file,
                  "Write the address here once the server answers; removed at the end");
@@ -157,7 +162,8 @@ void serve(const Flags& flags, const ListenAddress& address, const sigset_t& sig
   };
   GrpcServer server(
       application, address,
-      {milliseconds(flags.call_limit_seconds), milliseconds(flags.stream_limit_seconds)});
+      {milliseconds(flags.call_limit_seconds), milliseconds(flags.stream_limit_seconds),
+       milliseconds(flags.unread_limit_seconds)});
   spdlog::info("tribodynd " TRIBODYN_VERSION " ({}) listens on {} with {} threads", kModelVersion,
                server.address(), options.threads);
   if (!flags.port_file.empty()) write_port_file(flags.port_file, server.address());

@@ -12,7 +12,7 @@ namespace {
 
 using ExternalConnections = grpc::experimental::ExternalConnectionAcceptor;
 
-constexpr int kMaximumRequestBytes = 4 << 20;  // surface profiles of 3 MiB, and what is beside them
+constexpr int kMaximumRequestBytes = 64 << 20;  // a batch of 10,000 lubricants with provenance
 constexpr int kMaximumResponseBytes = 16 << 20;
 constexpr int kMaximumStreamsPerConnection = 1000;
 constexpr std::size_t kMaximumOpenStreams = 10'000;

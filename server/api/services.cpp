@@ -29,9 +29,10 @@ using Unary = grpc::ServerUnaryReactor;
 
 using Clock = std::chrono::system_clock;
 
-/// What its client and the server allow of a call.
-Clock::time_point end_of(const Context& context, std::chrono::milliseconds limit) {
-  return std::min(context.deadline(), Clock::now() + limit);
+/// What its client and the server still allow of a call. A limit of nothing leaves nothing,
+/// whatever happens between two looks at the clock.
+Clock::duration time_left(const Context& context, std::chrono::milliseconds limit) {
+  return std::min<Clock::duration>(context.deadline() - Clock::now(), limit);
 }
 
 /// Bodies of unary methods, each under its deadline.
@@ -44,9 +45,7 @@ class UnaryService {
   template <class Message, class Body>
   Unary* answer(Context* context, Message* response, const Body& body) const {
     Unary* reactor = context->DefaultReactor();
-    // A limit of nothing must have passed whatever happens between two looks at the clock.
-    const auto left = std::min<Clock::duration>(context->deadline() - Clock::now(), limit_);
-    const DeadlineScope deadline(DeadlineScope::Clock::now() + left);
+    const DeadlineScope deadline(DeadlineScope::Clock::now() + time_left(*context, limit_));
     Outcome<Message> outcome =
         DeadlineScope::has_passed() ? Outcome<Message>(deadline_exceeded()) : body();
     if (outcome.ok()) {
@@ -71,6 +70,11 @@ class LubricantsService final : public v1::Lubricants::CallbackService, UnarySer
                          v1::Lubricant* response) override {
     return answer(context, response, [&] { return create_lubricant(application_, *request); });
   }
+  Unary* BatchCreateLubricants(Context* context, const v1::BatchCreateLubricantsRequest* request,
+                               v1::BatchCreateLubricantsResponse* response) override {
+    return answer(context, response,
+                  [&] { return batch_create_lubricants(application_, *request); });
+  }
   Unary* ImportLubricant(Context* context, const v1::ImportLubricantRequest* request,
                          v1::Lubricant* response) override {
     return answer(context, response, [&] { return import_lubricant(application_, *request); });
@@ -86,6 +90,11 @@ class LubricantsService final : public v1::Lubricants::CallbackService, UnarySer
   Unary* UpdateLubricant(Context* context, const v1::UpdateLubricantRequest* request,
                          v1::Lubricant* response) override {
     return answer(context, response, [&] { return update_lubricant(application_, *request); });
+  }
+  Unary* BatchUpdateLubricants(Context* context, const v1::BatchUpdateLubricantsRequest* request,
+                               v1::BatchUpdateLubricantsResponse* response) override {
+    return answer(context, response,
+                  [&] { return batch_update_lubricants(application_, *request); });
   }
   Unary* ListLubricantRevisions(Context* context, const v1::ListLubricantRevisionsRequest* request,
                                 v1::ListLubricantRevisionsResponse* response) override {
@@ -109,6 +118,11 @@ class GearSetsService final : public v1::GearSets::CallbackService, UnaryService
                        v1::GearSet* response) override {
     return answer(context, response, [&] { return create_gear_set(application_, *request); });
   }
+  Unary* BatchCreateGearSets(Context* context, const v1::BatchCreateGearSetsRequest* request,
+                             v1::BatchCreateGearSetsResponse* response) override {
+    return answer(context, response,
+                  [&] { return batch_create_gear_sets(application_, *request); });
+  }
   Unary* ImportGearSet(Context* context, const v1::ImportGearSetRequest* request,
                        v1::GearSet* response) override {
     return answer(context, response, [&] { return import_gear_set(application_, *request); });
@@ -124,6 +138,11 @@ class GearSetsService final : public v1::GearSets::CallbackService, UnaryService
   Unary* UpdateGearSet(Context* context, const v1::UpdateGearSetRequest* request,
                        v1::GearSet* response) override {
     return answer(context, response, [&] { return update_gear_set(application_, *request); });
+  }
+  Unary* BatchUpdateGearSets(Context* context, const v1::BatchUpdateGearSetsRequest* request,
+                             v1::BatchUpdateGearSetsResponse* response) override {
+    return answer(context, response,
+                  [&] { return batch_update_gear_sets(application_, *request); });
   }
   Unary* ListGearSetRevisions(Context* context, const v1::ListGearSetRevisionsRequest* request,
                               v1::ListGearSetRevisionsResponse* response) override {
@@ -147,6 +166,10 @@ class SurfacesService final : public v1::Surfaces::CallbackService, UnaryService
                        v1::Surface* response) override {
     return answer(context, response, [&] { return create_surface(application_, *request); });
   }
+  Unary* BatchCreateSurfaces(Context* context, const v1::BatchCreateSurfacesRequest* request,
+                             v1::BatchCreateSurfacesResponse* response) override {
+    return answer(context, response, [&] { return batch_create_surfaces(application_, *request); });
+  }
   Unary* ImportSurfaceProfiles(Context* context, const v1::ImportSurfaceProfilesRequest* request,
                                v1::Surface* response) override {
     return answer(context, response,
@@ -163,6 +186,10 @@ class SurfacesService final : public v1::Surfaces::CallbackService, UnaryService
   Unary* UpdateSurface(Context* context, const v1::UpdateSurfaceRequest* request,
                        v1::Surface* response) override {
     return answer(context, response, [&] { return update_surface(application_, *request); });
+  }
+  Unary* BatchUpdateSurfaces(Context* context, const v1::BatchUpdateSurfacesRequest* request,
+                             v1::BatchUpdateSurfacesResponse* response) override {
+    return answer(context, response, [&] { return batch_update_surfaces(application_, *request); });
   }
   Unary* ListSurfaceRevisions(Context* context, const v1::ListSurfaceRevisionsRequest* request,
                               v1::ListSurfaceRevisionsResponse* response) override {
@@ -186,6 +213,10 @@ class VehiclesService final : public v1::Vehicles::CallbackService, UnaryService
                        v1::Vehicle* response) override {
     return answer(context, response, [&] { return create_vehicle(application_, *request); });
   }
+  Unary* BatchCreateVehicles(Context* context, const v1::BatchCreateVehiclesRequest* request,
+                             v1::BatchCreateVehiclesResponse* response) override {
+    return answer(context, response, [&] { return batch_create_vehicles(application_, *request); });
+  }
   Unary* GetVehicle(Context* context, const v1::GetVehicleRequest* request,
                     v1::Vehicle* response) override {
     return answer(context, response, [&] { return get_vehicle(application_, *request); });
@@ -197,6 +228,10 @@ class VehiclesService final : public v1::Vehicles::CallbackService, UnaryService
   Unary* UpdateVehicle(Context* context, const v1::UpdateVehicleRequest* request,
                        v1::Vehicle* response) override {
     return answer(context, response, [&] { return update_vehicle(application_, *request); });
+  }
+  Unary* BatchUpdateVehicles(Context* context, const v1::BatchUpdateVehiclesRequest* request,
+                             v1::BatchUpdateVehiclesResponse* response) override {
+    return answer(context, response, [&] { return batch_update_vehicles(application_, *request); });
   }
   Unary* ListVehicleRevisions(Context* context, const v1::ListVehicleRevisionsRequest* request,
                               v1::ListVehicleRevisionsResponse* response) override {
@@ -234,7 +269,7 @@ class ContactsService final : public v1::Contacts::CallbackService, UnaryService
 class SimulationsService final : public v1::Simulations::CallbackService, UnaryService {
  public:
   SimulationsService(Application& application, const TimeLimits& limits, LiveStreams& live)
-      : UnaryService(application, limits), limit_(limits.stream), live_(live) {}
+      : UnaryService(application, limits), limits_(limits), live_(live) {}
   Unary* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                           v1::Simulation* response) override {
     return answer(context, response, [&] { return create_simulation(application_, *request); });
@@ -254,18 +289,18 @@ class SimulationsService final : public v1::Simulations::CallbackService, UnaryS
   grpc::ServerWriteReactor<v1::SimulationEvent>* WatchSimulation(
       Context* context, const v1::WatchSimulationRequest* request) override {
     return StreamReactor<v1::SimulationEvent>::start(
-        live_, *context, end_of(*context, limit_),
+        live_, *context, time_left(*context, limits_.stream), limits_.unread,
         [&] { return watch_simulation(application_, *request); });
   }
   grpc::ServerWriteReactor<v1::HistoryChunk>* ReadHistory(
       Context* context, const v1::ReadHistoryRequest* request) override {
-    return StreamReactor<v1::HistoryChunk>::start(live_, *context, end_of(*context, limit_), [&] {
-      return read_history(application_, *request);
-    });
+    return StreamReactor<v1::HistoryChunk>::start(
+        live_, *context, time_left(*context, limits_.stream), limits_.unread,
+        [&] { return read_history(application_, *request); });
   }
 
  private:
-  const std::chrono::milliseconds limit_;
+  const TimeLimits limits_;
   LiveStreams& live_;
 };
 

@@ -15,6 +15,7 @@
 #include "server/app/errors.h"
 #include "server/app/message_source.h"
 #include "server/app/outcome.h"
+#include "server/store/deadline.h"
 
 namespace tribodyn::server {
 
@@ -22,7 +23,8 @@ namespace tribodyn::server {
 /// from OnWriteDone or, when the source had nothing, when the source says that something changed.
 /// Safe for concurrent access: whoever holds `busy_` owns source and stream; nobody holds the mutex
 /// while calling into gRPC. Keeps itself alive until OnDone. At its end it is closed with
-/// DEADLINE_EXCEEDED; a client that reads nothing, so that a write stays under way, is cut off.
+/// DEADLINE_EXCEEDED. A client that reads nothing, so that a write stays under way, is cut off: at
+/// the end, or once that write has taken too long.
 template <class Message>
 class StreamReactor final : public grpc::ServerWriteReactor<Message>,
                             public ProgressObserver,
@@ -32,20 +34,25 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   using Source = std::shared_ptr<MessageSource<Message>>;
 
   using Clock = std::chrono::system_clock;
+  using StopWatch = std::chrono::steady_clock;
 
-  StreamReactor(LiveStreams& live, grpc::CallbackServerContext& context)
-      : live_(live), context_(&context) {}
+  StreamReactor(LiveStreams& live, grpc::CallbackServerContext& context, Clock::duration unread)
+      : live_(live), context_(&context), unread_(unread) {}
 
   /// A stream of the messages of the source that `open` gives, or one that ends at once with the
-  /// error.
+  /// error. It may last for `left`, and one write of it for `unread`.
   template <class Open>
   static grpc::ServerWriteReactor<Message>* start(LiveStreams& live,
                                                   grpc::CallbackServerContext& context,
-                                                  Clock::time_point end, const Open& open) {
-    auto reactor = std::make_shared<StreamReactor>(live, context);
+                                                  Clock::duration left, Clock::duration unread,
+                                                  const Open& open) {
+    auto reactor = std::make_shared<StreamReactor>(live, context, unread);
     reactor->self_ = reactor;
     std::optional<google::rpc::Status> refused;
-    Outcome<Source> outcome = Clock::now() >= end ? Outcome<Source>(deadline_exceeded()) : open();
+    Outcome<Source> outcome = [&] {
+      const DeadlineScope deadline(DeadlineScope::Clock::now() + left);
+      return DeadlineScope::has_passed() ? Outcome<Source>(deadline_exceeded()) : open();
+    }();
     if (outcome.ok()) {
       refused = live.add(reactor);
     } else {
@@ -57,7 +64,8 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
     }
     reactor->source_ = std::move(outcome.message());
     reactor->source_->observe(reactor);
-    reactor->end_at(end);
+    reactor->end_at(Clock::now() + left);
+    reactor->check_writes_at(Clock::now() + unread);
     reactor->changed();
     return reactor.get();
   }
@@ -87,6 +95,10 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   }
 
   void OnWriteDone(bool ok) override {
+    {
+      const std::lock_guard lock(mutex_);
+      writing_since_.reset();
+    }
     if (!ok) return finish(error(google::rpc::CANCELLED, "CANCELLED", "the client is gone"));
     send_next();
   }
@@ -120,11 +132,33 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   void cut_off_at(Clock::time_point time) {
     const std::weak_ptr<StreamReactor> weak = this->weak_from_this();
     last_alarm_.Set(time, [weak](bool rings) {
+      if (const auto self = rings ? weak.lock() : nullptr) self->cut_off();
+    });
+  }
+
+  /// Looks then, and again whenever a write that is under way may have taken too long.
+  void check_writes_at(Clock::time_point time) {
+    const std::weak_ptr<StreamReactor> weak = this->weak_from_this();
+    // One that rings cannot be set again meanwhile; and this one may ring before Set has returned.
+    const auto alarm = std::make_shared<grpc::Alarm>();
+    write_alarm_ = alarm;
+    alarm->Set(time, [weak](bool rings) {
       const auto self = rings ? weak.lock() : nullptr;
       if (!self) return;
-      const std::lock_guard lock(self->context_mutex_);
-      if (self->context_ != nullptr) self->context_->TryCancel();
+      Clock::duration writing{0};
+      {
+        const std::lock_guard lock(self->mutex_);
+        if (self->finished_) return;
+        if (self->writing_since_) writing = StopWatch::now() - *self->writing_since_;
+      }
+      if (writing >= self->unread_) return self->cut_off();
+      self->check_writes_at(Clock::now() + self->unread_ - writing);
     });
+  }
+
+  void cut_off() {
+    const std::lock_guard lock(context_mutex_);
+    if (context_ != nullptr) context_->TryCancel();
   }
 
   using Step = typename MessageSource<Message>::Step;
@@ -140,8 +174,13 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
       }
       if (closing) return finish(*closing);
       switch (ask_source()) {
-        case Step::kMessage:
+        case Step::kMessage: {
+          {
+            const std::lock_guard lock(mutex_);
+            writing_since_ = StopWatch::now();
+          }
           return this->StartWrite(&message_);
+        }
         case Step::kEnd:
           return finish(end_);
         case Step::kWait:
@@ -178,7 +217,9 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   std::recursive_mutex context_mutex_;
   grpc::CallbackServerContext* context_;  // guarded by context_mutex_; null once done
   grpc::Alarm alarm_;
-  grpc::Alarm last_alarm_;   // set by alarm_ alone
+  grpc::Alarm last_alarm_;                    // set by alarm_ alone
+  std::shared_ptr<grpc::Alarm> write_alarm_;  // set by start, then by itself alone
+  const Clock::duration unread_;
   Source source_;            // owner of busy_
   Message message_;          // owner of busy_
   google::rpc::Status end_;  // owner of busy_
@@ -186,7 +227,8 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   bool busy_ = false;      // guarded by mutex_
   bool again_ = false;     // guarded by mutex_
   bool finished_ = false;  // guarded by mutex_; stays set once Finish is called
-  std::optional<google::rpc::Status> closing_;  // guarded by mutex_
+  std::optional<google::rpc::Status> closing_;          // guarded by mutex_
+  std::optional<StopWatch::time_point> writing_since_;  // guarded by mutex_
   std::shared_ptr<StreamReactor> self_;
 };
 

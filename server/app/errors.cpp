@@ -45,7 +45,11 @@ google::rpc::Status invalid(const Violations& violations) {
   const Violation& first = violations.front();
   std::string message = fmt::format("{}: {}", first.field, first.description);
   if (violations.size() > 1) message += fmt::format(" (and {} more)", violations.size() - 1);
-  google::rpc::Status status = error(google::rpc::INVALID_ARGUMENT, "INVALID_FIELDS", message);
+  return with_violations(error(google::rpc::INVALID_ARGUMENT, "INVALID_FIELDS", message),
+                         violations);
+}
+
+google::rpc::Status with_violations(google::rpc::Status status, const Violations& violations) {
   status.add_details()->PackFrom(bad_request(violations));
   return status;
 }

@@ -18,6 +18,9 @@ google::rpc::Status error(google::rpc::Code code, const std::string& reason,
 /// clients limit to 8 KiB: what does not fit is counted in a last violation.
 google::rpc::Status invalid(const Violations& violations);
 
+/// An error whatever the fields hold, with the fields that it is about as BadRequest.
+google::rpc::Status with_violations(google::rpc::Status status, const Violations& violations);
+
 /// NOT_FOUND with ResourceInfo.
 google::rpc::Status not_found(const std::string& type, const std::string& name,
                               const std::string& message);

@@ -53,6 +53,44 @@ std::vector<std::string> settable_fields(const google::protobuf::Descriptor& des
   return out;
 }
 
+/// Takes over the field of a message, or of one that it holds: "measurements.densities".
+void take_over_path(const Message& source, const std::string& path, bool with_provenance,
+                    Message& target, Violations& violations) {
+  const Message* from = &source;
+  Message* to = &target;
+  std::string name = path;
+  const FieldDescriptor* block = nullptr;
+  if (const std::size_t dot = path.find('.'); dot != std::string::npos) {
+    block = source.GetDescriptor()->FindFieldByName(path.substr(0, dot));
+    const bool holds_fields = block != nullptr && !block->is_repeated() &&
+                              block->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+    if (holds_fields && !is_output_only(*block)) {
+      const bool is_nowhere = !source.GetReflection()->HasField(source, block) &&
+                              !target.GetReflection()->HasField(target, block);
+      if (is_nowhere && block->message_type()->FindFieldByName(path.substr(dot + 1))) return;
+      from = &source.GetReflection()->GetMessage(source, block);
+      to = target.GetReflection()->MutableMessage(&target, block);
+      name = path.substr(dot + 1);
+    }
+  }
+  const auto& descriptor = *from->GetDescriptor();
+  const FieldDescriptor* field = descriptor.FindFieldByName(name);
+  if (field == nullptr) {
+    violations.push_back(
+        {"update_mask",
+         fmt::format("\"{}\" is no field of {}{}", plain_excerpt(name), descriptor.name(),
+                     meant_text(name, settable_fields(descriptor)))});
+    return;
+  }
+  if (is_output_only(*field)) return;
+  const bool changed = is_other_number(*from, *to, *field);
+  take_over(*from, *field, *to);
+  if (block != nullptr && to != &target && to->ByteSizeLong() == 0) {
+    target.GetReflection()->ClearField(&target, block);
+  }
+  if (changed && !with_provenance) forget_provenance(path, target);
+}
+
 }  // namespace
 
 void merge(const Message& source, const google::protobuf::FieldMask& mask, Message& target,
@@ -62,21 +100,9 @@ void merge(const Message& source, const google::protobuf::FieldMask& mask, Messa
     target.CopyFrom(source);
     return;
   }
-  const auto& descriptor = *source.GetDescriptor();
   const bool with_provenance = std::find(paths.begin(), paths.end(), kProvenance) != paths.end();
   for (const std::string& path : paths) {
-    const FieldDescriptor* field = descriptor.FindFieldByName(path);
-    if (field == nullptr) {
-      violations.push_back(
-          {"update_mask",
-           fmt::format("\"{}\" is no field of {}{}", plain_excerpt(path), descriptor.name(),
-                       meant_text(path, settable_fields(descriptor)))});
-      continue;
-    }
-    if (is_output_only(*field)) continue;
-    const bool changed = is_other_number(source, target, *field);
-    take_over(source, *field, target);
-    if (changed && !with_provenance) forget_provenance(path, target);
+    take_over_path(source, path, with_provenance, target, violations);
   }
 }
 

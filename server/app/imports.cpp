@@ -1,6 +1,6 @@
 #include "server/app/imports.h"
 
-#include "server/app/resource_methods.h"
+#include "server/app/resource_writes.h"
 #include "server/convert/import_gear_set.h"
 #include "server/convert/import_lubricant.h"
 #include "server/convert/import_surface.h"

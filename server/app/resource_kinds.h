@@ -11,7 +11,7 @@
 namespace tribodyn::server {
 
 /// What the standard methods need to know of a kind of resource: its collection, the field that
-/// holds it in requests, and the fields that bear its name.
+/// holds it in requests, the fields that bear its name, and its lists in responses.
 template <class Resource>
 struct Kind;
 
@@ -23,6 +23,7 @@ struct Kind<v1::Lubricant> {
   static bool is_in(const auto& request) { return request.has_lubricant(); }
   static const std::string& id(const auto& request) { return request.lubricant_id(); }
   static v1::Lubricant* add(auto& response) { return response.add_lubricants(); }
+  static auto* all(auto& response) { return response.mutable_lubricants(); }
 };
 
 template <>
@@ -33,6 +34,7 @@ struct Kind<v1::GearSet> {
   static bool is_in(const auto& request) { return request.has_gear_set(); }
   static const std::string& id(const auto& request) { return request.gear_set_id(); }
   static v1::GearSet* add(auto& response) { return response.add_gear_sets(); }
+  static auto* all(auto& response) { return response.mutable_gear_sets(); }
 };
 
 template <>
@@ -43,6 +45,7 @@ struct Kind<v1::Surface> {
   static bool is_in(const auto& request) { return request.has_surface(); }
   static const std::string& id(const auto& request) { return request.surface_id(); }
   static v1::Surface* add(auto& response) { return response.add_surfaces(); }
+  static auto* all(auto& response) { return response.mutable_surfaces(); }
 };
 
 template <>
@@ -53,6 +56,7 @@ struct Kind<v1::Vehicle> {
   static bool is_in(const auto& request) { return request.has_vehicle(); }
   static const std::string& id(const auto& request) { return request.vehicle_id(); }
   static v1::Vehicle* add(auto& response) { return response.add_vehicles(); }
+  static auto* all(auto& response) { return response.mutable_vehicles(); }
 };
 
 }  // namespace tribodyn::server

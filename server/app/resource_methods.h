@@ -7,7 +7,6 @@
 #include <string>
 
 #include "server/app/application.h"
-#include "server/app/field_mask.h"
 #include "server/app/guard.h"
 #include "server/app/list_filter.h"
 #include "server/app/outcome.h"
@@ -15,28 +14,25 @@
 #include "server/app/paging.h"
 #include "server/app/resource_kinds.h"
 #include "server/app/stored_messages.h"
-#include "server/convert/accept_resource.h"
-#include "server/convert/constraints.h"
 #include "server/convert/lubricant_parameters.h"
 #include "server/convert/output_only.h"
-#include "server/jobs/simulation_runner.h"
 
 namespace tribodyn::server {
 
-// The standard methods, for every kind of resource alike. Bodies of RPCs: run inside `guarded`.
+// The standard methods that read or delete, for every kind of resource alike; resource_writes.h has
+// the others. Bodies of RPCs: run inside `guarded`.
 
 inline constexpr int kDefaultResourcePageSize = 100;
 inline constexpr int kUpdateAttempts = 10;  ///< against other writers
 
-inline google::rpc::Status already_exists(const std::string& name, bool deleted) {
-  return error(google::rpc::ALREADY_EXISTS, "ALREADY_EXISTS",
-               deleted ? name + " exists and is deleted; undelete it or take another name"
-                       : name + " exists already; update it or take another name");
-}
-
 inline google::rpc::Status etag_mismatch(const std::string& name) {
   return error(google::rpc::ABORTED, "ETAG_MISMATCH",
                name + " has changed since this etag was given out; get it again");
+}
+
+inline google::rpc::Status contention(const std::string& name) {
+  return error(google::rpc::ABORTED, "CONTENTION",
+               name + " keeps being changed by others; try again");
 }
 
 inline google::rpc::Status unreadable(const std::string& name) {
@@ -60,136 +56,56 @@ inline void add_list_figures(v1::GearSet&) {}
 inline void add_list_figures(v1::Surface&) {}
 inline void add_list_figures(v1::Vehicle&) {}
 
+/// Does not ask the store, so that what has been written is answered whatever the deadline.
 template <class Resource>
-Outcome<Resource> answer(const std::optional<StoredResource>& stored, const std::string& name) {
-  if (!stored) return error(google::rpc::INTERNAL, "INTERNAL", name + " is gone");
-  auto out = to_message<Resource>(*stored);
-  if (!out) return unreadable(name);
+Outcome<Resource> answer(const StoredResource& stored) {
+  auto out = to_message<Resource>(stored);
+  if (!out) return unreadable(stored.name);
   add_characterisation(*out);
   return *out;
+}
+
+/// What is wrong with a name, whether there is such a resource or not; empty: nothing.
+template <class Resource>
+std::string name_problem(Application& application, const std::string& name,
+                         bool revisions_allowed) {
+  const std::string collection = Kind<Resource>::kCollection;
+  const auto parsed = parse_revision_name(name, collection);
+  if (!parsed) {
+    return unknown_name_text(name, collection, application.store.resource_names(collection));
+  }
+  if (parsed->revision == 0 || revisions_allowed) return {};
+  return plain_excerpt(name) + " is a revision; legal: the name without it";
+}
+
+/// The stored revision that a name without problems means, or NOT_FOUND.
+template <class Resource>
+Outcome<StoredResource> find_named(Application& application, const std::string& name) {
+  const std::string collection = Kind<Resource>::kCollection;
+  const RevisionName parsed = *parse_revision_name(name, collection);
+  const auto stored = parsed.revision == 0
+                          ? application.store.resource(parsed.name)
+                          : application.store.revision(parsed.name, parsed.revision);
+  if (stored) return *stored;
+  return not_found(
+      Resource::descriptor()->full_name(), name,
+      unknown_name_text(name, collection, application.store.resource_names(collection)));
 }
 
 /// The stored revision that a name means; INVALID_ARGUMENT for what is no name, or NOT_FOUND.
 template <class Resource>
 Outcome<StoredResource> find_stored(Application& application, const std::string& name,
                                     bool revisions_allowed) {
-  const std::string collection = Kind<Resource>::kCollection;
-  const auto explain = [&] {
-    return unknown_name_text(name, collection, application.store.resource_names(collection));
-  };
-  const auto parsed = parse_revision_name(name, collection);
-  if (!parsed) return invalid({{"name", explain()}});
-  if (parsed->revision != 0 && !revisions_allowed) {
-    return invalid({{"name", plain_excerpt(name) + " is a revision; legal: the name without it"}});
-  }
-  const auto stored = parsed->revision == 0
-                          ? application.store.resource(parsed->name)
-                          : application.store.revision(parsed->name, parsed->revision);
-  if (!stored) return not_found(Resource::descriptor()->full_name(), name, explain());
-  return *stored;
+  const std::string problem = name_problem<Resource>(application, name, revisions_allowed);
+  if (!problem.empty()) return invalid({{"name", problem}});
+  return find_named<Resource>(application, name);
 }
 
 template <class Resource>
 Outcome<Resource> get_resource(Application& application, const std::string& name) {
   const auto found = find_stored<Resource>(application, name, true);
   if (!found.ok()) return found.error();
-  return answer<Resource>(found.message(), name);
-}
-
-/// As if it had been stored.
-template <class Resource>
-Outcome<Resource> preview(const Resource& accepted) {
-  Resource out = accepted;
-  fill_units(*Resource::descriptor(), *out.mutable_provenance());
-  add_characterisation(out);
-  return out;
-}
-
-/// The name that a new resource is to have, or a violation.
-template <class Resource>
-std::string new_name(const std::string& id, const std::string& stated, Violations& violations) {
-  const std::string collection = Kind<Resource>::kCollection;
-  std::string name = id.empty() ? stated : collection + "/" + id;
-  if (is_resource_name(name, collection)) return name;
-  const std::string field = std::string(Kind<Resource>::kField) + "_id";
-  violations.push_back(
-      {field,
-       id.empty() && stated.empty()
-           ? field + " is not set; legal: letters, digits, '-', '_' and '.'"
-           : fmt::format("\"{}\"; legal: letters, digits, '-', '_' and '.', at most {} bytes",
-                         plain_excerpt(id.empty() ? stated : id),
-                         kMaximumTextLength - collection.size() - 1)});
-  return {};
-}
-
-/// Stores what has been accepted.
-template <class Resource>
-Outcome<Resource> store_new(Application& application, const Resource& accepted,
-                            bool validate_only) {
-  const std::string& name = accepted.name();
-  if (const auto taken = application.store.resource(name)) {
-    return already_exists(name, taken->delete_time.has_value());
-  }
-  if (validate_only) return preview(accepted);
-  if (!application.store.create_resource({name, accepted.SerializeAsString()}, system_time())) {
-    return already_exists(name, false);
-  }
-  return answer<Resource>(application.store.resource(name), name);
-}
-
-template <class Resource, class Request>
-Outcome<Resource> create_resource(Application& application, const Request& request) {
-  const std::string field = Kind<Resource>::kField;
-  if (!Kind<Resource>::is_in(request)) return invalid({{field, "not set"}});
-  Violations violations;
-  Resource stated = Kind<Resource>::of(request);
-  stated.set_name(new_name<Resource>(Kind<Resource>::id(request), stated.name(), violations));
-  const auto accepted = accept(stated, static_cast<const Resource*>(nullptr),
-                               resource_lookup(application.store), field, violations);
-  if (!violations.empty() || !accepted) return invalid(violations);
-  return store_new(application, *accepted, request.validate_only());
-}
-
-template <class Resource, class Request>
-Outcome<Resource> update_resource(Application& application, const Request& request) {
-  const std::string field = Kind<Resource>::kField;
-  if (!Kind<Resource>::is_in(request)) return invalid({{field, "not set"}});
-  const Resource& stated = Kind<Resource>::of(request);
-  for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
-    const auto found = find_stored<Resource>(application, stated.name(), false);
-    if (!found.ok() && found.error().code() == google::rpc::NOT_FOUND && request.allow_missing()) {
-      Violations violations;
-      const auto accepted = accept(stated, static_cast<const Resource*>(nullptr),
-                                   resource_lookup(application.store), field, violations);
-      if (!accepted) return invalid(violations);
-      return store_new(application, *accepted, request.validate_only());
-    }
-    if (!found.ok()) return found.error();
-    const StoredResource& present = found.message();
-    if (present.delete_time) {
-      return error(google::rpc::FAILED_PRECONDITION, "DELETED", deleted_name_text(present.name));
-    }
-    if (!stated.etag().empty() && stated.etag() != etag_of(present)) {
-      return etag_mismatch(present.name);
-    }
-    Resource before;
-    if (!before.ParseFromString(present.body)) return unreadable(present.name);
-    Violations violations;
-    Resource merged = before;
-    merge(stated, request.update_mask(), merged, violations);
-    merged.set_name(present.name);
-    if (!violations.empty()) return invalid(violations);
-    const auto accepted =
-        accept(merged, &before, resource_lookup(application.store), field, violations);
-    if (!accepted) return invalid(violations);
-    if (request.validate_only()) return preview(*accepted);
-    const std::string body = accepted->SerializeAsString();
-    if (body == present.body || application.store.update_resource(present, body, system_time())) {
-      return answer<Resource>(application.store.resource(present.name), present.name);
-    }
-  }
-  return error(google::rpc::ABORTED, "CONTENTION",
-               stated.name() + " keeps being changed by others; try again");
+  return answer<Resource>(found.message());
 }
 
 /// Deletes or undeletes; what is so already stays as it is.
@@ -198,18 +114,19 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
     const auto found = find_stored<Resource>(application, request.name(), false);
     if (!found.ok()) return found.error();
-    const StoredResource& present = found.message();
+    StoredResource present = found.message();
     if (!request.etag().empty() && request.etag() != etag_of(present)) {
       return etag_mismatch(present.name);
     }
-    if (present.delete_time.has_value() == deleted ||
-        (deleted ? application.store.delete_resource(present, system_time())
-                 : application.store.undelete_resource(present))) {
-      return answer<Resource>(application.store.resource(present.name), present.name);
+    if (present.delete_time.has_value() == deleted) return answer<Resource>(present);
+    const Microseconds now = system_time();
+    if (deleted ? application.store.delete_resource(present, now)
+                : application.store.undelete_resource(present)) {
+      present.delete_time = deleted ? std::optional(now) : std::nullopt;
+      return answer<Resource>(present);
     }
   }
-  return error(google::rpc::ABORTED, "CONTENTION",
-               request.name() + " keeps being changed by others; try again");
+  return contention(request.name());
 }
 
 /// Appends rows to a response; false when one of them cannot be read.

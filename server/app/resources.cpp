@@ -1,6 +1,6 @@
 #include "server/app/resources.h"
 
-#include "server/app/resource_methods.h"
+#include "server/app/resource_writes.h"
 
 namespace tribodyn::server {
 namespace {
@@ -19,8 +19,16 @@ void clear_tables(v1::ListGearSetsResponse& response) {
 Outcome<v1::Lubricant> create_lubricant(Application& application,
                                         const v1::CreateLubricantRequest& request) {
   return guarded<v1::Lubricant>([&]() -> Outcome<v1::Lubricant> {
-    return create_resource<v1::Lubricant>(application, request);
+    return write_resource<v1::Lubricant>(application, request);
   });
+}
+
+Outcome<v1::BatchCreateLubricantsResponse> batch_create_lubricants(
+    Application& application, const v1::BatchCreateLubricantsRequest& request) {
+  return guarded<v1::BatchCreateLubricantsResponse>(
+      [&]() -> Outcome<v1::BatchCreateLubricantsResponse> {
+        return write_batch<v1::Lubricant, v1::BatchCreateLubricantsResponse>(application, request);
+      });
 }
 
 Outcome<v1::Lubricant> get_lubricant(Application& application,
@@ -40,8 +48,16 @@ Outcome<v1::ListLubricantsResponse> list_lubricants(Application& application,
 Outcome<v1::Lubricant> update_lubricant(Application& application,
                                         const v1::UpdateLubricantRequest& request) {
   return guarded<v1::Lubricant>([&]() -> Outcome<v1::Lubricant> {
-    return update_resource<v1::Lubricant>(application, request);
+    return write_resource<v1::Lubricant>(application, request);
   });
+}
+
+Outcome<v1::BatchUpdateLubricantsResponse> batch_update_lubricants(
+    Application& application, const v1::BatchUpdateLubricantsRequest& request) {
+  return guarded<v1::BatchUpdateLubricantsResponse>(
+      [&]() -> Outcome<v1::BatchUpdateLubricantsResponse> {
+        return write_batch<v1::Lubricant, v1::BatchUpdateLubricantsResponse>(application, request);
+      });
 }
 
 Outcome<v1::ListLubricantRevisionsResponse> list_lubricant_revisions(
@@ -70,7 +86,15 @@ Outcome<v1::Lubricant> undelete_lubricant(Application& application,
 Outcome<v1::GearSet> create_gear_set(Application& application,
                                      const v1::CreateGearSetRequest& request) {
   return guarded<v1::GearSet>(
-      [&]() -> Outcome<v1::GearSet> { return create_resource<v1::GearSet>(application, request); });
+      [&]() -> Outcome<v1::GearSet> { return write_resource<v1::GearSet>(application, request); });
+}
+
+Outcome<v1::BatchCreateGearSetsResponse> batch_create_gear_sets(
+    Application& application, const v1::BatchCreateGearSetsRequest& request) {
+  return guarded<v1::BatchCreateGearSetsResponse>(
+      [&]() -> Outcome<v1::BatchCreateGearSetsResponse> {
+        return write_batch<v1::GearSet, v1::BatchCreateGearSetsResponse>(application, request);
+      });
 }
 
 Outcome<v1::GearSet> get_gear_set(Application& application, const v1::GetGearSetRequest& request) {
@@ -91,7 +115,15 @@ Outcome<v1::ListGearSetsResponse> list_gear_sets(Application& application,
 Outcome<v1::GearSet> update_gear_set(Application& application,
                                      const v1::UpdateGearSetRequest& request) {
   return guarded<v1::GearSet>(
-      [&]() -> Outcome<v1::GearSet> { return update_resource<v1::GearSet>(application, request); });
+      [&]() -> Outcome<v1::GearSet> { return write_resource<v1::GearSet>(application, request); });
+}
+
+Outcome<v1::BatchUpdateGearSetsResponse> batch_update_gear_sets(
+    Application& application, const v1::BatchUpdateGearSetsRequest& request) {
+  return guarded<v1::BatchUpdateGearSetsResponse>(
+      [&]() -> Outcome<v1::BatchUpdateGearSetsResponse> {
+        return write_batch<v1::GearSet, v1::BatchUpdateGearSetsResponse>(application, request);
+      });
 }
 
 Outcome<v1::ListGearSetRevisionsResponse> list_gear_set_revisions(
@@ -119,7 +151,15 @@ Outcome<v1::GearSet> undelete_gear_set(Application& application,
 Outcome<v1::Surface> create_surface(Application& application,
                                     const v1::CreateSurfaceRequest& request) {
   return guarded<v1::Surface>(
-      [&]() -> Outcome<v1::Surface> { return create_resource<v1::Surface>(application, request); });
+      [&]() -> Outcome<v1::Surface> { return write_resource<v1::Surface>(application, request); });
+}
+
+Outcome<v1::BatchCreateSurfacesResponse> batch_create_surfaces(
+    Application& application, const v1::BatchCreateSurfacesRequest& request) {
+  return guarded<v1::BatchCreateSurfacesResponse>(
+      [&]() -> Outcome<v1::BatchCreateSurfacesResponse> {
+        return write_batch<v1::Surface, v1::BatchCreateSurfacesResponse>(application, request);
+      });
 }
 
 Outcome<v1::Surface> get_surface(Application& application, const v1::GetSurfaceRequest& request) {
@@ -138,7 +178,15 @@ Outcome<v1::ListSurfacesResponse> list_surfaces(Application& application,
 Outcome<v1::Surface> update_surface(Application& application,
                                     const v1::UpdateSurfaceRequest& request) {
   return guarded<v1::Surface>(
-      [&]() -> Outcome<v1::Surface> { return update_resource<v1::Surface>(application, request); });
+      [&]() -> Outcome<v1::Surface> { return write_resource<v1::Surface>(application, request); });
+}
+
+Outcome<v1::BatchUpdateSurfacesResponse> batch_update_surfaces(
+    Application& application, const v1::BatchUpdateSurfacesRequest& request) {
+  return guarded<v1::BatchUpdateSurfacesResponse>(
+      [&]() -> Outcome<v1::BatchUpdateSurfacesResponse> {
+        return write_batch<v1::Surface, v1::BatchUpdateSurfacesResponse>(application, request);
+      });
 }
 
 Outcome<v1::ListSurfaceRevisionsResponse> list_surface_revisions(
@@ -166,7 +214,15 @@ Outcome<v1::Surface> undelete_surface(Application& application,
 Outcome<v1::Vehicle> create_vehicle(Application& application,
                                     const v1::CreateVehicleRequest& request) {
   return guarded<v1::Vehicle>(
-      [&]() -> Outcome<v1::Vehicle> { return create_resource<v1::Vehicle>(application, request); });
+      [&]() -> Outcome<v1::Vehicle> { return write_resource<v1::Vehicle>(application, request); });
+}
+
+Outcome<v1::BatchCreateVehiclesResponse> batch_create_vehicles(
+    Application& application, const v1::BatchCreateVehiclesRequest& request) {
+  return guarded<v1::BatchCreateVehiclesResponse>(
+      [&]() -> Outcome<v1::BatchCreateVehiclesResponse> {
+        return write_batch<v1::Vehicle, v1::BatchCreateVehiclesResponse>(application, request);
+      });
 }
 
 Outcome<v1::Vehicle> get_vehicle(Application& application, const v1::GetVehicleRequest& request) {
@@ -185,7 +241,15 @@ Outcome<v1::ListVehiclesResponse> list_vehicles(Application& application,
 Outcome<v1::Vehicle> update_vehicle(Application& application,
                                     const v1::UpdateVehicleRequest& request) {
   return guarded<v1::Vehicle>(
-      [&]() -> Outcome<v1::Vehicle> { return update_resource<v1::Vehicle>(application, request); });
+      [&]() -> Outcome<v1::Vehicle> { return write_resource<v1::Vehicle>(application, request); });
+}
+
+Outcome<v1::BatchUpdateVehiclesResponse> batch_update_vehicles(
+    Application& application, const v1::BatchUpdateVehiclesRequest& request) {
+  return guarded<v1::BatchUpdateVehiclesResponse>(
+      [&]() -> Outcome<v1::BatchUpdateVehiclesResponse> {
+        return write_batch<v1::Vehicle, v1::BatchUpdateVehiclesResponse>(application, request);
+      });
 }
 
 Outcome<v1::ListVehicleRevisionsResponse> list_vehicle_revisions(

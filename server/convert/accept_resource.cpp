@@ -234,9 +234,4 @@ void check_stated(const v1::GearSet& stated, const ResourceLookup& lookup, const
   begin(stated, lookup, path, Missing::kViolation, violations);
 }
 
-void check_stated(const v1::Surface& stated, const ResourceLookup& lookup, const std::string& path,
-                  Violations& violations) {
-  begin(stated, lookup, path, Missing::kAllowed, violations);
-}
-
 }  // namespace tribodyn::server

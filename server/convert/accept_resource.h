@@ -39,8 +39,6 @@ void check_stated(const v1::Lubricant& stated, const ResourceLookup& lookup,
                   const std::string& path, Violations& violations);
 void check_stated(const v1::GearSet& stated, const ResourceLookup& lookup, const std::string& path,
                   Violations& violations);
-void check_stated(const v1::Surface& stated, const ResourceLookup& lookup, const std::string& path,
-                  Violations& violations);
 
 /// A gear set whose tables a client sent as text; `locate` says where in it.
 std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample& locate,

@@ -184,6 +184,14 @@ void check_message(const Message& message, const std::string& path, Violations& 
   }
 }
 
+void check_size(const Message& request, const std::string& list, Violations& violations) {
+  const auto& descriptor = *request.GetDescriptor();
+  const int size = request.GetReflection()->FieldSize(request, descriptor.FindFieldByName(list));
+  const Constraint& row = *find_constraint(descriptor.name(), list);
+  if (size >= row.minimum && size <= row.maximum) return;
+  violations.push_back({list, out_of_range_text(row, size)});
+}
+
 std::string first_not_finite(const Message& message) { return first_not_finite(message, false); }
 
 }  // namespace tribodyn::server

@@ -22,6 +22,10 @@ enum class Missing {
 void check_message(const google::protobuf::Message& message, const std::string& path,
                    Violations& violations, Missing missing = Missing::kViolation);
 
+/// Checks how many elements a list at the top of a request has against its row in the table.
+void check_size(const google::protobuf::Message& request, const std::string& list,
+                Violations& violations);
+
 /// Path of the first number that is NaN, or infinite where that has no documented meaning; empty
 /// when there is none. A shear rate without film and the thermal resistance of a surface at rest
 /// are infinite.

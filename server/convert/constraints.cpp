@@ -177,6 +177,23 @@ constexpr Constraint kConstraints[] = {
     {"SolverOptions", "settling_tolerance", "", 1e-12, 1e-1, "eq 30", "", Zero::kUnset},
     {"SolverOptions", "maximum_mesh_cycles", "", 1, 100000, "work limit", "", Zero::kUnset},
     {"SolverOptions", "recorded_mesh_cycles", "", 1, 1000, "work limit", "", Zero::kUnset},
+
+    {"BatchCreateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchUpdateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchCreateGearSetsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchUpdateGearSetsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchCreateSurfacesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchUpdateSurfacesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchCreateVehiclesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchUpdateVehiclesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
 };
 
 /// "legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".

@@ -18,7 +18,7 @@ struct Constraint {
   std::string_view message;  ///< message of tribodyn.v1, e.g. "Lubricant", "LoadShareAtTorque.Slot"
   std::string_view field;    ///< its field, e.g. "relaxation_time_seconds"
   std::string_view unit;     ///< symbol for people, e.g. "s"; empty for a pure number
-  double minimum;
+  double minimum;            ///< of a list of messages: how many it has at least
   double maximum;
   std::string_view equation;  ///< of the paper, with the symbol
   std::string_view reason;    ///< why a value outside makes no sense; may be empty
@@ -51,6 +51,7 @@ inline constexpr int kMaximumCurvePoints = 1000;
 inline constexpr int kMaximumHistoryColumns = 100;
 inline constexpr double kMaximumHistoryValues = 4e6;    ///< rows times columns
 inline constexpr double kMaximumCurveMeshCycles = 1e7;  ///< points times maximum_mesh_cycles
+inline constexpr int kMaximumBatchSize = 20'000;        ///< requests of one batch
 inline constexpr int kMaximumTextLength = 200;          ///< bytes of a name
 inline constexpr int kMaximumProseLength = 4000;        ///< bytes of a description or a source
 inline constexpr int kMaximumReportedElements = 10;     ///< violations of one repeated field

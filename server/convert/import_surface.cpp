@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include "core/refusal.h"
 #include "core/surface/spectral_moments.h"
 #include "server/convert/accept_resource.h"
+#include "server/convert/check_message.h"
+#include "server/convert/constraints.h"
 #include "server/convert/csv_table.h"
 #include "server/hash/sha256.h"
 
@@ -27,43 +31,100 @@ constexpr CsvColumnForm kForms[] = {{"position_metres", kPosition},
                                     {"height_micrometres", kHeight, 1e-6},
                                     {"height_nanometres", kHeight, 1e-9}};
 
-/// The even spacing of positions; 0 with violations when it is not even.
-double spacing_of(const CsvTable& table, const CsvColumn& column,
-                  const std::vector<double>& positions, Violations& violations) {
-  const double spacing =
-      (positions.back() - positions.front()) / static_cast<double>(positions.size() - 1);
-  std::size_t uneven = 0;
-  for (std::size_t i = 1; i < positions.size(); ++i) {
-    const double step = positions[i] - positions[i - 1];
-    if (spacing > 0 && std::abs(step - spacing) <= kSpacingTolerance * spacing) continue;
-    if (++uneven > kMaximumCsvViolations) break;
-    violations.push_back({csv_place(table, table.rows[i].line, column.form.header),
-                          fmt::format("a step of {} m; legal: {} m within {}, positions evenly "
-                                      "spaced and rising (eq 45)",
-                                      step, spacing, kSpacingTolerance)});
+constexpr const char* kFromProfiles[] = {"asperity_density_per_square_metre",
+                                         "asperity_radius_metres", "composite_rms_height_metres"};
+
+/// From one readable position of a profile to the next one.
+struct Step {
+  std::size_t row = 0;    ///< where it ends
+  double per_sample = 0;  ///< [m]
+};
+
+/// Steps over which the number of samples is known: none over rows that could not be read at all.
+std::vector<Step> steps_of(const CsvTable& table, const std::vector<double>& positions,
+                           bool rows_are_missing) {
+  std::vector<Step> out;
+  std::optional<std::size_t> last;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (std::isnan(positions[i])) continue;
+    if (last) {
+      const std::size_t samples = i - *last;
+      const int lines = table.rows[i].line - table.rows[*last].line;
+      if (!rows_are_missing || lines == static_cast<int>(samples)) {
+        out.push_back({i, (positions[i] - positions[*last]) / static_cast<double>(samples)});
+      }
+    }
+    last = i;
   }
-  return uneven == 0 ? spacing : 0;
+  return out;
 }
 
+double median(const std::vector<Step>& steps) {
+  std::vector<double> values;
+  values.reserve(steps.size());
+  for (const Step& each : steps) values.push_back(each.per_sample);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Names each position that does not rise, or does not lie as far from the one before as most do.
+void check_spacing(const CsvTable& table, const CsvColumn& column, const std::vector<Step>& steps,
+                   Violations& violations) {
+  if (steps.empty()) return;
+  const double spacing = median(steps);
+  std::size_t wrong = 0;
+  for (const Step& each : steps) {
+    const bool rises = each.per_sample > 0;
+    const bool even =
+        spacing <= 0 || std::abs(each.per_sample - spacing) <= kSpacingTolerance * spacing;
+    if (rises && even) continue;
+    if (++wrong > kMaximumCsvViolations) return;
+    violations.push_back(
+        {csv_place(table, table.rows[each.row].line, column.form.header),
+         spacing > 0
+             ? fmt::format("a step of {:.6g} m; legal: {:.6g} m within {} of it, positions evenly "
+                           "spaced and rising (eq 45)",
+                           each.per_sample, spacing, kSpacingTolerance)
+             : fmt::format("a step of {:.6g} m; legal: above 0, positions evenly spaced and "
+                           "rising (eq 45)",
+                           each.per_sample)});
+  }
+  const Constraint& row = *find_constraint("SurfaceMeasurement", "spacing_metres");
+  if (spacing > 0 && !(spacing >= row.minimum && spacing <= row.maximum)) {
+    violations.push_back({table.name, out_of_range_text(row, spacing)});
+  }
+}
+
+/// What a profile measures; nothing, and everything that is wrong with it, when it is not usable.
 std::optional<v1::SurfaceMeasurement> measure(const v1::SurfaceProfile& profile,
                                               v1::Levelling levelling, const std::string& name,
                                               Violations& violations) {
   const std::size_t before = violations.size();
   const auto table = parse_csv(profile.csv(), name, kMaximumProfileBytes, violations);
   if (!table) return std::nullopt;
+  const bool rows_are_missing = violations.size() > before;
   const std::vector<CsvColumn> columns = match_columns(*table, kForms, violations);
   const CsvColumn* position = find_column(columns, kPosition);
   const CsvColumn* height = find_column(columns, kHeight);
   if (position == nullptr || height == nullptr) {
     violations.push_back({name, "legal: a column position_... and a column height_..."});
   }
-  if (violations.size() > before) return std::nullopt;
-  const auto positions = numbers(*table, *position, EmptyCells::kViolation, violations);
-  const auto heights = numbers(*table, *height, EmptyCells::kViolation, violations);
+  const Constraint& samples = *find_constraint("SurfaceMeasurement", "samples");
+  const auto count = static_cast<double>(table->rows.size());
+  if (count < samples.minimum || count > samples.maximum) {
+    violations.push_back({name, out_of_range_text(samples, count)});
+  }
+  std::vector<double> positions;
+  std::vector<double> heights;
+  if (position != nullptr) {
+    positions = numbers(*table, *position, EmptyCells::kViolation, violations);
+    check_spacing(*table, *position, steps_of(*table, positions, rows_are_missing), violations);
+  }
+  if (height != nullptr) heights = numbers(*table, *height, EmptyCells::kViolation, violations);
   if (violations.size() > before) return std::nullopt;
   const double spacing =
-      positions.size() < 2 ? 0 : spacing_of(*table, *position, positions, violations);
-  if (violations.size() > before) return std::nullopt;
+      (positions.back() - positions.front()) / static_cast<double>(positions.size() - 1);
   try {
     const SpectralMoments moments = spectral_moments(
         heights, spacing, levelling == v1::MEAN ? Levelling::kMean : Levelling::kLeastSquaresLine);
@@ -77,6 +138,7 @@ std::optional<v1::SurfaceMeasurement> measure(const v1::SurfaceProfile& profile,
     out.set_mean_square_slope(moments.m2);
     out.set_mean_square_curvature_per_square_metre(moments.m4);
     out.set_profile_sha256(sha256(profile.csv()));
+    check_message(out, name, violations);
     return out;
   } catch (const Refusal& refusal) {
     violations.push_back({name, refusal.what()});
@@ -126,8 +188,7 @@ void set_parameters(v1::Surface& surface) {
   surface.set_asperity_density_per_square_metre(roughness.asperity_density);
   surface.set_asperity_radius_metres(roughness.asperity_radius);
   surface.set_composite_rms_height_metres(roughness.composite_rms_height);
-  for (const char* field : {"asperity_density_per_square_metre", "asperity_radius_metres",
-                            "composite_rms_height_metres"}) {
+  for (const char* field : kFromProfiles) {
     v1::ParameterProvenance* entry = surface.add_provenance();
     entry->set_field(field);
     entry->set_provenance(v1::PROVENANCE_FITTED);
@@ -139,16 +200,27 @@ void set_parameters(v1::Surface& surface) {
 
 /// What the profiles tell must not be stated as well.
 void check_not_stated(const v1::Surface& surface, Violations& violations) {
-  const auto& reflection = *surface.GetReflection();
-  for (const char* name : {"asperity_density_per_square_metre", "asperity_radius_metres",
-                           "composite_rms_height_metres", "measurements"}) {
+  const auto refuse = [&](const std::string& name) {
+    violations.push_back({"surface." + name, name + " follows from the profiles; legal: not set"});
+  };
+  for (const char* name : kFromProfiles) {
     const auto* field = v1::Surface::descriptor()->FindFieldByName(name);
-    const bool stated = field->is_repeated() ? reflection.FieldSize(surface, field) > 0
-                                             : reflection.HasField(surface, field);
-    if (!stated) continue;
-    violations.push_back({std::string("surface.") + name,
-                          std::string(name) + " follows from the profiles; legal: not set"});
+    if (surface.GetReflection()->HasField(surface, field)) refuse(name);
   }
+  if (surface.measurements_size() > 0) refuse("measurements");
+}
+
+/// What is wrong with all that the profiles do not tell.
+void check_rest(const v1::Surface& stated, const std::string& name, const ResourceLookup& lookup,
+                Violations& violations) {
+  v1::Surface rest = stated;
+  rest.set_name(name);
+  rest.clear_measurements();
+  for (const char* field : kFromProfiles) {
+    rest.GetReflection()->SetDouble(&rest, v1::Surface::descriptor()->FindFieldByName(field),
+                                    find_constraint("Surface", field)->minimum);
+  }
+  accept(rest, static_cast<const v1::Surface*>(nullptr), lookup, "surface", violations);
 }
 
 void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations& violations) {
@@ -216,17 +288,16 @@ std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest
   surface.set_name(name);
   check_not_stated(surface, violations);
   check_profiles(request, violations);
-  if (violations.size() > before) return std::nullopt;
   const v1::Levelling levelling = request.levelling() == v1::LEVELLING_UNSPECIFIED
                                       ? v1::LEAST_SQUARES_LINE
                                       : request.levelling();
-  for (int i = 0; i < request.profiles_size(); ++i) {
+  for (int i = 0; i < std::min(request.profiles_size(), kMaximumProfiles); ++i) {
     auto measured =
         measure(request.profiles(i), levelling, fmt::format("profiles[{}].csv", i), violations);
     if (measured) *surface.add_measurements() = std::move(*measured);
   }
   if (violations.size() > before) {
-    check_stated(request.surface(), lookup, "surface", violations);
+    check_rest(request.surface(), name, lookup, violations);
     return std::nullopt;
   }
   try {

@@ -142,6 +142,21 @@ ViscosityPoint to_core(const v1::ViscosityMeasurement& row, const DensityLaw* la
   return {temperature, viscosity, row.relative_standard_uncertainty()};
 }
 
+/// Where a row of a table is the kinematic viscosity that fluids are known by, KV40 or KV100, and
+/// that is not stated beside it; else null.
+std::optional<double>* trade_viscosity(const v1::ViscosityMeasurement& row,
+                                       FluidMeasurements& fluid) {
+  constexpr double kBathTolerance = 0.01;  // K, that of ASTM D445
+  if (!row.has_kinematic_viscosity_square_millimetres_per_second()) return nullptr;
+  if (row.relative_standard_uncertainty() != 0) return nullptr;
+  const auto is_at = [&](double celsius) {
+    return std::abs(row.temperature_celsius() - celsius) <= kBathTolerance;
+  };
+  if (is_at(40) && !fluid.kinematic_viscosity_40) return &fluid.kinematic_viscosity_40;
+  if (is_at(100) && !fluid.kinematic_viscosity_100) return &fluid.kinematic_viscosity_100;
+  return nullptr;
+}
+
 /// Everything that was entered, in the core's terms; what the server computed before is left out.
 /// Throws Refusal.
 FluidMeasurements entered(const v1::Lubricant& lubricant) {
@@ -180,6 +195,10 @@ FluidMeasurements entered(const v1::Lubricant& lubricant) {
   }
   std::optional<DensityLaw> law;
   for (const v1::ViscosityMeasurement& row : measured.viscosities()) {
+    if (std::optional<double>* trade = trade_viscosity(row, out)) {
+      *trade = row.kinematic_viscosity_square_millimetres_per_second() * kSquareMillimetres;
+      continue;
+    }
     if (row.has_kinematic_viscosity_square_millimetres_per_second() && !law) {
       law = density_law_of(out);
     }

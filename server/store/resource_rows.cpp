@@ -6,38 +6,36 @@
 namespace tribodyn::server {
 namespace {
 
-void insert_properties(SQLite::Database& db, std::int64_t resource, const std::string& name,
-                       const std::string& body, Microseconds create_time,
-                       Microseconds update_time) {
-  const std::string collection = collection_of(name);
+void insert_properties(SQLite::Database& db, const StoredResource& resource) {
+  const std::string collection = collection_of(resource.name);
   SQLite::Statement insert(db, "INSERT INTO properties VALUES (?, ?, ?, ?, ?)");
-  for (const Property& each : properties_of(collection, body, create_time, update_time)) {
-    insert.bind(1, resource);
+  for (const Property& each : properties_of(collection, resource.body, resource.create_time,
+                                            resource.revision_create_time)) {
+    insert.bind(1, resource.id);
     insert.bind(2, each.key);
     bind_value(insert, 3, each.value);
     insert.bind(4, collection);
-    insert.bind(5, name);
+    insert.bind(5, resource.name);
     insert.exec();
     insert.reset();
   }
 }
 
 /// Adds the row and makes it the present one.
-void add_revision(SQLite::Database& db, std::int64_t resource, int revision,
-                  const std::string& body, Microseconds now) {
+void add_revision(SQLite::Database& db, const StoredResource& added) {
   SQLite::Statement insert(
       db,
       "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
       "VALUES (?, ?, ?, ?, ?)");
-  insert.bind(1, resource);
-  insert.bind(2, revision);
-  insert.bind(3, now);
-  insert.bind(4, sha256(body));
-  bind_blob(insert, 5, body);
+  insert.bind(1, added.id);
+  insert.bind(2, added.revision);
+  insert.bind(3, added.revision_create_time);
+  insert.bind(4, added.content_hash);
+  bind_blob(insert, 5, added.body);
   insert.exec();
   SQLite::Statement present(db, "UPDATE resources SET present = ? WHERE id = ?");
   present.bind(1, db.getLastInsertRowid());
-  present.bind(2, resource);
+  present.bind(2, added.id);
   present.exec();
 }
 
@@ -51,26 +49,57 @@ void bind_value(SQLite::Statement& statement, int index, const PropertyValue& va
   std::visit([&](const auto& held) { statement.bind(index, held); }, value);
 }
 
-void insert_resource(SQLite::Database& db, const std::string& name, const std::string& body,
-                     Microseconds now) {
-  SQLite::Statement insert(
-      db, "INSERT INTO resources (name, collection, present, create_time) VALUES (?, ?, 0, ?)");
-  insert.bind(1, name);
-  insert.bind(2, collection_of(name));
-  insert.bind(3, now);
-  insert.exec();
-  const std::int64_t id = db.getLastInsertRowid();
-  add_revision(db, id, 1, body, now);
-  insert_properties(db, id, name, body, now, now);
+bool is_taken(SQLite::Database& db, const std::string& name) {
+  SQLite::Statement taken(db, "SELECT 1 FROM resources WHERE name = ?");
+  taken.bind(1, name);
+  return taken.executeStep();
 }
 
-void insert_revision(SQLite::Database& db, const StoredResource& present, const std::string& body,
-                     Microseconds now) {
-  add_revision(db, present.id, present.revision + 1, body, now);
+bool is_unchanged(SQLite::Database& db, const StoredResource& present) {
+  SQLite::Statement unchanged(db,
+                              "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
+                              "WHERE r.id = ? AND v.revision = ? AND "
+                              "(r.delete_time IS NULL) = ?");
+  unchanged.bind(1, present.id);
+  unchanged.bind(2, present.revision);
+  unchanged.bind(3, present.delete_time ? 0 : 1);
+  return unchanged.executeStep();
+}
+
+StoredResource insert_resource(SQLite::Database& db, const NewResource& resource,
+                               Microseconds now) {
+  SQLite::Statement insert(
+      db, "INSERT INTO resources (name, collection, present, create_time) VALUES (?, ?, 0, ?)");
+  insert.bind(1, resource.name);
+  insert.bind(2, collection_of(resource.name));
+  insert.bind(3, now);
+  insert.exec();
+  StoredResource added;
+  added.id = db.getLastInsertRowid();
+  added.name = resource.name;
+  added.revision = 1;
+  added.create_time = now;
+  added.revision_create_time = now;
+  added.content_hash = sha256(resource.body);
+  added.body = resource.body;
+  add_revision(db, added);
+  insert_properties(db, added);
+  return added;
+}
+
+StoredResource insert_revision(SQLite::Database& db, const StoredResource& present,
+                               const std::string& body, Microseconds now) {
+  StoredResource added = present;
+  added.revision = present.revision + 1;
+  added.revision_create_time = now;
+  added.content_hash = sha256(body);
+  added.body = body;
+  add_revision(db, added);
   SQLite::Statement clear(db, "DELETE FROM properties WHERE resource = ?");
   clear.bind(1, present.id);
   clear.exec();
-  insert_properties(db, present.id, present.name, body, present.create_time, now);
+  insert_properties(db, added);
+  return added;
 }
 
 StoredResource stored_resource(const SQLite::Statement& query) {

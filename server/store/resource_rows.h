@@ -18,13 +18,18 @@ namespace tribodyn::server {
 void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes);
 void bind_value(SQLite::Statement& statement, int index, const PropertyValue& value);
 
-/// A new resource with its first revision.
-void insert_resource(SQLite::Database& db, const std::string& name, const std::string& body,
-                     Microseconds now);
+/// Whether there is a resource of that name, deleted or not.
+bool is_taken(SQLite::Database& db, const std::string& name);
 
-/// A further revision, which becomes the present one.
-void insert_revision(SQLite::Database& db, const StoredResource& present, const std::string& body,
-                     Microseconds now);
+/// Whether a resource is still as it was read.
+bool is_unchanged(SQLite::Database& db, const StoredResource& present);
+
+/// A new resource with its first revision, as it is stored then.
+StoredResource insert_resource(SQLite::Database& db, const NewResource& resource, Microseconds now);
+
+/// A further revision, which becomes the present one, as it is stored then.
+StoredResource insert_revision(SQLite::Database& db, const StoredResource& present,
+                               const std::string& body, Microseconds now);
 
 /// Columns of stored_resource, to be followed by the rest of a SELECT over r (resources) and v
 /// (revisions).

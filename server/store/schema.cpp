@@ -115,7 +115,7 @@ void move_resources(SQLite::Database& db, Microseconds now) {
   SQLite::Statement old(db, "SELECT name, body FROM resources_of_schema_1 ORDER BY name");
   while (old.executeStep()) {
     const std::string name = old.getColumn(0).getString();
-    insert_resource(db, name, with_explicit_zeros(name, old.getColumn(1).getString()), now);
+    insert_resource(db, {name, with_explicit_zeros(name, old.getColumn(1).getString())}, now);
   }
   old.reset();
   db.exec("DROP TABLE resources_of_schema_1");

@@ -171,11 +171,8 @@ void Store::open_schema() {
 void Store::add_resources(const std::vector<NewResource>& resources, Microseconds now) {
   write([&](SQLite::Database& db) {
     SQLite::Transaction transaction(db);
-    SQLite::Statement taken(db, "SELECT 1 FROM resources WHERE name = ?");
-    for (const auto& [name, body] : resources) {
-      taken.bind(1, name);
-      if (!taken.executeStep()) insert_resource(db, name, body, now);
-      taken.reset();
+    for (const NewResource& each : resources) {
+      if (!is_taken(db, each.name)) insert_resource(db, each, now);
     }
     transaction.commit();
   });
@@ -234,15 +231,19 @@ std::vector<std::string> Store::resource_names(const std::string& collection) {
   });
 }
 
-bool Store::create_resource(const NewResource& resource, Microseconds now) {
-  return write([&](SQLite::Database& db) {
+std::optional<std::vector<StoredResource>> Store::write_resources(
+    const std::vector<ResourceWrite>& writes, Microseconds now) {
+  return write([&](SQLite::Database& db) -> std::optional<std::vector<StoredResource>> {
     SQLite::Transaction transaction(db);
-    SQLite::Statement taken(db, "SELECT 1 FROM resources WHERE name = ?");
-    taken.bind(1, resource.name);
-    if (taken.executeStep()) return false;
-    insert_resource(db, resource.name, resource.body, now);
+    std::vector<StoredResource> written;
+    written.reserve(writes.size());
+    for (const auto& [resource, present] : writes) {
+      if (present ? !is_unchanged(db, *present) : is_taken(db, resource.name)) return std::nullopt;
+      written.push_back(present ? insert_revision(db, *present, resource.body, now)
+                                : insert_resource(db, resource, now));
+    }
     transaction.commit();
-    return true;
+    return written;
   });
 }
 
@@ -250,24 +251,11 @@ template <class Change>
 bool Store::change(const StoredResource& present, const Change& change) {
   return write([&](SQLite::Database& db) {
     SQLite::Transaction transaction(db);
-    SQLite::Statement unchanged(db,
-                                "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
-                                "WHERE r.id = ? AND v.revision = ? AND "
-                                "(r.delete_time IS NULL) = ?");
-    unchanged.bind(1, present.id);
-    unchanged.bind(2, present.revision);
-    unchanged.bind(3, present.delete_time ? 0 : 1);
-    if (!unchanged.executeStep()) return false;
-    unchanged.reset();
+    if (!is_unchanged(db, present)) return false;
     change(db);
     transaction.commit();
     return true;
   });
-}
-
-bool Store::update_resource(const StoredResource& present, const std::string& body,
-                            Microseconds now) {
-  return change(present, [&](SQLite::Database& db) { insert_revision(db, present, body, now); });
 }
 
 bool Store::delete_resource(const StoredResource& present, Microseconds now) {

@@ -76,11 +76,13 @@ class Store {
   /// All that are not deleted, sorted.
   std::vector<std::string> resource_names(const std::string& collection);
 
-  /// False, and nothing is changed, when the name is taken, if only by a deleted resource.
-  bool create_resource(const NewResource& resource, Microseconds now);
+  /// All of them in one transaction; what they are then. Nothing, and nothing is changed, when the
+  /// name of a new one is taken, if only by a deleted resource, or a present one has changed since
+  /// it was read.
+  std::optional<std::vector<StoredResource>> write_resources(
+      const std::vector<ResourceWrite>& writes, Microseconds now);
   // Changes of `present`, as it was read. Each returns false, and changes nothing, when the
   // resource has changed since.
-  bool update_resource(const StoredResource& present, const std::string& body, Microseconds now);
   bool delete_resource(const StoredResource& present, Microseconds now);
   bool undelete_resource(const StoredResource& present);
 

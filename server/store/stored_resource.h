@@ -36,6 +36,12 @@ struct StoredResource {
   std::string body;  ///< serialised message
 };
 
+/// A new resource, or the next revision of one.
+struct ResourceWrite {
+  NewResource resource;
+  std::optional<StoredResource> present;  ///< as it was read; none: the resource is new
+};
+
 /// One condition of a filter. Text is compared as bytes, "contains" without regard to the case of
 /// ASCII letters.
 struct Restriction {

@@ -35,6 +35,7 @@ END
 expect 0 lubricants import table-oil.csv --base-oil-class group-iii
 out_has 'imported lubricants/table-oil'
 out_has 'root mean square +[0-9.]+ %'
+out_has 'SAE J306 grade +80'
 expect 0 curve --lubricant table-oil --first-speed 40 --last-speed 50 --speed-step 10 \
   --model quasi-static
 expect 0 lubricants create table-2 --viscosity-table table-oil.csv
@@ -42,7 +43,7 @@ expect 1 lubricants import table-oil.csv
 err_has 'ALREADY_EXISTS|already exists'
 sed 's/205/thick/; s/8.86/x/' table-oil.csv >broken.csv
 expect 1 lubricants import broken.csv
-err_has 'row 3 column kinematic.*thick'
+err_has 'broken.csv row 3 column kinematic.*thick'
 err_has 'row 5 column kinematic'
 expect 1 lubricants get broken
 
@@ -193,9 +194,24 @@ err_has "row 3 column kinematic_viscosity_40.*: '73,3' is not a number with a de
 err_has 'is display_name meant'
 sed -e 's/;73.3;/;1e9;/; s/;8.6;/;-1;/' rows.csv >rows-bad.csv
 expect 1 lubricants import rows-bad.csv --replace
-err_has 'row 2: .*'
-err_has 'kinematic_viscosity_100_celsius_square_millimetres_per_second = -1 mm2/s'
-err_has 'kinematic_viscosity_40_celsius_square_millimetres_per_second = 1000000000 mm2/s'
+err_has 'row 2 column kinematic_viscosity_100_.* = -1 mm2/s'
+err_has 'row 3 column kinematic_viscosity_40_.* = 1000000000 mm2/s'
+err_has 'Nothing was written'
+sed 's/;labels.project;/;labels.pro ject;/' rows.csv >rows-bad.csv
+expect 1 lubricants import rows-bad.csv
+err_has 'row 2 column labels.pro ject: "pro ject"; legal: letters'
+expect 1 lubricants import rows.csv
+err_has 'row 2 column name: lubricants/row-used exists already'
+err_has 'Nothing was written. --replace makes new revisions'
+expect 0 lubricants export --all --output csv --file all.csv
+expect 0 lubricants import all.csv --replace
+for fluid in table-oil table-2 row-fresh; do
+  expect 0 lubricants revisions "$fluid" --output csv
+  out_lines 2
+done
+printf '{"lubricants": []}' >none.json
+expect 0 lubricants import none.json
+expect 0 validate none.json
 printf 'name,display_name\nlatin,\351l\n' >latin.csv
 expect 2 lubricants import latin.csv
 err_has 'not UTF-8'
@@ -241,6 +257,8 @@ TRIBODYN_SERVER=127.0.0.1:9 expect 0 lubricants create --help
 out_has 'No server answers'
 for topic in units files filters configuration options exit-codes; do expect 0 help $topic; done
 expect 0 help lubricants create
+expect 2 lubricant list
+err_has 'is lubricants meant'
 expect 2 help unitz
 err_has 'is units meant'
 

@@ -214,6 +214,17 @@ TEST_P(EveryMethod, NamesTheNearestForAnUnknownName) {
     set("filter", "lims = 1");
     return expect_refused(*message, "did you mean \"lims_id\"?");
   }
+  if (method.starts_with("Batch")) {
+    Message& request = *message->GetReflection()->AddMessage(
+        message.get(), message->GetDescriptor()->FindFieldByName("requests"));
+    Message& resource =
+        *request.GetReflection()->MutableMessage(&request, request.GetDescriptor()->field(0));
+    const auto* field = resource.GetDescriptor()->FindFieldByName(
+        method.starts_with("BatchUpdate") ? "name" : "derived_from");
+    resource.GetReflection()->SetString(&resource, field, unknown);
+    expect_refused(*message, "requests[0]." + request.GetDescriptor()->field(0)->name() + ".");
+    return expect_refused(*message, hint);
+  }
   const std::string resource = message->GetDescriptor()->field(0)->name();
   if (method.starts_with("Update")) {
     set_inner(resource, "name", unknown);

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <ostream>
 #include <set>
 
@@ -57,6 +58,7 @@ struct Subject {
   v1::Surface surface = seed<v1::Surface>("surfaces/run-in");
   v1::Vehicle vehicle = seed<v1::Vehicle>("vehicles/passenger-car");
   v1::GearSet gear_set = seed<v1::GearSet>("gearSets/A");
+  std::unique_ptr<Message> batch;
   Message* message = nullptr;
   std::string path;
 
@@ -116,6 +118,11 @@ struct Subject {
       use(gear_set.mutable_flank_slots(0), "flank_slots[0].");
     } else if (name == "LoadShareAtTorque") {
       use(gear_set.mutable_load_share_by_torque(0), "load_share_by_torque[0].");
+    } else if (name.starts_with("Batch")) {
+      const auto* type = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName(
+          "tribodyn.v1." + std::string(name));
+      batch.reset(google::protobuf::MessageFactory::generated_factory()->GetPrototype(type)->New());
+      use(batch.get(), "");
     } else if (name == "LoadShareAtTorque.Slot") {
       use(gear_set.mutable_load_share_by_torque(0)->mutable_slots(0),
           "load_share_by_torque[0].slots[0].");
@@ -131,6 +138,10 @@ struct Subject {
     if (path.starts_with("simulation.")) return server::check(simulation);
     if (path == "lubricant_parameters." || message == &contact) return server::check(contact);
     Violations violations;
+    if (batch) {
+      check_size(*batch, "requests", violations);
+      return violations;
+    }
     check_gear_set(gear_set, "", violations);
     for (const Message* whole :
          std::initializer_list<const Message*>{&lubricant, &surface, &vehicle, &gear_set}) {
@@ -157,7 +168,9 @@ class ConstraintRow : public testing::TestWithParam<Constraint> {
     Subject subject(GetParam().message);
     const auto* reflection = subject.message->GetReflection();
     const FieldDescriptor& target = field(subject);
-    if (target.is_repeated() && reflection->FieldSize(*subject.message, &target) > 0) {
+    if (is_list()) {
+      for (int i = 0; i < value; ++i) reflection->AddMessage(subject.message, &target);
+    } else if (target.is_repeated() && reflection->FieldSize(*subject.message, &target) > 0) {
       reflection->SetRepeatedDouble(subject.message, &target, 0, value);
     } else if (target.is_repeated()) {
       auto* curve = subject.simulation.mutable_inefficiency_curve();
@@ -174,15 +187,21 @@ class ConstraintRow : public testing::TestWithParam<Constraint> {
   std::string path() const {
     const Subject subject(GetParam().message);
     const std::string name = subject.path + std::string(GetParam().field);
-    return field(subject).is_repeated() ? name + "[0]" : name;
+    return field(subject).is_repeated() && !is_list() ? name + "[0]" : name;
   }
 
+  /// Whether the row is about how many there are.
+  bool is_list() const {
+    return field(Subject(GetParam().message)).cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+  }
   bool is_integer() const {
-    return field(Subject(GetParam().message)).cpp_type() == FieldDescriptor::CPPTYPE_INT32;
+    return is_list() ||
+           field(Subject(GetParam().message)).cpp_type() == FieldDescriptor::CPPTYPE_INT32;
   }
 
   double below() const {
     const double minimum = GetParam().minimum;
+    if (is_list()) return minimum - 1;
     if (is_integer()) return minimum - 1 == 0 ? -1 : minimum - 1;
     if (minimum == 0) return -1e-9;
     return minimum - 1e-6 * std::abs(minimum);
@@ -272,6 +291,21 @@ TEST(Constraints, EveryNumberThatAClientCanSendHasARow) {
     const std::size_t dot = name.rfind('.');
     EXPECT_NE(find_constraint(name.substr(0, dot), name.substr(dot + 1)), nullptr) << name;
   }
+}
+
+/// Lists of requests are work that a client can ask for.
+TEST(Constraints, EveryBatchHasARowForItsSize) {
+  int batches = 0;
+  for (const auto* file : {v1::Lubricant::descriptor()->file(), v1::GearSet::descriptor()->file(),
+                           v1::Surface::descriptor()->file(), v1::Vehicle::descriptor()->file()}) {
+    for (int i = 0; i < file->message_type_count(); ++i) {
+      const Descriptor& message = *file->message_type(i);
+      if (message.FindFieldByName("requests") == nullptr) continue;
+      EXPECT_NE(find_constraint(message.name(), "requests"), nullptr) << message.name();
+      ++batches;
+    }
+  }
+  EXPECT_EQ(batches, 8);
 }
 
 TEST(Constraints, EveryRowNamesAFieldThatExists) {

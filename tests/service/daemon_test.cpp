@@ -8,13 +8,32 @@
 #include "server/api/listen_address.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
+#include "tribodyn/v1/lubricants.grpc.pb.h"
 
 namespace tribodyn::server {
 namespace {
 
 using testing::HasSubstr;
 
-using DaemonTest = GrpcTest;
+class DaemonTest : public GrpcTest {
+ protected:
+  int count_of_lubricants(const std::string& filter) {
+    v1::ListLubricantsRequest request;
+    request.set_filter(filter);
+    request.set_page_size(1000);
+    int count = 0;
+    do {
+      grpc::ClientContext context;
+      v1::ListLubricantsResponse page;
+      const auto stub = v1::Lubricants::NewStub(channel_);
+      const grpc::Status status = stub->ListLubricants(&context, request, &page);
+      EXPECT_TRUE(status.ok()) << status.error_message();
+      count += page.lubricants_size();
+      request.set_page_token(page.next_page_token());
+    } while (!request.page_token().empty());
+    return count;
+  }
+};
 
 TEST_F(DaemonTest, ResultsSurviveAKillAndUnfinishedWorkIsTakenUpAgain) {
   v1::Simulation done, running;
@@ -33,6 +52,34 @@ TEST_F(DaemonTest, ResultsSurviveAKillAndUnfinishedWorkIsTakenUpAgain) {
   process_->wait();
   start();
   EXPECT_EQ(get(running.name()).state(), v1::Simulation::CANCELLED) << "a cancelled one stays so";
+}
+
+TEST_F(DaemonTest, AKillInTheMiddleOfABatchLeavesNothingHalfWritten) {
+  constexpr int kSize = 2000;
+  v1::BatchCreateLubricantsRequest batch;
+  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
+  for (int i = 0; i < kSize; ++i) {
+    fluid.set_name("lubricants/batch-" + std::to_string(i));
+    *batch.add_requests()->mutable_lubricant() = fluid;
+  }
+  // Killed ever later, until a batch has been written before.
+  for (std::chrono::milliseconds delay(2);; delay += delay / 2) {
+    grpc::Status status;
+    std::thread sender([&] {
+      grpc::ClientContext context;
+      v1::BatchCreateLubricantsResponse response;
+      status = v1::Lubricants::NewStub(channel_)->BatchCreateLubricants(&context, batch, &response);
+    });
+    std::this_thread::sleep_for(delay);
+    process_->signal(SIGKILL);
+    process_->wait();
+    sender.join();
+    start();
+    const int written = count_of_lubricants("name:batch-");
+    ASSERT_TRUE(written == 0 || written == kSize) << written;
+    ASSERT_TRUE(!status.ok() || written == kSize) << "what was acknowledged stays";
+    if (written > 0) break;
+  }
 }
 
 TEST_F(DaemonTest, ATerminationEndsStreamsAndKeepsWorkForTheNextStart) {

@@ -240,6 +240,64 @@ TEST_F(HastyStreamsTest, AWatchEndsAtItsDeadlineAndMayBeTakenUpAgain) {
   cancel(running.name());
 }
 
+class UnreadStreamsTest : public GrpcTest {
+ protected:
+  void SetUp() override {
+    more_flags_ = {"--unread-limit-seconds", "0.5"};
+    start();
+    v1::Simulation request = point_simulation();
+    auto* history = request.mutable_operating_point()->mutable_history();
+    history->add_columns("mesh_force_newtons");
+    history->set_mesh_cycles(50);
+    history->set_samples_per_mesh_cycle(8000);
+    v1::Simulation created;
+    ASSERT_TRUE(create(request, &created).ok());
+    ASSERT_TRUE(
+        eventually([&] { return get(created.name()).state() == v1::Simulation::SUCCEEDED; }));
+    request_.set_name(created.name());
+  }
+
+  /// Reads to the end, each message after a pause; rows and how it ended.
+  std::pair<int, grpc::Status> read(std::chrono::milliseconds first_pause,
+                                    std::chrono::milliseconds pause) {
+    grpc::ClientContext context;
+    const auto reader = simulations_->ReadHistory(&context, request_);
+    std::this_thread::sleep_for(first_pause);
+    int rows = 0;
+    for (v1::HistoryChunk chunk; reader->Read(&chunk);) {
+      rows += chunk.columns(0).values_size();
+      std::this_thread::sleep_for(pause);
+    }
+    return {rows, reader->Finish()};
+  }
+
+  v1::ReadHistoryRequest request_;
+};
+
+TEST_F(UnreadStreamsTest, AStreamWhoseClientReadsNothingIsCutOff) {
+  using std::chrono::milliseconds;
+  const auto [all_rows, well] = read(milliseconds(0), milliseconds(20));
+  EXPECT_TRUE(well.ok()) << "a slow reader is none: " << well.error_message();
+  EXPECT_EQ(all_rows, 400'000);
+  const auto [some_rows, cut_off] = read(milliseconds(2500), milliseconds(0));
+  EXPECT_EQ(cut_off.error_code(), grpc::StatusCode::CANCELLED) << cut_off.error_message();
+  EXPECT_LT(some_rows, all_rows);
+}
+
+TEST_F(UnreadStreamsTest, AWatchThatHasNothingToSayGoesOn) {
+  v1::Simulation running;
+  ASSERT_TRUE(create(long_simulation(), &running).ok());
+  std::thread canceller([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    cancel(running.name());
+  });
+  grpc::Status status;
+  const auto events = watch(running.name(), &status);
+  canceller.join();
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  EXPECT_EQ(events.back().state(), v1::Simulation::CANCELLED);
+}
+
 TEST_F(GrpcTest, AWatcherThatNeverReadsHoldsUpNobody) {
   v1::Simulation running;
   ASSERT_TRUE(create(long_simulation(), &running).ok());
@@ -285,8 +343,9 @@ TEST_F(GrpcTest, GarbageNeitherCrashesNorHangsIt) {
       client.call("/tribodyn.v1." + std::string(method), bytes);
     }
   }
-  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/EvaluateContact", std::string(5'000'000, 'x'))
-                .first.error_code(),
+  std::string huge;
+  huge.resize(70'000'000, 'x');
+  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/EvaluateContact", huge).first.error_code(),
             grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_EQ(client.call("/tribodyn.v1.Contacts/NoSuchMethod", "").first.error_code(),
             grpc::StatusCode::UNIMPLEMENTED);

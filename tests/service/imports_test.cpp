@@ -361,12 +361,49 @@ TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
   EXPECT_THAT(said("position_metres,height_metres\n0,0\n1,x\n"),
               HasSubstr("profiles[0].csv row 3 column height_metres: \"x\""));
   EXPECT_THAT(said("position_metres,height_metres\n0,0\n"), HasSubstr("profiles[0].csv"));
+  EXPECT_THAT(said(waves(0, 50, 100)), HasSubstr("profiles[0].csv.mean_square_slope"));
+  EXPECT_THAT(said("position_metres,height_metres\n0,0\n2,1\n4,0\n6,1\n8,0\n"),
+              HasSubstr("profiles[0].csv: spacing_metres = 2 m; legal: 1e-10 to 0.01 m"));
   EXPECT_THAT(said("position_metres,height_metres\n0,0\n1,0\n2,0\n3,0\n4,0\n5,0\n"),
               HasSubstr("profiles"));
   EXPECT_THAT(said(waves(300, 50, 100)), HasSubstr("tribofilm_shear_strength_pascals is not set"));
   request.add_profiles()->set_member(v1::PINION);
   EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
               HasSubstr("for all or none"));
+}
+
+TEST_F(ImportTest, EverythingWrongWithProfilesComesAtOnce) {
+  v1::ImportSurfaceProfilesRequest request;
+  request.set_surface_id("measured");
+  request.mutable_surface()->set_composite_rms_height_metres(1e-6);
+  request.mutable_surface()->set_asperity_friction_coefficient(-1);
+  request.mutable_surface()->set_derived_from("surfaces/run-im");
+  // Row 4 has no position, row 8 no height, row 6 a cell too many; rows 10 and 12 are out of place.
+  request.add_profiles()->set_csv(
+      "position_micrometres,height_nanometres\n0,1\n1,2\nx,3\n3,1\n4,2,5\n5,1\n6,\n7,2\n6.5,1\n"
+      "9,2\n12,3\n13,4\n");
+  request.add_profiles()->set_csv("position_metres,height_metre\n0,0\n-1,1\n-2,0\n");
+  const std::string said = complaints(import_surface_profiles(app_, request).error());
+  for (const char* each :
+       {"surface.composite_rms_height_metres: composite_rms_height_metres follows",
+        "profiles: two of one member and direction", "profiles[0].csv row 6: 3 cells; legal: 2",
+        "profiles[0].csv row 4 column position_micrometres: \"x\"",
+        "profiles[0].csv row 8 column height_nanometres: is empty",
+        "profiles[0].csv row 10 column position_micrometres: a step of -5e-07 m",
+        "profiles[0].csv row 12 column position_micrometres: a step of 3e-06 m; legal: 1e-06 m",
+        "profiles[1].csv column 2: \"height_metre\" is no known header",
+        "profiles[1].csv: samples = 3; legal: 5 to 1000000",
+        "profiles[1].csv row 3 column position_metres: a step of -1 m; legal: above 0",
+        "profiles[1].csv row 4 column position_metres: a step of -1 m; legal: above 0",
+        "surface.asperity_friction_coefficient: asperity_friction_coefficient = -1",
+        "surface.tribofilm_shear_strength_pascals: tribofilm_shear_strength_pascals is not set",
+        "surface.derived_from: \"surfaces/run-im\" does not exist"}) {
+    EXPECT_THAT(said, HasSubstr(each));
+  }
+  for (const char* right : {"row 5 ", "row 7 ", "row 9 ", "row 13"}) {
+    EXPECT_THAT(said, Not(HasSubstr(right)));
+  }
+  EXPECT_FALSE(bench_.store().resource("surfaces/measured"));
 }
 
 TEST_F(ImportTest, AViscosityTableBecomesALubricant) {
@@ -389,6 +426,19 @@ TEST_F(ImportTest, AViscosityTableBecomesALubricant) {
   EXPECT_NEAR(made.message().density_slope_kilograms_per_cubic_metre_kelvin(), -0.6323, 1e-6);
   EXPECT_LT(made.message().characterisation().root_mean_square_residual(), 1e-6);
   EXPECT_EQ(made.message().measurements().viscosities_size(), 7);
+
+  request.set_lubricant_id("trade");
+  request.set_viscosity_table_csv(
+      "temperature_celsius,kinematic_viscosity_square_millimetres_per_second\n"
+      "20,205\n40,73.3\n100,8.86\n");
+  const auto trade = import_lubricant(app_, request);
+  ASSERT_TRUE(trade.ok()) << complaints(trade.error());
+  EXPECT_EQ(trade.message().characterisation().sae_j306_grade(), "80") << "KV100 is in the table";
+  EXPECT_EQ(trade.message()
+                .characterisation()
+                .kinematic_viscosity_100_celsius_square_millimetres_per_second(),
+            8.86);
+  EXPECT_EQ(trade.message().characterisation().viscosity_residuals_size(), 3);
 
   request.set_lubricant_id("bad");
   request.set_viscosity_table_csv(

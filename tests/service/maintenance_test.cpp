@@ -96,7 +96,7 @@ TEST_F(MaintenanceTest, ABackupOfARunningServerIsWholeAndComesBack) {
     Store running(path());
     v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
     lubricant.set_name("lubricants/new");
-    running.create_resource({lubricant.name(), lubricant.SerializeAsString()}, 9);
+    running.add_resources({{lubricant.name(), lubricant.SerializeAsString()}}, 9);
     backup_database(path(), folder_.file("copy"));
     EXPECT_THROW(restore_database(folder_.file("copy"), path()), StoreError) << "it runs";
     EXPECT_THROW(backup_database(path(), folder_.file("copy")), StoreError) << "it exists";

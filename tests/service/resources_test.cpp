@@ -496,6 +496,56 @@ TEST_F(ListTest, ATokenBelongsToItsList) {
   }
 }
 
+TEST_F(ResourcesTest, AMaskMayNameAFieldOfAMessage) {
+  v1::Lubricant cold = three_numbers();
+  auto* brookfield = cold.mutable_measurements()->add_brookfield_viscosities();
+  brookfield->set_temperature_celsius(-40);
+  brookfield->set_dynamic_viscosity_millipascal_seconds(140000);
+  const auto made = create(cold, "cold");
+  ASSERT_TRUE(made.ok()) << complaints(made.error());
+  v1::Lubricant row;
+  row.set_name("lubricants/cold");
+  auto* measured = row.mutable_measurements();
+  measured->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(75);
+  const std::string kv40 =
+      "measurements.kinematic_viscosity_40_celsius_square_millimetres_per_second";
+  const auto changed = update(row, {kv40});
+  ASSERT_TRUE(changed.ok()) << complaints(changed.error());
+  EXPECT_EQ(changed.message().measurements().brookfield_viscosities_size(), 1) << "stays";
+  EXPECT_EQ(changed.message()
+                .measurements()
+                .kinematic_viscosity_100_celsius_square_millimetres_per_second(),
+            14.2);
+  EXPECT_NE(changed.message().vogel_temperature_coefficient_kelvin(),
+            made.message().vogel_temperature_coefficient_kelvin())
+      << "fitted again";
+  EXPECT_EQ(update(row, {kv40}).message().revision(), 2) << "nothing changes";
+
+  v1::Lubricant plain;
+  plain.set_name("lubricants/1");
+  EXPECT_EQ(update(plain, {kv40}).message().revision(), 1) << "nothing to take over";
+  EXPECT_THAT(complaints(update(row, {"measurements.densties"}).error()),
+              HasSubstr("\"densties\" is no field of LubricantMeasurements; did you mean "
+                        "\"densities\"?"));
+  for (const char* none : {"labels.key", "display_name.x", "measurments.densities"}) {
+    EXPECT_THAT(complaints(update(row, {none}).error()), HasSubstr("update_mask"));
+  }
+
+  v1::UpdateGearSetRequest gear_set;
+  gear_set.mutable_gear_set()->set_name("gearSets/A");
+  gear_set.mutable_gear_set()->mutable_dynamics()->set_half_backlash_metres(7e-5);
+  gear_set.mutable_update_mask()->add_paths("dynamics.half_backlash_metres");
+  const auto wider = update_gear_set(app_, gear_set);
+  ASSERT_TRUE(wider.ok()) << complaints(wider.error());
+  EXPECT_EQ(wider.message().dynamics().half_backlash_metres(), 7e-5);
+  EXPECT_GT(wider.message().dynamics().gear_inertia_kilogram_square_metres(), 0);
+  for (const auto& entry : wider.message().provenance()) {
+    if (entry.field() != "dynamics.half_backlash_metres") continue;
+    EXPECT_EQ(entry.provenance(), v1::PROVENANCE_USER)
+        << "what was known of the old number is gone";
+  }
+}
+
 TEST_F(ResourcesTest, EveryKindGoesTheSameWay) {
   v1::CreateVehicleRequest vehicle;
   *vehicle.mutable_vehicle() = seed<v1::Vehicle>("vehicles/passenger-car");

@@ -5,7 +5,6 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <map>
 
 #include "google/rpc/code.pb.h"
@@ -73,11 +72,15 @@ struct Methods<v1::Lubricant> {
   static constexpr auto kDelete = delete_lubricant;
   static constexpr auto kUndelete = undelete_lubricant;
   static constexpr auto kList = list_lubricants;
+  static constexpr auto kBatchCreate = batch_create_lubricants;
+  static constexpr auto kBatchUpdate = batch_update_lubricants;
   using Create = v1::CreateLubricantRequest;
   using Update = v1::UpdateLubricantRequest;
   using Delete = v1::DeleteLubricantRequest;
   using Undelete = v1::UndeleteLubricantRequest;
   using List = v1::ListLubricantsRequest;
+  using BatchCreate = v1::BatchCreateLubricantsRequest;
+  using BatchUpdate = v1::BatchUpdateLubricantsRequest;
   static auto* of(auto& request) { return request.mutable_lubricant(); }
   static auto& all(const auto& response) { return response.lubricants(); }
   static constexpr char kCollection[] = "lubricants/";
@@ -89,11 +92,15 @@ struct Methods<v1::GearSet> {
   static constexpr auto kDelete = delete_gear_set;
   static constexpr auto kUndelete = undelete_gear_set;
   static constexpr auto kList = list_gear_sets;
+  static constexpr auto kBatchCreate = batch_create_gear_sets;
+  static constexpr auto kBatchUpdate = batch_update_gear_sets;
   using Create = v1::CreateGearSetRequest;
   using Update = v1::UpdateGearSetRequest;
   using Delete = v1::DeleteGearSetRequest;
   using Undelete = v1::UndeleteGearSetRequest;
   using List = v1::ListGearSetsRequest;
+  using BatchCreate = v1::BatchCreateGearSetsRequest;
+  using BatchUpdate = v1::BatchUpdateGearSetsRequest;
   static auto* of(auto& request) { return request.mutable_gear_set(); }
   static auto& all(const auto& response) { return response.gear_sets(); }
   static constexpr char kCollection[] = "gearSets/";
@@ -105,11 +112,15 @@ struct Methods<v1::Surface> {
   static constexpr auto kDelete = delete_surface;
   static constexpr auto kUndelete = undelete_surface;
   static constexpr auto kList = list_surfaces;
+  static constexpr auto kBatchCreate = batch_create_surfaces;
+  static constexpr auto kBatchUpdate = batch_update_surfaces;
   using Create = v1::CreateSurfaceRequest;
   using Update = v1::UpdateSurfaceRequest;
   using Delete = v1::DeleteSurfaceRequest;
   using Undelete = v1::UndeleteSurfaceRequest;
   using List = v1::ListSurfacesRequest;
+  using BatchCreate = v1::BatchCreateSurfacesRequest;
+  using BatchUpdate = v1::BatchUpdateSurfacesRequest;
   static auto* of(auto& request) { return request.mutable_surface(); }
   static auto& all(const auto& response) { return response.surfaces(); }
   static constexpr char kCollection[] = "surfaces/";
@@ -121,11 +132,15 @@ struct Methods<v1::Vehicle> {
   static constexpr auto kDelete = delete_vehicle;
   static constexpr auto kUndelete = undelete_vehicle;
   static constexpr auto kList = list_vehicles;
+  static constexpr auto kBatchCreate = batch_create_vehicles;
+  static constexpr auto kBatchUpdate = batch_update_vehicles;
   using Create = v1::CreateVehicleRequest;
   using Update = v1::UpdateVehicleRequest;
   using Delete = v1::DeleteVehicleRequest;
   using Undelete = v1::UndeleteVehicleRequest;
   using List = v1::ListVehiclesRequest;
+  using BatchCreate = v1::BatchCreateVehiclesRequest;
+  using BatchUpdate = v1::BatchUpdateVehiclesRequest;
   static auto* of(auto& request) { return request.mutable_vehicle(); }
   static auto& all(const auto& response) { return response.vehicles(); }
   static constexpr char kCollection[] = "vehicles/";
@@ -242,6 +257,33 @@ void operate(Application& app, const Resource& resource, Revisions& revisions) {
   }
 }
 
+/// An update of several names at once: of all of them or of none.
+template <class Resource>
+void operate_on_several(Application& app, const Resource& resource, Revisions& revisions) {
+  using Kind = Methods<Resource>;
+  typename Kind::BatchUpdate batch;
+  const int first = *rc::gen::inRange(0, 3);
+  const int end = *rc::gen::inRange(first + 1, first + 4);
+  for (int i = first; i < end; ++i) {
+    auto* request = batch.add_requests();
+    *Kind::of(*request) = resource;
+    Kind::of(*request)->set_name(Kind::kCollection + std::to_string(i));
+    request->set_allow_missing(*rc::gen::inRange(0, 8) != 0);
+  }
+  const auto outcome = Kind::kBatchUpdate(app, batch);
+  if (!outcome.ok()) {
+    const int code = outcome.error().code();
+    RC_ASSERT(code == google::rpc::NOT_FOUND || code == google::rpc::FAILED_PRECONDITION ||
+              code == google::rpc::INVALID_ARGUMENT);
+    return;
+  }
+  for (const Resource& each : Kind::all(outcome.message())) {
+    int& known = revisions[each.name()];
+    RC_ASSERT(each.revision() == known || each.revision() == known + 1);
+    known = each.revision();
+  }
+}
+
 std::string without_revision(const std::string& name) { return name.substr(0, name.find('@')); }
 
 /// JSON of everything that is not deleted, and of what that descends from, without what only the
@@ -271,21 +313,15 @@ std::map<std::string, std::string> exported(Application& app) {
   return out;
 }
 
-/// Parents first.
 template <class Resource>
-void imported(Application& app, std::map<std::string, std::string> all) {
-  const std::function<void(const std::string&)> take = [&](const std::string& name) {
-    const auto found = all.find(name);
-    if (found == all.end()) return;
-    typename Methods<Resource>::Create request;
-    const std::string json = found->second;
-    all.erase(found);
-    RC_ASSERT(JsonStringToMessage(json, Methods<Resource>::of(request)).ok());
-    take(without_revision(Methods<Resource>::of(request)->derived_from()));
-    const auto outcome = Methods<Resource>::kCreate(app, request);
-    if (!outcome.ok()) RC_FAIL(outcome.error().message() + json);
-  };
-  while (!all.empty()) take(all.begin()->first);
+void imported(Application& app, const std::map<std::string, std::string>& all) {
+  if (all.empty()) return;
+  typename Methods<Resource>::BatchCreate batch;
+  for (const auto& [name, json] : all) {
+    RC_ASSERT(JsonStringToMessage(json, Methods<Resource>::of(*batch.add_requests())).ok());
+  }
+  const auto outcome = Methods<Resource>::kBatchCreate(app, batch);
+  if (!outcome.ok()) RC_FAIL(outcome.error().message());
 }
 
 template <class Resource>
@@ -311,7 +347,13 @@ RC_GTEST_PROP(AnySequenceOfOperations, KeepsTheStoreConsistentAndItsExportExact,
   place.store.add_resources(seed_resources(), system_time());
   for (const NewResource& seed : seed_resources()) revisions[seed.name] = 1;
   for (int i = *rc::gen::inRange(1, 25); i > 0; --i) {
-    switch (*rc::gen::inRange(0, 7)) {
+    switch (*rc::gen::inRange(0, 9)) {
+      case 4:
+        operate_on_several(place.app, any_vehicle(), revisions);
+        break;
+      case 5:
+        operate_on_several(place.app, any_lubricant(), revisions);
+        break;
       case 3:
         simulate(place.app);
         break;

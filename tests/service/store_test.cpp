@@ -71,11 +71,12 @@ TEST_F(StoreTest, ResourcesArePagedByNumberAndBytesWithinTheirCollection) {
 
 TEST_F(StoreTest, AnUpdateMakesARevisionAndLosesNone) {
   Store store(path());
-  ASSERT_TRUE(store.create_resource({"lubricants/x", "first"}, 1));
-  EXPECT_FALSE(store.create_resource({"lubricants/x", "again"}, 2));
+  ASSERT_TRUE(store.write_resources({{{"lubricants/x", "first"}, {}}}, 1));
+  EXPECT_FALSE(store.write_resources({{{"lubricants/x", "again"}, {}}}, 2));
   const StoredResource first = *store.resource("lubricants/x");
-  EXPECT_TRUE(store.update_resource(first, "second", 3));
-  EXPECT_FALSE(store.update_resource(first, "third", 4)) << "somebody else was faster";
+  EXPECT_TRUE(store.write_resources({{{"lubricants/x", "second"}, first}}, 3));
+  EXPECT_FALSE(store.write_resources({{{"lubricants/x", "third"}, first}}, 4))
+      << "somebody else was faster";
   EXPECT_FALSE(store.delete_resource(first, 4));
   const StoredResource second = *store.resource("lubricants/x");
   EXPECT_EQ(second.revision, 2);
@@ -91,7 +92,7 @@ TEST_F(StoreTest, AnUpdateMakesARevisionAndLosesNone) {
 
 TEST_F(StoreTest, ADeletedResourceIsOutOfListsAndComesBackWhole) {
   Store store(path());
-  store.create_resource({"b/1", "body"}, 1);
+  store.add_resources({{"b/1", "body"}}, 1);
   ASSERT_TRUE(store.delete_resource(*store.resource("b/1"), 5));
   EXPECT_EQ(store.resource("b/1")->delete_time, 5);
   EXPECT_TRUE(store.resources(all_of_b(10, 1000)).rows.empty());
@@ -171,7 +172,7 @@ TEST_F(StoreTest, TheSchemaKeepsOutWhatMakesNoSense) {
   raw.exec("PRAGMA foreign_keys = ON");
   const auto id = store.add_simulation({.request = "r", .input_hash = kHash}, 1);
   EXPECT_THROW(raw.exec("INSERT INTO results VALUES (77, x'00')"), SQLite::Exception);
-  store.create_resource({"a/1", "body"}, 1);
+  store.add_resources({{"a/1", "body"}}, 1);
   for (const char* illegal :
        {"INSERT INTO revisions VALUES (9, 1, 2, 1, printf('%064d', 0), 'text is no blob')",
         "INSERT INTO revisions VALUES (9, 1, 3, 1, printf('%064d', 0), x'00')",

@@ -63,9 +63,12 @@ void complain_of_extras(const CLI::App& root, const CLI::App& app, const Command
     options.insert(options.end(), own.begin(), own.end());
   }
   std::vector<std::string> paths;
-  paths.reserve(commands.size());
+  paths.reserve(2 * commands.size());
   for (const Command& each : commands) paths.push_back(each.path);
   const std::string group = &app == &root ? "" : app.get_name() + " ";
+  if (group.empty()) {
+    for (const Command& each : commands) paths.push_back(each.path.substr(0, each.path.find(' ')));
+  }
 
   bool follows_option = false;  // the value of an unknown option is no news
   for (const std::string& extra : root.remaining(true)) {

@@ -34,10 +34,12 @@ JSON holds a resource as the protos name its fields (snake_case or camelCase), o
 A misspelt name is refused, and the one that may be meant is named. `export` writes it, `import`,
 `create --file`, `update --file` and `validate` read it; "-" is standard input.
 
-Tables are CSV with a header; the order of columns is free.
+Tables are CSV with a header; the order of columns is free. Cells are separated by commas,
+semicolons or tabs, numbers have a decimal point, lines that begin with # are skipped.
   Viscosities (lubricants): temperature_celsius or temperature_kelvin; and one or more of
     kinematic_viscosity_square_millimetres_per_second, dynamic_viscosity_millipascal_seconds,
-    dynamic_viscosity_pascal_seconds, density_kilograms_per_cubic_metre. Empty cells are left out.
+    dynamic_viscosity_pascal_seconds, density_kilograms_per_cubic_metre; if known
+    relative_standard_uncertainty, of the viscosities. Empty cells are left out.
       temperature_celsius,kinematic_viscosity_square_millimetres_per_second
       20,200
       40,73.3
@@ -51,15 +53,20 @@ Tables are CSV with a header; the order of columns is free.
     -1.5 to 1.5 pitches), or mesh_phase and slot; then load_share, radius_x_metres, radius_y_metres,
     pinion_velocity_x_metres, pinion_velocity_y_metres, gear_velocity_x_metres,
     gear_velocity_y_metres; if known contact_point_velocity_x_metres,
-    contact_point_velocity_y_metres, pinion_friction_arm_metres, gear_friction_arm_metres.
+    contact_point_velocity_y_metres, pinion_friction_arm_metres, gear_friction_arm_metres. Each
+    length also in _millimetres.
   Series (gear sets): quantity, harmonic, sine, cosine; the cosine of harmonic 0 is the mean.
     Quantities: pinion_contact_radius_metres, gear_contact_radius_metres,
     mesh_stiffness_newtons_per_metre, static_transmission_error_metres.
   Profiles (surfaces): position and height, each in _metres, _millimetres or _micrometres, height
     also in _nanometres; positions evenly spaced.
-Every violation is named with its row and column. Nothing is written unless all is legal. When an
-import of several is interrupted or loses the server, the message says how many were written: give
---replace to write all of them again, which makes no revision of what is the same.
+Every violation is named with its row and column, or with its place in the list.
+
+An import takes any number of files and writes all that they hold or nothing: not when one of them
+is wrong, nor when it is interrupted or the server is lost on the way. One may be derived from
+another one in any order. Names that are taken are refused, or with --replace get a new revision
+where anything differs; a table changes only what its columns tell of. At most 20000 resources and
+64 MiB at once.
 )"},
       {"filters", "which resources a list shows, and in which order",
        R"(Filters of lists

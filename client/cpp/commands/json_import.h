@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "client/cpp/resources/json_input.h"
-#include "client/cpp/text/progress.h"
 
 namespace tribodyn::client {
 
@@ -14,21 +13,26 @@ std::string id_of_file(const std::string& path);
 /// Resources of one kind on their way from files to the server, all or none.
 class JsonImport {
  public:
-  /// `id` is that of a single resource; empty: the name in the file, else the file's own. Puts what
-  /// others are derived from before them. Throws Failure when two have the same name.
+  /// `id` is that of a single resource; empty: the name in the file, else the file's own. Throws
+  /// Failure when two have the same name.
   JsonImport(const ResourceKind& kind, std::vector<FileResource> resources, const std::string& id);
 
-  /// Has the server check every one and returns what they would be. Throws Failure with all
-  /// refusals.
-  std::vector<ResourcePointer> check(Connection& connection, bool replace,
-                                     ProgressDisplay& progress) const;
-  std::vector<ResourcePointer> write(Connection& connection, bool replace,
-                                     ProgressDisplay& progress) const;
+  /// Has the server write all of them, or with `validate_only` say what they would be. Throws
+  /// Failure with everything that is wrong, each with its place in the files.
+  std::vector<ResourcePointer> send(Connection& connection, bool replace, bool validate_only) const;
+
+  /// What is found wrong, and which places in the files are known to be right.
+  struct Verdict {
+    std::vector<std::string> valid;
+    std::vector<std::string> wrong;
+  };
+  /// What an import with `replace` would say.
+  Verdict check(Connection& connection) const;
 
  private:
-  ResourcePointer send(Connection& connection, const google::protobuf::Message& resource,
-                       const std::vector<std::string>& fields, bool replace,
-                       bool validate_only) const;
+  std::vector<ResourcePointer> write(Connection& connection, bool replace,
+                                     bool validate_only) const;
+  Verdict verdict(const ServiceError& refusal) const;
 
   const ResourceKind& kind_;
   std::vector<FileResource> resources_;

@@ -34,11 +34,7 @@ struct ExportFlags {
 
 bool is_csv(const std::string& path) { return std::filesystem::path(path).extension() == ".csv"; }
 
-ProgressDisplay progress_of(const CommonOptions& options) {
-  return {std::cerr, options.progress_form(), standard_error_width()};
-}
-
-/// Everything is checked before anything is written.
+/// All or none.
 int import_resources(const ResourceKind& kind, const ImportFlags& flags,
                      const CommonOptions& options) {
   std::vector<FileResource> resources;
@@ -56,10 +52,8 @@ int import_resources(const ResourceKind& kind, const ImportFlags& flags,
   }
   const JsonImport import(kind, std::move(resources), flags.id);
   Connection connection = options.connect();
-  ProgressDisplay progress = progress_of(options);
-  std::vector<ResourcePointer> done = import.check(connection, flags.replace, progress);
-  if (!flags.validate_only) done = import.write(connection, flags.replace, progress);
-  progress.finish();
+  const std::vector<ResourcePointer> done =
+      import.send(connection, flags.replace, flags.validate_only);
   if (options.output_format != OutputFormat::kTable) {
     std::cout << resources_text(kind, done, options.output_format, false);
     return kExitOk;
@@ -182,8 +176,8 @@ Command import_command(const ResourceKind& kind) {
   Command command{kind.word + " import",
                   kind.plural + " from files",
                   "Adds " + kind.plural +
-                      " from files as export writes them, several at once. All are checked before "
-                      "the first one is written.",
+                      " from files as export writes them, several at once: all of them, or none "
+                      "when one is wrong.",
                   {"tribodyn " + kind.word + " import " + kind.plural.substr(0, 4) + ".json"},
                   {},
                   {},

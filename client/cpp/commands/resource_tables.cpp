@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/resources/json_input.h"
@@ -27,6 +28,69 @@ bool read_profile(const std::string& text, TableFiles::Profile& profile) {
     }
   }
   return !profile.path.empty();
+}
+
+ResourcePointer send_with_tables(Connection& connection, const ResourceKind& kind,
+                                 const google::protobuf::Message& resource, const std::string& id,
+                                 const TableFiles& tables, bool validate_only) {
+  if (!tables.viscosity_table.empty()) {
+    v1::ImportLubricantRequest request;
+    request.mutable_lubricant()->CopyFrom(resource);
+    request.set_lubricant_id(id);
+    request.set_viscosity_table_csv(read_file(tables.viscosity_table, kLargestTable));
+    request.set_validate_only(validate_only);
+    return std::make_unique<v1::Lubricant>(connection.import_lubricant(request));
+  }
+  if (!tables.tooth_contact.empty()) {
+    v1::ImportGearSetRequest request;
+    request.mutable_gear_set()->CopyFrom(resource);
+    request.set_gear_set_id(id);
+    request.set_tooth_contact_csv(read_file(tables.tooth_contact, kLargestTable));
+    if (!tables.series.empty()) request.set_series_csv(read_file(tables.series, kLargestTable));
+    request.set_validate_only(validate_only);
+    return std::make_unique<v1::GearSet>(connection.import_gear_set(request));
+  }
+  if (!tables.profiles.empty()) {
+    v1::ImportSurfaceProfilesRequest request;
+    request.mutable_surface()->CopyFrom(resource);
+    request.set_surface_id(id);
+    for (const TableFiles::Profile& table : tables.profiles) {
+      v1::SurfaceProfile& profile = *request.add_profiles();
+      profile.set_member(table.member);
+      profile.set_direction(table.direction);
+      profile.set_csv(read_file(table.path, kLargestTable));
+    }
+    request.set_levelling(tables.levelling);
+    request.set_validate_only(validate_only);
+    return std::make_unique<v1::Surface>(connection.import_surface_profiles(request));
+  }
+  return kind.calls->create(connection, resource, id, validate_only);
+}
+
+void replace_all(const std::string& from, const std::string& to, std::string& text) {
+  for (std::size_t at = text.find(from); at != std::string::npos;
+       at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+/// The refusal with the names of the user's files in it for those of the request's fields.
+ServiceError with_file_names(const ServiceError& error, const TableFiles& tables) {
+  std::vector<std::pair<std::string, std::string>> names = {
+      {"viscosity_table_csv", tables.viscosity_table},
+      {"tooth_contact_csv", tables.tooth_contact},
+      {"series_csv", tables.series}};
+  for (std::size_t i = 0; i < tables.profiles.size(); ++i) {
+    names.emplace_back("profiles[" + std::to_string(i) + "].csv", tables.profiles[i].path);
+  }
+  std::string text = error.what();
+  std::vector<FieldViolation> violations = error.violations();
+  for (const auto& [field, path] : names) {
+    if (path.empty()) continue;
+    replace_all(field, printable(path), text);
+    for (FieldViolation& each : violations) replace_all(field, printable(path), each.field);
+  }
+  return {text, error.status_code(), error.reason(), violations, error.retry_delay_seconds()};
 }
 
 }  // namespace
@@ -106,38 +170,12 @@ ResourcePointer copy_of(Connection& connection, const ResourceKind& kind, const 
 ResourcePointer create_with_tables(Connection& connection, const ResourceKind& kind,
                                    const google::protobuf::Message& resource, const std::string& id,
                                    const TableFiles& tables, bool validate_only) {
-  if (!tables.viscosity_table.empty()) {
-    v1::ImportLubricantRequest request;
-    request.mutable_lubricant()->CopyFrom(resource);
-    request.set_lubricant_id(id);
-    request.set_viscosity_table_csv(read_file(tables.viscosity_table, kLargestTable));
-    request.set_validate_only(validate_only);
-    return std::make_unique<v1::Lubricant>(connection.import_lubricant(request));
+  try {
+    return send_with_tables(connection, kind, resource, id, tables, validate_only);
+  } catch (const ServiceError& error) {
+    if (error.kind() != ServiceError::Kind::kRefused) throw;
+    throw with_file_names(error, tables);
   }
-  if (!tables.tooth_contact.empty()) {
-    v1::ImportGearSetRequest request;
-    request.mutable_gear_set()->CopyFrom(resource);
-    request.set_gear_set_id(id);
-    request.set_tooth_contact_csv(read_file(tables.tooth_contact, kLargestTable));
-    if (!tables.series.empty()) request.set_series_csv(read_file(tables.series, kLargestTable));
-    request.set_validate_only(validate_only);
-    return std::make_unique<v1::GearSet>(connection.import_gear_set(request));
-  }
-  if (!tables.profiles.empty()) {
-    v1::ImportSurfaceProfilesRequest request;
-    request.mutable_surface()->CopyFrom(resource);
-    request.set_surface_id(id);
-    for (const TableFiles::Profile& table : tables.profiles) {
-      v1::SurfaceProfile& profile = *request.add_profiles();
-      profile.set_member(table.member);
-      profile.set_direction(table.direction);
-      profile.set_csv(read_file(table.path, kLargestTable));
-    }
-    request.set_levelling(tables.levelling);
-    request.set_validate_only(validate_only);
-    return std::make_unique<v1::Surface>(connection.import_surface_profiles(request));
-  }
-  return kind.calls->create(connection, resource, id, validate_only);
 }
 
 }  // namespace tribodyn::client

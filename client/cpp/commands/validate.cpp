@@ -2,8 +2,8 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <set>
 
+#include "client/cpp/commands/json_import.h"
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/resources/json_input.h"
 #include "client/cpp/resources/row_table.h"
@@ -42,15 +42,6 @@ constexpr char kAnyId[] = "validated";
 
 /// What is wrong with a file, a complaint each; says what is right on standard output.
 void validate(Connection& connection, const std::string& path, std::vector<std::string>& wrong) {
-  const auto check = [&](const std::string& origin, const auto& call) {
-    try {
-      call();
-      std::cout << origin << ": valid\n";
-    } catch (const ServiceError& error) {
-      if (error.kind() != ServiceError::Kind::kRefused) throw;
-      wrong.push_back(origin + ": " + error.what());
-    }
-  };
   const std::string text = read_file(path);
   const bool is_csv = std::filesystem::path(path).extension() == ".csv";
   const bool rows = is_csv && is_row_table(text);
@@ -68,30 +59,28 @@ void validate(Connection& connection, const std::string& path, std::vector<std::
     const ResourcePointer rest = kind->word == "lubricants"
                                      ? kind->make()
                                      : copy_of(connection, *kind, kind->example, tables);
-    check(path, [&] { create_with_tables(connection, *kind, *rest, kAnyId, tables, true); });
+    try {
+      create_with_tables(connection, *kind, *rest, kAnyId, tables, true);
+      std::cout << path << ": valid\n";
+    } catch (const ServiceError& error) {
+      if (error.kind() != ServiceError::Kind::kRefused) throw;
+      wrong.push_back(path + ": " + error.what());
+    }
     return;
   }
-  const auto resources =
+  auto resources =
       rows ? read_row_table(text, path, kind_of_rows(text)) : read_resources(text, path, nullptr);
-  std::set<std::string> names;
-  for (const FileResource& each : resources) names.insert(text_field(*each.resource, "name"));
-  for (const FileResource& each : resources) {
-    if (names.count(text_field(*each.resource, "derived_from")) != 0) {
-      // It will be there once this one is written.
-      each.resource->GetReflection()->ClearField(
-          each.resource.get(), each.resource->GetDescriptor()->FindFieldByName("derived_from"));
-    }
-    clear_output_only(*each.resource);
-    const auto* name = each.resource->GetDescriptor()->FindFieldByName("name");
-    if (text_field(*each.resource, "name").empty()) {
-      each.resource->GetReflection()->SetString(each.resource.get(), name,
-                                                each.kind->name_of(kAnyId));
-    }
-    UpdateOptions options;
-    options.allow_missing = true;
-    options.validate_only = true;
-    check(each.origin, [&] { each.kind->calls->update(connection, *each.resource, options); });
+  if (resources.empty()) {
+    std::cout << path << ": valid, but it holds nothing\n";
+    return;
   }
+  const bool is_nameless =
+      resources.size() == 1 && text_field(*resources.front().resource, "name").empty();
+  const ResourceKind& kind = *resources.front().kind;
+  const JsonImport import(kind, std::move(resources), is_nameless ? kAnyId : "");
+  const JsonImport::Verdict verdict = import.check(connection);
+  for (const std::string& origin : verdict.valid) std::cout << origin << ": valid\n";
+  wrong.insert(wrong.end(), verdict.wrong.begin(), verdict.wrong.end());
 }
 
 int run(const std::vector<std::string>& files, const CommonOptions& options) {

@@ -21,12 +21,16 @@ struct Methods;
     using List = v1::List##Resource##sRequest;                                                   \
     using Update = v1::Update##Resource##Request;                                                \
     using Revisions = v1::List##Resource##RevisionsRequest;                                      \
+    using BatchCreate = v1::BatchCreate##Resource##sRequest;                                     \
+    using BatchUpdate = v1::BatchUpdate##Resource##sRequest;                                     \
     using Delete = v1::Delete##Resource##Request;                                                \
     using Undelete = v1::Undelete##Resource##Request;                                            \
     static constexpr auto kCreate = &Stub::Create##Resource;                                     \
     static constexpr auto kGet = &Stub::Get##Resource;                                           \
     static constexpr auto kList = &Stub::List##Resource##s;                                      \
     static constexpr auto kUpdate = &Stub::Update##Resource;                                     \
+    static constexpr auto kBatchCreate = &Stub::BatchCreate##Resource##s;                        \
+    static constexpr auto kBatchUpdate = &Stub::BatchUpdate##Resource##s;                        \
     static constexpr auto kRevisions = &Stub::List##Resource##Revisions;                         \
     static constexpr auto kDelete = &Stub::Delete##Resource;                                     \
     static constexpr auto kUndelete = &Stub::Undelete##Resource;                                 \
@@ -115,6 +119,35 @@ Resource Connection::update(const Resource& resource, const UpdateOptions& optio
 }
 
 template <class Resource>
+std::vector<Resource> Connection::create_all(const std::vector<Resource>& resources,
+                                             bool validate_only) {
+  typename Methods<Resource>::BatchCreate batch;
+  for (const Resource& each : resources) Methods<Resource>::part(*batch.add_requests()) = each;
+  batch.set_validate_only(validate_only);
+  const auto response =
+      services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kBatchCreate, batch);
+  const auto& parts = Methods<Resource>::parts(response);
+  return {parts.begin(), parts.end()};
+}
+
+template <class Resource>
+std::vector<Resource> Connection::update_all(const std::vector<ResourceUpdate<Resource>>& updates,
+                                             bool allow_missing, bool validate_only) {
+  typename Methods<Resource>::BatchUpdate batch;
+  for (const ResourceUpdate<Resource>& each : updates) {
+    auto& request = *batch.add_requests();
+    Methods<Resource>::part(request) = each.resource;
+    for (const std::string& path : each.update_mask) request.mutable_update_mask()->add_paths(path);
+    request.set_allow_missing(allow_missing);
+  }
+  batch.set_validate_only(validate_only);
+  const auto response =
+      services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kBatchUpdate, batch);
+  const auto& parts = Methods<Resource>::parts(response);
+  return {parts.begin(), parts.end()};
+}
+
+template <class Resource>
 Listing<Resource> Connection::revisions(const std::string& name, int limit) {
   typename Methods<Resource>::Revisions request;
   request.set_name(name);
@@ -141,13 +174,17 @@ Resource Connection::undelete(const std::string& name, const std::string& etag) 
                          request);
 }
 
-#define TRIBODYN_INSTANTIATE(Resource)                                                     \
-  template v1::Resource Connection::create(const v1::Resource&, const std::string&, bool); \
-  template v1::Resource Connection::get(const std::string&);                               \
-  template Listing<v1::Resource> Connection::list(const ListOptions&);                     \
-  template v1::Resource Connection::update(const v1::Resource&, const UpdateOptions&);     \
-  template Listing<v1::Resource> Connection::revisions(const std::string&, int);           \
-  template v1::Resource Connection::remove(const std::string&, const std::string&);        \
+#define TRIBODYN_INSTANTIATE(Resource)                                                        \
+  template v1::Resource Connection::create(const v1::Resource&, const std::string&, bool);    \
+  template v1::Resource Connection::get(const std::string&);                                  \
+  template Listing<v1::Resource> Connection::list(const ListOptions&);                        \
+  template v1::Resource Connection::update(const v1::Resource&, const UpdateOptions&);        \
+  template std::vector<v1::Resource> Connection::create_all(const std::vector<v1::Resource>&, \
+                                                            bool);                            \
+  template std::vector<v1::Resource> Connection::update_all(                                  \
+      const std::vector<ResourceUpdate<v1::Resource>>&, bool, bool);                          \
+  template Listing<v1::Resource> Connection::revisions(const std::string&, int);              \
+  template v1::Resource Connection::remove(const std::string&, const std::string&);           \
   template v1::Resource Connection::undelete(const std::string&, const std::string&)
 TRIBODYN_INSTANTIATE(Lubricant);
 TRIBODYN_INSTANTIATE(GearSet);

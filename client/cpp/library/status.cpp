@@ -45,10 +45,13 @@ std::string code_name(grpc::StatusCode code) {
 }
 
 /// The server's sentences mostly begin with the field's own name, which is that of a flag; the path
-/// in front of it would only hide it.
+/// in front of it would only hide it, unless it says which of several.
 std::string violation_text(const FieldViolation& violation) {
   const std::string leaf = violation.field.substr(violation.field.rfind('.') + 1);
-  if (violation.description.rfind(leaf + " ", 0) == 0) return violation.description;
+  const bool is_one_of_several = violation.field.find('[') != std::string::npos;
+  if (!is_one_of_several && violation.description.rfind(leaf + " ", 0) == 0) {
+    return violation.description;
+  }
   return violation.field + ": " + violation.description;
 }
 

@@ -19,7 +19,8 @@ struct FileResource {
   const ResourceKind* kind;
   ResourcePointer resource;
   std::string origin;  ///< "fluids.json", "fluids.json, lubricants[2]", "fluids.csv row 3"
-  std::vector<std::string> fields = {};  ///< that it can tell of; empty: all
+  std::vector<std::string> fields = {};   ///< that it can tell of; empty: all
+  std::vector<std::string> columns = {};  ///< of the table whose row it is
 };
 
 /// The resources of a JSON text in the protos' JSON form (names in camelCase or as in the protos):

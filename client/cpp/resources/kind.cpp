@@ -29,6 +29,20 @@ class TypedCalls final : public ResourceCalls {
                          const UpdateOptions& options) const override {
     return own(connection.update(typed(resource), options));
   }
+  std::vector<ResourcePointer> write_all(Connection& connection,
+                                         const std::vector<BatchEntry>& batch, bool replace,
+                                         bool validate_only) const override {
+    std::vector<Resource> resources;
+    if (replace) {
+      std::vector<ResourceUpdate<Resource>> updates;
+      for (const BatchEntry& each : batch) updates.push_back({typed(*each.resource), each.fields});
+      resources = connection.update_all(updates, true, validate_only);
+    } else {
+      for (const BatchEntry& each : batch) resources.push_back(typed(*each.resource));
+      resources = connection.create_all(resources, validate_only);
+    }
+    return own_each(std::move(resources));
+  }
   ResourceList revisions(Connection& connection, const std::string& name,
                          int limit) const override {
     return own_all(connection.revisions<Resource>(name, limit));
@@ -49,11 +63,13 @@ class TypedCalls final : public ResourceCalls {
   static ResourcePointer own(Resource&& resource) {
     return std::make_unique<Resource>(std::move(resource));
   }
+  static std::vector<ResourcePointer> own_each(std::vector<Resource>&& resources) {
+    std::vector<ResourcePointer> out;
+    for (Resource& resource : resources) out.push_back(own(std::move(resource)));
+    return out;
+  }
   static ResourceList own_all(Listing<Resource>&& listing) {
-    ResourceList list;
-    for (Resource& resource : listing.resources) list.resources.push_back(own(std::move(resource)));
-    list.has_more = listing.has_more;
-    return list;
+    return {own_each(std::move(listing.resources)), listing.has_more};
   }
 };
 

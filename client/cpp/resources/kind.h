@@ -13,6 +13,12 @@ namespace tribodyn::client {
 /// A resource of any kind.
 using ResourcePointer = std::unique_ptr<google::protobuf::Message>;
 
+/// A resource of a batch, and the fields of it that an update takes over; empty: all.
+struct BatchEntry {
+  const google::protobuf::Message* resource;
+  std::vector<std::string> fields;
+};
+
 struct ResourceList {
   std::vector<ResourcePointer> resources;
   bool has_more = false;
@@ -29,6 +35,10 @@ class ResourceCalls {
   virtual ResourceList list(Connection& connection, const ListOptions& options) const = 0;
   virtual ResourcePointer update(Connection& connection, const google::protobuf::Message& resource,
                                  const UpdateOptions& options) const = 0;
+  /// All or none; `replace` updates what is there already.
+  virtual std::vector<ResourcePointer> write_all(Connection& connection,
+                                                 const std::vector<BatchEntry>& batch, bool replace,
+                                                 bool validate_only) const = 0;
   virtual ResourceList revisions(Connection& connection, const std::string& name,
                                  int limit) const = 0;
   virtual ResourcePointer remove(Connection& connection, const std::string& name,

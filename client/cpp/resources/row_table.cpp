@@ -186,9 +186,10 @@ std::vector<SetCell> read_header(const std::vector<std::string>& header, const R
   return out;
 }
 
-/// The fields of a resource that the columns reach into.
-std::vector<std::string> top_fields(const std::vector<std::string>& header,
-                                    const ResourceKind& kind) {
+/// The fields that the columns tell of, those of a block as "block.field": what else the block
+/// holds has no room in a table and stays.
+std::vector<std::string> fields_of(const std::vector<std::string>& header,
+                                   const ResourceKind& kind) {
   std::set<std::string> out;
   for (const std::string& name : header) {
     if (name.rfind(kLabel, 0) == 0) out.insert("labels");
@@ -196,7 +197,7 @@ std::vector<std::string> top_fields(const std::vector<std::string>& header,
   for (const Column& column : columns_of(kind)) {
     const std::string& name = column.field->name();
     if (name == "name" || std::find(header.begin(), header.end(), name) == header.end()) continue;
-    out.insert(column.block == nullptr ? name : column.block->name());
+    out.insert(column.block == nullptr ? name : column.block->name() + "." + name);
   }
   return {out.begin(), out.end()};
 }
@@ -217,7 +218,7 @@ std::vector<FileResource> read_row_table(const std::string& text, const std::str
   std::vector<FileResource> resources;
   const std::vector<std::string>& header = lines.at(0).cells;
   const std::vector<SetCell> setters = read_header(header, kind, complaints);
-  const std::vector<std::string> fields = top_fields(header, kind);
+  const std::vector<std::string> fields = fields_of(header, kind);
   for (std::size_t i = 1; i < lines.size() && complaints.size() < kMostComplaints; ++i) {
     const std::string row = "row " + std::to_string(lines[i].number);
     if (lines[i].cells.size() != header.size()) {
@@ -240,6 +241,7 @@ std::vector<FileResource> read_row_table(const std::string& text, const std::str
     }
     if (text_field(*read.resource, "name").empty()) complaints.push_back(row + " has no name");
     read.fields = fields;
+    read.columns = header;
   }
   if (complaints.empty() && resources.empty()) complaints.emplace_back("has no rows");
   if (!complaints.empty()) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "client/cpp/commands/help_topics.h"
 #include "client/cpp/resources/kind.h"
 #include "client/cpp/text/units.h"
 #include "tests/service/server_process.h"
@@ -95,6 +96,35 @@ TEST_F(Library, ALubricantLivesThroughItsRevisions) {
   EXPECT_FALSE(connection.undelete<v1::Lubricant>("lubricants/life").has_delete_time());
 }
 
+TEST_F(Library, ABatchIsWrittenWholeOrNotAtAll) {
+  std::vector<v1::Lubricant> fluids(2, data_sheet());
+  fluids[0].set_name("lubricants/batch-drained");
+  fluids[0].set_derived_from("lubricants/batch-filled");
+  fluids[1].set_name("lubricants/batch-filled");
+  EXPECT_EQ(connection.create_all(fluids, true).size(), 2U);
+  const auto created = connection.create_all(fluids);
+  ASSERT_EQ(created.size(), 2U);
+  EXPECT_EQ(created[0].name(), "lubricants/batch-drained");
+  EXPECT_NEAR(created[1].characterisation().viscosity_index(), 92, 0.5);
+
+  v1::Lubricant renamed = created[0];
+  renamed.set_display_name("renamed");
+  v1::Lubricant wrong = created[1];
+  wrong.set_relaxation_time_seconds(-1);
+  const ServiceError error = refused([&] {
+    connection.update_all<v1::Lubricant>({{renamed, {"display_name"}}, {wrong, {}}});
+  });
+  ASSERT_EQ(error.violations().size(), 1U) << error.what();
+  EXPECT_EQ(error.violations()[0].field, "requests[1].lubricant.relaxation_time_seconds");
+  EXPECT_EQ(connection.get<v1::Lubricant>(renamed.name()).revision(), 1);
+  v1::Lubricant other = data_sheet();
+  other.set_name("lubricants/batch-new");
+  const auto updated =
+      connection.update_all<v1::Lubricant>({{renamed, {"display_name"}}, {other, {}}}, true);
+  EXPECT_EQ(updated[0].revision(), 2);
+  EXPECT_EQ(updated[1].revision(), 1);
+}
+
 TEST_F(Library, AllViolationsComeAtOnce) {
   v1::Lubricant fluid = data_sheet();
   fluid.mutable_measurements()->set_density_15_celsius_kilograms_per_cubic_metre(0.87);
@@ -175,6 +205,27 @@ TEST_F(Library, TheServersUnitsAreThoseOfTheNames) {
   for (const ResourceKind& kind : resource_kinds()) {
     EXPECT_GT(connection.schema(kind.prototype->GetDescriptor()->name()).constraints_size(), 3);
   }
+}
+
+// Lengths are known by stem and unit: "radius_x_metres", "each also in _millimetres".
+TEST_F(Library, HelpNamesEveryColumnThatTheServerReads) {
+  std::string help;
+  for (const HelpTopic& topic : help_topics()) help += topic.text;
+  const v1::Schema schema = connection.schema();
+  int compared = 0;
+  for (const v1::Vocabulary& vocabulary : schema.vocabularies()) {
+    if (!vocabulary.name().ends_with("csv")) continue;
+    for (const std::string& column : vocabulary.words()) {
+      const std::size_t unit = column.rfind('_');
+      const bool is_length = column.ends_with("metres") && unit != std::string::npos;
+      const std::string stem = is_length ? column.substr(0, unit) : column;
+      EXPECT_NE(help.find(stem), std::string::npos) << vocabulary.name() << " " << column;
+      const std::string ending = is_length ? column.substr(unit) : "";
+      EXPECT_NE(help.find(ending), std::string::npos) << column;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 30);
 }
 
 TEST(LibraryAlone, AServerThatIsNotThere) {

@@ -42,9 +42,16 @@ struct Listing {
   bool has_more = false;  ///< `limit` ended it
 };
 
+/// A resource of a batch of updates.
+template <class Resource>
+struct ResourceUpdate {
+  Resource resource;
+  std::vector<std::string> update_mask;  ///< fields to take over; empty: all
+};
+
 /// How an update is made.
 struct UpdateOptions {
-  std::vector<std::string> update_mask;  ///< top-level fields to take over; empty: all
+  std::vector<std::string> update_mask;  ///< fields to take over; empty: all
   bool allow_missing = false;            ///< create it if there is none
   bool validate_only = false;            ///< check everything, write nothing
 };
@@ -75,6 +82,16 @@ class Connection {
   /// `resource` has an etag that is no longer the present one, the update is refused (ABORTED).
   template <class Resource>
   Resource update(const Resource& resource, const UpdateOptions& options = {});
+  // Batches: all of them or none. One may be derived from another one, in any order. What comes
+  // back is in the order of what was sent; of very many (2 MB) only names, etags and revisions.
+  /// Adds resources under the ids in their names.
+  template <class Resource>
+  std::vector<Resource> create_all(const std::vector<Resource>& resources,
+                                   bool validate_only = false);
+  /// Updates each as update() does; with `allow_missing` creates those that are not there.
+  template <class Resource>
+  std::vector<Resource> update_all(const std::vector<ResourceUpdate<Resource>>& updates,
+                                   bool allow_missing = false, bool validate_only = false);
   /// Newest first; limit 0: all.
   template <class Resource>
   Listing<Resource> revisions(const std::string& name, int limit = 0);
