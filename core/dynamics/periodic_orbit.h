@@ -56,7 +56,7 @@ struct OrbitRequest {
   double mean_pinion_speed = 0;     ///< held exactly [rad/s]
   bool solve_wheel_torque = false;  ///< T_w is the unknown instead of T_s
   bool keep_contact = false;  ///< flanks stay together whatever the force: the linear response
-  int first_cycles = 0;       ///< marched under lagged friction before shooting
+  int first_cycles = 0;       ///< periods marched under lagged friction before shooting
   double tolerance = 1e-6;    ///< of the figures, relative: sweeps go on until then
   std::function<bool()> interrupted;  ///< true: throws Cancelled
 };

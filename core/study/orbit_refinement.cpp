@@ -6,9 +6,8 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kSafety = 2.5;    // on the error that two step lengths tell
-constexpr double kRepels = 0.994;  // multipliers under lagged friction are good to 3e-3
-constexpr int kFewCycles = 12;     // before shooting at a response with contact loss
+constexpr double kSafety = 2;    // on the error that two step lengths tell
+constexpr int kPatience = 100;   // periods
 constexpr double kLoose = 3e-4;    // tolerance of which few steps may do
 constexpr int kFinest = 4000;      // steps per mesh cycle
 
@@ -46,11 +45,33 @@ class StepSequence {
   int intervals_, coarsest_;
 };
 
-}  // namespace
+/// Multipliers under lagged friction are good to 3e-3, and better where a period is short: what
+/// comes nearer to 1 may repel.
+double margin(const GearPairSystem& system, const OrbitSearch& search) {
+  constexpr double kDecay = 3.4;  // [1/s]
+  const double period = search.period * system.cycle_angle() / search.mean_pinion_speed;
+  return std::min(0.006, kDecay * period);
+}
 
-std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
-                                         MeshGrids& grids, const OrbitSearch& search,
-                                         MarchStatistics& statistics, long& marched_cycles) {
+/// Whether the state at half of the period is that at its start.
+bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
+                     const PeriodicOrbit& orbit) {
+  const auto half = std::find_if(orbit.pieces.begin(), orbit.pieces.end(), [&](const auto& piece) {
+    return piece.phase >= 0.5 * orbit.period - 1e-9;
+  });
+  const MarchScales scales = march_scales(system, search.mean_pinion_speed);
+  double difference = 0;
+  for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
+    difference = std::max(difference, std::abs(half->start[i] - orbit.pieces.front().start[i]) /
+                                          scales.of(system.mesh(), i));
+  }
+  return difference < 1e-3;
+}
+
+/// `repels`: set where a response is found that repels or nearly so.
+std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBatch& contacts,
+                                   MeshGrids& grids, const OrbitSearch& search, bool& repels,
+                                   MarchStatistics& statistics, long& marched_cycles) {
   OrbitRequest request;
   request.mean_pinion_speed = search.mean_pinion_speed;
   request.solve_wheel_torque = search.solve_wheel_torque;
@@ -95,7 +116,7 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
     }
     if (!request.keep_contact) {
       // Newton's method leads to the response that is near; others are found by patience.
-      for (const int cycles : {kFewCycles, search.first_cycles}) {
+      for (const int cycles : {search.few_cycles, search.first_cycles}) {
         request.first_cycles = have_coarser ? 0 : cycles;
         if (!have_coarser) orbit = origin;
         found = solve();
@@ -127,12 +148,37 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
     const bool pulls = request.keep_contact && best.orbit.least_pressing_force < 0;
     if (have_coarser && estimate <= search.tolerance && !pulls) {
       best.largest_multiplier = best.orbit.map->largest_multiplier();
-      if (!(best.largest_multiplier < kRepels)) return std::nullopt;
-      return best;
+      repels = !(best.largest_multiplier < 1 - margin(system, search));
+      return repels ? std::nullopt : std::optional(std::move(best));
     }
     have_coarser = true;
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
+                                         MeshGrids& grids, const OrbitSearch& search,
+                                         MarchStatistics& statistics, long& marched_cycles) {
+  constexpr int kLongestPeriod = 4;
+  OrbitSearch next = search;
+  const Torques torques = system.torques();
+  for (;; next.period *= 2) {
+    bool repels = false;
+    system.set_torques(torques);
+    auto found = refine(system, contacts, grids, next, repels, statistics, marched_cycles);
+    if (found && next.period > search.period && is_half_as_long(system, search, found->orbit)) {
+      next.period /= 2;
+      next.start = found->orbit.state;
+      next.few_cycles = next.first_cycles = 1;
+      found = refine(system, contacts, grids, next, repels, statistics, marched_cycles);
+    }
+    if (found || !repels || 2 * next.period > kLongestPeriod) return found;
+    // Periods double where a response begins to repel; the new one is reached by patience.
+    next.try_contact_first = false;
+    next.few_cycles = next.first_cycles = kPatience;
+  }
 }
 
 }  // namespace tribodyn
