@@ -91,6 +91,67 @@ ContactConditions GearPairSystem::contact_conditions(const FlankKinematics& flan
           motion.gear_y - drift_y};
 }
 
+void GearPairSystem::solve_together(const FlankContactBatch* contacts) {
+  together_ = contacts;
+  if (contacts != nullptr) {
+    geometries_.emplace(contact_.reduced_modulus(), contact_.options(), kFlankPairs);
+  }
+}
+
+void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPairs>& conditions,
+                                    Instant& out) {
+  if (together_ == nullptr) {
+    for (int k = 0; k < kFlankPairs; ++k) {
+      if (out.load[k] > 0) out.contact[k] = contact_.solve(conditions[k]);
+    }
+    return;
+  }
+  std::array<double, kFlankPairs> pinion_x, pinion_y, gear_x, gear_y;
+  for (int k = 0; k < kFlankPairs; ++k) {
+    const ContactConditions& c = conditions[k];
+    pinion_x[k] = c.pinion_velocity_x;
+    pinion_y[k] = c.pinion_velocity_y;
+    gear_x[k] = c.gear_velocity_x;
+    gear_y[k] = c.gear_velocity_y;
+    if (out.load[k] > 0) geometries_->set(k, c.radius_x, c.radius_y);
+  }
+  using Column = std::array<double, kFlankPairs>;
+  Column friction, viscous, boundary, temperature, film, ratio, pressure, rate, share;
+  std::array<bool, kFlankPairs> at_centre;
+  std::array<ContactStatus, kFlankPairs> status;
+  FlankContactBatchResults results;
+  results.friction = friction.data();
+  results.viscous_friction = viscous.data();
+  results.boundary_friction = boundary.data();
+  results.contact_temperature = temperature.data();
+  results.central_film_thickness = film.data();
+  results.film_ratio = ratio.data();
+  results.maximum_pressure = pressure.data();
+  results.shear_rate = rate.data();
+  results.limiting_stress_area_share = share.data();
+  results.limiting_stress_at_centre = at_centre.data();
+  results.status = status.data();
+  together_->solve(*geometries_, 0, kFlankPairs,
+                   {out.load.data(), pinion_x.data(), pinion_y.data(), gear_x.data(), gear_y.data()},
+                   results);
+  for (int k = 0; k < kFlankPairs; ++k) {
+    if (!(out.load[k] > 0)) continue;
+    ContactSolution& contact = out.contact[k];
+    contact = {};
+    contact.status = status[k];
+    contact.friction = friction[k];
+    contact.viscous_friction = viscous[k];
+    contact.boundary_friction = boundary[k];
+    contact.contact_temperature = temperature[k];
+    contact.central_film_thickness = film[k];
+    contact.film_ratio = ratio[k];
+    contact.maximum_pressure = pressure[k];
+    contact.shear_rate = rate[k];
+    contact.limiting_stress_area_share = share[k];
+    contact.limiting_stress_at_centre = at_centre[k];
+  }
+}
+
 void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
   mechanics(phase, y, out);
 
@@ -98,18 +159,23 @@ void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
   mesh_.flanks(interval_, phase, flanks);
   const double load =
       regime.side != 0 && regime.loaded ? std::max(0.0, regime.side * out.mesh_force) : 0;
+  std::array<ContactConditions, kFlankPairs> conditions{};
   for (int k = 0; k < kFlankPairs; ++k) {
-    const FlankKinematics& flank = flanks[k];
-    out.load[k] = flank.load_share * load;
-    if (!(out.load[k] > 0)) {
+    out.load[k] = flanks[k].load_share * load;
+    if (out.load[k] > 0) {
+      ++contact_solutions_;
+      conditions[k] = contact_conditions(flanks[k], out.load[k], y, out.motion[k]);
+    } else {
+      out.load[k] = 0;
       out.contact[k] = ContactSolution{};
       out.motion[k] = FlankMotion{};
-      continue;
     }
-    FlankMotion& motion = out.motion[k];
-    ++contact_solutions_;
-    out.contact[k] = contact_.solve(contact_conditions(flank, out.load[k], y, motion));
+  }
+  solve_contacts(conditions, out);
+  for (int k = 0; k < kFlankPairs; ++k) {
+    if (!(out.load[k] > 0)) continue;
     const ContactSolution& contact = out.contact[k];
+    const FlankMotion& motion = out.motion[k];
     if (contact.status != ContactStatus::kOk) refuse(contact.status);
     out.pinion_friction_torque += motion.pinion_friction_arm * contact.friction;
     out.gear_friction_torque += motion.gear_friction_arm * contact.friction;

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <utility>
 
-#include "core/contact/flank_contact.h"
+#include "core/contact/flank_contact_batch.h"
 #include "core/dynamics/section_state.h"
 #include "core/gear/mesh_data.h"
 #include "core/model_options.h"
@@ -95,6 +96,10 @@ class GearPairSystem {
   GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
                  const DrivelineDynamics& dynamics, const ModelOptions& options);
 
+  /// The contacts of an instant are solved together from now on; null: one by one, by the reference.
+  /// Figures that no record holds are left out. Keeps the reference.
+  void solve_together(const FlankContactBatch* contacts);
+
   void set_torques(const Torques& torques) { torques_ = torques; }
   const Torques& torques() const { return torques_; }
   /// Table interval that the mesh phase is in; phases are continued by its straight lines.
@@ -148,8 +153,12 @@ class GearPairSystem {
   ContactStatus take_refusal() { return std::exchange(refusal_, ContactStatus::kOk); }
 
  private:
+  void solve_contacts(const std::array<ContactConditions, kFlankPairs>& conditions, Instant& out);
+
   const MeshData& mesh_;
   const FlankContactModel& contact_;
+  const FlankContactBatch* together_ = nullptr;
+  std::optional<ContactGeometries> geometries_;
   const DrivelineDynamics& dynamics_;
   ModelOptions options_;
   Torques torques_;

@@ -248,11 +248,11 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const Target& targe
 PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,
                                   const PointOptions& options) {
   PreparedScene prepared(scene);
-  return solve_operating_point(prepared, condition, options);
+  return solve_prepared_point(prepared, condition, options);
 }
 
-PointResult solve_operating_point(PreparedScene& prepared, const OperatingCondition& condition,
-                                  const PointOptions& options) {
+PointResult solve_prepared_point(PreparedScene& prepared, const OperatingCondition& condition,
+                                 const PointOptions& options) {
   const Scene& scene = prepared.scene();
   const FlankContactBatch& contacts = prepared.contacts();
   const Target target = target_of(scene, condition);
@@ -283,6 +283,8 @@ PointResult solve_operating_point(PreparedScene& prepared, const OperatingCondit
         result = *std::move(shot);
       } else {
         system.set_torques(target.torques);
+        // Together they are solved to 1e-10.
+        if (options.relative_tolerance > 1e-9) system.solve_together(&contacts);
         const MarchState state =
             from ? carried_start(system, *from, target.mean_pinion_speed)
                  : point_start(system, target,

@@ -65,7 +65,7 @@ struct PointOptions {
   SteadyStateMethod method = SteadyStateMethod::kAutomatic;
   /// Of shooting: wanted relative error of both inefficiencies, the torque and the extremes of the
   /// transmission error [1e-8, 1e-2]
-  double tolerance = 1e-6;
+  double tolerance = 1e-3;
   double relative_tolerance = 1e-7;  ///< of the march, per step [1e-11, 1e-3]
   double settling_tolerance =
       1e-6;  ///< relative change of the response per period that counts as settled
@@ -185,7 +185,7 @@ struct PointResult {
 PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,
                                   const PointOptions& options);
 /// The same bits, for many points of one scene.
-PointResult solve_operating_point(PreparedScene& scene, const OperatingCondition& condition,
-                                  const PointOptions& options);
+PointResult solve_prepared_point(PreparedScene& scene, const OperatingCondition& condition,
+                                 const PointOptions& options);
 
 }  // namespace tribodyn

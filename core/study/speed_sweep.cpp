@@ -34,7 +34,7 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
     next.vehicle_speed = speed;
     try {
       if (!prepared) prepared.emplace(scene);
-      next.result = solve_operating_point(*prepared, condition, point);
+      next.result = solve_prepared_point(*prepared, condition, point);
       const PointResult& r = *next.result;
       point.carried_state = CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
                                          r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};

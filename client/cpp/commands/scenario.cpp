@@ -16,7 +16,7 @@ void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
       "How the steady state is found: by shooting where that works, or marched", [&](int index) {
         simulation.mutable_solver_options()->set_method(index == 1 ? v1::MARCH : v1::AUTOMATIC);
       });
-  flags.number("--tolerance", {"-", "1e-8 to 0.01", "1e-6"},
+  flags.number("--tolerance", {"-", "1e-8 to 0.01", "0.001"},
                "Wanted relative error of what shooting finds",
                [&](double value) { simulation.mutable_solver_options()->set_tolerance(value); });
   flags.number(
