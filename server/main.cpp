@@ -155,6 +155,7 @@ void serve(const Flags& flags, const ListenAddress& address, const sigset_t& sig
   const auto milliseconds = [](double seconds) {
     return std::chrono::milliseconds(static_cast<std::int64_t>(1000 * seconds));
   };
+  jobs.start();
   GrpcServer server(
       application, address,
       {milliseconds(flags.call_limit_seconds), milliseconds(flags.stream_limit_seconds)});

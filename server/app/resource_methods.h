@@ -28,15 +28,23 @@ namespace tribodyn::server {
 inline constexpr int kDefaultResourcePageSize = 100;
 inline constexpr int kUpdateAttempts = 10;  ///< against other writers
 
-inline google::rpc::Status already_exists(const std::string& name, bool deleted) {
-  return error(google::rpc::ALREADY_EXISTS, "ALREADY_EXISTS",
-               deleted ? name + " exists and is deleted; undelete it or take another name"
-                       : name + " exists already; update it or take another name");
+template <class Resource>
+google::rpc::Status name_taken(const std::string& name, bool deleted) {
+  return already_exists("ALREADY_EXISTS", Resource::descriptor()->full_name(), name,
+                        deleted ? name + " exists and is deleted; undelete it or take another name"
+                                : name + " exists already; update it or take another name");
 }
 
-inline google::rpc::Status etag_mismatch(const std::string& name) {
-  return error(google::rpc::ABORTED, "ETAG_MISMATCH",
-               name + " has changed since this etag was given out; get it again");
+template <class Resource>
+google::rpc::Status etag_mismatch(const std::string& name) {
+  return aborted("ETAG_MISMATCH", Resource::descriptor()->full_name(), name,
+                 name + " has changed since this etag was given out; get it again", false);
+}
+
+template <class Resource>
+google::rpc::Status contention(const std::string& name) {
+  return aborted("CONTENTION", Resource::descriptor()->full_name(), name,
+                 name + " keeps being changed by others; try again", true);
 }
 
 inline google::rpc::Status unreadable(const std::string& name) {
@@ -128,11 +136,11 @@ Outcome<Resource> store_new(Application& application, const Resource& accepted,
                             bool validate_only) {
   const std::string& name = accepted.name();
   if (const auto taken = application.store.resource(name)) {
-    return already_exists(name, taken->delete_time.has_value());
+    return name_taken<Resource>(name, taken->delete_time.has_value());
   }
   if (validate_only) return preview(accepted);
   if (!application.store.create_resource({name, accepted.SerializeAsString()}, system_time())) {
-    return already_exists(name, false);
+    return name_taken<Resource>(name, false);
   }
   return answer<Resource>(application.store.resource(name), name);
 }
@@ -167,10 +175,11 @@ Outcome<Resource> update_resource(Application& application, const Request& reque
     if (!found.ok()) return found.error();
     const StoredResource& present = found.message();
     if (present.delete_time) {
-      return error(google::rpc::FAILED_PRECONDITION, "DELETED", deleted_name_text(present.name));
+      return not_possible("DELETED", Resource::descriptor()->full_name(), present.name,
+                          deleted_name_text(present.name));
     }
     if (!stated.etag().empty() && stated.etag() != etag_of(present)) {
-      return etag_mismatch(present.name);
+      return etag_mismatch<Resource>(present.name);
     }
     Resource before;
     if (!before.ParseFromString(present.body)) return unreadable(present.name);
@@ -188,8 +197,7 @@ Outcome<Resource> update_resource(Application& application, const Request& reque
       return answer<Resource>(application.store.resource(present.name), present.name);
     }
   }
-  return error(google::rpc::ABORTED, "CONTENTION",
-               stated.name() + " keeps being changed by others; try again");
+  return contention<Resource>(stated.name());
 }
 
 /// Deletes or undeletes; what is so already stays as it is.
@@ -200,7 +208,7 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
     if (!found.ok()) return found.error();
     const StoredResource& present = found.message();
     if (!request.etag().empty() && request.etag() != etag_of(present)) {
-      return etag_mismatch(present.name);
+      return etag_mismatch<Resource>(present.name);
     }
     if (present.delete_time.has_value() == deleted ||
         (deleted ? application.store.delete_resource(present, system_time())
@@ -208,8 +216,7 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
       return answer<Resource>(application.store.resource(present.name), present.name);
     }
   }
-  return error(google::rpc::ABORTED, "CONTENTION",
-               request.name() + " keeps being changed by others; try again");
+  return contention<Resource>(request.name());
 }
 
 /// Appends rows to a response; false when one of them cannot be read.

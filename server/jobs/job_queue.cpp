@@ -5,13 +5,36 @@
 #include <algorithm>
 
 namespace tribodyn::server {
+namespace {
 
-JobQueue::JobQueue(int threads, std::size_t maximum_waiting, Work work)
-    : maximum_waiting_(maximum_waiting), work_(std::move(work)) {
-  for (int i = 0; i < std::max(1, threads); ++i) threads_.emplace_back([this] { run(); });
+constexpr auto kLookAround = std::chrono::milliseconds(20);
+
+}  // namespace
+
+void StopSignal::request(StopReason reason) {
+  StopReason none = StopReason::kNone;
+  {
+    const std::lock_guard lock(mutex_);
+    reason_.compare_exchange_strong(none, reason);
+  }
+  requested_.notify_all();
 }
 
+bool StopSignal::wait_for(std::chrono::milliseconds time) const {
+  std::unique_lock lock(mutex_);
+  return !requested_.wait_for(lock, time, [this] { return requested(); });
+}
+
+JobQueue::JobQueue(int threads, std::size_t maximum_waiting, Work work)
+    : thread_count_(std::max(1, threads)),
+      maximum_waiting_(maximum_waiting),
+      work_(std::move(work)) {}
+
 JobQueue::~JobQueue() { stop(); }
+
+void JobQueue::start() {
+  for (int i = 0; i < thread_count_; ++i) threads_.emplace_back([this] { run(); });
+}
 
 bool JobQueue::reserve() {
   const std::lock_guard lock(mutex_);
@@ -32,6 +55,19 @@ void JobQueue::push(std::int64_t id) {
 
 void JobQueue::push_resumed(std::int64_t id) { enqueue(id); }
 
+bool JobQueue::push_missing(std::int64_t id) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (running_.contains(id) ||
+        std::find(waiting_.begin(), waiting_.end(), id) != waiting_.end()) {
+      return false;
+    }
+    waiting_.push_back(id);
+  }
+  changed_.notify_one();
+  return true;
+}
+
 void JobQueue::enqueue(std::int64_t id) {
   {
     const std::lock_guard lock(mutex_);
@@ -40,11 +76,27 @@ void JobQueue::enqueue(std::int64_t id) {
   changed_.notify_one();
 }
 
-void JobQueue::cancel(std::int64_t id) {
+void JobQueue::drop(std::int64_t id) {
   const std::lock_guard lock(mutex_);
   std::erase(waiting_, id);
   const auto running = running_.find(id);
-  if (running != running_.end()) running->second->request(StopReason::kCancelled);
+  if (running != running_.end()) running->second->request(StopReason::kEnded);
+}
+
+bool JobQueue::is_stopping() const {
+  const std::lock_guard lock(mutex_);
+  return stopping_;
+}
+
+bool JobQueue::drain(std::chrono::milliseconds limit, const std::function<bool()>& give_up) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  std::unique_lock lock(mutex_);
+  stopping_ = true;
+  changed_.notify_all();
+  while (!running_.empty() && std::chrono::steady_clock::now() < end && !give_up()) {
+    ended_.wait_for(lock, kLookAround);
+  }
+  return running_.empty();
 }
 
 void JobQueue::stop() {
@@ -75,8 +127,11 @@ void JobQueue::run() {
     } catch (...) {
       spdlog::critical("simulations/{}: its job threw; this is a defect", id);
     }
-    const std::lock_guard lock(mutex_);
-    running_.erase(id);
+    {
+      const std::lock_guard lock(mutex_);
+      running_.erase(id);
+    }
+    ended_.notify_all();
   }
 }
 
