@@ -27,6 +27,9 @@ class GrpcServer {
   /// Where it really listens, with the port that the system picked.
   std::string address() const { return to_text(acceptor_.address()); }
 
+  /// What health checks are told; at first that it does not serve.
+  void set_serving(bool serving);
+
   /// Accepts nothing new, ends every stream with UNAVAILABLE and waits for the rest.
   void shutdown();
 

@@ -294,7 +294,8 @@ std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t 
 
 std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now) {
   std::vector<std::pair<std::int64_t, int>> running;
-  SQLite::Statement find(db, "SELECT id, lost_attempts FROM simulations WHERE state = 2");
+  SQLite::Statement find(
+      db, "SELECT id, lost_attempts FROM simulations WHERE state IN (1, 2) AND state = 2");
   while (find.executeStep()) {
     running.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
   }
@@ -310,8 +311,9 @@ std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now) {
     change_state(db, change);
   }
   std::vector<Waiting> waiting;
-  SQLite::Statement query(db,
-                          "SELECT id, deadline_time FROM simulations WHERE state = 1 ORDER BY id");
+  SQLite::Statement query(
+      db,
+      "SELECT id, deadline_time FROM simulations WHERE state IN (1, 2) AND state = 1 ORDER BY id");
   while (query.executeStep()) {
     waiting.push_back({query.getColumn(0).getInt64(), time_of(query.getColumn(1))});
   }
