@@ -63,7 +63,9 @@ void Client::act() {
     const std::string id = std::to_string(number_) + "-" + std::to_string(sent_.size());
     sent_.push_back({id, draw_scene(), draw(8) == 0, ""});
     recorder_.write([](History& history) { ++history.requests; });
-    return submit(sent_.back());
+    submit(sent_.back());
+    if (draw(4) == 0) cancel(sent_.back().name);
+    return;
   }
   Sent& chosen = sent_[static_cast<std::size_t>(draw(static_cast<int>(sent_.size())))];
   if (kind == 4 || chosen.name.empty()) return submit(chosen);
