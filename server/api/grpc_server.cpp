@@ -45,6 +45,7 @@ GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
   builder.SetResourceQuota(quota);
   builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);  // else one a processor
   for (const auto& each : services_) builder.RegisterService(each.get());
+  builder.RegisterCallbackGenericService(&unknown_methods_);
   server_ = builder.BuildAndStart();
   if (!server_) throw ListenError("gRPC does not start on " + to_text(address));
   set_serving(false);

@@ -10,6 +10,7 @@
 #include "server/api/listen_address.h"
 #include "server/api/live_streams.h"
 #include "server/api/services.h"
+#include "server/api/unknown_methods.h"
 #include "server/app/application.h"
 
 namespace tribodyn::server {
@@ -37,6 +38,7 @@ class GrpcServer {
   Acceptor acceptor_;
   LiveStreams live_;
   std::vector<std::unique_ptr<grpc::Service>> services_;
+  UnknownMethods unknown_methods_;
   std::unique_ptr<grpc::Server> server_;
 };
 

@@ -50,35 +50,35 @@ void JobQueue::release() {
 
 void JobQueue::push(std::int64_t id) {
   release();
-  enqueue(id);
+  enqueue({id, false});
 }
 
-void JobQueue::push_resumed(std::int64_t id) { enqueue(id); }
+void JobQueue::push_resumed(std::int64_t id, bool alone) { enqueue({id, alone}); }
 
 bool JobQueue::push_missing(std::int64_t id) {
   {
     const std::lock_guard lock(mutex_);
-    if (running_.contains(id) ||
-        std::find(waiting_.begin(), waiting_.end(), id) != waiting_.end()) {
+    if (running_.contains(id) || std::any_of(waiting_.begin(), waiting_.end(),
+                                             [id](const Waiting& each) { return each.id == id; })) {
       return false;
     }
-    waiting_.push_back(id);
+    waiting_.push_back({id, false});
   }
   changed_.notify_one();
   return true;
 }
 
-void JobQueue::enqueue(std::int64_t id) {
+void JobQueue::enqueue(const Waiting& job) {
   {
     const std::lock_guard lock(mutex_);
-    waiting_.push_back(id);
+    waiting_.push_back(job);
   }
   changed_.notify_one();
 }
 
 void JobQueue::drop(std::int64_t id) {
   const std::lock_guard lock(mutex_);
-  std::erase(waiting_, id);
+  std::erase_if(waiting_, [id](const Waiting& each) { return each.id == id; });
   const auto running = running_.find(id);
   if (running != running_.end()) running->second->request(StopReason::kEnded);
 }
@@ -110,27 +110,35 @@ void JobQueue::stop() {
   threads_.clear();
 }
 
+/// Whether the first of the waiting may run beside those that run.
+bool JobQueue::may_begin() const {
+  return !waiting_.empty() && !one_runs_alone_ && (!waiting_.front().alone || running_.empty());
+}
+
 void JobQueue::run() {
   for (;;) {
-    std::int64_t id = 0;
+    Waiting job;
     const auto signal = std::make_shared<StopSignal>();
     {
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+      changed_.wait(lock, [this] { return stopping_ || may_begin(); });
       if (stopping_) return;
-      id = waiting_.front();
+      job = waiting_.front();
       waiting_.pop_front();
-      running_[id] = signal;
+      running_[job.id] = signal;
+      one_runs_alone_ = job.alone;
     }
     try {
-      work_(id, *signal);
+      work_(job.id, *signal);
     } catch (...) {
-      spdlog::critical("simulations/{}: its job threw; this is a defect", id);
+      spdlog::critical("simulations/{}: its job threw; this is a defect", job.id);
     }
     {
       const std::lock_guard lock(mutex_);
-      running_.erase(id);
+      running_.erase(job.id);
+      if (job.alone) one_runs_alone_ = false;
     }
+    changed_.notify_all();
     ended_.notify_all();
   }
 }

@@ -50,9 +50,11 @@ class JobQueue {
 
   /// A place among the waiting, before the job is written down anywhere; false when all are taken.
   bool reserve();
-  void release();                      ///< gives a reserved place back
-  void push(std::int64_t id);          ///< takes the reserved place
-  void push_resumed(std::int64_t id);  ///< beyond the limit: jobs that a former run accepted
+  void release();              ///< gives a reserved place back
+  void push(std::int64_t id);  ///< takes the reserved place
+  /// Beyond the limit: a job that a former run accepted. One that may be what killed it runs alone,
+  /// so that it takes no other with it.
+  void push_resumed(std::int64_t id, bool alone = false);
 
   /// The same, of a job that may be here already; true when it was not.
   bool push_missing(std::int64_t id);
@@ -70,8 +72,14 @@ class JobQueue {
   void stop();
 
  private:
+  struct Waiting {
+    std::int64_t id = 0;
+    bool alone = false;
+  };
+
   void run();
-  void enqueue(std::int64_t id);
+  void enqueue(const Waiting& job);
+  bool may_begin() const;
 
   const int thread_count_;
   const std::size_t maximum_waiting_;
@@ -79,8 +87,9 @@ class JobQueue {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::condition_variable ended_;
-  std::deque<std::int64_t> waiting_;                             // guarded by mutex_
+  std::deque<Waiting> waiting_;                                  // guarded by mutex_
   std::map<std::int64_t, std::shared_ptr<StopSignal>> running_;  // guarded by mutex_
+  bool one_runs_alone_ = false;                                  // guarded by mutex_
   std::size_t reserved_ = 0;                                     // guarded by mutex_
   bool stopping_ = false;                                        // guarded by mutex_
   std::vector<std::thread> threads_;

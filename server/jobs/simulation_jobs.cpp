@@ -34,7 +34,8 @@ std::size_t SimulationJobs::resume() {
   const std::vector<Waiting> waiting = store_.requeue_unfinished(clock_());
   for (const Waiting& each : waiting) {
     if (each.deadline_time) timekeeper_.add_deadline(each.id, *each.deadline_time);
-    queue_.push_resumed(each.id);
+    const bool last_chance = each.lost_attempts + 1 >= kMaximumLostAttempts;
+    queue_.push_resumed(each.id, last_chance);
   }
   return waiting.size();
 }

@@ -311,11 +311,12 @@ std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now) {
     change_state(db, change);
   }
   std::vector<Waiting> waiting;
-  SQLite::Statement query(
-      db,
-      "SELECT id, deadline_time FROM simulations WHERE state IN (1, 2) AND state = 1 ORDER BY id");
+  SQLite::Statement query(db,
+                          "SELECT id, lost_attempts, deadline_time FROM simulations "
+                          "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
   while (query.executeStep()) {
-    waiting.push_back({query.getColumn(0).getInt64(), time_of(query.getColumn(1))});
+    waiting.push_back(
+        {query.getColumn(0).getInt64(), query.getColumn(1).getInt(), time_of(query.getColumn(2))});
   }
   return waiting;
 }

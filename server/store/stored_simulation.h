@@ -73,6 +73,7 @@ struct StoredColumn {
 /// A simulation that waits.
 struct Waiting {
   std::int64_t id = 0;
+  int lost_attempts = 0;
   std::optional<Microseconds> deadline_time;
 };
 

@@ -288,8 +288,9 @@ TEST_F(GrpcTest, GarbageNeitherCrashesNorHangsIt) {
   EXPECT_EQ(client.call("/tribodyn.v1.Contacts/EvaluateContact", std::string(5'000'000, 'x'))
                 .first.error_code(),
             grpc::StatusCode::RESOURCE_EXHAUSTED);
-  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/NoSuchMethod", "").first.error_code(),
-            grpc::StatusCode::UNIMPLEMENTED);
+  const grpc::Status unknown = client.call("/tribodyn.v1.Contacts/NoSuchMethod", "").first;
+  EXPECT_EQ(unknown.error_code(), grpc::StatusCode::UNIMPLEMENTED);
+  EXPECT_EQ(detail<google::rpc::ErrorInfo>(unknown)->reason(), "UNKNOWN_METHOD");
   if (const auto port = address_.rfind(':'); port != std::string::npos) {
     send_raw_bytes(std::stoi(address_.substr(port + 1)), "GET / HTTP/1.1\r\n\r\n");
     send_raw_bytes(std::stoi(address_.substr(port + 1)), std::string(100'000, '\xff'));

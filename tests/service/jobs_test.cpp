@@ -97,6 +97,23 @@ TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
   EXPECT_EQ(shut_down, 2);
 }
 
+TEST(JobQueue, AJobThatMayKillTheServerRunsAlone) {
+  std::atomic<int> running = 0;
+  std::atomic<int> done = 0;
+  std::atomic<int> together = 0;
+  JobQueue queue(4, 100, [&](std::int64_t id, const StopSignal&) {
+    const int others = running++;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    if (id % 3 == 0 && (others != 0 || running != 1)) ++together;
+    --running;
+    ++done;
+  });
+  for (int id = 1; id <= 60; ++id) queue.push_resumed(id, id % 3 == 0);
+  queue.start();
+  EXPECT_TRUE(eventually([&] { return done == 60; }));
+  EXPECT_EQ(together, 0);
+}
+
 TEST(ProgressChannel, NeverFallsWithinAnAttempt) {
   ProgressChannel channel;
   channel.publish_event(2);
