@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 namespace tribodyn::server {
 namespace {
@@ -10,8 +14,11 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-void add_line(std::string& text, const std::string& path, const std::string& value) {
-  text += path + "=" + value + "\n";
+void add_line(std::string& text, const std::string& path, std::string_view value) {
+  text += path;
+  text += '=';
+  text += value;
+  text += '\n';
 }
 
 /// On one line, so that no value can pass for two.
@@ -29,8 +36,14 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
+/// As printf's %a, in a fifth of its time: a gear set has thousands of numbers.
 std::string number(double value) {
-  return fmt::format("{:a}", value + 0.0);  // + 0.0: minus zero is zero
+  value += 0.0;  // minus zero is zero
+  if (!std::isnormal(value) && value != 0) return fmt::format("{:a}", value);
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(value),
+                                 std::chars_format::hex);
+  return (value < 0 ? "-0x" : "0x") + std::string(digits.data(), end.ptr);
 }
 
 void add_message(const Message& message, const std::string& path, const IsLeftOut& is_left_out,

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "core/refusal.h"
+#include "server/jobs/golden_case.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/progress_board.h"
 #include "server/jobs/simulation_jobs.h"
@@ -274,6 +275,15 @@ TEST(SimulationJobs, WatchingAnEndedSimulationShowsItsEnd) {
   EXPECT_EQ(watched->simulation.error_reason, "WORK_LIMIT");
   EXPECT_FALSE(bench.jobs().watch(4711));
   EXPECT_FALSE(bench.jobs().progress(*simulation_id(name))) << "nothing is kept of the ended";
+}
+
+TEST(GoldenCase, ComesOutAsItShouldAndAWrongOneIsNamed) {
+  EXPECT_EQ(check_golden_case(), "");
+  EXPECT_THAT(check_golden_case(quick_studies()),
+              testing::AllOf(testing::HasSubstr("pinion_torque_newton_metres came out as 0"),
+                             testing::HasSubstr("33.15")));
+  EXPECT_THAT(check_golden_case(throwing(Refusal("X", "no answer"))),
+              testing::HasSubstr("no answer"));
 }
 
 TEST(SimulationJobs, TooManyWaitingAreTurnedAway) {

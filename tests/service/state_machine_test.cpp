@@ -18,7 +18,11 @@
 namespace tribodyn::server {
 namespace {
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kSchedules = 1'000;  // ten times slower, and of one thread
+#else
 constexpr int kSchedules = 10'000;
+#endif
 constexpr int kSteps = 12;
 constexpr int kInputs = 2;
 constexpr int kRequestIds = 2;
