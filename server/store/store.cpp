@@ -295,7 +295,7 @@ template <class Change>
 std::optional<StoredEvent> Store::change_simulation(const Change& change) {
   return write([&](SQLite::Database& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const std::optional<StoredEvent> event = change(db);
+    std::optional<StoredEvent> event = change(db);
     if (event) transaction.commit();
     return event;
   });
