@@ -384,17 +384,18 @@ TEST_F(LifeCycle, ACancelTakesEffectAtOnceAndFreesTheProcessor) {
   v1::Simulation endless = curve_simulation();
   auto* curve = endless.mutable_inefficiency_curve();
   curve->set_speed_step_kilometers_per_hour(0.125);
-  endless.mutable_solver_options()->set_method(v1::MARCH);
-  for (int round = 0; round < 5; ++round) {
+  for (int round = 0; round < 10; ++round) {
+    endless.mutable_solver_options()->set_method(round % 2 == 0 ? v1::MARCH : v1::AUTOMATIC);
     endless.set_sump_temperature_celsius(40 + round);
     const std::string name = bench.create(endless);
     ASSERT_TRUE(bench.reaches(name, State::RUNNING));
-    std::this_thread::sleep_for(std::chrono::milliseconds(37 * round));
+    std::this_thread::sleep_for(std::chrono::milliseconds(19 * round));
     v1::CancelSimulationRequest cancel;
     cancel.set_name(name);
     Application app = bench.application();
-    const auto next = point_simulation();
-    const std::string waiting = bench.create(request_of(next));
+    v1::Simulation next = point_simulation();
+    next.set_sump_temperature_celsius(60 + round);  // no result serves it
+    const std::string waiting = bench.create(next);
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_EQ(cancel_simulation(app, cancel).message().state(), State::CANCELLED);
     const std::chrono::duration<double, std::milli> answered =
