@@ -45,9 +45,10 @@ GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
   builder.SetResourceQuota(quota);
   builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);  // else one a processor
   for (const auto& each : services_) builder.RegisterService(each.get());
+  builder.RegisterCallbackGenericService(&unknown_methods_);
   server_ = builder.BuildAndStart();
   if (!server_) throw ListenError("gRPC does not start on " + to_text(address));
-  server_->GetHealthCheckService()->SetServingStatus(true);
+  set_serving(false);
   acceptor_.start([connections](int listener, int connection) {
     ExternalConnections::NewConnectionParameters accepted;
     accepted.listener_fd = listener;
@@ -58,10 +59,14 @@ GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
 
 GrpcServer::~GrpcServer() { shutdown(); }
 
+void GrpcServer::set_serving(bool serving) {
+  server_->GetHealthCheckService()->SetServingStatus(serving);
+}
+
 void GrpcServer::shutdown() {
   if (!server_) return;
   acceptor_.stop();
-  server_->GetHealthCheckService()->SetServingStatus(false);
+  set_serving(false);
   live_.close_all();
   server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
   server_->Wait();

@@ -10,6 +10,7 @@
 #include "server/api/listen_address.h"
 #include "server/api/live_streams.h"
 #include "server/api/services.h"
+#include "server/api/unknown_methods.h"
 #include "server/app/application.h"
 
 namespace tribodyn::server {
@@ -27,6 +28,9 @@ class GrpcServer {
   /// Where it really listens, with the port that the system picked.
   std::string address() const { return to_text(acceptor_.address()); }
 
+  /// What health checks are told; at first that it does not serve.
+  void set_serving(bool serving);
+
   /// Accepts nothing new, ends every stream with UNAVAILABLE and waits for the rest.
   void shutdown();
 
@@ -34,6 +38,7 @@ class GrpcServer {
   Acceptor acceptor_;
   LiveStreams live_;
   std::vector<std::unique_ptr<grpc::Service>> services_;
+  UnknownMethods unknown_methods_;
   std::unique_ptr<grpc::Server> server_;
 };
 

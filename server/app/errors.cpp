@@ -27,6 +27,23 @@ google::rpc::BadRequest bad_request(const Violations& violations) {
   return out;
 }
 
+void add_resource(const std::string& type, const std::string& name, google::rpc::Status& status) {
+  google::rpc::ResourceInfo info;
+  info.set_resource_type(type);
+  info.set_resource_name(name);
+  status.add_details()->PackFrom(info);
+}
+
+void add_retry(int seconds, google::rpc::Status& status) {
+  google::rpc::RetryInfo info;
+  info.mutable_retry_delay()->set_seconds(seconds);
+  status.add_details()->PackFrom(info);
+}
+
+constexpr int kRestartSeconds = 5;  // of a server that another one takes the place of
+constexpr int kStoreSeconds = 5;
+constexpr int kContentionSeconds = 1;
+
 }  // namespace
 
 google::rpc::Status error(google::rpc::Code code, const std::string& reason,
@@ -57,18 +74,44 @@ google::rpc::Status with_violations(google::rpc::Status status, const Violations
 google::rpc::Status not_found(const std::string& type, const std::string& name,
                               const std::string& message) {
   google::rpc::Status status = error(google::rpc::NOT_FOUND, "NOT_FOUND", message);
-  google::rpc::ResourceInfo info;
-  info.set_resource_type(type);
-  info.set_resource_name(name);
-  status.add_details()->PackFrom(info);
+  add_resource(type, name, status);
+  return status;
+}
+
+google::rpc::Status already_exists(const std::string& reason, const std::string& type,
+                                   const std::string& name, const std::string& message,
+                                   const Violations& violations) {
+  google::rpc::Status status = error(google::rpc::ALREADY_EXISTS, reason, message);
+  add_resource(type, name, status);
+  if (!violations.empty()) status.add_details()->PackFrom(bad_request(violations));
+  return status;
+}
+
+google::rpc::Status not_possible(const std::string& reason, const std::string& type,
+                                 const std::string& name, const std::string& message) {
+  google::rpc::Status status = error(google::rpc::FAILED_PRECONDITION, reason, message);
+  add_resource(type, name, status);
+  return status;
+}
+
+google::rpc::Status aborted(const std::string& reason, const std::string& type,
+                            const std::string& name, const std::string& message, bool may_retry) {
+  google::rpc::Status status = error(google::rpc::ABORTED, reason, message);
+  add_resource(type, name, status);
+  if (may_retry) add_retry(kContentionSeconds, status);
+  return status;
+}
+
+google::rpc::Status store_failed() {
+  google::rpc::Status status =
+      error(google::rpc::UNAVAILABLE, "STORE_FAILED", "the database could not be read or written");
+  add_retry(kStoreSeconds, status);
   return status;
 }
 
 google::rpc::Status exhausted(const std::string& message, int retry_seconds) {
   google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, "TOO_MANY_WAITING", message);
-  google::rpc::RetryInfo info;
-  info.mutable_retry_delay()->set_seconds(retry_seconds);
-  status.add_details()->PackFrom(info);
+  add_retry(retry_seconds, status);
   return status;
 }
 
@@ -78,7 +121,10 @@ google::rpc::Status deadline_exceeded() {
 }
 
 google::rpc::Status shutting_down() {
-  return error(google::rpc::UNAVAILABLE, "SHUTTING_DOWN", "the server is shutting down");
+  google::rpc::Status status =
+      error(google::rpc::UNAVAILABLE, "SHUTTING_DOWN", "the server is shutting down");
+  add_retry(kRestartSeconds, status);
+  return status;
 }
 
 }  // namespace tribodyn::server

@@ -25,13 +25,30 @@ google::rpc::Status with_violations(google::rpc::Status status, const Violations
 google::rpc::Status not_found(const std::string& type, const std::string& name,
                               const std::string& message);
 
+/// ALREADY_EXISTS with ResourceInfo and, unless empty, BadRequest.
+google::rpc::Status already_exists(const std::string& reason, const std::string& type,
+                                   const std::string& name, const std::string& message,
+                                   const Violations& violations = {});
+
+/// FAILED_PRECONDITION with ResourceInfo.
+google::rpc::Status not_possible(const std::string& reason, const std::string& type,
+                                 const std::string& name, const std::string& message);
+
+/// ABORTED with ResourceInfo: others changed it meanwhile; with RetryInfo where the same request
+/// may succeed a moment later.
+google::rpc::Status aborted(const std::string& reason, const std::string& type,
+                            const std::string& name, const std::string& message, bool may_retry);
+
+/// UNAVAILABLE with RetryInfo: the database cannot be used at the moment.
+google::rpc::Status store_failed();
+
 /// RESOURCE_EXHAUSTED with RetryInfo.
 google::rpc::Status exhausted(const std::string& message, int retry_seconds);
 
 /// DEADLINE_EXCEEDED, by the server's own limit or the client's.
 google::rpc::Status deadline_exceeded();
 
-/// UNAVAILABLE, SHUTTING_DOWN.
+/// UNAVAILABLE, SHUTTING_DOWN, with RetryInfo.
 google::rpc::Status shutting_down();
 
 /// Serialised size of BadRequest that surely reaches a client.

@@ -23,8 +23,7 @@ Outcome<Message> guarded(const Body& body) {
       return deadline_exceeded();
     }
     spdlog::error("{}", failure.what());
-    return error(google::rpc::UNAVAILABLE, "STORE_FAILED",
-                 "the database could not be read or written");
+    return store_failed();
   } catch (const std::exception& defect) {
     spdlog::error("an RPC failed on a defect");
     return error(google::rpc::INTERNAL, "INTERNAL", defect.what());

@@ -43,8 +43,7 @@ class HistorySource : public MessageSource<v1::HistoryChunk> {
       }
     } catch (const StoreError& failure) {
       spdlog::error("{}", failure.what());
-      error_ =
-          server::error(google::rpc::UNAVAILABLE, "STORE_FAILED", "the database could not be read");
+      error_ = store_failed();
       return Step::kEnd;
     }
     window_.next_row += count;
@@ -117,8 +116,8 @@ StreamOutcome<v1::HistoryChunk> read_history(Application& application,
     if (!found.ok()) return found.error();
     const StoredSimulation& stored = found.message();
     if (stored.state != StoredState::kSucceeded) {
-      return error(google::rpc::FAILED_PRECONDITION, "NO_RESULT_YET",
-                   request.name() + " has not succeeded, so it has no history");
+      return not_possible("NO_RESULT_YET", "tribodyn.v1.Simulation", request.name(),
+                          request.name() + " has not succeeded, so it has no history");
     }
     const Store::HistoryShape shape = application.store.history_shape(stored.id);
     if (shape.names.empty()) {

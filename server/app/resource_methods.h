@@ -25,14 +25,23 @@ namespace tribodyn::server {
 inline constexpr int kDefaultResourcePageSize = 100;
 inline constexpr int kUpdateAttempts = 10;  ///< against other writers
 
-inline google::rpc::Status etag_mismatch(const std::string& name) {
-  return error(google::rpc::ABORTED, "ETAG_MISMATCH",
-               name + " has changed since this etag was given out; get it again");
+template <class Resource>
+google::rpc::Status name_taken(const std::string& name, bool deleted) {
+  return already_exists("ALREADY_EXISTS", Resource::descriptor()->full_name(), name,
+                        deleted ? name + " exists and is deleted; undelete it or take another name"
+                                : name + " exists already; update it or take another name");
 }
 
-inline google::rpc::Status contention(const std::string& name) {
-  return error(google::rpc::ABORTED, "CONTENTION",
-               name + " keeps being changed by others; try again");
+template <class Resource>
+google::rpc::Status etag_mismatch(const std::string& name) {
+  return aborted("ETAG_MISMATCH", Resource::descriptor()->full_name(), name,
+                 name + " has changed since this etag was given out; get it again", false);
+}
+
+template <class Resource>
+google::rpc::Status contention(const std::string& name) {
+  return aborted("CONTENTION", Resource::descriptor()->full_name(), name,
+                 name + " keeps being changed by others; try again", true);
 }
 
 inline google::rpc::Status unreadable(const std::string& name) {
@@ -116,7 +125,7 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
     if (!found.ok()) return found.error();
     StoredResource present = found.message();
     if (!request.etag().empty() && request.etag() != etag_of(present)) {
-      return etag_mismatch(present.name);
+      return etag_mismatch<Resource>(present.name);
     }
     if (present.delete_time.has_value() == deleted) return answer<Resource>(present);
     const Microseconds now = system_time();
@@ -126,7 +135,7 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
       return answer<Resource>(present);
     }
   }
-  return contention(request.name());
+  return contention<Resource>(request.name());
 }
 
 /// Appends rows to a response; false when one of them cannot be read.

@@ -24,12 +24,6 @@ namespace tribodyn::server {
 
 inline constexpr std::size_t kMaximumBatchViolations = 100;
 
-inline google::rpc::Status already_exists(const std::string& name, bool deleted) {
-  return error(google::rpc::ALREADY_EXISTS, "ALREADY_EXISTS",
-               deleted ? name + " exists and is deleted; undelete it or take another name"
-                       : name + " exists already; update it or take another name");
-}
-
 /// As if the body had been stored.
 template <class Resource>
 Resource preview(const std::string& body) {
@@ -63,13 +57,13 @@ Outcome<Resource> store_new(Application& application, const Resource& accepted,
                             bool validate_only) {
   const std::string& name = accepted.name();
   if (const auto taken = application.store.resource(name)) {
-    return already_exists(name, taken->delete_time.has_value());
+    return name_taken<Resource>(name, taken->delete_time.has_value());
   }
   const std::string body = accepted.SerializeAsString();
   if (validate_only) return preview<Resource>(body);
   const auto stored =
       application.store.write_resources({{{name, body}, std::nullopt}}, system_time());
-  if (!stored) return already_exists(name, false);
+  if (!stored) return name_taken<Resource>(name, false);
   return answer<Resource>(stored->front());
 }
 
@@ -100,7 +94,7 @@ void draft_create(Application& application, const Request& request, Draft<Resour
   draft.stated->set_name(draft.name);
   if (draft.name.empty()) return;
   if (const auto taken = application.store.resource(draft.name)) {
-    draft.refuse(already_exists(draft.name, taken->delete_time.has_value()), "name");
+    draft.refuse(name_taken<Resource>(draft.name, taken->delete_time.has_value()), "name");
   }
 }
 
@@ -122,11 +116,12 @@ void draft_update(Application& application, const Request& request, Draft<Resour
   const StoredResource& present = found.message();
   if (present.delete_time) {
     return draft.refuse(
-        error(google::rpc::FAILED_PRECONDITION, "DELETED", deleted_name_text(present.name)),
+        not_possible("DELETED", Resource::descriptor()->full_name(), present.name,
+                     deleted_name_text(present.name)),
         "name");
   }
   if (!stated.etag().empty() && stated.etag() != etag_of(present)) {
-    return draft.refuse(etag_mismatch(present.name), "etag");
+    return draft.refuse(etag_mismatch<Resource>(present.name), "etag");
   }
   Resource merged;
   if (!merged.ParseFromString(present.body)) {
@@ -203,7 +198,7 @@ Outcome<Resource> write_resource(Application& application, const Request& reques
       return answer<Resource>(stored->front());
     }
   }
-  return contention(Kind<Resource>::of(request).name());
+  return contention<Resource>(Kind<Resource>::of(request).name());
 }
 
 /// Where each resource of a batch stands in it; a violation for each that stands in it twice.
@@ -337,7 +332,7 @@ Outcome<Response> write_batch(Application& application, const Batch& batch) {
           stored->size(), [&](std::size_t i) { return answer<Resource>((*stored)[i]); });
     }
   }
-  return contention("a resource of the batch");
+  return contention<Resource>("a resource of the batch");
 }
 
 }  // namespace tribodyn::server

@@ -1,15 +1,20 @@
 #include "server/app/simulations.h"
 
+#include <fmt/format.h>
 #include <google/protobuf/util/time_util.h>
 
-#include <charconv>
 #include <optional>
 
 #include "server/app/guard.h"
 #include "server/app/paging.h"
 #include "server/app/simulation_lookup.h"
+#include "server/convert/cost_estimate.h"
 #include "server/convert/input_hash.h"
+#include "server/convert/ledger.h"
+#include "server/convert/request_text.h"
 #include "server/convert/simulation_inputs.h"
+#include "server/hash/sha256.h"
+#include "server/jobs/platform.h"
 
 namespace tribodyn::server {
 namespace {
@@ -33,11 +38,43 @@ void set_revisions(const Row& row, v1::Simulation& out) {
   out.set_vehicle_revision(row.vehicle_revision);
 }
 
+/// Microseconds after `now`; nothing without a deadline.
+std::optional<Microseconds> deadline_time(const v1::Simulation& requested, Microseconds now) {
+  if (!requested.has_deadline_seconds()) return std::nullopt;
+  return now + static_cast<Microseconds>(1e6 * requested.deadline_seconds());
+}
+
+NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
+                             const SimulationInputs& inputs, const std::string& request_hash) {
+  v1::SimulationResult ledger;
+  for (v1::Assumption& assumption : assumptions(inputs)) {
+    *ledger.add_assumptions() = std::move(assumption);
+  }
+  const v1::Simulation& effective = inputs.effective;
+  return {.request = inputs.requested.SerializeAsString(),
+          .key = result_key(inputs),
+          .ledger = ledger.SerializeAsString(),
+          .request_id = request.request_id(),
+          .request_hash = request_hash,
+          .is_forced = request.force(),
+          .deadline_time = deadline_time(inputs.requested, system_time()),
+          .lubricant_revision = effective.lubricant_revision(),
+          .gear_set_revision = effective.gear_set_revision(),
+          .surface_revision = effective.surface_revision(),
+          .vehicle_revision = effective.vehicle_revision()};
+}
+
 /// What a request that is only checked would become; without a name.
-v1::Simulation preview(const v1::Simulation& requested, const NewSimulation& simulation) {
-  v1::Simulation out = requested;
+v1::Simulation preview(const SimulationInputs& inputs, const NewSimulation& simulation) {
+  v1::Simulation out = inputs.requested;
   set_revisions(simulation, out);
   out.set_state(v1::Simulation::QUEUED);
+  out.set_input_hash(simulation.key.input_hash);
+  out.set_canonical_inputs(canonical_inputs(inputs));
+  *out.mutable_cost_estimate() = estimate_cost(inputs.effective);
+  if (simulation.deadline_time) {
+    *out.mutable_deadline_time() = TimeUtil::MicrosecondsToTimestamp(*simulation.deadline_time);
+  }
   return out;
 }
 
@@ -48,12 +85,19 @@ v1::Simulation to_message(Application& application, const StoredSimulation& stor
   out.set_name(simulation_name(stored.id));
   out.set_state(static_cast<v1::Simulation::State>(stored.state));
   set_revisions(stored, out);
+  out.set_input_hash(stored.input_hash);
+  out.set_attempt(stored.attempt);
+  out.set_cache_hit(stored.cache_hit);
+  out.set_event_sequence(stored.sequence);
   *out.mutable_create_time() = TimeUtil::MicrosecondsToTimestamp(stored.create_time);
   if (stored.start_time) {
     *out.mutable_start_time() = TimeUtil::MicrosecondsToTimestamp(*stored.start_time);
   }
   if (stored.end_time) {
     *out.mutable_end_time() = TimeUtil::MicrosecondsToTimestamp(*stored.end_time);
+  }
+  if (stored.deadline_time) {
+    *out.mutable_deadline_time() = TimeUtil::MicrosecondsToTimestamp(*stored.deadline_time);
   }
   if (stored.state == StoredState::kFailed) {
     out.mutable_error()->set_reason(stored.error_reason);
@@ -63,9 +107,42 @@ v1::Simulation to_message(Application& application, const StoredSimulation& stor
     out.set_progress_fraction(1);
   } else if (stored.state == StoredState::kRunning) {
     const auto progress = application.jobs.progress(stored.id);
-    if (progress && !has_ended(progress->state)) out.set_progress_fraction(progress->fraction);
+    if (progress) out.set_progress_fraction(progress->fraction);
   }
   return out;
+}
+
+/// The answer to a request whose request_id belongs to another one.
+google::rpc::Status request_id_taken(const StoredSimulation& stored,
+                                     const v1::CreateSimulationRequest& request,
+                                     const std::string& text) {
+  v1::Simulation earlier;
+  earlier.ParseFromString(stored.request);
+  const std::string field = first_difference(text, request_text(earlier, stored.is_forced));
+  return already_exists(
+      "REQUEST_ID_REUSED", "tribodyn.v1.Simulation", simulation_name(stored.id),
+      fmt::format("request_id \"{}\" made {} by a request that differs in {}; take another one",
+                  request.request_id(), simulation_name(stored.id), field),
+      {{"request_id", fmt::format("belongs to another request; it differs in {}", field)}});
+}
+
+/// The simulation that an earlier request of the same id made, or that it was another request.
+std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
+                                                      const v1::CreateSimulationRequest& request,
+                                                      const std::string& text) {
+  if (request.request_id().empty()) return std::nullopt;
+  const auto id = application.store.simulation_of_request(request.request_id());
+  if (!id) return std::nullopt;
+  const auto stored = application.store.simulation(*id);
+  if (!stored) return std::nullopt;
+  if (stored->request_hash != sha256(text)) return request_id_taken(*stored, request, text);
+  if (stored->state == StoredState::kQueued) application.jobs.ensure_queued(*stored);
+  return to_message(application, *stored);
+}
+
+google::rpc::Status no_place(Application& application) {
+  if (application.jobs.is_stopping()) return shutting_down();
+  return exhausted("too many simulations wait already; try again later", kRetrySeconds);
 }
 
 }  // namespace
@@ -73,25 +150,24 @@ v1::Simulation to_message(Application& application, const StoredSimulation& stor
 Outcome<v1::Simulation> create_simulation(Application& application,
                                           const v1::CreateSimulationRequest& request) {
   return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    if (!request.has_simulation()) return invalid({{"simulation", "not set"}});
     Violations violations;
+    check_request_id(request.request_id(), violations);
+    if (!request.has_simulation()) violations.push_back({"simulation", "not set"});
+    if (!violations.empty()) return invalid(violations);
+    const std::string text = request_text(client_part(request.simulation()), request.force());
+    // Before anything else, as what it rests on may have changed since.
+    auto earlier = earlier_answer(application, request, text);
+    if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
     const auto inputs = read_simulation(request.simulation(), resource_lookup(application.store),
                                         "simulation", violations);
     if (!inputs) return invalid(violations);
-    const v1::Simulation& effective = inputs->effective;
-    NewSimulation simulation{.request = inputs->requested.SerializeAsString(),
-                             .input_hash = input_hash(*inputs),
-                             .lubricant_revision = effective.lubricant_revision(),
-                             .gear_set_revision = effective.gear_set_revision(),
-                             .surface_revision = effective.surface_revision(),
-                             .vehicle_revision = effective.vehicle_revision()};
-    if (request.validate_only()) return preview(inputs->requested, simulation);
-    const auto id = application.jobs.submit(simulation);
-    if (!id) {
-      return exhausted("too many simulations wait already; try again later", kRetrySeconds);
-    }
-    const auto stored = application.store.simulation(*id);
+    const NewSimulation simulation = new_simulation(request, *inputs, sha256(text));
+    if (request.validate_only()) return preview(*inputs, simulation);
+    const Added added = application.jobs.submit(simulation);
+    if (added.kind == Added::Kind::kNoPlace) return no_place(application);
+    const auto stored = application.store.simulation(added.id);
     if (!stored) return error(google::rpc::INTERNAL, "INTERNAL", "the simulation is gone");
+    if (added.kind == Added::Kind::kRequestIdTaken) return request_id_taken(*stored, request, text);
     return to_message(application, *stored);
   });
 }

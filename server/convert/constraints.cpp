@@ -152,6 +152,7 @@ constexpr Constraint kConstraints[] = {
 
     {"Simulation", "sump_temperature_celsius", "C", -70, 200, "eq 14", ""},
     {"Simulation", "inlet_temperature_rise_kelvin", "K", 0, 300, "eq 14", ""},
+    {"Simulation", "deadline_seconds", "s", 0.001, 31'622'400, "work limit", "at most a year"},
     {"Cruise", "speed_kilometers_per_hour", "km/h", 0.1, 400, "eq 7", ""},
     {"Cruise", "ascent_angle_degrees", "degrees", -45, 45, "eq 7", ""},
     {"DriveCycleSnapshot", "speed_kilometers_per_hour", "km/h", 0.1, 400, "eq 7", ""},

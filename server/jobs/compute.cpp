@@ -10,7 +10,7 @@
 #include "server/convert/check_message.h"
 #include "server/convert/from_core.h"
 #include "server/convert/input_hash.h"
-#include "server/convert/ledger.h"
+#include "server/jobs/platform.h"
 
 namespace tribodyn::server {
 namespace {
@@ -88,9 +88,7 @@ Computed compute(const SimulationInputs& inputs, const StudyFunctions& studies,
   if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
   out.result.set_model_version(kModelVersion);
   out.result.set_input_hash(input_hash(inputs));
-  for (v1::Assumption& assumption : assumptions(inputs)) {
-    *out.result.add_assumptions() = std::move(assumption);
-  }
+  out.result.set_platform(platform());
   return out;
 }
 

@@ -29,7 +29,8 @@ struct Computed {
 /// Told the fraction done in [0, 1] and the stage; false asks to stop.
 using ReportProgress = std::function<bool(double fraction, const std::string& stage)>;
 
-/// Runs the study and makes the whole result: points, ledger, hash, versions. Throws Refusal,
+/// Runs the study and makes the result: points, hash, versions, but no assumptions, which belong
+/// to the simulation and not to its numbers. Throws Refusal,
 /// Cancelled, or what the core throws.
 Computed compute(const SimulationInputs& inputs, const StudyFunctions& studies,
                  const ReportProgress& report);

@@ -5,26 +5,41 @@
 
 namespace tribodyn::server {
 
-void ProgressChannel::publish(Progress progress) {
+std::vector<std::shared_ptr<ProgressObserver>> ProgressChannel::living_observers() const {
+  std::vector<std::shared_ptr<ProgressObserver>> out;
+  for (const auto& weak : observers_) {
+    if (auto observer = weak.lock()) out.push_back(std::move(observer));
+  }
+  return out;
+}
+
+void ProgressChannel::publish_event(std::int64_t sequence) {
   std::vector<std::shared_ptr<ProgressObserver>> told;
   {
     const std::lock_guard lock(mutex_);
-    if (has_ended(latest_.state)) return;
-    if (progress.state == latest_.state) {
-      progress.fraction = std::max(progress.fraction, latest_.fraction);
-    }
-    latest_ = std::move(progress);
-    ++number_;
-    for (const auto& weak : observers_) {
-      if (auto observer = weak.lock()) told.push_back(std::move(observer));
-    }
+    if (sequence <= latest_.sequence) return;
+    latest_.sequence = sequence;
+    latest_.progress = {};
+    told = living_observers();
   }
   for (const auto& observer : told) observer->changed();
 }
 
-ProgressChannel::Numbered ProgressChannel::latest() const {
+void ProgressChannel::publish_progress(Progress progress) {
+  std::vector<std::shared_ptr<ProgressObserver>> told;
+  {
+    const std::lock_guard lock(mutex_);
+    progress.fraction = std::max(progress.fraction, latest_.progress.fraction);
+    latest_.progress = std::move(progress);
+    ++latest_.progress_number;
+    told = living_observers();
+  }
+  for (const auto& observer : told) observer->changed();
+}
+
+ProgressChannel::Latest ProgressChannel::latest() const {
   const std::lock_guard lock(mutex_);
-  return {number_, latest_};
+  return latest_;
 }
 
 void ProgressChannel::observe(const std::weak_ptr<ProgressObserver>& observer) {
@@ -36,7 +51,7 @@ void ProgressChannel::observe(const std::weak_ptr<ProgressObserver>& observer) {
 std::shared_ptr<ProgressChannel> ProgressBoard::open(std::int64_t id) {
   const std::lock_guard lock(mutex_);
   std::shared_ptr<ProgressChannel>& channel = channels_[id];
-  if (!channel) channel = std::make_shared<ProgressChannel>(Progress{});
+  if (!channel) channel = std::make_shared<ProgressChannel>();
   return channel;
 }
 
@@ -46,7 +61,7 @@ std::shared_ptr<ProgressChannel> ProgressBoard::find(std::int64_t id) const {
   return found == channels_.end() ? nullptr : found->second;
 }
 
-void ProgressBoard::finish(std::int64_t id, Progress end) {
+void ProgressBoard::finish(std::int64_t id, std::int64_t sequence) {
   std::shared_ptr<ProgressChannel> channel;
   {
     const std::lock_guard lock(mutex_);
@@ -55,7 +70,7 @@ void ProgressBoard::finish(std::int64_t id, Progress end) {
     channel = std::move(found->second);
     channels_.erase(found);
   }
-  channel->publish(std::move(end));
+  channel->publish_event(sequence);
 }
 
 }  // namespace tribodyn::server

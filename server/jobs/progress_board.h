@@ -4,20 +4,17 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "server/store/store.h"
-
 namespace tribodyn::server {
 
-/// What a watcher sees of a simulation.
+/// How far a simulation that runs is.
 struct Progress {
-  StoredState state = StoredState::kQueued;
-  double fraction = 0;
-  std::string stage;  ///< e.g. "settling at 65 km/h"
-  std::string error_reason;
-  std::string error_message;
+  double fraction = 0;                      ///< [0, 1]
+  std::string stage;                        ///< e.g. "settling at 65 km/h"
+  std::optional<double> remaining_seconds;  ///< a guess
 };
 
 /// Told that something changed; looks for itself what. Called on any thread, with no lock held;
@@ -28,29 +25,31 @@ class ProgressObserver {
   virtual void changed() = 0;
 };
 
-/// The latest progress of one simulation; whoever is late sees the latest only, so nothing piles
-/// up. Safe for concurrent access without external synchronization.
+/// The news of one simulation: the number of its latest event, which the store has, and the latest
+/// progress, which nothing keeps. Whoever is late sees the latest only, so nothing piles up. Safe
+/// for concurrent access without external synchronization.
 class ProgressChannel {
  public:
-  explicit ProgressChannel(Progress initial) : latest_(std::move(initial)) {}
+  /// A change of state: of this number, or of a later one already.
+  void publish_event(std::int64_t sequence);
+  /// Progress since the latest event; the fraction never falls.
+  void publish_progress(Progress progress);
 
-  /// Replaces the latest. While the state stays the fraction never falls; after an end nothing
-  /// changes any more.
-  void publish(Progress progress);
-
-  struct Numbered {
-    std::uint64_t number = 0;  ///< grows with each publication; the first is 1
-    Progress progress;
+  struct Latest {
+    std::int64_t sequence = 0;          ///< of the latest event; 0 when none came yet
+    std::uint64_t progress_number = 0;  ///< grows with each publication of progress
+    Progress progress;                  ///< since that event
   };
-  Numbered latest() const;
+  Latest latest() const;
 
   /// The observer is told of later publications for as long as it lives.
   void observe(const std::weak_ptr<ProgressObserver>& observer);
 
  private:
+  std::vector<std::shared_ptr<ProgressObserver>> living_observers() const;
+
   mutable std::mutex mutex_;
-  Progress latest_;                                         // guarded by mutex_
-  std::uint64_t number_ = 1;                                // guarded by mutex_
+  Latest latest_;                                           // guarded by mutex_
   std::vector<std::weak_ptr<ProgressObserver>> observers_;  // guarded by mutex_
 };
 
@@ -62,8 +61,8 @@ class ProgressBoard {
   std::shared_ptr<ProgressChannel> open(std::int64_t id);
   /// The same, or null.
   std::shared_ptr<ProgressChannel> find(std::int64_t id) const;
-  /// Publishes the end and drops the channel; who holds it still sees the end.
-  void finish(std::int64_t id, Progress end);
+  /// Publishes the last event and drops the channel; who holds it still hears of it.
+  void finish(std::int64_t id, std::int64_t sequence);
 
  private:
   mutable std::mutex mutex_;

@@ -1,41 +1,94 @@
 #include "server/jobs/simulation_jobs.h"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
 namespace tribodyn::server {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Microseconds kLookAgain = 1'000'000;
+
+/// Heartbeats are late by a quarter of their interval at most, and by a second.
+milliseconds tick(milliseconds heartbeat) {
+  return std::clamp(heartbeat / 4, milliseconds(1), milliseconds(1000));
+}
+
+}  // namespace
 
 SimulationJobs::SimulationJobs(Store& store, Options options)
     : store_(store),
       clock_(options.clock),
+      heartbeat_(options.heartbeat),
       runner_(store, board_, options.clock, std::move(options.studies)),
       queue_(options.threads, options.maximum_waiting,
-             [this](std::int64_t id, const StopSignal& stop) { runner_.run(id, stop); }) {}
+             [this](std::int64_t id, const StopSignal& stop) { runner_.run(id, stop); }),
+      timekeeper_(tick(heartbeat_), clock_, [this](std::int64_t id) { expire(id); }) {}
+
+SimulationJobs::~SimulationJobs() { stop(); }
 
 std::size_t SimulationJobs::resume() {
-  const std::vector<std::int64_t> ids = store_.requeue_unfinished();
-  for (const std::int64_t id : ids) {
-    board_.open(id);
-    queue_.push_resumed(id);
+  const std::vector<Waiting> waiting = store_.requeue_unfinished(clock_());
+  for (const Waiting& each : waiting) {
+    if (each.deadline_time) timekeeper_.add_deadline(each.id, *each.deadline_time);
+    const bool last_chance = each.lost_attempts + 1 >= kMaximumLostAttempts;
+    queue_.push_resumed(each.id, last_chance);
   }
-  return ids.size();
+  return waiting.size();
 }
 
-std::optional<std::int64_t> SimulationJobs::submit(const NewSimulation& simulation) {
-  if (!queue_.reserve()) return std::nullopt;
-  std::int64_t id = 0;
+void SimulationJobs::start() { queue_.start(); }
+
+Added SimulationJobs::submit(const NewSimulation& simulation) {
+  const bool has_place = queue_.reserve();
+  Added added;
   try {
-    id = store_.add_simulation(simulation, clock_());
-    board_.open(id);
+    added = store_.add_simulation(simulation, clock_(), has_place);
   } catch (...) {
-    queue_.release();
+    if (has_place) queue_.release();
     throw;
   }
-  queue_.push(id);
-  return id;
+  if (added.kind == Added::Kind::kQueued) {
+    if (simulation.deadline_time) timekeeper_.add_deadline(added.id, *simulation.deadline_time);
+    queue_.push(added.id);
+    return added;
+  }
+  if (has_place) queue_.release();
+  return added;
 }
 
-void SimulationJobs::cancel(std::int64_t id) {
-  if (!store_.mark_cancelled(id, clock_())) return;
-  queue_.cancel(id);
-  board_.finish(id, {StoredState::kCancelled, 0, "", "", ""});
+void SimulationJobs::ensure_queued(const StoredSimulation& simulation) {
+  if (queue_.push_missing(simulation.id) && simulation.deadline_time) {
+    timekeeper_.add_deadline(simulation.id, *simulation.deadline_time);
+  }
+}
+
+void SimulationJobs::cancel(std::int64_t id) { end(id, store_.mark_cancelled(id, clock_())); }
+
+void SimulationJobs::expire(std::int64_t id) {
+  try {
+    end(id, store_.mark_failed(id, clock_(), "DEADLINE_EXCEEDED",
+                               "it had not ended when its deadline_seconds were over"));
+  } catch (const StoreError& error) {
+    spdlog::error("simulations/{}: {}", id, error.what());
+    timekeeper_.add_deadline(id, clock_() + kLookAgain);
+  }
+}
+
+/// Of a simulation that had ended before too: whoever ended it may not have come as far as this.
+void SimulationJobs::end(std::int64_t id, const std::optional<StoredEvent>& event) {
+  std::optional<std::int64_t> sequence;
+  if (event) {
+    sequence = event->sequence;
+  } else if (const auto stored = store_.simulation(id); stored && has_ended(stored->state)) {
+    sequence = stored->sequence;
+  }
+  if (!sequence) return;
+  queue_.drop(id);
+  board_.finish(id, *sequence);
 }
 
 std::optional<Progress> SimulationJobs::progress(std::int64_t id) const {
@@ -44,21 +97,23 @@ std::optional<Progress> SimulationJobs::progress(std::int64_t id) const {
   return channel->latest().progress;
 }
 
-std::shared_ptr<ProgressChannel> SimulationJobs::watch(std::int64_t id) {
-  if (!store_.simulation(id)) return nullptr;
-  // The channel first, the state after: an end that the state does not show yet will still be
-  // published on this channel.
+std::optional<SimulationJobs::Watched> SimulationJobs::watch(std::int64_t id) {
+  if (!store_.simulation(id)) return std::nullopt;
+  // The channel first, the state after: what the state does not show yet will be heard.
   std::shared_ptr<ProgressChannel> channel = board_.open(id);
-  const std::optional<StoredSimulation> stored = store_.simulation(id);
-  if (stored && has_ended(stored->state)) {
-    board_.finish(id, end_of(*stored));
-    // Another finish may have taken the channel off the board and be about to publish the end;
-    // of two ends the first stays, and they are equal.
-    channel->publish(end_of(*stored));
-  }
-  return channel;
+  std::optional<StoredSimulation> stored = store_.simulation(id);
+  if (!stored) return std::nullopt;
+  if (has_ended(stored->state)) board_.finish(id, stored->sequence);
+  return Watched{std::move(channel), std::move(*stored)};
 }
 
-void SimulationJobs::stop() { queue_.stop(); }
+bool SimulationJobs::drain(std::chrono::milliseconds limit, const std::function<bool()>& give_up) {
+  return queue_.drain(limit, give_up);
+}
+
+void SimulationJobs::stop() {
+  timekeeper_.stop();
+  queue_.stop();
+}
 
 }  // namespace tribodyn::server

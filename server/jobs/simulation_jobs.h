@@ -1,22 +1,26 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/jobs/job_queue.h"
 #include "server/jobs/progress_board.h"
 #include "server/jobs/simulation_runner.h"
+#include "server/jobs/timekeeper.h"
 #include "server/store/store.h"
 
 namespace tribodyn::server {
 
 inline constexpr std::size_t kMaximumWaitingSimulations = 10'000;
 
-/// The life of simulations: accepted, queued, run, cancelled, resumed after a crash.
-/// Safe for concurrent access without external synchronization; `resume` and `stop` from one
-/// thread.
+/// The life of simulations: accepted, queued, run, cancelled, too late, resumed after a crash.
+/// Safe for concurrent access without external synchronization; `resume`, `start`, `drain` and
+/// `stop` from one thread.
 class SimulationJobs {
  public:
   struct Options {
@@ -24,37 +28,64 @@ class SimulationJobs {
     std::size_t maximum_waiting = kMaximumWaitingSimulations;
     Clock clock = system_time;
     StudyFunctions studies;
+    /// A watch that has been silent for so long sends a sign of life.
+    std::chrono::milliseconds heartbeat = std::chrono::seconds(15);
   };
 
   /// The store must outlive the object.
   SimulationJobs(Store& store, Options options);
+  ~SimulationJobs();
+  SimulationJobs(const SimulationJobs&) = delete;
+  SimulationJobs& operator=(const SimulationJobs&) = delete;
 
-  /// Queues again what a crash or a stop left unfinished; how many.
+  /// Queues again what a crash or a stop left unfinished; how many. Before anything is submitted.
   std::size_t resume();
+  /// Until then simulations are accepted but wait.
+  void start();
 
-  /// Writes a simulation down and queues it; its id, or nothing when too many wait.
-  std::optional<std::int64_t> submit(const NewSimulation& simulation);
+  /// Writes a simulation down, and queues it unless it is there or served already.
+  Added submit(const NewSimulation& simulation);
+  /// Of a simulation that is QUEUED in the store: its request may have been written and yet been
+  /// answered with an error, before it came into the queue.
+  void ensure_queued(const StoredSimulation& simulation);
 
   /// At once CANCELLED in the store; a worker on it stops at its next step. No effect on what has
   /// ended.
   void cancel(std::int64_t id);
 
-  /// Latest progress of a simulation that has not ended.
+  /// Latest progress of a simulation that runs.
   std::optional<Progress> progress(std::int64_t id) const;
 
-  /// A channel that shows the simulation's progress and, sooner or later, its end. Null when there
-  /// is no such simulation.
-  std::shared_ptr<ProgressChannel> watch(std::int64_t id);
+  /// The channel of a simulation and how things stood when the channel was open already: whatever
+  /// happens after that is heard on it.
+  struct Watched {
+    std::shared_ptr<ProgressChannel> channel;
+    StoredSimulation simulation;
+  };
+  /// Nothing when there is no such simulation.
+  std::optional<Watched> watch(std::int64_t id);
+  /// Wakes the observer often enough for heartbeats.
+  void wake(const std::weak_ptr<ProgressObserver>& observer) { timekeeper_.observe(observer); }
+  std::chrono::milliseconds heartbeat() const { return heartbeat_; }
 
+  /// True once nothing more is accepted.
+  bool is_stopping() const { return queue_.is_stopping(); }
+  /// As JobQueue::drain.
+  bool drain(std::chrono::milliseconds limit, const std::function<bool()>& give_up);
   /// Running simulations stop and go back to QUEUED in the store.
   void stop();
 
  private:
+  void expire(std::int64_t id);
+  void end(std::int64_t id, const std::optional<StoredEvent>& event);
+
   Store& store_;
-  Clock clock_;
+  const Clock clock_;
+  const std::chrono::milliseconds heartbeat_;
   ProgressBoard board_;
   SimulationRunner runner_;
-  JobQueue queue_;  // last: its threads use all of the above
+  JobQueue queue_;
+  Timekeeper timekeeper_;  // last: its thread uses all of the above
 };
 
 }  // namespace tribodyn::server

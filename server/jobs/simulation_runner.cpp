@@ -2,11 +2,13 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <new>
 #include <optional>
 
 #include "core/refusal.h"
+#include "server/jobs/platform.h"
 
 namespace tribodyn::server {
 namespace {
@@ -14,8 +16,11 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr auto kProgressInterval = std::chrono::milliseconds(250);
+constexpr double kLeastFraction = 0.01;  // below it nothing can be said of the time that is left
+constexpr auto kFirstPause = std::chrono::milliseconds(100);
+constexpr auto kLongestPause = std::chrono::milliseconds(30'000);
 
-/// At most one progress event per interval; the stage is part of the next one.
+/// At most one publication per interval; the stage is part of the next one.
 class Reporter {
  public:
   Reporter(ProgressChannel& channel, const StopSignal& stop) : channel_(channel), stop_(stop) {}
@@ -24,23 +29,25 @@ class Reporter {
     const auto now = steady_clock::now();
     if (now - last_ >= kProgressInterval) {
       last_ = now;
-      channel_.publish({StoredState::kRunning, fraction, stage, "", ""});
+      channel_.publish_progress({fraction, stage, remaining(fraction, now)});
     }
     return !stop_.requested();
   }
 
  private:
+  /// As if it went on as it went so far.
+  std::optional<double> remaining(double fraction, steady_clock::time_point now) const {
+    if (fraction < kLeastFraction) return std::nullopt;
+    return std::chrono::duration<double>(now - begin_).count() * (1 - fraction) / fraction;
+  }
+
   ProgressChannel& channel_;
   const StopSignal& stop_;
-  steady_clock::time_point last_ = steady_clock::now();
+  const steady_clock::time_point begin_ = steady_clock::now();
+  steady_clock::time_point last_ = begin_;
 };
 
 }  // namespace
-
-Progress end_of(const StoredSimulation& stored) {
-  return {stored.state, stored.state == StoredState::kSucceeded ? 1.0 : 0.0, "",
-          stored.error_reason, stored.error_message};
-}
 
 ResourceLookup resource_lookup(Store& store) {
   return {[&store](const RevisionName& name) -> std::optional<FoundResource> {
@@ -78,87 +85,114 @@ SimulationRunner::SimulationRunner(Store& store, ProgressBoard& board, Clock clo
                                    StudyFunctions studies)
     : store_(store), board_(board), clock_(std::move(clock)), studies_(std::move(studies)) {}
 
+/// Repeats what the store refuses, until it does not or the simulation is to stop.
+template <class Action>
+auto SimulationRunner::insist(std::int64_t id, const StopSignal& stop, const Action& action) const {
+  for (auto pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
+    try {
+      return action();
+    } catch (const StoreError& error) {
+      spdlog::error("simulations/{}: {}", id, error.what());
+      if (!stop.wait_for(pause)) throw;
+    }
+  }
+}
+
 void SimulationRunner::run(std::int64_t id, const StopSignal& stop) const {
   try {
-    if (!store_.mark_running(id, clock_())) return show_end(id);  // before it began
-    compute_and_save(id, stop);
-  } catch (const Cancelled&) {
-    stopped(id, stop.reason());
-  } catch (const Refusal& refusal) {
-    fail(id, refusal.reason(), refusal.what());
-  } catch (const std::bad_alloc&) {
-    fail(id, "OUT_OF_MEMORY", "not enough memory for this simulation");
-  } catch (const StoreError& error) {
-    spdlog::error("simulations/{}: {}", id, error.what());
-    fail(id, "STORE_FAILED", "the database could not be read or written");
-  } catch (const std::exception& error) {
-    fail(id, "INTERNAL", error.what());
-  } catch (...) {
-    fail(id, "INTERNAL", "unknown error");
+    try {
+      compute_and_save(id, stop);
+    } catch (const Cancelled&) {
+      stopped(id, stop);
+    } catch (const Refusal& refusal) {
+      fail(id, stop, refusal.reason(), refusal.what());
+    } catch (const std::bad_alloc&) {
+      fail(id, stop, "OUT_OF_MEMORY", "not enough memory for this simulation");
+    } catch (const StoreError&) {
+      throw;
+    } catch (const std::exception& error) {
+      fail(id, stop, "INTERNAL", error.what());
+    } catch (...) {
+      fail(id, stop, "INTERNAL", "unknown error");
+    }
+  } catch (const StoreError& error) {  // the next start finds it unfinished and goes on
+    spdlog::error("simulations/{} is left as it is: {}", id, error.what());
   }
+}
+
+/// As they are in the store, read again: a restart may have brought another model.
+SimulationInputs SimulationRunner::inputs_of(std::int64_t id, const StopSignal& stop) const {
+  return insist(id, stop, [&] {
+    const std::optional<StoredSimulation> stored = store_.simulation(id);
+    v1::Simulation request;
+    if (!stored || !request.ParseFromString(stored->request)) {
+      throw Refusal("STORED_REQUEST_UNREADABLE", "the stored request cannot be read");
+    }
+    Violations violations;
+    auto inputs =
+        read_simulation(request, accepted_lookup(store_, *stored), "simulation", violations);
+    if (!inputs) {
+      throw Refusal("INVALID_ARGUMENT",
+                    violations.front().field + ": " + violations.front().description);
+    }
+    return std::move(*inputs);
+  });
 }
 
 void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop) const {
-  const std::optional<StoredSimulation> stored = store_.simulation(id);
-  v1::Simulation request;
-  if (!stored || !request.ParseFromString(stored->request)) {
-    throw Refusal("STORED_REQUEST_UNREADABLE", "the stored request cannot be read");
-  }
+  const SimulationInputs inputs = inputs_of(id, stop);
+  const ResultKey key = result_key(inputs);
+  const auto started = insist(id, stop, [&] { return store_.mark_running(id, clock_(), key); });
+  publish(id, started);
+  if (!started || started->state != StoredState::kRunning) return;  // ended, or served
   const std::shared_ptr<ProgressChannel> channel = board_.open(id);
-  channel->publish({StoredState::kRunning, 0, "", "", ""});
-  Violations violations;
-  const auto inputs =
-      read_simulation(request, accepted_lookup(store_, *stored), "simulation", violations);
-  if (!inputs) {
-    throw Refusal("INVALID_ARGUMENT",
-                  violations.front().field + ": " + violations.front().description);
-  }
   Reporter reporter(*channel, stop);
   if (stop.requested()) throw Cancelled();
   const auto begin = steady_clock::now();
-  const Computed computed = compute(*inputs, studies_, std::ref(reporter));
-  if (!store_.mark_succeeded(id, clock_(), computed.result.SerializeAsString(), computed.history)) {
-    return show_end(id);  // in its last moment
-  }
-  board_.finish(id, {StoredState::kSucceeded, 1, "", "", ""});
+  Computed computed = compute(inputs, studies_, std::ref(reporter));
+  const NewResult result{key, computed.result.SerializeAsString(), std::move(computed.history)};
+  publish(id, insist(id, stop, [&] { return store_.mark_succeeded(id, clock_(), result); }));
   spdlog::info(
-      "simulations/{} succeeded in {} ms", id,
+      "simulations/{} computed in {} ms", id,
       std::chrono::duration_cast<std::chrono::milliseconds>(steady_clock::now() - begin).count());
 }
 
-/// Somebody else has ended the simulation, by cancelling it: a channel opened since must end too.
-void SimulationRunner::show_end(std::int64_t id) const {
-  try {
-    const std::optional<StoredSimulation> stored = store_.simulation(id);
-    if (stored && has_ended(stored->state)) board_.finish(id, end_of(*stored));
-  } catch (const StoreError& error) {
-    spdlog::error("simulations/{}: {}", id, error.what());
+/// Without an event somebody else has ended the simulation, by cancelling it: a channel opened
+/// since must hear of it too.
+void SimulationRunner::publish(std::int64_t id, const std::optional<StoredEvent>& event) const {
+  StoredState state = StoredState::kQueued;
+  std::int64_t sequence = 0;
+  if (event) {
+    state = event->state;
+    sequence = event->sequence;
+  } else if (const std::optional<StoredSimulation> stored = store_.simulation(id)) {
+    state = stored->state;
+    sequence = stored->sequence;
+  }
+  if (has_ended(state)) {
+    board_.finish(id, sequence);
+  } else {
+    board_.open(id)->publish_event(sequence);
   }
 }
 
-void SimulationRunner::stopped(std::int64_t id, StopReason reason) const {
-  if (reason == StopReason::kNone) {
-    return fail(id, "INTERNAL", "the study stopped without being asked to");
-  }
-  if (reason == StopReason::kCancelled) return show_end(id);
-  try {
-    store_.mark_queued(id);
-    spdlog::info("simulations/{} goes back to the queue", id);
-  } catch (const StoreError& error) {  // the next start finds it RUNNING and requeues it
-    spdlog::error("simulations/{}: {}", id, error.what());
+void SimulationRunner::stopped(std::int64_t id, const StopSignal& stop) const {
+  switch (stop.reason()) {
+    case StopReason::kNone:
+      return fail(id, stop, "INTERNAL", "the study stopped without being asked to");
+    case StopReason::kEnded:
+      return publish(id, std::nullopt);
+    case StopReason::kShutdown:
+      publish(id, store_.mark_queued(id, clock_(), "SERVER_STOPPED"));
+      spdlog::info("simulations/{} goes back to the queue", id);
   }
 }
 
-void SimulationRunner::fail(std::int64_t id, const std::string& reason,
+void SimulationRunner::fail(std::int64_t id, const StopSignal& stop, const std::string& reason,
                             const std::string& message) const {
   // The message may quote inputs, so only the reason is logged.
   spdlog::warn("simulations/{} failed: {}", id, reason);
-  try {
-    if (!store_.mark_failed(id, clock_(), reason, message)) return show_end(id);
-  } catch (const StoreError& error) {
-    spdlog::error("simulations/{}: {}", id, error.what());
-  }
-  board_.finish(id, {StoredState::kFailed, 0, "", reason, message});
+  publish(id, insist(id, stop, [&] { return store_.mark_failed(id, clock_(), reason, message); }));
 }
 
 }  // namespace tribodyn::server

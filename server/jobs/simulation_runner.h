@@ -14,9 +14,6 @@ namespace tribodyn::server {
 /// Wall-clock time for records.
 using Clock = std::function<Microseconds()>;
 
-/// What a watcher sees of a simulation that has ended.
-Progress end_of(const StoredSimulation& stored);
-
 /// Resources of the store.
 ResourceLookup resource_lookup(Store& store);
 
@@ -25,7 +22,8 @@ ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation)
 
 /// Carries one simulation from QUEUED to its end: inputs from the store, the study in the core, the
 /// result back into the store, progress on the board. Whatever goes wrong ends in the store, never
-/// in the thread. Safe for concurrent access without external synchronization.
+/// in the thread; a store that cannot be written (disk full) is tried until it can or the server
+/// stops. Safe for concurrent access without external synchronization.
 class SimulationRunner {
  public:
   SimulationRunner(Store& store, ProgressBoard& board, Clock clock, StudyFunctions studies);
@@ -34,9 +32,13 @@ class SimulationRunner {
 
  private:
   void compute_and_save(std::int64_t id, const StopSignal& stop) const;
-  void show_end(std::int64_t id) const;
-  void stopped(std::int64_t id, StopReason reason) const;
-  void fail(std::int64_t id, const std::string& reason, const std::string& message) const;
+  SimulationInputs inputs_of(std::int64_t id, const StopSignal& stop) const;
+  void publish(std::int64_t id, const std::optional<StoredEvent>& event) const;
+  void stopped(std::int64_t id, const StopSignal& stop) const;
+  void fail(std::int64_t id, const StopSignal& stop, const std::string& reason,
+            const std::string& message) const;
+  template <class Action>
+  auto insist(std::int64_t id, const StopSignal& stop, const Action& action) const;
 
   Store& store_;
   ProgressBoard& board_;

@@ -75,12 +75,21 @@ void check_rows(SQLite::Database& db, Problems& problems) {
            "AND b.revision = a.revision + 1 WHERE b.create_time < a.create_time",
            "SELECT name || ': no known kind of resource' FROM resources "
            "WHERE collection NOT IN ('lubricants', 'gearSets', 'surfaces', 'vehicles')",
-           "SELECT 'simulations/' || id || ': has no result' FROM simulations "
-           "WHERE state = 3 AND id NOT IN (SELECT simulation FROM results)",
-           "SELECT 'simulations/' || s.id || ': has a result without having succeeded' "
-           "FROM simulations s JOIN results ON simulation = s.id WHERE s.state <> 3",
-           "SELECT 'simulations/' || simulation || ': columns of its history differ in length' "
-           "FROM history GROUP BY simulation "
+           "SELECT 'simulations/' || s.id || ': its events have gaps' FROM simulations s "
+           "WHERE (SELECT count(*) FROM events WHERE simulation = s.id) <> s.sequence OR "
+           "(SELECT coalesce(max(sequence), 0) FROM events WHERE simulation = s.id) <> s.sequence",
+           "SELECT 'simulations/' || s.id || ': its last event is of another state' "
+           "FROM simulations s JOIN events e ON e.simulation = s.id AND e.sequence = s.sequence "
+           "WHERE e.state <> s.state OR e.attempt <> s.attempt",
+           "SELECT 'simulations/' || a.simulation || ': its states move backwards' "
+           "FROM events a JOIN events b ON b.simulation = a.simulation "
+           "AND b.sequence = a.sequence + 1 WHERE a.state > 2 OR b.attempt < a.attempt OR "
+           "(b.attempt = a.attempt AND b.state <= a.state)",
+           "SELECT 'inputs ' || input_hash || ': more than one result' FROM results "
+           "WHERE platform <> '' GROUP BY input_hash, model_version, platform "
+           "HAVING count(*) > 1",
+           "SELECT 'simulations/' || s.id || ': columns of its history differ in length' "
+           "FROM simulations s JOIN history h ON h.result = s.result GROUP BY s.id "
            "HAVING min(length(data)) <> max(length(data)) OR max(length(data) % 8) <> 0",
        }) {
     find_rows(db, sql, problems);
@@ -166,7 +175,7 @@ void check_simulations(SQLite::Database& db, const HashInputs& hash_inputs, Prob
       "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.gear_set), "
       "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.surface), "
       "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.vehicle) "
-      "FROM simulations s LEFT JOIN results b ON b.simulation = s.id");
+      "FROM simulations s LEFT JOIN results b ON b.id = s.result");
   while (problems.size() < kMaximumProblems && query.executeStep()) {
     const std::string name = "simulations/" + query.getColumn(0).getString();
     const std::string hash = query.getColumn(2).getString();

@@ -6,7 +6,7 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 2. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 3. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   resources    lubricants, gear sets, surfaces, vehicles: one row a name, with the revision that
@@ -16,13 +16,22 @@ namespace tribodyn::server {
 ///   properties   what lists are filtered and ordered by: the values of the present revision
 ///                (properties.h); derived from it, kept in step with it
 ///   simulations  one row per job; id is the number in "simulations/{id}" and the order of
-///   creation.
-///                state as in Simulation.State. request: the Simulation as the client stated it;
-///                lubricant, gear_set, surface, vehicle: the revisions it rests on.
+///                creation. state as in Simulation.State; its changes are those of life_cycle.h.
+///                attempt counts from 1, lost_attempts those that ended with the server's process;
+///                sequence is that of the latest event. request: the Simulation as the client
+///                stated it; request_hash: of all that it stated (request_text.h), to tell a
+///                repeated request_id from a misused one; lubricant, gear_set, surface, vehicle:
+///                the revisions it rests on. is_forced: no result that was there before is taken.
 ///                Progress is not kept: a job that a crash interrupts starts again.
-///   results      one SimulationResult per job that succeeded, written with the change of state
+///   events       every change of state of a job, numbered 1, 2, ... without gaps, written with it
+///   ledgers      assumptions of results, each distinct list once: a SimulationResult with nothing
+///                else. They belong to the job, as they name its resources
+///   results      one SimulationResult without assumptions for equal inputs (input_hash), model
+///                version and platform, written with the change of state of the first job that
+///                has it. platform is empty, and the result serves no other job, where it comes
+///                from an older schema
 ///   history      columns of time histories, little-endian doubles, in the order of position
-inline constexpr int kSchemaVersion = 2;
+inline constexpr int kSchemaVersion = 3;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

@@ -12,6 +12,7 @@
 #include "server/store/resource_queries.h"
 #include "server/store/resource_rows.h"
 #include "server/store/schema.h"
+#include "server/store/simulation_rows.h"
 #include "server/store/translate_error.h"
 
 static_assert(std::endian::native == std::endian::little, "history columns are little-endian");
@@ -39,44 +40,6 @@ SQLite::Database open_writer(const std::filesystem::path& path) try {
   return {path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMilliseconds};
 } catch (const SQLite::Exception& error) {
   throw translate_error(error, path);
-}
-
-StoredSimulation row(const SQLite::Statement& query) {
-  StoredSimulation out;
-  out.id = query.getColumn(0).getInt64();
-  out.state = static_cast<StoredState>(query.getColumn(1).getInt());
-  out.create_time = query.getColumn(2).getInt64();
-  if (!query.getColumn(3).isNull()) out.start_time = query.getColumn(3).getInt64();
-  if (!query.getColumn(4).isNull()) out.end_time = query.getColumn(4).getInt64();
-  out.request = query.getColumn(5).getString();
-  out.input_hash = query.getColumn(6).getString();
-  out.error_reason = query.getColumn(7).getString();
-  out.error_message = query.getColumn(8).getString();
-  out.lubricant_revision = query.getColumn(9).getString();
-  out.gear_set_revision = query.getColumn(10).getString();
-  out.surface_revision = query.getColumn(11).getString();
-  out.vehicle_revision = query.getColumn(12).getString();
-  return out;
-}
-
-constexpr char kSimulationColumns[] =
-    "SELECT id, state, create_time, start_time, end_time, request, input_hash, error_reason, "
-    "error_message, "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle) "
-    "FROM simulations ";
-
-/// Row of "lubricants/1@2" in revisions.
-std::int64_t revision_row(SQLite::Database& db, const std::string& name) {
-  SQLite::Statement query(
-      db,
-      "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
-      "name = substr(?1, 1, instr(?1, '@') - 1)");
-  query.bind(1, name);
-  if (!query.executeStep()) throw SQLite::Exception("no such revision");
-  return query.getColumn(0).getInt64();
 }
 
 /// Incremental reading of one blob.
@@ -275,23 +238,12 @@ bool Store::undelete_resource(const StoredResource& present) {
   });
 }
 
-std::int64_t Store::add_simulation(const NewSimulation& simulation, Microseconds now) {
-  return write([&](SQLite::Database& db) -> std::int64_t {
-    SQLite::Statement insert(
-        db,
-        "INSERT INTO simulations (state, create_time, request, input_hash, lubricant, gear_set, "
-        "surface, vehicle) VALUES (1, ?, ?, ?, ?, ?, ?, ?)");
-    insert.bind(1, now);
-    bind_blob(insert, 2, simulation.request);
-    insert.bind(3, simulation.input_hash);
-    int index = 3;
-    for (const std::string* each : {&simulation.lubricant_revision, &simulation.gear_set_revision,
-                                    &simulation.surface_revision, &simulation.vehicle_revision}) {
-      ++index;
-      if (!each->empty()) insert.bind(index, revision_row(db, *each));
-    }
-    insert.exec();
-    return db.getLastInsertRowid();
+Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const Added added = insert_simulation(db, simulation, now, may_wait);
+    transaction.commit();
+    return added;
   });
 }
 
@@ -300,7 +252,16 @@ std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
     SQLite::Statement query(db, std::string(kSimulationColumns) + "WHERE id = ?");
     query.bind(1, id);
     if (!query.executeStep()) return std::nullopt;
-    return row(query);
+    return stored_simulation(query);
+  });
+}
+
+std::optional<std::int64_t> Store::simulation_of_request(const std::string& request_id) {
+  return read([&](SQLite::Database& db) -> std::optional<std::int64_t> {
+    SQLite::Statement query(db, "SELECT id FROM simulations WHERE request_id = ?");
+    query.bind(1, request_id);
+    if (!query.executeStep()) return std::nullopt;
+    return query.getColumn(0).getInt64();
   });
 }
 
@@ -310,107 +271,89 @@ Page<StoredSimulation> Store::simulations(std::int64_t before, int limit, std::s
         db, std::string(kSimulationColumns) + "WHERE id < ? ORDER BY id DESC LIMIT ?");
     query.bind(1, before == 0 ? std::numeric_limits<std::int64_t>::max() : before);
     query.bind(2, limit + 1);
-    return read_page<StoredSimulation>(query, limit, byte_limit, 5, row);
+    return read_page<StoredSimulation>(query, limit, byte_limit, kRequestColumn, stored_simulation);
   });
 }
 
-bool Store::mark_running(std::int64_t id, Microseconds now) {
+std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after_sequence) {
+  return read([&](SQLite::Database& db) { return query_next_event(db, id, after_sequence); });
+}
+
+template <class Change>
+std::optional<StoredEvent> Store::change_simulation(const Change& change) {
   return write([&](SQLite::Database& db) {
-    SQLite::Statement update(
-        db, "UPDATE simulations SET state = 2, start_time = ? WHERE id = ? AND state = 1");
-    update.bind(1, now);
-    update.bind(2, id);
-    return update.exec() == 1;
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    std::optional<StoredEvent> event = change(db);
+    if (event) transaction.commit();
+    return event;
   });
 }
 
-bool Store::mark_queued(std::int64_t id) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Statement update(
-        db, "UPDATE simulations SET state = 1, start_time = NULL WHERE id = ? AND state = 2");
-    update.bind(1, id);
-    return update.exec() == 1;
+std::optional<StoredEvent> Store::mark_running(std::int64_t id, Microseconds now,
+                                               const ResultKey& key) {
+  return change_simulation(
+      [&](SQLite::Database& db) { return start_simulation(db, id, now, key); });
+}
+
+std::optional<StoredEvent> Store::mark_queued(std::int64_t id, Microseconds now,
+                                              const std::string& reason) {
+  return change_simulation([&](SQLite::Database& db) {
+    return change_state(db, {.id = id, .to = StoredState::kQueued, .time = now, .reason = reason});
   });
 }
 
-bool Store::mark_cancelled(std::int64_t id, Microseconds now) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Statement update(
-        db, "UPDATE simulations SET state = 5, end_time = ? WHERE id = ? AND state IN (1, 2)");
-    update.bind(1, now);
-    update.bind(2, id);
-    return update.exec() == 1;
+std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds now) {
+  return change_simulation([&](SQLite::Database& db) {
+    return change_state(db, {.id = id, .to = StoredState::kCancelled, .time = now});
   });
 }
 
-bool Store::mark_failed(std::int64_t id, Microseconds now, const std::string& reason,
-                        const std::string& message) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Statement update(db,
-                             "UPDATE simulations SET state = 4, end_time = ?, error_reason = ?, "
-                             "error_message = ? WHERE id = ? AND state IN (1, 2)");
-    update.bind(1, now);
-    update.bind(2, reason);
-    update.bind(3, message);
-    update.bind(4, id);
-    return update.exec() == 1;
+std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
+                                              const std::string& reason,
+                                              const std::string& message) {
+  return change_simulation([&](SQLite::Database& db) {
+    return change_state(db, {.id = id,
+                             .to = StoredState::kFailed,
+                             .time = now,
+                             .error_reason = reason,
+                             .error_message = message});
   });
 }
 
-bool Store::mark_succeeded(std::int64_t id, Microseconds now, const std::string& result,
-                           const std::vector<StoredColumn>& history) {
+std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds now,
+                                                 const NewResult& result) {
+  return change_simulation(
+      [&](SQLite::Database& db) { return finish_simulation(db, id, now, result); });
+}
+
+std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
   return write([&](SQLite::Database& db) {
-    SQLite::Transaction transaction(db);
-    SQLite::Statement update(
-        db, "UPDATE simulations SET state = 3, end_time = ? WHERE id = ? AND state = 2");
-    update.bind(1, now);
-    update.bind(2, id);
-    if (update.exec() != 1) return false;
-    SQLite::Statement insert(db, "INSERT INTO results VALUES (?, ?)");
-    insert.bind(1, id);
-    bind_blob(insert, 2, result);
-    insert.exec();
-    SQLite::Statement column(
-        db, "INSERT INTO history (simulation, position, name, data) VALUES (?, ?, ?, ?)");
-    for (std::size_t i = 0; i < history.size(); ++i) {
-      column.bind(1, id);
-      column.bind(2, static_cast<std::int64_t>(i));
-      column.bind(3, history[i].name);
-      column.bindNoCopy(4, history[i].values.data(),
-                        static_cast<int>(history[i].values.size() * sizeof(double)));
-      column.exec();
-      column.reset();
-    }
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    std::vector<Waiting> waiting = requeue_lost(db, now);
     transaction.commit();
-    return true;
-  });
-}
-
-std::vector<std::int64_t> Store::requeue_unfinished() {
-  return write([](SQLite::Database& db) {
-    SQLite::Transaction transaction(db);
-    db.exec("UPDATE simulations SET state = 1, start_time = NULL WHERE state = 2");
-    SQLite::Statement query(db, "SELECT id FROM simulations WHERE state = 1 ORDER BY id");
-    std::vector<std::int64_t> ids;
-    while (query.executeStep()) ids.push_back(query.getColumn(0).getInt64());
-    transaction.commit();
-    return ids;
+    return waiting;
   });
 }
 
 std::optional<std::string> Store::result(std::int64_t id) {
   return read([&](SQLite::Database& db) -> std::optional<std::string> {
-    SQLite::Statement query(db, "SELECT body FROM results WHERE simulation = ?");
+    SQLite::Statement query(db,
+                            "SELECT r.body, l.body FROM simulations s "
+                            "JOIN results r ON r.id = s.result "
+                            "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
     query.bind(1, id);
     if (!query.executeStep()) return std::nullopt;
-    return query.getColumn(0).getString();
+    // The bytes of two messages in a row are those of both merged.
+    return query.getColumn(0).getString() + query.getColumn(1).getString();
   });
 }
 
 Store::HistoryShape Store::history_shape(std::int64_t id) {
   return read([&](SQLite::Database& db) {
     SQLite::Statement query(
-        db, "SELECT name, length(data) / 8 FROM history WHERE simulation = ? ORDER BY position");
+        db,
+        "SELECT name, length(data) / 8 FROM history "
+        "WHERE result = (SELECT result FROM simulations WHERE id = ?) ORDER BY position");
     query.bind(1, id);
     HistoryShape shape;
     while (query.executeStep()) {
@@ -424,7 +367,9 @@ Store::HistoryShape Store::history_shape(std::int64_t id) {
 std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,
                                         std::int64_t start, std::int64_t count) {
   return read([&](SQLite::Database& db) {
-    SQLite::Statement query(db, "SELECT id FROM history WHERE simulation = ? AND name = ?");
+    SQLite::Statement query(db,
+                            "SELECT id FROM history WHERE "
+                            "result = (SELECT result FROM simulations WHERE id = ?) AND name = ?");
     query.bind(1, id);
     query.bind(2, column);
     if (!query.executeStep()) throw SQLite::Exception("no such history column");

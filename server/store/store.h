@@ -13,47 +13,9 @@
 #include "server/store/database_lock.h"
 #include "server/store/store_error.h"
 #include "server/store/stored_resource.h"
+#include "server/store/stored_simulation.h"
 
 namespace tribodyn::server {
-
-/// States as on disk; the numbers are those of Simulation.State.
-enum class StoredState { kQueued = 1, kRunning = 2, kSucceeded = 3, kFailed = 4, kCancelled = 5 };
-
-/// True when nothing more will happen to the simulation.
-inline bool has_ended(StoredState state) { return state >= StoredState::kSucceeded; }
-
-struct StoredSimulation {
-  std::int64_t id = 0;
-  StoredState state = StoredState::kQueued;
-  Microseconds create_time = 0;
-  std::optional<Microseconds> start_time;
-  std::optional<Microseconds> end_time;
-  std::string request;  ///< serialised Simulation
-  std::string input_hash;
-  std::string error_reason;
-  std::string error_message;
-  // What it rests on, "lubricants/1@2"; empty where that is not known.
-  std::string lubricant_revision;
-  std::string gear_set_revision;
-  std::string surface_revision;
-  std::string vehicle_revision;
-};
-
-/// A simulation to be stored.
-struct NewSimulation {
-  std::string request;  ///< serialised Simulation
-  std::string input_hash;
-  // Revisions as above; each exists or is empty.
-  std::string lubricant_revision = {};
-  std::string gear_set_revision = {};
-  std::string surface_revision = {};
-  std::string vehicle_revision = {};
-};
-
-struct StoredColumn {
-  std::string name;
-  std::vector<double> values;
-};
 
 /// Safe for concurrent access without external synchronization: one writer at a time, readers
 /// beside it. The only truth about resources, simulations and results (schema.h). A call that
@@ -86,26 +48,38 @@ class Store {
   bool delete_resource(const StoredResource& present, Microseconds now);
   bool undelete_resource(const StoredResource& present);
 
-  /// A new simulation, QUEUED; its id.
-  std::int64_t add_simulation(const NewSimulation& simulation, Microseconds now);
+  /// A new simulation, or the one that an earlier request of its request_id made. Without
+  /// `may_wait` only where a result for it is there already.
+  Added add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait = true);
   std::optional<StoredSimulation> simulation(std::int64_t id);
+  std::optional<std::int64_t> simulation_of_request(const std::string& request_id);
   /// Newest first, ids below `before` (0: from the newest); limits as of revisions.
   Page<StoredSimulation> simulations(std::int64_t before, int limit, std::size_t byte_limit);
+  /// The change of state that follows the one of that number (0: the first).
+  std::optional<StoredEvent> next_event(std::int64_t id, std::int64_t after_sequence);
 
-  // Changes of state. Each returns false, and changes nothing, when the simulation is not in a
-  // state that allows it: of two that race, the first wins.
-  bool mark_running(std::int64_t id, Microseconds now);    ///< from QUEUED
-  bool mark_queued(std::int64_t id);                       ///< from RUNNING
-  bool mark_cancelled(std::int64_t id, Microseconds now);  ///< from QUEUED or RUNNING
-  bool mark_failed(std::int64_t id, Microseconds now, const std::string& reason,
-                   const std::string& message);  ///< from QUEUED or RUNNING
-  /// From RUNNING; result, history and state in one transaction.
-  bool mark_succeeded(std::int64_t id, Microseconds now, const std::string& result,
-                      const std::vector<StoredColumn>& history);
+  // Changes of state, each with its event in one transaction. They return the event, or nothing,
+  // and then change nothing, when the simulation is not in a state that allows it: of two that
+  // race, the first wins.
 
-  /// After a crash: RUNNING becomes QUEUED. Ids of all that are QUEUED then, oldest first.
-  std::vector<std::int64_t> requeue_unfinished();
+  /// From QUEUED to RUNNING, or to SUCCEEDED where equal inputs have a result by now.
+  std::optional<StoredEvent> mark_running(std::int64_t id, Microseconds now, const ResultKey& key);
+  /// From RUNNING, as a further attempt.
+  std::optional<StoredEvent> mark_queued(std::int64_t id, Microseconds now,
+                                         const std::string& reason);
+  std::optional<StoredEvent> mark_cancelled(std::int64_t id, Microseconds now);
+  std::optional<StoredEvent> mark_failed(std::int64_t id, Microseconds now,
+                                         const std::string& reason, const std::string& message);
+  /// From RUNNING. Equal inputs may have a result by now; if it is another one, then this
+  /// simulation is FAILED.
+  std::optional<StoredEvent> mark_succeeded(std::int64_t id, Microseconds now,
+                                            const NewResult& result);
 
+  /// After a crash: RUNNING becomes QUEUED, or FAILED after kMaximumLostAttempts of them. All that
+  /// are QUEUED then, oldest first.
+  std::vector<Waiting> requeue_unfinished(Microseconds now);
+
+  /// Serialised SimulationResult with the assumptions of this simulation.
   std::optional<std::string> result(std::int64_t id);
   /// Names of the stored columns, and how many rows each has.
   struct HistoryShape {
@@ -122,6 +96,9 @@ class Store {
   /// Changes the row of resources only if `present` is what is there.
   template <class Change>
   bool change(const StoredResource& present, const Change& change);
+  /// In one transaction, which an empty event undoes.
+  template <class Change>
+  std::optional<StoredEvent> change_simulation(const Change& change);
   template <class Action>
   auto write(const Action& action);
   template <class Action>

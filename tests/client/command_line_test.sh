@@ -13,7 +13,7 @@ expect 0 --help
 out_has 'Exit codes'
 for command in point curve history contact diff validate schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
-  "jobs list" "jobs get" "jobs watch" "jobs cancel"; do
+  "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun"; do
   # shellcheck disable=SC2086  # the words of a command
   expect 0 $command --help
   out_has '^Examples$'
@@ -216,6 +216,24 @@ expect 0 jobs cancel "$job"
 expect 1 jobs watch "$job"
 err_has 'cancelled'
 expect 0 jobs cancel "$job"
+expect 1 jobs wait "$job"
+expect 1 jobs rerun none
+
+echo "--- a job is computed once, and again when told to"
+point=(point --lubricant 2 --speed 50 --model quasi-static --output json)
+expect 0 "${point[@]}"
+expect 0 "${point[@]}"
+out_has '"cacheHit": true'
+name=$(sed -n 's,^ "name": "simulations/\(.*\)".*,\1,p' "$folder/out")
+expect 0 "${point[@]}" --force
+out_has '"cacheHit": false'
+expect 0 jobs rerun "$name" --output json
+out_has '"cacheHit": false'
+out_has '"lubricant": "lubricants/2@1"'
+expect 0 jobs wait "$name" --output csv
+out_has 'SUCCEEDED'
+expect 1 point --lubricant 2 --speed 51 --deadline-seconds 0.001 --method march
+err_has 'DEADLINE_EXCEEDED|deadline_seconds'
 
 echo "--- results outlive the server"
 expect 0 point --lubricant 3 --speed 50 --model quasi-static --output json

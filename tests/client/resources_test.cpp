@@ -259,7 +259,7 @@ TEST(Completion, OffersWhatMayFollow) {
   using Words = std::vector<std::string>;
   EXPECT_EQ(completed({"lub"}), Words({"lubricants"}));
   EXPECT_EQ(completed({"lubricants", "un"}), Words({"undelete"}));
-  EXPECT_EQ(completed({"--server", "x", "jobs", "w"}), Words({"watch"}));
+  EXPECT_EQ(completed({"--server", "x", "jobs", "wat"}), Words({"watch"}));
   EXPECT_EQ(completed({"lubricants", "create", "x", "--base-oil-class", "group-ii"}),
             Words({"group-ii", "group-iii"}));
   EXPECT_EQ(completed({"curve", "--model=q"}), Words({"--model=quasi-static"}));

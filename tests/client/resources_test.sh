@@ -160,7 +160,7 @@ expect 1 lubricants get twice
 
 echo "--- a simulation that is only checked"
 expect 0 curve --lubricant 1 --lubricant my-oil --validate-only
-out_has '^valid, not run: lubricants/my-oil$'
+out_has '^valid, not run: lubricants/my-oil  about .* of a processor; inputs [0-9a-f]{64}$'
 expect 1 point --lubricant 1 --speed 4000 --validate-only
 err_has 'legal: 0.1 to 400 km/h'
 expect 0 jobs list --output csv

@@ -253,20 +253,27 @@ TEST_F(AppTest, AHistoryNeedsAResultThatHasOne) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   bench_.restart(patient_studies(release));
   Application app = bench_.application();
-  const std::string running = bench_.create(point_simulation());
+  v1::Simulation another = point_simulation();  // no result serves it
+  another.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(66);
+  const std::string running = bench_.create(another);
   EXPECT_EQ(read_history(app, named<v1::ReadHistoryRequest>(running)).error().code(),
             google::rpc::FAILED_PRECONDITION);
   *release = true;
 }
 
-TEST_F(AppTest, AWatchShowsThePresentAndThenTheEnd) {
+TEST_F(AppTest, AWatchShowsEveryChangeOfState) {
   const std::string name = finished(point_simulation());
   const auto outcome = watch_simulation(app_, named<v1::WatchSimulationRequest>(name));
   ASSERT_TRUE(outcome.ok());
   using Step = MessageSource<v1::SimulationEvent>::Step;
   v1::SimulationEvent event;
-  ASSERT_EQ(outcome.message()->next(event), Step::kMessage);
-  EXPECT_EQ(event.state(), v1::Simulation::SUCCEEDED);
+  for (const auto state :
+       {v1::Simulation::QUEUED, v1::Simulation::RUNNING, v1::Simulation::SUCCEEDED}) {
+    ASSERT_EQ(outcome.message()->next(event), Step::kMessage);
+    EXPECT_EQ(event.state(), state);
+    EXPECT_EQ(event.sequence(), state);
+    EXPECT_EQ(event.kind(), v1::SimulationEvent::STATE_CHANGE);
+  }
   EXPECT_EQ(event.progress_fraction(), 1);
   EXPECT_EQ(outcome.message()->next(event), Step::kEnd);
 }

@@ -1,6 +1,7 @@
 // Jobs, store and application from many threads at once; made for ThreadSanitizer.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <thread>
 
 #include "google/rpc/code.pb.h"
@@ -111,6 +112,105 @@ TEST(Concurrency, CancellingFromManyThreadsEndsEachOnce) {
   const std::string next = bench.create(point_simulation());
   *release = true;
   EXPECT_TRUE(bench.reaches(next, v1::Simulation::SUCCEEDED));
+}
+
+/// Reads a watch from behind an event until there is nothing more for now; the events' numbers.
+std::vector<std::int64_t> numbers(Application& app, const std::string& name, std::int64_t after) {
+  v1::WatchSimulationRequest request;
+  request.set_name(name);
+  request.set_after_sequence(after);
+  auto outcome = watch_simulation(app, request);
+  std::vector<std::int64_t> out;
+  if (!outcome.ok()) return out;  // there are not so many events yet
+  v1::SimulationEvent event;
+  while (outcome.message()->next(event) == MessageSource<v1::SimulationEvent>::Step::kMessage) {
+    if (event.kind() == v1::SimulationEvent::STATE_CHANGE) out.push_back(event.sequence());
+  }
+  return out;
+}
+
+TEST(Concurrency, SubmitTwiceWatchCancelAndExpireAllAtOnce) {
+  Bench bench(quick_studies(), 4, 100'000, std::chrono::milliseconds(1));
+  Application app = bench.application();
+  constexpr int kThreads = 6;
+  constexpr int kRounds = 40;
+  std::array<std::array<std::string, kRounds>, kThreads> names;
+  on_threads(kThreads, [&](int thread) {
+    for (int round = 0; round < kRounds; ++round) {
+      // Every request comes from two threads.
+      v1::CreateSimulationRequest request;
+      *request.mutable_simulation() = point_simulation();
+      request.mutable_simulation()->set_sump_temperature_celsius(20 + round % 7);
+      if (round % 5 == 0) request.mutable_simulation()->set_deadline_seconds(0.001);
+      request.set_force(round % 4 == 0);
+      request.set_request_id(std::to_string(thread / 2) + "-" + std::to_string(round));
+      const auto created = create_simulation(app, request);
+      ASSERT_TRUE(created.ok()) << created.error().message();
+      const std::string& name = created.message().name();
+      names[static_cast<std::size_t>(thread)][static_cast<std::size_t>(round)] = name;
+      auto watcher = std::make_shared<Watcher>([&] {
+        v1::WatchSimulationRequest watch;
+        watch.set_name(name);
+        return watch_simulation(app, watch).message();
+      }());
+      watcher->start();
+      if (round % 3 == 0) {
+        v1::CancelSimulationRequest cancel;
+        cancel.set_name(name);
+        EXPECT_TRUE(cancel_simulation(app, cancel).ok());
+      }
+      for (std::int64_t after = 0; after <= 2; ++after) {
+        std::int64_t expected = after;
+        for (const std::int64_t number : numbers(app, name, after)) EXPECT_EQ(number, ++expected);
+      }
+      EXPECT_TRUE(eventually([&] { return watcher->ended(); }));
+      EXPECT_GE(bench.get(name).state(), v1::Simulation::SUCCEEDED);
+    }
+  });
+  for (int thread = 0; thread < kThreads; thread += 2) {
+    EXPECT_EQ(names[static_cast<std::size_t>(thread)], names[static_cast<std::size_t>(thread) + 1])
+        << "one simulation a request";
+  }
+}
+
+TEST(Concurrency, DrainingWhileFedWatchedAndCancelled) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench bench(patient_studies(release), 3, 1000, std::chrono::milliseconds(1));
+  Application app = bench.application();
+  std::atomic<int> accepted = 0;
+  std::thread drainer([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    bench.jobs().drain(std::chrono::milliseconds(50), [] { return false; });
+    bench.jobs().stop();
+  });
+  on_threads(4, [&](int thread) {
+    for (int round = 0; round < 40; ++round) {
+      v1::CreateSimulationRequest request;
+      *request.mutable_simulation() = point_simulation();
+      const auto created = create_simulation(app, request);
+      if (!created.ok()) {
+        EXPECT_EQ(created.error().code(), google::rpc::UNAVAILABLE);
+        continue;
+      }
+      ++accepted;
+      v1::CancelSimulationRequest cancel;
+      cancel.set_name(created.message().name());
+      if ((thread + round) % 2 != 0) continue;
+      EXPECT_TRUE(cancel_simulation(app, cancel).ok());
+    }
+  });
+  drainer.join();
+  bench.restart(quick_studies());
+  int found = 0;
+  v1::ListSimulationsRequest list;
+  list.set_page_size(1000);
+  Application restarted = bench.application();
+  const auto listed = list_simulations(restarted, list);
+  for (const auto& each : listed.message().simulations()) {
+    ++found;
+    EXPECT_TRUE(eventually([&] { return bench.get(each.name()).state() >= 3; }));
+  }
+  EXPECT_EQ(found, accepted);
 }
 
 TEST(Concurrency, StoppingWhileWatchedAndFed) {

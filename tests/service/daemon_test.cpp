@@ -1,8 +1,13 @@
 // The life of the process: kill, termination, a second server, flags and addresses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
 #include <thread>
 
 #include "server/api/listen_address.h"
@@ -103,6 +108,61 @@ TEST_F(DaemonTest, ATerminationEndsStreamsAndKeepsWorkForTheNextStart) {
   cancel(running.name());
 }
 
+/// A curve of a second or, under a sanitizer, some more.
+v1::Simulation some_seconds() {
+  v1::Simulation simulation = curve_simulation();
+  simulation.mutable_inefficiency_curve()->set_speed_step_kilometers_per_hour(40);
+  simulation.mutable_solver_options()->set_method(v1::MARCH);
+  return simulation;
+}
+
+class DrainTest : public GrpcTest {
+ protected:
+  void SetUp() override {
+    drain_seconds_ = "25";
+    start();
+    ASSERT_TRUE(create(some_seconds(), &running_).ok());
+    ASSERT_TRUE(
+        eventually([&] { return get(running_.name()).state() == v1::Simulation::RUNNING; }));
+  }
+  v1::Simulation running_;
+};
+
+TEST_F(DrainTest, WhatRunsMayEndWhileNothingNewIsAccepted) {
+  RawClient client(channel_);
+  grpc::Status status;
+  std::vector<v1::SimulationEvent> events;
+  std::thread watcher([&] { events = watch(running_.name(), &status); });
+  process_->signal(SIGTERM);
+  v1::Simulation refused;
+  EXPECT_TRUE(eventually([&] {
+    return create(point_simulation(), &refused).error_code() == grpc::StatusCode::UNAVAILABLE;
+  }));
+  EXPECT_EQ(client.call("/grpc.health.v1.Health/Check", "").second, std::string("\x08\x02"))
+      << "NOT_SERVING";
+  EXPECT_EQ(get(running_.name()).state(), v1::Simulation::RUNNING) << "reads are answered";
+  EXPECT_EQ(process_->wait(std::chrono::seconds(30)), 0) << process_->log();
+  watcher.join();
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.back().state(), v1::Simulation::SUCCEEDED);
+  start();
+  EXPECT_EQ(get(running_.name()).state(), v1::Simulation::SUCCEEDED);
+  EXPECT_EQ(get(running_.name()).attempt(), 1);
+}
+
+TEST_F(DrainTest, ASecondSignalEndsTheWaitAndLosesNothing) {
+  process_->signal(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_TRUE(process_->running());
+  const auto begin = std::chrono::steady_clock::now();
+  process_->signal(SIGTERM);
+  EXPECT_EQ(process_->wait(), 0) << process_->log();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(3));
+  start();
+  EXPECT_TRUE(eventually([&] { return get(running_.name()).attempt() == 2; }));
+  EXPECT_EQ(cancel(running_.name()).state(), v1::Simulation::CANCELLED);
+}
+
 TEST_F(DaemonTest, ABackupIsTakenWhileItRunsAndRestoredOnceItHasStopped) {
   const std::string database = folder_.file("tribodyn.db");
   const auto run = [&](const std::vector<std::string>& arguments) {
@@ -200,6 +260,70 @@ TEST(Flags, AddressesAreUnderstood) {
         "unix:/" + std::string(200, 'x')}) {
     EXPECT_THROW(parse_listen_address(bad), ListenError) << bad;
   }
+}
+
+/// A variable of the environment for as long as the object lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    setenv(name, value.c_str(), 1);
+  }
+  ~Variable() { unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+};
+
+TEST(Flags, ComeBeforeTheEnvironmentAndThatBeforeTheFile) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("tribodynd.conf");
+  std::ofstream(file) << "database = \"" << folder.file("db") << "\"\nlisten = \"from.file:1\"\n";
+  std::string log;
+  EXPECT_EQ(run_briefly({"--config", file, "--check"}, &log), 4);
+  EXPECT_THAT(log, HasSubstr("from.file:1"));
+  const Variable listen("TRIBODYND_LISTEN", "from.environment:1");
+  EXPECT_EQ(run_briefly({"--config", file, "--check"}, &log), 4);
+  EXPECT_THAT(log, HasSubstr("from.environment:1"));
+  EXPECT_EQ(run_briefly({"--config", file, "--listen", "127.0.0.1:0", "--check"}, &log), 0) << log;
+  const Variable config("TRIBODYND_CONFIG", folder.file("nothing"));
+  EXPECT_EQ(run_briefly({"--check"}, &log), 2) << "a file that is named must be there";
+}
+
+TEST(Flags, ACheckFindsWhatIsWrongAndMakesNothing) {
+  const TemporaryFolder folder;
+  std::string log;
+  EXPECT_EQ(run_briefly({"--database", folder.file("db"), "--check"}, &log), 0) << log;
+  EXPECT_FALSE(std::filesystem::exists(folder.file("db")));
+  EXPECT_EQ(run_briefly({"--database", folder.file("no/db"), "--check"}, &log), 3);
+  std::ofstream(folder.file("text")) << std::string(9000, 'x');
+  EXPECT_EQ(run_briefly({"--database", folder.file("text"), "--check"}, &log), 3);
+  std::ofstream(folder.file("conf")) << "thread = 2\n";
+  EXPECT_EQ(run_briefly({"--config", folder.file("conf"), "--check"}, &log), 2);
+  EXPECT_THAT(log, HasSubstr("thread"));
+}
+
+TEST(Flags, TheServiceManagerHearsWhenItIsReadyAndWhenItStops) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("notify");
+  const int receiver = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_un name{};
+  name.sun_family = AF_UNIX;
+  path.copy(name.sun_path, sizeof(name.sun_path) - 1);
+  ASSERT_EQ(bind(receiver, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
+  const Variable notify("NOTIFY_SOCKET", path);
+  ServerProcess process({"--listen", "127.0.0.1:0", "--database", folder.file("db")},
+                        folder.file("log"));
+  const auto heard = [receiver] {
+    char text[64] = {};
+    return std::string(text, static_cast<std::size_t>(recv(receiver, text, sizeof(text), 0)));
+  };
+  EXPECT_EQ(heard(), "READY=1");
+  process.signal(SIGTERM);
+  EXPECT_EQ(heard(), "STOPPING=1");
+  EXPECT_EQ(process.wait(), 0);
+  close(receiver);
 }
 
 TEST(Flags, MistakesAreExplained) {

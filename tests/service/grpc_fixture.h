@@ -26,11 +26,12 @@ class GrpcTest : public testing::Test {
   }
 
   std::vector<std::string> common_flags() const {
-    return {"--listen",    listen_,
-            "--database",  folder_.file("tribodyn.db"),
-            "--port-file", folder_.file("port"),
-            "--log-level", "debug",
-            "--threads",   "2"};
+    return {"--listen",        listen_,
+            "--database",      folder_.file("tribodyn.db"),
+            "--port-file",     folder_.file("port"),
+            "--log-level",     "debug",
+            "--threads",       threads_,
+            "--drain-seconds", drain_seconds_};
   }
 
   void start() {
@@ -95,6 +96,8 @@ class GrpcTest : public testing::Test {
 
   TemporaryFolder folder_;
   std::string listen_ = "127.0.0.1:0";
+  std::string threads_ = "2";
+  std::string drain_seconds_ = "0.3";  // enough for a point
   std::vector<std::string> more_flags_;
   int maximum_files_ = 0;  // no limit of its own
   std::unique_ptr<ServerProcess> process_;

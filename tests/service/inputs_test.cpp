@@ -1,12 +1,17 @@
 // What a simulation rests on: defaults, studies, hash and ledger.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 
 #include "core/version.h"
+#include "server/convert/canonical_text.h"
 #include "server/convert/input_hash.h"
 #include "server/convert/ledger.h"
 #include "server/convert/simulation_inputs.h"
@@ -153,6 +158,44 @@ std::map<std::string, v1::Assumption> ledger_of(const v1::Simulation& simulation
     EXPECT_FALSE(entry.value().empty()) << entry.field();
   }
   return out;
+}
+
+/// The canonical text of a message with one number and one name.
+std::string text_of(double value, const std::string& name) {
+  v1::Simulation simulation;
+  simulation.set_display_name(name);
+  simulation.set_sump_temperature_celsius(value);
+  std::string text;
+  add_canonical_text(
+      simulation, "s",
+      [](const google::protobuf::FieldDescriptor& field) {
+        return field.name() != "sump_temperature_celsius" && field.name() != "display_name";
+      },
+      text);
+  return text;
+}
+
+TEST(Hash, NumbersAreWrittenAsPrintfWritesThem) {
+  std::mt19937_64 random(20261121);
+  const auto expect = [](double value) {
+    std::array<char, 128> expected{};
+    std::snprintf(expected.data(), expected.size(),
+                  "s.display_name=\ns.sump_temperature_celsius=%a\n", value + 0.0);
+    EXPECT_EQ(text_of(value, ""), expected.data());
+  };
+  for (const double value :
+       {0.0, -0.0, 1.0, -1.5, 5e-324, 2.2250738585072014e-308, 1.7976931348623157e308, 0.1, 1e10}) {
+    expect(value);
+  }
+  for (int i = 0; i < 20'000; ++i) {
+    const double value = std::bit_cast<double>(random());
+    if (std::isfinite(value)) expect(value);
+  }
+}
+
+TEST(Hash, NoNamePassesForAnotherLine) {
+  EXPECT_EQ(text_of(1, "a\ns.x=\\n"),
+            "s.display_name=a\\ns.x=\\\\n\ns.sump_temperature_celsius=0x1p+0\n");
 }
 
 TEST(Ledger, NamesEveryParameterWithValueUnitAndProvenance) {

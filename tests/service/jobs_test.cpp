@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "core/refusal.h"
+#include "server/jobs/golden_case.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/progress_board.h"
 #include "server/jobs/simulation_jobs.h"
@@ -29,6 +30,7 @@ TEST(JobQueue, RunsWhatIsPushedInOrder) {
     const std::lock_guard lock(mutex);
     done.push_back(id);
   });
+  queue.start();
   for (int id = 1; id <= 20; ++id) {
     ASSERT_TRUE(queue.reserve());
     queue.push(id);
@@ -46,6 +48,7 @@ TEST(JobQueue, TurnsAwayWhatIsTooMuch) {
   JobQueue queue(1, 2, [&](std::int64_t, const StopSignal& stop) {
     while (!release && !stop.requested()) std::this_thread::yield();
   });
+  queue.start();
   ASSERT_TRUE(queue.reserve());
   ASSERT_TRUE(queue.reserve());
   EXPECT_FALSE(queue.reserve()) << "reserved places count";
@@ -70,6 +73,7 @@ TEST(JobQueue, ADefectiveJobDoesNotEndTheThread) {
     ++done;
     if (id == 1) throw std::runtime_error("defect");
   });
+  queue.start();
   queue.push_resumed(1);
   queue.push_resumed(2);
   EXPECT_TRUE(eventually([&] { return done == 2; }));
@@ -84,6 +88,7 @@ TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
       while (!stop.requested()) std::this_thread::yield();
       if (stop.reason() == StopReason::kShutdown) ++shut_down;
     });
+    queue.start();
     for (int id = 1; id <= 5; ++id) queue.push_resumed(id);
     EXPECT_TRUE(eventually([&] { return started == 2; }));
     queue.stop();
@@ -93,17 +98,36 @@ TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
   EXPECT_EQ(shut_down, 2);
 }
 
-TEST(ProgressChannel, NeverFallsAndNeverLeavesItsEnd) {
-  ProgressChannel channel({});
-  channel.publish({StoredState::kRunning, 0.5, "a", "", ""});
-  channel.publish({StoredState::kRunning, 0.25, "b", "", ""});
+TEST(JobQueue, AJobThatMayKillTheServerRunsAlone) {
+  std::atomic<int> running = 0;
+  std::atomic<int> done = 0;
+  std::atomic<int> together = 0;
+  JobQueue queue(4, 100, [&](std::int64_t id, const StopSignal&) {
+    const int others = running++;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    if (id % 3 == 0 && (others != 0 || running != 1)) ++together;
+    --running;
+    ++done;
+  });
+  for (int id = 1; id <= 60; ++id) queue.push_resumed(id, id % 3 == 0);
+  queue.start();
+  EXPECT_TRUE(eventually([&] { return done == 60; }));
+  EXPECT_EQ(together, 0);
+}
+
+TEST(ProgressChannel, NeverFallsWithinAnAttempt) {
+  ProgressChannel channel;
+  channel.publish_event(2);
+  channel.publish_progress({0.5, "a", {}});
+  channel.publish_progress({0.25, "b", 7.0});
   EXPECT_EQ(channel.latest().progress.fraction, 0.5);
   EXPECT_EQ(channel.latest().progress.stage, "b");
-  channel.publish({StoredState::kCancelled, 0, "", "", ""});
-  const auto number = channel.latest().number;
-  channel.publish({StoredState::kRunning, 0.75, "c", "", ""});
-  EXPECT_EQ(channel.latest().progress.state, StoredState::kCancelled);
-  EXPECT_EQ(channel.latest().number, number);
+  const auto number = channel.latest().progress_number;
+  channel.publish_event(1);
+  EXPECT_EQ(channel.latest().sequence, 2) << "whoever is late with an event changes nothing";
+  channel.publish_event(3);
+  EXPECT_EQ(channel.latest().progress.fraction, 0);
+  EXPECT_EQ(channel.latest().progress_number, number);
 }
 
 class Counter : public ProgressObserver {
@@ -113,13 +137,13 @@ class Counter : public ProgressObserver {
 };
 
 TEST(ProgressChannel, TellsObserversWhileTheyLive) {
-  ProgressChannel channel({});
+  ProgressChannel channel;
   auto observer = std::make_shared<Counter>();
   channel.observe(observer);
-  channel.publish({StoredState::kRunning, 0.5, "", "", ""});
+  channel.publish_progress({0.5, "", {}});
   EXPECT_EQ(observer->count, 1);
   observer.reset();
-  channel.publish({StoredState::kRunning, 0.75, "", "", ""});
+  channel.publish_event(1);
 }
 
 TEST(SimulationJobs, ASimulationSucceedsAndItsResultIsStored) {
@@ -208,7 +232,7 @@ TEST(SimulationJobs, ProgressIsMonotoneAndSeldom) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   Bench bench(patient_studies(release), 1);
   const std::string name = bench.create(curve_simulation());
-  const auto channel = bench.jobs().watch(*simulation_id(name));
+  const auto channel = bench.jobs().watch(*simulation_id(name))->channel;
   auto counter = std::make_shared<Counter>();
   channel->observe(counter);
   double last = 0;
@@ -223,8 +247,8 @@ TEST(SimulationJobs, ProgressIsMonotoneAndSeldom) {
   EXPECT_THAT(channel->latest().progress.stage,
               testing::HasSubstr("settling at 20 km/h, point 1 of 13"));
   *release = true;
-  EXPECT_TRUE(eventually([&] { return has_ended(channel->latest().progress.state); }));
-  EXPECT_EQ(channel->latest().progress.fraction, 1);
+  EXPECT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED));
+  EXPECT_TRUE(eventually([&] { return channel->latest().sequence == 3; }));
 }
 
 TEST(SimulationJobs, AStopPutsWhatRunsBackIntoTheQueue) {
@@ -246,11 +270,20 @@ TEST(SimulationJobs, WatchingAnEndedSimulationShowsItsEnd) {
   const std::string name = bench.create(point_simulation());
   ASSERT_TRUE(bench.reaches(name, v1::Simulation::FAILED));
   bench.restart(quick_studies());
-  const auto channel = bench.jobs().watch(*simulation_id(name));
-  EXPECT_EQ(channel->latest().progress.state, StoredState::kFailed);
-  EXPECT_EQ(channel->latest().progress.error_reason, "WORK_LIMIT");
-  EXPECT_EQ(bench.jobs().watch(4711), nullptr);
+  const auto watched = bench.jobs().watch(*simulation_id(name));
+  EXPECT_EQ(watched->simulation.state, StoredState::kFailed);
+  EXPECT_EQ(watched->simulation.error_reason, "WORK_LIMIT");
+  EXPECT_FALSE(bench.jobs().watch(4711));
   EXPECT_FALSE(bench.jobs().progress(*simulation_id(name))) << "nothing is kept of the ended";
+}
+
+TEST(GoldenCase, ComesOutAsItShouldAndAWrongOneIsNamed) {
+  EXPECT_EQ(check_golden_case(), "");
+  EXPECT_THAT(check_golden_case(quick_studies()),
+              testing::AllOf(testing::HasSubstr("pinion_torque_newton_metres came out as 0"),
+                             testing::HasSubstr("33.15")));
+  EXPECT_THAT(check_golden_case(throwing(Refusal("X", "no answer"))),
+              testing::HasSubstr("no answer"));
 }
 
 TEST(SimulationJobs, TooManyWaitingAreTurnedAway) {
@@ -260,7 +293,10 @@ TEST(SimulationJobs, TooManyWaitingAreTurnedAway) {
   ASSERT_TRUE(bench.reaches(running, v1::Simulation::RUNNING));
   bench.create(point_simulation());
   bench.create(point_simulation());
-  EXPECT_FALSE(bench.jobs().submit({.request = "request", .input_hash = std::string(64, 'a')}));
+  EXPECT_EQ(bench.jobs()
+                .submit({.request = "request", .key = {std::string(64, 'a'), "model", "platform"}})
+                .kind,
+            Added::Kind::kNoPlace);
   *release = true;
 }
 

@@ -27,14 +27,17 @@ class MaintenanceTest : public testing::Test {
   void make() const {
     Store store(path());
     store.add_resources(seed_resources(), 1);
-    const auto id = store.add_simulation({.request = point_simulation().SerializeAsString(),
-                                          .input_hash = std::string(64, 'a'),
-                                          .lubricant_revision = "lubricants/1@1"},
-                                         5);
-    store.mark_running(id, 6);
+    const ResultKey key{std::string(64, 'a'), "model", "platform"};
+    const auto id = store
+                        .add_simulation({.request = point_simulation().SerializeAsString(),
+                                         .key = key,
+                                         .lubricant_revision = "lubricants/1@1"},
+                                        5)
+                        .id;
+    store.mark_running(id, 6, key);
     v1::SimulationResult result;
     result.set_input_hash(std::string(64, 'a'));
-    store.mark_succeeded(id, 7, result.SerializeAsString(), {{"a", {1, 2}}});
+    store.mark_succeeded(id, 7, {key, result.SerializeAsString(), {{"a", {1, 2}}}});
   }
   void damage(const std::string& sql) const {
     SQLite::Database raw(path(), SQLite::OPEN_READWRITE);
@@ -72,7 +75,13 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   ASSERT_TRUE(result.ParseFromString(*store.result(1)));
   EXPECT_EQ(result.input_hash(), store.simulation(1)->input_hash);
   EXPECT_EQ(store.history_shape(2).rows, 8);
-  EXPECT_THAT(store.requeue_unfinished(), SizeIs(2));
+  EXPECT_GT(result.assumptions_size(), 40) << "kept apart since schema 3";
+  for (std::int64_t id = 1; id <= 7; ++id) {
+    EXPECT_EQ(store.next_event(id, 0)->state, StoredState::kQueued);
+    EXPECT_EQ(store.next_event(id, store.simulation(id)->sequence - 1)->state,
+              store.simulation(id)->state);
+  }
+  EXPECT_THAT(store.requeue_unfinished(9), SizeIs(2));
   EXPECT_THAT(check_database(file, hash_stored_inputs), IsEmpty());
   SQLite::Database raw(file, SQLite::OPEN_READONLY);
   EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), kSchemaVersion);
@@ -158,7 +167,16 @@ TEST_F(MaintenanceTest, CheckFindsWhatIsWrong) {
       {"DELETE FROM properties WHERE key = 'lims_id'", "found by"},
       {"UPDATE properties SET value = 7.5 WHERE key = 'mass_kilograms'", "found by"},
       {"PRAGMA foreign_keys = OFF; UPDATE simulations SET lubricant = 999", "points at"},
-      {"DELETE FROM results", "has no result"},
+      {"PRAGMA foreign_keys = OFF; DELETE FROM results", "points at"},
+      {"DELETE FROM events WHERE sequence = 2", "gaps"},
+      {"DELETE FROM events WHERE sequence = 3", "gaps"},
+      {"DROP TRIGGER events_never_change; UPDATE events SET state = 2 WHERE sequence = 3",
+       "another state"},
+      {"DROP TRIGGER events_never_change; UPDATE events SET state = 4 WHERE sequence = 1",
+       "backwards"},
+      {"DROP INDEX one_result_per_input; INSERT INTO results "
+       "SELECT 9, input_hash, model_version, platform, 1, body FROM results",
+       "more than one result"},
       {"UPDATE simulations SET input_hash = printf('%064d', 0)", "of other inputs"},
       {"UPDATE history SET data = x'0000'", "history"},
   };

@@ -13,6 +13,7 @@ namespace tribodyn::server {
 namespace {
 
 const std::string kHash(64, 'a');
+const ResultKey kKey{kHash, "model", "platform"};
 
 class StoreTest : public testing::Test {
  protected:
@@ -107,11 +108,11 @@ TEST_F(StoreTest, ADeletedResourceIsOutOfListsAndComesBackWhole) {
 TEST_F(StoreTest, ASimulationGoesThroughItsStatesAndKeepsItsResult) {
   Store store(path());
   const auto id =
-      store.add_simulation({.request = std::string("re\0quest", 8), .input_hash = kHash}, 10);
+      store.add_simulation({.request = std::string("re\0quest", 8), .key = kKey}, 10).id;
   EXPECT_EQ(store.simulation(id)->state, StoredState::kQueued);
-  EXPECT_TRUE(store.mark_running(id, 20));
-  EXPECT_FALSE(store.mark_running(id, 20)) << "only one worker gets it";
-  EXPECT_TRUE(store.mark_succeeded(id, 30, "result", {{"a", {1, 2, 3}}, {"b", {4, 5, 6}}}));
+  EXPECT_TRUE(store.mark_running(id, 20, kKey));
+  EXPECT_FALSE(store.mark_running(id, 20, kKey)) << "only one worker gets it";
+  EXPECT_TRUE(store.mark_succeeded(id, 30, {kKey, "result", {{"a", {1, 2, 3}}, {"b", {4, 5, 6}}}}));
   const auto stored = store.simulation(id);
   EXPECT_EQ(stored->state, StoredState::kSucceeded);
   EXPECT_EQ(stored->create_time, 10);
@@ -128,10 +129,10 @@ TEST_F(StoreTest, ASimulationGoesThroughItsStatesAndKeepsItsResult) {
 
 TEST_F(StoreTest, ACancelledSimulationTakesNoResult) {
   Store store(path());
-  const auto id = store.add_simulation({.request = "request", .input_hash = kHash}, 1);
-  store.mark_running(id, 2);
+  const auto id = store.add_simulation({.request = "request", .key = kKey}, 1).id;
+  store.mark_running(id, 2, kKey);
   EXPECT_TRUE(store.mark_cancelled(id, 3));
-  EXPECT_FALSE(store.mark_succeeded(id, 4, "result", {{"a", {1}}}));
+  EXPECT_FALSE(store.mark_succeeded(id, 4, {kKey, "result", {{"a", {1}}}}));
   EXPECT_EQ(store.result(id), std::nullopt);
   EXPECT_TRUE(store.history_shape(id).names.empty());
 }
@@ -140,15 +141,21 @@ TEST_F(StoreTest, WhatACrashInterruptedIsQueuedAgainAndResultsStay) {
   std::int64_t queued = 0, running = 0, done = 0;
   {
     Store store(path());
-    queued = store.add_simulation({.request = "q", .input_hash = kHash}, 1);
-    running = store.add_simulation({.request = "r", .input_hash = kHash}, 2);
-    done = store.add_simulation({.request = "d", .input_hash = kHash}, 3);
-    store.mark_running(running, 4);
-    store.mark_running(done, 4);
-    store.mark_succeeded(done, 5, "result", {});
+    queued = store.add_simulation({.request = "q", .key = kKey}, 1).id;
+    running = store.add_simulation({.request = "r", .key = kKey}, 2).id;
+    done = store.add_simulation({.request = "d", .key = kKey}, 3).id;
+    store.mark_running(running, 4, kKey);
+    store.mark_running(done, 4, kKey);
+    store.mark_succeeded(done, 5, {kKey, "result", {}});
   }
   Store store(path());
-  EXPECT_EQ(store.requeue_unfinished(), (std::vector<std::int64_t>{queued, running}));
+  const std::vector<Waiting> waiting = store.requeue_unfinished(6);
+  ASSERT_EQ(waiting.size(), 2U);
+  EXPECT_EQ(waiting[0].id, queued);
+  EXPECT_EQ(waiting[1].id, running);
+  EXPECT_EQ(store.simulation(queued)->attempt, 1);
+  EXPECT_EQ(store.simulation(running)->attempt, 2);
+  EXPECT_EQ(store.next_event(running, 2)->reason, "SERVER_LOST");
   EXPECT_EQ(store.simulation(running)->state, StoredState::kQueued);
   EXPECT_EQ(store.simulation(running)->start_time, std::nullopt);
   EXPECT_EQ(store.result(done), "result");
@@ -156,7 +163,7 @@ TEST_F(StoreTest, WhatACrashInterruptedIsQueuedAgainAndResultsStay) {
 
 TEST_F(StoreTest, IdsAreNeverUsedAgainAndListsAreNewestFirst) {
   Store store(path());
-  for (int i = 0; i < 5; ++i) store.add_simulation({.request = "r", .input_hash = kHash}, i);
+  for (int i = 0; i < 5; ++i) store.add_simulation({.request = "r", .key = kKey}, i);
   const auto page = store.simulations(0, 2, 1000);
   ASSERT_EQ(page.rows.size(), 2U);
   EXPECT_TRUE(page.more);
@@ -167,11 +174,13 @@ TEST_F(StoreTest, IdsAreNeverUsedAgainAndListsAreNewestFirst) {
 
 TEST_F(StoreTest, TheSchemaKeepsOutWhatMakesNoSense) {
   Store store(path());
-  EXPECT_THROW(store.add_simulation({.request = "r", .input_hash = "short hash"}, 1), StoreError);
+  EXPECT_THROW(
+      store.add_simulation({.request = "r", .key = {"short hash", "model", "platform"}}, 1),
+      StoreError);
   SQLite::Database raw(path(), SQLite::OPEN_READWRITE);
   raw.exec("PRAGMA foreign_keys = ON");
-  const auto id = store.add_simulation({.request = "r", .input_hash = kHash}, 1);
-  EXPECT_THROW(raw.exec("INSERT INTO results VALUES (77, x'00')"), SQLite::Exception);
+  const auto id = store.add_simulation({.request = "r", .key = kKey}, 1).id;
+  EXPECT_THROW(raw.exec("INSERT INTO history VALUES (1, 77, 0, 'a', x'00')"), SQLite::Exception);
   store.add_resources({{"a/1", "body"}}, 1);
   for (const char* illegal :
        {"INSERT INTO revisions VALUES (9, 1, 2, 1, printf('%064d', 0), 'text is no blob')",
@@ -179,7 +188,11 @@ TEST_F(StoreTest, TheSchemaKeepsOutWhatMakesNoSense) {
         "INSERT INTO revisions VALUES (9, 7, 1, 1, printf('%064d', 0), x'00')",
         "UPDATE revisions SET body = x'00'", "DELETE FROM revisions",
         "UPDATE resources SET present = 77", "UPDATE resources SET name = 'c/1'",
-        "UPDATE simulations SET lubricant = 77 WHERE id = 1"}) {
+        "UPDATE simulations SET lubricant = 77 WHERE id = 1",
+        "UPDATE simulations SET state = 2 WHERE id = 1",
+        "UPDATE simulations SET state = 3, sequence = 2, end_time = 1 WHERE id = 1",
+        "UPDATE events SET time = 7", "INSERT INTO events VALUES (1, 3, 1, 2, 1, '')",
+        "INSERT INTO events VALUES (77, 1, 1, 1, 1, '')"}) {
     EXPECT_THROW(raw.exec(illegal), SQLite::Exception) << illegal;
   }
   EXPECT_THROW(raw.exec("UPDATE simulations SET state = 9 WHERE id = " + std::to_string(id)),

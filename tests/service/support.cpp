@@ -1,6 +1,7 @@
 #include "tests/service/support.h"
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <stdexcept>
@@ -43,8 +44,11 @@ PointResult made_up_point(double vehicle_speed, const HistoryRequest& history) {
 
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "tribodyn-XXXXXX").string();
+TemporaryFolder::TemporaryFolder(Kind kind) {
+  const std::filesystem::path memory = "/dev/shm";
+  const bool in_memory = kind == Kind::kMemory && access(memory.c_str(), W_OK) == 0;
+  std::string name =
+      ((in_memory ? memory : std::filesystem::temp_directory_path()) / "tribodyn-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
   path_ = name;
 }
@@ -169,8 +173,9 @@ bool eventually(const std::function<bool()>& condition) {
   return condition();
 }
 
-Bench::Bench(StudyFunctions studies, int threads, std::size_t maximum_waiting)
-    : threads_(threads), maximum_waiting_(maximum_waiting) {
+Bench::Bench(StudyFunctions studies, int threads, std::size_t maximum_waiting,
+             std::chrono::milliseconds heartbeat)
+    : threads_(threads), maximum_waiting_(maximum_waiting), heartbeat_(heartbeat) {
   open(std::move(studies));
 }
 
@@ -181,8 +186,10 @@ void Bench::open(StudyFunctions studies) {
   options.threads = threads_;
   options.maximum_waiting = maximum_waiting_;
   options.studies = std::move(studies);
+  options.heartbeat = heartbeat_;
   jobs_ = std::make_unique<SimulationJobs>(*store_, options);
   jobs_->resume();
+  jobs_->start();
 }
 
 void Bench::restart(StudyFunctions studies) {
@@ -195,6 +202,10 @@ void Bench::restart(StudyFunctions studies) {
 std::string Bench::create(const v1::Simulation& simulation) {
   v1::CreateSimulationRequest request;
   *request.mutable_simulation() = simulation;
+  return create(request);
+}
+
+std::string Bench::create(const v1::CreateSimulationRequest& request) {
   Application app = application();
   const auto outcome = create_simulation(app, request);
   if (!outcome.ok()) throw std::runtime_error(outcome.error().message());

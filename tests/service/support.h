@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -18,7 +19,11 @@ namespace tribodyn::server {
 /// A folder that goes when the object goes.
 class TemporaryFolder {
  public:
-  TemporaryFolder();
+  enum class Kind {
+    kDisk,
+    kMemory,  ///< for thousands of commits; where there is none, on disk
+  };
+  explicit TemporaryFolder(Kind kind = Kind::kDisk);
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -58,7 +63,8 @@ bool eventually(const std::function<bool()>& condition);
 class Bench {
  public:
   explicit Bench(StudyFunctions studies = quick_studies(), int threads = 2,
-                 std::size_t maximum_waiting = kMaximumWaitingSimulations);
+                 std::size_t maximum_waiting = kMaximumWaitingSimulations,
+                 std::chrono::milliseconds heartbeat = std::chrono::seconds(15));
 
   Store& store() { return *store_; }
   std::string database() const { return folder_.file("tribodyn.db"); }
@@ -67,6 +73,7 @@ class Bench {
 
   /// Creates a simulation that must be accepted; its name.
   std::string create(const v1::Simulation& simulation);
+  std::string create(const v1::CreateSimulationRequest& request);
   v1::Simulation get(const std::string& name);
   bool reaches(const std::string& name, v1::Simulation::State state);
 
@@ -79,6 +86,7 @@ class Bench {
   TemporaryFolder folder_;
   int threads_;
   std::size_t maximum_waiting_;
+  std::chrono::milliseconds heartbeat_;
   std::unique_ptr<Store> store_;
   std::unique_ptr<SimulationJobs> jobs_;
 };

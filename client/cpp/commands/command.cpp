@@ -49,7 +49,9 @@ std::vector<Command> all_commands() {
   commands.push_back(jobs_list_command());
   commands.push_back(jobs_get_command());
   commands.push_back(jobs_watch_command());
+  commands.push_back(jobs_wait_command());
   commands.push_back(jobs_cancel_command());
+  commands.push_back(jobs_rerun_command());
   commands.push_back(help_command());
   commands.push_back(completion_command());
   return commands;

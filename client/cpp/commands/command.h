@@ -66,5 +66,7 @@ Command jobs_list_command();
 Command jobs_get_command();
 Command jobs_watch_command();
 Command jobs_cancel_command();
+Command jobs_wait_command();
+Command jobs_rerun_command();
 
 }  // namespace tribodyn::client

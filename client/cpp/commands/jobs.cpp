@@ -6,6 +6,7 @@
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/report/results.h"
+#include "client/cpp/resources/kind.h"
 #include "client/cpp/service/follow.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
@@ -59,6 +60,9 @@ std::string jobs_csv(const std::vector<v1::Simulation>& simulations) {
          {"progress_fraction", shortest(simulation.progress_fraction())},
          {"create_time",
           simulation.has_create_time() ? TimeUtil::ToString(simulation.create_time()) : ""},
+         {"attempt", std::to_string(simulation.attempt())},
+         {"cache_hit", simulation.cache_hit() ? "true" : "false"},
+         {"input_hash", simulation.input_hash()},
          {"run_seconds", seconds >= 0 ? shortest(seconds) : ""},
          {"lubricant", inputs.lubricant},
          {"gear_set", inputs.gear_set},
@@ -106,17 +110,61 @@ int run_get(const JobFlags& flags, const CommonOptions& options) {
   return has_ended(simulation.state()) ? report_failures({simulation}) : kExitOk;
 }
 
-int run_watch(const JobFlags& flags, const CommonOptions& options) {
-  Connection connection = options.connect();
-  std::vector<v1::Simulation> jobs;
+/// Follows all to their end.
+std::vector<v1::Simulation> ended(Connection& connection, const std::vector<v1::Simulation>& jobs,
+                                  const CommonOptions& options) {
   std::vector<std::string> labels;
+  for (const v1::Simulation& job : jobs) labels.push_back(job.lubricant());
+  return follow(connection, jobs, labels, options.progress_form());
+}
+
+std::vector<v1::Simulation> named_jobs(const JobFlags& flags, Connection& connection) {
+  std::vector<v1::Simulation> jobs;
   for (const std::string& name : flags.names) {
     jobs.push_back(connection.get_simulation(resource_name("simulations", name)));
-    labels.push_back(jobs.back().lubricant());
   }
-  const auto ended = follow(connection, jobs, labels, options.progress_form());
-  std::cout << results_text(ended, options.output_format, false, flags.shows_assumptions);
-  return report_failures(ended);
+  return jobs;
+}
+
+int run_watch(const JobFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  const auto jobs = ended(connection, named_jobs(flags, connection), options);
+  std::cout << results_text(jobs, options.output_format, false, flags.shows_assumptions);
+  return report_failures(jobs);
+}
+
+int run_wait(const JobFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  const auto jobs = ended(connection, named_jobs(flags, connection), options);
+  std::cout << jobs_text(jobs, options.output_format, false);
+  return report_failures(jobs);
+}
+
+/// The same inputs: a name without a revision would mean another one by now.
+v1::Simulation request_of(const v1::Simulation& job) {
+  v1::Simulation out = job;
+  clear_output_only(out);
+  const auto pin = [](const std::string& revision, std::string* name) {
+    if (!revision.empty()) *name = revision;
+  };
+  pin(job.lubricant_revision(), out.mutable_lubricant());
+  pin(job.gear_set_revision(), out.mutable_gear_set());
+  pin(job.surface_revision(), out.mutable_surface());
+  pin(job.vehicle_revision(), out.mutable_vehicle());
+  return out;
+}
+
+int run_again(const JobFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  CreateOptions create;
+  create.force = true;
+  std::vector<v1::Simulation> jobs;
+  for (const v1::Simulation& job : named_jobs(flags, connection)) {
+    jobs.push_back(connection.create_simulation(request_of(job), create));
+  }
+  jobs = ended(connection, jobs, options);
+  std::cout << results_text(jobs, options.output_format, false, flags.shows_assumptions);
+  return report_failures(jobs);
 }
 
 int run_cancel(const JobFlags& flags, const CommonOptions& options) {
@@ -189,6 +237,20 @@ Command jobs_watch_command() {
                      "Follows jobs until all have ended and prints their results. Ctrl-C stops "
                      "following; the jobs go on.",
                      "tribodyn jobs watch 12", true, true, run_watch);
+}
+
+Command jobs_wait_command() {
+  return job_command("jobs wait", "wait for jobs to end",
+                     "Waits until all jobs have ended and says how. Exit code 1 when one of them "
+                     "failed or was cancelled.",
+                     "tribodyn jobs wait 12 13", true, false, run_wait);
+}
+
+Command jobs_rerun_command() {
+  return job_command("jobs rerun", "compute jobs anew, from the same inputs",
+                     "Computes jobs anew from the revisions that they rested on, although the "
+                     "result is there, and prints the results. One that differs by a bit fails.",
+                     "tribodyn jobs rerun 12", true, true, run_again);
 }
 
 Command jobs_cancel_command() {

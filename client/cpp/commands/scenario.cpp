@@ -101,7 +101,12 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
              [&](const std::string& text) { simulation.set_display_name(text); });
   flags.toggle("--detach", "Submit the job and return at once.", [&] { scenario.detach = true; });
   flags.toggle("--validate-only", "Have the server check everything; run nothing.",
-               [&] { scenario.validate_only = true; });
+               [&] { scenario.create.validate_only = true; });
+  flags.toggle("--force", "Compute although equal inputs have a result.",
+               [&] { scenario.create.force = true; });
+  flags.number("--deadline-seconds", {"s", "0.001 to 31622400", "none"},
+               "From now; what has not ended by then fails",
+               [&](double value) { simulation.set_deadline_seconds(value); });
   flags.toggle("--assumptions", "Print every assumption the result rests on.",
                [&] { scenario.shows_assumptions = true; });
 }
@@ -131,7 +136,7 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
   Complaints refusals;
   for (const v1::Simulation& simulation : simulations_of(scenario)) {
     try {
-      submitted.push_back(connection.create_simulation(simulation, scenario.validate_only));
+      submitted.push_back(connection.create_simulation(simulation, scenario.create));
       labels.push_back(simulation.lubricant());
     } catch (const ServiceError& error) {
       if (error.kind() != ServiceError::Kind::kRefused) throw;
@@ -141,9 +146,13 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
       }
     }
   }
-  if (scenario.validate_only) {
+  if (scenario.create.validate_only) {
     if (!refusals.empty()) throw Failure(kExitFailed, joined(refusals, "\n"));
-    for (const std::string& label : labels) std::cout << "valid, not run: " << label << "\n";
+    for (const v1::Simulation& each : submitted) {
+      std::cout << "valid, not run: " << each.lubricant() << "  about "
+                << duration_text(each.cost_estimate().processor_seconds())
+                << " of a processor; inputs " << each.input_hash() << "\n";
+    }
     return {};
   }
   if (!refusals.empty()) withdraw(submitted, refusals, connection);

@@ -13,8 +13,8 @@ namespace tribodyn::client {
 struct Scenario {
   std::vector<std::string> lubricants;  ///< as given: "1" or "lubricants/1"
   v1::Simulation simulation;
-  bool detach = false;             ///< submit, say how to follow, and return
-  bool validate_only = false;      ///< have the server check everything and run nothing
+  bool detach = false;  ///< submit, say how to follow, and return
+  CreateOptions create;
   bool shows_assumptions = false;  ///< print the whole ledger
 };
 

@@ -6,7 +6,9 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <thread>
 
+#include "client/cpp/library/retry.h"
 #include "client/cpp/library/status.h"
 #include "tribodyn/client/connection.h"
 #include "tribodyn/v1/contacts.grpc.pb.h"
@@ -32,7 +34,8 @@ struct Connection::Services {
   std::unique_ptr<v1::Contacts::Stub> contacts;
   std::unique_ptr<v1::Schemas::Stub> schemas;
 
-  /// One call within the time limit.
+  /// One call within the time limit. A server that goes away or turns it away is asked again, with
+  /// pauses, where that is safe.
   template <class Stub, class Request, class Response>
   Response call(Stub& stub,
                 grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
@@ -40,19 +43,35 @@ struct Connection::Services {
     using std::chrono::system_clock;
     const auto deadline =
         system_clock::now() + std::chrono::duration_cast<system_clock::duration>(timeout);
-    for (bool is_second_try = false;; is_second_try = true) {
+    Backoff backoff;
+    bool was_connected = false;
+    for (int tries = 1;; ++tries) {
       grpc::ClientContext context;
       context.set_deadline(deadline);
       Response response;
       const grpc::Status status = (stub.*method)(&context, request, &response);
       if (status.ok()) return response;
-      if (is_second_try || !never_connected(status) ||
-          !channel->WaitForConnected(
-              std::min(deadline, system_clock::now() + std::chrono::seconds(1)))) {
+      if (never_connected(status) && !was_connected) {
+        // Nothing was sent. Once more, as a connection in progress may pass for a failed one.
+        if (tries == 1 && channel->WaitForConnected(
+                              std::min(deadline, system_clock::now() + std::chrono::seconds(1)))) {
+          continue;
+        }
         throw service_error(status, address);
       }
+      was_connected = true;
+      const bool is_gone = status.error_code() == grpc::StatusCode::UNAVAILABLE &&
+                           (never_connected(status) || may_repeat(request));
+      const auto pause = backoff.next(retry_delay(status));
+      if (tries == kTries || !(is_gone || was_turned_away(status)) ||
+          system_clock::now() + pause >= deadline) {
+        throw service_error(status, address);
+      }
+      std::this_thread::sleep_for(pause);
     }
   }
+
+  static constexpr int kTries = 8;
 };
 
 }  // namespace tribodyn::client

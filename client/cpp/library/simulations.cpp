@@ -10,8 +10,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kFirstRetry(250);
-constexpr int kRetries = 6;  // about 16 s in all: long enough for a server that restarts
+constexpr auto kOneWatch = std::chrono::seconds(60);
+constexpr milliseconds kBetweenWatches(250);
+constexpr int kRetries =
+    20;  // about 40 s in all: long enough for a server that drains and restarts
 constexpr int kLargestPage = 1000;
 
 /// False when `stop` was requested meanwhile.
@@ -30,10 +32,13 @@ bool has_ended(v1::Simulation::State state) {
          state == v1::Simulation::CANCELLED;
 }
 
-v1::Simulation Connection::create_simulation(const v1::Simulation& simulation, bool validate_only) {
+v1::Simulation Connection::create_simulation(const v1::Simulation& simulation,
+                                             const CreateOptions& options) {
   v1::CreateSimulationRequest request;
   *request.mutable_simulation() = simulation;
-  request.set_validate_only(validate_only);
+  request.set_validate_only(options.validate_only);
+  request.set_force(options.force);
+  request.set_request_id(options.request_id.empty() ? new_request_id() : options.request_id);
   return services_->call(*services_->simulations, &v1::Simulations::Stub::CreateSimulation,
                          request);
 }
@@ -73,29 +78,30 @@ v1::Simulation Connection::wait_for_end(
   v1::WatchSimulationRequest request;
   request.set_name(name);
   bool ended = false;
-  milliseconds wait = kFirstRetry;
+  Backoff backoff;
   for (int tries_left = kRetries; !ended && !stop.stop_requested();) {
     grpc::ClientContext context;
+    // A watch that nobody ends is taken up again: so a connection that died silently is found.
+    context.set_deadline(std::chrono::system_clock::now() + kOneWatch);
     const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
     const auto reader = services_->simulations->WatchSimulation(&context, request);
     v1::SimulationEvent event;
     while (reader->Read(&event)) {
       tries_left = kRetries;
-      wait = kFirstRetry;
+      backoff.reset();
       ended = has_ended(event.state());
-      if (on_event) on_event(event);
+      request.set_after_sequence(event.sequence());
+      if (on_event && event.kind() != v1::SimulationEvent::HEARTBEAT) on_event(event);
     }
     const grpc::Status status = reader->Finish();
     if (ended || stop.stop_requested()) break;
-    // The server limits how long one watch may last.
     if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) continue;
     const bool broken = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE;
     if (!broken) throw service_error(status, address());
     if (tries_left-- == 0) {
       throw ServiceError(ServiceError::Kind::kCannotConnect, "lost the server at " + address());
     }
-    if (!pause(wait, stop)) break;
-    wait *= 2;
+    if (!pause(backoff.next(kBetweenWatches), stop)) break;
   }
   return get_simulation(name);
 }

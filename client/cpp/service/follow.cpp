@@ -39,6 +39,9 @@ class Watches {
     JobProgress& job = jobs_[index];
     job.state = state_text(event.state());
     job.stage = event.stage();
+    if (event.has_remaining_seconds()) {
+      job.stage += ", about " + duration_text(event.remaining_seconds()) + " left";
+    }
     job.ended = has_ended(event.state());
     job.fraction = event.state() == v1::Simulation::SUCCEEDED ? 1 : event.progress_fraction();
   }

@@ -173,7 +173,9 @@ TEST_F(Library, ASimulationIsFollowedToItsEnd) {
   auto& study = *simulation.mutable_operating_point();
   study.mutable_cruise()->set_speed_kilometers_per_hour(50);
   study.set_model(v1::QUASI_STATIC);
-  connection.create_simulation(simulation, true);
+  CreateOptions check;
+  check.validate_only = true;
+  EXPECT_GT(connection.create_simulation(simulation, check).cost_estimate().processor_seconds(), 0);
   EXPECT_TRUE(connection.list_simulations().resources.empty());
   int events = 0;
   const v1::Simulation ended =

@@ -56,8 +56,17 @@ struct UpdateOptions {
   bool validate_only = false;            ///< check everything, write nothing
 };
 
+/// How a simulation is created.
+struct CreateOptions {
+  bool validate_only = false;   ///< check everything, run nothing
+  bool force = false;           ///< compute although equal inputs have a result
+  std::string request_id = {};  ///< so that a repeated request makes no second one; empty: random
+};
+
 /// A server and its services. Safe for concurrent use. Nothing is sent before the first call; every
-/// call throws ServiceError. `Resource` is v1::Lubricant, v1::GearSet, v1::Surface or v1::Vehicle.
+/// call throws ServiceError, at last: where that is safe, a server that is lost or turns a request
+/// away is asked again within the time limit. `Resource` is v1::Lubricant, v1::GearSet, v1::Surface
+/// or v1::Vehicle.
 class Connection {
  public:
   /// `timeout` bounds every call but wait_for_end() and read_history().
@@ -109,15 +118,17 @@ class Connection {
   /// What the server accepts: the constraints of one message, e.g. "Lubricant", or everything.
   v1::Schema schema(const std::string& message = "");
 
-  /// Returns at once; with `validate_only` the server checks everything and runs nothing.
-  v1::Simulation create_simulation(const v1::Simulation& simulation, bool validate_only = false);
+  /// Returns at once. A server that is lost meanwhile is asked again under the same request_id.
+  v1::Simulation create_simulation(const v1::Simulation& simulation,
+                                   const CreateOptions& options = {});
   v1::Simulation get_simulation(const std::string& name);
   v1::Simulation cancel_simulation(const std::string& name);
   /// Newest first; limit 0: all.
   Listing<v1::Simulation> list_simulations(int limit = 0);
   /// Blocks until the simulation has ended and returns it with its result. `on_event` hears of each
-  /// change, in the calling thread. A stream that breaks is taken up again for a while. When `stop`
-  /// is requested, the simulation is returned as it stands.
+  /// change of state, once and in order, and of progress, in the calling thread. A stream that
+  /// breaks is taken up again behind what was heard, for a while. When `stop` is requested, the
+  /// simulation is returned as it stands.
   v1::Simulation wait_for_end(const std::string& name,
                               const std::function<void(const v1::SimulationEvent&)>& on_event = {},
                               const std::stop_token& stop = {});

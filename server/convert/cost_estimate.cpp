@@ -1,0 +1,59 @@
+#include "server/convert/cost_estimate.h"
+
+#include <algorithm>
+
+namespace tribodyn::server {
+namespace {
+
+/// Contact solutions, and what one takes with all that is computed around it.
+struct Work {
+  double contact_solutions = 0;
+  double seconds_each = 0;
+};
+
+constexpr Work kQuasiStaticPoint{4000, 5e-6};
+constexpr Work kShotPoint{5000, 9e-6};
+constexpr Work kMarchedCycle{2500, 4e-6};
+constexpr double kUsualMarchedCycles = 50;
+constexpr int kFlanks = 3;
+
+void add(const Work& work, double count, v1::CostEstimate& out) {
+  const double solutions = count * work.contact_solutions;
+  out.set_contact_solutions(out.contact_solutions() + solutions);
+  out.set_processor_seconds(out.processor_seconds() + solutions * work.seconds_each);
+}
+
+void add_points(double points, v1::PointModel model, v1::PointStart start,
+                const v1::SolverOptions& solver, v1::CostEstimate& out) {
+  if (model == v1::QUASI_STATIC) return add(kQuasiStaticPoint, points, out);
+  if (solver.method() != v1::MARCH && start != v1::LARGE_VIBRATION) {
+    return add(kShotPoint, points, out);
+  }
+  add(kMarchedCycle, points * std::min<double>(kUsualMarchedCycles, solver.maximum_mesh_cycles()),
+      out);
+}
+
+}  // namespace
+
+v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
+  v1::CostEstimate out;
+  const v1::SolverOptions& solver = effective.solver_options();
+  if (effective.has_inefficiency_curve()) {
+    const v1::InefficiencyCurveStudy& curve = effective.inefficiency_curve();
+    add_points(curve.speeds_kilometers_per_hour_size(), curve.model(), curve.start(), solver, out);
+    return out;
+  }
+  const v1::OperatingPointStudy& point = effective.operating_point();
+  add_points(1, point.model(), point.start(), solver, out);
+  if (point.probe_coexisting_response()) {
+    add_points(1, point.model(), v1::LARGE_VIBRATION, solver, out);
+  }
+  if (point.has_history()) {
+    const double rows =
+        1.0 * point.history().mesh_cycles() * point.history().samples_per_mesh_cycle();
+    add({kFlanks, kMarchedCycle.seconds_each}, rows, out);
+  }
+  return out;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,139 @@
+#include "server/daemon/daemon.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "core/version.h"
+#include "server/api/grpc_server.h"
+#include "server/app/stored_inputs.h"
+#include "server/daemon/service_manager.h"
+#include "server/jobs/golden_case.h"
+#include "server/store/maintenance.h"
+#include "server/store/seeds.h"
+#include "server/store/store.h"
+
+namespace tribodyn::server {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr auto kShutdownLimit = seconds(30);
+constexpr auto kHurriedLimit = seconds(3);
+
+milliseconds to_milliseconds(double value) {
+  return milliseconds(static_cast<std::int64_t>(1000 * value));
+}
+
+/// Written under another name first: who sees the file sees all of it.
+void write_port_file(const std::string& path, const std::string& address) {
+  const std::string unfinished = path + ".new";
+  std::ofstream(unfinished) << address << '\n';
+  std::filesystem::rename(unfinished, path);
+}
+
+/// The signal that came, or -1 after the time.
+int wait_for_signal(const sigset_t& signals, seconds limit) {
+  const timespec time{limit.count(), 0};
+  return sigtimedwait(&signals, nullptr, &time);
+}
+
+/// Ends the process if the orderly way takes too long; what runs then is requeued at the next
+/// start. A further signal ends the waiting for running simulations, and a third one everything.
+void start_watchdog(const sigset_t& signals, std::atomic<bool>& hurry) {
+  std::thread([&signals, &hurry] {
+    if (wait_for_signal(signals, kShutdownLimit) > 0) {
+      hurry = true;
+      wait_for_signal(signals, kHurriedLimit);
+    }
+    spdlog::critical("the shutdown takes too long; ending at once");
+    spdlog::shutdown();
+    _exit(kExitFailed);
+  }).detach();
+}
+
+SimulationJobs::Options job_options(const Settings& settings) {
+  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  SimulationJobs::Options options;
+  options.threads = settings.threads == 0 ? processors : settings.threads;
+  options.heartbeat = to_milliseconds(settings.heartbeat_seconds);
+  return options;
+}
+
+void shut_down(const Settings& settings, const sigset_t& signals, GrpcServer& server,
+               SimulationJobs& jobs) {
+  static std::atomic<bool> hurry = false;  // outlives this function, as the watchdog does
+  start_watchdog(signals, hurry);
+  notify_service_manager("STOPPING=1");
+  server.set_serving(false);
+  if (!settings.port_file.empty()) std::filesystem::remove(settings.port_file);
+  if (!jobs.drain(to_milliseconds(settings.drain_seconds), [] { return hurry.load(); })) {
+    spdlog::info("simulations that still run go back to the queue");
+  }
+  jobs.stop();
+  server.shutdown();
+}
+
+int complain(int code, const std::string& sentence) {
+  spdlog::critical("{}", sentence);
+  std::fprintf(stderr, "tribodynd: %s\n", sentence.c_str());
+  return code;
+}
+
+}  // namespace
+
+int serve(const Settings& settings, const ListenAddress& address, const sigset_t& signals) {
+  Store store(settings.database);
+  store.add_resources(seed_resources(), system_time());
+  const SimulationJobs::Options options = job_options(settings);
+  SimulationJobs jobs(store, options);
+  Application application{store, jobs};
+  const std::size_t resumed = jobs.resume();  // before a client can add to the queue
+  if (resumed > 0) spdlog::info("{} unfinished simulations are queued again", resumed);
+  GrpcServer server(application, address,
+                    {to_milliseconds(settings.call_limit_seconds),
+                     to_milliseconds(settings.stream_limit_seconds),
+                     to_milliseconds(settings.unread_limit_seconds)});
+  const std::string wrong = check_golden_case();
+  if (!wrong.empty()) return complain(kExitWrongResults, wrong);
+  jobs.start();
+  server.set_serving(true);
+  spdlog::info("tribodynd " TRIBODYN_VERSION " ({}) listens on {} with {} threads", kModelVersion,
+               server.address(), options.threads);
+  if (!settings.port_file.empty()) write_port_file(settings.port_file, server.address());
+  notify_service_manager("READY=1");
+
+  int signal = 0;
+  sigwait(&signals, &signal);
+  spdlog::info("signal {}: stopping", signal);
+  shut_down(settings, signals, server, jobs);
+  spdlog::info("stopped");
+  return kExitStopped;
+}
+
+int check(const Settings& settings) {
+  parse_listen_address(settings.listen);
+  if (std::filesystem::exists(settings.database)) {
+    const std::vector<std::string> problems = check_database(settings.database, hash_stored_inputs);
+    for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());
+    if (!problems.empty()) return kExitBadDatabase;
+  } else {
+    const std::filesystem::path folder = std::filesystem::absolute(settings.database).parent_path();
+    if (access(folder.c_str(), W_OK) != 0) {
+      return complain(kExitBadDatabase, "database " + settings.database + " cannot be made there");
+    }
+  }
+  const std::string wrong = check_golden_case();
+  return wrong.empty() ? kExitStopped : complain(kExitWrongResults, wrong);
+}
+
+}  // namespace tribodyn::server

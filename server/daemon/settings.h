@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tribodyn::server {
+
+// Exit codes, also for scripts that start the server.
+inline constexpr int kExitStopped = 0;
+inline constexpr int kExitFailed = 1;
+inline constexpr int kExitBadSettings = 2;
+inline constexpr int kExitBadDatabase = 3;
+inline constexpr int kExitCannotListen = 4;
+inline constexpr int kExitWrongResults = 5;
+
+/// How the server runs. Each comes from its flag, else from the environment (TRIBODYND_LISTEN for
+/// --listen), else from the file that --config names, else it is the default.
+struct Settings {
+  std::string command;  ///< empty: serve; "backup", "restore", "check"
+  std::string file;     ///< of backup and restore
+  bool check_only = false;
+  std::string listen = "127.0.0.1:50651";
+  std::string database;
+  int threads = 0;
+  std::string port_file;
+  std::string log_level = "info";
+  double call_limit_seconds = 30;
+  double stream_limit_seconds = 3600;
+  double unread_limit_seconds = 60;
+  double heartbeat_seconds = 15;
+  double drain_seconds = 20;
+};
+
+/// Nothing when the process is to end with `exit_code`: help was shown, or a sentence said what is
+/// wrong.
+std::optional<Settings> read_settings(const std::vector<std::string>& arguments, int* exit_code);
+
+}  // namespace tribodyn::server

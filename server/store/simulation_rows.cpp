@@ -1,0 +1,324 @@
+#include "server/store/simulation_rows.h"
+
+#include "server/hash/sha256.h"
+#include "server/store/resource_rows.h"
+
+namespace tribodyn::server {
+
+const char kSimulationColumns[] =
+    "SELECT id, state, attempt, sequence, create_time, start_time, end_time, deadline_time, "
+    "request, request_hash, is_forced, cache_hit, input_hash, error_reason, error_message, "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle) "
+    "FROM simulations ";
+
+namespace {
+
+std::optional<Microseconds> time_of(const SQLite::Column& column) {
+  if (column.isNull()) return std::nullopt;
+  return column.getInt64();
+}
+
+void bind_optional(SQLite::Statement& statement, int index,
+                   const std::optional<std::int64_t>& value) {
+  if (value) {
+    statement.bind(index, *value);
+  } else {
+    statement.bind(index);
+  }
+}
+
+void bind_text_or_null(SQLite::Statement& statement, int index, const std::string& text) {
+  if (text.empty()) {
+    statement.bind(index);
+  } else {
+    statement.bind(index, text);
+  }
+}
+
+/// Row of "lubricants/1@2" in revisions.
+std::int64_t revision_row(SQLite::Database& db, const std::string& name) {
+  SQLite::Statement query(
+      db,
+      "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
+      "name = substr(?1, 1, instr(?1, '@') - 1)");
+  query.bind(1, name);
+  if (!query.executeStep()) throw SQLite::Exception("no such revision");
+  return query.getColumn(0).getInt64();
+}
+
+std::optional<std::int64_t> result_row(SQLite::Database& db, const ResultKey& key) {
+  SQLite::Statement query(db,
+                          "SELECT id FROM results "
+                          "WHERE input_hash = ? AND model_version = ? AND platform = ? AND "
+                          "platform <> ''");
+  query.bind(1, key.input_hash);
+  query.bind(2, key.model_version);
+  query.bind(3, key.platform);
+  if (!query.executeStep()) return std::nullopt;
+  return query.getColumn(0).getInt64();
+}
+
+void insert_event(SQLite::Database& db, std::int64_t id, const StoredEvent& event) {
+  SQLite::Statement insert(db, "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
+  insert.bind(1, id);
+  insert.bind(2, event.sequence);
+  insert.bind(3, event.time);
+  insert.bind(4, static_cast<int>(event.state));
+  insert.bind(5, event.attempt);
+  insert.bind(6, event.reason);
+  insert.exec();
+}
+
+/// The simulation that an earlier request of this id made.
+std::optional<Added> repeated_request(SQLite::Database& db, const NewSimulation& simulation) {
+  if (simulation.request_id.empty()) return std::nullopt;
+  SQLite::Statement query(db, "SELECT id, request_hash FROM simulations WHERE request_id = ?");
+  query.bind(1, simulation.request_id);
+  if (!query.executeStep()) return std::nullopt;
+  const bool is_same = query.getColumn(1).getString() == simulation.request_hash;
+  return Added{is_same ? Added::Kind::kRepeated : Added::Kind::kRequestIdTaken,
+               query.getColumn(0).getInt64()};
+}
+
+/// A QUEUED row with its first event.
+std::int64_t insert_row(SQLite::Database& db, const NewSimulation& simulation, Microseconds now) {
+  SQLite::Statement insert(
+      db,
+      "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
+      "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle) "
+      "VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.bind(1, now);
+  bind_optional(insert, 2, simulation.deadline_time);
+  bind_blob(insert, 3, simulation.request);
+  bind_text_or_null(insert, 4, simulation.request_id);
+  insert.bind(5, simulation.request_hash);
+  insert.bind(6, simulation.is_forced ? 1 : 0);
+  insert.bind(7, simulation.key.input_hash);
+  if (!simulation.ledger.empty()) insert.bind(8, ledger_row(db, simulation.ledger));
+  int index = 8;
+  for (const std::string* each : {&simulation.lubricant_revision, &simulation.gear_set_revision,
+                                  &simulation.surface_revision, &simulation.vehicle_revision}) {
+    ++index;
+    if (!each->empty()) insert.bind(index, revision_row(db, *each));
+  }
+  insert.exec();
+  const std::int64_t id = db.getLastInsertRowid();
+  insert_event(db, id, {.sequence = 1, .time = now, .reason = ""});
+  return id;
+}
+
+std::int64_t insert_result(SQLite::Database& db, const NewResult& result, Microseconds now) {
+  SQLite::Statement insert(
+      db,
+      "INSERT INTO results (input_hash, model_version, platform, create_time, body) "
+      "VALUES (?, ?, ?, ?, ?)");
+  insert.bind(1, result.key.input_hash);
+  insert.bind(2, result.key.model_version);
+  insert.bind(3, result.key.platform);
+  insert.bind(4, now);
+  bind_blob(insert, 5, result.body);
+  insert.exec();
+  const std::int64_t row = db.getLastInsertRowid();
+  SQLite::Statement column(
+      db, "INSERT INTO history (result, position, name, data) VALUES (?, ?, ?, ?)");
+  for (std::size_t i = 0; i < result.history.size(); ++i) {
+    const StoredColumn& each = result.history[i];
+    column.bind(1, row);
+    column.bind(2, static_cast<std::int64_t>(i));
+    column.bind(3, each.name);
+    column.bindNoCopy(4, each.values.data(), static_cast<int>(each.values.size() * sizeof(double)));
+    column.exec();
+    column.reset();
+  }
+  return row;
+}
+
+/// Bit for bit, histories too.
+bool is_same_result(SQLite::Database& db, std::int64_t row, const NewResult& result) {
+  SQLite::Statement body(db, "SELECT 1 FROM results WHERE id = ? AND body = ?");
+  body.bind(1, row);
+  bind_blob(body, 2, result.body);
+  if (!body.executeStep()) return false;
+  SQLite::Statement column(
+      db, "SELECT 1 FROM history WHERE result = ? AND position = ? AND name = ? AND data = ?");
+  for (std::size_t i = 0; i < result.history.size(); ++i) {
+    const StoredColumn& each = result.history[i];
+    column.bind(1, row);
+    column.bind(2, static_cast<std::int64_t>(i));
+    column.bind(3, each.name);
+    column.bindNoCopy(4, each.values.data(), static_cast<int>(each.values.size() * sizeof(double)));
+    if (!column.executeStep()) return false;
+    column.reset();
+  }
+  return true;
+}
+
+}  // namespace
+
+std::int64_t ledger_row(SQLite::Database& db, const std::string& body) {
+  const std::string hash = sha256(body);
+  SQLite::Statement find(db, "SELECT id FROM ledgers WHERE content_hash = ?");
+  find.bind(1, hash);
+  if (find.executeStep()) return find.getColumn(0).getInt64();
+  SQLite::Statement insert(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)");
+  insert.bind(1, hash);
+  bind_blob(insert, 2, body);
+  insert.exec();
+  return db.getLastInsertRowid();
+}
+
+StoredSimulation stored_simulation(const SQLite::Statement& query) {
+  StoredSimulation out;
+  out.id = query.getColumn(0).getInt64();
+  out.state = static_cast<StoredState>(query.getColumn(1).getInt());
+  out.attempt = query.getColumn(2).getInt();
+  out.sequence = query.getColumn(3).getInt64();
+  out.create_time = query.getColumn(4).getInt64();
+  out.start_time = time_of(query.getColumn(5));
+  out.end_time = time_of(query.getColumn(6));
+  out.deadline_time = time_of(query.getColumn(7));
+  out.request = query.getColumn(kRequestColumn).getString();
+  out.request_hash = query.getColumn(9).getString();
+  out.is_forced = query.getColumn(10).getInt() != 0;
+  out.cache_hit = query.getColumn(11).getInt() != 0;
+  out.input_hash = query.getColumn(12).getString();
+  out.error_reason = query.getColumn(13).getString();
+  out.error_message = query.getColumn(14).getString();
+  out.lubricant_revision = query.getColumn(15).getString();
+  out.gear_set_revision = query.getColumn(16).getString();
+  out.surface_revision = query.getColumn(17).getString();
+  out.vehicle_revision = query.getColumn(18).getString();
+  return out;
+}
+
+Added insert_simulation(SQLite::Database& db, const NewSimulation& simulation, Microseconds now,
+                        bool may_wait) {
+  if (const auto repeated = repeated_request(db, simulation)) return *repeated;
+  std::optional<std::int64_t> result;
+  if (!simulation.is_forced) result = result_row(db, simulation.key);
+  if (!result && !may_wait) return {Added::Kind::kNoPlace, 0};
+  const std::int64_t id = insert_row(db, simulation, now);
+  if (!result) return {Added::Kind::kQueued, id};
+  change_state(
+      db,
+      {.id = id, .to = StoredState::kSucceeded, .time = now, .result = result, .cache_hit = true});
+  return {Added::Kind::kServed, id};
+}
+
+std::optional<StoredEvent> change_state(SQLite::Database& db, const StateChange& change) {
+  SQLite::Statement update(
+      db,
+      "UPDATE simulations SET state = ?2, sequence = sequence + 1, attempt = attempt + (?2 = 1), "
+      "lost_attempts = lost_attempts + ?9, "
+      "start_time = CASE ?2 WHEN 1 THEN NULL WHEN 2 THEN ?3 ELSE start_time END, "
+      "end_time = CASE WHEN ?2 >= 3 THEN ?3 END, "
+      "error_reason = ?5, error_message = ?6, result = ?7, cache_hit = ?8 "
+      "WHERE id = ?1 AND state = coalesce(?4, state) AND state <= 2 AND state <> ?2 "
+      "RETURNING sequence, attempt");
+  update.bind(1, change.id);
+  update.bind(2, static_cast<int>(change.to));
+  update.bind(3, change.time);
+  if (change.from) {
+    update.bind(4, static_cast<int>(*change.from));
+  } else {
+    update.bind(4);
+  }
+  bind_text_or_null(update, 5, change.error_reason);
+  bind_text_or_null(update, 6, change.error_message);
+  bind_optional(update, 7, change.result);
+  update.bind(8, change.cache_hit ? 1 : 0);
+  update.bind(9, change.attempt_is_lost ? 1 : 0);
+  if (!update.executeStep()) return std::nullopt;
+  const StoredEvent event{update.getColumn(0).getInt64(), change.time, change.to,
+                          update.getColumn(1).getInt(), change.reason};
+  update.executeStep();  // to its end: only then is it done
+  insert_event(db, change.id, event);
+  return event;
+}
+
+std::optional<StoredEvent> query_next_event(SQLite::Database& db, std::int64_t id,
+                                            std::int64_t after_sequence) {
+  SQLite::Statement query(db,
+                          "SELECT sequence, time, state, attempt, reason FROM events "
+                          "WHERE simulation = ? AND sequence > ? ORDER BY sequence LIMIT 1");
+  query.bind(1, id);
+  query.bind(2, after_sequence);
+  if (!query.executeStep()) return std::nullopt;
+  return StoredEvent{query.getColumn(0).getInt64(), query.getColumn(1).getInt64(),
+                     static_cast<StoredState>(query.getColumn(2).getInt()),
+                     query.getColumn(3).getInt(), query.getColumn(4).getString()};
+}
+
+std::optional<StoredEvent> start_simulation(SQLite::Database& db, std::int64_t id, Microseconds now,
+                                            const ResultKey& key) {
+  SQLite::Statement update(
+      db, "UPDATE simulations SET input_hash = ? WHERE id = ? AND state = 1 RETURNING is_forced");
+  update.bind(1, key.input_hash);
+  update.bind(2, id);
+  if (!update.executeStep()) return std::nullopt;
+  const bool is_forced = update.getColumn(0).getInt() != 0;
+  update.executeStep();
+  std::optional<std::int64_t> result;
+  if (!is_forced) result = result_row(db, key);
+  return change_state(db, {.id = id,
+                           .to = result ? StoredState::kSucceeded : StoredState::kRunning,
+                           .time = now,
+                           .from = StoredState::kQueued,
+                           .result = result,
+                           .cache_hit = result.has_value()});
+}
+
+std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t id,
+                                             Microseconds now, const NewResult& result) {
+  std::optional<std::int64_t> row = result_row(db, result.key);
+  if (row && !is_same_result(db, *row, result)) {
+    return change_state(db,
+                        {.id = id,
+                         .to = StoredState::kFailed,
+                         .time = now,
+                         .from = StoredState::kRunning,
+                         .error_reason = "RESULT_NOT_REPRODUCED",
+                         .error_message = "equal inputs have another result, of model " +
+                                          result.key.model_version + " on " + result.key.platform});
+  }
+  if (!row) row = insert_result(db, result, now);
+  return change_state(db, {.id = id,
+                           .to = StoredState::kSucceeded,
+                           .time = now,
+                           .from = StoredState::kRunning,
+                           .result = row});
+}
+
+std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now) {
+  std::vector<std::pair<std::int64_t, int>> running;
+  SQLite::Statement find(
+      db, "SELECT id, lost_attempts FROM simulations WHERE state IN (1, 2) AND state = 2");
+  while (find.executeStep()) {
+    running.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
+  }
+  for (const auto& [id, lost] : running) {
+    StateChange change{.id = id, .to = StoredState::kQueued, .time = now, .reason = "SERVER_LOST"};
+    change.attempt_is_lost = true;
+    if (lost + 1 >= kMaximumLostAttempts) {
+      change.to = StoredState::kFailed;
+      change.error_reason = "WORKER_LOST";
+      change.error_message = "the server died " + std::to_string(kMaximumLostAttempts) +
+                             " times while it ran; it is not tried again";
+    }
+    change_state(db, change);
+  }
+  std::vector<Waiting> waiting;
+  SQLite::Statement query(db,
+                          "SELECT id, lost_attempts, deadline_time FROM simulations "
+                          "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
+  while (query.executeStep()) {
+    waiting.push_back(
+        {query.getColumn(0).getInt64(), query.getColumn(1).getInt(), time_of(query.getColumn(2))});
+  }
+  return waiting;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Statement.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/store/stored_simulation.h"
+#include "server/store/times.h"
+
+namespace tribodyn::server {
+
+// Rows of simulations, events, results and ledgers on an open connection, inside the caller's
+// transaction. All throw SQLite::Exception.
+
+/// The row of a serialised list of assumptions, added when it is not there.
+std::int64_t ledger_row(SQLite::Database& db, const std::string& body);
+
+/// Columns of stored_simulation, to be followed by the rest of a SELECT over simulations.
+extern const char kSimulationColumns[];
+inline constexpr int kRequestColumn = 8;
+StoredSimulation stored_simulation(const SQLite::Statement& query);
+
+/// As Store::add_simulation.
+Added insert_simulation(SQLite::Database& db, const NewSimulation& simulation, Microseconds now,
+                        bool may_wait);
+
+/// One step of the state machine, and what the row says afterwards.
+struct StateChange {
+  std::int64_t id = 0;
+  StoredState to = StoredState::kQueued;
+  Microseconds time = 0;
+  std::optional<StoredState> from = {};  ///< empty: from whichever allows it
+  std::string reason = {};               ///< of the event
+  std::string error_reason = {};         ///< of FAILED
+  std::string error_message = {};
+  std::optional<std::int64_t> result = {};  ///< row, of SUCCEEDED
+  bool cache_hit = false;
+  bool attempt_is_lost = false;  ///< its server died
+};
+
+/// Changes the state and writes the event; nothing when the state does not allow it.
+std::optional<StoredEvent> change_state(SQLite::Database& db, const StateChange& change);
+
+std::optional<StoredEvent> query_next_event(SQLite::Database& db, std::int64_t id,
+                                            std::int64_t after_sequence);
+
+// As Store::mark_running, mark_succeeded and requeue_unfinished.
+std::optional<StoredEvent> start_simulation(SQLite::Database& db, std::int64_t id, Microseconds now,
+                                            const ResultKey& key);
+std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t id,
+                                             Microseconds now, const NewResult& result);
+std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now);
+
+}  // namespace tribodyn::server

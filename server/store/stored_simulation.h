@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/store/life_cycle.h"
+#include "server/store/times.h"
+
+namespace tribodyn::server {
+
+/// What a result is kept under: whoever has an equal key gets it bit for bit.
+struct ResultKey {
+  std::string input_hash;     ///< SHA-256, 64 hex digits
+  std::string model_version;  ///< core/version.h
+  std::string platform;       ///< of the processor that computes (platform.h); never empty
+};
+
+/// A simulation to be stored.
+struct NewSimulation {
+  std::string request;  ///< serialised Simulation
+  ResultKey key;
+  std::string ledger = {};        ///< serialised SimulationResult, assumptions only
+  std::string request_id = {};    ///< empty: none
+  std::string request_hash = {};  ///< of all that the client stated
+  bool is_forced = false;
+  std::optional<Microseconds> deadline_time = {};
+  // The revisions it rests on, "lubricants/1@2"; each exists or is empty.
+  std::string lubricant_revision = {};
+  std::string gear_set_revision = {};
+  std::string surface_revision = {};
+  std::string vehicle_revision = {};
+};
+
+struct StoredSimulation {
+  std::int64_t id = 0;
+  StoredState state = StoredState::kQueued;
+  int attempt = 1;
+  std::int64_t sequence = 0;  ///< of its latest event
+  Microseconds create_time = 0;
+  std::optional<Microseconds> start_time;
+  std::optional<Microseconds> end_time;
+  std::optional<Microseconds> deadline_time;
+  std::string request;  ///< serialised Simulation
+  std::string request_hash;
+  bool is_forced = false;
+  bool cache_hit = false;
+  std::string input_hash;
+  std::string error_reason;
+  std::string error_message;
+  // What it rests on, as above; empty where that is not known.
+  std::string lubricant_revision;
+  std::string gear_set_revision;
+  std::string surface_revision;
+  std::string vehicle_revision;
+};
+
+/// A change of state as it is kept.
+struct StoredEvent {
+  std::int64_t sequence = 0;
+  Microseconds time = 0;
+  StoredState state = StoredState::kQueued;
+  int attempt = 1;
+  std::string reason;  ///< why an attempt did not end; empty otherwise
+};
+
+struct StoredColumn {
+  std::string name;
+  std::vector<double> values;
+};
+
+/// A simulation that waits.
+struct Waiting {
+  std::int64_t id = 0;
+  int lost_attempts = 0;
+  std::optional<Microseconds> deadline_time;
+};
+
+/// What became of a request to add a simulation.
+struct Added {
+  enum class Kind {
+    kQueued,
+    kServed,          ///< SUCCEEDED at once: equal inputs have a result
+    kRepeated,        ///< an earlier request of the same id and hash made it
+    kRequestIdTaken,  ///< an earlier request of the same id but another hash made it
+    kNoPlace,         ///< it would have had to wait; nothing was added
+  };
+  Kind kind = Kind::kQueued;
+  std::int64_t id = 0;
+};
+
+/// What a study came to.
+struct NewResult {
+  ResultKey key;
+  std::string body;  ///< serialised SimulationResult without assumptions
+  std::vector<StoredColumn> history = {};
+};
+
+}  // namespace tribodyn::server

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace tribodyn::crash {
+
+/// SQLite's default file system for as long as the object lives: the real one, with faults on
+/// demand. It remembers which writes have been synced, so that a loss of power can take back the
+/// others. Only databases and write-ahead logs are tampered with. Safe for concurrent access; made
+/// and destroyed while no database is open.
+class FaultyVfs {
+ public:
+  enum class Operation { kOpen, kWrite, kSync };
+  static constexpr int kOperations = 3;
+
+  FaultyVfs();
+  ~FaultyVfs();
+  FaultyVfs(const FaultyVfs&) = delete;
+  FaultyVfs& operator=(const FaultyVfs&) = delete;
+
+  /// The n-th operation of this kind from now on fails, and, when lasting, all after it.
+  void fail(Operation operation, int n, bool lasting);
+  /// From the n-th operation of any kind on everything fails: the power is off.
+  void lose_power_at(int n);
+  /// So many bytes may be written from now on; beyond them the disk is full.
+  void limit_space(std::int64_t bytes);
+  /// Until the end a sync says that it is done and does nothing.
+  void ignore_syncs();
+  /// No more faults.
+  void recover();
+
+  /// Operations since the last of the calls above.
+  int count(Operation operation) const;
+  int count() const;
+  std::int64_t written_bytes() const;
+
+  /// With all databases closed: puts on disk what a loss of power leaves, every synced write and of
+  /// the others some, in whole or in part, per 512-byte sector.
+  void drop_unsynced(std::mt19937_64& random);
+
+ private:
+  friend struct FaultyFile;
+
+  /// A write, or a truncation when there are no bytes.
+  struct Change {
+    std::int64_t offset = 0;
+    std::vector<char> bytes;
+  };
+  struct Contents {
+    std::vector<char> durable;
+    std::vector<Change> unsynced;
+  };
+
+  static int open(sqlite3_vfs* vfs, const char* name, sqlite3_file* file, int flags,
+                  int* out_flags);
+  static int remove(sqlite3_vfs* vfs, const char* name, int sync_folder);
+
+  /// SQLITE_OK, or the error that is due.
+  int attempt(Operation operation, int error, std::int64_t bytes = 0);
+  void begin_plan();
+  void note_open(const std::string& path);
+  void note_change(const std::string& path, Change change);
+  void note_sync(const std::string& path);
+
+  sqlite3_vfs* const base_;
+  sqlite3_vfs vfs_{};
+  sqlite3_io_methods methods_{};
+  mutable std::mutex mutex_;
+  std::map<std::string, Contents> files_;                          // guarded by mutex_
+  int counts_[kOperations] = {};                                   // guarded by mutex_
+  std::int64_t written_ = 0;                                       // guarded by mutex_
+  int fail_at_[kOperations] = {};                                  // guarded by mutex_; 0: never
+  bool ignores_syncs_ = false;                                     // guarded by mutex_
+  bool lasting_ = false;                                           // guarded by mutex_
+  int power_off_at_ = 0;                                           // guarded by mutex_; 0: never
+  std::int64_t space_ = std::numeric_limits<std::int64_t>::max();  // guarded by mutex_
+};
+
+}  // namespace tribodyn::crash

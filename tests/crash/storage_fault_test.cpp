@@ -1,0 +1,324 @@
+// The store on a file system that fails: every open, write and sync of a session in turn, a full
+// disk, and power that goes at any moment and takes with it what was not synced. Whatever was
+// acknowledged must be there afterwards, and the database whole.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <random>
+#include <thread>
+
+#include "server/store/maintenance.h"
+#include "server/store/seeds.h"
+#include "server/store/store.h"
+#include "tests/crash/faulty_vfs.h"
+#include "tests/service/support.h"
+#include "tribodyn/v1/results.pb.h"
+
+namespace tribodyn::crash {
+namespace {
+
+using server::Added;
+using server::ResultKey;
+using server::Store;
+using server::StoredEvent;
+using server::StoredState;
+using server::StoreError;
+using server::TemporaryFolder;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+ResultKey key(char input) { return {std::string(64, input), "model", "platform"}; }
+
+std::string body(char input) {
+  v1::SimulationResult out;
+  out.set_input_hash(key(input).input_hash);
+  out.set_model_version("model");
+  return out.SerializeAsString();
+}
+
+std::vector<double> rows(char input) { return std::vector<double>(700, input); }
+
+/// What a client was told.
+struct Acknowledged {
+  std::map<std::string, std::int64_t> simulations;          ///< by request_id
+  std::map<std::int64_t, std::vector<StoredEvent>> events;  ///< changes of state, in order
+  std::map<std::int64_t, char> results;                     ///< inputs of what has succeeded
+  std::map<std::string, int> revisions;                     ///< of resources
+};
+
+/// A session with a store: each step is acknowledged, or fails with a sentence.
+class Session {
+ public:
+  explicit Session(std::string path) : path_(std::move(path)) {}
+
+  void run() {
+    if (!open()) return;
+    step([&] {
+      const auto seed = lubricant("first");
+      if (store_->write_resources({{seed, std::nullopt}}, 1)) told_.revisions[seed.name] = 1;
+    });
+    submit("r1", 'a');
+    submit("r2", 'b');
+    submit("r3", 'a');
+    submit("r4", 'c');
+    start("r1", 'a');
+    succeed("r1", 'a');
+    submit("r5", 'a');
+    change("r2", [&](std::int64_t id) { return store_->mark_failed(id, 5, "X", "y"); });
+    change("r3", [&](std::int64_t id) { return store_->mark_cancelled(id, 6); });
+    start("r4", 'c');
+    change("r4", [&](std::int64_t id) { return store_->mark_queued(id, 7, "SERVER_STOPPED"); });
+    start("r4", 'c');
+    step([&] {
+      const auto present = store_->resource("lubricants/x");
+      if (present && store_->write_resources({{{present->name, lubricant("second").body}, present}}, 8)) {
+        told_.revisions[present->name] = present->revision + 1;
+      }
+    });
+    store_.reset();
+    if (!open()) return;
+    step([&] { store_->requeue_unfinished(9); });
+    submit("r1", 'a');
+    start("r4", 'c');
+    succeed("r4", 'c');
+    submit("r6", 'd');
+  }
+
+  void close() { store_.reset(); }
+  const Acknowledged& told() const { return told_; }
+  const std::vector<std::string>& errors() const { return errors_; }
+
+ private:
+  server::NewResource lubricant(const std::string& title) const {
+    v1::Lubricant out = server::seed<v1::Lubricant>("lubricants/1");
+    out.set_name("lubricants/x");
+    out.set_display_name(title);
+    return {out.name(), out.SerializeAsString()};
+  }
+
+  template <class Action>
+  void step(const Action& action) {
+    try {
+      action();
+    } catch (const StoreError& error) {
+      errors_.emplace_back(error.what());
+    }
+  }
+
+  bool open() {
+    step([&] { store_ = std::make_unique<Store>(path_); });
+    return store_ != nullptr;
+  }
+
+  void submit(const std::string& request_id, char input) {
+    step([&] {
+      const Added added = store_->add_simulation({.request = "",
+                                                  .key = key(input),
+                                                  .request_id = request_id,
+                                                  .request_hash = std::string(1, input)},
+                                                 2);
+      told_.simulations[request_id] = added.id;
+      if (added.kind == Added::Kind::kServed) told_.results[added.id] = input;
+    });
+  }
+
+  template <class Change>
+  void change(const std::string& request_id, const Change& change) {
+    const auto found = told_.simulations.find(request_id);
+    if (found == told_.simulations.end()) return;
+    step([&] {
+      const auto event = change(found->second);
+      if (event) told_.events[found->second].push_back(*event);
+    });
+  }
+  void start(const std::string& request_id, char input) {
+    change(request_id, [&](std::int64_t id) { return store_->mark_running(id, 3, key(input)); });
+  }
+  void succeed(const std::string& request_id, char input) {
+    change(request_id, [&](std::int64_t id) {
+      auto event = store_->mark_succeeded(id, 4, {key(input), body(input), {{"a", rows(input)}}});
+      if (event) told_.results[id] = input;
+      return event;
+    });
+  }
+
+  const std::string path_;
+  std::unique_ptr<Store> store_;
+  Acknowledged told_;
+  std::vector<std::string> errors_;
+};
+
+bool is_kept(Store& store, std::int64_t id, const StoredEvent& event) {
+  const auto kept = store.next_event(id, event.sequence - 1);
+  return kept && kept->sequence == event.sequence && kept->state == event.state &&
+         kept->attempt == event.attempt;
+}
+
+bool is_kept(Store& store, std::int64_t id, char input) {
+  return store.simulation(id)->state == StoredState::kSucceeded &&
+         store.result(id) == body(input) && store.history_rows(id, "a", 0, 700) == rows(input);
+}
+
+/// What was acknowledged and is not there, and what is wrong with the database.
+std::vector<std::string> lost(const std::string& path, const Acknowledged& told) try {
+  std::vector<std::string> out;
+  Store store(path);
+  for (const auto& [request_id, id] : told.simulations) {
+    if (store.simulation_of_request(request_id) != id) out.push_back(request_id);
+  }
+  if (!out.empty()) return out;
+  for (const auto& [id, events] : told.events) {
+    for (const StoredEvent& event : events) {
+      if (!is_kept(store, id, event)) out.push_back("event " + std::to_string(event.sequence));
+    }
+  }
+  for (const auto& [id, input] : told.results) {
+    if (!is_kept(store, id, input)) out.push_back("result of " + std::to_string(id));
+  }
+  for (const auto& [name, revision] : told.revisions) {
+    if (!store.revision(name, revision)) out.push_back(name + "@" + std::to_string(revision));
+  }
+  for (const std::string& problem : server::check_database(path)) out.push_back(problem);
+  return out;
+} catch (const StoreError& error) {
+  return {error.what()};
+}
+
+int number_from(const char* variable, int otherwise) {
+  const char* value = std::getenv(variable);
+  return value == nullptr ? otherwise : std::atoi(value);
+}
+
+class StorageFault : public testing::Test {
+ protected:
+  /// Plays the session under a fault in a folder of its own; false once the fault comes too late to
+  /// meet it.
+  bool survives(const std::function<void()>& plan, const std::function<bool()>& was_met,
+                const std::string& trace) {
+    const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);
+    Session session(folder.file("db"));
+    plan();
+    session.run();
+    session.close();
+    const bool met = was_met();
+    vfs_.recover();
+    for (const std::string& error : session.errors()) {
+      EXPECT_THAT(error, HasSubstr("database " + folder.file("db"))) << trace;
+    }
+    EXPECT_THAT(lost(folder.file("db"), session.told()), IsEmpty()) << trace;
+    return met;
+  }
+
+  void fail_every(FaultyVfs::Operation operation, const std::string& name) {
+    for (const bool lasting : {false, true}) {
+      int n = 1;
+      while (!HasFailure() &&
+             survives([&] { vfs_.fail(operation, n, lasting); },
+                      [&] { return vfs_.count(operation) >= n; },
+                      name + " " + std::to_string(n) + (lasting ? " and all after it" : ""))) {
+        ++n;
+      }
+      RecordProperty(name + (lasting ? "_lasting" : "_once"), n - 1);
+      EXPECT_GT(n, 5);
+    }
+  }
+
+  /// Sessions that end with a loss of power at a random moment; what they lost.
+  std::vector<std::string> lose_power(int losses) {
+    const auto seed = static_cast<std::uint64_t>(
+        number_from("TRIBODYN_TEST_SEED", static_cast<int>(std::random_device()() % 1'000'000)));
+    std::mt19937_64 random(seed);
+    const int all = operations_of_a_session();
+    std::vector<std::string> out;
+    for (int loss = 0; loss < losses; ++loss) {
+      const int at = 1 + static_cast<int>(random() % static_cast<std::uint64_t>(all));
+      const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);
+      Session session(folder.file("db"));
+      vfs_.lose_power_at(at);
+      session.run();
+      session.close();
+      vfs_.drop_unsynced(random);
+      std::filesystem::remove(folder.file("db-shm"));
+      vfs_.recover();
+      for (const std::string& each : lost(folder.file("db"), session.told())) {
+        out.push_back("power lost at operation " + std::to_string(at) + " of " +
+                      std::to_string(all) + ", TRIBODYN_TEST_SEED=" + std::to_string(seed) + ": " +
+                      each);
+      }
+    }
+    return out;
+  }
+
+  int operations_of_a_session() {
+    const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);
+    vfs_.recover();
+    Session session(folder.file("db"));
+    session.run();
+    session.close();
+    return vfs_.count();
+  }
+
+  FaultyVfs vfs_;
+};
+
+TEST_F(StorageFault, WithoutFaultsEverythingIsAcknowledged) {
+  const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);
+  Session session(folder.file("db"));
+  session.run();
+  session.close();
+  EXPECT_THAT(session.errors(), IsEmpty());
+  EXPECT_EQ(session.told().simulations.size(), 6U);
+  EXPECT_EQ(session.told().results.size(), 3U);
+  EXPECT_THAT(lost(folder.file("db"), session.told()), IsEmpty());
+}
+
+TEST_F(StorageFault, EveryOpenMayFail) { fail_every(FaultyVfs::Operation::kOpen, "open"); }
+
+TEST_F(StorageFault, EveryWriteMayFail) { fail_every(FaultyVfs::Operation::kWrite, "write"); }
+
+TEST_F(StorageFault, EverySyncMayFail) { fail_every(FaultyVfs::Operation::kSync, "sync"); }
+
+TEST_F(StorageFault, PowerMayGoAtAnyMoment) {
+  const int losses = number_from("TRIBODYN_POWER_LOSSES", 100);
+  RecordProperty("losses", losses);
+  EXPECT_THAT(lose_power(losses), IsEmpty());
+}
+
+TEST_F(StorageFault, ASyncThatDoesNothingIsFound) {
+  vfs_.ignore_syncs();
+  EXPECT_FALSE(lose_power(30).empty()) << "this test would not see a commit that is not synced";
+}
+
+TEST_F(StorageFault, AFullDiskRefusesAndLosesNothing) {
+  operations_of_a_session();
+  const std::int64_t all = vfs_.written_bytes();
+  constexpr int kSteps = 80;
+  for (int i = 0; i < kSteps && !HasFailure(); ++i) {
+    const std::int64_t space = all * i / kSteps;
+    EXPECT_TRUE(survives([&] { vfs_.limit_space(space); }, [] { return true; },
+                         std::to_string(space) + " bytes"));
+  }
+}
+
+TEST_F(StorageFault, AResultWaitsForADiskThatIsFull) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  server::Bench bench(server::patient_studies(release), 1);
+  const std::string name = bench.create(server::point_simulation());
+  ASSERT_TRUE(bench.reaches(name, v1::Simulation::RUNNING));
+  vfs_.limit_space(0);
+  *release = true;
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  EXPECT_EQ(bench.get(name).state(), v1::Simulation::RUNNING);
+  EXPECT_THROW(bench.create(server::curve_simulation()), std::runtime_error);
+  vfs_.recover();
+  EXPECT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED)) << "without a restart";
+  EXPECT_TRUE(bench.reaches(bench.create(server::curve_simulation()), v1::Simulation::SUCCEEDED));
+}
+
+}  // namespace
+}  // namespace tribodyn::crash
