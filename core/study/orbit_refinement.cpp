@@ -68,7 +68,7 @@ bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
   return difference < 1e-3;
 }
 
-/// `repels`: set where a response is found that repels or nearly so.
+/// `repels`: set where a response is found that surely does.
 std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBatch& contacts,
                                    MeshGrids& grids, const OrbitSearch& search, bool& repels,
                                    MarchStatistics& statistics, long& marched_cycles) {
@@ -136,7 +136,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
       double gain = square(finer);
       const bool halving = steps == 2 * best.steps_per_mesh_cycle;
       if (halving && halving_difference > 0) {
-        gain = std::clamp(halving_difference / std::max(difference, 1e-300), 2.5, 4.0);
+        gain = std::clamp(halving_difference / std::max(difference, 1e-300), 2.5, 8.0);
       }
       // Two step lengths may agree by accident, three rarely do.
       const double step_error = std::max(kSafety * difference / (gain - 1),
@@ -148,8 +148,10 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
     const bool pulls = request.keep_contact && best.orbit.least_pressing_force < 0;
     if (have_coarser && estimate <= search.tolerance && !pulls) {
       best.largest_multiplier = best.orbit.map->largest_multiplier();
-      repels = !(best.largest_multiplier < 1 - margin(system, search));
-      return repels ? std::nullopt : std::optional(std::move(best));
+      const double doubt = margin(system, search);
+      repels = best.largest_multiplier > 1 + doubt;
+      if (!(best.largest_multiplier < 1 - doubt)) return std::nullopt;
+      return best;
     }
     have_coarser = true;
   }

@@ -30,6 +30,7 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   OperatingCondition condition;
   condition.vehicle_speed = speed;
   PointOptions options;
+  options.tolerance = 1e-6;
   options.start = place.start;
   options.relative_tolerance = 1e-9;
   options.settling_tolerance = 1e-7;
