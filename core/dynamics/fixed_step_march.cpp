@@ -14,8 +14,8 @@ double inside_cycle(double phase) { return phase - std::floor(phase); }
 
 }  // namespace
 
-void FixedStepMarch::rates(const MeshPhase& phase, const MarchState& y, const FrictionPerLoad& friction,
-                           Rates& dy) {
+void FixedStepMarch::rates(const MeshPhase& phase, const MarchState& y,
+                           const FrictionPerLoad& friction, Rates& dy) {
   ++evaluations_;
   system_.mechanics(phase, y.data(), at_);
   const ContactRegime& r = system_.regime;
@@ -164,8 +164,8 @@ double peak_of(const std::array<double, 2>& first, const std::array<double, 2>& 
   return 0;
 }
 
-/// Length at which a function passes through zero, from `first` at 0 to `last` > 0 at `high`: regula
-/// falsi with bisection now and then.
+/// Length at which a function passes through zero, from `first` at 0 to `last` > 0 at `high`:
+/// regula falsi with bisection now and then.
 template <class Function>
 double root_of(double first, double last, double high, Function&& at) {
   double low = 0, g_low = std::min(first, 0.0), g_high = last, x = high;

@@ -42,8 +42,8 @@ class FixedStepMarch {
 
  private:
   using Rates = std::array<double, 8>;
-  /// Positive once it has happened: flanks part or meet (on the drive side); the load ends or begins,
-  /// or the flanks meet on the coast side.
+  /// Positive once it has happened: flanks part or meet (on the drive side); the load ends or
+  /// begins, or the flanks meet on the coast side.
   using Events = std::array<double, 2>;
   /// A step's start, middle and end.
   struct Span {

@@ -9,12 +9,6 @@ namespace {
 
 double square(double v) { return v * v; }
 
-/// What eq 2 leaves out: F e' - k_m' f^2/2 [N m].
-double parametric_torque(const Instant& at) {
-  return at.mesh_force * at.mesh.static_transmission_error_slope -
-         0.5 * at.mesh.mesh_stiffness_slope * square(at.deflection);
-}
-
 }  // namespace
 
 GearPairSystem::GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
@@ -32,22 +26,6 @@ MeshPhase GearPairSystem::at_phase(double phase) const {
   return mesh_.at_phase(2 * std::numbers::pi * phase);
 }
 
-void GearPairSystem::kinematics(const MeshPhase& phase, const double* y, Instant& out) const {
-  // N_g phi_g = N_p phi_p - N_g winding/R_g0, because R_g0 N_p = R_p0 N_g.
-  out.mesh = mesh_.functions(phase, lag_per_winding_ * y[kWinding]);
-  const MeshFunctions& m = out.mesh;
-  const double b = dynamics_.half_backlash;
-  out.transmission_error = b + y[kWinding] + m.radius_integral - m.static_transmission_error;
-  out.transmission_velocity =
-      (m.pinion_contact_radius - m.static_transmission_error_slope) * y[kPinionSpeed] -
-      m.gear_contact_radius * y[kGearSpeed];
-  out.deflection = regime.side == 0 ? 0 : out.transmission_error - regime.side * b;
-  out.damper_force = regime.side == 0 && options_.damping_in_contact_only
-                         ? 0
-                         : dynamics_.mesh_damping * out.transmission_velocity;
-  out.mesh_force = m.mesh_stiffness * out.deflection + out.damper_force;
-}
-
 ContactRegime GearPairSystem::regime_of(double phase, const double* y) const {
   Instant at;
   kinematics(phase, y, at);
@@ -58,16 +36,6 @@ ContactRegime GearPairSystem::regime_of(double phase, const double* y) const {
                        dynamics_.mesh_damping * at.transmission_velocity;
   r.loaded = r.side != 0 && r.side * force > 0;
   return r;
-}
-
-void GearPairSystem::mechanics(const MeshPhase& phase, const double* y, Instant& out) const {
-  kinematics(phase, y, out);
-  const DrivelineDynamics& d = dynamics_;
-  out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
-                            d.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
-  out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
-                          d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
-  out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
 }
 
 ContactConditions GearPairSystem::contact_conditions(const FlankKinematics& flank, double load,
@@ -131,9 +99,9 @@ void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPa
   results.limiting_stress_area_share = share.data();
   results.limiting_stress_at_centre = at_centre.data();
   results.status = status.data();
-  together_->solve(*geometries_, 0, kFlankPairs,
-                   {out.load.data(), pinion_x.data(), pinion_y.data(), gear_x.data(), gear_y.data()},
-                   results);
+  together_->solve(
+      *geometries_, 0, kFlankPairs,
+      {out.load.data(), pinion_x.data(), pinion_y.data(), gear_x.data(), gear_y.data()}, results);
   for (int k = 0; k < kFlankPairs; ++k) {
     if (!(out.load[k] > 0)) continue;
     ContactSolution& contact = out.contact[k];
@@ -183,27 +151,6 @@ void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
   }
 }
 
-void GearPairSystem::motion(const double* y, const Instant& at, double* dy) const {
-  const MeshFunctions& m = at.mesh;
-  double pinion_torque =
-      -m.pinion_contact_radius * at.mesh_force + at.pinion_shaft_torque + at.pinion_friction_torque;
-  if (options_.energy_consistent) pinion_torque += parametric_torque(at);
-  const double gear_torque =
-      m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque;
-  // Eqs 1-4 in time, then by phase.
-  const double time = cycle_angle_ / y[kPinionSpeed];
-  dy[kTime] = time;
-  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
-  dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
-                         mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
-  dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
-  dy[kPinionShaftSpeed] =
-      time * ((torques_.pinion - at.pinion_shaft_torque) * inverse_.pinion_shaft_inertia);
-  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);
-  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);
-  dy[kWheelSpeed] = time * ((at.gear_shaft_torque - torques_.wheel) * inverse_.wheel_inertia);
-}
-
 void GearPairSystem::derivative(const double* y, const Instant& at, bool record, double* dy) const {
   motion(y, at, dy);
   const DrivelineDynamics& d = dynamics_;
@@ -247,7 +194,7 @@ void GearPairSystem::derivative(const double* y, const Instant& at, bool record,
         d.pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]) +
         d.gear_shaft_damping * square(y[kGearSpeed] - y[kWheelSpeed]);
     dy[kMeshDampingWork] = at.damper_force * at.transmission_velocity;
-    if (!options_.energy_consistent) dy[kParametricWork] = parametric_torque(at) * y[kPinionSpeed];
+    if (!options_.energy_consistent) dy[kParametricWork] = at.parametric_torque() * y[kPinionSpeed];
   }
   const double time_per_phase = cycle_angle_ / y[kPinionSpeed];
   for (int i = kLossWork; i < count; ++i) dy[i] *= time_per_phase;

@@ -83,6 +83,11 @@ struct Instant {
   double pinion_friction_torque = 0;
   double gear_friction_torque = 0;
   double loss_power = 0;  ///< sum V_s F_fr [W]
+  /// What eq 2 leaves out: F e' - k_m' f^2/2 [N m].
+  double parametric_torque() const {
+    return mesh_force * mesh.static_transmission_error_slope -
+           0.5 * mesh.mesh_stiffness_slope * deflection * deflection;
+  }
   std::array<double, kFlankPairs> load{};
   std::array<FlankMotion, kFlankPairs> motion{};
   std::array<ContactSolution, kFlankPairs> contact{};
@@ -96,8 +101,8 @@ class GearPairSystem {
   GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
                  const DrivelineDynamics& dynamics, const ModelOptions& options);
 
-  /// The contacts of an instant are solved together from now on; null: one by one, by the reference.
-  /// Figures that no record holds are left out. Keeps the reference.
+  /// The contacts of an instant are solved together from now on; null: one by one, by the
+  /// reference. Figures that no record holds are left out. Keeps the reference.
   void solve_together(const FlankContactBatch* contacts);
 
   void set_torques(const Torques& torques) { torques_ = torques; }
@@ -116,8 +121,8 @@ class GearPairSystem {
   void mechanics(const MeshPhase& phase, const double* state, Instant& out) const;
   /// All of eqs 1-11 and the friction of each loaded flank at mesh phase [cycles]. Counts contacts.
   void evaluate(double phase, const double* state, Instant& out);
-  /// Loaded flanks of eqs 2 and 3: what the contact of flank pair k sees under `load` [N] of its own
-  /// in a state, and its sliding and arms.
+  /// Loaded flanks of eqs 2 and 3: what the contact of flank pair k sees under `load` [N] of its
+  /// own in a state, and its sliding and arms.
   ContactConditions contact_conditions(const FlankKinematics& flank, double load,
                                        const double* state, FlankMotion& motion) const;
   /// d state / d phase of time and the seven states of motion.
@@ -171,5 +176,53 @@ class GearPairSystem {
   long contact_solutions_ = 0;
   ContactStatus refusal_ = ContactStatus::kOk;
 };
+
+inline void GearPairSystem::kinematics(const MeshPhase& phase, const double* y,
+                                       Instant& out) const {
+  // N_g phi_g = N_p phi_p - N_g winding/R_g0, because R_g0 N_p = R_p0 N_g.
+  out.mesh = mesh_.functions(phase, lag_per_winding_ * y[kWinding]);
+  const MeshFunctions& m = out.mesh;
+  const double b = dynamics_.half_backlash;
+  out.transmission_error = b + y[kWinding] + m.radius_integral - m.static_transmission_error;
+  out.transmission_velocity =
+      (m.pinion_contact_radius - m.static_transmission_error_slope) * y[kPinionSpeed] -
+      m.gear_contact_radius * y[kGearSpeed];
+  out.deflection = regime.side == 0 ? 0 : out.transmission_error - regime.side * b;
+  out.damper_force = regime.side == 0 && options_.damping_in_contact_only
+                         ? 0
+                         : dynamics_.mesh_damping * out.transmission_velocity;
+  out.mesh_force = m.mesh_stiffness * out.deflection + out.damper_force;
+}
+
+inline void GearPairSystem::mechanics(const MeshPhase& phase, const double* y, Instant& out) const {
+  kinematics(phase, y, out);
+  const DrivelineDynamics& d = dynamics_;
+  out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
+                            d.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+  out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
+                          d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
+  out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
+}
+
+inline void GearPairSystem::motion(const double* y, const Instant& at, double* dy) const {
+  const MeshFunctions& m = at.mesh;
+  double pinion_torque =
+      -m.pinion_contact_radius * at.mesh_force + at.pinion_shaft_torque + at.pinion_friction_torque;
+  if (options_.energy_consistent) pinion_torque += at.parametric_torque();
+  const double gear_torque =
+      m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque;
+  // Eqs 1-4 in time, then by phase.
+  const double time = cycle_angle_ / y[kPinionSpeed];
+  dy[kTime] = time;
+  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+  dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
+                         mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
+  dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
+  dy[kPinionShaftSpeed] =
+      time * ((torques_.pinion - at.pinion_shaft_torque) * inverse_.pinion_shaft_inertia);
+  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);
+  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);
+  dy[kWheelSpeed] = time * ((at.gear_shaft_torque - torques_.wheel) * inverse_.wheel_inertia);
+}
 
 }  // namespace tribodyn

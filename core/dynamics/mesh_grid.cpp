@@ -18,8 +18,7 @@ MeshGrid::MeshGrid(const MeshData& mesh, int steps, double reduced_modulus,
     nodes_[n] = mesh.at_phase(theta);
     expansions_[n] = mesh.expand_gear_radius(theta);
     nodes_[n].expansion = &expansions_[n];
-    const int interval =
-        std::min(static_cast<int>(phase * mesh.intervals()), mesh.intervals() - 1);
+    const int interval = std::min(static_cast<int>(phase * mesh.intervals()), mesh.intervals() - 1);
     mesh.flanks(interval, phase, flanks_[n]);
     for (int k = 0; k < kFlankPairs; ++k) {
       const FlankKinematics& flank = flanks_[n][k];

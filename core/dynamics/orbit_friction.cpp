@@ -87,8 +87,7 @@ void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, 
     flanks = &grid.flanks(piece.node + part);
   } else {
     const MeshData& mesh = system_.mesh();
-    const double inside =
-        std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
+    const double inside = std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
     const int interval =
         std::clamp(static_cast<int>(inside * mesh.intervals()), 0, mesh.intervals() - 1);
     mesh.flanks(interval, inside, off_grid);
@@ -194,8 +193,7 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
         }
       }
       if (p.regime.side != 0) {
-        least_pressing_force_ =
-            std::min(least_pressing_force_, p.regime.side * place.mesh_force);
+        least_pressing_force_ = std::min(least_pressing_force_, p.regime.side * place.mesh_force);
       }
       const double* state = states(p)[part];
       const double duration =

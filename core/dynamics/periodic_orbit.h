@@ -35,8 +35,8 @@ struct PeriodicOrbit {
   ContactRegime regime;  ///< there
   Torques torques;
   int period = 1;  ///< [mesh cycles]
-  LaggedFriction friction;         
-  std::optional<SectionMap> map;   ///< from here or near; empty: not known
+  LaggedFriction friction;
+  std::optional<SectionMap> map;  ///< from here or near; empty: not known
   std::vector<OrbitPiece> pieces;
   OrbitFigures figures;
   double defect = 0;       ///< scaled change of the state in the last step of Newton
@@ -64,12 +64,12 @@ struct OrbitRequest {
 /// The periodic response of the whole system with the unknown torque, without marching through
 /// transients: Newton's method on the section state (single shooting, variational equations) under
 /// lagged friction, friction evaluated anew on the response found, and so on until neither moves.
-/// Derivatives are kept while they serve. An orbit found before, on another grid, lends its friction
-/// and figures: then one sweep may do. At the end friction and motion belong to each other as in
-/// the full system; what is left is the error of the grid's steps. Starts from `orbit` (state,
-/// torques, friction, map) and leaves the response there. False where it does not converge; the
-/// orbit is then of no use. Where flanks kept together clearly pull, it may end before it converges.
-/// Adds to `statistics`.
+/// Derivatives are kept while they serve. An orbit found before, on another grid, lends its
+/// friction and figures: then one sweep may do. At the end friction and motion belong to each other
+/// as in the full system; what is left is the error of the grid's steps. Starts from `orbit`
+/// (state, torques, friction, map) and leaves the response there. False where it does not converge;
+/// the orbit is then of no use. Where flanks kept together clearly pull, it may end before it
+/// converges. Adds to `statistics`.
 bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
                           const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit,
                           MarchStatistics& statistics, long& marched_cycles);

@@ -22,12 +22,6 @@ constexpr double FlankKinematics::*kColumns[] = {&FlankKinematics::load_share,
                                                  &FlankKinematics::pinion_friction_arm,
                                                  &FlankKinematics::gear_friction_arm};
 
-constexpr std::array<double, GearRadiusExpansion::kTerms> kReciprocal = [] {
-  std::array<double, GearRadiusExpansion::kTerms> out{};
-  for (int k = 0; k < GearRadiusExpansion::kTerms; ++k) out[k] = 1.0 / (k + 1);
-  return out;
-}();
-
 struct Turn {
   double cosine, sine;
 };
@@ -110,7 +104,8 @@ MeshData::MeshData(const GearSet& set)
 }
 
 MeshPhase MeshData::at_phase(double theta_p) const {
-  MeshPhase at{std::cos(theta_p), std::sin(theta_p),
+  MeshPhase at{std::cos(theta_p),
+               std::sin(theta_p),
                {pinion_radius_, gear_radius_, 0, stiffness_, 0, error_, 0},
                nullptr};
   MeshFunctions& f = at.pinion;
@@ -150,23 +145,14 @@ GearRadiusExpansion MeshData::expand_gear_radius(double theta) const {
       slope *= -order * order;
     }
   }
+  for (int k = 0; k < GearRadiusExpansion::kTerms; ++k) {
+    out.ripple_integral[k] = out.ripple[k] / (gear_teeth_ * (k + 1.0));
+  }
   return out;
 }
 
-MeshFunctions MeshData::functions(const MeshPhase& at, double lag) const {
+MeshFunctions MeshData::sum_of_series(const MeshPhase& at, double lag) const {
   MeshFunctions f = at.pinion;
-  if (at.expansion != nullptr && std::abs(lag) <= longest_expanded_lag_) {
-    const GearRadiusExpansion& g = *at.expansion;
-    constexpr int kLast = GearRadiusExpansion::kTerms - 1;
-    double ripple = g.ripple[kLast], integral = g.ripple[kLast] / (kLast + 1);
-    for (int k = kLast - 1; k >= 0; --k) {
-      ripple = g.ripple[k] - lag * ripple;
-      integral = g.ripple[k] * kReciprocal[k] - lag * integral;
-    }
-    f.gear_contact_radius += ripple;
-    f.radius_integral += g.integral + lag * integral / gear_teeth_;
-    return f;
-  }
   const Turn turn = small_turn(lag);
   const double cosine = at.cosine * turn.cosine + at.sine * turn.sine;
   const double sine = at.sine * turn.cosine - at.cosine * turn.sine;

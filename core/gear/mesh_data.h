@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -23,15 +24,17 @@ struct MeshFunctions {
 /// R_g's ripple and its derivatives by theta_g over k!, and the gear's part of the radius integral.
 struct GearRadiusExpansion {
   static constexpr int kTerms = 9;
-  std::array<double, kTerms> ripple;  ///< [m]
-  double integral;                    ///< [m]
+  std::array<double, kTerms> ripple;           ///< [m]
+  std::array<double, kTerms> ripple_integral;  ///< over (k + 1) N_g [m]
+  double integral;                             ///< [m]
 };
 
 /// What eqs 8-11 need of the pinion's angle alone: prepared once per phase, used at every state.
 struct MeshPhase {
   double cosine, sine;   ///< of theta_p
   MeshFunctions pinion;  ///< R_g its mean, radius_integral the pinion's part
-  const GearRadiusExpansion* expansion = nullptr;  ///< at theta_g = theta_p; saves the series of R_g
+  const GearRadiusExpansion* expansion =
+      nullptr;  ///< at theta_g = theta_p; saves the series of R_g
 };
 
 /// One flank pair at one mesh phase; columns of ToothContactTables.
@@ -72,7 +75,22 @@ class MeshData {
   MeshPhase at_phase(double theta_p) const;
   GearRadiusExpansion expand_gear_radius(double theta) const;
   /// With theta_g = theta_p - lag.
-  MeshFunctions functions(const MeshPhase& phase, double lag) const;
+  MeshFunctions functions(const MeshPhase& phase, double lag) const {
+    if (phase.expansion == nullptr || std::abs(lag) > longest_expanded_lag_) {
+      return sum_of_series(phase, lag);
+    }
+    MeshFunctions f = phase.pinion;
+    const GearRadiusExpansion& g = *phase.expansion;
+    constexpr int kLast = GearRadiusExpansion::kTerms - 1;
+    double ripple = g.ripple[kLast], integral = g.ripple_integral[kLast];
+    for (int k = kLast - 1; k >= 0; --k) {
+      ripple = g.ripple[k] - lag * ripple;
+      integral = g.ripple_integral[k] - lag * integral;
+    }
+    f.gear_contact_radius += ripple;
+    f.radius_integral += g.integral + lag * integral;
+    return f;
+  }
 
   int intervals() const { return intervals_; }  ///< of the tables per mesh cycle
   /// The pairs at `phase` in [0, 1] cycles, by the straight line of `interval` (continued outside
@@ -91,6 +109,7 @@ class MeshData {
     double stiffness_sin, stiffness_cos, error_sin, error_cos;
     double radius_g_sin_per_order = 0, radius_g_cos_per_order = 0;  // over n N_g
   };
+  MeshFunctions sum_of_series(const MeshPhase& phase, double lag) const;
   std::size_t gear_harmonics_ = 0;
   double longest_expanded_lag_ = 0;  // up to which GearRadiusExpansion is exact
   int pinion_teeth_, gear_teeth_, intervals_;

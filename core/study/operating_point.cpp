@@ -133,8 +133,7 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
   out.settled = steady.settled;
   // Of both by experience: their errors are some ten times smaller.
   if (steady.settled) {
-    out.estimated_relative_error =
-        3 * request.tolerance + 300 * request.march.relative_tolerance;
+    out.estimated_relative_error = 3 * request.tolerance + 300 * request.march.relative_tolerance;
   }
   out.period_in_mesh_cycles = steady.period;
   out.statistics = statistics_of(steady);
@@ -161,8 +160,8 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
 /// By shooting, from a state or else from the static one. Nothing where marching must decide.
 std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
                                              const FlankContactBatch& contacts, MeshGrids& grids,
-                                             const Target& target,
-                                             const PointOptions& options, PointStart start,
+                                             const Target& target, const PointOptions& options,
+                                             PointStart start,
                                              const std::optional<CarriedState>& from,
                                              const HistoryRequest& history_request) {
   if (system.torques().pinion == 0) return std::nullopt;  // nothing holds the flanks together

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kSafety = 2;    // on the error that two step lengths tell
 constexpr int kPatience = 100;   // periods
-constexpr double kLoose = 3e-4;    // tolerance of which few steps may do
-constexpr int kFinest = 4000;      // steps per mesh cycle
+constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
+constexpr int kFinest = 4000;    // steps per mesh cycle
 
 double square(double x) { return x * x; }
 
@@ -96,7 +96,8 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
   for (int steps = sequence.first(); steps <= kFinest; steps = sequence.after(steps)) {
     const MeshGrid& grid = grids.with_steps(steps);
     // Sweeps go on until what they leave is well below what the step length can give.
-    request.tolerance = have_coarser ? 0.2 * search.tolerance : std::max(5 * search.tolerance, 1e-4);
+    request.tolerance =
+        have_coarser ? 0.2 * search.tolerance : std::max(5 * search.tolerance, 1e-4);
     PeriodicOrbit orbit = have_coarser ? best.orbit : origin;
     const auto solve = [&] {
       return solve_periodic_orbit(system, contacts, grid, request, orbit, statistics,
@@ -139,8 +140,8 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
         gain = std::clamp(halving_difference / std::max(difference, 1e-300), 2.5, 8.0);
       }
       // Two step lengths may agree by accident, three rarely do.
-      const double step_error = std::max(kSafety * difference / (gain - 1),
-                                         best.estimated_error / (2 * square(finer)));
+      const double step_error =
+          std::max(kSafety * difference / (gain - 1), best.estimated_error / (2 * square(finer)));
       estimate = step_error + orbit.unsettled;
       halving_difference = halving ? difference : 0;
     }

@@ -14,8 +14,8 @@ struct OrbitSearch {
   MarchState start{};               ///< at mesh phase 0
   int period = 1;                   ///< [mesh cycles]
   bool try_contact_first = true;    ///< the response without contact loss, if there is one
-  int few_cycles = 12;    ///< periods marched from the start when there is none,
-  int first_cycles = 60;  ///< and when that does not lead to any
+  int few_cycles = 12;              ///< periods marched from the start when there is none,
+  int first_cycles = 60;            ///< and when that does not lead to any
   double tolerance = 1e-5;          ///< wanted, of the figures; see RefinedOrbit::estimated_error
   std::function<bool()> interrupted;
 };

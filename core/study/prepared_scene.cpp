@@ -21,8 +21,8 @@ PreparedGearSet::PreparedGearSet(const GearSet& gear_set, const Solid& solid,
       grids_(mesh_, reduced_modulus(solid.youngs_modulus, solid.poissons_ratio), options) {}
 
 PreparedScene::PreparedScene(const Scene& scene)
-    : PreparedScene(scene, std::make_shared<PreparedGearSet>(scene.gear_set, scene.solid,
-                                                             scene.options)) {}
+    : PreparedScene(
+          scene, std::make_shared<PreparedGearSet>(scene.gear_set, scene.solid, scene.options)) {}
 
 PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set)
     : scene_(scene),

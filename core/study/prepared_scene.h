@@ -27,7 +27,8 @@ class PreparedGearSet {
   MeshGrids grids_;
 };
 
-/// A scene with everything that its points share. One thread at a time. Keeps the scene's reference.
+/// A scene with everything that its points share. One thread at a time. Keeps the scene's
+/// reference.
 class PreparedScene {
  public:
   /// Throws Refusal as FlankContactModel and PreparedGearSet do.

@@ -65,7 +65,8 @@ void ResponseRecord::add_all(const std::array<Instant, kCount>& instants) {
         const Instant& before = instants[n - 1];
         if (!(i.load[k] > 0 && before.load[k] > 0)) continue;
         // Film, pressure and temperature go like powers of a small load.
-        const double t = std::log(load_floor_ / before.load[k]) / std::log(i.load[k] / before.load[k]);
+        const double t =
+            std::log(load_floor_ / before.load[k]) / std::log(i.load[k] / before.load[k]);
         const double a = before.contact[k].*member, b = i.contact[k].*member;
         const double value = a > 0 && b > 0 ? a * std::pow(b / a, t) : a + t * (b - a);
         range.add(value, value);
