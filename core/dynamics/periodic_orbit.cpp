@@ -24,6 +24,7 @@ class Shooting {
         mean_force_(scales_.torque / system.mesh().mean_pinion_contact_radius()),
         march_(system, scales_, grid, orbit.period, request.solve_wheel_torque),
         friction_(system, contacts, 1e-3 * mean_force_) {
+    system.set_torques(orbit.torques);
     for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system.mesh(), i + 1);
     scale_(kUnknowns - 1) = scales_.torque;
     period_time_ = orbit.period * system.cycle_angle() / request.mean_pinion_speed;
@@ -110,7 +111,14 @@ class Shooting {
     }
     orbit_.regime = system_.regime;
   }
-  const FixedStepMarch& marches() const { return march_; }
+  /// Hands over what has become of the torque and the work.
+  void finish(MarchStatistics& statistics, long& marched_cycles) {
+    statistics.right_hand_sides += march_.evaluations();
+    statistics.accepted_steps += march_.steps();
+    statistics.events += march_.events();
+    marched_cycles += march_.steps() / grid_.steps();
+    orbit_.torques = system_.torques();
+  }
 
  private:
   int scales_side() const { return system_.torques().pinion >= 0 ? 1 : -1; }
@@ -155,30 +163,33 @@ double SectionMap::largest_multiplier() const {
   return multipliers.cwiseAbs().maxCoeff();
 }
 
+bool approach_without_friction(GearPairSystem& system, const FlankContactBatch& contacts,
+                               const MeshGrid& grid, const OrbitRequest& request,
+                               PeriodicOrbit& orbit, MarchStatistics& statistics,
+                               long& marched_cycles) {
+  Shooting shooting(system, contacts, grid, request, orbit);
+  // Friction changes the response by some percent.
+  const bool good = shooting.let_run(request.first_cycles) && shooting.converge(1e-3);
+  shooting.finish(statistics, marched_cycles);
+  return good;
+}
+
 bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
                           const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit,
                           MarchStatistics& statistics, long& marched_cycles) {
   constexpr int kMostSweeps = 24;
+  constexpr double kLikelyContraction = 0.2, kUnmeasured = 0.3;
   Shooting shooting(system, contacts, grid, request, orbit);
-  system.set_torques(orbit.torques);
   const auto finish = [&](bool good) {
-    const FixedStepMarch& march = shooting.marches();
-    statistics.right_hand_sides += march.evaluations();
-    statistics.accepted_steps += march.steps();
-    statistics.events += march.events();
-    marched_cycles += march.steps() / grid.steps();
-    orbit.torques = system.torques();
+    shooting.finish(statistics, marched_cycles);
     return good;
   };
-  if (request.first_cycles > 0 && !shooting.let_run(request.first_cycles)) return finish(false);
   const auto parts_for_sure = [&](double pull) {
     return request.keep_contact && orbit.least_pressing_force < -pull;
   };
-  constexpr double kLikelyContraction = 0.2, kUnmeasured = 0.3;
   double last_change = 0;
   if (orbit.contraction == 0) {
-    // Without friction at first; it changes the response by some percent.
-    if (!shooting.converge(1e-3) || !shooting.evaluate_friction()) return finish(false);
+    if (!shooting.evaluate_friction()) return finish(false);
     // Friction calms some responses.
     if (parts_for_sure(0.25)) return finish(true);
     orbit.contraction = kLikelyContraction;

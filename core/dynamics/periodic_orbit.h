@@ -56,10 +56,18 @@ struct OrbitRequest {
   double mean_pinion_speed = 0;     ///< held exactly [rad/s]
   bool solve_wheel_torque = false;  ///< T_w is the unknown instead of T_s
   bool keep_contact = false;  ///< flanks stay together whatever the force: the linear response
-  int first_cycles = 0;       ///< periods marched under lagged friction before shooting
+  int first_cycles = 0;       ///< periods marched before shooting without friction
   double tolerance = 1e-6;    ///< of the figures, relative: sweeps go on until then
   std::function<bool()> interrupted;  ///< true: throws Cancelled
 };
+
+/// The periodic response without friction, to a permille: where every lubricant's response is near,
+/// and the same for all. Starts from `orbit` (state, torques) and leaves state, torques, map and
+/// pieces there. False where it does not converge. Adds to `statistics`.
+bool approach_without_friction(GearPairSystem& system, const FlankContactBatch& contacts,
+                               const MeshGrid& grid, const OrbitRequest& request,
+                               PeriodicOrbit& orbit, MarchStatistics& statistics,
+                               long& marched_cycles);
 
 /// The periodic response of the whole system with the unknown torque, without marching through
 /// transients: Newton's method on the section state (single shooting, variational equations) under

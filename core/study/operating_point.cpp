@@ -157,13 +157,11 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
   return out;
 }
 
-/// By shooting, from a state or else from the static one. Nothing where marching must decide.
-std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
-                                             const FlankContactBatch& contacts, MeshGrids& grids,
-                                             const Target& target, const PointOptions& options,
-                                             PointStart start,
-                                             const std::optional<CarriedState>& from,
-                                             const HistoryRequest& history_request) {
+/// Where shooting starts: from a state or else from the static one. Nothing where marching must
+/// decide.
+std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Target& target,
+                                       const PointOptions& options, PointStart start,
+                                       const std::optional<CarriedState>& from) {
   if (system.torques().pinion == 0) return std::nullopt;  // nothing holds the flanks together
   OrbitSearch search;
   search.mean_pinion_speed = target.mean_pinion_speed;
@@ -181,10 +179,22 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
         static_start(system, target.mean_pinion_speed, 0, 0, loud ? kLargeVibrationDeflection : 0);
     search.try_contact_first = !loud;
   }
+  return search;
+}
+
+/// By shooting. Nothing where marching must decide.
+std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
+                                             const FlankContactBatch& contacts, MeshGrids& grids,
+                                             const Target& target, const PointOptions& options,
+                                             PointStart start,
+                                             const std::optional<CarriedState>& from,
+                                             const HistoryRequest& history_request) {
+  const std::optional<OrbitSearch> search = search_from(system, target, options, start, from);
+  if (!search) return std::nullopt;
   MarchStatistics statistics;
   long cycles = 0;
   const std::optional<RefinedOrbit> refined =
-      refine_orbit(system, contacts, grids, search, statistics, cycles);
+      refine_orbit(system, contacts, grids, *search, statistics, cycles);
   if (!refined) return std::nullopt;
   const PeriodicOrbit& orbit = refined->orbit;
 
@@ -329,6 +339,66 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
   }
   result.warnings = range_warnings(scene, result);
   return result;
+}
+
+PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
+                                 const PointOptions& options) {
+  const Scene& scene = prepared.scene();
+  const Target target = target_of(scene, condition);
+  PreparedGearSet& gear_set = prepared.gear_set();
+  PointFigures out;
+  if (options.method == SteadyStateMethod::kAutomatic && options.model == PointModel::kFull &&
+      !scene.options.load_dependent_mesh_data) {
+    const FlankContactBatch& contacts = prepared.contacts();
+    GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
+                          scene.options);
+    system.set_torques(target.torques);
+    std::optional<OrbitSearch> search =
+        search_from(system, target, options, options.start, std::nullopt);
+    MarchStatistics statistics;
+    long cycles = 0;
+    std::optional<RefinedOrbit> found;
+    if (search) {
+      search->frictionless = &gear_set.frictionless_orbits();
+      found = refine_orbit(system, contacts, gear_set.grids(), *search, statistics, cycles);
+    }
+    if (found) {
+      const PeriodicOrbit& orbit = found->orbit;
+      const OrbitFigures& f = orbit.figures;
+      const double turned = orbit.period * system.cycle_angle();
+      const double torque = std::abs(orbit.torques.pinion);
+      out.pinion_torque = orbit.torques.pinion;
+      out.wheel_torque = orbit.torques.wheel;
+      out.inefficiency_rms = 100 * f.loss_rms / torque;
+      out.inefficiency_energy_mean = 100 * f.loss_energy / (torque * turned);
+      out.mesh_loss_power = f.loss_energy * target.mean_pinion_speed / turned;
+      out.dte_minimum = f.dte_minimum;
+      out.dte_maximum = f.dte_maximum;
+      out.contact_loss = orbit.contact_loss;
+      out.settled = true;
+      out.period_in_mesh_cycles = orbit.period;
+      out.estimated_relative_error = found->estimated_error;
+      out.contact_solutions = system.contact_solutions();
+      return out;
+    }
+  }
+  PointOptions plain = options;
+  plain.carried_state.reset();
+  plain.probe_coexisting_response = false;
+  plain.history = {};
+  const PointResult r = solve_prepared_point(prepared, condition, plain);
+  return {r.pinion_torque,
+          r.wheel_torque,
+          r.inefficiency_rms,
+          r.inefficiency_energy_mean,
+          r.mesh_loss_power,
+          r.dynamic_transmission_error.minimum,
+          r.dynamic_transmission_error.maximum,
+          r.contact_loss,
+          r.settled,
+          r.period_in_mesh_cycles,
+          r.estimated_relative_error,
+          r.statistics.contact_solutions};
 }
 
 }  // namespace tribodyn

@@ -188,4 +188,26 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
 PointResult solve_prepared_point(PreparedScene& scene, const OperatingCondition& condition,
                                  const PointOptions& options);
 
+/// The figures of a point that PointOptions::tolerance speaks of, and no others.
+struct PointFigures {
+  double pinion_torque = 0;                        ///< T_s [N m]
+  double wheel_torque = 0;                         ///< T_w [N m]
+  std::optional<double> inefficiency_rms;          ///< as in PointResult [%]
+  std::optional<double> inefficiency_energy_mean;  ///< [%]
+  double mesh_loss_power = 0;                      ///< mean [W]
+  double dte_minimum = 0, dte_maximum = 0;         ///< x [m]
+  bool contact_loss = false;
+  bool settled = false;
+  int period_in_mesh_cycles = 0;                   ///< 0: none found
+  std::optional<double> estimated_relative_error;  ///< absent: not estimated
+  long contact_solutions = 0;
+};
+
+/// For screening: as solve_prepared_point from PointOptions::start, to within the tolerance, but
+/// faster, and faster still where the prepared gear set has met the same speed and load before.
+/// That changes no bit. Histories and coexisting responses are not looked for; the start is never
+/// carried. Throws as solve_prepared_point does.
+PointFigures solve_point_figures(PreparedScene& scene, const OperatingCondition& condition,
+                                 const PointOptions& options);
+
 }  // namespace tribodyn

@@ -100,6 +100,18 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
         have_coarser ? 0.2 * search.tolerance : std::max(5 * search.tolerance, 1e-4);
     PeriodicOrbit orbit = have_coarser ? best.orbit : origin;
     const auto solve = [&] {
+      if (!have_coarser) {
+        const auto approach = [&] {
+          orbit = origin;
+          return approach_without_friction(system, contacts, grid, request, orbit, statistics,
+                                           marched_cycles);
+        };
+        if (search.frictionless == nullptr) {
+          if (!approach()) return false;
+        } else if (!search.frictionless->find(steps, request, origin, approach, orbit)) {
+          return false;
+        }
+      }
       return solve_periodic_orbit(system, contacts, grid, request, orbit, statistics,
                                   marched_cycles);
     };
@@ -118,8 +130,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
     if (!request.keep_contact) {
       // Newton's method leads to the response that is near; others are found by patience.
       for (const int cycles : {search.few_cycles, search.first_cycles}) {
-        request.first_cycles = have_coarser ? 0 : cycles;
-        if (!have_coarser) orbit = origin;
+        request.first_cycles = cycles;
         found = solve();
         if (found || have_coarser) break;
       }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include "core/dynamics/frictionless_orbits.h"
 #include "core/dynamics/periodic_orbit.h"
 
 namespace tribodyn {
@@ -17,6 +18,7 @@ struct OrbitSearch {
   int few_cycles = 12;              ///< periods marched from the start when there is none,
   int first_cycles = 60;            ///< and when that does not lead to any
   double tolerance = 1e-5;          ///< wanted, of the figures; see RefinedOrbit::estimated_error
+  FrictionlessOrbits* frictionless = nullptr;  ///< shared by lubricants; null: none
   std::function<bool()> interrupted;
 };
 

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "core/contact/flank_contact_batch.h"
+#include "core/dynamics/frictionless_orbits.h"
 #include "core/dynamics/mesh_grid.h"
 #include "core/study/scene.h"
 
@@ -20,11 +21,14 @@ class PreparedGearSet {
   const GearSet& gear_set() const { return gear_set_; }
   const MeshData& mesh() const { return mesh_; }
   MeshGrids& grids() { return grids_; }
+  /// For studies that meet the same speeds and loads with many lubricants.
+  FrictionlessOrbits& frictionless_orbits() { return frictionless_orbits_; }
 
  private:
   GearSet gear_set_;
   MeshData mesh_;
   MeshGrids grids_;
+  FrictionlessOrbits frictionless_orbits_;
 };
 
 /// A scene with everything that its points share. One thread at a time. Keeps the scene's
