@@ -155,12 +155,13 @@ SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, doub
 }
 
 double SectionMap::largest_multiplier() const {
+  if (largest_multiplier_ >= 0) return largest_multiplier_;
   Eigen::VectorXcd multipliers =
       Eigen::EigenSolver<Eigen::MatrixXd>(monodromy_, false).eigenvalues();
   Eigen::Index free = 0;
   (multipliers.array() - 1.0).abs().minCoeff(&free);
   multipliers(free) = 0;
-  return multipliers.cwiseAbs().maxCoeff();
+  return largest_multiplier_ = multipliers.cwiseAbs().maxCoeff();
 }
 
 bool approach_without_friction(GearPairSystem& system, const FlankContactBatch& contacts,
@@ -198,7 +199,7 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
   for (int sweep = 1; sweep < kMostSweeps; ++sweep) {
     // No better than the friction is known.
     const double enough =
-        std::max({1e-11, 0.1 * request.tolerance, 0.1 * orbit.contraction * last_change});
+        std::max({1e-11, 0.2 * request.tolerance, 0.1 * orbit.contraction * last_change});
     if (!shooting.converge(enough) || !shooting.evaluate_friction()) return finish(false);
     const double change = orbit.figures.distance(previous);
     previous = orbit.figures;

@@ -22,11 +22,13 @@ class SectionMap {
   /// Newton's step from a residual, both scaled.
   Vector step(const Vector& residual) const { return factors_.solve(-residual); }
   /// Floquet, modulus; but for the one nearest to 1: the train as a whole runs on at any speed.
+  /// Computed once; copies made after that know it.
   double largest_multiplier() const;
 
  private:
   Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
   Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;
+  mutable double largest_multiplier_ = -1;  // not computed yet
 };
 
 /// Where shooting begins, and what it has found so far.
