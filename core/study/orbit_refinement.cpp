@@ -87,9 +87,9 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
   bool have_coarser = false;
   double halving_difference = 0;
   double doubtful_pull = kClearPull;  // of the mean force: as little may be the steps' error
-  // Seven steps for an oscillation tell its height to some percent; fewer tell nothing.
+  // Six steps for an oscillation tell its height to some percent; fewer tell nothing.
   const double least =
-      std::max(7 * mesh_oscillations(system, search.mean_pinion_speed),
+      std::max(6.3 * mesh_oscillations(system, search.mean_pinion_speed),
                search.tolerance < kLoose || !search.try_contact_first ? 24.0 : 12.0);
   if (least > kFinest) return std::nullopt;
   const StepSequence sequence(system.mesh().intervals(), static_cast<int>(least));
