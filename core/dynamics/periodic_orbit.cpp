@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "core/dynamics/period_correction.h"
 
@@ -156,8 +157,9 @@ SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, doub
 
 double SectionMap::largest_multiplier() const {
   if (largest_multiplier_ >= 0) return largest_multiplier_;
-  Eigen::VectorXcd multipliers =
-      Eigen::EigenSolver<Eigen::MatrixXd>(monodromy_, false).eigenvalues();
+  Eigen::Matrix<std::complex<double>, kUnknowns - 1, 1> multipliers =
+      Eigen::EigenSolver<Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>>(monodromy_, false)
+          .eigenvalues();
   Eigen::Index free = 0;
   (multipliers.array() - 1.0).abs().minCoeff(&free);
   multipliers(free) = 0;

@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/study/speed_sweep.h"
+#include "tests/benchmark/measurements.h"
+#include "tests/support/contact_batch.h"
+#include "tests/support/realistic_contacts.h"
+#include "tests/support/reference_scene.h"
+
+// Screening: many fluids at 20 to 140 km/h by 10 and sumps of 20, 40 and 90 C on the reference gear
+// set from the static start, in units of a batch evaluation's time and over threads; and a whole
+// sweep in both directions against the time of its friction evaluations alone. Tolerance 1e-3.
+namespace tribodyn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::vector<Scene> candidates(int fluids) {
+  std::mt19937_64 random(20261121);
+  const auto vary = [&](double& value, double share) {
+    value *= std::uniform_real_distribution<double>(1 - share, 1 + share)(random);
+  };
+  const Scene base = reference_scene();
+  std::vector<Scene> out;
+  for (int i = 0; i < fluids; ++i) {
+    Scene scene = base;
+    scene.lubricant = reference_lubricant(1 + i % 3);
+    vary(scene.lubricant.vogel_viscosity_prefactor, 0.1);
+    vary(scene.lubricant.pressure_viscosity_coefficient, 0.1);
+    vary(scene.lubricant.relaxation_time, 0.3);
+    vary(scene.lubricant.limiting_shear_stress_coefficient, 0.1);
+    vary(scene.boundary.asperity_friction_coefficient, 0.1);
+    for (const double sump : {20.0, 40.0, 90.0}) {
+      scene.sump_temperature = sump + 273.15;
+      out.push_back(scene);
+    }
+  }
+  return out;
+}
+
+struct Work {
+  long points = 0, contacts = 0, marched = 0;
+  double seconds = 0;
+};
+
+Work screen(const std::vector<Scene>& scenes, int threads) {
+  std::atomic<std::size_t> next{0};
+  std::atomic<long> points{0}, contacts{0}, marched{0};
+  const auto start = Clock::now();
+  const auto work = [&] {
+    constexpr std::size_t kShard = 15;
+    const auto gear_set =
+        std::make_shared<PreparedGearSet>(scenes[0].gear_set, scenes[0].solid, scenes[0].options);
+    for (;;) {
+      const std::size_t first = next.fetch_add(kShard);
+      if (first >= scenes.size()) return;
+      for (std::size_t i = first; i < std::min(first + kShard, scenes.size()); ++i) {
+        PreparedScene prepared(scenes[i], gear_set);
+        for (double speed = 20; speed <= 140; speed += 10) {
+          OperatingCondition condition;
+          condition.vehicle_speed = speed / 3.6;
+          const PointFigures r = solve_point_figures(prepared, condition, {});
+          ++points;
+          contacts += r.contact_solutions;
+          marched += !r.estimated_relative_error;
+        }
+      }
+    }
+  };
+  std::vector<std::thread> pool;
+  for (int i = 0; i < threads; ++i) pool.emplace_back(work);
+  for (std::thread& thread : pool) thread.join();
+  return {points, contacts, marched, seconds_since(start)};
+}
+
+/// Friction of contacts of the reference gear set, 256 at a time [s].
+double seconds_per_evaluation() {
+  const Scene scene = reference_scene();
+  std::vector<ContactConditions> conditions;
+  for (double speed = 20; speed <= 140; speed += 10) {
+    const auto more = realistic_contacts(scene, speed, 40).conditions;
+    conditions.insert(conditions.end(), more.begin(), more.end());
+  }
+  conditions.resize(conditions.size() / 256 * 256);
+  ContactArrays arrays(conditions, scene.solid, scene.options);
+  const FlankContactBatch batch(contact_model(scene));
+  constexpr int kRounds = 40;
+  const auto start = Clock::now();
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t first = 0; first < arrays.size(); first += 256) {
+      batch.solve(arrays.geometries(), first, 256, arrays.conditions(first),
+                  arrays.friction(first));
+    }
+  }
+  return seconds_since(start) / (static_cast<double>(arrays.size()) * kRounds);
+}
+
+Work sweep() {
+  const Scene scene = reference_scene();
+  std::vector<double> speeds;
+  for (int half = 40; half <= 280; ++half) speeds.push_back(0.5 * half / 3.6);
+  Work out;
+  const auto start = Clock::now();
+  for (const SweepDirection direction : {SweepDirection::kUp, SweepDirection::kDown}) {
+    SweepOptions options;
+    options.direction = direction;
+    for (const SweepPoint& at : sweep_speed(scene, speeds, 0, options)) {
+      ++out.points;
+      out.contacts += at.result->statistics.contact_solutions;
+      out.marched += at.result->method == SteadyStateMethod::kMarch;
+    }
+  }
+  out.seconds = seconds_since(start);
+  return out;
+}
+
+int run(const std::string& path, int fluids, int turns) {
+  const std::vector<Scene> scenes = candidates(fluids);
+  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  std::vector<double> evaluation, per_point, over_threads, sweep_ratio, rate, contacts;
+  Work alone, swept;
+  for (int turn = 0; turn < turns; ++turn) {
+    evaluation.push_back(seconds_per_evaluation());
+    alone = screen(scenes, 1);
+    const Work together = screen(scenes, std::min(4, processors));
+    swept = sweep();
+    evaluation.push_back(seconds_per_evaluation());
+    const double unit = 0.5 * (evaluation.back() + evaluation[evaluation.size() - 2]);
+    per_point.push_back(alone.seconds / static_cast<double>(alone.points) / unit);
+    rate.push_back(static_cast<double>(alone.points) / alone.seconds);
+    over_threads.push_back(alone.seconds / together.seconds);
+    sweep_ratio.push_back(swept.seconds / (static_cast<double>(swept.contacts) * unit));
+  }
+  const auto mean = [](long sum, long count) {
+    return static_cast<double>(sum) / static_cast<double>(count);
+  };
+  std::vector<Measurement> out = {
+      {"batch evaluation", 1e9 * median(evaluation), "ns/contact", {}},
+      {"screening, time of a point", median(per_point), "batch evaluations", 450.0},
+      {"screening, friction evaluations of a point", mean(alone.contacts, alone.points), "-", {}},
+      {"screening, points marched and not estimated", mean(alone.marched, alone.points), "share", {}},
+      {"screening, points a second on one thread", median(rate), "1/s", 40000.0, false},
+      {"sweep 20 to 140 km/h by 0.5 both ways, over its friction evaluations alone",
+       median(sweep_ratio), "-", 3.0},
+      {"sweep, friction evaluations of a point", mean(swept.contacts, swept.points), "-", {}},
+      {"sweep, points marched", mean(swept.marched, swept.points), "share", {}}};
+  if (processors >= 4) {
+    out.push_back({"screening, 4 threads over one", median(over_threads), "-", 3.6, false});
+  }
+  std::printf("%s; %zu scenes, medians of %d turns\n", machine_name().c_str(), scenes.size(),
+              turns);
+  print(out);
+  if (!path.empty()) record(path, out);
+  return 0;
+}
+
+}  // namespace
+}  // namespace tribodyn
+
+/// usage: screening_benchmark [results.json [fluids [turns]]]
+int main(int count, char** arguments) try {
+  return tribodyn::run(count > 1 ? arguments[1] : "", count > 2 ? std::atoi(arguments[2]) : 1000,
+                       count > 3 ? std::atoi(arguments[3]) : 3);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "screening_benchmark: %s\n", error.what());
+  return 1;
+}
