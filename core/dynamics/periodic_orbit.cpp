@@ -39,9 +39,11 @@ class Shooting {
 
   /// Marches on, with the torque that the train's momentum asks for and the mean speed put back.
   bool let_run(int cycles) {
+    constexpr int kRenewal = 20;
     for (int i = 0; i < cycles; ++i) {
       MarchState y = orbit_.state;
       if (!march(y, nullptr)) return false;
+      if (request_.renew_friction && i % kRenewal == 0 && !evaluate_friction()) return false;
       correct_period(system_, orbit_.state, orbit_.period, request_.mean_pinion_speed,
                      request_.solve_wheel_torque, y);
       orbit_.state = y;

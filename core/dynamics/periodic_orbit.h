@@ -57,9 +57,10 @@ inline constexpr double kClearPull = 0.02;
 struct OrbitRequest {
   double mean_pinion_speed = 0;     ///< held exactly [rad/s]
   bool solve_wheel_torque = false;  ///< T_w is the unknown instead of T_s
-  bool keep_contact = false;  ///< flanks stay together whatever the force: the linear response
-  int first_cycles = 0;       ///< periods marched before shooting without friction
-  double tolerance = 1e-6;    ///< of the figures, relative: sweeps go on until then
+  bool keep_contact = false;    ///< flanks stay together whatever the force: the linear response
+  int first_cycles = 0;         ///< periods marched before shooting without friction,
+  bool renew_friction = false;  ///< or with, evaluated anew now and then
+  double tolerance = 1e-6;      ///< of the figures, relative: sweeps go on until then
   std::function<bool()> interrupted;  ///< true: throws Cancelled
 };
 

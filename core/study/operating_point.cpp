@@ -173,6 +173,7 @@ std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Targe
     search.start = carried_start(system, *from, target.mean_pinion_speed);
     search.period = from->period;
     search.try_contact_first = !from->contact_loss;
+    search.few_cycles = from->contact_loss ? 0 : search.few_cycles;  // it is near
   } else {
     const bool loud = start == PointStart::kLargeVibration;
     search.start =

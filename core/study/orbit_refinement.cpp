@@ -6,8 +6,9 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kSafety = 2;    // on the error that two step lengths tell
-constexpr int kPatience = 100;   // periods
+constexpr double kSafety = 2;   // on the error that two step lengths tell
+constexpr int kPatience = 300;  // periods
+constexpr int kMostFailures = 3;
 constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
 constexpr int kFinest = 4000;    // steps per mesh cycle
 
@@ -76,6 +77,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
   request.mean_pinion_speed = search.mean_pinion_speed;
   request.solve_wheel_torque = search.solve_wheel_torque;
   request.interrupted = search.interrupted;
+  request.renew_friction = search.renew_friction;
   request.keep_contact = search.try_contact_first;
 
   PeriodicOrbit origin;
@@ -85,6 +87,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
 
   RefinedOrbit best;
   bool have_coarser = false;
+  int failures = 0;
   double halving_difference = 0;
   double doubtful_pull = kClearPull;  // of the mean force: as little may be the steps' error
   // Six steps for an oscillation tell its height to some percent; fewer tell nothing.
@@ -130,13 +133,16 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
     if (!request.keep_contact) {
       // Newton's method leads to the response that is near; others are found by patience.
       for (const int cycles : {search.few_cycles, search.first_cycles}) {
+        if (found) break;
         request.first_cycles = cycles;
         found = solve();
-        if (found || have_coarser) break;
+        if (have_coarser || search.few_cycles == search.first_cycles) break;
       }
     }
     if (!found) {
-      if (system.take_refusal() != ContactStatus::kOk) return std::nullopt;
+      if (system.take_refusal() != ContactStatus::kOk || ++failures == kMostFailures) {
+        return std::nullopt;
+      }
       have_coarser = false;
       continue;
     }
@@ -178,7 +184,7 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
   constexpr int kLongestPeriod = 4;
   OrbitSearch next = search;
   const Torques torques = system.torques();
-  for (;; next.period *= 2) {
+  for (bool patient = false;; patient = true) {
     bool repels = false;
     system.set_torques(torques);
     auto found = refine(system, contacts, grids, next, repels, statistics, marched_cycles);
@@ -188,10 +194,15 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
       next.few_cycles = next.first_cycles = 1;
       found = refine(system, contacts, grids, next, repels, statistics, marched_cycles);
     }
-    if (found || !repels || 2 * next.period > kLongestPeriod) return found;
-    // Periods double where a response begins to repel; the new one is reached by patience.
+    if (found || (patient && !repels) || 2 * next.period > kLongestPeriod) return found;
+    // Periods double where a response begins to repel, and a branch may end between neighbours: to
+    // what follows patience leads.
+    if (repels) next.period *= 2;
+    if (!repels && search.try_contact_first) return found;
     next.try_contact_first = false;
     next.few_cycles = next.first_cycles = kPatience;
+    next.renew_friction = true;
+    next.frictionless = nullptr;
   }
 }
 

@@ -22,11 +22,11 @@
 // marching by common integrators, all with the same batch friction kernel in one run.
 //
 // Marching starts from the static equilibrium, corrects T_s and the mean speed after every mesh
-// cycle, discards cycles until the RMS inefficiency of each cycle is and stays within the error, and
-// records one more. It is told the right answer to know when to stop, and judged by that one figure;
-// this solver starts as cold, must find out by itself when to stop, and is judged by the worst of
-// both inefficiencies, torque and extremes of the transmission error. The truth is the event-exact
-// march at a tolerance of 1e-10. Times are medians of interleaved turns.
+// cycle, discards cycles until the RMS inefficiency of each cycle is and stays within the error,
+// and records one more. It is told the right answer to know when to stop, and judged by that one
+// figure; this solver starts as cold, must find out by itself when to stop, and is judged by the
+// worst of both inefficiencies, torque and extremes of the transmission error. The truth is the
+// event-exact march at a tolerance of 1e-10. Times are medians of interleaved turns.
 namespace tribodyn {
 namespace {
 
@@ -100,14 +100,13 @@ Transient march(PreparedScene& scene, const Place& place, const MarchingSolver& 
   system.solve_together(&scene.contacts());
   const double ratio =
       static_cast<double>(system.mesh().pinion_teeth()) / system.mesh().gear_teeth();
-  const double wheel =
-      wheel_torque(scene.scene().vehicle, place.kilometers_per_hour / 3.6, 0, 0);
+  const double wheel = wheel_torque(scene.scene().vehicle, place.kilometers_per_hour / 3.6, 0, 0);
   Transient out;
   const auto start = Clock::now();
   system.set_torques({wheel * ratio, wheel});
   const double speed = truth.mean_pinion_speed;
-  MarchState state = static_start(system, speed, 0, 0,
-                                  place.start == PointStart::kLargeVibration ? 60e-6 : 0);
+  MarchState state =
+      static_start(system, speed, 0, 0, place.start == PointStart::kLargeVibration ? 60e-6 : 0);
   ScaledProblem problem(system, speed);
   const CycleStepper step = solver.make(problem, accuracy);
   int settled = 0;
@@ -244,12 +243,14 @@ int run(const std::string& results, const std::string& table, int turns) {
     }
     out.push_back({std::string("shooting, ") + place.name + " km/h", best.at(kShooting), "us", {}});
     out.push_back({std::string("CVODE Adams over shooting, ") + place.name + " km/h",
-                   baseline / best.at(kShooting), "-", {}});
+                   baseline / best.at(kShooting),
+                   "-",
+                   {}});
   }
   out.push_back({"CVODE Adams over shooting, smooth points, error 1e-3", middle(ratios[false]), "-",
                  200, false});
-  out.push_back({"CVODE Adams over shooting, vibro-impact points, error 1e-4",
-                 middle(ratios[true]), "-", 60, false});
+  out.push_back({"CVODE Adams over shooting, vibro-impact points, error 1e-4", middle(ratios[true]),
+                 "-", 60, false});
   out.push_back({"shooting, smooth points, error 1e-3", middle(times[false]), "us", 30.0});
   out.push_back({"shooting, vibro-impact points, error 1e-4", middle(times[true]), "us", 300.0});
   std::printf("\n");

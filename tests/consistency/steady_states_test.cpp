@@ -116,7 +116,8 @@ TEST(SteadyStates, TheDoubledPeriodIsFollowedDownToWhereTheSingleOneAttractsToo)
     EXPECT_EQ(at.result->period_in_mesh_cycles, 2);
     EXPECT_TRUE(at.result->contact_loss);
     EXPECT_LT(at.result->statistics.largest_multiplier, 1);
-    EXPECT_LE(at.result->statistics.mesh_cycles, 400);
+    // Marching with friction in the loop takes some 200,000.
+    EXPECT_LE(at.result->statistics.contact_solutions, 10000);
   }
 }
 
@@ -126,7 +127,7 @@ TEST(SteadyStates, ARepellingOrbitIsLeft) {
   const PointResult r = point(149.5);
   EXPECT_TRUE(r.settled);
   EXPECT_EQ(r.period_in_mesh_cycles, 2);
-  EXPECT_LE(r.statistics.mesh_cycles, 1500);
+  EXPECT_LE(r.statistics.contact_solutions, 30000);  // marching takes some 500,000
 }
 
 TEST(SteadyStates, WithoutWorkToSettleTheAnswerSaysSo) {
