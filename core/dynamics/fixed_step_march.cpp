@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "core/numerics/bracketed_root.h"
 
 namespace tribodyn {
 namespace {
@@ -164,26 +167,16 @@ double peak_of(const std::array<double, 2>& first, const std::array<double, 2>& 
   return 0;
 }
 
-/// Length at which a function passes through zero, from `first` at 0 to `last` > 0 at `high`:
-/// regula falsi with bisection now and then.
+/// Length at which a function passes through zero, from `first` at 0 to `last` > 0 at `high`.
 template <class Function>
 double root_of(double first, double last, double high, Function&& at) {
-  double low = 0, g_low = std::min(first, 0.0), g_high = last, x = high;
   const double nearest = 1e-6 * high;  // what has just happened is zero at the start
-  for (int k = 0; k < 60 && high - low > 1e-15; ++k) {
-    x = g_low < 0 ? low - g_low * (high - low) / (g_high - g_low) : 0.5 * (low + high);
-    if (k % 4 == 3 || !(x > low && x < high)) x = 0.5 * (low + high);
-    const double value = at(x);
-    if (value > 0) {
-      high = x;
-      g_high = value;
-    } else {
-      low = x;
-      g_low = value;
-    }
-    if (std::abs(value) <= kNothing && x > nearest) break;
-  }
-  return x;
+  return bracketed_root(
+      [&](double x) {
+        const double value = at(x);
+        return std::abs(value) <= kNothing && x > nearest ? 0 : value;
+      },
+      0, high, std::min(first, -std::numeric_limits<double>::min()), last);
 }
 
 }  // namespace

@@ -29,14 +29,17 @@ double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed)
 /// step has a kink inside.
 class StepSequence {
  public:
-  StepSequence(int intervals, int least) : intervals_(intervals), coarsest_(intervals) {
-    while (coarsest_ % 2 == 0 && coarsest_ / 2 >= least) coarsest_ /= 2;
-    while (coarsest_ < least) coarsest_ *= 2;
+  StepSequence(int intervals, int least) : intervals_(intervals), coarsest_(least) {
+    while (coarsest_ < intervals && intervals % coarsest_ != 0) ++coarsest_;
+    if (coarsest_ > intervals) {
+      coarsest_ = intervals;
+      while (coarsest_ < least) coarsest_ *= 2;
+    }
   }
   int first() const { return coarsest_; }
   int after(int steps) const {
     if (steps == coarsest_) return coarsest_ * 5 / 3;
-    if (steps % intervals_ == 0 || 4 * steps < intervals_) return 2 * steps;
+    if (steps % intervals_ == 0 || 3 * steps <= intervals_) return 2 * steps;
     int next = intervals_;
     while (next < 2 * steps) next *= 2;
     return next;
@@ -90,9 +93,9 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
   int failures = 0;
   double halving_difference = 0;
   double doubtful_pull = kClearPull;  // of the mean force: as little may be the steps' error
-  // Six steps for an oscillation tell its height to some percent; fewer tell nothing.
+  // Seven steps for an oscillation tell its height to some percent; fewer tell nothing.
   const double least =
-      std::max(6.3 * mesh_oscillations(system, search.mean_pinion_speed),
+      std::max(7 * mesh_oscillations(system, search.mean_pinion_speed),
                search.tolerance < kLoose || !search.try_contact_first ? 24.0 : 12.0);
   if (least > kFinest) return std::nullopt;
   const StepSequence sequence(system.mesh().intervals(), static_cast<int>(least));
