@@ -160,7 +160,9 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   for (int i = 0; i < count; ++i) {
     const RandomPlace place = random_place(random);
     PointOptions options;
-    options.tolerance = std::pow(10, -std::uniform_real_distribution<double>(2, 6)(random));
+    if (i % 2 == 1) {
+      options.tolerance = std::pow(10, -std::uniform_real_distribution<double>(2, 6)(random));
+    }
     try {
       const PointResult r = solve_operating_point(place.scene, place.condition, options);
       if (r.method != SteadyStateMethod::kShooting) continue;
@@ -175,7 +177,7 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
       const double error = true_error(r, exact), estimate = r.estimated_relative_error.value();
       EXPECT_LT(error, std::max(options.tolerance, 2 * estimate)) << "scene " << i;
       above += error > std::max(estimate, 1e-8);
-      over.push_back(estimate / std::max(error, 1e-12));
+      if (i % 2 == 0) over.push_back(estimate / std::max(error, 1e-12));
     } catch (const Refusal& refusal) {
       EXPECT_NE(refusal.reason(), "NOT_FINITE");
     }
@@ -183,11 +185,11 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   std::sort(over.begin(), over.end());
   const double median = over[over.size() / 2];
   std::cout << shot << " of " << count << " by shooting, " << above
-            << " err more than estimated, median of estimate over error " << median << '\n';
+            << " err more than estimated, median of estimate over error by default " << median << '\n';
   EXPECT_GT(shot, 0.85 * count);
-  EXPECT_LE(above, std::max(2.0, 0.02 * count));
+  EXPECT_LE(above, std::max(1.0, 0.01 * count));
   EXPECT_GT(median, 1);
-  EXPECT_LT(median, 20);
+  EXPECT_LT(median, full_run() ? 10 : 20);  // few scenes scatter
 }
 
 TEST(ShootingHistories, AreThoseOfTheMarch) {
