@@ -181,7 +181,8 @@ out_is_json
 out_has '"totalRows": "16"'
 
 echo "--- jobs"
-long=(--lubricant 1 --first-speed 20 --last-speed 140 --speed-step 0.2 --relative-tolerance 1e-11)
+long=(--lubricant 1 --first-speed 20 --last-speed 140 --speed-step 0.2 --method march \
+  --relative-tolerance 1e-11 --settling-tolerance 1e-12)
 expect 0 curve "${long[@]}" --detach
 job=$(sed -n 's,^simulations/\([^ ]*\) .*,\1,p' "$folder/out")
 [ -n "$job" ] || fail "no name from --detach"

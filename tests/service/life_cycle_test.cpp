@@ -381,11 +381,8 @@ TEST_F(LifeCycle, WhatKillsItsServerThreeTimesFailsWithTheCause) {
 
 TEST_F(LifeCycle, ACancelTakesEffectAtOnceAndFreesTheProcessor) {
   Bench bench(StudyFunctions(), 1);  // the core's own
-  v1::Simulation endless = curve_simulation();
-  auto* curve = endless.mutable_inefficiency_curve();
-  curve->set_speed_step_kilometers_per_hour(0.125);
   for (int round = 0; round < 10; ++round) {
-    endless.mutable_solver_options()->set_method(round % 2 == 0 ? v1::MARCH : v1::AUTOMATIC);
+    v1::Simulation endless = long_simulation(round % 2 == 0 ? v1::MARCH : v1::AUTOMATIC);
     endless.set_sump_temperature_celsius(40 + round);
     const std::string name = bench.create(endless);
     ASSERT_TRUE(bench.reaches(name, State::RUNNING));
