@@ -1,6 +1,7 @@
 #include "server/convert/cost_estimate.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tribodyn::server {
 namespace {
@@ -11,10 +12,12 @@ struct Work {
   double seconds_each = 0;
 };
 
-constexpr Work kQuasiStaticPoint{4000, 5e-6};
-constexpr Work kShotPoint{5000, 9e-6};
-constexpr Work kMarchedCycle{2500, 4e-6};
-constexpr double kUsualMarchedCycles = 50;
+constexpr Work kQuasiStaticPoint{4000, 4e-6};
+constexpr Work kShotPoint{430, 0.4e-6};  // at the tolerance
+constexpr double kShotTolerance = 1e-3;
+constexpr double kShotOrder = 0.35;  // contact solutions grow so with a sharper one
+constexpr Work kMarchedCycle{2300, 1e-6};
+constexpr double kUsualMarchedCycles = 35;
 constexpr int kFlanks = 3;
 
 void add(const Work& work, double count, v1::CostEstimate& out) {
@@ -23,11 +26,11 @@ void add(const Work& work, double count, v1::CostEstimate& out) {
   out.set_processor_seconds(out.processor_seconds() + solutions * work.seconds_each);
 }
 
-void add_points(double points, v1::PointModel model, v1::PointStart start,
-                const v1::SolverOptions& solver, v1::CostEstimate& out) {
+void add_points(double points, v1::PointModel model, const v1::SolverOptions& solver,
+                v1::CostEstimate& out) {
   if (model == v1::QUASI_STATIC) return add(kQuasiStaticPoint, points, out);
-  if (solver.method() != v1::MARCH && start != v1::LARGE_VIBRATION) {
-    return add(kShotPoint, points, out);
+  if (solver.method() != v1::MARCH) {
+    return add(kShotPoint, points * std::pow(kShotTolerance / solver.tolerance(), kShotOrder), out);
   }
   add(kMarchedCycle, points * std::min<double>(kUsualMarchedCycles, solver.maximum_mesh_cycles()),
       out);
@@ -40,13 +43,13 @@ v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
   const v1::SolverOptions& solver = effective.solver_options();
   if (effective.has_inefficiency_curve()) {
     const v1::InefficiencyCurveStudy& curve = effective.inefficiency_curve();
-    add_points(curve.speeds_kilometers_per_hour_size(), curve.model(), curve.start(), solver, out);
+    add_points(curve.speeds_kilometers_per_hour_size(), curve.model(), solver, out);
     return out;
   }
   const v1::OperatingPointStudy& point = effective.operating_point();
-  add_points(1, point.model(), point.start(), solver, out);
+  add_points(1, point.model(), solver, out);
   if (point.probe_coexisting_response()) {
-    add_points(1, point.model(), v1::LARGE_VIBRATION, solver, out);
+    add_points(1, point.model(), solver, out);
   }
   if (point.has_history()) {
     const double rows =

@@ -11,8 +11,7 @@ namespace tribodyn::server {
 namespace {
 
 constexpr double kSolverTolerance = 1e-6;
-/// Far above what that and round-off leave open, far below what a wrong law
-/// does.
+/// Far above what that and round-off leave open, far below what a wrong law does.
 constexpr double kRelativeTolerance = 1e-4;
 
 struct Figure {

@@ -124,12 +124,13 @@ echo "--- point"
 expect 0 point --lubricant 1 --speed-kilometers-per-hour 72.5 --progress lines
 for part in 'inefficiency, energy mean +[0-9.]+ %' 'inefficiency, RMS' 'mesh loss +[0-9.]+ W' \
   'film ratio lambda' 'contact loss' 'model version' 'input hash +[0-9a-f]{64}' \
-  'estimated relative error' 'right-hand sides' 'assumed'; do
+  'estimated error +0\.[0-9]+ +%' 'right-hand sides' 'assumed'; do
   out_has "$part"
 done
 err_has 'lubricants/1: succeeded'
 expect 0 point --lubricant 1 --speed 50 --model quasi-static --isothermal --assumptions
 out_has 'model used +quasi-static'
+out_has 'estimated error +not estimated'
 out_has 'model: isothermal'
 out_has 'asperity_radius_metres'
 expect 0 point --lubricant 1 --speed 50 --model quasi-static --output csv
@@ -148,6 +149,8 @@ echo "--- curve"
 expect 0 curve --lubricant 1 --lubricant 2,3 --first-speed 40 --last-speed 60 --speed-step 10 \
   --model quasi-static --csv "$folder/curve.csv" --plot "$folder/curve.svg"
 out_has 'lubricants/3: inefficiency curve from 40 to 60 km/h'
+out_has 'error of 3 of the speeds is not estimated'
+head -1 "$folder/curve.csv" | grep -q ',estimated_relative_error,' || fail "curve.csv without errors"
 [ "$(wc -l <"$folder/curve.csv")" -eq 10 ] || fail "curve.csv has not 1 + 9 lines"
 grep -q '</svg>' "$folder/curve.svg" || fail "curve.svg is not whole"
 if command -v rsvg-convert >/dev/null; then
@@ -181,7 +184,8 @@ out_is_json
 out_has '"totalRows": "16"'
 
 echo "--- jobs"
-long=(--lubricant 1 --first-speed 20 --last-speed 140 --speed-step 0.2 --relative-tolerance 1e-11)
+long=(--lubricant 1 --first-speed 20 --last-speed 140 --speed-step 0.2 --method march \
+  --relative-tolerance 1e-11 --settling-tolerance 1e-12)
 expect 0 curve "${long[@]}" --detach
 job=$(sed -n 's,^simulations/\([^ ]*\) .*,\1,p' "$folder/out")
 [ -n "$job" ] || fail "no name from --detach"

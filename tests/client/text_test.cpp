@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -14,6 +16,7 @@
 #include "client/cpp/report/curve_report.h"
 #include "client/cpp/report/history_report.h"
 #include "client/cpp/report/point_report.h"
+#include "client/cpp/report/precision.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/output.h"
 #include "client/cpp/text/progress.h"
@@ -38,6 +41,14 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+/// Blanks in a row as one.
+std::string squeezed(const std::string& text) {
+  std::string out;
+  std::unique_copy(text.begin(), text.end(), std::back_inserter(out),
+                   [](char a, char b) { return a == ' ' && b == ' '; });
+  return out;
+}
+
 TEST(Text, NumbersAreRoundedAndNeverNegativeZero) {
   EXPECT_EQ(fixed(-0.0004, 2), "0.00");
   EXPECT_EQ(fixed(1.005e3, 1), "1005.0");
@@ -45,6 +56,10 @@ TEST(Text, NumbersAreRoundedAndNeverNegativeZero) {
   EXPECT_EQ(significant(1.23456789e7, 3), "1.23e+07");
   EXPECT_EQ(shortest(0.1), "0.1");
   EXPECT_EQ(shortest(-std::numeric_limits<double>::infinity()), "-Infinity");
+  EXPECT_EQ(duration_text(0), "0.0 s");
+  EXPECT_EQ(duration_text(0.00042), "0.4 ms");
+  EXPECT_EQ(duration_text(0.035), "35 ms");
+  EXPECT_EQ(duration_text(0.9996), "1.0 s");
   EXPECT_EQ(duration_text(3.25), "3.2 s");
   EXPECT_EQ(duration_text(125), "2 min 05 s");
   EXPECT_EQ(duration_text(3720), "1 h 02 min");
@@ -123,10 +138,10 @@ TEST(Csv, UnsetOptionalIsEmptyNotZero) {
 }
 
 TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
-  const std::string text = point_report(sample_point(), false);
+  const std::string text = squeezed(point_report(sample_point(), false));
   for (const char* part :
        {"Mesh loss (conjunctional", "inefficiency, energy mean", "eq 30", "72.5 km/h", "T_s",
-        "film ratio lambda", "contact loss                 yes", "0.6000 ms", "1.2e-06", "abc123",
+        "film ratio lambda", "contact loss yes", "0.600 ms", "estimated error 0.00012 %", "abc123",
         "tribodyn-model-2", "isothermal, as published eq17_atan", "FILM_RATIO_LOW",
         "Another steady state", "1 assumed (all: --assumptions)"}) {
     EXPECT_TRUE(holds(text, part));
@@ -140,7 +155,34 @@ TEST(PointReport, SaysWhatWasNotEstimated) {
   v1::Simulation simulation = sample_point();
   auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
   result.clear_estimated_relative_error();
-  EXPECT_TRUE(holds(point_report(simulation, false), "not estimated"));
+  const std::string text = squeezed(point_report(simulation, false));
+  EXPECT_TRUE(holds(text, "estimated error not estimated"));
+  EXPECT_TRUE(holds(text, "three digits are given"));
+  EXPECT_TRUE(holds(text, "inefficiency, energy mean 1.33 %"));
+}
+
+TEST(PointReport, GivesNoMoreDigitsThanTheErrorBears) {
+  v1::Simulation simulation = sample_point();
+  auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
+  result.set_inefficiency_energy_mean_percent(1.325178);
+  result.set_pinion_torque_newton_metres(33.15439);
+  result.mutable_dynamic_transmission_error_metres()->set_minimum(1.23456e-6);
+  result.mutable_maximum_pressure_pascals()->set_maximum(6.0164e8);
+  const auto report = [&](double error) {
+    result.set_estimated_relative_error(error);
+    return squeezed(point_report(simulation, false));
+  };
+  const std::map<double, std::vector<const char*>> expected = {
+      {5e-3, {"estimated error 0.5 %", "energy mean 1.3 %", "T_s 33 N m", "1 80 90"}},
+      {2e-4, {"estimated error 0.02 %", "energy mean 1.325 %", "T_s 33.2 N m", "1.2 80.0 90.0"}},
+      {1e-6, {"energy mean 1.3252 %", "T_s 33.154 N m", "1.235 80.000 90.000"}}};
+  for (const auto& [error, parts] : expected) {
+    const std::string text = report(error);
+    for (const char* part : parts) EXPECT_TRUE(holds(text, part)) << error;
+  }
+  EXPECT_TRUE(holds(report(1e-6), "0.500 0.602"));
+  simulation.mutable_solver_options()->set_tolerance(1e-5);
+  EXPECT_TRUE(holds(report(1e-6), "0.5000 0.6016"));
 }
 
 TEST(CurveReport, HasOneLineASpeedAndSaysWhyOneIsMissing) {
@@ -157,6 +199,63 @@ TEST(CurveReport, HasOneLineASpeedAndSaysWhyOneIsMissing) {
         "30, 35 km/h: no steady state within 4000 mesh cycles [WORK_LIMIT]", "yes", "mesh loss"}) {
     EXPECT_TRUE(holds(text, part));
   }
+}
+
+TEST(CurveReport, EstimatesStandBesideTheFigures) {
+  v1::Simulation curve = sample_curve("2", 1);
+  auto& points = *curve.mutable_result()->mutable_points();
+  points[0].mutable_result()->set_estimated_relative_error(3e-4);
+  const std::string text = squeezed(curve_report(curve, false));
+  EXPECT_TRUE(holds(text, "estimated %"));
+  EXPECT_TRUE(holds(text, " 20 1.350 1.391 0.03 5.8 "));
+  EXPECT_TRUE(holds(text, " 25 1.34 1.38 - 7.5 "));
+  EXPECT_TRUE(holds(text, "error of 24 of the speeds is not estimated"));
+  EXPECT_TRUE(holds(points_csv({curve}), ",estimated_relative_error,"));
+  EXPECT_TRUE(holds(points_csv({curve}), ",3e-04,"));
+}
+
+/// Half a unit of the last digit of a number in fixed notation or with an exponent.
+double half_unit(const std::string& text) {
+  const std::size_t exponent = text.find('e');
+  const std::string digits = text.substr(0, exponent);
+  const std::size_t point = digits.find('.');
+  const auto places = point == std::string::npos ? 0 : static_cast<int>(digits.size() - point) - 1;
+  const int power = exponent == std::string::npos ? 0 : std::stoi(text.substr(exponent + 1));
+  return 0.5 * std::pow(10, power - places);
+}
+
+TEST(Precision, HalfAUnitOfTheLastDigitIsNotBelowTheError) {
+  v1::PointResult result;
+  for (const double error : {3e-9, 1e-6, 9.9e-5, 2e-4, 1e-3, 5e-3, 0.03}) {
+    result.set_estimated_relative_error(error);
+    const Precision precision({}, result);
+    for (double value = 1.234567e-2; value < 1e7; value *= 1.71) {
+      for (const double signed_value : {value, -value}) {
+        const std::string text = precision.estimated(signed_value, 4);
+        const double shown = std::stod(text);
+        const double unit = half_unit(text);
+        EXPECT_LE(std::abs(shown - signed_value), unit * (1 + 1e-9)) << text;
+        const bool has_two_digits = unit > 0.5 * 0.0099 * value;
+        EXPECT_TRUE(unit * (1 + 1e-6) >= error * value || has_two_digits)
+            << text << " of " << value;
+        // And no more is taken away than need be.
+        EXPECT_TRUE(unit <= 0.50001e-4 || unit / 10 < error * value) << text << " of " << value;
+      }
+    }
+  }
+}
+
+TEST(Precision, WhatIsNotEstimatedHasThreeDigits) {
+  const v1::PointResult result;
+  const Precision precision({}, result);
+  EXPECT_EQ(precision.error_percent(), "-");
+  EXPECT_EQ(precision.estimated(1.38456, 4), "1.38");
+  EXPECT_EQ(precision.estimated(9.9996, 4), "10.0");
+  EXPECT_EQ(precision.estimated(0, 2), "0.00");
+  EXPECT_EQ(precision.estimated(5321, 1), "5.32e+03");
+  EXPECT_EQ(precision.other(0.00456, 3), "0.005");
+  EXPECT_EQ(precision.other(std::nan(""), 3), "-");
+  EXPECT_EQ(precision.part(0.0123, 91.4, 2), "0.0");
 }
 
 TEST(HistoryReport, SummaryAndCsv) {

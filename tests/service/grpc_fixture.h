@@ -81,19 +81,6 @@ class GrpcTest : public testing::Test {
     return events;
   }
 
-  /// So many points that it will not end on its own while a test runs.
-  static v1::Simulation long_simulation() {
-    v1::Simulation simulation = curve_simulation();
-    auto* curve = simulation.mutable_inefficiency_curve();
-    curve->set_first_speed_kilometers_per_hour(60);
-    curve->set_last_speed_kilometers_per_hour(80);
-    curve->set_speed_step_kilometers_per_hour(0.0201);
-    simulation.mutable_solver_options()->set_relative_tolerance(1e-11);
-    simulation.mutable_solver_options()->set_settling_tolerance(1e-12);
-    simulation.mutable_solver_options()->set_maximum_mesh_cycles(10000);
-    return simulation;
-  }
-
   TemporaryFolder folder_;
   std::string listen_ = "127.0.0.1:0";
   std::string threads_ = "2";

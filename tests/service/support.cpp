@@ -119,6 +119,21 @@ v1::Simulation curve_simulation() {
   return out;
 }
 
+v1::Simulation long_simulation(v1::SteadyStateMethod method) {
+  v1::Simulation out = curve_simulation();
+  v1::InefficiencyCurveStudy* curve = out.mutable_inefficiency_curve();
+  curve->set_first_speed_kilometers_per_hour(60);
+  curve->set_last_speed_kilometers_per_hour(80);
+  curve->set_speed_step_kilometers_per_hour(0.0201);
+  v1::SolverOptions* solver = out.mutable_solver_options();
+  solver->set_method(method);
+  solver->set_tolerance(1e-8);
+  solver->set_relative_tolerance(1e-11);
+  solver->set_settling_tolerance(1e-12);
+  solver->set_maximum_mesh_cycles(10000);
+  return out;
+}
+
 StudyFunctions quick_studies() {
   StudyFunctions out;
   out.solve_operating_point = [](const Scene&, const OperatingCondition& condition,

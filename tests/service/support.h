@@ -50,6 +50,10 @@ v1::EvaluateContactRequest contact_request();
 v1::Simulation point_simulation();
 v1::Simulation curve_simulation();
 
+/// Minutes of work on any machine, for tests that need a simulation which runs: a curve of a
+/// thousand points, each settled far sharper than anybody needs.
+v1::Simulation long_simulation(v1::SteadyStateMethod method = v1::MARCH);
+
 /// Studies that answer at once with made-up numbers: speed in, speed out, 1.5 % inefficiency.
 StudyFunctions quick_studies();
 

@@ -8,6 +8,7 @@ namespace tribodyn::server {
 namespace {
 
 constexpr double kTolerance = 1e-5;  // stated with the worked points
+constexpr double kSolverTolerance = 1e-7;
 
 JsonValue orbit(const std::string& name) {
   const JsonValue data = load_reference("worked_points.json");
@@ -36,6 +37,7 @@ TEST(WorkedOrbits, AnOperatingPointArrivesThroughTheWholeService) {
   Bench bench{StudyFunctions()};
   v1::Simulation simulation = point_simulation();
   simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(100);
+  simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
   const std::string name = bench.create(simulation);
   ASSERT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED)) << bench.get(name).error().message();
   expect_orbit(bench.get(name).result().points(0), "L1_100_up");
@@ -49,6 +51,7 @@ TEST(WorkedOrbits, ACurveArrivesThroughTheWholeService) {
   curve->set_first_speed_kilometers_per_hour(20);
   curve->set_last_speed_kilometers_per_hour(140);
   curve->set_speed_step_kilometers_per_hour(40);
+  simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
   const std::string name = bench.create(simulation);
   ASSERT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED)) << bench.get(name).error().message();
   const v1::SimulationResult result = bench.get(name).result();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/cpp/report/inputs.h"
+#include "client/cpp/report/precision.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
@@ -15,10 +16,11 @@ namespace {
 
 constexpr double kKelvinOfZeroCelsius = 273.15;
 
-Table curve_table(const v1::SimulationResult& result) {
+Table curve_table(const v1::Simulation& simulation) {
   Table table({{"speed", "km/h"},
                {"inefficiency", "energy mean %"},
                {"inefficiency", "RMS %"},
+               {"error", "estimated %"},
                {"mesh loss", "W"},
                {"T_s", "N m"},
                {"film", "mean um"},
@@ -27,23 +29,27 @@ Table curve_table(const v1::SimulationResult& result) {
                {"T contact", "mean C"},
                {"T contact", "max C"},
                {"contact", "lost"}});
-  for (const v1::CurvePoint& point : result.points()) {
+  for (const v1::CurvePoint& point : simulation.result().points()) {
     const std::string speed = significant(point.speed_kilometers_per_hour());
     if (!point.has_result()) {
       table.add_row({speed, "refused"});
       continue;
     }
     const v1::PointResult& at = point.result();
+    const Precision precision(simulation, at);
     table.add_row(
         {speed,
-         at.has_inefficiency_energy_mean_percent() ? fixed(at.inefficiency_energy_mean_percent(), 3)
-                                                   : "-",
-         at.has_inefficiency_rms_percent() ? fixed(at.inefficiency_rms_percent(), 3) : "-",
-         fixed(at.mesh_loss_power_watts(), 1), fixed(at.pinion_torque_newton_metres(), 2),
-         fixed(1e6 * at.central_film_thickness_metres().mean(), 3),
-         fixed(at.film_ratio().minimum(), 2), fixed(at.film_ratio().mean(), 2),
-         fixed(at.contact_temperature_kelvin().mean() - kKelvinOfZeroCelsius, 1),
-         fixed(at.contact_temperature_kelvin().maximum() - kKelvinOfZeroCelsius, 1),
+         at.has_inefficiency_energy_mean_percent()
+             ? precision.estimated(at.inefficiency_energy_mean_percent(), 3)
+             : "-",
+         at.has_inefficiency_rms_percent() ? precision.estimated(at.inefficiency_rms_percent(), 3)
+                                           : "-",
+         precision.error_percent(), precision.estimated(at.mesh_loss_power_watts(), 1),
+         precision.estimated(at.pinion_torque_newton_metres(), 2),
+         precision.other(1e6 * at.central_film_thickness_metres().mean(), 3),
+         precision.other(at.film_ratio().minimum(), 2), precision.other(at.film_ratio().mean(), 2),
+         precision.other(at.contact_temperature_kelvin().mean() - kKelvinOfZeroCelsius, 1),
+         precision.other(at.contact_temperature_kelvin().maximum() - kKelvinOfZeroCelsius, 1),
          at.contact_loss() ? "yes" : "no"});
   }
   return table;
@@ -86,14 +92,22 @@ void add_refusals(const v1::SimulationResult& result, Sheet& sheet) {
   for (const auto& [why, speeds] : refusals) sheet.remark(speeds + " km/h: " + why);
 }
 
-std::string solver_remark(const v1::SimulationResult& result) {
+void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
   int without_period = 0;
+  int without_estimate = 0;
   for (const v1::CurvePoint& point : result.points()) {
-    if (point.has_result() && !point.result().settled()) ++without_period;
+    if (!point.has_result()) continue;
+    if (!point.result().settled()) ++without_period;
+    if (!point.result().has_estimated_relative_error()) ++without_estimate;
   }
-  if (without_period == 0) return "";
-  return std::to_string(without_period) +
-         " of the speeds did not settle to a period: they are averages over a record.";
+  if (without_period > 0) {
+    sheet.remark(std::to_string(without_period) +
+                 " of the speeds did not settle to a period: they are averages over a record.");
+  }
+  if (without_estimate > 0) {
+    sheet.remark("The error of " + std::to_string(without_estimate) +
+                 " of the speeds is not estimated: their figures are given to three digits.");
+  }
 }
 
 std::string direction_word(const v1::Simulation& simulation) {
@@ -114,9 +128,9 @@ std::string curve_report(const v1::Simulation& simulation, bool shows_assumption
   Sheet notes;
   add_refusals(result, notes);
   add_warnings(result, notes);
-  if (const std::string remark = solver_remark(result); !remark.empty()) notes.remark(remark);
+  add_solver_remarks(result, notes);
   add_provenance(result, shows_assumptions, notes);
-  return head.text() + "\n" + curve_table(result).text() + "\n" + notes.text();
+  return head.text() + "\n" + curve_table(simulation).text() + "\n" + notes.text();
 }
 
 std::string points_csv(const std::vector<v1::Simulation>& simulations) {

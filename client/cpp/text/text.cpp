@@ -80,6 +80,8 @@ std::string shortest(double value) {
 }
 
 std::string duration_text(double seconds) {
+  if (seconds > 0 && seconds < 0.9995)
+    return fixed(1e3 * seconds, seconds < 9.95e-3 ? 1 : 0) + " ms";
   if (seconds < 59.95) return fixed(seconds, 1) + " s";
   const auto whole = static_cast<long>(std::lround(seconds));
   std::array<char, 64> buffer;

@@ -25,7 +25,7 @@ std::string significant(double value, int digits = 5);
 /// The shortest text that reads back as the same double; "NaN", "Infinity", "-Infinity" otherwise.
 std::string shortest(double value);
 
-/// "3.2 s", "2 min 05 s", "1 h 02 min".
+/// "0.4 ms", "35 ms", "3.2 s", "2 min 05 s", "1 h 02 min".
 std::string duration_text(double seconds);
 
 /// Words broken into lines of at most `width` columns, each starting with `indent` spaces.

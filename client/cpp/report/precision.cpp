@@ -1,0 +1,71 @@
+#include "client/cpp/report/precision.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+constexpr double kDefaultTolerance = 1e-3;  // of the server
+constexpr double kFineTolerance = 1e-5;
+constexpr int kUnestimatedDigits = 3;
+constexpr int kLeastDigits = 2;
+
+std::string scientific(double value, int digits) {
+  std::array<char, 64> text;
+  std::snprintf(text.data(), text.size(), "%.*e", digits - 1, value);
+  return text.data();
+}
+
+/// Places behind the decimal point of a number with so many significant digits, which rounding may
+/// carry into a further place; below zero, the last digit is one of tens, hundreds, ...
+int decimals_of(double value, int digits) {
+  const std::string text = scientific(value, digits);
+  return digits - 1 - std::atoi(text.c_str() + text.find('e') + 1);
+}
+
+/// As fixed(); with an exponent where digits before the decimal point mean nothing.
+std::string rounded(double value, int decimals) {
+  if (decimals >= 0 || value == 0) return fixed(value, std::max(decimals, 0));
+  const int places_before = 1 + static_cast<int>(std::floor(std::log10(std::abs(value))));
+  return scientific(value, std::max(places_before + decimals, 1));
+}
+
+}  // namespace
+
+Precision::Precision(const v1::Simulation& simulation, const v1::PointResult& result)
+    : is_estimated_(result.has_estimated_relative_error()),
+      relative_error_(result.estimated_relative_error()) {
+  const double asked = simulation.solver_options().tolerance();
+  is_fine_ = is_estimated_ && (asked > 0 ? asked : kDefaultTolerance) <= kFineTolerance;
+}
+
+std::string Precision::error_percent() const {
+  return is_estimated_ ? significant(100 * relative_error_, 2) : "-";
+}
+
+std::string Precision::part(double value, double whole, int decimals) const {
+  if (!std::isfinite(value) || !std::isfinite(whole) || whole == 0) return fixed(value, decimals);
+  if (!is_estimated_) {
+    return rounded(value, std::min(decimals, decimals_of(whole, kUnestimatedDigits)));
+  }
+  const double error = relative_error_ * std::abs(whole);
+  // The place whose half unit is the error, to a hair: 0.5 of 0.5 is enough.
+  const double borne = error > 0 ? std::floor(std::log10(0.5 / error) + 1e-9) : decimals;
+  const int least = decimals_of(whole, kLeastDigits);
+  const int places = static_cast<int>(std::clamp<double>(borne, -300, decimals));
+  return rounded(value, std::min(decimals, std::max(places, least)));
+}
+
+std::string Precision::other(double value, int decimals) const {
+  if (is_fine_ || !std::isfinite(value)) return fixed(value, decimals);
+  if (value == 0) return fixed(value, std::min(decimals, kUnestimatedDigits - 1));
+  return rounded(value, std::min(decimals, decimals_of(value, kUnestimatedDigits)));
+}
+
+}  // namespace tribodyn::client
