@@ -92,12 +92,35 @@ void expect_sound(const Scene& scene, const PointResult& r, const PointOptions& 
   EXPECT_LE(r.statistics.mesh_cycles, options.maximum_mesh_cycles + 50 + r.recorded_mesh_cycles);
 }
 
-/// Settled, or sound and honest, or refused by name. Returns whether it settled.
+/// The march from where shooting ended must stay there and find what it found.
+void expect_right(const Scene& scene, const OperatingCondition& condition, const PointResult& r) {
+  if (kShortRun || r.method != SteadyStateMethod::kShooting) return;
+  PointOptions march;
+  march.method = SteadyStateMethod::kMarch;
+  march.tolerance = 1e-6;
+  march.carried_state = CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
+                                     r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
+  const PointResult exact = solve_operating_point(scene, condition, march);
+  ASSERT_TRUE(exact.settled);
+  EXPECT_EQ(exact.period_in_mesh_cycles, r.period_in_mesh_cycles);
+  const double error = r.estimated_relative_error.value();
+  EXPECT_LT(error, PointOptions{}.tolerance * 1.0001);
+  const Extremes &x = r.dynamic_transmission_error, &y = exact.dynamic_transmission_error;
+  const double size = std::max(std::abs(y.minimum), std::abs(y.maximum));
+  EXPECT_NEAR(r.pinion_torque, exact.pinion_torque, error * std::abs(exact.pinion_torque));
+  EXPECT_NEAR(r.mesh_loss_power, exact.mesh_loss_power, error * exact.mesh_loss_power);
+  EXPECT_NEAR(x.minimum, y.minimum, error * size);
+  EXPECT_NEAR(x.maximum, y.maximum, error * size);
+}
+
+/// Settled, right by the march, or sound and honest, or refused by name. Returns whether it
+/// settled.
 bool expect_an_answer(const Scene& scene, const OperatingCondition& condition,
                       const PointOptions& options = {}) {
   try {
     const PointResult r = solve_operating_point(scene, condition, options);
     expect_sound(scene, r, options);
+    expect_right(scene, condition, r);
     return r.settled;
   } catch (const Refusal& refusal) {
     const std::string& name = refusal.reason();
@@ -132,6 +155,14 @@ const std::vector<Change>& changes() {
       {"hundredfold_stiffness", [](Scene& s) { scale_stiffness(s, 100); }},
       {"hundredth_of_stiffness", [](Scene& s) { scale_stiffness(s, 0.01); }},
       {"sump_at_140", [](Scene& s) { s.sump_temperature = 140 + 273.15; }},
+      {"damping_1_percent", [](Scene& s) { s.gear_set.dynamics.mesh_damping /= 3; }},
+      {"three_pairs_at_once",
+       [](Scene& s) {
+         const nlohmann::json variant =
+             load_reference("reference_gear_set.json").at("variant_conformal_easeoff");
+         s.gear_set.series = reference_mesh_series(variant.at("fourier").at(2));  // at 30 N m
+         s.gear_set.tables.load_share = reference_slots(variant.at("load_share").at(2));
+       }},
       {"gear_set_B", [](Scene& s) { s.gear_set = reference_gear_set("B"); }},
       {"load_dependent", [](Scene& s) { s.options.load_dependent_mesh_data = true; }},
       {"energy_consistent", [](Scene& s) { s.options.energy_consistent = true; }},
@@ -162,6 +193,47 @@ TEST(HardPoints, SpeedsFromOneTo300) {
     SCOPED_TRACE(speed);
     EXPECT_TRUE(expect_an_answer(reference_scene(), cruise(speed)));
   }
+}
+
+// Where long responses may not repeat in any short period; then the answer says so.
+TEST(HardPoints, HardlyDamped) {
+  for (const double damping : {0.005, 0.0025}) {
+    for (const double speed : {37.5, 72.5, 100.0}) {
+      if (kShortRun && speed != 100) continue;
+      SCOPED_TRACE(std::to_string(damping) + " at " + std::to_string(speed));
+      Scene scene = reference_scene();
+      scene.gear_set.dynamics.mesh_damping *= damping / 0.03;
+      PointOptions options;
+      options.maximum_mesh_cycles = 1000;
+      expect_an_answer(scene, cruise(speed), options);
+    }
+  }
+}
+
+// Every 0.1 km/h around the speeds at which contact is lost on the way up and regained on the way
+// down: one switch, and the right answer on both sides of it.
+TEST(HardPoints, AroundTheFoldsBothWays) {
+  const auto switches = [](double first, double step, bool lost_at_first) {
+    int count = 0;
+    bool lost = lost_at_first;
+    PointOptions options;
+    if (lost_at_first) options.start = PointStart::kLargeVibration;
+    for (int i = 0; i <= 8; ++i) {
+      const OperatingCondition condition = cruise(first + i * step);
+      SCOPED_TRACE(first + i * step);
+      const PointResult r = solve_operating_point(reference_scene(), condition, options);
+      EXPECT_TRUE(r.settled);
+      expect_right(reference_scene(), condition, r);
+      count += r.contact_loss != lost;
+      lost = r.contact_loss;
+      options.carried_state =
+          CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
+                       r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
+    }
+    return count;
+  };
+  EXPECT_EQ(switches(71, 0.1, false), 1);
+  EXPECT_EQ(switches(65.8, -0.1, true), 1);
 }
 
 TEST(HardPoints, ArcticSump) {

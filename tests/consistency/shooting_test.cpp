@@ -196,6 +196,7 @@ TEST(ShootingHistories, AreThoseOfTheMarch) {
   for (const double speed : {72.5, 100.0}) {
     SCOPED_TRACE(speed);
     PointOptions march = marched(), shoot;
+    shoot.tolerance = 1e-6;
     for (PointOptions* options : {&march, &shoot}) {
       options->history.columns = {HistoryColumn::kTime,
                                   HistoryColumn::kMeshPhase,
