@@ -51,6 +51,16 @@ class Shooting {
     return true;
   }
 
+  /// Leaves state and pieces as they are.
+  bool renew_map() {
+    MarchState y = orbit_.state;
+    Sensitivity sensitivity;
+    start_regime(y);
+    if (!march_.run(orbit_.friction, request_.keep_contact, y, &sensitivity, nullptr)) return false;
+    orbit_.map.emplace(sensitivity, scale_, period_time_);
+    return true;
+  }
+
   /// One step of Newton's method, with the derivatives at hand if there are any; its scaled length,
   /// NaN where the march breaks down. The pieces are those before the step.
   double improve() {
@@ -218,6 +228,15 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
     if (parts_for_sure(kClearPull + change)) return finish(true);
   }
   return finish(false);
+}
+
+bool renew_map(GearPairSystem& system, const FlankContactBatch& contacts, const MeshGrid& grid,
+               const OrbitRequest& request, PeriodicOrbit& orbit, MarchStatistics& statistics,
+               long& marched_cycles) {
+  Shooting shooting(system, contacts, grid, request, orbit);
+  const bool good = shooting.renew_map();
+  shooting.finish(statistics, marched_cycles);
+  return good;
 }
 
 }  // namespace tribodyn

@@ -85,4 +85,10 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
                           const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit,
                           MarchStatistics& statistics, long& marched_cycles);
 
+/// The map at the response itself, in place of one from near: multipliers by it are good to 3e-3
+/// also where contact is lost. False where the march breaks down.
+bool renew_map(GearPairSystem& system, const FlankContactBatch& contacts, const MeshGrid& grid,
+               const OrbitRequest& request, PeriodicOrbit& orbit, MarchStatistics& statistics,
+               long& marched_cycles);
+
 }  // namespace tribodyn

@@ -168,6 +168,11 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
     best = {std::move(orbit), steps, estimate, 0};
     const bool pulls = request.keep_contact && best.orbit.least_pressing_force < 0;
     if (have_coarser && estimate <= search.tolerance && !pulls) {
+      // A map from near may know nothing of a flank that hardly parts.
+      if (best.orbit.contact_loss &&
+          !renew_map(system, contacts, grid, request, best.orbit, statistics, marched_cycles)) {
+        return std::nullopt;
+      }
       best.largest_multiplier = best.orbit.map->largest_multiplier();
       const double doubt = margin(system, search);
       repels = best.largest_multiplier > 1 + doubt;
