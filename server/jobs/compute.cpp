@@ -6,11 +6,8 @@
 #include <string_view>
 
 #include "core/refusal.h"
-#include "core/version.h"
 #include "server/convert/check_message.h"
 #include "server/convert/from_core.h"
-#include "server/convert/input_hash.h"
-#include "server/jobs/platform.h"
 
 namespace tribodyn::server {
 namespace {
@@ -41,7 +38,7 @@ void check_finite(const History& history) {
 void compute_point(const PointStudy& study, const Scene& scene, const StudyFunctions& studies,
                    const ReportProgress& report, Computed& out) {
   PointOptions options = study.options;
-  const std::string stage = stage_of(study.condition);
+  const StageText stage = [&study] { return stage_of(study.condition); };
   options.progress = [&](double fraction) { return report(fraction, stage); };
   PointResult result = studies.solve_operating_point(scene, study.condition, options);
   *out.result.add_points() = to_curve_point(result);
@@ -59,12 +56,13 @@ void compute_curve(const CurveStudy& study, const Scene& scene, const StudyFunct
   const std::size_t count = study.vehicle_speeds.size();
   std::size_t done = 0;
   SweepOptions options = study.options;
-  options.point.progress = [&](double fraction) {
+  const StageText stage = [&] {
     const std::size_t now = std::min(done, count - 1);
     const double speed = study.vehicle_speeds[down ? count - 1 - now : now];
-    return report(fraction, fmt::format("settling at {} km/h, point {} of {}",
-                                        kilometers_per_hour(speed), now + 1, count));
+    return fmt::format("settling at {} km/h, point {} of {}", kilometers_per_hour(speed), now + 1,
+                       count);
   };
+  options.point.progress = [&](double fraction) { return report(fraction, stage); };
   const std::vector<SweepPoint> points =
       studies.sweep_speed(scene, study.vehicle_speeds, study.ascent_angle, options,
                           [&done](const SweepPoint&) { ++done; });
@@ -74,8 +72,8 @@ void compute_curve(const CurveStudy& study, const Scene& scene, const StudyFunct
 
 }  // namespace
 
-Computed compute(const SimulationInputs& inputs, const StudyFunctions& studies,
-                 const ReportProgress& report) {
+Computed compute(const SimulationInputs& inputs, const ResultKey& key,
+                 const StudyFunctions& studies, const ReportProgress& report) {
   Computed out;
   const Scene physical = scene(inputs);
   const Study asked = study(inputs);
@@ -86,9 +84,9 @@ Computed compute(const SimulationInputs& inputs, const StudyFunctions& studies,
   }
   const std::string bad = first_not_finite(out.result);
   if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
-  out.result.set_model_version(kModelVersion);
-  out.result.set_input_hash(input_hash(inputs));
-  out.result.set_platform(platform());
+  out.result.set_model_version(key.model_version);
+  out.result.set_input_hash(key.input_hash);
+  out.result.set_platform(key.platform);
   return out;
 }
 

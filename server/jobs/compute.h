@@ -26,13 +26,17 @@ struct Computed {
   std::vector<StoredColumn> history;
 };
 
-/// Told the fraction done in [0, 1] and the stage; false asks to stop.
-using ReportProgress = std::function<bool(double fraction, const std::string& stage)>;
+/// The stage in words, made where they are wanted: a point takes a tenth of a millisecond and
+/// reports ten times.
+using StageText = std::function<std::string()>;
 
-/// Runs the study and makes the result: points, hash, versions, but no assumptions, which belong
-/// to the simulation and not to its numbers. Throws Refusal,
-/// Cancelled, or what the core throws.
-Computed compute(const SimulationInputs& inputs, const StudyFunctions& studies,
-                 const ReportProgress& report);
+/// Told the fraction done in [0, 1] and the stage; false asks to stop.
+using ReportProgress = std::function<bool(double fraction, const StageText& stage)>;
+
+/// Runs the study and makes the result: points, hash (`key`: of the inputs), versions, but no
+/// assumptions, which belong to the simulation and not to its numbers. Throws Refusal, Cancelled,
+/// or what the core throws.
+Computed compute(const SimulationInputs& inputs, const ResultKey& key,
+                 const StudyFunctions& studies, const ReportProgress& report);
 
 }  // namespace tribodyn::server

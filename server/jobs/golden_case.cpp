@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/refusal.h"
+#include "server/jobs/platform.h"
 #include "server/store/seeds.h"
 
 namespace tribodyn::server {
@@ -59,8 +60,8 @@ std::string check_golden_case(const StudyFunctions& studies) {
   const auto inputs = read_simulation(simulation, seeds(), "simulation", violations);
   if (!inputs) return "golden case: " + violations.front().description;
   try {
-    const Computed computed =
-        compute(*inputs, studies, [](double, const std::string&) { return true; });
+    const Computed computed = compute(*inputs, result_key(*inputs), studies,
+                                      [](double, const StageText&) { return true; });
     const v1::PointResult& point = computed.result.points(0).result();
     for (const Figure& figure : kFigures) {
       const double value = figure.value(point);

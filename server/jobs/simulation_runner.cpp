@@ -25,11 +25,11 @@ class Reporter {
  public:
   Reporter(ProgressChannel& channel, const StopSignal& stop) : channel_(channel), stop_(stop) {}
 
-  bool operator()(double fraction, const std::string& stage) {
+  bool operator()(double fraction, const StageText& stage) {
     const auto now = steady_clock::now();
     if (now - last_ >= kProgressInterval) {
       last_ = now;
-      channel_.publish_progress({fraction, stage, remaining(fraction, now)});
+      channel_.publish_progress({fraction, stage(), remaining(fraction, now)});
     }
     return !stop_.requested();
   }
@@ -149,7 +149,7 @@ void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop)
   Reporter reporter(*channel, stop);
   if (stop.requested()) throw Cancelled();
   const auto begin = steady_clock::now();
-  Computed computed = compute(inputs, studies_, std::ref(reporter));
+  Computed computed = compute(inputs, key, studies_, std::ref(reporter));
   const NewResult result{key, computed.result.SerializeAsString(), std::move(computed.history)};
   publish(id, insist(id, stop, [&] { return store_.mark_succeeded(id, clock_(), result); }));
   spdlog::info(

@@ -146,6 +146,36 @@ TEST(ProgressChannel, TellsObserversWhileTheyLive) {
   channel.publish_event(1);
 }
 
+TEST(SimulationJobs, ProgressIsPublishedFourTimesASecondHoweverOftenItIsReported) {
+  using std::chrono::milliseconds;
+  using std::chrono::steady_clock;
+  std::atomic<bool> watched = false;
+  std::atomic<long> reports = 0;
+  std::atomic<long> quarters = 0;
+  StudyFunctions studies = quick_studies();
+  studies.solve_operating_point = [&, inner = studies.solve_operating_point](
+                                      const Scene& scene, const OperatingCondition& condition,
+                                      const PointOptions& options) {
+    while (!watched) std::this_thread::yield();
+    const auto begin = steady_clock::now();
+    while (steady_clock::now() - begin < milliseconds(600)) {
+      options.progress(0.5);
+      ++reports;
+    }
+    quarters = (steady_clock::now() - begin) / milliseconds(250);
+    return inner(scene, condition, options);
+  };
+  Bench bench(studies);
+  const std::string name = bench.create(point_simulation());
+  const auto channel = bench.jobs().watch(*simulation_id(name))->channel;
+  const auto before = channel->latest().progress_number;
+  watched = true;
+  ASSERT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED));
+  EXPECT_GT(reports, 1000);
+  EXPECT_GE(channel->latest().progress_number - before, 2U);
+  EXPECT_LE(channel->latest().progress_number - before, static_cast<std::uint64_t>(quarters) + 1);
+}
+
 TEST(SimulationJobs, ASimulationSucceedsAndItsResultIsStored) {
   Bench bench;
   const std::string name = bench.create(point_simulation());
