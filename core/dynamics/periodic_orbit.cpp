@@ -13,6 +13,12 @@ namespace {
 constexpr int kUnknowns = SectionMap::kUnknowns;
 using Vector = SectionMap::Vector;
 
+/// Sets the torques: nothing of what was tried before may show in a response.
+MarchScales scales_at(const Torques& torques, GearPairSystem& system, double mean_pinion_speed) {
+  system.set_torques(torques);
+  return march_scales(system, mean_pinion_speed);
+}
+
 class Shooting {
  public:
   Shooting(GearPairSystem& system, const FlankContactBatch& contacts, const MeshGrid& grid,
@@ -21,11 +27,10 @@ class Shooting {
         grid_(grid),
         request_(request),
         orbit_(orbit),
-        scales_(march_scales(system, request.mean_pinion_speed)),
+        scales_(scales_at(orbit.torques, system, request.mean_pinion_speed)),
         mean_force_(scales_.torque / system.mesh().mean_pinion_contact_radius()),
         march_(system, scales_, grid, orbit.period, request.solve_wheel_torque),
         friction_(system, contacts, 1e-3 * mean_force_) {
-    system.set_torques(orbit.torques);
     for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system.mesh(), i + 1);
     scale_(kUnknowns - 1) = scales_.torque;
     period_time_ = orbit.period * system.cycle_angle() / request.mean_pinion_speed;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
@@ -185,7 +186,8 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   std::sort(over.begin(), over.end());
   const double median = over[over.size() / 2];
   std::cout << shot << " of " << count << " by shooting, " << above
-            << " err more than estimated, median of estimate over error by default " << median << '\n';
+            << " err more than estimated, median of estimate over error by default " << median
+            << '\n';
   EXPECT_GT(shot, 0.85 * count);
   EXPECT_LE(above, std::max(1.0, 0.01 * count));
   EXPECT_GT(median, 1);
@@ -232,6 +234,76 @@ TEST(ShootingResults, DoNotDependOnAHistoryBeingAskedFor) {
   const PointResult b = solve_operating_point(reference_scene(), cruise(72.5), with_history);
   EXPECT_EQ(a.inefficiency_rms, b.inefficiency_rms);
   EXPECT_EQ(a.dynamic_transmission_error.maximum, b.dynamic_transmission_error.maximum);
+}
+
+// Friction is where the time goes: a scene that takes more of it than this has got slow.
+TEST(ShootingWork, FrictionEvaluationsOfAPointAreFew) {
+  struct Scenario {
+    double kilometers_per_hour;
+    PointStart start;
+    long most;
+  };
+  for (const Scenario& at :
+       {Scenario{20, PointStart::kQuasiStatic, 1100},
+        Scenario{37.5, PointStart::kQuasiStatic, 1800},
+        Scenario{67.5, PointStart::kQuasiStatic, 850},
+        Scenario{67.5, PointStart::kLargeVibration, 550},
+        Scenario{72.5, PointStart::kQuasiStatic, 700}, Scenario{80, PointStart::kQuasiStatic, 900},
+        Scenario{100, PointStart::kQuasiStatic, 420},
+        Scenario{140, PointStart::kQuasiStatic, 420}}) {
+    SCOPED_TRACE(at.kilometers_per_hour);
+    PointOptions options;
+    options.start = at.start;
+    const PointResult r =
+        solve_operating_point(reference_scene(), cruise(at.kilometers_per_hour), options);
+    EXPECT_EQ(r.method, SteadyStateMethod::kShooting);
+    EXPECT_LE(r.statistics.contact_solutions, at.most);
+    EXPECT_GT(r.statistics.contact_solutions, 100);
+  }
+}
+
+TEST(PointFigures, AreTheSameBitsAloneAndInCompany) {
+  const Scene thin = reference_scene(1, 90), thick = reference_scene(2, 20);
+  const auto shared = std::make_shared<PreparedGearSet>(thin.gear_set, thin.solid, thin.options);
+  PreparedScene first(thick, shared), second(thin, shared);
+  for (const double speed : {20.0, 72.5, 80.0, 100.0, 150.0}) {
+    SCOPED_TRACE(speed);
+    solve_point_figures(first, cruise(speed), {});
+    const PointFigures company = solve_point_figures(second, cruise(speed), {});
+    PreparedScene lonely(thin);
+    const PointFigures alone = solve_point_figures(lonely, cruise(speed), {});
+    EXPECT_EQ(alone.inefficiency_rms, company.inefficiency_rms);
+    EXPECT_EQ(alone.inefficiency_energy_mean, company.inefficiency_energy_mean);
+    EXPECT_EQ(alone.pinion_torque, company.pinion_torque);
+    EXPECT_EQ(alone.dte_minimum, company.dte_minimum);
+    EXPECT_EQ(alone.dte_maximum, company.dte_maximum);
+    EXPECT_EQ(alone.estimated_relative_error, company.estimated_relative_error);
+    EXPECT_EQ(alone.contact_solutions, company.contact_solutions);
+  }
+}
+
+TEST(PointFigures, AreThoseOfTheWholeResult) {
+  const Scene scene = reference_scene();
+  PreparedScene prepared(scene);
+  OperatingCondition coast;
+  coast.kind = OperatingCondition::Kind::kPrescribedTorque;
+  coast.pinion_torque = -20;
+  coast.pinion_speed = 300;
+  for (const OperatingCondition& condition : {cruise(72.5), cruise(100), coast}) {
+    const PointFigures brief = solve_point_figures(prepared, condition, {});
+    const PointResult whole = solve_operating_point(scene, condition, {});
+    const double error =
+        brief.estimated_relative_error.value() + whole.estimated_relative_error.value();
+    EXPECT_EQ(brief.contact_loss, whole.contact_loss);
+    EXPECT_EQ(brief.period_in_mesh_cycles, whole.period_in_mesh_cycles);
+    const auto expect_near = [&](double a, double b) { EXPECT_NEAR(a, b, error * std::abs(b)); };
+    expect_near(brief.inefficiency_rms.value(), whole.inefficiency_rms.value());
+    expect_near(brief.inefficiency_energy_mean.value(), whole.inefficiency_energy_mean.value());
+    expect_near(brief.pinion_torque, whole.pinion_torque);
+    expect_near(brief.wheel_torque, whole.wheel_torque);
+    expect_near(brief.mesh_loss_power, whole.mesh_loss_power);
+    expect_near(brief.dte_maximum, whole.dynamic_transmission_error.maximum);
+  }
 }
 
 TEST(ShootingRequests, AreCancelled) {
