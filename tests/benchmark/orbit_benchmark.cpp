@@ -135,10 +135,10 @@ bool cost_of(const Transient& transient, double truth, double error, int recorde
   if (first == static_cast<int>(transient.inefficiency.size())) return false;
   const auto scaled = [&](const auto& values) {
     // Cycles beyond the last cost what the last ones did.
-    const int most = static_cast<int>(values.size()) - 1;
+    const int most = static_cast<int>(values.size()) - 1, half = most / 2;
     if (last <= most) return static_cast<double>(values[last]);
     return static_cast<double>(values[most]) +
-           (last - most) * static_cast<double>(values[most] - values[most / 2]) / (most - most / 2);
+           (last - most) * static_cast<double>(values[most] - values[half]) / (most - half);
   };
   out.microseconds = scaled(transient.microseconds);
   out.contacts = static_cast<long>(scaled(transient.contacts));
