@@ -7,7 +7,7 @@ namespace tribodyn {
 namespace {
 
 constexpr double kSafety = 1.7;  // on the error that two step lengths tell
-constexpr int kPatience = 300;  // periods
+constexpr int kPatience = 300;   // periods
 constexpr int kMostFailures = 3;
 constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
 constexpr int kFinest = 4000;    // steps per mesh cycle
