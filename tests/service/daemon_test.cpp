@@ -108,10 +108,10 @@ TEST_F(DaemonTest, ATerminationEndsStreamsAndKeepsWorkForTheNextStart) {
   cancel(running.name());
 }
 
-/// A curve of a second or, under a sanitizer, some more.
+/// A curve of half a second or, under a sanitizer on a busy machine, of many.
 v1::Simulation some_seconds() {
   v1::Simulation simulation = curve_simulation();
-  simulation.mutable_inefficiency_curve()->set_speed_step_kilometers_per_hour(40);
+  simulation.mutable_inefficiency_curve()->set_speed_step_kilometers_per_hour(60);
   simulation.mutable_solver_options()->set_method(v1::MARCH);
   return simulation;
 }
