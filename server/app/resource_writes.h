@@ -115,10 +115,9 @@ void draft_update(Application& application, const Request& request, Draft<Resour
   }
   const StoredResource& present = found.message();
   if (present.delete_time) {
-    return draft.refuse(
-        not_possible("DELETED", Resource::descriptor()->full_name(), present.name,
-                     deleted_name_text(present.name)),
-        "name");
+    return draft.refuse(not_possible("DELETED", Resource::descriptor()->full_name(), present.name,
+                                     deleted_name_text(present.name)),
+                        "name");
   }
   if (!stated.etag().empty() && stated.etag() != etag_of(present)) {
     return draft.refuse(etag_mismatch<Resource>(present.name), "etag");

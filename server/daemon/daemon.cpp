@@ -99,10 +99,10 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
   Application application{store, jobs};
   const std::size_t resumed = jobs.resume();  // before a client can add to the queue
   if (resumed > 0) spdlog::info("{} unfinished simulations are queued again", resumed);
-  GrpcServer server(application, address,
-                    {to_milliseconds(settings.call_limit_seconds),
-                     to_milliseconds(settings.stream_limit_seconds),
-                     to_milliseconds(settings.unread_limit_seconds)});
+  GrpcServer server(
+      application, address,
+      {to_milliseconds(settings.call_limit_seconds), to_milliseconds(settings.stream_limit_seconds),
+       to_milliseconds(settings.unread_limit_seconds)});
   const std::string wrong = check_golden_case();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);
   jobs.start();
