@@ -21,8 +21,8 @@ class Client {
  public:
   Client(std::string address, int number, std::uint64_t seed, Recorder& recorder);
 
-  /// Until `stop`.
-  void run(const std::atomic<bool>& stop);
+  /// Until `stop`; submits some simulations, and one more for each of `crashes`.
+  void run(const std::atomic<bool>& stop, const std::atomic<int>& crashes);
 
  private:
   struct Sent {
@@ -34,7 +34,7 @@ class Client {
 
   int draw(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
   std::string draw_scene();
-  void act();
+  void act(bool may_submit);
   void submit(Sent& sent);
   void watch(const std::string& name);
   void cancel(const std::string& name);

@@ -66,15 +66,18 @@ class CrashTest : public testing::Test {
     std::mt19937_64 random(seed);
     start();
     std::atomic<bool> stop = false;
+    std::atomic<int> crashes = 0;
     std::vector<std::thread> threads;
     for (int i = 0; i < kClients; ++i) {
-      threads.emplace_back([this, &stop, i, seed] {
-        Client(address(), i, seed * kClients + static_cast<std::uint64_t>(i), recorder_).run(stop);
+      threads.emplace_back([this, &stop, &crashes, i, seed] {
+        Client(address(), i, seed * kClients + static_cast<std::uint64_t>(i), recorder_)
+            .run(stop, crashes);
       });
     }
     for (int crash = 0; crash < count && !HasFatalFailure(); ++crash) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50 + random() % 600));
       kill_server();
+      ++crashes;
       if (crash + 1 < count) start();
     }
     stop = true;
