@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/numerics/bracketed_root.h"
 
@@ -118,10 +119,8 @@ FixedStepMarch::Events FixedStepMarch::events(const MeshPhase& phase, const Marc
 
 namespace {
 
-constexpr double kNothing = 1e-12;
-
-bool happened(const std::array<double, 2>& events) {
-  return events[0] > kNothing || events[1] > kNothing;
+bool happened(const std::array<double, 2>& events, double tolerance) {
+  return events[0] > tolerance || events[1] > tolerance;
 }
 
 /// Where in (0, 1) one of two functions rises above zero, going by the parabola through its values
@@ -140,19 +139,63 @@ double peak_of(const std::array<double, 2>& first, const std::array<double, 2>& 
   return 0;
 }
 
-/// Length at which a function passes through zero, from `first` at 0 to `last` > 0 at `high`.
+/// Length at which a function passes through zero, from `first` at 0 to `last` > 0 at `high`; zero
+/// is what is nearer to it than `nothing`.
 template <class Function>
-double root_of(double first, double last, double high, Function&& at) {
+double root_of(double first, double last, double high, double nothing, Function&& at) {
   const double nearest = 1e-6 * high;  // what has just happened is zero at the start
   return bracketed_root(
       [&](double x) {
         const double value = at(x);
-        return std::abs(value) <= kNothing && x > nearest ? 0 : value;
+        return std::abs(value) <= nothing && x > nearest ? 0 : value;
       },
       0, high, std::min(first, -std::numeric_limits<double>::min()), last);
 }
 
 }  // namespace
+
+/// Length of a step that ends on an event, from its values at the start and at `high`, the length
+/// of the last step, to `to`. Leaves that step there, with its rates. `part`: the span of a length.
+template <class Part>
+double FixedStepMarch::locate(LaggedFriction& friction, int index, double first, double last,
+                              double high, Part&& part, const MarchState& y, MarchState& to) {
+  const auto true_step = [&](double length) {
+    const Span span = part(length);
+    step(friction, span, y, nullptr, to, nullptr);
+    return events(*span.end, to)[index];
+  };
+  // First by the cubic through both ends, which costs no steps.
+  const double start = part(high).phase;
+  const MarchState end = to;
+  const Rates start_rate = first_rate_, end_rate = last_rate_;
+  const auto on_cubic = [&](double length) {
+    const double t = length / high, u = 1 - t;
+    const double at_start = (1 + 2 * t) * u * u, at_end = (1 + 2 * u) * t * t;
+    MarchState state{};
+    for (int i = 0; i < kStates; ++i) {
+      state[i] =
+          at_start * y[i] + at_end * end[i] + high * t * u * (u * start_rate[i] - t * end_rate[i]);
+    }
+    return events(system_.at_phase(inside_cycle(start + length)), state)[index];
+  };
+  const double nearest = 1e-6 * high, probe = 1e-3 * high;
+  double x = root_of(first, last, high, 1e-7, on_cubic);
+  if (x > nearest && x > probe) {
+    double slope = (on_cubic(x) - on_cubic(x - probe)) / probe;
+    double before = 0, value_before = 0;
+    for (int i = 0; i < 6 && slope > 0 && x > nearest && x <= high; ++i) {
+      const double value = true_step(x);
+      if (std::abs(value) <= event_tolerance_) return x;
+      if (i > 0) slope = (value - value_before) / (x - before);
+      before = x;
+      value_before = value;
+      x -= value / slope;
+    }
+  }
+  x = root_of(first, last, high, event_tolerance_, true_step);
+  true_step(x);
+  return x;
+}
 
 bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState& y, Sensitivity* s,
                          std::vector<OrbitPiece>* pieces) {
@@ -166,6 +209,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
   }
   MarchState to{};
   Sensitivity s_to;
+  std::optional<Events> at_end_before;  // of the step before, in the same regime
   for (int i = 0; i < grid_.steps() * period_; ++i) {
     const int node = 2 * (i % grid_.steps());
     double phase = static_cast<double>(i) / grid_.steps();
@@ -189,10 +233,10 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
       bool happens = false;
       MarchState half = middle(y, to, h);
       if (!keep_contact) {
-        const Events at_first = events(at_start, y);
+        const Events at_first = at_end_before ? *at_end_before : events(at_start, y);
         double high = h;
         Events at_high = events(*span.end, to);
-        if (!happened(at_high)) {
+        if (!happened(at_high, event_tolerance_)) {
           // Perhaps it came and went: by the parabola through start, middle and end.
           const double peak = peak_of(at_first, events(*span.middle, half), at_high);
           if (peak > 0) {
@@ -201,30 +245,29 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
             at_high = events(at_end, to);
           }
         }
-        happens = happened(at_high);
+        happens = happened(at_high, event_tolerance_);
+        at_end_before.reset();
+        if (!happens && high == h) at_end_before = at_high;
         if (happens) {
           // The one that has gone farthest, unless another one has happened before it.
           index = at_high[0] > at_high[1] ? 0 : 1;
           for (int tries = 0; tries < 2; ++tries) {
-            Events here{};
-            h = root_of(at_first[index], at_high[index], high, [&](double length) {
-              step(friction, part(length), y, nullptr, to, nullptr);
-              here = events(at_end, to);
-              return here[index];
-            });
+            h = locate(friction, index, at_first[index], at_high[index], high, part, y, to);
+            const Events here = events(at_end, to);
             const int other = 1 - index;
-            if (!(here[other] > kNothing)) break;
+            if (!(here[other] > event_tolerance_)) break;
             index = other;
             high = h;
             at_high = here;
           }
           span = part(h);
         }
-        if (happens || high < h) {
-          if (!happens) span = whole();
+        const bool is_taken = happens && s == nullptr;
+        if (!happens && high < h) span = whole();
+        if (!is_taken && (happens || high < h)) {
           step(friction, span, y, s, to, s != nullptr ? &s_to : nullptr);
-          half = middle(y, to, h);
         }
+        if (happens || high < h) half = middle(y, to, h);
       }
       if (!(std::isfinite(to[kPinionSpeed]) && to[kPinionSpeed] > 0)) return false;
       ++taken_;

@@ -21,14 +21,16 @@ using Sensitivity = std::array<Eigen::Array<double, 1, 8>, 8>;
 /// come along by the variational equations (rates are continuous at events, so nothing jumps).
 class FixedStepMarch {
  public:
-  /// The grid's steps in each of `period` mesh cycles. Keeps the references.
+  /// The grid's steps in each of `period` mesh cycles. Events are located to `event_tolerance`, of
+  /// the scales of length and force. Keeps the references.
   FixedStepMarch(GearPairSystem& system, const MarchScales& scales, const MeshGrid& grid,
-                 int period, bool solve_wheel_torque)
+                 int period, bool solve_wheel_torque, double event_tolerance)
       : system_(system),
         scales_(scales),
         grid_(grid),
         period_(period),
-        solve_wheel_torque_(solve_wheel_torque) {}
+        solve_wheel_torque_(solve_wheel_torque),
+        event_tolerance_(event_tolerance) {}
 
   /// One period from `state`, in the system's regime or in steady contact of one side however the
   /// force may turn (`keep_contact`). Time and works start from zero. False where it breaks down:
@@ -54,6 +56,9 @@ class FixedStepMarch {
                          const Sensitivity& s, Sensitivity& ds) const;
   void step(LaggedFriction& friction, const Span& span, const MarchState& y, const Sensitivity* s,
             MarchState& to, Sensitivity* s_to);
+  template <class Part>
+  double locate(LaggedFriction& friction, int index, double first, double last, double high,
+                Part&& part, const MarchState& y, MarchState& to);
   MarchState middle(const MarchState& from, const MarchState& to, double h) const;
   Events events(const MeshPhase& phase, const MarchState& y) const;
 
@@ -62,6 +67,7 @@ class FixedStepMarch {
   const MeshGrid& grid_;
   int period_;
   bool solve_wheel_torque_;
+  double event_tolerance_;
   long evaluations_ = 0, taken_ = 0, events_ = 0;
   Instant at_;
   double load_ = 0;

@@ -67,27 +67,6 @@ bool GearPairSystem::change_regime(int event, const MeshPhase& phase, const doub
   return false;
 }
 
-ContactConditions GearPairSystem::contact_conditions(const FlankKinematics& flank, double load,
-                                                     const double* y, FlankMotion& motion) const {
-  motion = flank_motion(flank, y[kPinionSpeed], y[kGearSpeed]);
-  if (options_.tabulated_friction_arms) {
-    motion.pinion_friction_arm = flank.pinion_friction_arm;
-    motion.gear_friction_arm = flank.gear_friction_arm;
-  }
-  double drift_x = 0, drift_y = 0;
-  if (options_.subtract_contact_point_motion) {
-    drift_x = flank.contact_point_velocity_x * y[kPinionSpeed];
-    drift_y = flank.contact_point_velocity_y * y[kPinionSpeed];
-  }
-  return {load,
-          flank.radius_x,
-          flank.radius_y,
-          motion.pinion_x - drift_x,
-          motion.pinion_y - drift_y,
-          motion.gear_x - drift_x,
-          motion.gear_y - drift_y};
-}
-
 void GearPairSystem::solve_together(const FlankContactBatch* contacts) {
   together_ = contacts;
   if (contacts != nullptr) {

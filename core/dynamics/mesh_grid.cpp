@@ -9,15 +9,12 @@ MeshGrid::MeshGrid(const MeshData& mesh, int steps, double reduced_modulus,
                    const ModelOptions& options)
     : steps_(steps),
       nodes_(2 * steps + 1),
-      expansions_(2 * steps + 1),
       flanks_(2 * steps + 1),
       geometries_(reduced_modulus, options, kFlankPairs * (2 * steps + 1)) {
   for (int n = 0; n <= 2 * steps; ++n) {
     const double phase = 0.5 * n / steps;
     const double theta = 2 * std::numbers::pi * phase;
     nodes_[n] = mesh.at_phase(theta);
-    expansions_[n] = mesh.expand_gear_radius(theta);
-    nodes_[n].expansion = &expansions_[n];
     const int interval = std::min(static_cast<int>(phase * mesh.intervals()), mesh.intervals() - 1);
     mesh.flanks(interval, phase, flanks_[n]);
     for (int k = 0; k < kFlankPairs; ++k) {

@@ -13,7 +13,8 @@ namespace tribodyn {
 /// gear set alone: made once, used by every speed, fluid and sweep. Immutable.
 class MeshGrid {
  public:
-  /// `steps` in the mesh cycle, at least 1; E' and options as of the contacts. Keeps nothing.
+  /// `steps` in the mesh cycle, at least 1; E' and options as of the contacts. Nodes
+  /// refer to the mesh.
   MeshGrid(const MeshData& mesh, int steps, double reduced_modulus, const ModelOptions& options);
 
   MeshGrid(const MeshGrid&) = delete;
@@ -29,7 +30,6 @@ class MeshGrid {
  private:
   int steps_;
   std::vector<MeshPhase> nodes_;
-  std::vector<GearRadiusExpansion> expansions_;  // nodes point there
   std::vector<std::array<FlankKinematics, kFlankPairs>> flanks_;
   ContactGeometries geometries_;
 };

@@ -64,11 +64,9 @@ void OrbitFriction::Arrays::resize(std::size_t size) {
   status.resize(size);
 }
 
-OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts,
-                             double light)
+OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts)
     : system_(system),
       contacts_(contacts),
-      light_(light),
       geometries_(contacts.model().reduced_modulus(), contacts.model().options()) {}
 
 void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part,
@@ -166,7 +164,7 @@ bool OrbitFriction::solve_contacts(FlankContactBatchResults results) {
 }
 
 bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-                             LaggedFriction& friction, OrbitFigures& f) {
+                             double light, LaggedFriction& friction, OrbitFigures& f) {
   gather(grid, pieces, nullptr);
   if (!solve_contacts({})) return false;
   friction.clear();
@@ -187,7 +185,7 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
           loss += arrays_.sliding_speed[n] * arrays_.friction[n];
         }
         // Across a gap it goes from the value before to that after: no jump where a flank meets.
-        if (place.load > light_) {
+        if (place.load > light) {
           friction.add(p.phase + 0.5 * part * p.length,
                        {torque.pinion / place.load, torque.gear / place.load});
         }

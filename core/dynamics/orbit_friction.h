@@ -40,12 +40,13 @@ struct OrbitFigures {
 /// The contacts of a whole response, solved together.
 class OrbitFriction {
  public:
-  /// Friction is not told per newton below `light` [N]. Keeps the references.
-  OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts, double light);
+  /// Keeps the references.
+  OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts);
 
-  /// Friction on the pieces of a response, and all of its figures but the torque. `grid`: what the
-  /// pieces' nodes are of. False when a contact is refused; the system tells why.
-  bool evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
+  /// Friction on the pieces of a response, not told per newton below `light` [N], and all of its
+  /// figures but the torque. `grid`: what the pieces' nodes are of. False when a contact is
+  /// refused; the system tells why.
+  bool evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, double light,
                 LaggedFriction& friction, OrbitFigures& figures);
   /// Smallest force that pressed touching flanks together at the instants of the last evaluation;
   /// negative: they were held together [N].
@@ -75,7 +76,6 @@ class OrbitFriction {
 
   GearPairSystem& system_;
   const FlankContactBatch& contacts_;
-  double light_;
   ContactGeometries geometries_;
   std::vector<Place> places_;  // three of a piece
   Arrays arrays_;

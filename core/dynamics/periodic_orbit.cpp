@@ -21,7 +21,7 @@ MarchScales scales_at(const Torques& torques, GearPairSystem& system, double mea
 
 class Shooting {
  public:
-  Shooting(GearPairSystem& system, const FlankContactBatch& contacts, const MeshGrid& grid,
+  Shooting(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
            const OrbitRequest& request, PeriodicOrbit& orbit)
       : system_(system),
         grid_(grid),
@@ -29,8 +29,9 @@ class Shooting {
         orbit_(orbit),
         scales_(scales_at(orbit.torques, system, request.mean_pinion_speed)),
         mean_force_(scales_.torque / system.mesh().mean_pinion_contact_radius()),
-        march_(system, scales_, grid, orbit.period, request.solve_wheel_torque),
-        friction_(system, contacts, 1e-3 * mean_force_) {
+        march_(system, scales_, grid, orbit.period, request.solve_wheel_torque,
+               std::clamp(1e-4 * request.tolerance, 1e-12, 1e-9)),
+        friction_(friction) {
     for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system.mesh(), i + 1);
     scale_(kUnknowns - 1) = scales_.torque;
     period_time_ = orbit.period * system.cycle_angle() / request.mean_pinion_speed;
@@ -112,7 +113,10 @@ class Shooting {
 
   /// Friction on the pieces of the last march, and the figures with it. False when refused.
   bool evaluate_friction() {
-    if (!friction_.evaluate(grid_, orbit_.pieces, orbit_.friction, orbit_.figures)) return false;
+    if (!friction_.evaluate(grid_, orbit_.pieces, 1e-3 * mean_force_, orbit_.friction,
+                            orbit_.figures)) {
+      return false;
+    }
     orbit_.least_pressing_force = friction_.least_pressing_force() / mean_force_;
     orbit_.contact_loss = std::any_of(orbit_.pieces.begin(), orbit_.pieces.end(),
                                       [](const OrbitPiece& p) { return p.regime.side == 0; });
@@ -153,7 +157,7 @@ class Shooting {
   MarchScales scales_;
   double mean_force_;
   FixedStepMarch march_;
-  OrbitFriction friction_;
+  OrbitFriction& friction_;
   Vector scale_;
   double period_time_;
 };
@@ -183,23 +187,23 @@ double SectionMap::largest_multiplier() const {
   return largest_multiplier_ = multipliers.cwiseAbs().maxCoeff();
 }
 
-bool approach_without_friction(GearPairSystem& system, const FlankContactBatch& contacts,
+bool approach_without_friction(GearPairSystem& system, OrbitFriction& friction,
                                const MeshGrid& grid, const OrbitRequest& request,
                                PeriodicOrbit& orbit, MarchStatistics& statistics,
                                long& marched_cycles) {
-  Shooting shooting(system, contacts, grid, request, orbit);
+  Shooting shooting(system, friction, grid, request, orbit);
   // Friction changes the response by some percent.
   const bool good = shooting.let_run(request.first_cycles) && shooting.converge(1e-3);
   shooting.finish(statistics, marched_cycles);
   return good;
 }
 
-bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
-                          const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit,
+bool solve_periodic_orbit(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
+                          const OrbitRequest& request, PeriodicOrbit& orbit,
                           MarchStatistics& statistics, long& marched_cycles) {
   constexpr int kMostSweeps = 24;
   constexpr double kLikelyContraction = 0.2, kUnmeasured = 0.3;
-  Shooting shooting(system, contacts, grid, request, orbit);
+  Shooting shooting(system, friction, grid, request, orbit);
   const auto finish = [&](bool good) {
     shooting.finish(statistics, marched_cycles);
     return good;
@@ -235,10 +239,10 @@ bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& conta
   return finish(false);
 }
 
-bool renew_map(GearPairSystem& system, const FlankContactBatch& contacts, const MeshGrid& grid,
+bool renew_map(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
                const OrbitRequest& request, PeriodicOrbit& orbit, MarchStatistics& statistics,
                long& marched_cycles) {
-  Shooting shooting(system, contacts, grid, request, orbit);
+  Shooting shooting(system, friction, grid, request, orbit);
   const bool good = shooting.renew_map();
   shooting.finish(statistics, marched_cycles);
   return good;

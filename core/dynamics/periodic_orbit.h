@@ -67,7 +67,7 @@ struct OrbitRequest {
 /// The periodic response without friction, to a permille: where every lubricant's response is near,
 /// and the same for all. Starts from `orbit` (state, torques) and leaves state, torques, map and
 /// pieces there. False where it does not converge. Adds to `statistics`.
-bool approach_without_friction(GearPairSystem& system, const FlankContactBatch& contacts,
+bool approach_without_friction(GearPairSystem& system, OrbitFriction& friction,
                                const MeshGrid& grid, const OrbitRequest& request,
                                PeriodicOrbit& orbit, MarchStatistics& statistics,
                                long& marched_cycles);
@@ -81,13 +81,13 @@ bool approach_without_friction(GearPairSystem& system, const FlankContactBatch& 
 /// (state, torques, friction, map) and leaves the response there. False where it does not converge;
 /// the orbit is then of no use. Where flanks kept together clearly pull, it may end before it
 /// converges. Adds to `statistics`.
-bool solve_periodic_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
-                          const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit,
+bool solve_periodic_orbit(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
+                          const OrbitRequest& request, PeriodicOrbit& orbit,
                           MarchStatistics& statistics, long& marched_cycles);
 
 /// The map at the response itself, in place of one from near: multipliers by it are good to 3e-3
 /// also where contact is lost. False where the march breaks down.
-bool renew_map(GearPairSystem& system, const FlankContactBatch& contacts, const MeshGrid& grid,
+bool renew_map(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
                const OrbitRequest& request, PeriodicOrbit& orbit, MarchStatistics& statistics,
                long& marched_cycles);
 

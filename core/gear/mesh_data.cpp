@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace tribodyn {
 namespace {
@@ -22,36 +23,10 @@ constexpr double FlankKinematics::*kColumns[] = {&FlankKinematics::load_share,
                                                  &FlankKinematics::pinion_friction_arm,
                                                  &FlankKinematics::gear_friction_arm};
 
-struct Turn {
-  double cosine, sine;
-};
-
-/// The gear lags behind by the winding of the mesh alone: mostly some milliradians.
-Turn small_turn(double angle) {
-  if (std::abs(angle) > 0.05) return {std::cos(angle), std::sin(angle)};
-  const double square = angle * angle;
-  // The next terms are below 1e-18.
-  return {1 - square / 2 * (1 - square / 12 * (1 - square / 30 * (1 - square / 56))),
-          angle * (1 - square / 6 * (1 - square / 20 * (1 - square / 42 * (1 - square / 72))))};
-}
+constexpr double kManyTurns = 1e6;                  // [rad] beyond, an angle has lost its digits
+constexpr std::size_t kMostExpandedHarmonics = 32;  // beyond, the expansions take too long to make
 
 }  // namespace
-
-FlankMotion flank_motion(const FlankKinematics& k, double pinion_speed, double gear_speed) {
-  FlankMotion m{};
-  m.pinion_x = k.pinion_velocity_x * pinion_speed;
-  m.pinion_y = k.pinion_velocity_y * pinion_speed;
-  m.gear_x = k.gear_velocity_x * gear_speed;
-  m.gear_y = k.gear_velocity_y * gear_speed;
-  const double slide_x = m.pinion_x - m.gear_x, slide_y = m.pinion_y - m.gear_y;
-  m.sliding_speed = std::sqrt(slide_x * slide_x + slide_y * slide_y);
-  if (m.sliding_speed > 0) {
-    const double unit_x = slide_x / m.sliding_speed, unit_y = slide_y / m.sliding_speed;
-    m.pinion_friction_arm = -(unit_x * k.pinion_velocity_x + unit_y * k.pinion_velocity_y);
-    m.gear_friction_arm = unit_x * k.gear_velocity_x + unit_y * k.gear_velocity_y;
-  }
-  return m;
-}
 
 MeshData::MeshData(const GearSet& set)
     : pinion_teeth_(set.pinion_teeth),
@@ -72,15 +47,11 @@ MeshData::MeshData(const GearSet& set)
          coefficient(s.pinion_contact_radius.cosine, i), coefficient(s.gear_contact_radius.sine, i),
          coefficient(s.gear_contact_radius.cosine, i), coefficient(s.mesh_stiffness.sine, i),
          coefficient(s.mesh_stiffness.cosine, i), coefficient(s.static_transmission_error.sine, i),
-         coefficient(s.static_transmission_error.cosine, i)});
-    Harmonic& h = harmonics_.back();
-    const double order = static_cast<double>(i + 1) * gear_teeth_;
-    h.radius_g_sin_per_order = h.radius_g_sin / order;
-    h.radius_g_cos_per_order = h.radius_g_cos / order;
+         coefficient(s.static_transmission_error.cosine, i), 0, 0});
+    harmonics_.back().pinion_order = static_cast<double>(i + 1) * pinion_teeth_;
+    harmonics_.back().gear_order = static_cast<double>(i + 1) * gear_teeth_;
   }
-  gear_harmonics_ = s.gear_contact_radius.sine.size();
-  // The first term left out is below 3e-15 of the ripple.
-  longest_expanded_lag_ = 0.1 / static_cast<double>(std::max<std::size_t>(1, gear_harmonics_));
+  if (count <= kMostExpandedHarmonics) expand();
   const ToothContactTables& t = set.tables;
   samples_.resize(intervals_ + 1);
   for (int j = 0; j <= intervals_; ++j) {
@@ -103,69 +74,99 @@ MeshData::MeshData(const GearSet& set)
   }
 }
 
+void MeshData::expand() {
+  const auto highest = static_cast<double>(std::max<std::size_t>(1, harmonics_.size()));
+  reach_ = MeshExpansion::kReach / highest;
+  std::size_t count = 8;
+  while (0.6 * reach_ * static_cast<double>(count) < std::numbers::pi) count *= 2;
+  expansions_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+    for (std::size_t n = 0; n < harmonics_.size(); ++n) {
+      const double order = static_cast<double>(n + 1);
+      add(harmonics_[n], order, std::cos(order * angle), std::sin(order * angle), expansions_[i]);
+    }
+  }
+}
+
+void MeshData::add(const Harmonic& h, double order, double c, double s, MeshExpansion& to) {
+  using E = MeshExpansion;
+  // Each function and its derivative by its angle over the order.
+  const auto set = [&](E::Function function, double sine, double cosine) {
+    double value = sine * s + cosine * c, turned = sine * c - cosine * s, factor = 1;
+    for (int k = 0; k < E::kTerms; ++k) {
+      to.term[k][function] += factor * value;
+      const double next = -value;
+      value = turned;
+      turned = next;
+      factor *= order / (k + 1);
+    }
+  };
+  set(E::kPinionRadius, h.radius_p_sin, h.radius_p_cos);
+  set(E::kPinionIntegral, h.radius_p_cos / h.pinion_order, -h.radius_p_sin / h.pinion_order);
+  set(E::kStiffness, h.stiffness_sin, h.stiffness_cos);
+  set(E::kStiffnessSlope, -h.pinion_order * h.stiffness_cos, h.pinion_order * h.stiffness_sin);
+  set(E::kError, h.error_sin, h.error_cos);
+  set(E::kErrorSlope, -h.pinion_order * h.error_cos, h.pinion_order * h.error_sin);
+  set(E::kGearRadius, h.radius_g_sin, h.radius_g_cos);
+  set(E::kGearIntegral, -h.radius_g_cos / h.gear_order, h.radius_g_sin / h.gear_order);
+}
+
+const MeshExpansion* MeshData::nearest_expansion(double theta, double& offset) const {
+  if (expansions_.empty() || !(std::abs(theta) < kManyTurns)) return nullptr;
+  const auto count = static_cast<long>(expansions_.size());
+  const double spacing = 2 * std::numbers::pi / static_cast<double>(count);
+  const long nearest = std::lround(theta / spacing);
+  offset = theta - static_cast<double>(nearest) * spacing;
+  return &expansions_[static_cast<std::size_t>(nearest & (count - 1))];
+}
+
 MeshPhase MeshData::at_phase(double theta_p) const {
-  MeshPhase at{std::cos(theta_p),
-               std::sin(theta_p),
-               {pinion_radius_, gear_radius_, 0, stiffness_, 0, error_, 0},
-               nullptr};
+  MeshPhase at{theta_p, {pinion_radius_, gear_radius_, 0, stiffness_, 0, error_, 0}, nullptr, 0};
   MeshFunctions& f = at.pinion;
-  double c = at.cosine, s = at.sine;
-  for (std::size_t n = 0; n < harmonics_.size(); ++n) {
-    const Harmonic& h = harmonics_[n];
-    const double order = static_cast<double>(n + 1) * pinion_teeth_;
+  at.expansion = nearest_expansion(theta_p, at.offset);
+  if (at.expansion != nullptr) {
+    const auto ripple = at.expansion->at<MeshExpansion::kPinionRadius, 6>(at.offset);
+    f.pinion_contact_radius += ripple[MeshExpansion::kPinionRadius];
+    f.radius_integral += ripple[MeshExpansion::kPinionIntegral];
+    f.mesh_stiffness += ripple[MeshExpansion::kStiffness];
+    f.mesh_stiffness_slope += ripple[MeshExpansion::kStiffnessSlope];
+    f.static_transmission_error += ripple[MeshExpansion::kError];
+    f.static_transmission_error_slope += ripple[MeshExpansion::kErrorSlope];
+    return at;
+  }
+  const double cosine = std::cos(theta_p), sine = std::sin(theta_p);
+  double c = cosine, s = sine;
+  for (const Harmonic& h : harmonics_) {
     f.pinion_contact_radius += h.radius_p_sin * s + h.radius_p_cos * c;
-    f.radius_integral += (h.radius_p_cos * s - h.radius_p_sin * c) / order;
+    f.radius_integral += (h.radius_p_cos * s - h.radius_p_sin * c) / h.pinion_order;
     f.mesh_stiffness += h.stiffness_sin * s + h.stiffness_cos * c;
-    f.mesh_stiffness_slope += order * (h.stiffness_sin * c - h.stiffness_cos * s);
+    f.mesh_stiffness_slope += h.pinion_order * (h.stiffness_sin * c - h.stiffness_cos * s);
     f.static_transmission_error += h.error_sin * s + h.error_cos * c;
-    f.static_transmission_error_slope += order * (h.error_sin * c - h.error_cos * s);
-    const double next = c * at.cosine - s * at.sine;
-    s = s * at.cosine + c * at.sine;
+    f.static_transmission_error_slope += h.pinion_order * (h.error_sin * c - h.error_cos * s);
+    const double next = c * cosine - s * sine;
+    s = s * cosine + c * sine;
     c = next;
   }
   return at;
 }
 
-GearRadiusExpansion MeshData::expand_gear_radius(double theta) const {
-  GearRadiusExpansion out{};
-  for (std::size_t n = 0; n < gear_harmonics_; ++n) {
-    const Harmonic& h = harmonics_[n];
-    const double order = static_cast<double>(n + 1);
-    const double c = std::cos(order * theta), s = std::sin(order * theta);
-    out.integral -= h.radius_g_cos_per_order * s - h.radius_g_sin_per_order * c;
-    double value = h.radius_g_sin * s + h.radius_g_cos * c;
-    double slope = order * (h.radius_g_sin * c - h.radius_g_cos * s);
-    double factor = 1;
-    for (int k = 0; k < GearRadiusExpansion::kTerms; k += 2) {
-      out.ripple[k] += value * factor;
-      factor /= k + 1;
-      if (k + 1 < GearRadiusExpansion::kTerms) out.ripple[k + 1] += slope * factor;
-      factor /= k + 2;
-      value *= -order * order;
-      slope *= -order * order;
-    }
+std::array<double, 2> MeshData::gear_functions(const MeshPhase& phase, double lag) const {
+  const double theta = phase.theta - lag;
+  double offset = 0;
+  if (const MeshExpansion* expansion = nearest_expansion(theta, offset)) {
+    return expansion->at<MeshExpansion::kGearRadius, 2>(offset);
   }
-  for (int k = 0; k < GearRadiusExpansion::kTerms; ++k) {
-    out.ripple_integral[k] = out.ripple[k] / (gear_teeth_ * (k + 1.0));
-  }
-  return out;
-}
-
-MeshFunctions MeshData::sum_of_series(const MeshPhase& at, double lag) const {
-  MeshFunctions f = at.pinion;
-  const Turn turn = small_turn(lag);
-  const double cosine = at.cosine * turn.cosine + at.sine * turn.sine;
-  const double sine = at.sine * turn.cosine - at.cosine * turn.sine;
-  double c = cosine, s = sine;
-  for (std::size_t n = 0; n < gear_harmonics_; ++n) {
-    const Harmonic& h = harmonics_[n];
-    f.gear_contact_radius += h.radius_g_sin * s + h.radius_g_cos * c;
-    f.radius_integral -= h.radius_g_cos_per_order * s - h.radius_g_sin_per_order * c;
+  const double cosine = std::cos(theta), sine = std::sin(theta);
+  double c = cosine, s = sine, ripple = 0, integral = 0;
+  for (const Harmonic& h : harmonics_) {
+    ripple += h.radius_g_sin * s + h.radius_g_cos * c;
+    integral -= (h.radius_g_cos * s - h.radius_g_sin * c) / h.gear_order;
     const double next = c * cosine - s * sine;
     s = s * cosine + c * sine;
     c = next;
   }
-  return f;
+  return {ripple, integral};
 }
 
 void MeshData::flanks(int interval, double phase,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/gear/gear_set.h"
+#include "core/gear/mesh_expansion.h"
 
 namespace tribodyn {
 
@@ -21,20 +22,12 @@ struct MeshFunctions {
   double static_transmission_error_slope;  ///< de/dphi_p [m/rad]
 };
 
-/// R_g's ripple and its derivatives by theta_g over k!, and the gear's part of the radius integral.
-struct GearRadiusExpansion {
-  static constexpr int kTerms = 9;
-  std::array<double, kTerms> ripple;           ///< [m]
-  std::array<double, kTerms> ripple_integral;  ///< over (k + 1) N_g [m]
-  double integral;                             ///< [m]
-};
-
 /// What eqs 8-11 need of the pinion's angle alone: prepared once per phase, used at every state.
 struct MeshPhase {
-  double cosine, sine;   ///< of theta_p
-  MeshFunctions pinion;  ///< R_g its mean, radius_integral the pinion's part
-  const GearRadiusExpansion* expansion =
-      nullptr;  ///< at theta_g = theta_p; saves the series of R_g
+  double theta;                              ///< [rad]
+  MeshFunctions pinion;                      ///< R_g its mean, radius_integral the pinion's part
+  const MeshExpansion* expansion = nullptr;  ///< the nearest one; null: by the series
+  double offset = 0;                         ///< of theta from there [rad]
 };
 
 /// One flank pair at one mesh phase; columns of ToothContactTables.
@@ -58,7 +51,22 @@ struct FlankMotion {
 /// Velocities and lever arms r_p = -(dV . A_p)/V_s, r_g = (dV . A_g)/V_s with dV the sliding
 /// vector: the power identity is exact and holds when a shaft turns backwards. Without sliding both
 /// arms are 0.
-FlankMotion flank_motion(const FlankKinematics& kinematics, double pinion_speed, double gear_speed);
+inline FlankMotion flank_motion(const FlankKinematics& k, double pinion_speed, double gear_speed) {
+  FlankMotion m{};
+  m.pinion_x = k.pinion_velocity_x * pinion_speed;
+  m.pinion_y = k.pinion_velocity_y * pinion_speed;
+  m.gear_x = k.gear_velocity_x * gear_speed;
+  m.gear_y = k.gear_velocity_y * gear_speed;
+  const double slide_x = m.pinion_x - m.gear_x, slide_y = m.pinion_y - m.gear_y;
+  m.sliding_speed = std::sqrt(slide_x * slide_x + slide_y * slide_y);
+  if (m.sliding_speed > 0) {
+    const double per_speed = 1 / m.sliding_speed;
+    m.pinion_friction_arm =
+        -per_speed * (slide_x * k.pinion_velocity_x + slide_y * k.pinion_velocity_y);
+    m.gear_friction_arm = per_speed * (slide_x * k.gear_velocity_x + slide_y * k.gear_velocity_y);
+  }
+  return m;
+}
 
 /// A gear set packed for evaluation. Immutable; safe for concurrent use; evaluation allocates
 /// nothing. Tables are linear in mesh phase between their samples, shares clipped at zero and
@@ -67,28 +75,24 @@ FlankMotion flank_motion(const FlankKinematics& kinematics, double pinion_speed,
 class MeshData {
  public:
   explicit MeshData(const GearSet& gear_set);
+  MeshData(const MeshData&) = delete;
+  MeshData& operator=(const MeshData&) = delete;
 
   /// theta_p = N_p phi_p, theta_g = N_g phi_g [rad].
   MeshFunctions functions(double theta_p, double theta_g) const {
     return functions(at_phase(theta_p), theta_p - theta_g);
   }
+  /// Valid as long as this object.
   MeshPhase at_phase(double theta_p) const;
-  GearRadiusExpansion expand_gear_radius(double theta) const;
   /// With theta_g = theta_p - lag.
   MeshFunctions functions(const MeshPhase& phase, double lag) const {
-    if (phase.expansion == nullptr || std::abs(lag) > longest_expanded_lag_) {
-      return sum_of_series(phase, lag);
-    }
     MeshFunctions f = phase.pinion;
-    const GearRadiusExpansion& g = *phase.expansion;
-    constexpr int kLast = GearRadiusExpansion::kTerms - 1;
-    double ripple = g.ripple[kLast], integral = g.ripple_integral[kLast];
-    for (int k = kLast - 1; k >= 0; --k) {
-      ripple = g.ripple[k] - lag * ripple;
-      integral = g.ripple_integral[k] - lag * integral;
-    }
+    const double x = phase.offset - lag;
+    const auto [ripple, integral] = phase.expansion != nullptr && std::abs(x) <= reach_
+                                        ? phase.expansion->at<MeshExpansion::kGearRadius, 2>(x)
+                                        : gear_functions(phase, lag);
     f.gear_contact_radius += ripple;
-    f.radius_integral += g.integral + lag * integral;
+    f.radius_integral += integral;
     return f;
   }
 
@@ -107,14 +111,19 @@ class MeshData {
   struct Harmonic {
     double radius_p_sin, radius_p_cos, radius_g_sin, radius_g_cos;
     double stiffness_sin, stiffness_cos, error_sin, error_cos;
-    double radius_g_sin_per_order = 0, radius_g_cos_per_order = 0;  // over n N_g
+    double pinion_order, gear_order;  // n N_p, n N_g
   };
-  MeshFunctions sum_of_series(const MeshPhase& phase, double lag) const;
-  std::size_t gear_harmonics_ = 0;
-  double longest_expanded_lag_ = 0;  // up to which GearRadiusExpansion is exact
+  void expand();
+  static void add(const Harmonic& harmonic, double order, double cosine, double sine,
+                  MeshExpansion& to);
+  /// Null where there is none.
+  const MeshExpansion* nearest_expansion(double theta, double& offset) const;
+  std::array<double, 2> gear_functions(const MeshPhase& phase, double lag) const;
   int pinion_teeth_, gear_teeth_, intervals_;
   double pinion_radius_, gear_radius_, stiffness_, error_;
   std::vector<Harmonic> harmonics_;
+  std::vector<MeshExpansion> expansions_;  // around even angles; empty where they would be many
+  double reach_ = 0;                       // of an expansion [rad]
   std::vector<std::array<FlankKinematics, kFlankPairs>> samples_;
 };
 

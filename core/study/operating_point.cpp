@@ -212,7 +212,7 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   const double mean_force = march_scales(system, target.mean_pinion_speed).torque /
                             system.mesh().mean_pinion_contact_radius();
   std::vector<SolvedPiece> pieces;
-  OrbitFriction friction(system, contacts, 0);
+  OrbitFriction friction(system, contacts);
   if (!friction.solve(grids.with_steps(refined->steps_per_mesh_cycle), orbit.pieces, pieces)) {
     return std::nullopt;
   }

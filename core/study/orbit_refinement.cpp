@@ -73,7 +73,7 @@ bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
 }
 
 /// `repels`: set where a response is found that surely does.
-std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBatch& contacts,
+std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitFriction& friction,
                                    MeshGrids& grids, const OrbitSearch& search, bool& repels,
                                    MarchStatistics& statistics, long& marched_cycles) {
   OrbitRequest request;
@@ -109,7 +109,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
       if (!have_coarser) {
         const auto approach = [&] {
           orbit = origin;
-          return approach_without_friction(system, contacts, grid, request, orbit, statistics,
+          return approach_without_friction(system, friction, grid, request, orbit, statistics,
                                            marched_cycles);
         };
         if (search.frictionless == nullptr) {
@@ -118,7 +118,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
           return false;
         }
       }
-      return solve_periodic_orbit(system, contacts, grid, request, orbit, statistics,
+      return solve_periodic_orbit(system, friction, grid, request, orbit, statistics,
                                   marched_cycles);
     };
     bool found = false;
@@ -170,7 +170,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, const FlankContactBat
     if (have_coarser && estimate <= search.tolerance && !pulls) {
       // A map from near may know nothing of a flank that hardly parts.
       if (best.orbit.contact_loss &&
-          !renew_map(system, contacts, grid, request, best.orbit, statistics, marched_cycles)) {
+          !renew_map(system, friction, grid, request, best.orbit, statistics, marched_cycles)) {
         return std::nullopt;
       }
       best.largest_multiplier = best.orbit.map->largest_multiplier();
@@ -191,16 +191,17 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
                                          MarchStatistics& statistics, long& marched_cycles) {
   constexpr int kLongestPeriod = 4;
   OrbitSearch next = search;
+  OrbitFriction friction(system, contacts);
   const Torques torques = system.torques();
   for (bool patient = false;; patient = true) {
     bool repels = false;
     system.set_torques(torques);
-    auto found = refine(system, contacts, grids, next, repels, statistics, marched_cycles);
+    auto found = refine(system, friction, grids, next, repels, statistics, marched_cycles);
     if (found && next.period > search.period && is_half_as_long(system, search, found->orbit)) {
       next.period /= 2;
       next.start = found->orbit.state;
       next.few_cycles = next.first_cycles = 1;
-      found = refine(system, contacts, grids, next, repels, statistics, marched_cycles);
+      found = refine(system, friction, grids, next, repels, statistics, marched_cycles);
     }
     if (found || (patient && !repels) || 2 * next.period > kLongestPeriod) return found;
     // Periods double where a response begins to repel, and a branch may end between neighbours: to

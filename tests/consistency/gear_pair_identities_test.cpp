@@ -139,6 +139,89 @@ TEST(FlankMotionIdentities, DerivedArmsAreThoseOfTheTablesAtTheNominalRatio) {
   EXPECT_LT(between, 7e-8);
 }
 
+/// Series of so many random harmonics, falling.
+FourierSeries random_series(Draw& draw, int harmonics) {
+  FourierSeries s{draw.between(1, 2), {}, {}};
+  for (int n = 1; n <= harmonics; ++n) {
+    s.sine.push_back(draw.between(-1, 1) / n);
+    s.cosine.push_back(draw.between(-1, 1) / n);
+  }
+  return s;
+}
+
+/// A sum's terms with their n-th factors `weight(n)`, at an angle; and what may be wrong with it.
+struct Sum {
+  double value = 0, doubt = 0;
+};
+template <class Weight>
+Sum sum_of(const std::vector<double>& sine, const std::vector<double>& cosine, double theta,
+           Weight&& weight) {
+  Sum sum;
+  for (std::size_t i = 0; i < sine.size(); ++i) {
+    const double order = static_cast<double>(i + 1);
+    sum.value +=
+        weight(order) * (sine[i] * std::sin(order * theta) + cosine[i] * std::cos(order * theta));
+    sum.doubt += std::abs(weight(order)) * (std::abs(sine[i]) + std::abs(cosine[i])) *
+                 (2e-14 + 1e-15 * order * (1 + std::abs(theta)));
+  }
+  return sum;
+}
+
+// Expansions around even angles, where there are few harmonics; a lag leads out of the reach of
+// one.
+TEST(MeshFunctionIdentities, AreTheSeriesAtAnyAngleLagAndNumberOfHarmonics) {
+  Draw draw(74);
+  SCOPED_TRACE(draw.seed());
+  for (const int harmonics : {0, 1, 8, 32, 33, 100}) {
+    SCOPED_TRACE(harmonics);
+    GearSet set = reference_scene().gear_set;
+    MeshSeries& s = set.series;
+    for (FourierSeries* series : {&s.pinion_contact_radius, &s.gear_contact_radius,
+                                  &s.mesh_stiffness, &s.static_transmission_error}) {
+      *series = random_series(draw, harmonics);
+    }
+    const MeshData mesh(set);
+    const double pinion_teeth = set.pinion_teeth, gear_teeth = set.gear_teeth;
+    for (int i = 0; i < kRandomStates; ++i) {
+      const double theta = draw.between(-20, 20);
+      const double lag = i % 2 == 0 ? draw.between(-0.05, 0.05) : draw.between(-5, 5);
+      const MeshFunctions f = mesh.functions(theta, theta - lag);
+      const auto expect = [&](double value, double mean, const Sum& sum) {
+        EXPECT_NEAR(value, mean + sum.value, sum.doubt + 1e-15);
+      };
+      const auto one = [](double) { return 1.0; };
+      const auto pinion_order = [&](double n) { return n * pinion_teeth; };
+      const auto negative = [](std::vector<double> v) {
+        for (double& x : v) x = -x;
+        return v;
+      };
+      const auto plain = [&](const FourierSeries& of, double at) {
+        return sum_of(of.sine, of.cosine, at, one);
+      };
+      const auto slope = [&](const FourierSeries& of) {
+        return sum_of(negative(of.cosine), of.sine, theta, pinion_order);
+      };
+      const auto integral = [&](const FourierSeries& of, double at, double teeth) {
+        return sum_of(of.cosine, negative(of.sine), at, [&](double n) { return 1 / (n * teeth); });
+      };
+      expect(f.pinion_contact_radius, s.pinion_contact_radius.mean,
+             plain(s.pinion_contact_radius, theta));
+      expect(f.gear_contact_radius, mesh.mean_gear_contact_radius(),
+             plain(s.gear_contact_radius, theta - lag));
+      expect(f.mesh_stiffness, s.mesh_stiffness.mean, plain(s.mesh_stiffness, theta));
+      expect(f.mesh_stiffness_slope, 0, slope(s.mesh_stiffness));
+      expect(f.static_transmission_error, s.static_transmission_error.mean,
+             plain(s.static_transmission_error, theta));
+      expect(f.static_transmission_error_slope, 0, slope(s.static_transmission_error));
+      const Sum pinion = integral(s.pinion_contact_radius, theta, pinion_teeth);
+      const Sum gear = integral(s.gear_contact_radius, theta - lag, gear_teeth);
+      expect(f.radius_integral, 0, {pinion.value - gear.value, pinion.doubt + gear.doubt});
+    }
+    const MeshFunctions nowhere = mesh.functions(std::nan(""), 0);
+    EXPECT_TRUE(harmonics == 0 || std::isnan(nowhere.mesh_stiffness));
+  }
+}
+
 TEST(TransmissionErrorIdentities, ClosedFormIsThatOfTheSeries) {
   const Bench bench(reference_scene());
   Draw draw(72);
