@@ -16,25 +16,19 @@ constexpr int kTorque = 7;  // column of the unknown torque
 /// Phase in the tables: the end of a period is an end there too.
 double inside_cycle(double phase) { return phase - std::floor(phase); }
 
-}  // namespace
-
-void FixedStepMarch::rates(const MeshPhase& phase, const MarchState& y,
-                           const FrictionPerLoad& friction, Rates& dy) {
-  ++evaluations_;
-  system_.mechanics(phase, y.data(), at_);
-  const ContactRegime& r = system_.regime;
-  load_ = r.side != 0 && r.loaded ? std::max(0.0, r.side * at_.mesh_force) : 0;
-  at_.pinion_friction_torque = friction.pinion * load_;
-  at_.gear_friction_torque = friction.gear * load_;
-  system_.motion(y.data(), at_, dy.data());
+/// Of the flanks together [N].
+double load_of(const ContactRegime& r, const Mechanics& at) {
+  return r.side != 0 && r.loaded ? std::max(0.0, r.side * at.mesh_force) : 0;
 }
 
-void FixedStepMarch::sensitivity_rates(const MarchState& y, const FrictionPerLoad& friction,
-                                       const Rates& dy, const Sensitivity& s,
-                                       Sensitivity& ds) const {
+}  // namespace
+
+void FixedStepMarch::sensitivity_rates(const MarchState& y, const Mechanics& at,
+                                       const FrictionPerLoad& friction, const Rates& dy,
+                                       const Sensitivity& s, Sensitivity& ds) const {
   using Row = Eigen::Array<double, 1, 8>;
   const DrivelineDynamics& d = system_.dynamics();
-  const MeshFunctions& m = at_.mesh;
+  const MeshFunctions& m = at.mesh;
   const ContactRegime& r = system_.regime;
   const double stiffness = r.side == 0 ? 0 : m.mesh_stiffness;
   const double damping =
@@ -43,7 +37,7 @@ void FixedStepMarch::sensitivity_rates(const MarchState& y, const FrictionPerLoa
       stiffness * s[kWinding] +
       damping * ((m.pinion_contact_radius - m.static_transmission_error_slope) * s[kPinionSpeed] -
                  m.gear_contact_radius * s[kGearSpeed]);
-  const double load_by_force = load_ > 0 ? r.side : 0;
+  const double load_by_force = load_of(r, at) > 0 ? r.side : 0;
   const Row pinion_shaft = d.pinion_shaft_stiffness * s[kPinionShaftTwist] +
                            d.pinion_shaft_damping * (s[kPinionShaftSpeed] - s[kPinionSpeed]);
   const Row gear_shaft = d.gear_shaft_stiffness * s[kGearShaftTwist] +
@@ -52,7 +46,7 @@ void FixedStepMarch::sensitivity_rates(const MarchState& y, const FrictionPerLoa
       (load_by_force * friction.pinion - m.pinion_contact_radius) * force + pinion_shaft;
   if (system_.options().energy_consistent) {
     pinion_torque += m.static_transmission_error_slope * force;
-    if (r.side != 0) pinion_torque -= m.mesh_stiffness_slope * at_.deflection * s[kWinding];
+    if (r.side != 0) pinion_torque -= m.mesh_stiffness_slope * at.deflection * s[kWinding];
   }
   ds[kTime].setZero();
   ds[kPinionShaftTwist] = s[kPinionShaftSpeed] - s[kPinionSpeed];
@@ -93,15 +87,21 @@ void FixedStepMarch::step(LaggedFriction& friction, const Span& span, const Marc
       }
     }
     const FrictionPerLoad here = friction.at(span.phase + kNode[i] * h);
-    rates(*phases[i], stage, here, rate);
+    Mechanics at;
+    system_.mechanics(*phases[i], stage.data(), at);
+    const double load = load_of(system_.regime, at);
+    at.pinion_friction_torque = here.pinion * load;
+    at.gear_friction_torque = here.gear * load;
+    system_.motion(stage.data(), at, rate.data());
     for (int j = 0; j < kStates; ++j) to[j] += kWeight[i] * h * rate[j];
     if (s != nullptr) {
-      sensitivity_rates(stage, here, rate, s_stage, s_rate);
+      sensitivity_rates(stage, at, here, rate, s_stage, s_rate);
       for (int j = 0; j < kStates; ++j) (*s_to)[j] += kWeight[i] * h * s_rate[j];
     }
     if (i == 0) first_rate_ = rate;
   }
   last_rate_ = rate;
+  evaluations_ += 4;
 }
 
 MarchState FixedStepMarch::middle(const MarchState& from, const MarchState& to, double h) const {
@@ -201,7 +201,10 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
                          std::vector<OrbitPiece>* pieces) {
   constexpr int kMostPieces = 20;  // of one step
   int index = 0;                   // of an event
-  if (pieces != nullptr) pieces->clear();
+  if (pieces != nullptr) {
+    pieces->clear();
+    pieces->reserve(static_cast<std::size_t>(grid_.steps() * period_));
+  }
   y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
   if (s != nullptr) {
     for (auto& row : *s) row.setZero();
@@ -273,7 +276,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
       ++taken_;
       if (pieces != nullptr) {
         const bool on_grid = piece == 0 && !happens;
-        pieces->push_back({phase, h, on_grid ? node : -1, system_.regime, y, half, to});
+        pieces->emplace_back(phase, h, on_grid ? node : -1, system_.regime, y, half, to);
       }
       y = to;
       if (s != nullptr) *s = s_to;

@@ -50,10 +50,8 @@ class FixedStepMarch {
     double phase, length;  ///< [cycles]
     const MeshPhase *start, *middle, *end;
   };
-  void rates(const MeshPhase& phase, const MarchState& y, const FrictionPerLoad& friction,
-             Rates& dy);
-  void sensitivity_rates(const MarchState& y, const FrictionPerLoad& friction, const Rates& dy,
-                         const Sensitivity& s, Sensitivity& ds) const;
+  void sensitivity_rates(const MarchState& y, const Mechanics& at, const FrictionPerLoad& friction,
+                         const Rates& dy, const Sensitivity& s, Sensitivity& ds) const;
   void step(LaggedFriction& friction, const Span& span, const MarchState& y, const Sensitivity* s,
             MarchState& to, Sensitivity* s_to);
   template <class Part>
@@ -69,8 +67,6 @@ class FixedStepMarch {
   bool solve_wheel_torque_;
   double event_tolerance_;
   long evaluations_ = 0, taken_ = 0, events_ = 0;
-  Instant at_;
-  double load_ = 0;
   Rates first_rate_{}, last_rate_{};
 };
 

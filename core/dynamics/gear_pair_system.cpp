@@ -27,7 +27,7 @@ MeshPhase GearPairSystem::at_phase(double phase) const {
 }
 
 ContactRegime GearPairSystem::regime_of(double phase, const double* y) const {
-  Instant at;
+  Mechanics at;
   kinematics(phase, y, at);
   ContactRegime r;
   const double b = dynamics_.half_backlash;
@@ -40,7 +40,7 @@ ContactRegime GearPairSystem::regime_of(double phase, const double* y) const {
 
 std::array<double, 2> GearPairSystem::events(const MeshPhase& phase, const double* y, double length,
                                              double force) const {
-  Instant at;
+  Mechanics at;
   kinematics(phase, y, at);
   const double b = dynamics_.half_backlash;
   if (regime.side == 0) {
@@ -59,7 +59,7 @@ bool GearPairSystem::change_regime(int event, const MeshPhase& phase, const doub
   } else {
     regime.side = dynamics_.half_backlash > 0 ? 0 : -regime.side;
   }
-  Instant at;
+  Mechanics at;
   kinematics(phase, y, at);
   // Deflection is nothing here; the damper alone decides whether load starts at once.
   regime.loaded =
@@ -244,7 +244,7 @@ SectionState GearPairSystem::to_section(const double* y) const {
 
 double GearPairSystem::stored_energy(double phase, const double* y) const {
   const DrivelineDynamics& d = dynamics_;
-  Instant at;
+  Mechanics at;
   kinematics(phase, y, at);
   return 0.5 * (d.pinion_shaft_inertia * square(y[kPinionShaftSpeed]) +
                 d.pinion_inertia * square(y[kPinionSpeed]) +

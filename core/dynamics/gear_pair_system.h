@@ -70,24 +70,29 @@ struct Torques {
   double wheel = 0;   ///< T_w [N m]
 };
 
-/// Everything at one instant, for records and histories.
-struct Instant {
+/// Forces and torques at one instant.
+struct Mechanics {
   MeshFunctions mesh;
-  double deflection = 0;             ///< f [m]
-  double transmission_error = 0;     ///< x [m]
-  double transmission_velocity = 0;  ///< xdot [m/s]
-  double mesh_force = 0;             ///< k_m f + c xdot [N]; of which the damper:
-  double damper_force = 0;
-  double pinion_shaft_torque = 0;  ///< [N m]
-  double gear_shaft_torque = 0;
-  double pinion_friction_torque = 0;
-  double gear_friction_torque = 0;
-  double loss_power = 0;  ///< sum V_s F_fr [W]
+  double deflection;             ///< f [m]
+  double transmission_error;     ///< x [m]
+  double transmission_velocity;  ///< xdot [m/s]
+  double mesh_force;             ///< k_m f + c xdot [N]; of which the damper:
+  double damper_force;
+  double pinion_shaft_torque;  ///< [N m]
+  double gear_shaft_torque;
+  double pinion_friction_torque;
+  double gear_friction_torque;
+  double loss_power;  ///< sum V_s F_fr [W]
   /// What eq 2 leaves out: F e' - k_m' f^2/2 [N m].
   double parametric_torque() const {
     return mesh_force * mesh.static_transmission_error_slope -
            0.5 * mesh.mesh_stiffness_slope * deflection * deflection;
   }
+};
+
+/// Everything at one instant, for records and histories.
+struct Instant : Mechanics {
+  Instant() : Mechanics{} {}
   std::array<double, kFlankPairs> load{};
   std::array<FlankMotion, kFlankPairs> motion{};
   std::array<ContactSolution, kFlankPairs> contact{};
@@ -121,10 +126,10 @@ class GearPairSystem {
   /// Into the regime after event 0 or 1. True where the load of touching flanks begins.
   bool change_regime(int event, const MeshPhase& phase, const double* state);
   /// x, mesh force and shaft torques, without friction.
-  void mechanics(double phase, const double* state, Instant& out) const {
+  void mechanics(double phase, const double* state, Mechanics& out) const {
     mechanics(at_phase(phase), state, out);
   }
-  void mechanics(const MeshPhase& phase, const double* state, Instant& out) const;
+  void mechanics(const MeshPhase& phase, const double* state, Mechanics& out) const;
   /// All of eqs 1-11 and the friction of each loaded flank at mesh phase [cycles]. Counts contacts.
   void evaluate(double phase, const double* state, Instant& out);
   /// Loaded flanks of eqs 2 and 3: what the contact of flank pair k sees under `load` [N] of its
@@ -132,14 +137,14 @@ class GearPairSystem {
   ContactConditions contact_conditions(const FlankKinematics& flank, double load,
                                        const double* state, FlankMotion& motion) const;
   /// d state / d phase of time and the seven states of motion.
-  void motion(const double* state, const Instant& at, double* derivative) const;
+  void motion(const double* state, const Mechanics& at, double* derivative) const;
   /// d state / d phase of the first kMarchComponents from an instant, and of the record if asked.
   void derivative(const double* state, const Instant& at, bool record, double* derivative) const;
   /// x and mesh force without friction: for events.
-  void kinematics(double phase, const double* state, Instant& out) const {
+  void kinematics(double phase, const double* state, Mechanics& out) const {
     kinematics(at_phase(phase), state, out);
   }
-  void kinematics(const MeshPhase& phase, const double* state, Instant& out) const;
+  void kinematics(const MeshPhase& phase, const double* state, Mechanics& out) const;
   /// Mesh phase [cycles].
   MeshPhase at_phase(double phase) const;
 
@@ -184,7 +189,7 @@ class GearPairSystem {
 };
 
 inline void GearPairSystem::kinematics(const MeshPhase& phase, const double* y,
-                                       Instant& out) const {
+                                       Mechanics& out) const {
   // N_g phi_g = N_p phi_p - N_g winding/R_g0, because R_g0 N_p = R_p0 N_g.
   out.mesh = mesh_.functions(phase, lag_per_winding_ * y[kWinding]);
   const MeshFunctions& m = out.mesh;
@@ -200,7 +205,8 @@ inline void GearPairSystem::kinematics(const MeshPhase& phase, const double* y,
   out.mesh_force = m.mesh_stiffness * out.deflection + out.damper_force;
 }
 
-inline void GearPairSystem::mechanics(const MeshPhase& phase, const double* y, Instant& out) const {
+inline void GearPairSystem::mechanics(const MeshPhase& phase, const double* y,
+                                      Mechanics& out) const {
   kinematics(phase, y, out);
   const DrivelineDynamics& d = dynamics_;
   out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
@@ -232,7 +238,7 @@ inline ContactConditions GearPairSystem::contact_conditions(const FlankKinematic
           motion.gear_y - drift_y};
 }
 
-inline void GearPairSystem::motion(const double* y, const Instant& at, double* dy) const {
+inline void GearPairSystem::motion(const double* y, const Mechanics& at, double* dy) const {
   const MeshFunctions& m = at.mesh;
   double pinion_torque =
       -m.pinion_contact_radius * at.mesh_force + at.pinion_shaft_torque + at.pinion_friction_torque;

@@ -19,32 +19,38 @@ struct FrictionPerLoad {
 class LaggedFriction {
  public:
   void clear() {
-    phases_.clear();
-    values_.clear();
+    nodes_.clear();
     cursor_ = 0;
   }
   /// Phases [cycles] must not fall.
   void add(double phase, const FrictionPerLoad& value) {
-    phases_.push_back(phase);
-    values_.push_back(value);
+    if (!nodes_.empty()) {
+      const double width = phase - nodes_.back().phase;
+      nodes_.back().per_width = width > 0 ? 1 / width : 0;
+    }
+    nodes_.push_back({phase, 0, value});
   }
   /// The last value added, or none.
-  FrictionPerLoad last() const { return values_.empty() ? FrictionPerLoad{} : values_.back(); }
+  FrictionPerLoad last() const { return nodes_.empty() ? FrictionPerLoad{} : nodes_.back().value; }
 
   /// Fast where phases follow each other.
   FrictionPerLoad at(double phase) {
-    if (phases_.size() < 2) return last();
-    while (cursor_ > 0 && phases_[cursor_] > phase) --cursor_;
-    while (cursor_ + 2 < phases_.size() && phases_[cursor_ + 1] <= phase) ++cursor_;
-    const double width = phases_[cursor_ + 1] - phases_[cursor_];
-    const double t = width > 0 ? std::clamp((phase - phases_[cursor_]) / width, 0.0, 1.0) : 0;
-    const FrictionPerLoad &a = values_[cursor_], &b = values_[cursor_ + 1];
+    if (nodes_.size() < 2) return last();
+    while (cursor_ > 0 && nodes_[cursor_].phase > phase) --cursor_;
+    while (cursor_ + 2 < nodes_.size() && nodes_[cursor_ + 1].phase <= phase) ++cursor_;
+    const Node& from = nodes_[cursor_];
+    const double t = std::clamp((phase - from.phase) * from.per_width, 0.0, 1.0);
+    const FrictionPerLoad &a = from.value, &b = nodes_[cursor_ + 1].value;
     return {a.pinion + t * (b.pinion - a.pinion), a.gear + t * (b.gear - a.gear)};
   }
 
  private:
-  std::vector<double> phases_;
-  std::vector<FrictionPerLoad> values_;
+  struct Node {
+    double phase;
+    double per_width;  ///< of the way to the next
+    FrictionPerLoad value;
+  };
+  std::vector<Node> nodes_;
   std::size_t cursor_ = 0;
 };
 

@@ -24,11 +24,18 @@ class SectionMap {
   /// Floquet, modulus; but for the one nearest to 1: the train as a whole runs on at any speed.
   /// Computed once; copies made after that know it.
   double largest_multiplier() const;
+  /// Not below that, at half the price, and mostly within a percent; infinite where it cannot tell.
+  /// Computed once like that.
+  double multiplier_bound() const;
+  /// Not above the distance of any multiplier from -1, where periods double.
+  double distance_from_doubling() const;
 
  private:
+  double bound_of_multipliers() const;
+
   Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
-  Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;
-  mutable double largest_multiplier_ = -1;  // not computed yet
+  Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;   // scaled
+  mutable double largest_multiplier_ = -1, multiplier_bound_ = -1;  // not computed yet
 };
 
 /// Where shooting begins, and what it has found so far.
@@ -86,7 +93,7 @@ bool solve_periodic_orbit(GearPairSystem& system, OrbitFriction& friction, const
                           MarchStatistics& statistics, long& marched_cycles);
 
 /// The map at the response itself, in place of one from near: multipliers by it are good to 3e-3
-/// also where contact is lost. False where the march breaks down.
+/// also where contact is lost or periods double. False where the march breaks down.
 bool renew_map(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
                const OrbitRequest& request, PeriodicOrbit& orbit, MarchStatistics& statistics,
                long& marched_cycles);

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kSafety = 1.7;  // on the error that two step lengths tell
 constexpr int kPatience = 300;   // periods
+constexpr double kNearDoubling = 0.06;
 constexpr int kMostFailures = 3;
 constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
 constexpr int kFinest = 4000;    // steps per mesh cycle
@@ -165,18 +166,20 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitFriction& fricti
       estimate = step_error + orbit.unsettled;
       halving_difference = halving ? difference : 0;
     }
-    best = {std::move(orbit), steps, estimate, 0};
+    best = {std::move(orbit), steps, estimate};
     const bool pulls = request.keep_contact && best.orbit.least_pressing_force < 0;
     if (have_coarser && estimate <= search.tolerance && !pulls) {
-      // A map from near may know nothing of a flank that hardly parts.
-      if (best.orbit.contact_loss &&
+      // A map from near may know nothing of a flank that hardly parts, nor of what friction does
+      // to the multipliers: 0.02 where periods double.
+      if ((best.orbit.contact_loss || best.orbit.map->distance_from_doubling() < kNearDoubling) &&
           !renew_map(system, friction, grid, request, best.orbit, statistics, marched_cycles)) {
         return std::nullopt;
       }
-      best.largest_multiplier = best.orbit.map->largest_multiplier();
       const double doubt = margin(system, search);
-      repels = best.largest_multiplier > 1 + doubt;
-      if (!(best.largest_multiplier < 1 - doubt)) return std::nullopt;
+      if (best.orbit.map->multiplier_bound() < 1 - doubt) return best;
+      const double multiplier = best.orbit.map->largest_multiplier();
+      repels = multiplier > 1 + doubt;
+      if (!(multiplier < 1 - doubt)) return std::nullopt;
       return best;
     }
     have_coarser = true;

@@ -29,7 +29,6 @@ struct RefinedOrbit {
   /// Of loss (RMS and energy), torque and extremes of the transmission error, relative: what the
   /// last halving of the steps changed, less what its order took away, and what sweeps left.
   double estimated_error = 0;
-  double largest_multiplier = 0;  ///< Floquet, modulus, under lagged friction
 };
 
 /// An attracting periodic response on a sequence of step lengths, each shorter than the one before,

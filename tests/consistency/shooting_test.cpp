@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <random>
@@ -151,7 +152,8 @@ RandomPlace random_place(std::mt19937_64& random) {
 // coexisting responses a start leads to is not asked here.
 TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   if (kShortRun) GTEST_SKIP() << "minutes under sanitizers";
-  const unsigned long seed = std::random_device{}();
+  const char* chosen = std::getenv("TRIBODYN_TEST_SEED");
+  const unsigned long seed = chosen != nullptr ? std::stoul(chosen) : std::random_device{}();
   std::cout << "seed " << seed << '\n';
   RecordProperty("seed", std::to_string(seed));
   std::mt19937_64 random(seed);
@@ -177,7 +179,10 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
       if (!exact.settled) continue;
       const double error = true_error(r, exact), estimate = r.estimated_relative_error.value();
       EXPECT_LT(error, std::max(options.tolerance, 2 * estimate)) << "scene " << i;
-      above += error > std::max(estimate, 1e-8);
+      if (error > std::max(estimate, 1e-8)) {
+        ++above;
+        std::cout << "scene " << i << ": error " << error << ", estimate " << estimate << '\n';
+      }
       if (i % 2 == 0) over.push_back(estimate / std::max(error, 1e-12));
     } catch (const Refusal& refusal) {
       EXPECT_NE(refusal.reason(), "NOT_FINITE");
