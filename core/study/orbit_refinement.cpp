@@ -58,6 +58,12 @@ double margin(const GearPairSystem& system, const OrbitSearch& search) {
   return std::min(0.006, kDecay * period);
 }
 
+/// What kinks of the tables inside of steps may do where two step lengths agree by accident: by
+/// experience half of it.
+double kink_error(int steps, int intervals) {
+  return steps % intervals == 0 ? 0 : 0.025 / square(steps);
+}
+
 /// Whether the state at half of the period is that at its start.
 bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
                      const PeriodicOrbit& orbit) {
@@ -162,7 +168,8 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitFriction& fricti
       }
       // Two step lengths may agree by accident, three rarely do.
       const double step_error =
-          std::max(kSafety * difference / (gain - 1), best.estimated_error / (2 * square(finer)));
+          std::max({kSafety * difference / (gain - 1), best.estimated_error / (2 * square(finer)),
+                    kink_error(steps, system.mesh().intervals())});
       estimate = step_error + orbit.unsettled;
       halving_difference = halving ? difference : 0;
     }
