@@ -51,16 +51,31 @@ Target target_of(const Scene& scene, const OperatingCondition& c) {
   return t;
 }
 
+QuasiStaticRequest quasi_static_request(const Target& target, const PointOptions& options) {
+  QuasiStaticRequest out;
+  out.mean_pinion_speed = target.mean_pinion_speed;
+  out.solve_wheel_torque = target.solve_wheel_torque;
+  out.tolerance = options.tolerance;
+  if (options.progress) out.interrupted = [&options] { return !options.progress(0); };
+  return out;
+}
+
 /// The quasi-static response at mesh phase 0: its torques leave little for the march to settle.
-MarchState point_start(GearPairSystem& system, const Target& target, double offset,
-                       const std::function<bool(double)>& progress) {
-  ResponseRecord unused(0);
-  HistorySampler none{HistoryRequest{}};
-  const QuasiStatic start =
-      solve_quasi_static(system, target.mean_pinion_speed, target.solve_wheel_torque, unused, none,
-                         progress ? [&progress](double) { return progress(0); } : progress);
-  return static_start(system, target.mean_pinion_speed, start.pinion_friction_torque,
-                      start.gear_friction_torque, offset);
+MarchState point_start(GearPairSystem& system, const FlankContactBatch& contacts, MeshGrids& grids,
+                       const Target& target, const PointOptions& options, double offset) {
+  QuasiStaticRequest request = quasi_static_request(target, options);
+  request.tolerance = 1e-3;
+  FrictionPerLoad friction;
+  if (auto start = solve_quasi_static(system, contacts, grids, request)) {
+    friction = start->orbit.friction.at(0);
+  } else {
+    throw_if_refused(system);
+    system.set_torques(target.torques);
+  }
+  const double load = std::abs(system.torques().pinion) /
+                      system.mesh().functions(0, 0).pinion_contact_radius;
+  return static_start(system, target.mean_pinion_speed, friction.pinion * load,
+                      friction.gear * load, offset);
 }
 
 /// The neighbour's steady state, its wind-up and speeds moved to this point.
@@ -187,6 +202,29 @@ std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Targe
   return search;
 }
 
+/// Everything that follows from a response; its pieces with their contacts, none when one is
+/// refused. Counts contacts.
+std::vector<SolvedPiece> fill_from_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
+                                         MeshGrids& grids, const PeriodicOrbit& orbit,
+                                         int steps_per_mesh_cycle, double mean_pinion_speed,
+                                         PointResult& out) {
+  out.settled = true;
+  out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
+  system.set_torques(orbit.torques);
+  std::vector<SolvedPiece> pieces;
+  OrbitFriction friction(system, contacts, 0);
+  if (!friction.solve(grids.with_steps(steps_per_mesh_cycle), orbit.pieces, pieces)) return {};
+  ResponseRecord record(march_scales(system, mean_pinion_speed).torque /
+                        system.mesh().mean_pinion_contact_radius());
+  record_orbit(system, orbit, pieces, record);
+  record.fill(system.torques(), orbit.period, true, out);
+  out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().end.data()) -
+                             system.stored_energy(0, orbit.pieces.front().start.data());
+  out.section_state = system.to_section(orbit.pieces.front().start.data());
+  out.statistics.contact_solutions = system.contact_solutions();
+  return pieces;
+}
+
 /// By shooting. Nothing where marching must decide.
 std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
                                              const FlankContactBatch& contacts, MeshGrids& grids,
@@ -205,23 +243,10 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
 
   PointResult out = empty_result(target, PointModel::kFull);
   out.method = SteadyStateMethod::kShooting;
-  out.settled = true;
-  out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
   out.estimated_relative_error = refined->estimated_error;
-  system.set_torques(orbit.torques);
-  const double mean_force = march_scales(system, target.mean_pinion_speed).torque /
-                            system.mesh().mean_pinion_contact_radius();
-  std::vector<SolvedPiece> pieces;
-  OrbitFriction friction(system, contacts, 0);
-  if (!friction.solve(grids.with_steps(refined->steps_per_mesh_cycle), orbit.pieces, pieces)) {
-    return std::nullopt;
-  }
-  ResponseRecord record(mean_force);
-  record_orbit(system, orbit, pieces, record);
-  record.fill(system.torques(), orbit.period, true, out);
-  out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().end.data()) -
-                             system.stored_energy(0, orbit.pieces.front().start.data());
-  out.section_state = system.to_section(orbit.pieces.front().start.data());
+  const auto pieces = fill_from_orbit(system, contacts, grids, orbit, refined->steps_per_mesh_cycle,
+                                      target.mean_pinion_speed, out);
+  if (pieces.empty()) return std::nullopt;
   HistorySampler history(history_request);
   sample_orbit(system, orbit, pieces, history);
   out.history = history.take();
@@ -235,26 +260,77 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   return out;
 }
 
-PointResult solve_quasi_static_point(GearPairSystem& system, const Target& target,
-                                     const PointOptions& options) {
+/// The quasi-static answer with its error; nothing where contacts or sweeps fail.
+struct QuasiStaticAnswer {
+  QuasiStatic solution;
+  double estimated_error;  ///< infinite: it cannot tell
+};
+
+std::optional<QuasiStaticAnswer> answer_quasi_statically(GearPairSystem& system,
+                                                         const FlankContactBatch& contacts,
+                                                         MeshGrids& grids, const Target& target,
+                                                         const PointOptions& options) {
+  const QuasiStaticRequest request = quasi_static_request(target, options);
+  std::optional<QuasiStatic> solution = solve_quasi_static(system, contacts, grids, request);
+  if (!solution) return std::nullopt;
+  const double model = quasi_static_model_error(system, contacts, grids, request, *solution);
+  const double error = solution->discretisation_error + model;
+  return QuasiStaticAnswer{*std::move(solution), error};
+}
+
+/// Where nobody says which model: the quasi-static answer if it is within the tolerance.
+std::optional<QuasiStaticAnswer> choose_quasi_static(GearPairSystem& system,
+                                                     const FlankContactBatch& contacts,
+                                                     MeshGrids& grids, const Target& target,
+                                                     const PointOptions& options) {
+  if (!quasi_static_may_do(system, grids, quasi_static_request(target, options))) {
+    return std::nullopt;
+  }
+  auto answer = answer_quasi_statically(system, contacts, grids, target, options);
+  if (answer && answer->estimated_error <= options.tolerance) return answer;
+  system.take_refusal();
+  system.set_torques(target.torques);
+  return std::nullopt;
+}
+
+PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch& contacts,
+                                MeshGrids& grids, const Target& target,
+                                const PointOptions& options, QuasiStaticAnswer& answer) {
   PointResult out = empty_result(target, PointModel::kQuasiStatic);
-  ResponseRecord record(std::abs(system.torques().pinion) /
-                        system.mesh().mean_pinion_contact_radius());
+  if (std::isfinite(answer.estimated_error)) out.estimated_relative_error = answer.estimated_error;
+  const QuasiStatic& solution = answer.solution;
+  fill_from_orbit(system, contacts, grids, solution.orbit, solution.steps_per_mesh_cycle,
+                  target.mean_pinion_speed, out);
+  throw_if_refused(system);
   HistorySampler history(options.history);
-  const QuasiStatic solved =
-      solve_quasi_static(system, target.mean_pinion_speed, target.solve_wheel_torque, record,
-                         history, options.progress);
-  out.settled = true;
-  out.period_in_mesh_cycles = out.recorded_mesh_cycles = 1;
-  record.fill(system.torques(), 1, true, out);
-  out.statistics.contact_solutions = system.contact_solutions();
-  system.regime = {system.torques().pinion >= 0 ? 1 : -1, true};
-  out.section_state =
-      system.to_section(static_start(system, target.mean_pinion_speed,
-                                     solved.pinion_friction_torque, solved.gear_friction_torque, 0)
-                            .data());
+  const QuasiStaticRequest request = quasi_static_request(target, options);
+  sample_quasi_static(system, answer.solution, target.mean_pinion_speed, history,
+                      request.interrupted);
+  throw_if_refused(system);
   out.history = history.take();
   return out;
+}
+
+/// By the caller's choice: also where its error cannot be told.
+PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactBatch& contacts,
+                                     MeshGrids& grids, const Target& target,
+                                     const PointOptions& options) {
+  auto answer = answer_quasi_statically(system, contacts, grids, target, options);
+  throw_if_refused(system);
+  if (!answer) {
+    throw Refusal("NO_QUASI_STATIC_EQUILIBRIUM",
+                  "load and friction of the quasi-static model do not settle");
+  }
+  return quasi_static_result(system, contacts, grids, target, options, *answer);
+}
+
+/// Whether a cheaper model may stand in for the full one. Not where a branch has to be kept or
+/// looked for, nor for histories: their ripple is what the cheaper models leave out.
+bool may_choose(const PointOptions& options, const std::optional<CarriedState>& from) {
+  return options.model == PointModel::kAutomatic &&
+         options.method == SteadyStateMethod::kAutomatic &&
+         options.start == PointStart::kQuasiStatic && !from && !options.probe_coexisting_response &&
+         options.history.columns.empty();
 }
 
 }  // namespace
@@ -288,12 +364,17 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       system.set_torques(target.torques);
       const bool last_pass = !scene.options.load_dependent_mesh_data || pass >= 12;
       PointResult result;
+      MeshGrids& grids = gear_set.grids();
+      std::optional<QuasiStaticAnswer> chosen;
       if (options.model == PointModel::kQuasiStatic) {
-        result = solve_quasi_static_point(system, target, options);
+        result = solve_quasi_static_point(system, contacts, grids, target, options);
+      } else if (may_choose(options, from) &&
+                 (chosen = choose_quasi_static(system, contacts, grids, target, options))) {
+        result = quasi_static_result(system, contacts, grids, target, options, *chosen);
       } else if (std::optional<PointResult> shot;
                  options.method == SteadyStateMethod::kAutomatic &&
-                 (shot = solve_by_shooting(system, contacts, gear_set.grids(), target, options,
-                                           start, from, history))) {
+                 (shot = solve_by_shooting(system, contacts, grids, target, options, start, from,
+                                           history))) {
         result = *std::move(shot);
       } else {
         system.set_torques(target.torques);
@@ -301,9 +382,9 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
         if (march_tolerance(options) >= 1e-9) system.solve_together(&contacts);
         const MarchState state =
             from ? carried_start(system, *from, target.mean_pinion_speed)
-                 : point_start(system, target,
-                               start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0,
-                               options.progress);
+                 : point_start(
+                       system, contacts, grids, target, options,
+                       start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0);
         const int first_period = from ? std::max(1, from->period) : 1;
         result = solve_full(system, target, options, state, first_period, history);
       }
@@ -317,13 +398,14 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       if (last_pass || change <= 1e-10 * std::abs(result.pinion_torque)) return result;
       spent = result.statistics;
       data_torque = result.pinion_torque;
+      if (chosen) continue;  // it starts anew
       from = CarriedState{result.section_state, result.mean_pinion_speed,     result.pinion_torque,
                           result.wheel_torque,  result.period_in_mesh_cycles, result.contact_loss};
     }
   };
 
   PointResult result = respond(options.start, options.carried_state, options.history);
-  if (options.probe_coexisting_response && options.model == PointModel::kFull) {
+  if (options.probe_coexisting_response && options.model != PointModel::kQuasiStatic) {
     for (const PointStart start : {PointStart::kQuasiStatic, PointStart::kLargeVibration}) {
       const PointResult other = respond(start, std::nullopt, {});
       const double span =
@@ -346,18 +428,55 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
   return result;
 }
 
+namespace {
+
+PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit,
+                        double estimated_error, const Target& target) {
+  PointFigures out;
+  const OrbitFigures& f = orbit.figures;
+  const double turned = orbit.period * system.cycle_angle();
+  const double torque = std::abs(orbit.torques.pinion);
+  out.pinion_torque = orbit.torques.pinion;
+  out.wheel_torque = orbit.torques.wheel;
+  out.inefficiency_rms = 100 * f.loss_rms / torque;
+  out.inefficiency_energy_mean = 100 * f.loss_energy / (torque * turned);
+  out.mesh_loss_power = f.loss_energy * target.mean_pinion_speed / turned;
+  out.dte_minimum = f.dte_minimum;
+  out.dte_maximum = f.dte_maximum;
+  out.contact_loss = orbit.contact_loss;
+  out.settled = true;
+  out.period_in_mesh_cycles = orbit.period;
+  out.estimated_relative_error = estimated_error;
+  out.contact_solutions = system.contact_solutions();
+  return out;
+}
+
+}  // namespace
+
 PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
                                  const PointOptions& options) {
   const Scene& scene = prepared.scene();
   const Target target = target_of(scene, condition);
   PreparedGearSet& gear_set = prepared.gear_set();
-  PointFigures out;
-  if (options.method == SteadyStateMethod::kAutomatic && options.model == PointModel::kFull &&
+  if (options.method == SteadyStateMethod::kAutomatic && options.model != PointModel::kQuasiStatic &&
       !scene.options.load_dependent_mesh_data) {
     const FlankContactBatch& contacts = prepared.contacts();
     GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
                           scene.options);
     system.set_torques(target.torques);
+    PointOptions lone = options;
+    lone.carried_state.reset();
+    lone.probe_coexisting_response = false;
+    lone.history = {};
+    if (may_choose(lone, std::nullopt)) {
+      if (const auto chosen =
+              choose_quasi_static(system, contacts, gear_set.grids(), target, lone)) {
+        PointFigures figures =
+            figures_of(system, chosen->solution.orbit, chosen->estimated_error, target);
+        figures.model = PointModel::kQuasiStatic;
+        return figures;
+      }
+    }
     std::optional<OrbitSearch> search =
         search_from(system, target, options, options.start, std::nullopt);
     MarchStatistics statistics;
@@ -367,25 +486,7 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
       search->frictionless = &gear_set.frictionless_orbits();
       found = refine_orbit(system, contacts, gear_set.grids(), *search, statistics, cycles);
     }
-    if (found) {
-      const PeriodicOrbit& orbit = found->orbit;
-      const OrbitFigures& f = orbit.figures;
-      const double turned = orbit.period * system.cycle_angle();
-      const double torque = std::abs(orbit.torques.pinion);
-      out.pinion_torque = orbit.torques.pinion;
-      out.wheel_torque = orbit.torques.wheel;
-      out.inefficiency_rms = 100 * f.loss_rms / torque;
-      out.inefficiency_energy_mean = 100 * f.loss_energy / (torque * turned);
-      out.mesh_loss_power = f.loss_energy * target.mean_pinion_speed / turned;
-      out.dte_minimum = f.dte_minimum;
-      out.dte_maximum = f.dte_maximum;
-      out.contact_loss = orbit.contact_loss;
-      out.settled = true;
-      out.period_in_mesh_cycles = orbit.period;
-      out.estimated_relative_error = found->estimated_error;
-      out.contact_solutions = system.contact_solutions();
-      return out;
-    }
+    if (found) return figures_of(system, found->orbit, found->estimated_error, target);
   }
   PointOptions plain = options;
   plain.carried_state.reset();
@@ -403,7 +504,8 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
           r.settled,
           r.period_in_mesh_cycles,
           r.estimated_relative_error,
-          r.statistics.contact_solutions};
+          r.statistics.contact_solutions,
+          r.model};
 }
 
 }  // namespace tribodyn

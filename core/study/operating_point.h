@@ -29,6 +29,7 @@ struct OperatingCondition {
 };
 
 enum class PointModel {
+  kAutomatic,    ///< the cheapest whose estimated error is within the tolerance; not in results
   kFull,         ///< steady state of the 4-DoF system, friction in the loop
   kQuasiStatic,  ///< static equilibrium at constant speed, phase by phase
 };
@@ -58,7 +59,9 @@ struct CarriedState {
 };
 
 struct PointOptions {
-  PointModel model = PointModel::kFull;
+  /// kAutomatic takes the full model where a start, a carried state, a method, another response or a
+  /// history is asked for.
+  PointModel model = PointModel::kAutomatic;
   PointStart start = PointStart::kQuasiStatic;
   std::optional<CarriedState> carried_state;  ///< overrides start
   bool probe_coexisting_response = false;     ///< also settle from the other start and compare
@@ -201,6 +204,7 @@ struct PointFigures {
   int period_in_mesh_cycles = 0;                   ///< 0: none found
   std::optional<double> estimated_relative_error;  ///< absent: not estimated
   long contact_solutions = 0;
+  PointModel model = PointModel::kFull;  ///< used
 };
 
 /// For screening: as solve_prepared_point from PointOptions::start, to within the tolerance, but
