@@ -14,6 +14,8 @@ constexpr int kMostHarmonics = 96;
 
 double square(double v) { return v * v; }
 
+Complex inverse(const Complex& z) { return std::conj(z) / std::norm(z); }
+
 /// The harmonics 1 ... count of signals at even phases, there and back.
 class Harmonics {
  public:
@@ -63,7 +65,7 @@ class Harmonics {
 
 /// The two sides of the mesh at one frequency [rad/s].
 struct Driveline {
-  Complex pinion, gear;  ///< dynamic stiffnesses D_p, D_g [N m]
+  Complex per_pinion, per_gear;  ///< 1 / D_p, 1 / D_g [1/(N m)]
   Complex shaft_share;   ///< phi_s over phi_p
   Complex compliance;    ///< Y [m/N]
   Complex mesh;          ///< k + i Omega c [N/m]
@@ -71,21 +73,20 @@ struct Driveline {
 
   Driveline(const GearPairSystem& system, double frequency) {
     const DrivelineDynamics& d = system.dynamics();
-    const Complex i{0, 1};
     const double f2 = square(frequency);
-    const Complex pinion_shaft = d.pinion_shaft_stiffness + i * frequency * d.pinion_shaft_damping;
-    const Complex gear_shaft = d.gear_shaft_stiffness + i * frequency * d.gear_shaft_damping;
-    shaft_share = pinion_shaft / (pinion_shaft - f2 * d.pinion_shaft_inertia);
-    pinion = -f2 * (d.pinion_inertia + d.pinion_shaft_inertia * shaft_share);
-    gear = -f2 * (d.gear_inertia +
-                  d.wheel_inertia * gear_shaft / (gear_shaft - f2 * d.wheel_inertia));
-    compliance = square(system.mesh().mean_pinion_contact_radius()) / pinion +
-                 square(system.mesh().mean_gear_contact_radius()) / gear;
-    damper = i * frequency * d.mesh_damping;
+    const Complex pinion_shaft{d.pinion_shaft_stiffness, frequency * d.pinion_shaft_damping};
+    const Complex gear_shaft{d.gear_shaft_stiffness, frequency * d.gear_shaft_damping};
+    shaft_share = pinion_shaft * inverse(pinion_shaft - f2 * d.pinion_shaft_inertia);
+    per_pinion = inverse(-f2 * (d.pinion_inertia + d.pinion_shaft_inertia * shaft_share));
+    const Complex wheel_share = gear_shaft * inverse(gear_shaft - f2 * d.wheel_inertia);
+    per_gear = inverse(-f2 * (d.gear_inertia + d.wheel_inertia * wheel_share));
+    compliance = square(system.mesh().mean_pinion_contact_radius()) * per_pinion +
+                 square(system.mesh().mean_gear_contact_radius()) * per_gear;
+    damper = {0, frequency * d.mesh_damping};
     mesh = system.mesh().mean_mesh_stiffness() + damper;
   }
   /// How much of a displacement at the mesh becomes deflection.
-  Complex amplification() const { return 1.0 / (1.0 + compliance * mesh); }
+  Complex amplification() const { return inverse(1.0 + compliance * mesh); }
 };
 
 /// Of the mesh on its mean stiffness, held by nothing but its rotors [rad/s].
@@ -116,7 +117,6 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
   const double first = mean_pinion_speed * system.mesh().pinion_teeth();
   const double pinion_radius = system.mesh().mean_pinion_contact_radius();
   const double gear_radius = system.mesh().mean_gear_contact_radius();
-  const Complex i{0, 1};
 
   const std::vector<Complex> winding = harmonics.of(motion.winding);
   const std::vector<Complex> error = harmonics.of(motion.transmission_error);
@@ -124,50 +124,62 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
   std::vector<Complex> pinion_torque(count);
   if (!motion.pinion_torque.empty()) pinion_torque = harmonics.of(motion.pinion_torque);
 
-  std::vector<Complex> correction(count), velocity(count), pinion(count), shaft(count);
-  std::vector<Complex> answer(count);  // of x to a force at the mesh
-  double edge = 0;                     // sources of the highest harmonics, as if they were the last
-  const int highest = count - count / 4;
+  std::vector<Driveline> at;
+  std::vector<Complex> amplification(count), source(count), correction(count);
+  at.reserve(count);
   for (int h = 1; h <= count; ++h) {
-    const double frequency = first * h;
-    const Driveline at(system, frequency);
-    const Complex amplification = at.amplification();
-    const Complex source = -winding[h - 1] - at.compliance * at.damper * error[h - 1] +
-                           pinion_radius * pinion_torque[h - 1] / at.pinion -
-                           gear_radius * gear_torque[h - 1] / at.gear;
-    const Complex dx = amplification * source;
-    const Complex force = at.mesh * dx + at.damper * error[h - 1];
-    const Complex angle = (pinion_torque[h - 1] - pinion_radius * force) / at.pinion;
-    correction[h - 1] = dx;
-    velocity[h - 1] = i * frequency * (dx + error[h - 1]);
-    pinion[h - 1] = i * frequency * angle;
-    shaft[h - 1] = i * frequency * angle * at.shaft_share;
-    answer[h - 1] = -at.compliance * amplification;
-    if (h > highest) edge = std::max(edge, std::abs(source) * square(static_cast<double>(h) / count));
+    const Driveline& here = at.emplace_back(system, first * h);
+    amplification[h - 1] = here.amplification();
+    source[h - 1] = -winding[h - 1] - here.compliance * here.damper * error[h - 1] +
+                    pinion_radius * pinion_torque[h - 1] * here.per_pinion -
+                    gear_radius * gear_torque[h - 1] * here.per_gear;
+    correction[h - 1] = amplification[h - 1] * source[h - 1];
   }
 
+  // What the ripple of the stiffness makes of it.
   InertialCorrection out;
+  const double mean_stiffness = system.mesh().mean_mesh_stiffness();
+  std::vector<double> dx = harmonics.signal(correction), force(phases);
+  for (int n = 0; n < phases; ++n) {
+    force[n] = (motion.mesh_stiffness[n] - mean_stiffness) * dx[n];
+  }
+  const std::vector<Complex> ripple = harmonics.of(force);
+  const double length = length_of(correction);
+  std::vector<Complex> more(count), velocity(count), pinion(count), shaft(count);
+  for (int h = 0; h < count; ++h) {
+    more[h] = -amplification[h] * at[h].compliance * ripple[h];
+    correction[h] += more[h];
+    const Complex rate = Complex{0, first * (h + 1)};
+    const Complex whole_force = at[h].mesh * correction[h] + at[h].damper * error[h] + ripple[h];
+    const Complex angle = (pinion_torque[h] - pinion_radius * whole_force) * at[h].per_pinion;
+    velocity[h] = rate * (correction[h] + error[h]);
+    pinion[h] = rate * angle;
+    shaft[h] = pinion[h] * at[h].shaft_share;
+  }
+  out.growth = length > 0 ? length_of(more) / length : 0;
   out.transmission_error = harmonics.signal(correction);
   out.transmission_velocity = harmonics.signal(velocity);
   out.pinion_speed = harmonics.signal(pinion);
   out.pinion_shaft_speed = harmonics.signal(shaft);
-  for (const double dx : out.transmission_error) out.largest = std::max(out.largest, std::abs(dx));
-
-  // What the stiffness that is not the mean makes of it.
-  std::vector<double> force(phases);
+  // The mean force is that of the torques.
+  double mean_force = 0;
   for (int n = 0; n < phases; ++n) {
-    force[n] = (motion.mesh_stiffness[n] - system.mesh().mean_mesh_stiffness()) *
-               out.transmission_error[n];
+    mean_force += motion.mesh_stiffness[n] * out.transmission_error[n] / phases;
   }
-  std::vector<Complex> next = harmonics.of(force);
-  for (int h = 0; h < count; ++h) next[h] *= answer[h];
-  const double length = length_of(correction);
-  out.growth = length > 0 ? length_of(next) / length : 0;
+  for (double& x : out.transmission_error) {
+    x -= mean_force / mean_stiffness;
+    out.largest = std::max(out.largest, std::abs(x));
+  }
 
+  // Sources of the highest harmonics, as if they were the last.
+  double edge = 0;
+  for (int h = count - count / 4; h <= count; ++h) {
+    edge = std::max(edge, std::abs(source[h - 1]) * square(static_cast<double>(h) / count));
+  }
   const int last = static_cast<int>(std::min(1.5 * mesh_frequency(system) / first, 1e4));
-  for (int h = count + 1; h <= last; ++h) {
-    const double source = edge * square(static_cast<double>(count) / h);
-    out.unresolved += source * std::abs(Driveline(system, first * h).amplification());
+  for (int h = count + 1; h <= last && motion.tail; ++h) {
+    out.unresolved += edge * square(static_cast<double>(count) / h) *
+                      std::abs(Driveline(system, first * h).amplification());
   }
   return out;
 }

@@ -14,18 +14,19 @@ struct ImposedMotion {
   std::vector<double> pinion_torque;       ///< left over on the pinion [N m]; empty: none
   std::vector<double> gear_torque;         ///< left over on the gear: R_g F + T_fr,g - T_w [N m]
   std::vector<double> mesh_stiffness;      ///< k_m [N/m]
+  bool tail = true;  ///< harmonics beyond the phases are wanted
   void resize(std::size_t count);
 };
 
-/// What inertia and dampers add to an imposed motion, at the same phases, to first order.
+/// What inertia and dampers add to an imposed motion, at the same phases.
 struct InertialCorrection {
   std::vector<double> transmission_error;     ///< of x [m]
   std::vector<double> transmission_velocity;  ///< xdot with the correction [m/s]
   std::vector<double> pinion_speed;           ///< of phidot_p [rad/s]
   std::vector<double> pinion_shaft_speed;     ///< of phidot_s [rad/s]
   double largest = 0;                         ///< |of x|, over the phases [m]
-  /// Length of what the ripple of the stiffness makes of it, over its own: the series of
-  /// corrections goes on like its powers; 1 and more: it tells nothing.
+  /// What the ripple of the stiffness adds to it, over what it is on the mean stiffness. It is added
+  /// once; the series goes on like the powers of this; 1 and more: it tells nothing.
   double growth = 0;
   /// Harmonics that the phases do not tell, by those that they do falling like 1/n^2: |of x| [m].
   double unresolved = 0;
@@ -36,7 +37,9 @@ struct InertialCorrection {
 /// mesh, each rotor with its shaft and what is behind it, w the imposed winding and tau what the
 /// imposed motion leaves unbalanced, the correction to x is
 ///   (1 + Y (k + i Omega c)) dx = -w - i Omega c Y x + R_p tau_p / D_p - R_g tau_g / D_g,
-///   Y = R_p^2 / D_p + R_g^2 / D_g.
+///   Y = R_p^2 / D_p + R_g^2 / D_g,
+/// and once more for the force (k_m - k) dx that the ripple of the stiffness adds. A constant keeps
+/// the mean force.
 InertialCorrection inertial_correction(const GearPairSystem& system, double mean_pinion_speed,
                                        const ImposedMotion& motion);
 
