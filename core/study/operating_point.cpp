@@ -8,6 +8,8 @@
 #include "core/number_text.h"
 #include "core/refusal.h"
 #include "core/study/history_sampler.h"
+#include "core/study/model_choice.h"
+#include "core/study/operating_target.h"
 #include "core/study/orbit_record.h"
 #include "core/study/orbit_refinement.h"
 #include "core/study/quasi_static.h"
@@ -20,49 +22,9 @@ namespace {
 
 constexpr double kLargeVibrationDeflection = 60e-6;  // [m]
 
-/// Speed and torques that the condition fixes; the unknown torque without friction.
-struct Target {
-  double mean_pinion_speed;
-  double vehicle_speed;
-  Torques torques;
-  bool solve_wheel_torque;
-};
-
-Target target_of(const Scene& scene, const OperatingCondition& c) {
-  const double ratio = static_cast<double>(scene.gear_set.pinion_teeth) / scene.gear_set.gear_teeth;
-  Target t{};
-  if (c.kind == OperatingCondition::Kind::kPrescribedTorque) {
-    t.mean_pinion_speed = c.pinion_speed;
-    t.vehicle_speed = c.pinion_speed * ratio * scene.vehicle.wheel_radius;
-    t.torques = {c.pinion_torque, c.pinion_torque / ratio};
-    t.solve_wheel_torque = true;
-  } else {
-    const double acceleration =
-        c.kind == OperatingCondition::Kind::kDriveCycleSnapshot ? c.acceleration : 0;
-    t.vehicle_speed = c.vehicle_speed;
-    t.mean_pinion_speed = c.vehicle_speed / scene.vehicle.wheel_radius / ratio;
-    const double wheel = wheel_torque(scene.vehicle, c.vehicle_speed, c.ascent_angle, acceleration);
-    t.torques = {wheel * ratio, wheel};
-  }
-  if (!(t.mean_pinion_speed > 0) || !std::isfinite(t.mean_pinion_speed)) {
-    throw Refusal("NO_FORWARD_ROTATION", "the mean pinion speed must be positive; it is " +
-                                             number_text(t.mean_pinion_speed) + " rad/s");
-  }
-  return t;
-}
-
-QuasiStaticRequest quasi_static_request(const Target& target, const PointOptions& options) {
-  QuasiStaticRequest out;
-  out.mean_pinion_speed = target.mean_pinion_speed;
-  out.solve_wheel_torque = target.solve_wheel_torque;
-  out.tolerance = options.tolerance;
-  if (options.progress) out.interrupted = [&options] { return !options.progress(0); };
-  return out;
-}
-
 /// The quasi-static response at mesh phase 0: its torques leave little for the march to settle.
 MarchState point_start(GearPairSystem& system, const FlankContactBatch& contacts, MeshGrids& grids,
-                       const Target& target, const PointOptions& options, double offset) {
+                       const OperatingTarget& target, const PointOptions& options, double offset) {
   QuasiStaticRequest request = quasi_static_request(target, options);
   request.tolerance = 1e-3;
   FrictionPerLoad friction;
@@ -119,7 +81,7 @@ double march_tolerance(const PointOptions& options) {
   return std::clamp(1e-3 * options.tolerance, 1e-11, options.relative_tolerance);
 }
 
-PointResult empty_result(const Target& target, PointModel model) {
+PointResult empty_result(const OperatingTarget& target, PointModel model) {
   PointResult out;
   out.vehicle_speed = target.vehicle_speed;
   out.mean_pinion_speed = target.mean_pinion_speed;
@@ -127,7 +89,7 @@ PointResult empty_result(const Target& target, PointModel model) {
   return out;
 }
 
-PointResult solve_full(GearPairSystem& system, const Target& target, const PointOptions& options,
+PointResult solve_full(GearPairSystem& system, const OperatingTarget& target, const PointOptions& options,
                        const MarchState& start, int first_period,
                        const HistoryRequest& history_request) {
   SteadyStateRequest request;
@@ -178,7 +140,7 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
 
 /// Where shooting starts: from a state or else from the static one. Nothing where marching must
 /// decide.
-std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Target& target,
+std::optional<OrbitSearch> search_from(const GearPairSystem& system, const OperatingTarget& target,
                                        const PointOptions& options, PointStart start,
                                        const std::optional<CarriedState>& from) {
   if (system.torques().pinion == 0) return std::nullopt;  // nothing holds the flanks together
@@ -228,7 +190,7 @@ std::vector<SolvedPiece> fill_from_orbit(GearPairSystem& system, const FlankCont
 /// By shooting. Nothing where marching must decide.
 std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
                                              const FlankContactBatch& contacts, MeshGrids& grids,
-                                             const Target& target, const PointOptions& options,
+                                             const OperatingTarget& target, const PointOptions& options,
                                              PointStart start,
                                              const std::optional<CarriedState>& from,
                                              const HistoryRequest& history_request) {
@@ -260,41 +222,8 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   return out;
 }
 
-/// The quasi-static answer with its error; nothing where contacts or sweeps fail.
-struct QuasiStaticAnswer {
-  QuasiStatic solution;
-  double estimated_error;  ///< infinite: it cannot tell
-};
-
-std::optional<QuasiStaticAnswer> answer_quasi_statically(GearPairSystem& system,
-                                                         const FlankContactBatch& contacts,
-                                                         MeshGrids& grids, const Target& target,
-                                                         const PointOptions& options) {
-  const QuasiStaticRequest request = quasi_static_request(target, options);
-  std::optional<QuasiStatic> solution = solve_quasi_static(system, contacts, grids, request);
-  if (!solution) return std::nullopt;
-  const double model = quasi_static_model_error(system, contacts, grids, request, *solution);
-  const double error = solution->discretisation_error + model;
-  return QuasiStaticAnswer{*std::move(solution), error};
-}
-
-/// Where nobody says which model: the quasi-static answer if it is within the tolerance.
-std::optional<QuasiStaticAnswer> choose_quasi_static(GearPairSystem& system,
-                                                     const FlankContactBatch& contacts,
-                                                     MeshGrids& grids, const Target& target,
-                                                     const PointOptions& options) {
-  if (!quasi_static_may_do(system, grids, quasi_static_request(target, options))) {
-    return std::nullopt;
-  }
-  auto answer = answer_quasi_statically(system, contacts, grids, target, options);
-  if (answer && answer->estimated_error <= options.tolerance) return answer;
-  system.take_refusal();
-  system.set_torques(target.torques);
-  return std::nullopt;
-}
-
 PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch& contacts,
-                                MeshGrids& grids, const Target& target,
+                                MeshGrids& grids, const OperatingTarget& target,
                                 const PointOptions& options, QuasiStaticAnswer& answer) {
   PointResult out = empty_result(target, PointModel::kQuasiStatic);
   if (std::isfinite(answer.estimated_error)) out.estimated_relative_error = answer.estimated_error;
@@ -313,7 +242,7 @@ PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch&
 
 /// By the caller's choice: also where its error cannot be told.
 PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactBatch& contacts,
-                                     MeshGrids& grids, const Target& target,
+                                     MeshGrids& grids, const OperatingTarget& target,
                                      const PointOptions& options) {
   auto answer = answer_quasi_statically(system, contacts, grids, target, options);
   throw_if_refused(system);
@@ -322,15 +251,6 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactB
                   "load and friction of the quasi-static model do not settle");
   }
   return quasi_static_result(system, contacts, grids, target, options, *answer);
-}
-
-/// Whether a cheaper model may stand in for the full one. Not where a branch has to be kept or
-/// looked for, nor for histories: their ripple is what the cheaper models leave out.
-bool may_choose(const PointOptions& options, const std::optional<CarriedState>& from) {
-  return options.model == PointModel::kAutomatic &&
-         options.method == SteadyStateMethod::kAutomatic &&
-         options.start == PointStart::kQuasiStatic && !from && !options.probe_coexisting_response &&
-         options.history.columns.empty();
 }
 
 }  // namespace
@@ -345,7 +265,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
                                  const PointOptions& options) {
   const Scene& scene = prepared.scene();
   const FlankContactBatch& contacts = prepared.contacts();
-  const Target target = target_of(scene, condition);
+  const OperatingTarget target = target_of(scene, condition);
 
   // One response from one start. With mesh data at the torque, the torque is iterated.
   const auto respond = [&](PointStart start, const std::optional<CarriedState>& carried,
@@ -431,7 +351,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
 namespace {
 
 PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit,
-                        double estimated_error, const Target& target) {
+                        double estimated_error, const OperatingTarget& target) {
   PointFigures out;
   const OrbitFigures& f = orbit.figures;
   const double turned = orbit.period * system.cycle_angle();
@@ -456,7 +376,7 @@ PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit
 PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
                                  const PointOptions& options) {
   const Scene& scene = prepared.scene();
-  const Target target = target_of(scene, condition);
+  const OperatingTarget target = target_of(scene, condition);
   PreparedGearSet& gear_set = prepared.gear_set();
   if (options.method == SteadyStateMethod::kAutomatic && options.model != PointModel::kQuasiStatic &&
       !scene.options.load_dependent_mesh_data) {
