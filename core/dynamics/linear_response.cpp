@@ -97,6 +97,16 @@ double mesh_frequency(const GearPairSystem& system) {
                     square(system.mesh().mean_gear_contact_radius()) / d.gear_inertia));
 }
 
+/// The c for which c / h^2 covers the highest quarter of the harmonics h.
+double edge_of(const std::vector<Complex>& v) {
+  const int count = static_cast<int>(v.size());
+  double edge = 0;
+  for (int h = count - count / 4; h <= count; ++h) {
+    edge = std::max(edge, std::abs(v[h - 1]) * square(h));
+  }
+  return edge;
+}
+
 double length_of(const std::vector<Complex>& v) {
   double sum = 0;
   for (const Complex& c : v) sum += std::norm(c);
@@ -171,15 +181,16 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
     out.largest = std::max(out.largest, std::abs(x));
   }
 
-  // Sources of the highest harmonics, as if they were the last.
-  double edge = 0;
-  for (int h = count - count / 4; h <= count; ++h) {
-    edge = std::max(edge, std::abs(source[h - 1]) * square(static_cast<double>(h) / count));
-  }
+  // Beyond the highest: what is asked falls like kinks do, what is answered is known.
+  const double asked_winding = edge_of(winding), asked_torque = edge_of(gear_torque),
+               asked_pinion_torque = edge_of(pinion_torque);
   const int last = static_cast<int>(std::min(1.5 * mesh_frequency(system) / first, 1e4));
   for (int h = count + 1; h <= last && motion.tail; ++h) {
-    out.unresolved += edge * square(static_cast<double>(count) / h) *
-                      std::abs(Driveline(system, first * h).amplification());
+    const Driveline here(system, first * h);
+    const double asked = asked_winding +
+                         pinion_radius * asked_pinion_torque * std::abs(here.per_pinion) +
+                         gear_radius * asked_torque * std::abs(here.per_gear);
+    out.unresolved += asked * square(1.0 / h) * std::abs(here.amplification());
   }
   return out;
 }

@@ -6,10 +6,11 @@ namespace tribodyn {
 
 QuasiStaticRequest quasi_static_request(const OperatingTarget& target,
                                         const PointOptions& options) {
+  constexpr double kGridShare = 0.5;  // of the tolerance; the rest is the model's
   QuasiStaticRequest out;
   out.mean_pinion_speed = target.mean_pinion_speed;
   out.solve_wheel_torque = target.solve_wheel_torque;
-  out.tolerance = options.tolerance;
+  out.tolerance = kGridShare * options.tolerance;
   if (options.progress) out.interrupted = [&options] { return !options.progress(0); };
   return out;
 }

@@ -344,7 +344,7 @@ bool quasi_static_may_do(GearPairSystem& system, MeshGrids& grids,
       inertial_correction(system, request.mean_pinion_speed, motion);
   double size = 0;
   for (const double x : motion.transmission_error) size = std::max(size, std::abs(x));
-  return change.largest < 2 * request.tolerance * size;
+  return change.largest < 4 * request.tolerance * size;
 }
 
 }  // namespace tribodyn

@@ -13,6 +13,7 @@
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "core/study/speed_sweep.h"
+#include "figure_error.h"
 #include "run_length.h"
 #include "tests/support/reference_scene.h"
 
@@ -32,18 +33,6 @@ PointOptions marched(PointStart start = PointStart::kQuasiStatic) {
   options.relative_tolerance = 1e-10;
   options.settling_tolerance = 1e-9;
   return options;
-}
-
-/// Of what the estimate speaks of: both inefficiencies, torque, extremes of the transmission error.
-double true_error(const PointResult& r, const PointResult& exact) {
-  const auto relative = [](double a, double b) { return std::abs(a / b - 1); };
-  const Extremes &x = r.dynamic_transmission_error, &y = exact.dynamic_transmission_error;
-  const double size = std::max(std::abs(y.minimum), std::abs(y.maximum));
-  return std::max(
-      {relative(r.inefficiency_rms.value(), exact.inefficiency_rms.value()),
-       relative(r.inefficiency_energy_mean.value(), exact.inefficiency_energy_mean.value()),
-       relative(r.pinion_torque, exact.pinion_torque), std::abs(x.minimum - y.minimum) / size,
-       std::abs(x.maximum - y.maximum) / size});
 }
 
 struct Place {
