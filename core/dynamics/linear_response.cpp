@@ -66,10 +66,10 @@ class Harmonics {
 /// The two sides of the mesh at one frequency [rad/s].
 struct Driveline {
   Complex per_pinion, per_gear;  ///< 1 / D_p, 1 / D_g [1/(N m)]
-  Complex shaft_share;   ///< phi_s over phi_p
-  Complex compliance;    ///< Y [m/N]
-  Complex mesh;          ///< k + i Omega c [N/m]
-  Complex damper;        ///< i Omega c
+  Complex shaft_share;           ///< phi_s over phi_p
+  Complex compliance;            ///< Y [m/N]
+  Complex mesh;                  ///< k + i Omega c [N/m]
+  Complex damper;                ///< i Omega c
 
   Driveline(const GearPairSystem& system, double frequency) {
     const DrivelineDynamics& d = system.dynamics();

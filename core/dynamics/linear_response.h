@@ -14,7 +14,7 @@ struct ImposedMotion {
   std::vector<double> pinion_torque;       ///< left over on the pinion [N m]; empty: none
   std::vector<double> gear_torque;         ///< left over on the gear: R_g F + T_fr,g - T_w [N m]
   std::vector<double> mesh_stiffness;      ///< k_m [N/m]
-  bool tail = true;  ///< harmonics beyond the phases are wanted
+  bool tail = true;                        ///< harmonics beyond the phases are wanted
   void resize(std::size_t count);
 };
 
@@ -25,8 +25,8 @@ struct InertialCorrection {
   std::vector<double> pinion_speed;           ///< of phidot_p [rad/s]
   std::vector<double> pinion_shaft_speed;     ///< of phidot_s [rad/s]
   double largest = 0;                         ///< |of x|, over the phases [m]
-  /// What the ripple of the stiffness adds to it, over what it is on the mean stiffness. It is added
-  /// once; the series goes on like the powers of this; 1 and more: it tells nothing.
+  /// What the ripple of the stiffness adds to it, over what it is on the mean stiffness. It is
+  /// added once; the series goes on like the powers of this; 1 and more: it tells nothing.
   double growth = 0;
   /// Harmonics that the phases do not tell, by those that they do falling like 1/n^2: |of x| [m].
   double unresolved = 0;

@@ -34,8 +34,8 @@ MarchState point_start(GearPairSystem& system, const FlankContactBatch& contacts
     throw_if_refused(system);
     system.set_torques(target.torques);
   }
-  const double load = std::abs(system.torques().pinion) /
-                      system.mesh().functions(0, 0).pinion_contact_radius;
+  const double load =
+      std::abs(system.torques().pinion) / system.mesh().functions(0, 0).pinion_contact_radius;
   return static_start(system, target.mean_pinion_speed, friction.pinion * load,
                       friction.gear * load, offset);
 }
@@ -89,8 +89,8 @@ PointResult empty_result(const OperatingTarget& target, PointModel model) {
   return out;
 }
 
-PointResult solve_full(GearPairSystem& system, const OperatingTarget& target, const PointOptions& options,
-                       const MarchState& start, int first_period,
+PointResult solve_full(GearPairSystem& system, const OperatingTarget& target,
+                       const PointOptions& options, const MarchState& start, int first_period,
                        const HistoryRequest& history_request) {
   SteadyStateRequest request;
   request.first_period = first_period;
@@ -190,8 +190,8 @@ std::vector<SolvedPiece> fill_from_orbit(GearPairSystem& system, const FlankCont
 /// By shooting. Nothing where marching must decide.
 std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
                                              const FlankContactBatch& contacts, MeshGrids& grids,
-                                             const OperatingTarget& target, const PointOptions& options,
-                                             PointStart start,
+                                             const OperatingTarget& target,
+                                             const PointOptions& options, PointStart start,
                                              const std::optional<CarriedState>& from,
                                              const HistoryRequest& history_request) {
   const std::optional<OrbitSearch> search = search_from(system, target, options, start, from);
@@ -301,10 +301,10 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
         // Together they are solved to 1e-10.
         if (march_tolerance(options) >= 1e-9) system.solve_together(&contacts);
         const MarchState state =
-            from ? carried_start(system, *from, target.mean_pinion_speed)
-                 : point_start(
-                       system, contacts, grids, target, options,
-                       start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0);
+            from
+                ? carried_start(system, *from, target.mean_pinion_speed)
+                : point_start(system, contacts, grids, target, options,
+                              start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0);
         const int first_period = from ? std::max(1, from->period) : 1;
         result = solve_full(system, target, options, state, first_period, history);
       }
@@ -378,8 +378,8 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
   const Scene& scene = prepared.scene();
   const OperatingTarget target = target_of(scene, condition);
   PreparedGearSet& gear_set = prepared.gear_set();
-  if (options.method == SteadyStateMethod::kAutomatic && options.model != PointModel::kQuasiStatic &&
-      !scene.options.load_dependent_mesh_data) {
+  if (options.method == SteadyStateMethod::kAutomatic &&
+      options.model != PointModel::kQuasiStatic && !scene.options.load_dependent_mesh_data) {
     const FlankContactBatch& contacts = prepared.contacts();
     GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
                           scene.options);

@@ -62,8 +62,8 @@ struct CarriedState {
 };
 
 struct PointOptions {
-  /// kAutomatic takes the full model where a start, a carried state, a method, another response or a
-  /// history is asked for.
+  /// kAutomatic takes the full model where a start, a carried state, a method, another response or
+  /// a history is asked for.
   PointModel model = PointModel::kAutomatic;
   PointStart start = PointStart::kQuasiStatic;
   std::optional<CarriedState> carried_state;  ///< overrides start

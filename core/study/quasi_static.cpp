@@ -29,8 +29,7 @@ MarchState equilibrium(const GearPairSystem& system, const MeshPhase& at, double
   const double lag = mesh.gear_teeth() / mesh.mean_gear_contact_radius();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
   const MeshFunctions& p = at.pinion;
-  const double force =
-      system.torques().pinion / (p.pinion_contact_radius - side * friction.pinion);
+  const double force = system.torques().pinion / (p.pinion_contact_radius - side * friction.pinion);
   const double winding = side * system.dynamics().half_backlash + force / p.mesh_stiffness +
                          p.static_transmission_error - system.dynamics().half_backlash;
   MarchState y{};
@@ -42,8 +41,8 @@ MarchState equilibrium(const GearPairSystem& system, const MeshPhase& at, double
   }
   y[kTime] = phase * system.cycle_angle() / speed;
   y[kPinionShaftSpeed] = y[kPinionSpeed] = speed;
-  y[kGearSpeed] = (f.pinion_contact_radius - f.static_transmission_error_slope) * speed /
-                  f.gear_contact_radius;
+  y[kGearSpeed] =
+      (f.pinion_contact_radius - f.static_transmission_error_slope) * speed / f.gear_contact_radius;
   y[kWheelSpeed] = ratio * speed;
   y[kPinionShaftTwist] = system.torques().pinion / system.dynamics().pinion_shaft_stiffness;
   y[kGearShaftTwist] = system.torques().wheel / system.dynamics().gear_shaft_stiffness;
@@ -67,8 +66,13 @@ std::vector<OrbitPiece> pieces_of(const GearPairSystem& system,
   const int steps = static_cast<int>(nodes.size() / 2);
   std::vector<OrbitPiece> out(steps);
   for (int i = 0; i < steps; ++i) {
-    out[i] = {static_cast<double>(i) / steps, 1.0 / steps,      2 * i,           system.regime,
-              nodes[2 * i],                   nodes[2 * i + 1], nodes[2 * i + 2]};
+    out[i] = {static_cast<double>(i) / steps,
+              1.0 / steps,
+              2 * i,
+              system.regime,
+              nodes[2 * i],
+              nodes[2 * i + 1],
+              nodes[2 * i + 2]};
   }
   return out;
 }
@@ -183,8 +187,7 @@ ImposedMotion imposed_motion(const GearPairSystem& system, const MeshGrid& grid,
     out.transmission_error[n] = at.transmission_error;
     out.mesh_stiffness[n] = at.mesh.mesh_stiffness;
     out.gear_torque[n] = at.mesh.gear_contact_radius * at.mesh_force +
-                         friction.at(phase).gear * std::abs(at.mesh_force) -
-                         system.torques().wheel;
+                         friction.at(phase).gear * std::abs(at.mesh_force) - system.torques().wheel;
     if (!out.pinion_torque.empty()) out.pinion_torque[n] = at.parametric_torque();
   }
   return out;
@@ -201,8 +204,8 @@ std::vector<MarchState> corrected(const GearPairSystem& system, const MeshGrid& 
     y[kWinding] += change.transmission_error[i];
     y[kPinionSpeed] += change.pinion_speed[i];
     y[kPinionShaftSpeed] += change.pinion_shaft_speed[i];
-    const MeshFunctions f = system.mesh().functions(grid.at(static_cast<int>(n)),
-                                                    lag * y[kWinding]);
+    const MeshFunctions f =
+        system.mesh().functions(grid.at(static_cast<int>(n)), lag * y[kWinding]);
     y[kGearSpeed] =
         ((f.pinion_contact_radius - f.static_transmission_error_slope) * y[kPinionSpeed] -
          change.transmission_velocity[i]) /
@@ -254,8 +257,7 @@ std::optional<QuasiStatic> solve_quasi_static(GearPairSystem& system,
   const StepSequence sequence(system.mesh().intervals(), request.tolerance < kLoose ? 24 : 12);
   for (int steps = sequence.first();; steps = sequence.after(steps)) {
     const bool first = best.steps_per_mesh_cycle == 0;
-    const double enough =
-        first ? std::max(5 * request.tolerance, 1e-4) : 0.2 * request.tolerance;
+    const double enough = first ? std::max(5 * request.tolerance, 1e-4) : 0.2 * request.tolerance;
     const OrbitFigures coarser = best.orbit.figures;
     if (!sweeps.settle(grids.with_steps(steps), enough, best.orbit)) return std::nullopt;
     if (!first) {
@@ -311,9 +313,9 @@ double quasi_static_model_error(GearPairSystem& system, const FlankContactBatch&
   if (parametric_resonance_possible(system, speed, motion.mesh_stiffness)) return kUnknown;
   const std::vector<MarchState> moving = corrected(system, grid, still, change);
   const auto [low, high] = force_range(system, grid, moving);
-  const double unresolved_force =
-      change.unresolved * system.mesh().mean_mesh_stiffness() *
-      system.mesh().mean_pinion_contact_radius() / std::abs(system.torques().pinion);
+  const double unresolved_force = change.unresolved * system.mesh().mean_mesh_stiffness() *
+                                  system.mesh().mean_pinion_contact_radius() /
+                                  std::abs(system.torques().pinion);
   if (!(low - unresolved_force > 0.4)) return kUnknown;
 
   OrbitFriction together(system, contacts, 0);
@@ -325,14 +327,14 @@ double quasi_static_model_error(GearPairSystem& system, const FlankContactBatch&
   const double loss = figures.loss_energy * speed / system.cycle_angle();
   figures.torque = torque_of(system, request, loss + other_losses(system, grid, moving));
   const double first_order = figures.distance(solution.orbit.figures);
-  const double size =
-      std::max(std::abs(figures.dte_minimum), std::abs(figures.dte_maximum));
+  const double size = std::max(std::abs(figures.dte_minimum), std::abs(figures.dte_maximum));
   return kMargin * first_order / (1 - change.growth) + change.unresolved / size;
 }
 
 bool quasi_static_may_do(GearPairSystem& system, MeshGrids& grids,
                          const QuasiStaticRequest& request) {
   constexpr int kFewSteps = 4;  // three harmonics
+  constexpr double kDoubt = 4;  // extremes move by less than the largest correction
   if (system.torques().pinion == 0) return false;
   system.regime = {side_of(system), true};
   const MeshGrid& grid = grids.with_steps(kFewSteps);
@@ -340,11 +342,11 @@ bool quasi_static_may_do(GearPairSystem& system, MeshGrids& grids,
   ImposedMotion motion =
       imposed_motion(system, grid, equilibria(system, grid, none, request.mean_pinion_speed), none);
   motion.tail = false;
-  const InertialCorrection change =
-      inertial_correction(system, request.mean_pinion_speed, motion);
+  const InertialCorrection change = inertial_correction(system, request.mean_pinion_speed, motion);
   double size = 0;
   for (const double x : motion.transmission_error) size = std::max(size, std::abs(x));
-  return change.largest < 4 * request.tolerance * size;
+  return change.largest < kDoubt * request.tolerance * size &&
+         !parametric_resonance_possible(system, request.mean_pinion_speed, motion.mesh_stiffness);
 }
 
 }  // namespace tribodyn

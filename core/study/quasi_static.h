@@ -9,9 +9,9 @@
 namespace tribodyn {
 
 struct QuasiStaticRequest {
-  double mean_pinion_speed = 0;     ///< [rad/s]
-  bool solve_wheel_torque = false;  ///< T_w is the unknown instead of T_s
-  double tolerance = 1e-3;          ///< of the figures, relative, > 0
+  double mean_pinion_speed = 0;       ///< [rad/s]
+  bool solve_wheel_torque = false;    ///< T_w is the unknown instead of T_s
+  double tolerance = 1e-3;            ///< of the figures, relative, > 0
   std::function<bool()> interrupted;  ///< true: throws Cancelled
 };
 

@@ -15,9 +15,8 @@ inline double true_error(const PointResult& r, const PointResult& exact) {
   return std::max(
       {relative(r.inefficiency_rms.value(), exact.inefficiency_rms.value()),
        relative(r.inefficiency_energy_mean.value(), exact.inefficiency_energy_mean.value()),
-       relative(r.pinion_torque, exact.pinion_torque),
-       relative(r.wheel_torque, exact.wheel_torque), std::abs(x.minimum - y.minimum) / size,
-       std::abs(x.maximum - y.maximum) / size});
+       relative(r.pinion_torque, exact.pinion_torque), relative(r.wheel_torque, exact.wheel_torque),
+       std::abs(x.minimum - y.minimum) / size, std::abs(x.maximum - y.maximum) / size});
 }
 
 }  // namespace tribodyn

@@ -216,9 +216,8 @@ struct Oscillator {
     system = std::make_unique<GearPairSystem>(gear_set.mesh(), prepared->contacts().model(),
                                               gear_set.gear_set().dynamics, scene.options);
     const MeshData& mesh = gear_set.mesh();
-    const double per_mass =
-        std::pow(mesh.mean_pinion_contact_radius(), 2) / d.pinion_inertia +
-        std::pow(mesh.mean_gear_contact_radius(), 2) / d.gear_inertia;
+    const double per_mass = std::pow(mesh.mean_pinion_contact_radius(), 2) / d.pinion_inertia +
+                            std::pow(mesh.mean_gear_contact_radius(), 2) / d.gear_inertia;
     natural = std::sqrt(mesh.mean_mesh_stiffness() * per_mass);
     damping = 0.5 * d.mesh_damping * per_mass / natural;
   }
@@ -245,8 +244,7 @@ TEST(InertialCorrection, IsTheResonanceCurveOfAnOscillator) {
     for (const int order : {1, 3}) {
       for (const double r : {0.01, 0.31, 0.9, 1.1, 2.9}) {
         const double expected =
-            1e-6 * r * r /
-            std::abs(std::complex<double>(1 - r * r, 2 * oscillator.damping * r));
+            1e-6 * r * r / std::abs(std::complex<double>(1 - r * r, 2 * oscillator.damping * r));
         // Of the phases one is within a quarter of 1/16 cycle of the extreme.
         EXPECT_NEAR(oscillator.answer(r, order) / expected, 1, order == 1 ? 3e-3 : 2e-2)
             << damping_factor << ' ' << order << ' ' << r;
@@ -306,8 +304,8 @@ RandomPlace random_place(std::mt19937_64& random) {
   }
   if (kind == 3) d.half_backlash *= between(0, 3);
   if (kind == 5) {
-    place.condition = prescribed(between(-60, 150),
-                                 speed / 3.6 / scene.vehicle.wheel_radius * 36 / 13);
+    place.condition =
+        prescribed(between(-60, 150), speed / 3.6 / scene.vehicle.wheel_radius * 36 / 13);
   }
   if (kind == 6) {
     scene.options.energy_consistent = between(0, 1) < 0.5;
@@ -317,9 +315,9 @@ RandomPlace random_place(std::mt19937_64& random) {
     scale_ripple(std::exp(between(-2.3, 1)));
   }
   if (kind == 7) {
-    for (double* part : {&d.pinion_shaft_stiffness, &d.gear_shaft_stiffness, &d.pinion_inertia,
-                         &d.gear_inertia, &d.wheel_inertia, &d.pinion_shaft_damping,
-                         &d.gear_shaft_damping}) {
+    for (double* part :
+         {&d.pinion_shaft_stiffness, &d.gear_shaft_stiffness, &d.pinion_inertia, &d.gear_inertia,
+          &d.wheel_inertia, &d.pinion_shaft_damping, &d.gear_shaft_damping}) {
       change(*part, 1);
     }
   }
@@ -338,8 +336,8 @@ TEST(QuasiStaticOverRandomScenes, EstimatesBoundTheDistanceFromTheFullModelAndAr
   for (int i = 0; i < count; ++i) {
     const RandomPlace place = random_place(random);
     try {
-      const PointResult cheap = solve_operating_point(place.scene, place.condition,
-                                                      pinned(PointModel::kQuasiStatic));
+      const PointResult cheap =
+          solve_operating_point(place.scene, place.condition, pinned(PointModel::kQuasiStatic));
       const PointResult full =
           solve_operating_point(place.scene, place.condition, pinned(PointModel::kFull, 1e-5));
       if (!cheap.estimated_relative_error) continue;
@@ -364,7 +362,8 @@ TEST(QuasiStaticOverRandomScenes, EstimatesBoundTheDistanceFromTheFullModelAndAr
   std::sort(over.begin(), over.end());
   const double median = over[over.size() / 2];
   std::cout << known << " of " << count << " with an estimate, " << above
-            << " err more than estimated, median of estimate over error " << median << ", chosen at "
+            << " err more than estimated, median of estimate over error " << median
+            << ", chosen at "
             << "1e-2 in " << chosen << '\n';
   EXPECT_GT(known, 0.7 * count);
   EXPECT_LE(above, std::max(1.0, 0.01 * count));
@@ -376,8 +375,8 @@ TEST(QuasiStaticOverRandomScenes, EstimatesBoundTheDistanceFromTheFullModelAndAr
 TEST(QuasiStaticEstimate, SaysThatItCannotTellWhereFlanksPartOrTheMeshResonates) {
   for (const double speed : {70.0, 72.5, 80.0, 150.0}) {
     SCOPED_TRACE(speed);
-    const PointResult r = solve_operating_point(reference_scene(), cruise(speed),
-                                                pinned(PointModel::kQuasiStatic));
+    const PointResult r =
+        solve_operating_point(reference_scene(), cruise(speed), pinned(PointModel::kQuasiStatic));
     EXPECT_FALSE(r.estimated_relative_error.has_value());
     ASSERT_FALSE(r.warnings.empty());
     EXPECT_TRUE(std::any_of(r.warnings.begin(), r.warnings.end(), [](const RangeWarning& w) {
@@ -388,7 +387,8 @@ TEST(QuasiStaticEstimate, SaysThatItCannotTellWhereFlanksPartOrTheMeshResonates)
       solve_operating_point(reference_scene(), cruise(1), pinned(PointModel::kQuasiStatic));
   EXPECT_LT(slow.estimated_relative_error.value(), 1e-3);
   EXPECT_TRUE(std::any_of(slow.warnings.begin(), slow.warnings.end(), [](const RangeWarning& w) {
-    return w.code == "QUASI_STATIC" && w.sentence.find("estimated to be within") != std::string::npos;
+    return w.code == "QUASI_STATIC" &&
+           w.sentence.find("estimated to be within") != std::string::npos;
   }));
 }
 
@@ -441,9 +441,12 @@ TEST(ModelChoice, IsTheFullModelWhereABranchOrAHistoryIsAskedFor) {
   EXPECT_EQ(used([](PointOptions& o) { o.history.columns = {HistoryColumn::kMeshForce}; }),
             PointModel::kFull);
   EXPECT_EQ(used([&](PointOptions& o) {
-              o.carried_state = CarriedState{
-                  neighbour.section_state, neighbour.mean_pinion_speed, neighbour.pinion_torque,
-                  neighbour.wheel_torque,  1,                           false};
+              o.carried_state = CarriedState{neighbour.section_state,
+                                             neighbour.mean_pinion_speed,
+                                             neighbour.pinion_torque,
+                                             neighbour.wheel_torque,
+                                             1,
+                                             false};
             }),
             PointModel::kFull);
   EXPECT_EQ(used([](PointOptions& o) { o.model = PointModel::kFull; }), PointModel::kFull);
@@ -454,9 +457,8 @@ TEST(ModelChoice, CurvesFollowTheirBranchWithTheFullModel) {
   options.point.tolerance = 1e-2;
   for (const SweepDirection direction : {SweepDirection::kUp, SweepDirection::kDown}) {
     options.direction = direction;
-    for (const SweepPoint& point :
-         sweep_speed(reference_scene(), {3 / 3.6, 67.5 / 3.6, 69 / 3.6, 72.5 / 3.6}, 0, options,
-                     {})) {
+    for (const SweepPoint& point : sweep_speed(
+             reference_scene(), {3 / 3.6, 67.5 / 3.6, 69 / 3.6, 72.5 / 3.6}, 0, options, {})) {
       ASSERT_TRUE(point.result.has_value());
       EXPECT_EQ(point.result->model, PointModel::kFull);
       const double speed = point.vehicle_speed * 3.6;

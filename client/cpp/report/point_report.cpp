@@ -179,8 +179,7 @@ std::string model_reason(const v1::Simulation& simulation, const v1::PointResult
   if (study.model() == v1::FULL || study.model() == v1::QUASI_STATIC) return "as asked";
   if (result.model() == v1::QUASI_STATIC) return "its estimated error is within the tolerance";
   if (study.probe_coexisting_response() || study.has_history() ||
-      study.start() == v1::LARGE_VIBRATION ||
-      simulation.solver_options().method() == v1::MARCH) {
+      study.start() == v1::LARGE_VIBRATION || simulation.solver_options().method() == v1::MARCH) {
     return "what was asked for needs it";
   }
   return "a cheaper one may err by more than the tolerance";
