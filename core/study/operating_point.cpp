@@ -237,6 +237,7 @@ PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch&
                       request.interrupted);
   throw_if_refused(system);
   out.history = history.take();
+  out.statistics.contact_solutions = system.contact_solutions();
   return out;
 }
 
