@@ -49,6 +49,7 @@ TEST_P(Shooting, ErrsLessThanItSaysAndAskedAtEveryTolerance) {
       solve_operating_point(scene, cruise(place.kilometers_per_hour), marched(place.start));
   for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     PointOptions options;
+    options.model = PointModel::kFull;
     options.start = place.start;
     options.tolerance = tolerance;
     const PointResult r = solve_operating_point(scene, cruise(place.kilometers_per_hour), options);
@@ -150,6 +151,7 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   for (int i = 0; i < count; ++i) {
     const RandomPlace place = random_place(random);
     PointOptions options;
+    options.model = PointModel::kFull;
     if (i % 2 == 1) {
       options.tolerance = std::pow(10, -std::uniform_real_distribution<double>(2, 6)(random));
     }
@@ -242,6 +244,7 @@ TEST(ShootingWork, FrictionEvaluationsOfAPointAreFew) {
         Scenario{140, PointStart::kQuasiStatic, 420}}) {
     SCOPED_TRACE(at.kilometers_per_hour);
     PointOptions options;
+    options.model = PointModel::kFull;
     options.start = at.start;
     const PointResult r =
         solve_operating_point(reference_scene(), cruise(at.kilometers_per_hour), options);

@@ -157,7 +157,7 @@ TEST(Hash, CanonicalTextNamesEveryValueWithAllItsDigits) {
   EXPECT_TRUE(text.starts_with("model_version=" + std::string(kModelVersion) + "\n"));
   EXPECT_NE(text.find("\nsimulation.sump_temperature_celsius=0x1.4p+5\n"), std::string::npos);
   EXPECT_NE(text.find("\ngear_set.flank_slots[2].gear_velocity_y_metres[96]="), std::string::npos);
-  EXPECT_NE(text.find("\nsimulation.operating_point.model=FULL\n"), std::string::npos);
+  EXPECT_NE(text.find("\nsimulation.operating_point.model=AUTOMATIC_MODEL\n"), std::string::npos);
   EXPECT_EQ(text.find("provenance"), std::string::npos);
   EXPECT_EQ(text.find("lubricants/"), std::string::npos);
 }
