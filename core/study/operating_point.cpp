@@ -231,8 +231,10 @@ PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch&
   fill_from_orbit(system, contacts, grids, solution.orbit, solution.steps_per_mesh_cycle,
                   target.mean_pinion_speed, out);
   throw_if_refused(system);
-  // The unknown torque follows from the mean power: what eq 2 leaves out takes nothing here.
-  out.power_balance.parametric = 0;
+  // Speeds are taken as they follow each other, and the unknown torque from the mean power: neither
+  // dampers nor what eq 2 leaves out take anything.
+  PowerBalance& balance = out.power_balance;
+  balance.shaft_damping = balance.mesh_damping = balance.parametric = 0;
   HistorySampler history(options.history);
   const QuasiStaticRequest request = quasi_static_request(target, options);
   sample_quasi_static(system, answer.solution, target.mean_pinion_speed, history,
