@@ -1,5 +1,6 @@
 #include "core/dynamics/linear_response.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -19,48 +20,48 @@ Complex inverse(const Complex& z) { return std::conj(z) / std::norm(z); }
 /// The harmonics 1 ... count of signals at even phases, there and back.
 class Harmonics {
  public:
-  Harmonics(int phases, int count) : phases_(phases), count_(count), turns_(phases) {
+  Harmonics(int phases, int count) : cosine_(phases, count), sine_(phases, count) {
+    Eigen::ArrayX2d turn(phases, 2);
     for (int n = 0; n < phases; ++n) {
       const double angle = 2 * std::numbers::pi * n / phases;
-      turns_[n] = {std::cos(angle), std::sin(angle)};
+      turn(n, 0) = std::cos(angle);
+      turn(n, 1) = std::sin(angle);
+    }
+    for (int h = 0; h < count; ++h) {
+      for (int n = 0, at = 0; n < phases; ++n) {
+        cosine_(n, h) = turn(at, 0);
+        sine_(n, h) = turn(at, 1);
+        at += h + 1;
+        if (at >= phases) at -= phases;
+      }
     }
   }
-  int count() const { return count_; }
+  int count() const { return static_cast<int>(cosine_.cols()); }
 
   /// Element h - 1: of harmonic h.
   std::vector<Complex> of(const std::vector<double>& signal) const {
-    std::vector<Complex> out(count_);
-    for (int h = 1; h <= count_; ++h) {
-      double real = 0, imaginary = 0;
-      int turn = 0;
-      for (int n = 0; n < phases_; ++n) {
-        real += signal[n] * turns_[turn].real();
-        imaginary -= signal[n] * turns_[turn].imag();
-        turn += h;
-        if (turn >= phases_) turn -= phases_;
-      }
-      out[h - 1] = Complex{real, imaginary} * (2.0 / phases_);
-    }
+    const Eigen::Map<const Eigen::VectorXd> values(signal.data(), cosine_.rows());
+    const double scale = 2.0 / static_cast<double>(cosine_.rows());
+    const Eigen::VectorXd real = cosine_.transpose() * values;
+    const Eigen::VectorXd imaginary = sine_.transpose() * values;
+    std::vector<Complex> out(count());
+    for (int h = 0; h < count(); ++h) out[h] = {scale * real(h), -scale * imaginary(h)};
     return out;
   }
 
   std::vector<double> signal(const std::vector<Complex>& amplitudes) const {
-    std::vector<double> out(phases_, 0.0);
-    for (int h = 1; h <= count_; ++h) {
-      const double real = amplitudes[h - 1].real(), imaginary = amplitudes[h - 1].imag();
-      int turn = 0;
-      for (int n = 0; n < phases_; ++n) {
-        out[n] += real * turns_[turn].real() - imaginary * turns_[turn].imag();
-        turn += h;
-        if (turn >= phases_) turn -= phases_;
-      }
+    Eigen::VectorXd real(count()), imaginary(count());
+    for (int h = 0; h < count(); ++h) {
+      real(h) = amplitudes[h].real();
+      imaginary(h) = amplitudes[h].imag();
     }
+    std::vector<double> out(cosine_.rows());
+    Eigen::Map<Eigen::VectorXd>(out.data(), cosine_.rows()) = cosine_ * real - sine_ * imaginary;
     return out;
   }
 
  private:
-  int phases_, count_;
-  std::vector<Complex> turns_;
+  Eigen::MatrixXd cosine_, sine_;  // of h theta, a column a harmonic
 };
 
 /// The two sides of the mesh at one frequency [rad/s].

@@ -355,6 +355,18 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
 
 namespace {
 
+/// As pinned or as chosen. Nothing where the full model must answer, or nothing can.
+std::optional<QuasiStaticAnswer> quasi_static_for(GearPairSystem& system,
+                                                  const FlankContactBatch& contacts,
+                                                  MeshGrids& grids, const OperatingTarget& target,
+                                                  const PointOptions& options) {
+  if (options.model == PointModel::kQuasiStatic && system.torques().pinion != 0) {
+    return answer_quasi_statically(system, contacts, grids, target, options);
+  }
+  if (!may_choose(options, std::nullopt)) return std::nullopt;
+  return choose_quasi_static(system, contacts, grids, target, options);
+}
+
 PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit,
                         double estimated_error, const OperatingTarget& target) {
   PointFigures out;
@@ -371,7 +383,7 @@ PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit
   out.contact_loss = orbit.contact_loss;
   out.settled = true;
   out.period_in_mesh_cycles = orbit.period;
-  out.estimated_relative_error = estimated_error;
+  if (std::isfinite(estimated_error)) out.estimated_relative_error = estimated_error;
   out.contact_solutions = system.contact_solutions();
   return out;
 }
@@ -383,27 +395,27 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
   const Scene& scene = prepared.scene();
   const OperatingTarget target = target_of(scene, condition);
   PreparedGearSet& gear_set = prepared.gear_set();
-  if (options.method == SteadyStateMethod::kAutomatic &&
-      options.model != PointModel::kQuasiStatic && !scene.options.load_dependent_mesh_data) {
+  PointOptions plain = options;
+  plain.carried_state.reset();
+  plain.probe_coexisting_response = false;
+  plain.history = {};
+  if (options.method == SteadyStateMethod::kAutomatic && !scene.options.load_dependent_mesh_data) {
     const FlankContactBatch& contacts = prepared.contacts();
     GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
                           scene.options);
     system.set_torques(target.torques);
-    PointOptions lone = options;
-    lone.carried_state.reset();
-    lone.probe_coexisting_response = false;
-    lone.history = {};
-    if (may_choose(lone, std::nullopt)) {
-      if (const auto chosen =
-              choose_quasi_static(system, contacts, gear_set.grids(), target, lone)) {
-        PointFigures figures =
-            figures_of(system, chosen->solution.orbit, chosen->estimated_error, target);
-        figures.model = PointModel::kQuasiStatic;
-        return figures;
-      }
+    if (const auto chosen = quasi_static_for(system, contacts, gear_set.grids(), target, plain)) {
+      PointFigures figures =
+          figures_of(system, chosen->solution.orbit, chosen->estimated_error, target);
+      figures.model = PointModel::kQuasiStatic;
+      return figures;
     }
-    std::optional<OrbitSearch> search =
-        search_from(system, target, options, options.start, std::nullopt);
+    if (options.model == PointModel::kAutomatic)
+      plain.model = PointModel::kFull;  // it is found out
+    std::optional<OrbitSearch> search;
+    if (plain.model == PointModel::kFull) {
+      search = search_from(system, target, plain, plain.start, std::nullopt);
+    }
     MarchStatistics statistics;
     long cycles = 0;
     std::optional<RefinedOrbit> found;
@@ -413,10 +425,6 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
     }
     if (found) return figures_of(system, found->orbit, found->estimated_error, target);
   }
-  PointOptions plain = options;
-  plain.carried_state.reset();
-  plain.probe_coexisting_response = false;
-  plain.history = {};
   const PointResult r = solve_prepared_point(prepared, condition, plain);
   return {r.pinion_torque,
           r.wheel_torque,

@@ -495,6 +495,10 @@ TEST(ModelChoice, FiguresForScreeningAreThoseOfTheWholeResultAndTheSameBitsInCom
     EXPECT_NEAR(alone.inefficiency_rms.value(), whole.inefficiency_rms.value(),
                 1e-12 * alone.inefficiency_rms.value());
   }
+  const PointFigures unsure =
+      solve_point_figures(second, cruise(72.5), pinned(PointModel::kQuasiStatic));
+  EXPECT_EQ(unsure.model, PointModel::kQuasiStatic);
+  EXPECT_FALSE(unsure.estimated_relative_error.has_value());
 }
 
 // Friction is where the time goes. A choice that does not fall on the cheaper model costs none.
