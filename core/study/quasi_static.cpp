@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "core/dynamics/linear_response.h"
@@ -15,6 +14,11 @@ namespace {
 constexpr double kSafety = 1.7;  // on the error that two grids tell
 constexpr int kFinest = 4000;    // steps per mesh cycle
 constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
+
+// Of the model's error. Beyond these limits the correction tells nothing sure.
+constexpr double kMargin = 1.5;      // on what inertia is told to change
+constexpr double kMostGrowth = 0.5;  // see InertialCorrection
+constexpr double kLeastForce = 0.4;  // smallest over mean mesh force
 
 double square(double v) { return v * v; }
 
@@ -230,20 +234,18 @@ double other_losses(const GearPairSystem& system, const MeshGrid& grid,
   return sum / static_cast<double>(count);
 }
 
-/// Smallest and largest force at the nodes over the mean.
-std::pair<double, double> force_range(const GearPairSystem& system, const MeshGrid& grid,
-                                      const std::vector<MarchState>& nodes) {
-  double low = 1e300, high = -1e300, sum = 0;
+/// Smallest force at the nodes over the mean one.
+double least_force(const GearPairSystem& system, const MeshGrid& grid,
+                   const std::vector<MarchState>& nodes) {
+  double low = 1e300, sum = 0;
   Instant at;
   for (std::size_t n = 0; n + 1 < nodes.size(); ++n) {
     system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
     const double force = system.regime.side * at.mesh_force;
     low = std::min(low, force);
-    high = std::max(high, force);
     sum += force;
   }
-  const double mean = sum / static_cast<double>(nodes.size() - 1);
-  return {low / mean, high / mean};
+  return low * static_cast<double>(nodes.size() - 1) / sum;
 }
 
 }  // namespace
@@ -302,21 +304,19 @@ double quasi_static_model_error(GearPairSystem& system, const FlankContactBatch&
                                 MeshGrids& grids, const QuasiStaticRequest& request,
                                 const QuasiStatic& solution) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  constexpr double kMargin = 1.5;
   const double speed = request.mean_pinion_speed;
   const MeshGrid& grid = grids.with_steps(solution.steps_per_mesh_cycle);
   LaggedFriction friction = solution.orbit.friction;
   const std::vector<MarchState> still = equilibria(system, grid, friction, speed);
   const ImposedMotion motion = imposed_motion(system, grid, still, friction);
   const InertialCorrection change = inertial_correction(system, speed, motion);
-  if (!(change.growth < 0.5)) return kUnknown;
+  if (!(change.growth < kMostGrowth)) return kUnknown;
   if (parametric_resonance_possible(system, speed, motion.mesh_stiffness)) return kUnknown;
   const std::vector<MarchState> moving = corrected(system, grid, still, change);
-  const auto [low, high] = force_range(system, grid, moving);
   const double unresolved_force = change.unresolved * system.mesh().mean_mesh_stiffness() *
                                   system.mesh().mean_pinion_contact_radius() /
                                   std::abs(system.torques().pinion);
-  if (!(low - unresolved_force > 0.4)) return kUnknown;
+  if (!(least_force(system, grid, moving) - unresolved_force > kLeastForce)) return kUnknown;
 
   OrbitFriction together(system, contacts, 0);
   OrbitFigures figures;
@@ -337,16 +337,34 @@ bool quasi_static_may_do(GearPairSystem& system, MeshGrids& grids,
   constexpr double kDoubt = 4;  // extremes move by less than the largest correction
   if (system.torques().pinion == 0) return false;
   system.regime = {side_of(system), true};
-  const MeshGrid& grid = grids.with_steps(kFewSteps);
-  LaggedFriction none;
-  ImposedMotion motion =
-      imposed_motion(system, grid, equilibria(system, grid, none, request.mean_pinion_speed), none);
-  motion.tail = false;
-  const InertialCorrection change = inertial_correction(system, request.mean_pinion_speed, motion);
+  const double speed = request.mean_pinion_speed;
+  const auto moved_without_friction = [&](const MeshGrid& grid, ImposedMotion& motion,
+                                          std::vector<MarchState>& still) {
+    LaggedFriction none;
+    still = equilibria(system, grid, none, speed);
+    motion = imposed_motion(system, grid, still, none);
+    motion.tail = false;
+    return inertial_correction(system, speed, motion);
+  };
+  ImposedMotion motion;
+  std::vector<MarchState> still;
+  const InertialCorrection few = moved_without_friction(grids.with_steps(kFewSteps), motion, still);
   double size = 0;
   for (const double x : motion.transmission_error) size = std::max(size, std::abs(x));
-  return change.largest < kDoubt * request.tolerance * size &&
-         !parametric_resonance_possible(system, request.mean_pinion_speed, motion.mesh_stiffness);
+  if (!(few.largest < kDoubt * request.tolerance * size) ||
+      parametric_resonance_possible(system, speed, motion.mesh_stiffness)) {
+    return false;
+  }
+  // Friction moves the extremes by some percent only.
+  const MeshGrid& grid = grids.with_steps(StepSequence(system.mesh().intervals(), 12).first());
+  const InertialCorrection more = moved_without_friction(grid, motion, still);
+  if (!(more.growth < kMostGrowth)) return false;
+  double low = 0, high = 0, moved_low = 0, moved_high = 0;
+  extremes_of(transmission_errors(system, grid, still), low, high);
+  extremes_of(transmission_errors(system, grid, corrected(system, grid, still, more)), moved_low,
+              moved_high);
+  const double moved = std::max(std::abs(moved_low - low), std::abs(moved_high - high));
+  return kMargin * moved / (1 - more.growth) < kDoubt * request.tolerance * size / 2;
 }
 
 }  // namespace tribodyn

@@ -49,7 +49,7 @@ double quasi_static_model_error(GearPairSystem& system, const FlankContactBatch&
                                 const QuasiStatic& solution);
 
 /// False where the mechanics alone, before any friction is computed, say that the model's error is
-/// beyond the tolerance. Costs some microseconds.
+/// beyond the tolerance. Costs two microseconds where that is far off, eight where it is near.
 bool quasi_static_may_do(GearPairSystem& system, MeshGrids& grids,
                          const QuasiStaticRequest& request);
 
