@@ -61,7 +61,7 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
     warn("QUASI_STATIC",
          r.estimated_relative_error
              ? "no dynamics: with the grid's error the figures are estimated to be within " +
-                   number_text(100 * *r.estimated_relative_error) + " % of the full model's"
+                   number_text(100 * *r.estimated_relative_error, 2) + " % of the full model's"
              : "no dynamics, and their effect cannot be told: flanks may part, or the mesh "
                "resonates; the inefficiency can be 10 to 45 % low");
   }
