@@ -8,6 +8,8 @@
 #include "core/number_text.h"
 #include "core/refusal.h"
 #include "core/study/history_sampler.h"
+#include "core/study/model_choice.h"
+#include "core/study/operating_target.h"
 #include "core/study/orbit_record.h"
 #include "core/study/orbit_refinement.h"
 #include "core/study/quasi_static.h"
@@ -20,47 +22,22 @@ namespace {
 
 constexpr double kLargeVibrationDeflection = 60e-6;  // [m]
 
-/// Speed and torques that the condition fixes; the unknown torque without friction.
-struct Target {
-  double mean_pinion_speed;
-  double vehicle_speed;
-  Torques torques;
-  bool solve_wheel_torque;
-};
-
-Target target_of(const Scene& scene, const OperatingCondition& c) {
-  const double ratio = static_cast<double>(scene.gear_set.pinion_teeth) / scene.gear_set.gear_teeth;
-  Target t{};
-  if (c.kind == OperatingCondition::Kind::kPrescribedTorque) {
-    t.mean_pinion_speed = c.pinion_speed;
-    t.vehicle_speed = c.pinion_speed * ratio * scene.vehicle.wheel_radius;
-    t.torques = {c.pinion_torque, c.pinion_torque / ratio};
-    t.solve_wheel_torque = true;
-  } else {
-    const double acceleration =
-        c.kind == OperatingCondition::Kind::kDriveCycleSnapshot ? c.acceleration : 0;
-    t.vehicle_speed = c.vehicle_speed;
-    t.mean_pinion_speed = c.vehicle_speed / scene.vehicle.wheel_radius / ratio;
-    const double wheel = wheel_torque(scene.vehicle, c.vehicle_speed, c.ascent_angle, acceleration);
-    t.torques = {wheel * ratio, wheel};
-  }
-  if (!(t.mean_pinion_speed > 0) || !std::isfinite(t.mean_pinion_speed)) {
-    throw Refusal("NO_FORWARD_ROTATION", "the mean pinion speed must be positive; it is " +
-                                             number_text(t.mean_pinion_speed) + " rad/s");
-  }
-  return t;
-}
-
 /// The quasi-static response at mesh phase 0: its torques leave little for the march to settle.
-MarchState point_start(GearPairSystem& system, const Target& target, double offset,
-                       const std::function<bool(double)>& progress) {
-  ResponseRecord unused(0);
-  HistorySampler none{HistoryRequest{}};
-  const QuasiStatic start =
-      solve_quasi_static(system, target.mean_pinion_speed, target.solve_wheel_torque, unused, none,
-                         progress ? [&progress](double) { return progress(0); } : progress);
-  return static_start(system, target.mean_pinion_speed, start.pinion_friction_torque,
-                      start.gear_friction_torque, offset);
+MarchState point_start(GearPairSystem& system, const FlankContactBatch& contacts, MeshGrids& grids,
+                       const OperatingTarget& target, const PointOptions& options, double offset) {
+  QuasiStaticRequest request = quasi_static_request(target, options);
+  request.tolerance = 1e-3;
+  FrictionPerLoad friction;
+  if (auto start = solve_quasi_static(system, contacts, grids, request)) {
+    friction = start->orbit.friction.at(0);
+  } else {
+    throw_if_refused(system);
+    system.set_torques(target.torques);
+  }
+  const double load =
+      std::abs(system.torques().pinion) / system.mesh().functions(0, 0).pinion_contact_radius;
+  return static_start(system, target.mean_pinion_speed, friction.pinion * load,
+                      friction.gear * load, offset);
 }
 
 /// The neighbour's steady state, its wind-up and speeds moved to this point.
@@ -104,7 +81,7 @@ double march_tolerance(const PointOptions& options) {
   return std::clamp(1e-3 * options.tolerance, 1e-11, options.relative_tolerance);
 }
 
-PointResult empty_result(const Target& target, PointModel model) {
+PointResult empty_result(const OperatingTarget& target, PointModel model) {
   PointResult out;
   out.vehicle_speed = target.vehicle_speed;
   out.mean_pinion_speed = target.mean_pinion_speed;
@@ -112,8 +89,8 @@ PointResult empty_result(const Target& target, PointModel model) {
   return out;
 }
 
-PointResult solve_full(GearPairSystem& system, const Target& target, const PointOptions& options,
-                       const MarchState& start, int first_period,
+PointResult solve_full(GearPairSystem& system, const OperatingTarget& target,
+                       const PointOptions& options, const MarchState& start, int first_period,
                        const HistoryRequest& history_request) {
   SteadyStateRequest request;
   request.first_period = first_period;
@@ -163,7 +140,7 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
 
 /// Where shooting starts: from a state or else from the static one. Nothing where marching must
 /// decide.
-std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Target& target,
+std::optional<OrbitSearch> search_from(const GearPairSystem& system, const OperatingTarget& target,
                                        const PointOptions& options, PointStart start,
                                        const std::optional<CarriedState>& from) {
   if (system.torques().pinion == 0) return std::nullopt;  // nothing holds the flanks together
@@ -187,11 +164,34 @@ std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Targe
   return search;
 }
 
+/// Everything that follows from a response; its pieces with their contacts, none when one is
+/// refused. Counts contacts.
+std::vector<SolvedPiece> fill_from_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
+                                         MeshGrids& grids, const PeriodicOrbit& orbit,
+                                         int steps_per_mesh_cycle, double mean_pinion_speed,
+                                         PointResult& out) {
+  out.settled = true;
+  out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
+  system.set_torques(orbit.torques);
+  std::vector<SolvedPiece> pieces;
+  OrbitFriction friction(system, contacts);
+  if (!friction.solve(grids.with_steps(steps_per_mesh_cycle), orbit.pieces, pieces)) return {};
+  ResponseRecord record(march_scales(system, mean_pinion_speed).torque /
+                        system.mesh().mean_pinion_contact_radius());
+  record_orbit(system, orbit, pieces, record);
+  record.fill(system.torques(), orbit.period, true, out);
+  out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().end.data()) -
+                             system.stored_energy(0, orbit.pieces.front().start.data());
+  out.section_state = system.to_section(orbit.pieces.front().start.data());
+  out.statistics.contact_solutions = system.contact_solutions();
+  return pieces;
+}
+
 /// By shooting. Nothing where marching must decide.
 std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
                                              const FlankContactBatch& contacts, MeshGrids& grids,
-                                             const Target& target, const PointOptions& options,
-                                             PointStart start,
+                                             const OperatingTarget& target,
+                                             const PointOptions& options, PointStart start,
                                              const std::optional<CarriedState>& from,
                                              const HistoryRequest& history_request) {
   const std::optional<OrbitSearch> search = search_from(system, target, options, start, from);
@@ -205,23 +205,10 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
 
   PointResult out = empty_result(target, PointModel::kFull);
   out.method = SteadyStateMethod::kShooting;
-  out.settled = true;
-  out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
   out.estimated_relative_error = refined->estimated_error;
-  system.set_torques(orbit.torques);
-  const double mean_force = march_scales(system, target.mean_pinion_speed).torque /
-                            system.mesh().mean_pinion_contact_radius();
-  std::vector<SolvedPiece> pieces;
-  OrbitFriction friction(system, contacts);
-  if (!friction.solve(grids.with_steps(refined->steps_per_mesh_cycle), orbit.pieces, pieces)) {
-    return std::nullopt;
-  }
-  ResponseRecord record(mean_force);
-  record_orbit(system, orbit, pieces, record);
-  record.fill(system.torques(), orbit.period, true, out);
-  out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().end.data()) -
-                             system.stored_energy(0, orbit.pieces.front().start.data());
-  out.section_state = system.to_section(orbit.pieces.front().start.data());
+  const auto pieces = fill_from_orbit(system, contacts, grids, orbit, refined->steps_per_mesh_cycle,
+                                      target.mean_pinion_speed, out);
+  if (pieces.empty()) return std::nullopt;
   HistorySampler history(history_request);
   sample_orbit(system, orbit, pieces, history);
   out.history = history.take();
@@ -235,26 +222,40 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   return out;
 }
 
-PointResult solve_quasi_static_point(GearPairSystem& system, const Target& target,
-                                     const PointOptions& options) {
+PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch& contacts,
+                                MeshGrids& grids, const OperatingTarget& target,
+                                const PointOptions& options, QuasiStaticAnswer& answer) {
   PointResult out = empty_result(target, PointModel::kQuasiStatic);
-  ResponseRecord record(std::abs(system.torques().pinion) /
-                        system.mesh().mean_pinion_contact_radius());
+  if (std::isfinite(answer.estimated_error)) out.estimated_relative_error = answer.estimated_error;
+  const QuasiStatic& solution = answer.solution;
+  fill_from_orbit(system, contacts, grids, solution.orbit, solution.steps_per_mesh_cycle,
+                  target.mean_pinion_speed, out);
+  throw_if_refused(system);
+  // Speeds are taken as they follow each other, and the unknown torque from the mean power: neither
+  // dampers nor what eq 2 leaves out take anything.
+  PowerBalance& balance = out.power_balance;
+  balance.shaft_damping = balance.mesh_damping = balance.parametric = 0;
   HistorySampler history(options.history);
-  const QuasiStatic solved =
-      solve_quasi_static(system, target.mean_pinion_speed, target.solve_wheel_torque, record,
-                         history, options.progress);
-  out.settled = true;
-  out.period_in_mesh_cycles = out.recorded_mesh_cycles = 1;
-  record.fill(system.torques(), 1, true, out);
-  out.statistics.contact_solutions = system.contact_solutions();
-  system.regime = {system.torques().pinion >= 0 ? 1 : -1, true};
-  out.section_state =
-      system.to_section(static_start(system, target.mean_pinion_speed,
-                                     solved.pinion_friction_torque, solved.gear_friction_torque, 0)
-                            .data());
+  const QuasiStaticRequest request = quasi_static_request(target, options);
+  sample_quasi_static(system, answer.solution, target.mean_pinion_speed, history,
+                      request.interrupted);
+  throw_if_refused(system);
   out.history = history.take();
+  out.statistics.contact_solutions = system.contact_solutions();
   return out;
+}
+
+/// By the caller's choice: also where its error cannot be told.
+PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactBatch& contacts,
+                                     MeshGrids& grids, const OperatingTarget& target,
+                                     const PointOptions& options) {
+  auto answer = answer_quasi_statically(system, contacts, grids, target, options);
+  throw_if_refused(system);
+  if (!answer) {
+    throw Refusal("NO_QUASI_STATIC_EQUILIBRIUM",
+                  "load and friction of the quasi-static model do not settle");
+  }
+  return quasi_static_result(system, contacts, grids, target, options, *answer);
 }
 
 }  // namespace
@@ -269,7 +270,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
                                  const PointOptions& options) {
   const Scene& scene = prepared.scene();
   const FlankContactBatch& contacts = prepared.contacts();
-  const Target target = target_of(scene, condition);
+  const OperatingTarget target = target_of(scene, condition);
 
   // One response from one start. With mesh data at the torque, the torque is iterated.
   const auto respond = [&](PointStart start, const std::optional<CarriedState>& carried,
@@ -288,22 +289,27 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       system.set_torques(target.torques);
       const bool last_pass = !scene.options.load_dependent_mesh_data || pass >= 12;
       PointResult result;
+      MeshGrids& grids = gear_set.grids();
+      std::optional<QuasiStaticAnswer> chosen;
       if (options.model == PointModel::kQuasiStatic) {
-        result = solve_quasi_static_point(system, target, options);
+        result = solve_quasi_static_point(system, contacts, grids, target, options);
+      } else if (may_choose(options, from) &&
+                 (chosen = choose_quasi_static(system, contacts, grids, target, options))) {
+        result = quasi_static_result(system, contacts, grids, target, options, *chosen);
       } else if (std::optional<PointResult> shot;
                  options.method == SteadyStateMethod::kAutomatic &&
-                 (shot = solve_by_shooting(system, contacts, gear_set.grids(), target, options,
-                                           start, from, history))) {
+                 (shot = solve_by_shooting(system, contacts, grids, target, options, start, from,
+                                           history))) {
         result = *std::move(shot);
       } else {
         system.set_torques(target.torques);
         // Together they are solved to 1e-10.
         if (march_tolerance(options) >= 1e-9) system.solve_together(&contacts);
         const MarchState state =
-            from ? carried_start(system, *from, target.mean_pinion_speed)
-                 : point_start(system, target,
-                               start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0,
-                               options.progress);
+            from
+                ? carried_start(system, *from, target.mean_pinion_speed)
+                : point_start(system, contacts, grids, target, options,
+                              start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0);
         const int first_period = from ? std::max(1, from->period) : 1;
         result = solve_full(system, target, options, state, first_period, history);
       }
@@ -317,13 +323,14 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       if (last_pass || change <= 1e-10 * std::abs(result.pinion_torque)) return result;
       spent = result.statistics;
       data_torque = result.pinion_torque;
+      if (chosen) continue;  // it starts anew
       from = CarriedState{result.section_state, result.mean_pinion_speed,     result.pinion_torque,
                           result.wheel_torque,  result.period_in_mesh_cycles, result.contact_loss};
     }
   };
 
   PointResult result = respond(options.start, options.carried_state, options.history);
-  if (options.probe_coexisting_response && options.model == PointModel::kFull) {
+  if (options.probe_coexisting_response && options.model != PointModel::kQuasiStatic) {
     for (const PointStart start : {PointStart::kQuasiStatic, PointStart::kLargeVibration}) {
       const PointResult other = respond(start, std::nullopt, {});
       const double span =
@@ -346,20 +353,69 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
   return result;
 }
 
+namespace {
+
+/// As pinned or as chosen. Nothing where the full model must answer, or nothing can.
+std::optional<QuasiStaticAnswer> quasi_static_for(GearPairSystem& system,
+                                                  const FlankContactBatch& contacts,
+                                                  MeshGrids& grids, const OperatingTarget& target,
+                                                  const PointOptions& options) {
+  if (options.model == PointModel::kQuasiStatic && system.torques().pinion != 0) {
+    return answer_quasi_statically(system, contacts, grids, target, options);
+  }
+  if (!may_choose(options, std::nullopt)) return std::nullopt;
+  return choose_quasi_static(system, contacts, grids, target, options);
+}
+
+PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit,
+                        double estimated_error, const OperatingTarget& target) {
+  PointFigures out;
+  const OrbitFigures& f = orbit.figures;
+  const double turned = orbit.period * system.cycle_angle();
+  const double torque = std::abs(orbit.torques.pinion);
+  out.pinion_torque = orbit.torques.pinion;
+  out.wheel_torque = orbit.torques.wheel;
+  out.inefficiency_rms = 100 * f.loss_rms / torque;
+  out.inefficiency_energy_mean = 100 * f.loss_energy / (torque * turned);
+  out.mesh_loss_power = f.loss_energy * target.mean_pinion_speed / turned;
+  out.dte_minimum = f.dte_minimum;
+  out.dte_maximum = f.dte_maximum;
+  out.contact_loss = orbit.contact_loss;
+  out.settled = true;
+  out.period_in_mesh_cycles = orbit.period;
+  if (std::isfinite(estimated_error)) out.estimated_relative_error = estimated_error;
+  out.contact_solutions = system.contact_solutions();
+  return out;
+}
+
+}  // namespace
+
 PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
                                  const PointOptions& options) {
   const Scene& scene = prepared.scene();
-  const Target target = target_of(scene, condition);
+  const OperatingTarget target = target_of(scene, condition);
   PreparedGearSet& gear_set = prepared.gear_set();
-  PointFigures out;
-  if (options.method == SteadyStateMethod::kAutomatic && options.model == PointModel::kFull &&
-      !scene.options.load_dependent_mesh_data) {
+  PointOptions plain = options;
+  plain.carried_state.reset();
+  plain.probe_coexisting_response = false;
+  plain.history = {};
+  if (options.method == SteadyStateMethod::kAutomatic && !scene.options.load_dependent_mesh_data) {
     const FlankContactBatch& contacts = prepared.contacts();
     GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
                           scene.options);
     system.set_torques(target.torques);
-    std::optional<OrbitSearch> search =
-        search_from(system, target, options, options.start, std::nullopt);
+    if (const auto chosen = quasi_static_for(system, contacts, gear_set.grids(), target, plain)) {
+      PointFigures figures =
+          figures_of(system, chosen->solution.orbit, chosen->estimated_error, target);
+      figures.model = PointModel::kQuasiStatic;
+      return figures;
+    }
+    if (options.model == PointModel::kAutomatic)
+      plain.model = PointModel::kFull;  // it is found out
+    std::optional<OrbitSearch> search;
+    if (plain.model == PointModel::kFull) {
+      search = search_from(system, target, plain, plain.start, std::nullopt);
+    }
     MarchStatistics statistics;
     long cycles = 0;
     std::optional<RefinedOrbit> found;
@@ -367,30 +423,8 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
       search->frictionless = &gear_set.frictionless_orbits();
       found = refine_orbit(system, contacts, gear_set.grids(), *search, statistics, cycles);
     }
-    if (found) {
-      const PeriodicOrbit& orbit = found->orbit;
-      const OrbitFigures& f = orbit.figures;
-      const double turned = orbit.period * system.cycle_angle();
-      const double torque = std::abs(orbit.torques.pinion);
-      out.pinion_torque = orbit.torques.pinion;
-      out.wheel_torque = orbit.torques.wheel;
-      out.inefficiency_rms = 100 * f.loss_rms / torque;
-      out.inefficiency_energy_mean = 100 * f.loss_energy / (torque * turned);
-      out.mesh_loss_power = f.loss_energy * target.mean_pinion_speed / turned;
-      out.dte_minimum = f.dte_minimum;
-      out.dte_maximum = f.dte_maximum;
-      out.contact_loss = orbit.contact_loss;
-      out.settled = true;
-      out.period_in_mesh_cycles = orbit.period;
-      out.estimated_relative_error = found->estimated_error;
-      out.contact_solutions = system.contact_solutions();
-      return out;
-    }
+    if (found) return figures_of(system, found->orbit, found->estimated_error, target);
   }
-  PointOptions plain = options;
-  plain.carried_state.reset();
-  plain.probe_coexisting_response = false;
-  plain.history = {};
   const PointResult r = solve_prepared_point(prepared, condition, plain);
   return {r.pinion_torque,
           r.wheel_torque,
@@ -403,7 +437,8 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
           r.settled,
           r.period_in_mesh_cycles,
           r.estimated_relative_error,
-          r.statistics.contact_solutions};
+          r.statistics.contact_solutions,
+          r.model};
 }
 
 }  // namespace tribodyn

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/study/step_sequence.h"
+
 namespace tribodyn {
 namespace {
 
@@ -24,31 +26,6 @@ double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed)
   return std::sqrt(mesh.mean_mesh_stiffness() * compliance) /
          (mean_pinion_speed * mesh.pinion_teeth());
 }
-
-/// Numbers of steps per mesh cycle. The first end on samples of the tables and the second do not:
-/// else both would see the kinks there in the same way and agree on the same error. In the end no
-/// step has a kink inside.
-class StepSequence {
- public:
-  StepSequence(int intervals, int least) : intervals_(intervals), coarsest_(least) {
-    while (coarsest_ < intervals && intervals % coarsest_ != 0) ++coarsest_;
-    if (coarsest_ > intervals) {
-      coarsest_ = intervals;
-      while (coarsest_ < least) coarsest_ *= 2;
-    }
-  }
-  int first() const { return coarsest_; }
-  int after(int steps) const {
-    if (steps == coarsest_) return coarsest_ * 5 / 3;
-    if (steps % intervals_ == 0 || 3 * steps <= intervals_) return 2 * steps;
-    int next = intervals_;
-    while (next < 2 * steps) next *= 2;
-    return next;
-  }
-
- private:
-  int intervals_, coarsest_;
-};
 
 /// Multipliers under lagged friction are good to 3e-3, and better where a period is short: what
 /// comes nearer to 1 may repel.

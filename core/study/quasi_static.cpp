@@ -1,111 +1,370 @@
 #include "core/study/quasi_static.h"
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 #include <vector>
 
-#include "core/dynamics/steady_state.h"
+#include "core/dynamics/linear_response.h"
+#include "core/study/step_sequence.h"
 
 namespace tribodyn {
 namespace {
 
-/// State at a phase under a mesh force F: x from F, speeds for xdot = 0.
-void equilibrium_state(const GearPairSystem& system, double phase, double force, double speed,
-                       RecordComponent count, double* y) {
-  for (int i = 0; i < count; ++i) y[i] = 0;
+constexpr double kSafety = 1.7;  // on the error that two grids tell
+constexpr int kFinest = 4000;    // steps per mesh cycle
+constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
+
+// Of the model's error. Beyond these limits the correction tells nothing sure.
+constexpr double kMargin = 1.5;      // on what inertia is told to change
+constexpr double kMostGrowth = 0.5;  // see InertialCorrection
+constexpr double kLeastForce = 0.4;  // smallest over mean mesh force
+
+double square(double v) { return v * v; }
+
+/// Side of the flanks that carry.
+int side_of(const GearPairSystem& system) { return system.torques().pinion >= 0 ? 1 : -1; }
+
+/// Equilibrium at a mesh phase [cycles] under friction in proportion to the load.
+MarchState equilibrium(const GearPairSystem& system, const MeshPhase& at, double phase,
+                       const FrictionPerLoad& friction, double speed) {
   const MeshData& mesh = system.mesh();
-  const double theta = 2 * std::numbers::pi * phase;
-  const double lag = mesh.gear_teeth() / mesh.mean_gear_contact_radius();
   const double side = system.regime.side;
-  MeshFunctions at = mesh.functions(theta, theta);
-  for (int i = 0; i < 4; ++i) {  // R_g's ripple over the winding: contracts by 1e-2 and is tiny
-    const double x = side * system.dynamics().half_backlash + force / at.mesh_stiffness;
-    y[kWinding] =
-        x + at.static_transmission_error - at.radius_integral - system.dynamics().half_backlash;
-    at = mesh.functions(theta, theta - lag * y[kWinding]);
-  }
+  const double lag = mesh.gear_teeth() / mesh.mean_gear_contact_radius();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
+  const MeshFunctions& p = at.pinion;
+  const double force = system.torques().pinion / (p.pinion_contact_radius - side * friction.pinion);
+  const double winding = side * system.dynamics().half_backlash + force / p.mesh_stiffness +
+                         p.static_transmission_error - system.dynamics().half_backlash;
+  MarchState y{};
+  MeshFunctions f{};
+  y[kWinding] = winding;
+  for (int i = 0; i < 4; ++i) {  // R_g's ripple over the winding: contracts by 1e-2 and is tiny
+    f = system.mesh().functions(at, lag * y[kWinding]);
+    y[kWinding] = winding - f.radius_integral;
+  }
+  y[kTime] = phase * system.cycle_angle() / speed;
   y[kPinionShaftSpeed] = y[kPinionSpeed] = speed;
-  y[kGearSpeed] = (at.pinion_contact_radius - at.static_transmission_error_slope) * speed /
-                  at.gear_contact_radius;
+  y[kGearSpeed] =
+      (f.pinion_contact_radius - f.static_transmission_error_slope) * speed / f.gear_contact_radius;
   y[kWheelSpeed] = ratio * speed;
   y[kPinionShaftTwist] = system.torques().pinion / system.dynamics().pinion_shaft_stiffness;
   y[kGearShaftTwist] = system.torques().wheel / system.dynamics().gear_shaft_stiffness;
+  return y;
+}
+
+/// Equilibria at the nodes of a grid.
+std::vector<MarchState> equilibria(const GearPairSystem& system, const MeshGrid& grid,
+                                   LaggedFriction& friction, double speed) {
+  const int last = 2 * grid.steps();
+  std::vector<MarchState> out(last + 1);
+  for (int n = 0; n <= last; ++n) {
+    const double phase = static_cast<double>(n) / last;
+    out[n] = equilibrium(system, grid.at(n), phase, friction.at(phase), speed);
+  }
+  return out;
+}
+
+std::vector<OrbitPiece> pieces_of(const GearPairSystem& system,
+                                  const std::vector<MarchState>& nodes) {
+  const int steps = static_cast<int>(nodes.size() / 2);
+  std::vector<OrbitPiece> out(steps);
+  for (int i = 0; i < steps; ++i) {
+    out[i] = {static_cast<double>(i) / steps,
+              1.0 / steps,
+              2 * i,
+              system.regime,
+              nodes[2 * i],
+              nodes[2 * i + 1],
+              nodes[2 * i + 2]};
+  }
+  return out;
+}
+
+/// The unknown torque that the mean power asks for.
+double torque_of(const GearPairSystem& system, const QuasiStaticRequest& request, double loss) {
+  const MeshData& mesh = system.mesh();
+  const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
+  const double drag = loss / request.mean_pinion_speed;
+  return request.solve_wheel_torque ? (system.torques().pinion - drag) / ratio
+                                    : ratio * system.torques().wheel + drag;
+}
+
+void set_unknown(GearPairSystem& system, const QuasiStaticRequest& request, double torque) {
+  Torques torques = system.torques();
+  (request.solve_wheel_torque ? torques.wheel : torques.pinion) = torque;
+  system.set_torques(torques);
+}
+
+/// Extremes of a smooth periodic function by parabolas through its nodes; the last node repeats the
+/// first.
+void extremes_of(const std::vector<double>& v, double& low, double& high) {
+  const int count = static_cast<int>(v.size()) - 1;
+  low = *std::min_element(v.begin(), v.end());
+  high = *std::max_element(v.begin(), v.end());
+  const double node_low = low, node_high = high;
+  for (int n = 0; n < count; ++n) {
+    if (v[n] != node_low && v[n] != node_high) continue;
+    const double before = v[(n + count - 1) % count], after = v[n + 1];
+    const double bend = before - 2 * v[n] + after, slope = 0.5 * (after - before);
+    if (bend == 0 || std::abs(slope) > std::abs(bend)) continue;
+    const double vertex = v[n] - 0.5 * slope * slope / bend;
+    low = std::min(low, vertex);
+    high = std::max(high, vertex);
+  }
+}
+
+/// x at the nodes.
+std::vector<double> transmission_errors(const GearPairSystem& system, const MeshGrid& grid,
+                                        const std::vector<MarchState>& nodes) {
+  std::vector<double> out(nodes.size());
+  Instant at;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
+    out[n] = at.transmission_error;
+  }
+  return out;
+}
+
+/// One grid, sweep by sweep.
+class Sweeps {
+ public:
+  Sweeps(GearPairSystem& system, const FlankContactBatch& contacts,
+         const QuasiStaticRequest& request)
+      : system_(system), request_(request), friction_(system, contacts) {}
+
+  /// Goes on from the friction and the figures of `orbit` until sweeps leave less than `enough`.
+  bool settle(const MeshGrid& grid, double enough, PeriodicOrbit& orbit) {
+    constexpr int kMostSweeps = 30;
+    constexpr double kUnmeasured = 0.1;
+    double last_change = 0;
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+      if (request_.interrupted && request_.interrupted()) throw Cancelled();
+      const bool first = orbit.contraction == 0;
+      const OrbitFigures previous = orbit.figures;
+      if (!evaluate(grid, orbit)) return false;
+      if (first) {
+        orbit.contraction = kUnmeasured;
+        continue;
+      }
+      const double change = orbit.figures.distance(previous);
+      if (last_change > 0) orbit.contraction = std::clamp(change / last_change, 0.01, 0.9);
+      last_change = change;
+      orbit.unsettled = change * orbit.contraction / (1 - orbit.contraction);
+      if (orbit.unsettled <= enough || change < 1e-13) return true;
+    }
+    return false;
+  }
+
+ private:
+  bool evaluate(const MeshGrid& grid, PeriodicOrbit& orbit) {
+    const double speed = request_.mean_pinion_speed;
+    const std::vector<MarchState> nodes = equilibria(system_, grid, orbit.friction, speed);
+    orbit.pieces = pieces_of(system_, nodes);
+    if (!friction_.evaluate(grid, orbit.pieces, 0, orbit.friction, orbit.figures)) return false;
+    OrbitFigures& f = orbit.figures;
+    extremes_of(transmission_errors(system_, grid, nodes), f.dte_minimum, f.dte_maximum);
+    f.torque = torque_of(system_, request_, f.loss_energy * speed / system_.cycle_angle());
+    set_unknown(system_, request_, f.torque);
+    orbit.torques = system_.torques();
+    orbit.state = nodes.front();
+    return true;
+  }
+
+  GearPairSystem& system_;
+  const QuasiStaticRequest& request_;
+  OrbitFriction friction_;
+};
+
+/// What the equilibria at a grid's nodes ask of the driveline. `friction`: what holds them.
+ImposedMotion imposed_motion(const GearPairSystem& system, const MeshGrid& grid,
+                             const std::vector<MarchState>& nodes, LaggedFriction& friction) {
+  const std::size_t count = nodes.size() - 1;
+  ImposedMotion out;
+  out.resize(count);
+  if (system.options().energy_consistent) out.pinion_torque.resize(count);
+  Instant at;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double phase = static_cast<double>(n) / static_cast<double>(count);
+    system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
+    out.winding[n] = nodes[n][kWinding];
+    out.transmission_error[n] = at.transmission_error;
+    out.mesh_stiffness[n] = at.mesh.mesh_stiffness;
+    out.gear_torque[n] = at.mesh.gear_contact_radius * at.mesh_force +
+                         friction.at(phase).gear * std::abs(at.mesh_force) - system.torques().wheel;
+    if (!out.pinion_torque.empty()) out.pinion_torque[n] = at.parametric_torque();
+  }
+  return out;
+}
+
+/// The corrected motion at the nodes.
+std::vector<MarchState> corrected(const GearPairSystem& system, const MeshGrid& grid,
+                                  std::vector<MarchState> nodes, const InertialCorrection& change) {
+  const double lag = system.mesh().gear_teeth() / system.mesh().mean_gear_contact_radius();
+  const std::size_t count = nodes.size() - 1;
+  for (std::size_t n = 0; n <= count; ++n) {
+    const std::size_t i = n % count;
+    MarchState& y = nodes[n];
+    y[kWinding] += change.transmission_error[i];
+    y[kPinionSpeed] += change.pinion_speed[i];
+    y[kPinionShaftSpeed] += change.pinion_shaft_speed[i];
+    const MeshFunctions f =
+        system.mesh().functions(grid.at(static_cast<int>(n)), lag * y[kWinding]);
+    y[kGearSpeed] =
+        ((f.pinion_contact_radius - f.static_transmission_error_slope) * y[kPinionSpeed] -
+         change.transmission_velocity[i]) /
+        f.gear_contact_radius;
+  }
+  return nodes;
+}
+
+/// Power that the dampers and the torques that eq 2 leaves out take, the mean of it [W].
+double other_losses(const GearPairSystem& system, const MeshGrid& grid,
+                    const std::vector<MarchState>& nodes) {
+  const std::size_t count = nodes.size() - 1;
+  double sum = 0;
+  Instant at;
+  for (std::size_t n = 0; n < count; ++n) {
+    const MarchState& y = nodes[n];
+    system.kinematics(grid.at(static_cast<int>(n)), y.data(), at);
+    sum += at.damper_force * at.transmission_velocity +
+           system.dynamics().pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]);
+    if (!system.options().energy_consistent) sum += at.parametric_torque() * y[kPinionSpeed];
+  }
+  return sum / static_cast<double>(count);
+}
+
+/// Smallest force at the nodes over the mean one.
+double least_force(const GearPairSystem& system, const MeshGrid& grid,
+                   const std::vector<MarchState>& nodes) {
+  double low = 1e300, sum = 0;
+  Instant at;
+  for (std::size_t n = 0; n + 1 < nodes.size(); ++n) {
+    system.kinematics(grid.at(static_cast<int>(n)), nodes[n].data(), at);
+    const double force = system.regime.side * at.mesh_force;
+    low = std::min(low, force);
+    sum += force;
+  }
+  return low * static_cast<double>(nodes.size() - 1) / sum;
 }
 
 }  // namespace
 
-QuasiStatic solve_quasi_static(GearPairSystem& system, double speed, bool solve_wheel_torque,
-                               ResponseRecord& record, HistorySampler& history,
-                               const std::function<bool(double)>& progress) {
-  const MeshData& mesh = system.mesh();
-  const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
-  const int intervals = mesh.intervals(), points = 2 * intervals;
-  const double gauss[2] = {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)};
-  system.regime = {system.torques().pinion >= 0 ? 1 : -1, true};
+std::optional<QuasiStatic> solve_quasi_static(GearPairSystem& system,
+                                              const FlankContactBatch& contacts, MeshGrids& grids,
+                                              const QuasiStaticRequest& request) {
+  system.regime = {side_of(system), true};
+  Sweeps sweeps(system, contacts, request);
+  QuasiStatic best;
+  const StepSequence sequence(system.mesh().intervals(), request.tolerance < kLoose ? 24 : 12);
+  for (int steps = sequence.first();; steps = sequence.after(steps)) {
+    const bool first = best.steps_per_mesh_cycle == 0;
+    const double enough = first ? std::max(5 * request.tolerance, 1e-4) : 0.2 * request.tolerance;
+    const OrbitFigures coarser = best.orbit.figures;
+    if (!sweeps.settle(grids.with_steps(steps), enough, best.orbit)) return std::nullopt;
+    if (!first) {
+      const double finer = static_cast<double>(steps) / best.steps_per_mesh_cycle;
+      const double difference = best.orbit.figures.distance(coarser);
+      const double step_error = std::max(kSafety * difference / (square(finer) - 1),
+                                         best.discretisation_error / (2 * square(finer)));
+      best.discretisation_error = step_error + best.orbit.unsettled;
+    }
+    best.steps_per_mesh_cycle = steps;
+    const bool enough_steps = !first && best.discretisation_error <= request.tolerance;
+    if (enough_steps || sequence.after(steps) > kFinest) break;
+  }
+  best.orbit.regime = system.regime;
+  return best;
+}
 
-  std::vector<double> friction_torque(points, 0.0);
-  std::array<double, kRecordComponents> state{}, rate{};
+void sample_quasi_static(GearPairSystem& system, QuasiStatic& solution, double mean_pinion_speed,
+                         HistorySampler& history, const std::function<bool()>& interrupted) {
+  const int intervals = system.mesh().intervals();
   Instant at;
-  const auto solve_at = [&](double phase, int interval, double& torque) {
-    const MeshFunctions f =
-        mesh.functions(2 * std::numbers::pi * phase, 2 * std::numbers::pi * phase);
-    const double force = (system.torques().pinion + torque) / f.pinion_contact_radius;
-    equilibrium_state(system, phase, force, speed, kRecordComponents, state.data());
-    system.set_interval(interval);
-    system.evaluate(phase, state.data(), at);
-    torque = at.pinion_friction_torque;
-  };
-
-  const auto phase_of = [&](int point) {
-    const int interval = point / 2;
-    return (interval + gauss[point % 2]) / intervals;
-  };
-
-  // Load and torque settle together: each sweep divides the error by about thirty.
-  for (int sweep = 0; sweep < 40; ++sweep) {
-    if (progress && !progress(sweep / 40.0)) throw Cancelled();
-    double loss = 0, change = 0;
-    for (int i = 0; i < points; ++i) {
-      const double before = friction_torque[i];
-      solve_at(phase_of(i), i / 2, friction_torque[i]);
-      change = std::max(change, std::abs(friction_torque[i] - before));
-      loss += at.loss_power / points;
-    }
-    throw_if_refused(system);
-    Torques torques = system.torques();
-    const double unknown = solve_wheel_torque ? torques.wheel : torques.pinion;
-    if (solve_wheel_torque) {
-      torques.wheel = (torques.pinion - loss / speed) / ratio;
-    } else {
-      torques.pinion = ratio * torques.wheel + loss / speed;
-    }
-    system.set_torques(torques);
-    change += std::abs((solve_wheel_torque ? torques.wheel : torques.pinion) - unknown);
-    if (change <= 1e-14 * (std::abs(torques.pinion) + std::abs(torques.wheel))) break;
-  }
-
-  record.integrals = {};
-  for (int i = 0; i < points; ++i) {
-    solve_at(phase_of(i), i / 2, friction_torque[i]);
-    system.derivative(state.data(), at, true, rate.data());
-    for (int c = 0; c < kRecordComponents; ++c) record.integrals[c] += rate[c] / points;
-    record.add_instant(at);
-  }
   while (history.wanted_in_first_cycles(1)) {
-    if (progress && !progress(1)) throw Cancelled();
+    if (interrupted && interrupted()) throw Cancelled();
     const double phase = history.next_phase();
-    const int interval = std::min(static_cast<int>(phase * intervals), intervals - 1);
-    double torque = friction_torque[2 * interval];
-    for (int i = 0; i < 8; ++i) solve_at(phase, interval, torque);
-    state[kTime] = phase * system.cycle_angle() / speed;
-    history.add(phase, state.data(), at, system.torques().pinion);
+    const MeshPhase mesh_phase = system.at_phase(phase);
+    FrictionPerLoad friction = solution.orbit.friction.at(phase);
+    system.set_interval(std::min(static_cast<int>(phase * intervals), intervals - 1));
+    MarchState y{};
+    for (int i = 0; i < 8; ++i) {
+      y = equilibrium(system, mesh_phase, phase, friction, mean_pinion_speed);
+      system.evaluate(phase, y.data(), at);
+      const double load = std::abs(at.mesh_force);
+      if (!(load > 0)) break;
+      friction = {at.pinion_friction_torque / load, at.gear_friction_torque / load};
+    }
+    history.add(phase, y.data(), at, system.torques().pinion);
   }
-  history.repeat_first_cycles(1, system.cycle_angle() / speed);
-  throw_if_refused(system);
-  double torque = friction_torque[0];
-  for (int i = 0; i < 8; ++i) solve_at(0, 0, torque);
-  return {system.torques(), at.pinion_friction_torque, at.gear_friction_torque};
+  history.repeat_first_cycles(1, system.cycle_angle() / mean_pinion_speed);
+}
+
+double quasi_static_model_error(GearPairSystem& system, const FlankContactBatch& contacts,
+                                MeshGrids& grids, const QuasiStaticRequest& request,
+                                const QuasiStatic& solution) {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  const double speed = request.mean_pinion_speed;
+  const MeshGrid& grid = grids.with_steps(solution.steps_per_mesh_cycle);
+  LaggedFriction friction = solution.orbit.friction;
+  const std::vector<MarchState> still = equilibria(system, grid, friction, speed);
+  const ImposedMotion motion = imposed_motion(system, grid, still, friction);
+  const InertialCorrection change = inertial_correction(system, speed, motion);
+  if (!(change.growth < kMostGrowth)) return kUnknown;
+  if (parametric_resonance_possible(system, speed, motion.mesh_stiffness)) return kUnknown;
+  const std::vector<MarchState> moving = corrected(system, grid, still, change);
+  const double unresolved_force = change.unresolved * system.mesh().mean_mesh_stiffness() *
+                                  system.mesh().mean_pinion_contact_radius() /
+                                  std::abs(system.torques().pinion);
+  if (!(least_force(system, grid, moving) - unresolved_force > kLeastForce)) return kUnknown;
+
+  OrbitFriction together(system, contacts);
+  OrbitFigures figures;
+  if (!together.evaluate(grid, pieces_of(system, moving), 0, friction, figures)) {
+    system.take_refusal();
+    return kUnknown;
+  }
+  const double loss = figures.loss_energy * speed / system.cycle_angle();
+  figures.torque = torque_of(system, request, loss + other_losses(system, grid, moving));
+  const double first_order = figures.distance(solution.orbit.figures);
+  const double size = std::max(std::abs(figures.dte_minimum), std::abs(figures.dte_maximum));
+  return kMargin * first_order / (1 - change.growth) + change.unresolved / size;
+}
+
+bool quasi_static_may_do(GearPairSystem& system, MeshGrids& grids,
+                         const QuasiStaticRequest& request) {
+  constexpr int kFewSteps = 4;  // three harmonics
+  constexpr double kDoubt = 4;  // extremes move by less than the largest correction
+  if (system.torques().pinion == 0) return false;
+  system.regime = {side_of(system), true};
+  const double speed = request.mean_pinion_speed;
+  const auto moved_without_friction = [&](const MeshGrid& grid, ImposedMotion& motion,
+                                          std::vector<MarchState>& still) {
+    LaggedFriction none;
+    still = equilibria(system, grid, none, speed);
+    motion = imposed_motion(system, grid, still, none);
+    motion.tail = false;
+    return inertial_correction(system, speed, motion);
+  };
+  ImposedMotion motion;
+  std::vector<MarchState> still;
+  const InertialCorrection few = moved_without_friction(grids.with_steps(kFewSteps), motion, still);
+  double size = 0;
+  for (const double x : motion.transmission_error) size = std::max(size, std::abs(x));
+  if (!(few.largest < kDoubt * request.tolerance * size) ||
+      parametric_resonance_possible(system, speed, motion.mesh_stiffness)) {
+    return false;
+  }
+  // Friction moves the extremes by some percent only.
+  const MeshGrid& grid = grids.with_steps(StepSequence(system.mesh().intervals(), 12).first());
+  const InertialCorrection more = moved_without_friction(grid, motion, still);
+  if (!(more.growth < kMostGrowth)) return false;
+  double low = 0, high = 0, moved_low = 0, moved_high = 0;
+  extremes_of(transmission_errors(system, grid, still), low, high);
+  extremes_of(transmission_errors(system, grid, corrected(system, grid, still, more)), moved_low,
+              moved_high);
+  const double moved = std::max(std::abs(moved_low - low), std::abs(moved_high - high));
+  return kMargin * moved / (1 - more.growth) < kDoubt * request.tolerance * size / 2;
 }
 
 }  // namespace tribodyn

@@ -59,9 +59,11 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
   }
   if (r.model == PointModel::kQuasiStatic) {
     warn("QUASI_STATIC",
-         "no dynamics: within a few percent far from resonance; near the mesh resonance, half of "
-         "it, "
-         "and in vibro-impact the inefficiency can be 10 to 45 % low");
+         r.estimated_relative_error
+             ? "no dynamics: with the grid's error the figures are estimated to be within " +
+                   number_text(100 * *r.estimated_relative_error, 2) + " % of the full model's"
+             : "no dynamics, and their effect cannot be told: flanks may part, or the mesh "
+               "resonates; the inefficiency can be 10 to 45 % low");
   }
   if (scene.options.isothermal) {
     warn("ISOTHERMAL", "contact temperature held at the inlet's: friction at speed is too high");

@@ -18,6 +18,8 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
   std::optional<PreparedScene> prepared;
   std::vector<SweepPoint> out;
   PointOptions point = options.point;
+  // A branch is followed from point to point.
+  if (point.model == PointModel::kAutomatic) point.model = PointModel::kFull;
   const double count = static_cast<double>(vehicle_speeds.size());
   for (const double speed : vehicle_speeds) {
     const double done = static_cast<double>(out.size());

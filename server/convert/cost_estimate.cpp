@@ -12,7 +12,7 @@ struct Work {
   double seconds_each = 0;
 };
 
-constexpr Work kQuasiStaticPoint{4000, 4e-6};
+constexpr Work kQuasiStaticPoint{270, 0.3e-6};
 constexpr Work kShotPoint{430, 0.4e-6};  // at the tolerance
 constexpr double kShotTolerance = 1e-3;
 constexpr double kShotOrder = 0.35;  // contact solutions grow so with a sharper one

@@ -44,7 +44,9 @@ void fill_solver(v1::SolverOptions* solver) {
 
 template <class StudyMessage>
 void fill_model_and_start(StudyMessage* study) {
-  if (study->model() == v1::POINT_MODEL_UNSPECIFIED) study->set_model(v1::FULL);
+  if (study->model() == v1::POINT_MODEL_UNSPECIFIED) {
+    study->set_model(v1::AUTOMATIC_MODEL);
+  }
   if (study->start() == v1::POINT_START_UNSPECIFIED) {
     study->set_start(v1::QUASI_STATIC_EQUILIBRIUM);
   }
@@ -120,10 +122,21 @@ OperatingCondition condition(const v1::OperatingPointStudy& study) {
   return out;
 }
 
+PointModel point_model(v1::PointModel model) {
+  switch (model) {
+    case v1::FULL:
+      return PointModel::kFull;
+    case v1::QUASI_STATIC:
+      return PointModel::kQuasiStatic;
+    default:
+      return PointModel::kAutomatic;
+  }
+}
+
 PointOptions point_options(const v1::SolverOptions& solver, v1::PointModel model,
                            v1::PointStart start) {
   PointOptions out;
-  out.model = model == v1::QUASI_STATIC ? PointModel::kQuasiStatic : PointModel::kFull;
+  out.model = point_model(model);
   out.start = start == v1::LARGE_VIBRATION ? PointStart::kLargeVibration : PointStart::kQuasiStatic;
   out.method =
       solver.method() == v1::MARCH ? SteadyStateMethod::kMarch : SteadyStateMethod::kAutomatic;

@@ -14,6 +14,7 @@
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "core/study/speed_sweep.h"
+#include "figure_error.h"
 #include "run_length.h"
 #include "tests/support/reference_scene.h"
 
@@ -35,18 +36,6 @@ PointOptions marched(PointStart start = PointStart::kQuasiStatic) {
   return options;
 }
 
-/// Of what the estimate speaks of: both inefficiencies, torque, extremes of the transmission error.
-double true_error(const PointResult& r, const PointResult& exact) {
-  const auto relative = [](double a, double b) { return std::abs(a / b - 1); };
-  const Extremes &x = r.dynamic_transmission_error, &y = exact.dynamic_transmission_error;
-  const double size = std::max(std::abs(y.minimum), std::abs(y.maximum));
-  return std::max(
-      {relative(r.inefficiency_rms.value(), exact.inefficiency_rms.value()),
-       relative(r.inefficiency_energy_mean.value(), exact.inefficiency_energy_mean.value()),
-       relative(r.pinion_torque, exact.pinion_torque), std::abs(x.minimum - y.minimum) / size,
-       std::abs(x.maximum - y.maximum) / size});
-}
-
 struct Place {
   double kilometers_per_hour;
   PointStart start;
@@ -61,6 +50,7 @@ TEST_P(Shooting, ErrsLessThanItSaysAndAskedAtEveryTolerance) {
       solve_operating_point(scene, cruise(place.kilometers_per_hour), marched(place.start));
   for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     PointOptions options;
+    options.model = PointModel::kFull;
     options.start = place.start;
     options.tolerance = tolerance;
     const PointResult r = solve_operating_point(scene, cruise(place.kilometers_per_hour), options);
@@ -163,6 +153,7 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   for (int i = 0; i < count; ++i) {
     const RandomPlace place = random_place(random);
     PointOptions options;
+    options.model = PointModel::kFull;
     if (i % 2 == 1) {
       options.tolerance = std::pow(10, -std::uniform_real_distribution<double>(2, 6)(random));
     }
@@ -258,6 +249,7 @@ TEST(ShootingWork, FrictionEvaluationsOfAPointAreFew) {
         Scenario{140, PointStart::kQuasiStatic, 420}}) {
     SCOPED_TRACE(at.kilometers_per_hour);
     PointOptions options;
+    options.model = PointModel::kFull;
     options.start = at.start;
     const PointResult r =
         solve_operating_point(reference_scene(), cruise(at.kilometers_per_hour), options);

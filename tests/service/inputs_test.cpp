@@ -38,13 +38,24 @@ TEST(Inputs, DefaultsAreThoseOfTheContract) {
   const auto point = std::get<PointStudy>(study(inputs));
   EXPECT_EQ(point.condition.kind, OperatingCondition::Kind::kCruise);
   EXPECT_EQ(point.condition.vehicle_speed, 65 / 3.6);
-  EXPECT_EQ(point.options.model, PointModel::kFull);
+  EXPECT_EQ(point.options.model, PointModel::kAutomatic);
   EXPECT_EQ(point.options.start, PointStart::kQuasiStatic);
   EXPECT_EQ(point.options.relative_tolerance, 1e-7);
   EXPECT_EQ(point.options.settling_tolerance, 1e-6);
   EXPECT_EQ(point.options.maximum_mesh_cycles, 4000);
   EXPECT_EQ(point.options.recorded_mesh_cycles, 50);
   EXPECT_TRUE(point.options.history.columns.empty());
+}
+
+TEST(Inputs, EveryModelArrives) {
+  v1::Simulation simulation = point_simulation();
+  const auto arrived = [&](v1::PointModel model) {
+    simulation.mutable_operating_point()->set_model(model);
+    return std::get<PointStudy>(study(inputs_of(simulation))).options.model;
+  };
+  EXPECT_EQ(arrived(v1::AUTOMATIC_MODEL), PointModel::kAutomatic);
+  EXPECT_EQ(arrived(v1::FULL), PointModel::kFull);
+  EXPECT_EQ(arrived(v1::QUASI_STATIC), PointModel::kQuasiStatic);
 }
 
 TEST(Inputs, EveryOperatingConditionArrives) {
@@ -123,10 +134,12 @@ TEST(Hash, StatedDefaultsEqualUnstatedOnes) {
   stated.set_sump_temperature_celsius(40);
   stated.set_inlet_temperature_rise_kelvin(20);
   stated.mutable_solver_options()->set_relative_tolerance(1e-7);
-  stated.mutable_operating_point()->set_model(v1::FULL);
+  stated.mutable_operating_point()->set_model(v1::AUTOMATIC_MODEL);
   stated.mutable_operating_point()->mutable_cruise()->set_ascent_angle_degrees(-0.0);
   EXPECT_EQ(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));
   stated.mutable_operating_point()->set_model(v1::QUASI_STATIC);
+  EXPECT_NE(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));
+  stated.mutable_operating_point()->set_model(v1::FULL);
   EXPECT_NE(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));
 }
 
@@ -144,7 +157,7 @@ TEST(Hash, CanonicalTextNamesEveryValueWithAllItsDigits) {
   EXPECT_TRUE(text.starts_with("model_version=" + std::string(kModelVersion) + "\n"));
   EXPECT_NE(text.find("\nsimulation.sump_temperature_celsius=0x1.4p+5\n"), std::string::npos);
   EXPECT_NE(text.find("\ngear_set.flank_slots[2].gear_velocity_y_metres[96]="), std::string::npos);
-  EXPECT_NE(text.find("\nsimulation.operating_point.model=FULL\n"), std::string::npos);
+  EXPECT_NE(text.find("\nsimulation.operating_point.model=AUTOMATIC_MODEL\n"), std::string::npos);
   EXPECT_EQ(text.find("provenance"), std::string::npos);
   EXPECT_EQ(text.find("lubricants/"), std::string::npos);
 }

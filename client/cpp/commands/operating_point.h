@@ -26,10 +26,16 @@ v1::OperatingPointStudy operating_point_study(const OperatingPointFlags& point);
 /// --model and --start, shared with the curve.
 template <class Study>
 void add_model_and_start_flags(FlagList& flags, Study& study) {
-  flags.choice("--model", {"full", "quasi-static"},
-               "full: the four degrees of freedom in time; quasi-static: equilibrium at constant "
-               "speed, phase by phase. Default: full.",
-               [&study](int index) { study.set_model(index == 0 ? v1::FULL : v1::QUASI_STATIC); });
+  flags.choice(
+      "--model", {"automatic", "full", "quasi-static"},
+      "automatic: the cheapest whose estimated error is within --tolerance, the report "
+      "says which; full: the four degrees of freedom in time; quasi-static: equilibrium "
+      "at constant speed, phase by phase. Curves, histories, --start and "
+      "--probe-coexisting-response take the full one. Default: automatic.",
+      [&study](int index) {
+        constexpr v1::PointModel kModels[] = {v1::AUTOMATIC_MODEL, v1::FULL, v1::QUASI_STATIC};
+        study.set_model(kModels[index]);
+      });
   flags.choice(
       "--start", {"quasi-static", "large-vibration"},
       "Where the march starts; it decides the branch where two responses coexist. "

@@ -172,10 +172,25 @@ void add_energy_balance(const v1::PowerBalance& power, const Precision& precisio
                                    " parametric (gap " + significant(gap, 2) + ")");
 }
 
-void add_solver(const v1::PointResult& result, const Precision& precision, Sheet& sheet) {
+/// Why the model is the one that was used.
+std::string model_reason(const v1::Simulation& simulation, const v1::PointResult& result) {
+  const v1::OperatingPointStudy& study = simulation.operating_point();
+  if (simulation.has_inefficiency_curve()) return "";
+  if (study.model() == v1::FULL || study.model() == v1::QUASI_STATIC) return "as asked";
+  if (result.model() == v1::QUASI_STATIC) return "its estimated error is within the tolerance";
+  if (study.probe_coexisting_response() || study.has_history() ||
+      study.start() == v1::LARGE_VIBRATION || simulation.solver_options().method() == v1::MARCH) {
+    return "what was asked for needs it";
+  }
+  return "a cheaper one may err by more than the tolerance";
+}
+
+void add_solver(const v1::Simulation& simulation, const v1::PointResult& result,
+                const Precision& precision, Sheet& sheet) {
   sheet.heading("Solver");
   sheet.line("model used",
-             result.model() == v1::QUASI_STATIC ? "quasi-static" : "full (4 degrees of freedom)");
+             result.model() == v1::QUASI_STATIC ? "quasi-static" : "full (4 degrees of freedom)",
+             "", model_reason(simulation, result));
   if (result.steady_state_method() != v1::STEADY_STATE_METHOD_UNSPECIFIED) {
     sheet.line("steady state by", result.steady_state_method() == v1::SHOOTING
                                       ? "shooting under lagged friction"
@@ -219,7 +234,7 @@ std::string point_report(const v1::Simulation& simulation, bool shows_assumption
   add_operation(result, simulation.operating_point().has_prescribed_torque(), precision, losses);
   Sheet rest;
   add_contact(result, simulation.operating_point().probe_coexisting_response(), precision, rest);
-  add_solver(result, precision, rest);
+  add_solver(simulation, result, precision, rest);
   add_provenance(simulation.result(), shows_assumptions, rest);
   if (result.warnings_size() > 0) rest.heading("Outside the validated range");
   for (const auto& warning : result.warnings()) {

@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "core/study/operating_point.h"
+#include "tests/benchmark/measurements.h"
+#include "tests/support/reference_scene.h"
+
+// Where a cheaper model pays: time and true error of the quasi-static model, of the full one and of
+// the automatic choice, at slow and fast points and three tolerances, on the reference gear set.
+// The truth is the full model at 1e-6. Gear set and fluid are prepared, responses without friction
+// are not. Times are medians of interleaved turns.
+namespace tribodyn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kSpeeds[] = {1, 2, 5, 10, 20, 140};  // [km/h]
+constexpr double kTolerances[] = {1e-3, 1e-2, 5e-2};
+constexpr PointModel kModels[] = {PointModel::kQuasiStatic, PointModel::kFull,
+                                  PointModel::kAutomatic};
+
+double true_error(const PointFigures& r, const PointResult& truth) {
+  const auto relative = [](double a, double b) { return std::abs(a / b - 1); };
+  const Extremes& y = truth.dynamic_transmission_error;
+  const double size = std::max(std::abs(y.minimum), std::abs(y.maximum));
+  return std::max(
+      {relative(r.inefficiency_rms.value(), truth.inefficiency_rms.value()),
+       relative(r.inefficiency_energy_mean.value(), truth.inefficiency_energy_mean.value()),
+       relative(r.pinion_torque, truth.pinion_torque), std::abs(r.dte_minimum - y.minimum) / size,
+       std::abs(r.dte_maximum - y.maximum) / size});
+}
+
+struct Run {
+  PointFigures figures;
+  double microseconds;
+};
+
+Run run_once(PreparedScene& scene, const OperatingCondition& condition,
+             const PointOptions& options) {
+  scene.gear_set().frictionless_orbits() = {};
+  const auto start = Clock::now();
+  PointFigures figures = solve_point_figures(scene, condition, options);
+  return {figures, std::chrono::duration<double, std::micro>(Clock::now() - start).count()};
+}
+
+std::string estimate_text(const PointFigures& r) {
+  char text[16] = "  none";
+  if (r.estimated_relative_error) {
+    std::snprintf(text, sizeof text, "%.0e", *r.estimated_relative_error);
+  }
+  return text;
+}
+
+int run(const std::string& path, int turns) {
+  const Scene scene = reference_scene();
+  PreparedScene prepared(scene);
+  std::vector<Measurement> figures;
+  std::printf("%s; medians of %d turns; times in us\n\n", machine_name().c_str(), turns);
+  std::printf(
+      "               quasi-static                 full                 automatic\n"
+      " km/h  asked   time  says    errs      time  says    errs      time  errs    model\n");
+  for (const double speed : kSpeeds) {
+    OperatingCondition condition;
+    condition.vehicle_speed = speed / 3.6;
+    PointOptions sharp;
+    sharp.model = PointModel::kFull;
+    sharp.tolerance = 1e-6;
+    const PointResult truth = solve_prepared_point(prepared, condition, sharp);
+    for (const double tolerance : kTolerances) {
+      std::vector<double> times[3];
+      PointFigures r[3];
+      for (int turn = 0; turn < turns; ++turn) {
+        for (int m = 0; m < 3; ++m) {
+          PointOptions options;
+          options.model = kModels[m];
+          options.tolerance = tolerance;
+          const Run once = run_once(prepared, condition, options);
+          r[m] = once.figures;
+          times[m].push_back(once.microseconds);
+        }
+      }
+      double error[3], time[3];
+      for (int m = 0; m < 3; ++m) {
+        error[m] = true_error(r[m], truth);
+        time[m] = median(times[m]);
+      }
+      std::printf("%5g  %.0e %6.0f %6s %7.0e  %8.0f %6s %7.0e  %8.0f %7.0e  %s\n", speed, tolerance,
+                  time[0], estimate_text(r[0]).c_str(), error[0], time[1],
+                  estimate_text(r[1]).c_str(), error[1], time[2], error[2],
+                  r[2].model == PointModel::kQuasiStatic ? "quasi-static" : "full");
+      const std::string at = std::to_string(static_cast<int>(speed)) + " km/h at " +
+                             std::to_string(tolerance).substr(0, 5);
+      figures.push_back(
+          {"automatic, true error over tolerance, " + at, error[2] / tolerance, "-", 1.0});
+      figures.push_back({"automatic over full model, time, " + at, time[2] / time[1], "-", {}});
+      if (speed == 1 && tolerance == 1e-3) {
+        figures.push_back({"quasi-static point with its estimates, " + at, time[0], "us", 99.0});
+      }
+    }
+  }
+  record(path, figures);
+  return 0;
+}
+
+}  // namespace
+}  // namespace tribodyn
+
+int main(int count, char** arguments) {
+  if (count < 2) {
+    std::fprintf(stderr, "usage: reduced_models_benchmark RESULTS_JSON [TURNS]\n");
+    return 2;
+  }
+  try {
+    return tribodyn::run(arguments[1], count > 2 ? 20 * std::atoi(arguments[2]) : 100);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
