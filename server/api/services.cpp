@@ -292,9 +292,9 @@ class SimulationsService final : public v1::Simulations::CallbackService, UnaryS
         live_, *context, time_left(*context, limits_.stream), limits_.unread,
         [&] { return watch_simulation(application_, *request); });
   }
-  grpc::ServerWriteReactor<v1::HistoryChunk>* ReadHistory(
+  grpc::ServerWriteReactor<v1::ReadHistoryResponse>* ReadHistory(
       Context* context, const v1::ReadHistoryRequest* request) override {
-    return StreamReactor<v1::HistoryChunk>::start(
+    return StreamReactor<v1::ReadHistoryResponse>::start(
         live_, *context, time_left(*context, limits_.stream), limits_.unread,
         [&] { return read_history(application_, *request); });
   }

@@ -7,6 +7,7 @@
 
 #include "server/app/guard.h"
 #include "server/app/paging.h"
+#include "server/app/result_summary.h"
 #include "server/app/simulation_lookup.h"
 #include "server/convert/cost_estimate.h"
 #include "server/convert/input_hash.h"
@@ -140,6 +141,17 @@ std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
   return to_message(application, *stored);
 }
 
+/// As much of its result as the view asks for, if it has one.
+void set_result(Application& application, v1::SimulationView view, v1::SimulationView otherwise,
+                std::int64_t id, v1::Simulation& out) {
+  const v1::SimulationView meant = view == v1::SIMULATION_VIEW_UNSPECIFIED ? otherwise : view;
+  if (meant == v1::SIMULATION_VIEW_BASIC) return;
+  const auto result = application.store.result(id);
+  if (!result) return;
+  out.mutable_result()->ParseFromString(*result);
+  if (meant == v1::SIMULATION_VIEW_SUMMARY) abridge(*out.mutable_result());
+}
+
 google::rpc::Status no_place(Application& application) {
   if (application.jobs.is_stopping()) return shutting_down();
   return exhausted("too many simulations wait already; try again later", kRetrySeconds);
@@ -178,9 +190,7 @@ Outcome<v1::Simulation> get_simulation(Application& application,
     const auto found = find_simulation(application, request.name());
     if (!found.ok()) return found.error();
     v1::Simulation out = to_message(application, found.message());
-    if (const auto result = application.store.result(found.message().id)) {
-      out.mutable_result()->ParseFromString(*result);
-    }
+    set_result(application, request.view(), v1::SIMULATION_VIEW_SUMMARY, found.message().id, out);
     return out;
   });
 }

@@ -5,7 +5,6 @@
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #include "server/store/deadline.h"
@@ -14,8 +13,6 @@
 #include "server/store/schema.h"
 #include "server/store/simulation_rows.h"
 #include "server/store/translate_error.h"
-
-static_assert(std::endian::native == std::endian::little, "history columns are little-endian");
 
 namespace tribodyn::server {
 namespace {
@@ -41,33 +38,6 @@ SQLite::Database open_writer(const std::filesystem::path& path) try {
 } catch (const SQLite::Exception& error) {
   throw translate_error(error, path);
 }
-
-/// Incremental reading of one blob.
-class BlobReader {
- public:
-  BlobReader(SQLite::Database& database, std::int64_t row_id) {
-    if (sqlite3_blob_open(database.getHandle(), "main", "history", "data", row_id, 0, &blob_) !=
-        SQLITE_OK) {
-      const SQLite::Exception error(database.getHandle());
-      sqlite3_blob_close(blob_);
-      throw error;
-    }
-  }
-  ~BlobReader() { sqlite3_blob_close(blob_); }
-  BlobReader(const BlobReader&) = delete;
-  BlobReader& operator=(const BlobReader&) = delete;
-
-  std::vector<double> read(std::int64_t start, std::int64_t count) {
-    std::vector<double> values(static_cast<std::size_t>(count));
-    const int status = sqlite3_blob_read(blob_, values.data(), static_cast<int>(count * 8),
-                                         static_cast<int>(start * 8));
-    if (status != SQLITE_OK) throw SQLite::Exception("cannot read a history column", status);
-    return values;
-  }
-
- private:
-  sqlite3_blob* blob_ = nullptr;
-};
 
 }  // namespace
 
@@ -322,8 +292,11 @@ std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
 
 std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds now,
                                                  const NewResult& result) {
+  // Before anybody has to wait for it.
+  std::vector<CompressedColumn> history;
+  for (const StoredColumn& each : result.history) history.push_back(compress(each));
   return change_simulation(
-      [&](SQLite::Database& db) { return finish_simulation(db, id, now, result); });
+      [&](SQLite::Database& db) { return finish_simulation(db, id, now, result, history); });
 }
 
 std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
@@ -348,33 +321,31 @@ std::optional<std::string> Store::result(std::int64_t id) {
   });
 }
 
-Store::HistoryShape Store::history_shape(std::int64_t id) {
+HistoryShape Store::history_shape(std::int64_t id) {
   return read([&](SQLite::Database& db) {
-    SQLite::Statement query(
-        db,
-        "SELECT name, length(data) / 8 FROM history "
-        "WHERE result = (SELECT result FROM simulations WHERE id = ?) ORDER BY position");
+    SQLite::Statement query(db, "SELECT result FROM simulations WHERE id = ?");
     query.bind(1, id);
-    HistoryShape shape;
-    while (query.executeStep()) {
-      shape.names.push_back(query.getColumn(0).getString());
-      shape.rows = query.getColumn(1).getInt64();
-    }
-    return shape;
+    const bool has_result = query.executeStep() && !query.getColumn(0).isNull();
+    return has_result ? query_history_shape(db, query.getColumn(0).getInt64()) : HistoryShape();
   });
+}
+
+bool Store::read_history(std::int64_t column, int level, std::int64_t start,
+                         std::span<double> values) {
+  return read(
+      [&](SQLite::Database& db) { return query_history(db, column, level, start, values); });
 }
 
 std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,
                                         std::int64_t start, std::int64_t count) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(db,
-                            "SELECT id FROM history WHERE "
-                            "result = (SELECT result FROM simulations WHERE id = ?) AND name = ?");
-    query.bind(1, id);
-    query.bind(2, column);
-    if (!query.executeStep()) throw SQLite::Exception("no such history column");
-    return BlobReader(db, query.getColumn(0).getInt64()).read(start, count);
-  });
+  const HistoryShape shape = history_shape(id);
+  const auto found = std::find(shape.names.begin(), shape.names.end(), column);
+  std::vector<double> values(static_cast<std::size_t>(count));
+  if (found == shape.names.end() ||
+      !read_history(shape.columns[found - shape.names.begin()], 0, start, values)) {
+    throw StoreError(StoreError::Kind::kFailed, "no such history column");
+  }
+  return values;
 }
 
 }  // namespace tribodyn::server

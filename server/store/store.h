@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "server/store/connections.h"
 #include "server/store/database_lock.h"
+#include "server/store/history_rows.h"
 #include "server/store/store_error.h"
 #include "server/store/stored_resource.h"
 #include "server/store/stored_simulation.h"
@@ -81,13 +83,11 @@ class Store {
 
   /// Serialised SimulationResult with the assumptions of this simulation.
   std::optional<std::string> result(std::int64_t id);
-  /// Names of the stored columns, and how many rows each has.
-  struct HistoryShape {
-    std::vector<std::string> names;
-    std::int64_t rows = 0;
-  };
   HistoryShape history_shape(std::int64_t id);
-  /// Rows [start, start + count) of one column, read in place.
+  /// Doubles [start, start + values.size()) of a level (pyramid.h) of a column; false when the
+  /// column is gone.
+  bool read_history(std::int64_t column, int level, std::int64_t start, std::span<double> values);
+  /// Rows [start, start + count) of one column.
   std::vector<double> history_rows(std::int64_t id, const std::string& column, std::int64_t start,
                                    std::int64_t count);
 

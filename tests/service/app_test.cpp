@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
+
 #include "google/rpc/error_details.pb.h"
 #include "server/app/contacts.h"
 #include "server/app/errors.h"
@@ -182,13 +185,34 @@ TEST_F(AppTest, EverythingWrongWithAContactAtOnceStillFits) {
   }
 }
 
-std::vector<v1::HistoryChunk> read_all(const StreamOutcome<v1::HistoryChunk>& outcome) {
-  std::vector<v1::HistoryChunk> out;
-  v1::HistoryChunk chunk;
-  while (outcome.message()->next(chunk) == MessageSource<v1::HistoryChunk>::Step::kMessage) {
-    out.push_back(chunk);
+/// What came of a history: its schema, and the columns put together.
+struct ReadHistory {
+  v1::HistorySchema schema;
+  std::vector<std::vector<double>> columns;
+  std::vector<v1::HistoryChunk> chunks;
+};
+
+ReadHistory read_all(const StreamOutcome<v1::ReadHistoryResponse>& outcome) {
+  ReadHistory out;
+  v1::ReadHistoryResponse part;
+  while (outcome.message()->next(part) == MessageSource<v1::ReadHistoryResponse>::Step::kMessage) {
+    if (part.has_schema()) {
+      EXPECT_TRUE(out.chunks.empty());
+      out.schema = part.schema();
+      out.columns.resize(out.schema.columns_size());
+      continue;
+    }
+    const v1::HistoryChunk& chunk = part.chunk();
+    std::vector<double>& column = out.columns.at(chunk.column());
+    EXPECT_EQ(chunk.first_row(), column.size());
+    const std::size_t count = chunk.values().size() / sizeof(double);
+    column.resize(column.size() + count);
+    std::memcpy(column.data() + column.size() - count, chunk.values().data(),
+                chunk.values().size());
+    out.chunks.push_back(chunk);
   }
   EXPECT_EQ(outcome.message()->error().code(), 0);
+  for (const auto& column : out.columns) EXPECT_EQ(column.size(), out.schema.row_count());
   return out;
 }
 
@@ -202,25 +226,79 @@ v1::Simulation with_history(int cycles, int samples) {
   return simulation;
 }
 
-TEST_F(AppTest, HistoriesComeInChunksColumnByColumn) {
+TEST_F(AppTest, HistoriesComeAsASchemaAndChunks) {
   const std::string name = finished(with_history(10, 5000));
   EXPECT_EQ(bench_.get(name).result().history_rows(), 50'000);
   EXPECT_EQ(bench_.get(name).result().history_columns_size(), 4);
-  const auto chunks = read_all(read_history(app_, named<v1::ReadHistoryRequest>(name)));
-  EXPECT_GT(chunks.size(), 5U);
-  std::int64_t row = 0;
-  for (const auto& chunk : chunks) {
-    EXPECT_EQ(chunk.start_row(), row);
-    EXPECT_EQ(chunk.total_rows(), 50'000);
-    EXPECT_LE(chunk.ByteSizeLong(), 300'000U);
-    ASSERT_EQ(chunk.columns_size(), 4);
-    EXPECT_EQ(chunk.columns(2).name(), "flank_load_newtons_flank_1");
-    for (int i = 0; i < chunk.columns(2).values_size(); ++i) {
-      ASSERT_EQ(chunk.columns(2).values(i), 1000.0 + static_cast<double>(row + i));
-    }
-    row += chunk.columns(0).values_size();
+  const auto read = read_all(read_history(app_, named<v1::ReadHistoryRequest>(name)));
+  EXPECT_EQ(read.schema.total_rows(), 50'000);
+  EXPECT_EQ(read.schema.rows_per_pair(), 0);
+  ASSERT_EQ(read.schema.columns_size(), 4);
+  EXPECT_EQ(read.schema.columns(2).name(), "flank_load_newtons_flank_1");
+  EXPECT_EQ(read.schema.columns(2).unit(), "N");
+  EXPECT_EQ(read.chunks.size(), 8U);
+  for (const auto& chunk : read.chunks) EXPECT_LE(chunk.values().size(), 262'144U);
+  for (std::size_t i = 0; i < read.columns[2].size(); ++i) {
+    ASSERT_EQ(read.columns[2][i], 1000.0 + static_cast<double>(i));
   }
-  EXPECT_EQ(row, 50'000);
+}
+
+TEST_F(AppTest, TheSummaryOfTheLongestCurveIsSmall) {
+  v1::Simulation simulation = curve_simulation();
+  auto* curve = simulation.mutable_inefficiency_curve();
+  curve->set_last_speed_kilometers_per_hour(119.9);
+  curve->set_speed_step_kilometers_per_hour(0.1);
+  auto request = named<v1::GetSimulationRequest>(finished(simulation));
+  const auto summary = get_simulation(app_, request).message();
+  EXPECT_EQ(summary.result().points_size(), 1000);
+  EXPECT_TRUE(summary.result().is_abridged());
+  EXPECT_EQ(summary.result().points(999).result().inefficiency_rms_percent(), 1.5);
+  EXPECT_LT(summary.result().ByteSizeLong(), 65'536U);
+  request.set_view(v1::SIMULATION_VIEW_BASIC);
+  EXPECT_FALSE(get_simulation(app_, request).message().has_result());
+  request.set_view(v1::SIMULATION_VIEW_FULL);
+  const auto full = get_simulation(app_, request).message().result();
+  EXPECT_FALSE(full.is_abridged());
+  EXPECT_GT(full.ByteSizeLong(), 65'536U);
+}
+
+TEST_F(AppTest, ManyReadersGetSmallerChunks) {
+  const std::string name = finished(with_history(10, 5000));
+  const auto request = named<v1::ReadHistoryRequest>(name);
+  std::vector<StreamOutcome<v1::ReadHistoryResponse>> readers;
+  for (int i = 0; i < 64; ++i) readers.push_back(read_history(app_, request));
+  std::size_t bytes = 0;
+  for (const auto& chunk : read_all(readers.front()).chunks) {
+    bytes = std::max(bytes, chunk.values().size());
+  }
+  EXPECT_EQ(bytes, 65'536U) << "one block each";
+  readers.erase(readers.begin() + 1, readers.end());
+  EXPECT_EQ(read_all(read_history(app_, request)).chunks.front().values().size(), 262'144U);
+}
+
+TEST_F(AppTest, AnOverviewHoldsTheExtremesOfEveryRun) {
+  const std::string name = finished(with_history(10, 5000));
+  auto request = named<v1::ReadHistoryRequest>(name);
+  request.set_start_row(123);
+  request.set_row_count(40'000);
+  for (const int points : {4, 100, 4000, 30'000}) {
+    request.set_max_points(points);
+    const auto read = read_all(read_history(app_, request));
+    const std::int64_t run = read.schema.rows_per_pair();
+    EXPECT_LE(read.schema.row_count(), points);
+    EXPECT_GE(read.schema.row_count(), points / 3) << "no coarser than it must be";
+    EXPECT_EQ(read.schema.start_row(), 123);
+    for (std::int64_t k = 0; k < read.schema.row_count() / 2; ++k) {
+      const std::int64_t first = (123 / run + k) * run;
+      ASSERT_EQ(read.columns[1][2 * k], static_cast<double>(std::max<std::int64_t>(123, first)));
+      ASSERT_EQ(read.columns[1][2 * k + 1],
+                static_cast<double>(std::min<std::int64_t>(40'123, first + run) - 1));
+    }
+  }
+  request.set_max_points(40'000);
+  EXPECT_EQ(read_all(read_history(app_, request)).schema.rows_per_pair(), 0) << "there is room";
+  request.set_max_points(3);
+  EXPECT_EQ(read_history(app_, request).error().code(), google::rpc::INVALID_ARGUMENT);
 }
 
 TEST_F(AppTest, HistoriesAreReadInPart) {
@@ -230,14 +308,14 @@ TEST_F(AppTest, HistoriesAreReadInPart) {
   request.add_columns("flank_load_newtons_flank_2");
   request.set_start_row(90);
   request.set_row_count(5);
-  auto chunks = read_all(read_history(app_, request));
-  ASSERT_EQ(chunks.size(), 1U);
-  ASSERT_EQ(chunks[0].columns_size(), 3) << "a flank column stands for its three flanks";
-  EXPECT_THAT(chunks[0].columns(2).values(), testing::ElementsAre(2090, 2091, 2092, 2093, 2094));
+  auto read = read_all(read_history(app_, request));
+  ASSERT_EQ(read.chunks.size(), 3U) << "a flank column stands for its three flanks";
+  EXPECT_EQ(read.schema.start_row(), 90);
+  EXPECT_THAT(read.columns[2], testing::ElementsAre(2090, 2091, 2092, 2093, 2094));
   request.set_row_count(1000);
-  EXPECT_EQ(read_all(read_history(app_, request))[0].columns(0).values_size(), 10);
+  EXPECT_EQ(read_all(read_history(app_, request)).columns[0].size(), 10U);
   request.set_start_row(100);
-  EXPECT_TRUE(read_all(read_history(app_, request)).empty());
+  EXPECT_TRUE(read_all(read_history(app_, request)).chunks.empty());
   request.set_start_row(101);
   request.set_row_count(-1);
   request.add_columns("mesh_forces");

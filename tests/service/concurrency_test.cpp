@@ -80,9 +80,12 @@ TEST(Concurrency, CreateWatchReadCancelAllAtOnce) {
       if (done.state() == v1::Simulation::SUCCEEDED) {
         v1::ReadHistoryRequest read;
         read.set_name(name);
-        v1::HistoryChunk chunk;
-        read_history(app, read).message()->next(chunk);
-        EXPECT_EQ(chunk.columns(0).values_size(), 192);
+        const auto history = read_history(app, read);
+        v1::ReadHistoryResponse part;
+        history.message()->next(part);
+        EXPECT_EQ(part.schema().row_count(), 192);
+        history.message()->next(part);
+        EXPECT_EQ(part.chunk().values().size(), 192 * sizeof(double));
       } else {
         EXPECT_EQ(done.state(), v1::Simulation::CANCELLED);
       }

@@ -178,7 +178,9 @@ TEST_F(MaintenanceTest, CheckFindsWhatIsWrong) {
        "SELECT 9, input_hash, model_version, platform, 1, body FROM results",
        "more than one result"},
       {"UPDATE simulations SET input_hash = printf('%064d', 0)", "of other inputs"},
-      {"UPDATE history SET data = x'0000'", "history"},
+      {"UPDATE history_blocks SET data = x'0000'", "history"},
+      {"DELETE FROM history_blocks", "history"},
+      {"UPDATE history_columns SET rows = 3", "history"},
   };
   for (const auto& [sql, problem] : cases) {
     for (const char* suffix : {"", "-wal", "-shm"}) std::filesystem::remove(path() + suffix);

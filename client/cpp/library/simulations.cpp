@@ -46,6 +46,7 @@ v1::Simulation Connection::create_simulation(const v1::Simulation& simulation,
 v1::Simulation Connection::get_simulation(const std::string& name) {
   v1::GetSimulationRequest request;
   request.set_name(name);
+  request.set_view(v1::SIMULATION_VIEW_FULL);
   return services_->call(*services_->simulations, &v1::Simulations::Stub::GetSimulation, request);
 }
 
@@ -104,27 +105,6 @@ v1::Simulation Connection::wait_for_end(
     if (!pause(backoff.next(kBetweenWatches), stop)) break;
   }
   return get_simulation(name);
-}
-
-v1::HistoryChunk Connection::read_history(const std::string& name) {
-  v1::ReadHistoryRequest request;
-  request.set_name(name);
-  grpc::ClientContext context;
-  const auto reader = services_->simulations->ReadHistory(&context, request);
-  v1::HistoryChunk all;
-  v1::HistoryChunk chunk;
-  while (reader->Read(&chunk)) {
-    if (all.columns_size() == 0) {
-      all = chunk;
-      continue;
-    }
-    for (int c = 0; c < std::min(all.columns_size(), chunk.columns_size()); ++c) {
-      all.mutable_columns(c)->mutable_values()->MergeFrom(chunk.columns(c).values());
-    }
-  }
-  const grpc::Status status = reader->Finish();
-  if (!status.ok()) throw service_error(status, address());
-  return all;
 }
 
 }  // namespace tribodyn::client
