@@ -29,10 +29,24 @@ using Unary = grpc::ServerUnaryReactor;
 
 using Clock = std::chrono::system_clock;
 
+constexpr char kClientMetadata[] = "tribodyn-client";
+constexpr std::size_t kLongestClient = 100;
+
 /// What its client and the server still allow of a call. A limit of nothing leaves nothing,
 /// whatever happens between two looks at the clock.
 Clock::duration time_left(const Context& context, std::chrono::milliseconds limit) {
   return std::min<Clock::duration>(context.deadline() - Clock::now(), limit);
+}
+
+/// The client that the call names, else its connection.
+Caller caller(const Context& context) {
+  const auto named = context.client_metadata().find(kClientMetadata);
+  if (named == context.client_metadata().end()) return {context.peer()};
+  std::string name(named->second.data(), std::min(named->second.size(), kLongestClient));
+  // It goes into the log, where a line is made of words.
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c <= ' ' || c > '~' || c == '='; }, '_');
+  return {name};
 }
 
 /// Bodies of unary methods, each under its deadline.
@@ -272,7 +286,8 @@ class SimulationsService final : public v1::Simulations::CallbackService, UnaryS
       : UnaryService(application, limits), limits_(limits), live_(live) {}
   Unary* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                           v1::Simulation* response) override {
-    return answer(context, response, [&] { return create_simulation(application_, *request); });
+    return answer(context, response,
+                  [&] { return create_simulation(application_, *request, caller(*context)); });
   }
   Unary* GetSimulation(Context* context, const v1::GetSimulationRequest* request,
                        v1::Simulation* response) override {
@@ -285,6 +300,14 @@ class SimulationsService final : public v1::Simulations::CallbackService, UnaryS
   Unary* CancelSimulation(Context* context, const v1::CancelSimulationRequest* request,
                           v1::Simulation* response) override {
     return answer(context, response, [&] { return cancel_simulation(application_, *request); });
+  }
+  Unary* PinSimulation(Context* context, const v1::PinSimulationRequest* request,
+                       v1::Simulation* response) override {
+    return answer(context, response, [&] { return pin_simulation(application_, *request); });
+  }
+  Unary* UnpinSimulation(Context* context, const v1::UnpinSimulationRequest* request,
+                         v1::Simulation* response) override {
+    return answer(context, response, [&] { return unpin_simulation(application_, *request); });
   }
   grpc::ServerWriteReactor<v1::SimulationEvent>* WatchSimulation(
       Context* context, const v1::WatchSimulationRequest* request) override {

@@ -10,7 +10,9 @@
 #include "server/store/deadline.h"
 #include "server/store/resource_queries.h"
 #include "server/store/resource_rows.h"
+#include "server/store/retention.h"
 #include "server/store/schema.h"
+#include "server/store/simulation_queries.h"
 #include "server/store/simulation_rows.h"
 #include "server/store/translate_error.h"
 
@@ -235,14 +237,30 @@ std::optional<std::int64_t> Store::simulation_of_request(const std::string& requ
   });
 }
 
-Page<StoredSimulation> Store::simulations(std::int64_t before, int limit, std::size_t byte_limit) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(
-        db, std::string(kSimulationColumns) + "WHERE id < ? ORDER BY id DESC LIMIT ?");
-    query.bind(1, before == 0 ? std::numeric_limits<std::int64_t>::max() : before);
-    query.bind(2, limit + 1);
-    return read_page<StoredSimulation>(query, limit, byte_limit, kRequestColumn, stored_simulation);
+Page<StoredSimulation> Store::simulations(const SimulationQuery& query) {
+  return read([&](SQLite::Database& db) { return query_simulations(db, query); });
+}
+
+bool Store::set_pinned(std::int64_t id, bool is_pinned) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Statement update(db, "UPDATE simulations SET pinned = ? WHERE id = ?");
+    update.bind(1, is_pinned ? 1 : 0);
+    update.bind(2, id);
+    return update.exec() > 0;
   });
+}
+
+int Store::remove_oldest(Microseconds ended_by, int limit) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const int removed = server::remove_oldest(db, ended_by, limit);
+    transaction.commit();
+    return removed;
+  });
+}
+
+std::int64_t Store::used_bytes() {
+  return read([](SQLite::Database& db) { return server::used_bytes(db); });
 }
 
 std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after_sequence) {

@@ -55,8 +55,14 @@ class Store {
   Added add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait = true);
   std::optional<StoredSimulation> simulation(std::int64_t id);
   std::optional<std::int64_t> simulation_of_request(const std::string& request_id);
-  /// Newest first, ids below `before` (0: from the newest); limits as of revisions.
-  Page<StoredSimulation> simulations(std::int64_t before, int limit, std::size_t byte_limit);
+  Page<StoredSimulation> simulations(const SimulationQuery& query);
+  /// Keeps a simulation from being removed, or gives it up again; false when there is none.
+  bool set_pinned(std::int64_t id, bool is_pinned);
+  /// Removes the oldest simulations, at most `limit`, that had ended by then and are not pinned,
+  /// with results that no other one has; how many.
+  int remove_oldest(Microseconds ended_by, int limit);
+  /// Bytes that the database holds, free ones left out.
+  std::int64_t used_bytes();
   /// The change of state that follows the one of that number (0: the first).
   std::optional<StoredEvent> next_event(std::int64_t id, std::int64_t after_sequence);
 

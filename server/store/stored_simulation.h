@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/store/life_cycle.h"
+#include "server/store/stored_resource.h"
 #include "server/store/times.h"
 
 namespace tribodyn::server {
@@ -62,6 +63,20 @@ struct StoredSimulation {
   std::string gear_set_revision;
   std::string surface_revision;
   std::string vehicle_revision;
+};
+
+/// Which simulations are listed, by time of creation and, of equal ones, by id.
+struct SimulationQuery {
+  /// All of them hold: "state" as its number, "lubricant", "create_time", "labels.KEY".
+  std::vector<Restriction> restrictions = {};
+  bool ascending = false;
+  struct Place {
+    Microseconds create_time = 0;
+    std::int64_t id = 0;
+  };
+  std::optional<Place> after = {};
+  int limit = 0;
+  std::size_t byte_limit = 0;  ///< of requests; a page holds at least one row
 };
 
 /// A change of state as it is kept.

@@ -11,6 +11,8 @@
 #include "server/app/resources.h"
 #include "server/app/simulations.h"
 #include "server/app/streams.h"
+#include "server/jobs/janitor.h"
+#include "server/store/maintenance.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -120,6 +122,153 @@ TEST_F(AppTest, ASimulationIsAcceptedListedAndRead) {
   EXPECT_EQ(curve.inefficiency_curve().speed_step_kilometers_per_hour(), 10) << "as requested";
 }
 
+/// What came of a history: its schema, and the columns put together.
+struct ReadHistory {
+  v1::HistorySchema schema;
+  std::vector<std::vector<double>> columns;
+  std::vector<v1::HistoryChunk> chunks;
+};
+
+ReadHistory read_all(const StreamOutcome<v1::ReadHistoryResponse>& outcome) {
+  ReadHistory out;
+  v1::ReadHistoryResponse part;
+  while (outcome.message()->next(part) == MessageSource<v1::ReadHistoryResponse>::Step::kMessage) {
+    if (part.has_schema()) {
+      EXPECT_TRUE(out.chunks.empty());
+      out.schema = part.schema();
+      out.columns.resize(out.schema.columns_size());
+      continue;
+    }
+    const v1::HistoryChunk& chunk = part.chunk();
+    std::vector<double>& column = out.columns.at(chunk.column());
+    EXPECT_EQ(chunk.first_row(), column.size());
+    const std::size_t count = chunk.values().size() / sizeof(double);
+    column.resize(column.size() + count);
+    std::memcpy(column.data() + column.size() - count, chunk.values().data(),
+                chunk.values().size());
+    out.chunks.push_back(chunk);
+  }
+  EXPECT_EQ(outcome.message()->error().code(), 0);
+  for (const auto& column : out.columns) EXPECT_EQ(column.size(), out.schema.row_count());
+  return out;
+}
+
+v1::Simulation with_history(int cycles, int samples) {
+  v1::Simulation simulation = point_simulation();
+  v1::HistoryRequest* history = simulation.mutable_operating_point()->mutable_history();
+  history->add_columns("mesh_force_newtons");
+  history->add_columns("flank_load_newtons");
+  history->set_mesh_cycles(cycles);
+  history->set_samples_per_mesh_cycle(samples);
+  return simulation;
+}
+
+v1::Simulation labelled(const std::string& project, double speed) {
+  v1::Simulation out = point_simulation();
+  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(speed);
+  v1::Label* label = out.add_labels();
+  label->set_key("project");
+  label->set_value(project);
+  return out;
+}
+
+TEST_F(AppTest, SimulationsAreFoundByStateLubricantTimeAndLabel) {
+  const std::string axle = finished(labelled("axle", 30));
+  const std::string other = finished(labelled("other", 31));
+  const std::string curve = finished(curve_simulation());
+  const auto names = [&](const std::string& filter, const std::string& order = "") {
+    v1::ListSimulationsRequest request;
+    request.set_filter(filter);
+    request.set_order_by(order);
+    std::vector<std::string> out;
+    const auto page = list_simulations(app_, request);
+    EXPECT_TRUE(page.ok()) << filter << ": " << page.error().message();
+    for (const auto& each : page.message().simulations()) out.push_back(each.name());
+    return out;
+  };
+  using testing::ElementsAre;
+  EXPECT_THAT(names(""), ElementsAre(curve, other, axle));
+  EXPECT_THAT(names("", "create_time"), ElementsAre(axle, other, curve));
+  EXPECT_THAT(names("labels.project = axle"), ElementsAre(axle));
+  EXPECT_THAT(names("labels.project:*", "create_time asc"), ElementsAre(axle, other));
+  EXPECT_THAT(names("labels.project != axle"), ElementsAre(curve, other));
+  EXPECT_THAT(names("lubricant = \"lubricants/2\""), ElementsAre(curve));
+  EXPECT_THAT(names("lubricant = \"lubricants/1@1\" AND state = SUCCEEDED"),
+              ElementsAre(other, axle));
+  EXPECT_THAT(names("state = FAILED"), ElementsAre());
+  EXPECT_EQ(names("create_time > 2020-01-01T00:00:00Z AND state != QUEUED").size(), 3U);
+  EXPECT_THAT(names("create_time > 2199-01-01T00:00:00Z"), ElementsAre());
+  v1::ListSimulationsRequest bad;
+  for (const char* filter : {"state > FAILED", "stat = FAILED", "state = FAILD", "name = x"}) {
+    bad.set_filter(filter);
+    EXPECT_EQ(list_simulations(app_, bad).error().code(), google::rpc::INVALID_ARGUMENT) << filter;
+  }
+  bad.set_filter("");
+  bad.set_order_by("end_time");
+  EXPECT_EQ(list_simulations(app_, bad).error().code(), google::rpc::INVALID_ARGUMENT);
+}
+
+TEST_F(AppTest, AListOfFullViewsHasResultsAndAllPagesTogetherHoldEverySimulationOnce) {
+  std::vector<std::string> expected;
+  for (int i = 0; i < 7; ++i) expected.push_back(finished(labelled("axle", 40 + i)));
+  std::reverse(expected.begin(), expected.end());
+  v1::ListSimulationsRequest request;
+  request.set_page_size(3);
+  request.set_filter("labels.project = axle");
+  request.set_view(v1::SIMULATION_VIEW_FULL);
+  std::vector<std::string> names;
+  do {
+    const auto page = list_simulations(app_, request).message();
+    for (const auto& each : page.simulations()) {
+      EXPECT_TRUE(each.has_result());
+      names.push_back(each.name());
+    }
+    request.set_page_token(page.next_page_token());
+  } while (!request.page_token().empty());
+  EXPECT_EQ(names, expected);
+  request.set_filter("");
+  request.set_page_token(list_simulations(app_, request).message().next_page_token());
+  request.set_filter("state = SUCCEEDED");
+  EXPECT_EQ(list_simulations(app_, request).error().code(), google::rpc::INVALID_ARGUMENT)
+      << "a token belongs to its filter";
+}
+
+TEST_F(AppTest, WhatIsPinnedOutlivesExpiryAndDiskBudget) {
+  const std::string pinned = finished(with_history(10, 5000));
+  const std::string served = finished(with_history(10, 5000));
+  const std::string other = finished(labelled("axle", 50));
+  EXPECT_TRUE(bench_.get(served).cache_hit());
+  EXPECT_TRUE(pin_simulation(app_, named<v1::PinSimulationRequest>(pinned)).message().pinned());
+  const Microseconds later = system_time() + 120'000'000;
+  const auto names = [&] {
+    std::vector<std::string> out;
+    const auto page = list_simulations(app_, {}).message();
+    for (const auto& each : page.simulations()) out.push_back(each.name());
+    return out;
+  };
+  Janitor early(bench_.store(), {.keep = 600'000'000}, [later] { return later; });
+  early.clean();
+  EXPECT_EQ(names().size(), 3U) << "not yet";
+  Janitor within(bench_.store(), {.disk_budget_bytes = 1 << 30}, [later] { return later; });
+  within.clean();
+  EXPECT_EQ(names().size(), 3U) << "there is room";
+  Janitor full(bench_.store(), {.disk_budget_bytes = 1}, [later] { return later; });
+  full.clean();
+  EXPECT_THAT(names(), testing::ElementsAre(pinned));
+  EXPECT_EQ(get_simulation(app_, named<v1::GetSimulationRequest>(other)).error().code(),
+            google::rpc::NOT_FOUND);
+  const auto history = read_all(read_history(app_, named<v1::ReadHistoryRequest>(pinned)));
+  EXPECT_EQ(history.columns[0].size(), 50'000U) << "shared with one that is gone";
+  EXPECT_FALSE(
+      unpin_simulation(app_, named<v1::UnpinSimulationRequest>(pinned)).message().pinned());
+  const std::int64_t before = bench_.store().used_bytes();
+  Janitor late(bench_.store(), {.keep = 1'000'000}, [later] { return later; });
+  late.clean();
+  EXPECT_TRUE(names().empty());
+  EXPECT_LT(bench_.store().used_bytes(), before - 20'000) << "its history is gone too";
+  EXPECT_TRUE(check_database(bench_.database()).empty());
+}
+
 TEST_F(AppTest, CancellingIsIdempotentAndLeavesTheEndedAlone) {
   const std::string name = finished(point_simulation());
   for (int i = 0; i < 2; ++i) {
@@ -183,47 +332,6 @@ TEST_F(AppTest, EverythingWrongWithAContactAtOnceStillFits) {
   for (const auto& violation : bad->field_violations()) {
     EXPECT_NE(violation.field(), "*") << violation.description();
   }
-}
-
-/// What came of a history: its schema, and the columns put together.
-struct ReadHistory {
-  v1::HistorySchema schema;
-  std::vector<std::vector<double>> columns;
-  std::vector<v1::HistoryChunk> chunks;
-};
-
-ReadHistory read_all(const StreamOutcome<v1::ReadHistoryResponse>& outcome) {
-  ReadHistory out;
-  v1::ReadHistoryResponse part;
-  while (outcome.message()->next(part) == MessageSource<v1::ReadHistoryResponse>::Step::kMessage) {
-    if (part.has_schema()) {
-      EXPECT_TRUE(out.chunks.empty());
-      out.schema = part.schema();
-      out.columns.resize(out.schema.columns_size());
-      continue;
-    }
-    const v1::HistoryChunk& chunk = part.chunk();
-    std::vector<double>& column = out.columns.at(chunk.column());
-    EXPECT_EQ(chunk.first_row(), column.size());
-    const std::size_t count = chunk.values().size() / sizeof(double);
-    column.resize(column.size() + count);
-    std::memcpy(column.data() + column.size() - count, chunk.values().data(),
-                chunk.values().size());
-    out.chunks.push_back(chunk);
-  }
-  EXPECT_EQ(outcome.message()->error().code(), 0);
-  for (const auto& column : out.columns) EXPECT_EQ(column.size(), out.schema.row_count());
-  return out;
-}
-
-v1::Simulation with_history(int cycles, int samples) {
-  v1::Simulation simulation = point_simulation();
-  v1::HistoryRequest* history = simulation.mutable_operating_point()->mutable_history();
-  history->add_columns("mesh_force_newtons");
-  history->add_columns("flank_load_newtons");
-  history->set_mesh_cycles(cycles);
-  history->set_samples_per_mesh_cycle(samples);
-  return simulation;
 }
 
 TEST_F(AppTest, HistoriesComeAsASchemaAndChunks) {
@@ -358,7 +466,7 @@ TEST_F(AppTest, AWatchShowsEveryChangeOfState) {
 
 TEST_F(AppTest, TooManyWaitingSimulationsAreTurnedAwayWithARetry) {
   auto release = std::make_shared<std::atomic<bool>>(false);
-  Bench small(patient_studies(release), 1, 1);
+  Bench small(patient_studies(release), 1, {.jobs = 1});
   const std::string running = small.create(point_simulation());
   ASSERT_TRUE(small.reaches(running, v1::Simulation::RUNNING));
   small.create(point_simulation());

@@ -133,7 +133,7 @@ std::vector<std::int64_t> numbers(Application& app, const std::string& name, std
 }
 
 TEST(Concurrency, SubmitTwiceWatchCancelAndExpireAllAtOnce) {
-  Bench bench(quick_studies(), 4, 100'000, std::chrono::milliseconds(1));
+  Bench bench(quick_studies(), 4, {.jobs = 100'000}, std::chrono::milliseconds(1));
   Application app = bench.application();
   constexpr int kThreads = 6;
   constexpr int kRounds = 40;
@@ -178,7 +178,7 @@ TEST(Concurrency, SubmitTwiceWatchCancelAndExpireAllAtOnce) {
 
 TEST(Concurrency, DrainingWhileFedWatchedAndCancelled) {
   auto release = std::make_shared<std::atomic<bool>>(false);
-  Bench bench(patient_studies(release), 3, 1000, std::chrono::milliseconds(1));
+  Bench bench(patient_studies(release), 3, {.jobs = 1000}, std::chrono::milliseconds(1));
   Application app = bench.application();
   std::atomic<int> accepted = 0;
   std::thread drainer([&] {

@@ -230,7 +230,7 @@ TEST_F(LifeCycle, WhatWaitsIsServedOnceItsTwinIsDone) {
 }
 
 TEST_F(LifeCycle, AFullQueueStillServesWhatIsKnown) {
-  Bench bench(quick_studies(), 1, 1);
+  Bench bench(quick_studies(), 1, {.jobs = 1});
   finished(bench, request_of(point_simulation()));
   bench.restart(patient_studies(release_));
   ASSERT_TRUE(bench.reaches(bench.create(curve_simulation()), State::RUNNING));
@@ -253,7 +253,7 @@ TEST_F(LifeCycle, CheckingSaysHashInputsAndCostAndRunsNothing) {
               HasSubstr("simulation.sump_temperature_celsius=0x1.4p+5"));
   EXPECT_EQ(checked.cost_estimate().contact_solutions(), 13 * 5000);
   EXPECT_GT(checked.cost_estimate().processor_seconds(), 0.1);
-  EXPECT_TRUE(bench.store().simulations(0, 10, 1000).rows.empty());
+  EXPECT_TRUE(bench.store().simulations({.limit = 10, .byte_limit = 1000}).rows.empty());
   request.set_validate_only(false);
   EXPECT_EQ(create(bench, request).message().input_hash(), checked.input_hash());
 }
@@ -300,7 +300,7 @@ class Waker : public ProgressObserver {
 };
 
 TEST_F(LifeCycle, AQuietWatchSendsHeartbeatsAndIsWokenForThem) {
-  Bench bench(patient_studies(release_), 1, 10, std::chrono::milliseconds(40));
+  Bench bench(patient_studies(release_), 1, {.jobs = 10}, std::chrono::milliseconds(40));
   ASSERT_TRUE(bench.reaches(bench.create(curve_simulation()), State::RUNNING));
   const std::string waiting = bench.create(point_simulation());
   const auto source = watch(bench, waiting).message();

@@ -66,7 +66,7 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
     EXPECT_EQ(stored->revision, 1);
     EXPECT_EQ(stored->body, seed.body) << seed.name;
   }
-  EXPECT_EQ(store.simulations(0, 100, 1 << 30).rows.size(), 7U);
+  EXPECT_EQ(store.simulations({.limit = 100, .byte_limit = 1 << 30}).rows.size(), 7U);
   EXPECT_EQ(store.simulation(1)->lubricant_revision, "lubricants/2@1");
   EXPECT_EQ(store.simulation(1)->gear_set_revision, "gearSets/B@1");
   EXPECT_EQ(store.simulation(2)->gear_set_revision, "gearSets/A@1")
