@@ -106,7 +106,7 @@ TEST_F(ObservabilityTest, NoFormulationIsLogged) {
   fluid.clear_name();
   fluid.set_display_name("Whispered Ester");
   fluid.set_description("clandestine polymer");
-  fluid.set_density_15_celsius_kilograms_per_cubic_metre(871.9137);
+  fluid.set_thermal_conductivity_watts_per_metre_kelvin(0.1539137);
   v1::Label* label = fluid.add_labels();
   label->set_key("recipe");
   label->set_value("unspoken");
@@ -125,7 +125,7 @@ TEST_F(ObservabilityTest, NoFormulationIsLogged) {
   wrong.set_sump_temperature_celsius(-3971.5);
   v1::Simulation refused;
   EXPECT_FALSE(GrpcTest::create(wrong, &refused).ok());
-  for (const char* word : {"hushed", "Whispered", "clandestine", "871.9", "unspoken", "recipe",
+  for (const char* word : {"hushed", "Whispered", "clandestine", "0.15391", "unspoken", "recipe",
                            "veiled", "41.59", "3971"}) {
     EXPECT_THAT(process_->log(), Not(HasSubstr(word)));
   }

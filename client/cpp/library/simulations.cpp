@@ -57,9 +57,24 @@ v1::Simulation Connection::cancel_simulation(const std::string& name) {
                          request);
 }
 
-Listing<v1::Simulation> Connection::list_simulations(int limit) {
+v1::Simulation Connection::pin_simulation(const std::string& name) {
+  v1::PinSimulationRequest request;
+  request.set_name(name);
+  return services_->call(*services_->simulations, &v1::Simulations::Stub::PinSimulation, request);
+}
+
+v1::Simulation Connection::unpin_simulation(const std::string& name) {
+  v1::UnpinSimulationRequest request;
+  request.set_name(name);
+  return services_->call(*services_->simulations, &v1::Simulations::Stub::UnpinSimulation, request);
+}
+
+Listing<v1::Simulation> Connection::list_simulations(const ListOptions& options) {
   Listing<v1::Simulation> all;
   v1::ListSimulationsRequest request;
+  request.set_filter(options.filter);
+  request.set_order_by(options.order_by);
+  const int limit = options.limit;
   do {
     const int missing = limit - static_cast<int>(all.resources.size());
     request.set_page_size(limit == 0 ? kLargestPage : std::min(missing, kLargestPage));

@@ -29,8 +29,8 @@ std::string server_address(const std::string& address = "");
 /// Which resources to list, and in which order.
 struct ListOptions {
   /// AIP-160: restrictions joined by AND, e.g. `labels.project = "axle" AND condition = SHEARED`.
-  std::string filter;
-  std::string order_by;       ///< "name", or a field of the filter; " desc" turns it round
+  std::string filter = {};
+  std::string order_by = {};  ///< "name", or a field of the filter; " desc" turns it round
   bool show_deleted = false;  ///< also those that were deleted
   int limit = 0;              ///< at most so many; 0: all
   bool basic = false;         ///< gear sets without their tables
@@ -138,8 +138,12 @@ class Connection {
                                    const CreateOptions& options = {});
   v1::Simulation get_simulation(const std::string& name);
   v1::Simulation cancel_simulation(const std::string& name);
-  /// Newest first; limit 0: all.
-  Listing<v1::Simulation> list_simulations(int limit = 0);
+  /// Without results; newest first unless ordered otherwise. Filters by state, lubricant,
+  /// create_time and labels.
+  Listing<v1::Simulation> list_simulations(const ListOptions& options = {});
+  /// Keeps it from expiring and from being evicted, or gives it up again.
+  v1::Simulation pin_simulation(const std::string& name);
+  v1::Simulation unpin_simulation(const std::string& name);
   /// Blocks until the simulation has ended and returns it with its result. `on_event` hears of each
   /// change of state, once and in order, and of progress, in the calling thread. A stream that
   /// breaks is taken up again behind what was heard, for a while. When `stop` is requested, the
