@@ -6,6 +6,7 @@
 
 #include "server/api/grpc_status.h"
 #include "server/api/stream_reactor.h"
+#include "server/api/workers.h"
 #include "server/app/contacts.h"
 #include "server/app/imports.h"
 #include "server/app/resources.h"
@@ -31,6 +32,7 @@ using Clock = std::chrono::system_clock;
 
 constexpr char kClientMetadata[] = "tribodyn-client";
 constexpr std::size_t kLongestClient = 100;
+constexpr int kWorkers = 32;  // as many writes as share a commit
 
 /// What its client and the server still allow of a call. A limit of nothing leaves nothing,
 /// whatever happens between two looks at the clock.
@@ -59,6 +61,24 @@ class UnaryService {
   template <class Message, class Body>
   Unary* answer(Context* context, Message* response, const Body& body) const {
     Unary* reactor = context->DefaultReactor();
+    finish(context, reactor, response, body);
+    return reactor;
+  }
+
+  /// The same by a worker, of what waits for the disk.
+  template <class Message, class Body>
+  Unary* answer_later(Workers& workers, Context* context, Message* response,
+                      const Body& body) const {
+    Unary* reactor = context->DefaultReactor();
+    workers.run([=, this] { finish(context, reactor, response, body); });
+    return reactor;
+  }
+
+  Application& application_;
+
+ private:
+  template <class Message, class Body>
+  void finish(Context* context, Unary* reactor, Message* response, const Body& body) const {
     const DeadlineScope deadline(DeadlineScope::Clock::now() + time_left(*context, limit_));
     Outcome<Message> outcome =
         DeadlineScope::has_passed() ? Outcome<Message>(deadline_exceeded()) : body();
@@ -68,12 +88,8 @@ class UnaryService {
     } else {
       reactor->Finish(to_grpc(outcome.error()));
     }
-    return reactor;
   }
 
-  Application& application_;
-
- private:
   const std::chrono::milliseconds limit_;
 };
 
@@ -283,11 +299,12 @@ class ContactsService final : public v1::Contacts::CallbackService, UnaryService
 class SimulationsService final : public v1::Simulations::CallbackService, UnaryService {
  public:
   SimulationsService(Application& application, const TimeLimits& limits, LiveStreams& live)
-      : UnaryService(application, limits), limits_(limits), live_(live) {}
+      : UnaryService(application, limits), limits_(limits), live_(live), workers_(kWorkers) {}
   Unary* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                           v1::Simulation* response) override {
-    return answer(context, response,
-                  [&] { return create_simulation(application_, *request, caller(*context)); });
+    return answer_later(workers_, context, response, [this, context, request] {
+      return create_simulation(application_, *request, caller(*context));
+    });
   }
   Unary* GetSimulation(Context* context, const v1::GetSimulationRequest* request,
                        v1::Simulation* response) override {
@@ -299,7 +316,8 @@ class SimulationsService final : public v1::Simulations::CallbackService, UnaryS
   }
   Unary* CancelSimulation(Context* context, const v1::CancelSimulationRequest* request,
                           v1::Simulation* response) override {
-    return answer(context, response, [&] { return cancel_simulation(application_, *request); });
+    return answer_later(workers_, context, response,
+                        [this, request] { return cancel_simulation(application_, *request); });
   }
   Unary* PinSimulation(Context* context, const v1::PinSimulationRequest* request,
                        v1::Simulation* response) override {
@@ -325,6 +343,7 @@ class SimulationsService final : public v1::Simulations::CallbackService, UnaryS
  private:
   const TimeLimits limits_;
   LiveStreams& live_;
+  Workers workers_;
 };
 
 }  // namespace

@@ -41,6 +41,9 @@ SQLite::Database open_writer(const std::filesystem::path& path) try {
   throw translate_error(error, path);
 }
 
+/// Thrown by a change that is not to be.
+struct Undone {};
+
 }  // namespace
 
 template <class Action>
@@ -49,6 +52,17 @@ auto Store::write(const Action& action) {
   check_deadline(path_);
   try {
     return action(writer_);
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
+}
+
+void Store::write_together(const GroupCommit::Action& action) {
+  check_deadline(path_);
+  try {
+    group_commit_.run(action);
+  } catch (const Undone&) {
+    return;
   } catch (const SQLite::Exception& error) {
     throw translate_error(error, path_);
   }
@@ -69,6 +83,7 @@ Store::Store(const std::filesystem::path& database)
     : path_(one_path(database)),
       lock_(path_),
       writer_(open_writer(path_)),
+      group_commit_(writer_, writer_mutex_),
       readers_(path_, kReaderConnections) {
   open_schema();
   heed_deadlines(writer_);
@@ -211,12 +226,10 @@ bool Store::undelete_resource(const StoredResource& present) {
 }
 
 Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const Added added = insert_simulation(db, simulation, now, may_wait);
-    transaction.commit();
-    return added;
-  });
+  Added added;
+  write_together(
+      [&](SQLite::Database& db) { added = insert_simulation(db, simulation, now, may_wait); });
+  return added;
 }
 
 std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
@@ -269,12 +282,12 @@ std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after
 
 template <class Change>
 std::optional<StoredEvent> Store::change_simulation(const Change& change) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    std::optional<StoredEvent> event = change(db);
-    if (event) transaction.commit();
-    return event;
+  std::optional<StoredEvent> event;
+  write_together([&](SQLite::Database& db) {
+    event = change(db);
+    if (!event) throw Undone();
   });
+  return event;
 }
 
 std::optional<StoredEvent> Store::mark_running(std::int64_t id, Microseconds now,

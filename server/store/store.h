@@ -12,6 +12,7 @@
 
 #include "server/store/connections.h"
 #include "server/store/database_lock.h"
+#include "server/store/group_commit.h"
 #include "server/store/history_rows.h"
 #include "server/store/store_error.h"
 #include "server/store/stored_resource.h"
@@ -107,6 +108,8 @@ class Store {
   std::optional<StoredEvent> change_simulation(const Change& change);
   template <class Action>
   auto write(const Action& action);
+  /// In a transaction that it may share with others.
+  void write_together(const GroupCommit::Action& action);
   template <class Action>
   auto read(const Action& action);
 
@@ -114,6 +117,7 @@ class Store {
   DatabaseLock lock_;
   std::mutex writer_mutex_;
   SQLite::Database writer_;  // guarded by writer_mutex_
+  GroupCommit group_commit_;
   ReaderPool readers_;
 };
 
