@@ -504,14 +504,20 @@ void measure_overhead(std::vector<Measurement>& out) {
 
 int main(int argc, char** argv) {
   using namespace tribodyn::server;
+  using Measure = void (*)(std::vector<tribodyn::Measurement>&);
+  const std::vector<std::pair<std::string, Measure>> parts = {
+      {"requests", measure_requests},   {"lists", measure_lists},
+      {"histories", measure_histories}, {"watchers", measure_watchers},
+      {"overload", measure_overload},   {"overhead", measure_overhead}};
   const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
-  for (const auto measure : {measure_requests, measure_lists, measure_histories, measure_watchers,
-                             measure_overload, measure_overhead}) {
-    std::vector<tribodyn::Measurement> some;
-    measure(some);
-    tribodyn::print(some);
+  const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
+  for (const auto& [name, measure] : parts) {
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;
+    std::vector<tribodyn::Measurement> figures;
+    measure(figures);
+    tribodyn::print(figures);
     std::fflush(stdout);
-    tribodyn::record(path, some);
+    tribodyn::record(path, figures);
   }
   return 0;
 }
