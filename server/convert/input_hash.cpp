@@ -1,5 +1,9 @@
 #include "server/convert/input_hash.h"
 
+#include <algorithm>
+#include <initializer_list>
+#include <list>
+#include <mutex>
 #include <set>
 
 #include "core/version.h"
@@ -37,18 +41,79 @@ bool is_label(const FieldDescriptor& field) {
          (is_output_only(field) && !kConstant.contains(field.name()));
 }
 
-}  // namespace
-
-std::string canonical_inputs(const SimulationInputs& inputs) {
+std::string resources_text(const SimulationInputs& inputs) {
   std::string text = std::string("model_version=") + kModelVersion + "\n";
   add_canonical_text(inputs.lubricant, "lubricant", is_label, text);
   add_canonical_text(inputs.gear_set, "gear_set", is_label, text);
   add_canonical_text(inputs.surface, "surface", is_label, text);
   add_canonical_text(inputs.vehicle, "vehicle", is_label, text);
+  return text;
+}
+
+std::string simulation_text(const SimulationInputs& inputs) {
+  std::string text;
   add_canonical_text(inputs.effective, "simulation", is_label, text);
   return text;
 }
 
-std::string input_hash(const SimulationInputs& inputs) { return sha256(canonical_inputs(inputs)); }
+/// The hash of the resources' text, to be gone on with: it is most of the work, and many
+/// simulations rest on the same resources. Keeps the latest few. Safe for concurrent access.
+class ResourceHashes {
+ public:
+  Sha256 of(const SimulationInputs& inputs) {
+    const std::string key = key_of(inputs);
+    {
+      const std::lock_guard lock(mutex_);
+      const auto found = std::find_if(kept_.begin(), kept_.end(),
+                                      [&](const Kept& each) { return each.key == key; });
+      if (found != kept_.end()) {
+        kept_.splice(kept_.begin(), kept_, found);
+        return kept_.front().hash;
+      }
+    }
+    Sha256 hash;
+    hash.add(resources_text(inputs));
+    const std::lock_guard lock(mutex_);
+    kept_.push_front({key, hash});
+    if (kept_.size() > kMostKept) kept_.pop_back();
+    return hash;
+  }
+
+ private:
+  static constexpr std::size_t kMostKept = 32;
+
+  struct Kept {
+    std::string key;
+    Sha256 hash;
+  };
+
+  /// The resources themselves: names do not say what a database holds.
+  static std::string key_of(const SimulationInputs& inputs) {
+    std::string key;
+    for (const google::protobuf::Message* each :
+         std::initializer_list<const google::protobuf::Message*>{
+             &inputs.lubricant, &inputs.gear_set, &inputs.surface, &inputs.vehicle}) {
+      key += std::to_string(each->ByteSizeLong()) + ':';
+      each->AppendToString(&key);
+    }
+    return key;
+  }
+
+  std::mutex mutex_;
+  std::list<Kept> kept_;  // guarded by mutex_; latest first
+};
+
+}  // namespace
+
+std::string canonical_inputs(const SimulationInputs& inputs) {
+  return resources_text(inputs) + simulation_text(inputs);
+}
+
+std::string input_hash(const SimulationInputs& inputs) {
+  static ResourceHashes resource_hashes;
+  Sha256 hash = resource_hashes.of(inputs);
+  hash.add(simulation_text(inputs));
+  return hash.finish();
+}
 
 }  // namespace tribodyn::server

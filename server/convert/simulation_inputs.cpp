@@ -4,6 +4,7 @@
 
 #include "server/convert/check_message.h"
 #include "server/convert/history_columns.h"
+#include "server/convert/labels.h"
 #include "server/convert/output_only.h"
 #include "server/convert/solver_defaults.h"
 #include "server/convert/study_checks.h"
@@ -159,9 +160,15 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
   const std::size_t before = violations.size();
   SimulationInputs inputs;
   inputs.requested = client_part(request);
+  sort_labels(*inputs.requested.mutable_labels());
   const v1::Simulation& asked = inputs.requested;
   check_message(asked, path, violations);
   check_study(asked, path, violations);
+  if (asked.labels_size() > kMaximumSimulationLabels) {
+    violations.push_back({join_path(path, "labels"), "more than 64 entries"});
+  } else {
+    check_labels(asked.labels(), join_path(path, "labels"), violations);
+  }
 
   const auto find = [&]<class Resource>(Resource* out, const std::string& name,
                                         const std::string& otherwise, const char* collection,

@@ -13,6 +13,7 @@
 #include "server/hash/sha256.h"
 #include "server/store/connections.h"
 #include "server/store/database_lock.h"
+#include "server/store/history_rows.h"
 #include "server/store/properties.h"
 #include "server/store/resource_types.h"
 #include "server/store/schema.h"
@@ -89,10 +90,18 @@ void check_rows(SQLite::Database& db, Problems& problems) {
            "WHERE platform <> '' GROUP BY input_hash, model_version, platform "
            "HAVING count(*) > 1",
            "SELECT 'simulations/' || s.id || ': columns of its history differ in length' "
-           "FROM simulations s JOIN history h ON h.result = s.result GROUP BY s.id "
-           "HAVING min(length(data)) <> max(length(data)) OR max(length(data) % 8) <> 0",
+           "FROM simulations s JOIN history_columns h ON h.result = s.result GROUP BY s.id "
+           "HAVING min(rows) <> max(rows)",
        }) {
     find_rows(db, sql, problems);
+  }
+}
+
+void check_histories(SQLite::Database& db, Problems& problems) {
+  SQLite::Statement query(db, "SELECT id, result FROM history_columns");
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    if (is_whole_column(db, query.getColumn(0).getInt64())) continue;
+    problems.push_back("result " + query.getColumn(1).getString() + ": its history is damaged");
   }
 }
 
@@ -220,6 +229,7 @@ Problems problems_of(SQLite::Database& db, const std::filesystem::path& path,
   if (pragma(db, "user_version") < kSchemaVersion) return problems;  // the next start migrates it
   db.exec("BEGIN");  // one moment of a database in use
   check_rows(db, problems);
+  check_histories(db, problems);
   check_bodies(db, problems);
   check_properties(db, problems);
   check_simulations(db, hash_inputs, problems);

@@ -1,6 +1,7 @@
 #include "server/store/simulation_rows.h"
 
 #include "server/hash/sha256.h"
+#include "server/store/history_rows.h"
 #include "server/store/resource_rows.h"
 
 namespace tribodyn::server {
@@ -11,7 +12,8 @@ const char kSimulationColumns[] =
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle) "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), "
+    "request_id, pinned, client, cost_seconds "
     "FROM simulations ";
 
 namespace {
@@ -88,8 +90,8 @@ std::int64_t insert_row(SQLite::Database& db, const NewSimulation& simulation, M
   SQLite::Statement insert(
       db,
       "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
-      "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle) "
-      "VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle, client, "
+      "cost_seconds) VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, now);
   bind_optional(insert, 2, simulation.deadline_time);
   bind_blob(insert, 3, simulation.request);
@@ -104,13 +106,23 @@ std::int64_t insert_row(SQLite::Database& db, const NewSimulation& simulation, M
     ++index;
     if (!each->empty()) insert.bind(index, revision_row(db, *each));
   }
+  insert.bind(13, simulation.client);
+  insert.bind(14, simulation.cost_seconds);
   insert.exec();
   const std::int64_t id = db.getLastInsertRowid();
+  for (const auto& [key, value] : simulation.labels) {
+    SQLite::Statement label(db, "INSERT INTO simulation_labels VALUES (?, ?, ?)");
+    label.bind(1, key);
+    label.bind(2, value);
+    label.bind(3, id);
+    label.exec();
+  }
   insert_event(db, id, {.sequence = 1, .time = now, .reason = ""});
   return id;
 }
 
-std::int64_t insert_result(SQLite::Database& db, const NewResult& result, Microseconds now) {
+std::int64_t insert_result(SQLite::Database& db, const NewResult& result,
+                           const std::vector<CompressedColumn>& history, Microseconds now) {
   SQLite::Statement insert(
       db,
       "INSERT INTO results (input_hash, model_version, platform, create_time, body) "
@@ -122,16 +134,8 @@ std::int64_t insert_result(SQLite::Database& db, const NewResult& result, Micros
   bind_blob(insert, 5, result.body);
   insert.exec();
   const std::int64_t row = db.getLastInsertRowid();
-  SQLite::Statement column(
-      db, "INSERT INTO history (result, position, name, data) VALUES (?, ?, ?, ?)");
-  for (std::size_t i = 0; i < result.history.size(); ++i) {
-    const StoredColumn& each = result.history[i];
-    column.bind(1, row);
-    column.bind(2, static_cast<std::int64_t>(i));
-    column.bind(3, each.name);
-    column.bindNoCopy(4, each.values.data(), static_cast<int>(each.values.size() * sizeof(double)));
-    column.exec();
-    column.reset();
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    insert_history_column(db, row, static_cast<std::int64_t>(i), history[i]);
   }
   return row;
 }
@@ -142,16 +146,13 @@ bool is_same_result(SQLite::Database& db, std::int64_t row, const NewResult& res
   body.bind(1, row);
   bind_blob(body, 2, result.body);
   if (!body.executeStep()) return false;
-  SQLite::Statement column(
-      db, "SELECT 1 FROM history WHERE result = ? AND position = ? AND name = ? AND data = ?");
+  const HistoryShape shape = query_history_shape(db, row);
+  if (shape.names.size() != result.history.size()) return false;
   for (std::size_t i = 0; i < result.history.size(); ++i) {
-    const StoredColumn& each = result.history[i];
-    column.bind(1, row);
-    column.bind(2, static_cast<std::int64_t>(i));
-    column.bind(3, each.name);
-    column.bindNoCopy(4, each.values.data(), static_cast<int>(each.values.size() * sizeof(double)));
-    if (!column.executeStep()) return false;
-    column.reset();
+    if (shape.names[i] != result.history[i].name ||
+        !holds_column(db, shape.columns[i], result.history[i].values)) {
+      return false;
+    }
   }
   return true;
 }
@@ -191,6 +192,10 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   out.gear_set_revision = query.getColumn(16).getString();
   out.surface_revision = query.getColumn(17).getString();
   out.vehicle_revision = query.getColumn(18).getString();
+  out.request_id = query.getColumn(19).getString();
+  out.is_pinned = query.getColumn(20).getInt() != 0;
+  out.client = query.getColumn(21).getString();
+  out.cost_seconds = query.getColumn(22).getDouble();
   return out;
 }
 
@@ -272,7 +277,8 @@ std::optional<StoredEvent> start_simulation(SQLite::Database& db, std::int64_t i
 }
 
 std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t id,
-                                             Microseconds now, const NewResult& result) {
+                                             Microseconds now, const NewResult& result,
+                                             const std::vector<CompressedColumn>& history) {
   std::optional<std::int64_t> row = result_row(db, result.key);
   if (row && !is_same_result(db, *row, result)) {
     return change_state(db,
@@ -284,7 +290,7 @@ std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t 
                          .error_message = "equal inputs have another result, of model " +
                                           result.key.model_version + " on " + result.key.platform});
   }
-  if (!row) row = insert_result(db, result, now);
+  if (!row) row = insert_result(db, result, history, now);
   return change_state(db, {.id = id,
                            .to = StoredState::kSucceeded,
                            .time = now,
@@ -311,12 +317,14 @@ std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now) {
     change_state(db, change);
   }
   std::vector<Waiting> waiting;
-  SQLite::Statement query(db,
-                          "SELECT id, lost_attempts, deadline_time FROM simulations "
-                          "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
+  SQLite::Statement query(
+      db,
+      "SELECT id, lost_attempts, deadline_time, client, cost_seconds FROM simulations "
+      "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
   while (query.executeStep()) {
-    waiting.push_back(
-        {query.getColumn(0).getInt64(), query.getColumn(1).getInt(), time_of(query.getColumn(2))});
+    waiting.push_back({query.getColumn(0).getInt64(), query.getColumn(1).getInt(),
+                       time_of(query.getColumn(2)), query.getColumn(3).getString(),
+                       query.getColumn(4).getDouble()});
   }
   return waiting;
 }

@@ -52,7 +52,8 @@ std::optional<StoredEvent> query_next_event(SQLite::Database& db, std::int64_t i
 std::optional<StoredEvent> start_simulation(SQLite::Database& db, std::int64_t id, Microseconds now,
                                             const ResultKey& key);
 std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t id,
-                                             Microseconds now, const NewResult& result);
+                                             Microseconds now, const NewResult& result,
+                                             const std::vector<CompressedColumn>& history);
 std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now);
 
 }  // namespace tribodyn::server

@@ -5,17 +5,16 @@
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #include "server/store/deadline.h"
 #include "server/store/resource_queries.h"
 #include "server/store/resource_rows.h"
+#include "server/store/retention.h"
 #include "server/store/schema.h"
+#include "server/store/simulation_queries.h"
 #include "server/store/simulation_rows.h"
 #include "server/store/translate_error.h"
-
-static_assert(std::endian::native == std::endian::little, "history columns are little-endian");
 
 namespace tribodyn::server {
 namespace {
@@ -42,32 +41,8 @@ SQLite::Database open_writer(const std::filesystem::path& path) try {
   throw translate_error(error, path);
 }
 
-/// Incremental reading of one blob.
-class BlobReader {
- public:
-  BlobReader(SQLite::Database& database, std::int64_t row_id) {
-    if (sqlite3_blob_open(database.getHandle(), "main", "history", "data", row_id, 0, &blob_) !=
-        SQLITE_OK) {
-      const SQLite::Exception error(database.getHandle());
-      sqlite3_blob_close(blob_);
-      throw error;
-    }
-  }
-  ~BlobReader() { sqlite3_blob_close(blob_); }
-  BlobReader(const BlobReader&) = delete;
-  BlobReader& operator=(const BlobReader&) = delete;
-
-  std::vector<double> read(std::int64_t start, std::int64_t count) {
-    std::vector<double> values(static_cast<std::size_t>(count));
-    const int status = sqlite3_blob_read(blob_, values.data(), static_cast<int>(count * 8),
-                                         static_cast<int>(start * 8));
-    if (status != SQLITE_OK) throw SQLite::Exception("cannot read a history column", status);
-    return values;
-  }
-
- private:
-  sqlite3_blob* blob_ = nullptr;
-};
+/// Thrown by a change that is not to be.
+struct Undone {};
 
 }  // namespace
 
@@ -77,6 +52,17 @@ auto Store::write(const Action& action) {
   check_deadline(path_);
   try {
     return action(writer_);
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
+}
+
+void Store::write_together(const GroupCommit::Action& action) {
+  check_deadline(path_);
+  try {
+    group_commit_.run(action);
+  } catch (const Undone&) {
+    return;
   } catch (const SQLite::Exception& error) {
     throw translate_error(error, path_);
   }
@@ -97,6 +83,7 @@ Store::Store(const std::filesystem::path& database)
     : path_(one_path(database)),
       lock_(path_),
       writer_(open_writer(path_)),
+      group_commit_(writer_, writer_mutex_),
       readers_(path_, kReaderConnections) {
   open_schema();
   heed_deadlines(writer_);
@@ -239,12 +226,10 @@ bool Store::undelete_resource(const StoredResource& present) {
 }
 
 Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const Added added = insert_simulation(db, simulation, now, may_wait);
-    transaction.commit();
-    return added;
-  });
+  Added added;
+  write_together(
+      [&](SQLite::Database& db) { added = insert_simulation(db, simulation, now, may_wait); });
+  return added;
 }
 
 std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
@@ -265,14 +250,30 @@ std::optional<std::int64_t> Store::simulation_of_request(const std::string& requ
   });
 }
 
-Page<StoredSimulation> Store::simulations(std::int64_t before, int limit, std::size_t byte_limit) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(
-        db, std::string(kSimulationColumns) + "WHERE id < ? ORDER BY id DESC LIMIT ?");
-    query.bind(1, before == 0 ? std::numeric_limits<std::int64_t>::max() : before);
-    query.bind(2, limit + 1);
-    return read_page<StoredSimulation>(query, limit, byte_limit, kRequestColumn, stored_simulation);
+Page<StoredSimulation> Store::simulations(const SimulationQuery& query) {
+  return read([&](SQLite::Database& db) { return query_simulations(db, query); });
+}
+
+bool Store::set_pinned(std::int64_t id, bool is_pinned) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Statement update(db, "UPDATE simulations SET pinned = ? WHERE id = ?");
+    update.bind(1, is_pinned ? 1 : 0);
+    update.bind(2, id);
+    return update.exec() > 0;
   });
+}
+
+int Store::remove_oldest(Microseconds ended_by, int limit) {
+  return write([&](SQLite::Database& db) {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const int removed = server::remove_oldest(db, ended_by, limit);
+    transaction.commit();
+    return removed;
+  });
+}
+
+std::int64_t Store::used_bytes() {
+  return read([](SQLite::Database& db) { return server::used_bytes(db); });
 }
 
 std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after_sequence) {
@@ -281,12 +282,12 @@ std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after
 
 template <class Change>
 std::optional<StoredEvent> Store::change_simulation(const Change& change) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    std::optional<StoredEvent> event = change(db);
-    if (event) transaction.commit();
-    return event;
+  std::optional<StoredEvent> event;
+  write_together([&](SQLite::Database& db) {
+    event = change(db);
+    if (!event) throw Undone();
   });
+  return event;
 }
 
 std::optional<StoredEvent> Store::mark_running(std::int64_t id, Microseconds now,
@@ -322,8 +323,11 @@ std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
 
 std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds now,
                                                  const NewResult& result) {
+  // Before anybody has to wait for it.
+  std::vector<CompressedColumn> history;
+  for (const StoredColumn& each : result.history) history.push_back(compress(each));
   return change_simulation(
-      [&](SQLite::Database& db) { return finish_simulation(db, id, now, result); });
+      [&](SQLite::Database& db) { return finish_simulation(db, id, now, result, history); });
 }
 
 std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
@@ -348,33 +352,31 @@ std::optional<std::string> Store::result(std::int64_t id) {
   });
 }
 
-Store::HistoryShape Store::history_shape(std::int64_t id) {
+HistoryShape Store::history_shape(std::int64_t id) {
   return read([&](SQLite::Database& db) {
-    SQLite::Statement query(
-        db,
-        "SELECT name, length(data) / 8 FROM history "
-        "WHERE result = (SELECT result FROM simulations WHERE id = ?) ORDER BY position");
+    SQLite::Statement query(db, "SELECT result FROM simulations WHERE id = ?");
     query.bind(1, id);
-    HistoryShape shape;
-    while (query.executeStep()) {
-      shape.names.push_back(query.getColumn(0).getString());
-      shape.rows = query.getColumn(1).getInt64();
-    }
-    return shape;
+    const bool has_result = query.executeStep() && !query.getColumn(0).isNull();
+    return has_result ? query_history_shape(db, query.getColumn(0).getInt64()) : HistoryShape();
   });
+}
+
+bool Store::read_history(std::int64_t column, int level, std::int64_t start,
+                         std::span<double> values) {
+  return read(
+      [&](SQLite::Database& db) { return query_history(db, column, level, start, values); });
 }
 
 std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,
                                         std::int64_t start, std::int64_t count) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(db,
-                            "SELECT id FROM history WHERE "
-                            "result = (SELECT result FROM simulations WHERE id = ?) AND name = ?");
-    query.bind(1, id);
-    query.bind(2, column);
-    if (!query.executeStep()) throw SQLite::Exception("no such history column");
-    return BlobReader(db, query.getColumn(0).getInt64()).read(start, count);
-  });
+  const HistoryShape shape = history_shape(id);
+  const auto found = std::find(shape.names.begin(), shape.names.end(), column);
+  std::vector<double> values(static_cast<std::size_t>(count));
+  if (found == shape.names.end() ||
+      !read_history(shape.columns[found - shape.names.begin()], 0, start, values)) {
+    throw StoreError(StoreError::Kind::kFailed, "no such history column");
+  }
+  return values;
 }
 
 }  // namespace tribodyn::server

@@ -15,6 +15,7 @@
 #include "server/convert/input_hash.h"
 #include "server/convert/ledger.h"
 #include "server/convert/simulation_inputs.h"
+#include "server/hash/sha256.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -115,6 +116,9 @@ TEST(Hash, DependsOnValuesNotOnWhatTheyAreCalled) {
   other = inputs;
   other.gear_set.mutable_flank_slots(1)->set_load_share(40, 0.5);
   EXPECT_NE(hash, input_hash(other));
+  for (const SimulationInputs& each : {inputs, same, other, inputs}) {
+    EXPECT_EQ(input_hash(each), sha256(canonical_inputs(each))) << "whatever is kept of it";
+  }
 }
 
 TEST(Hash, StatedDefaultsEqualUnstatedOnes) {

@@ -184,7 +184,7 @@ TEST_F(Library, ASimulationIsFollowedToItsEnd) {
   EXPECT_EQ(ended.state(), v1::Simulation::SUCCEEDED);
   EXPECT_GT(events, 0);
   EXPECT_EQ(ended.lubricant_revision(), "lubricants/1@1");
-  EXPECT_EQ(connection.list_simulations(1).resources.size(), 1U);
+  EXPECT_EQ(connection.list_simulations({.limit = 1}).resources.size(), 1U);
 }
 
 // The client tells units from names; the server has them in its table of constraints.
