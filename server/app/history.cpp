@@ -21,6 +21,8 @@ static_assert(std::endian::native == std::endian::little, "chunks are little-end
 namespace tribodyn::server {
 namespace {
 
+constexpr int kLargestMaximumPoints = 1'000'000;
+
 /// Columns by their place in the shape, and rows of them.
 struct Window {
   std::vector<std::size_t> columns;
@@ -176,10 +178,12 @@ std::optional<Window> window(const v1::ReadHistoryRequest& request, const Histor
     violations.push_back({"row_count", fmt::format("row_count = {}; legal: 0 (to the end) or more",
                                                    request.row_count())});
   }
-  if (request.max_points() != 0 && request.max_points() < kLeastMaximumPoints) {
+  if (request.max_points() != 0 && (request.max_points() < kLeastMaximumPoints ||
+                                    request.max_points() > kLargestMaximumPoints)) {
     violations.push_back(
-        {"max_points", fmt::format("max_points = {}; legal: 0 (all rows), {} or more",
-                                   request.max_points(), kLeastMaximumPoints)});
+        {"max_points",
+         fmt::format("max_points = {}; legal: {} to {}, or 0 (all rows)", request.max_points(),
+                     kLeastMaximumPoints, kLargestMaximumPoints)});
   }
   if (!violations.empty()) return std::nullopt;
   out.maximum_points = request.max_points();

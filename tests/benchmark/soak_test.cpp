@@ -22,7 +22,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using std::chrono::duration;
-using std::chrono::seconds;
+using std::chrono::duration_cast;
 
 constexpr double kFullSeconds = 3600;
 constexpr double kLeastRequests = 50'000;
@@ -114,16 +114,7 @@ int run(double length) {
   std::this_thread::sleep_for(duration<double>(is_full ? 600 : std::min(60.0, length / 3)));
   const std::int64_t requests_before = requests;
   const ProcessFigures first = process_figures(id);
-  ProcessFigures least = first;
-  ProcessFigures most = first;
-  while (duration<double>(Clock::now() - begin).count() < length) {
-    std::this_thread::sleep_for(seconds(1));
-    const ProcessFigures now = process_figures(id);
-    least = {std::min(least.resident_bytes, now.resident_bytes),
-             std::min(least.threads, now.threads), std::min(least.descriptors, now.descriptors)};
-    most = {std::max(most.resident_bytes, now.resident_bytes), std::max(most.threads, now.threads),
-            std::max(most.descriptors, now.descriptors)};
-  }
+  std::this_thread::sleep_until(begin + duration_cast<Clock::duration>(duration<double>(length)));
   const ProcessFigures last = process_figures(id);
   const auto served = static_cast<double>(requests - requests_before);
   stop = true;
@@ -132,8 +123,8 @@ int run(double length) {
   const std::vector<Measurement> figures = {
       {"soak_growth_of_resident_memory", growth, "MB", is_full ? 1.0 : 2.0},
       {"soak_requests", served, "-", length >= 180 ? kLeastRequests : 1, false},
-      {"soak_change_of_threads", static_cast<double>(most.threads - least.threads), "-", 0},
-      {"soak_change_of_descriptors", static_cast<double>(most.descriptors - least.descriptors), "-",
+      {"soak_change_of_threads", static_cast<double>(last.threads - first.threads), "-", 0},
+      {"soak_change_of_descriptors", static_cast<double>(last.descriptors - first.descriptors), "-",
        0},
       {"soak_length", length, "s", {}}};
   print(figures);

@@ -168,7 +168,8 @@ TEST_F(StoreTest, IdsAreNeverUsedAgainAndListsAreNewestFirst) {
   ASSERT_EQ(page.rows.size(), 2U);
   EXPECT_TRUE(page.more);
   EXPECT_EQ(page.rows[0].id, 5);
-  EXPECT_EQ(store.simulations({.after = {{3, 4}}, .limit = 10, .byte_limit = 1000}).rows.size(), 3U);
+  EXPECT_EQ(store.simulations({.after = {{3, 4}}, .limit = 10, .byte_limit = 1000}).rows.size(),
+            3U);
   EXPECT_FALSE(store.simulations({.after = {{3, 4}}, .limit = 10, .byte_limit = 1000}).more);
 }
 

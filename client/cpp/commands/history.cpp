@@ -45,7 +45,7 @@ void add_history_flags(FlagList& list, HistoryFlags& flags) {
             "Read the history of this finished simulation instead of computing one.",
             [&](const std::string& name) { flags.simulation = name; });
   list.group("Files");
-  list.whole_number("--max-points", {"samples", "4 to 2147483647", "all"},
+  list.whole_number("--max-points", {"samples", "4 to 1000000", "all"},
                     "Print an overview where there are more: least and largest value of each run "
                     "of samples, one after the other",
                     [&](int count) { flags.maximum_points = count; });
