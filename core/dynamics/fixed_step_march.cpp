@@ -112,35 +112,8 @@ MarchState FixedStepMarch::middle(const MarchState& from, const MarchState& to, 
 }
 
 FixedStepMarch::Events FixedStepMarch::events(const MeshPhase& phase, const MarchState& y) const {
-  Instant at;
-  system_.kinematics(phase, y.data(), at);
-  const double b = system_.dynamics().half_backlash;
-  const ContactRegime& r = system_.regime;
-  if (r.side == 0) {
-    return {(at.transmission_error - b) / scales_.length,
-            (-b - at.transmission_error) / scales_.length};
-  }
-  const double force =
-      r.side * at.mesh_force * system_.mesh().mean_pinion_contact_radius() / scales_.torque;
-  return {(b - r.side * at.transmission_error) / scales_.length, r.loaded ? -force : force};
-}
-
-void FixedStepMarch::change_regime(int index, const MeshPhase& phase, const MarchState& y) {
-  ContactRegime& r = system_.regime;
-  ++events_;
-  if (r.side != 0 && index == 1) {
-    r.loaded = !r.loaded;
-    return;
-  }
-  if (r.side == 0) {
-    r.side = index == 0 ? 1 : -1;
-  } else {
-    r.side = system_.dynamics().half_backlash > 0 ? 0 : -r.side;
-  }
-  Instant at;
-  system_.kinematics(phase, y.data(), at);
-  r.loaded =
-      r.side != 0 && r.side * at.transmission_velocity > 0 && system_.dynamics().mesh_damping > 0;
+  return system_.events(phase, y.data(), scales_.length,
+                        scales_.torque / system_.mesh().mean_pinion_contact_radius());
 }
 
 namespace {
@@ -264,7 +237,8 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
       phase += h;
       if (happens) {
         at_start = at_end;
-        change_regime(index, at_start, y);
+        ++events_;
+        system_.change_regime(index, at_start, y.data());
       }
       if (!happens || end - phase < 1e-13) phase = end;
     }

@@ -42,8 +42,6 @@ class FixedStepMarch {
 
  private:
   using Rates = std::array<double, 8>;
-  /// Positive once it has happened: flanks part or meet (on the drive side); the load ends or
-  /// begins, or the flanks meet on the coast side.
   using Events = std::array<double, 2>;
   /// A step's start, middle and end.
   struct Span {
@@ -58,7 +56,6 @@ class FixedStepMarch {
             MarchState& to, Sensitivity* s_to);
   MarchState middle(const MarchState& from, const MarchState& to, double h) const;
   Events events(const MeshPhase& phase, const MarchState& y) const;
-  void change_regime(int index, const MeshPhase& phase, const MarchState& y);
 
   GearPairSystem& system_;
   const MarchScales& scales_;

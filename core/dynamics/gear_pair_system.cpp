@@ -38,6 +38,35 @@ ContactRegime GearPairSystem::regime_of(double phase, const double* y) const {
   return r;
 }
 
+std::array<double, 2> GearPairSystem::events(const MeshPhase& phase, const double* y, double length,
+                                             double force) const {
+  Instant at;
+  kinematics(phase, y, at);
+  const double b = dynamics_.half_backlash;
+  if (regime.side == 0) {
+    return {(at.transmission_error - b) / length, (-b - at.transmission_error) / length};
+  }
+  const double pressing = regime.side * at.mesh_force / force;
+  return {(b - regime.side * at.transmission_error) / length, regime.loaded ? -pressing : pressing};
+}
+
+bool GearPairSystem::change_regime(int event, const MeshPhase& phase, const double* y) {
+  if (regime.side == 0) {
+    regime.side = event == 0 ? 1 : -1;
+  } else if (event == 1) {
+    regime.loaded = !regime.loaded;
+    return regime.loaded;
+  } else {
+    regime.side = dynamics_.half_backlash > 0 ? 0 : -regime.side;
+  }
+  Instant at;
+  kinematics(phase, y, at);
+  // Deflection is nothing here; the damper alone decides whether load starts at once.
+  regime.loaded =
+      regime.side != 0 && regime.side * at.transmission_velocity > 0 && dynamics_.mesh_damping > 0;
+  return false;
+}
+
 ContactConditions GearPairSystem::contact_conditions(const FlankKinematics& flank, double load,
                                                      const double* y, FlankMotion& motion) const {
   motion = flank_motion(flank, y[kPinionSpeed], y[kGearSpeed]);

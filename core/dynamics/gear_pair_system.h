@@ -114,6 +114,12 @@ class GearPairSystem {
 
   /// Regime that a state is in by its x and xdot.
   ContactRegime regime_of(double phase, const double* state) const;
+  /// Positive once it has happened: flanks part, or meet on the drive side; the load ends or
+  /// begins, or flanks meet on the coast side. Over a length and a force.
+  std::array<double, 2> events(const MeshPhase& phase, const double* state, double length,
+                               double force) const;
+  /// Into the regime after event 0 or 1. True where the load of touching flanks begins.
+  bool change_regime(int event, const MeshPhase& phase, const double* state);
   /// x, mesh force and shaft torques, without friction.
   void mechanics(double phase, const double* state, Instant& out) const {
     mechanics(at_phase(phase), state, out);

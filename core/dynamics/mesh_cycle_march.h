@@ -89,19 +89,8 @@ class PhaseSystem {
   }
 
   void events(double progress, const State& y, std::array<double, kEvents>& g) const {
-    Instant at;
-    system_.kinematics(phase(progress), y.data(), at);
-    const double b = system_.dynamics().half_backlash;
-    const ContactRegime& regime = system_.regime;
-    if (regime.side == 0) {
-      g = {(at.transmission_error - b) / scales_.length,
-           (-b - at.transmission_error) / scales_.length};
-      return;
-    }
-    const double force =
-        regime.side * at.mesh_force * system_.mesh().mean_pinion_contact_radius() / scales_.torque;
-    g = {(b - regime.side * at.transmission_error) / scales_.length,
-         regime.loaded ? -force : force};
+    g = system_.events(system_.at_phase(phase(progress)), y.data(), scales_.length,
+                       scales_.torque / system_.mesh().mean_pinion_contact_radius());
   }
 
   void on_event(int index, double progress, const State& y) {
@@ -126,25 +115,13 @@ class PhaseSystem {
  private:
   /// True if the load begins here, from zero.
   bool change_regime(int index, double at_phase, const State& y) {
-    ContactRegime& regime = system_.regime;
-    const int before = regime.side;
-    if (regime.side == 0) {
-      regime.side = index == 0 ? 1 : -1;
-    } else if (index == 1) {
-      regime.loaded = !regime.loaded;
-      return regime.loaded;
-    } else {
-      regime.side = system_.dynamics().half_backlash > 0 ? 0 : -regime.side;
+    const int before = system_.regime.side;
+    const bool load_begins = system_.change_regime(index, system_.at_phase(at_phase), y.data());
+    const int side = system_.regime.side;
+    if (gap_events != nullptr && (before == 0) != (side == 0)) {
+      gap_events->push_back({at_phase, y[kTime], side == 0});
     }
-    Instant at;
-    system_.kinematics(at_phase, y.data(), at);
-    // Deflection is nothing here; the damper alone decides whether load starts at once.
-    regime.loaded = regime.side != 0 && regime.side * at.transmission_velocity > 0 &&
-                    system_.dynamics().mesh_damping > 0;
-    if (gap_events != nullptr && (before == 0) != (regime.side == 0)) {
-      gap_events->push_back({at_phase, y[kTime], regime.side == 0});
-    }
-    return false;
+    return load_begins;
   }
 
   bool takes_load() const { return share_is_zero(0); }

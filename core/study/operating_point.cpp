@@ -99,6 +99,11 @@ SolverStatistics statistics_of(const SteadyState& s) {
   return out;
 }
 
+/// Of the march's steps; no looser than the figures' tolerance allows.
+double march_tolerance(const PointOptions& options) {
+  return std::clamp(1e-3 * options.tolerance, 1e-11, options.relative_tolerance);
+}
+
 PointResult empty_result(const Target& target, PointModel model) {
   PointResult out;
   out.vehicle_speed = target.vehicle_speed;
@@ -114,8 +119,7 @@ PointResult solve_full(GearPairSystem& system, const Target& target, const Point
   request.first_period = first_period;
   request.mean_pinion_speed = target.mean_pinion_speed;
   request.solve_wheel_torque = target.solve_wheel_torque;
-  request.march.relative_tolerance =
-      std::clamp(1e-3 * options.tolerance, 1e-11, options.relative_tolerance);
+  request.march.relative_tolerance = march_tolerance(options);
   request.tolerance = std::min(0.1 * options.tolerance, options.settling_tolerance);
   request.maximum_mesh_cycles = options.maximum_mesh_cycles;
   request.progress = options.progress;
@@ -294,7 +298,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       } else {
         system.set_torques(target.torques);
         // Together they are solved to 1e-10.
-        if (options.relative_tolerance > 1e-9) system.solve_together(&contacts);
+        if (march_tolerance(options) >= 1e-9) system.solve_together(&contacts);
         const MarchState state =
             from ? carried_start(system, *from, target.mean_pinion_speed)
                  : point_start(system, target,

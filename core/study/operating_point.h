@@ -63,8 +63,8 @@ struct PointOptions {
   std::optional<CarriedState> carried_state;  ///< overrides start
   bool probe_coexisting_response = false;     ///< also settle from the other start and compare
   SteadyStateMethod method = SteadyStateMethod::kAutomatic;
-  /// Of shooting: wanted relative error of both inefficiencies, the torque and the extremes of the
-  /// transmission error [1e-8, 1e-2]
+  /// Wanted relative error of both inefficiencies, the torque and the extremes of the transmission
+  /// error [1e-8, 1e-2]. The march below never settles for more than it allows.
   double tolerance = 1e-3;
   double relative_tolerance = 1e-7;  ///< of the march, per step [1e-11, 1e-3]
   double settling_tolerance =

@@ -32,10 +32,10 @@ struct RefinedOrbit {
   double largest_multiplier = 0;  ///< Floquet, modulus, under lagged friction
 };
 
-/// An attracting periodic response on a sequence of step lengths, each half the one before, until
-/// the estimated error is below the tolerance. None where shooting does not converge, the response
-/// repels or nearly so, or the tolerance asks for more than the shortest steps: marching decides
-/// then. Adds to `statistics`.
+/// An attracting periodic response on a sequence of step lengths, each shorter than the one before,
+/// until the estimated error is below the tolerance. None where shooting does not converge, the
+/// response repels or nearly so, or the tolerance asks for more than the shortest steps: marching
+/// decides then. Adds to `statistics`.
 std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
                                          MeshGrids& grids, const OrbitSearch& search,
                                          MarchStatistics& statistics, long& marched_cycles);

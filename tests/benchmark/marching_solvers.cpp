@@ -195,29 +195,12 @@ void ScaledProblem::rates(double phase, const double* scaled, double* scaled_rat
 }
 
 std::array<double, 2> ScaledProblem::events(double phase, const double* scaled) {
-  Instant at;
-  system_.kinematics(phase, from_scaled(scaled).data(), at);
-  const double b = system_.dynamics().half_backlash;
-  const ContactRegime& r = system_.regime;
-  if (r.side == 0) {
-    return {(at.transmission_error - b) / march_scales_.length,
-            (-b - at.transmission_error) / march_scales_.length};
-  }
-  const double force =
-      r.side * at.mesh_force * system_.mesh().mean_pinion_contact_radius() / march_scales_.torque;
-  return {(b - r.side * at.transmission_error) / march_scales_.length, r.loaded ? -force : force};
+  return system_.events(system_.at_phase(phase), from_scaled(scaled).data(), march_scales_.length,
+                        march_scales_.torque / system_.mesh().mean_pinion_contact_radius());
 }
 
 void ScaledProblem::change_regime(int event, double phase, const double* scaled) {
-  ContactRegime& r = system_.regime;
-  if (r.side != 0 && event == 1) {
-    r.loaded = !r.loaded;
-    return;
-  }
-  r.side = r.side == 0 ? (event == 0 ? 1 : -1) : 0;
-  Instant at;
-  system_.kinematics(phase, from_scaled(scaled).data(), at);
-  r.loaded = r.side != 0 && r.side * at.transmission_velocity > 0;
+  system_.change_regime(event, system_.at_phase(phase), from_scaled(scaled).data());
 }
 
 std::vector<MarchingSolver> marching_solvers() {

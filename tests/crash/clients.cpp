@@ -32,8 +32,10 @@ v1::Simulation simulation_of(const std::string& scene) {
     point->mutable_cruise()->set_speed_kilometers_per_hour(20 + number % 90);
     if (number % 5 == 3) point->set_model(v1::QUASI_STATIC);
   }
-  // Marched, a point takes a tenth of a second: long enough to be met by a crash.
-  if (number % 2 == 0) out.mutable_solver_options()->set_method(v1::MARCH);
+  // Marched, a point takes a tenth of a second: long enough to be met by a crash. A curve would
+  // take minutes under sanitizers.
+  if (number % 2 == 0 && out.has_operating_point())
+    out.mutable_solver_options()->set_method(v1::MARCH);
   return out;
 }
 

@@ -76,7 +76,8 @@ class Session {
     start("r4", 'c');
     step([&] {
       const auto present = store_->resource("lubricants/x");
-      if (present && store_->write_resources({{{present->name, lubricant("second").body}, present}}, 8)) {
+      if (present &&
+          store_->write_resources({{{present->name, lubricant("second").body}, present}}, 8)) {
         told_.revisions[present->name] = present->revision + 1;
       }
     });

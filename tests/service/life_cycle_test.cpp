@@ -417,9 +417,14 @@ TEST_F(LifeCycle, ACancelTakesEffectAtOnceAndFreesTheProcessor) {
     usual.push_back(std::max(answered, freed).count());
     EXPECT_EQ(cancel_simulation(app, cancel).message().state(), State::CANCELLED) << "again";
   }
-  // One of them may meet a busy machine.
+  // One of them may meet a busy machine; sanitizers slow the core some ten times.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  constexpr double kMostMilliseconds = 500;
+#else
+  constexpr double kMostMilliseconds = 100;
+#endif
   std::nth_element(usual.begin(), usual.begin() + 5, usual.end());
-  EXPECT_LT(usual[5], 100);
+  EXPECT_LT(usual[5], kMostMilliseconds);
 }
 
 }  // namespace
