@@ -11,16 +11,16 @@ namespace {
 
 constexpr std::size_t kLargestGroup = 64;
 
-bool is_in_transaction(SQLite::Database& db) { return sqlite3_get_autocommit(db.getHandle()) == 0; }
+bool is_in_transaction(Connection& db) { return sqlite3_get_autocommit(db.getHandle()) == 0; }
 
-void roll_back(SQLite::Database& db) {
+void roll_back(Connection& db) {
   if (is_in_transaction(db)) db.tryExec("ROLLBACK");
 }
 
 /// While it lives, statements do not end at the deadline of this thread, which is not theirs.
 class WithoutDeadlines {
  public:
-  explicit WithoutDeadlines(SQLite::Database& db) : db_(db) {
+  explicit WithoutDeadlines(Connection& db) : db_(db) {
     sqlite3_progress_handler(db_.getHandle(), 0, nullptr, nullptr);
   }
   ~WithoutDeadlines() { heed_deadlines(db_); }
@@ -28,7 +28,7 @@ class WithoutDeadlines {
   WithoutDeadlines& operator=(const WithoutDeadlines&) = delete;
 
  private:
-  SQLite::Database& db_;
+  Connection& db_;
 };
 
 }  // namespace
@@ -39,7 +39,7 @@ void GroupCommit::run(const Action& action) {
   pending_.push_back(&own);
   while (!own.is_done) {
     if (is_led_) {
-      changed_.wait(lock);
+      own.changed.wait(lock);
       continue;
     }
     is_led_ = true;
@@ -49,9 +49,12 @@ void GroupCommit::run(const Action& action) {
     lock.unlock();
     commit(group, count == 1 && group.front() == &own);
     lock.lock();
-    for (Pending* each : group) each->is_done = true;
+    for (Pending* each : group) {
+      each->is_done = true;
+      each->changed.notify_one();
+    }
     is_led_ = false;
-    changed_.notify_all();
+    if (!pending_.empty()) pending_.front()->changed.notify_one();
   }
   lock.unlock();
   if (own.error) std::rethrow_exception(own.error);
@@ -68,20 +71,20 @@ void GroupCommit::commit(const Group& group, bool is_own) {
 /// False when nothing of it has changed anything.
 bool GroupCommit::commit_together(const Group& group) {
   try {
-    writer_.exec("BEGIN IMMEDIATE");
+    Prepared(writer_, "BEGIN IMMEDIATE").exec();
     for (Pending* each : group) {
-      writer_.exec("SAVEPOINT one");
+      Prepared(writer_, "SAVEPOINT one").exec();
       try {
         (*each->action)(writer_);
       } catch (...) {
         each->error = std::current_exception();
         // Some failures undo everything, e.g. a full disk.
         if (!is_in_transaction(writer_)) return false;
-        writer_.exec("ROLLBACK TO one");
+        Prepared(writer_, "ROLLBACK TO one").exec();
       }
-      writer_.exec("RELEASE one");
+      Prepared(writer_, "RELEASE one").exec();
     }
-    writer_.exec("COMMIT");
+    Prepared(writer_, "COMMIT").exec();
     return true;
   } catch (const SQLite::Exception&) {
     roll_back(writer_);
@@ -92,9 +95,9 @@ bool GroupCommit::commit_together(const Group& group) {
 void GroupCommit::commit_alone(Pending& pending) {
   pending.error = nullptr;
   try {
-    writer_.exec("BEGIN IMMEDIATE");
+    Prepared(writer_, "BEGIN IMMEDIATE").exec();
     (*pending.action)(writer_);
-    writer_.exec("COMMIT");
+    Prepared(writer_, "COMMIT").exec();
   } catch (...) {
     pending.error = std::current_exception();
     roll_back(writer_);

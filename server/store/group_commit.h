@@ -1,13 +1,13 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-
 #include <condition_variable>
 #include <deque>
 #include <exception>
 #include <functional>
 #include <mutex>
 #include <vector>
+
+#include "server/store/connection.h"
 
 namespace tribodyn::server {
 
@@ -17,10 +17,10 @@ namespace tribodyn::server {
 class GroupCommit {
  public:
   /// Changes rows, and nothing else: it runs again, alone, when a group fails as a whole.
-  using Action = std::function<void(SQLite::Database&)>;
+  using Action = std::function<void(Connection&)>;
 
   /// `writer` is used under `writer_mutex` only; both must outlive the object.
-  GroupCommit(SQLite::Database& writer, std::mutex& writer_mutex)
+  GroupCommit(Connection& writer, std::mutex& writer_mutex)
       : writer_(writer), writer_mutex_(writer_mutex) {}
 
   /// Throws what the action throws, or SQLite::Exception where it cannot be committed; nothing has
@@ -32,6 +32,7 @@ class GroupCommit {
     const Action* action = nullptr;
     std::exception_ptr error = nullptr;
     bool is_done = false;
+    std::condition_variable changed = {};  // done, or its turn to commit for the others
   };
   using Group = std::vector<Pending*>;
 
@@ -39,10 +40,9 @@ class GroupCommit {
   bool commit_together(const Group& group);
   void commit_alone(Pending& pending);
 
-  SQLite::Database& writer_;
+  Connection& writer_;
   std::mutex& writer_mutex_;
   std::mutex mutex_;
-  std::condition_variable changed_;
   std::deque<Pending*> pending_;  // guarded by mutex_
   bool is_led_ = false;           // guarded by mutex_; somebody commits for the others
 };

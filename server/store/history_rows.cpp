@@ -1,7 +1,5 @@
 #include "server/store/history_rows.h"
 
-#include <SQLiteCpp/Statement.h>
-
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
@@ -37,8 +35,8 @@ bool is_equal(std::span<const double> one, std::span<const double> other) {
          (one.empty() || std::memcmp(one.data(), other.data(), one.size_bytes()) == 0);
 }
 
-std::int64_t rows_of(SQLite::Database& db, std::int64_t column) {
-  SQLite::Statement query(db, "SELECT rows FROM history_columns WHERE id = ?");
+std::int64_t rows_of(Connection& db, std::int64_t column) {
+  Prepared query(db, "SELECT rows FROM history_columns WHERE id = ?");
   query.bind(1, column);
   return query.executeStep() ? query.getColumn(0).getInt64() : -1;
 }
@@ -54,9 +52,9 @@ CompressedColumn compress(const StoredColumn& column) {
   return out;
 }
 
-void insert_history_column(SQLite::Database& db, std::int64_t result, std::int64_t position,
+void insert_history_column(Connection& db, std::int64_t result, std::int64_t position,
                            const CompressedColumn& column) {
-  SQLite::Statement insert(
+  Prepared insert(
       db, "INSERT INTO history_columns (result, position, name, rows) VALUES (?, ?, ?, ?)");
   insert.bind(1, result);
   insert.bind(2, position);
@@ -64,7 +62,7 @@ void insert_history_column(SQLite::Database& db, std::int64_t result, std::int64
   insert.bind(4, column.rows);
   insert.exec();
   const std::int64_t row = db.getLastInsertRowid();
-  SQLite::Statement block(db, "INSERT INTO history_blocks VALUES (?, ?, ?, ?)");
+  Prepared block(db, "INSERT INTO history_blocks VALUES (?, ?, ?, ?)");
   for (std::size_t level = 0; level < column.levels.size(); ++level) {
     for (std::size_t number = 0; number < column.levels[level].size(); ++number) {
       const std::string& data = column.levels[level][number];
@@ -78,8 +76,8 @@ void insert_history_column(SQLite::Database& db, std::int64_t result, std::int64
   }
 }
 
-HistoryShape query_history_shape(SQLite::Database& db, std::int64_t result) {
-  SQLite::Statement query(
+HistoryShape query_history_shape(Connection& db, std::int64_t result) {
+  Prepared query(
       db, "SELECT id, name, rows FROM history_columns WHERE result = ? ORDER BY position");
   query.bind(1, result);
   HistoryShape shape;
@@ -91,13 +89,13 @@ HistoryShape query_history_shape(SQLite::Database& db, std::int64_t result) {
   return shape;
 }
 
-bool query_history(SQLite::Database& db, std::int64_t column, int level, std::int64_t start,
+bool query_history(Connection& db, std::int64_t column, int level, std::int64_t start,
                    std::span<double> values) {
   const auto count = static_cast<std::int64_t>(values.size());
   if (count == 0) return true;
   const std::int64_t size = level_size(level, rows_of(db, column));
   if (start + count > size) return false;
-  SQLite::Statement query(db,
+  Prepared query(db,
                           "SELECT data FROM history_blocks WHERE history_column = ? AND level = ? "
                           "AND number BETWEEN ? AND ? ORDER BY number");
   query.bind(1, column);
@@ -123,13 +121,13 @@ bool query_history(SQLite::Database& db, std::int64_t column, int level, std::in
   return here >= start + count;
 }
 
-bool holds_column(SQLite::Database& db, std::int64_t column, const std::vector<double>& values) {
+bool holds_column(Connection& db, std::int64_t column, const std::vector<double>& values) {
   if (rows_of(db, column) != static_cast<std::int64_t>(values.size())) return false;
   std::vector<double> stored(values.size());
   return query_history(db, column, 0, 0, stored) && is_equal(stored, values);
 }
 
-bool is_whole_column(SQLite::Database& db, std::int64_t column) try {
+bool is_whole_column(Connection& db, std::int64_t column) try {
   const std::int64_t rows = rows_of(db, column);
   std::vector<double> values(static_cast<std::size_t>(std::max<std::int64_t>(0, rows)));
   if (!query_history(db, column, 0, 0, values)) return false;

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "server/store/connection.h"
 #include "server/store/stored_simulation.h"
 
 namespace tribodyn::server {
@@ -26,19 +25,19 @@ CompressedColumn compress(const StoredColumn& column);
 
 // On an open connection, inside the caller's transaction. All throw SQLite::Exception.
 
-void insert_history_column(SQLite::Database& db, std::int64_t result, std::int64_t position,
+void insert_history_column(Connection& db, std::int64_t result, std::int64_t position,
                            const CompressedColumn& column);
 
-HistoryShape query_history_shape(SQLite::Database& db, std::int64_t result);
+HistoryShape query_history_shape(Connection& db, std::int64_t result);
 
 /// As Store::read_history.
-bool query_history(SQLite::Database& db, std::int64_t column, int level, std::int64_t start,
+bool query_history(Connection& db, std::int64_t column, int level, std::int64_t start,
                    std::span<double> values);
 
 /// Whether a column holds these values, bit for bit.
-bool holds_column(SQLite::Database& db, std::int64_t column, const std::vector<double>& values);
+bool holds_column(Connection& db, std::int64_t column, const std::vector<double>& values);
 
 /// Whether every block of a column is there and can be read, and its pyramid is its own.
-bool is_whole_column(SQLite::Database& db, std::int64_t column);
+bool is_whole_column(Connection& db, std::int64_t column);
 
 }  // namespace tribodyn::server

@@ -1,7 +1,5 @@
 #include "server/store/retention.h"
 
-#include <SQLiteCpp/Statement.h>
-
 #include <vector>
 
 namespace tribodyn::server {
@@ -13,16 +11,16 @@ struct Row {
   std::int64_t ledger = 0;
 };
 
-void run(SQLite::Database& db, const char* sql, std::int64_t row) {
-  SQLite::Statement statement(db, sql);
+void run(Connection& db, const char* sql, std::int64_t row) {
+  Prepared statement(db, sql);
   statement.bind(1, row);
   statement.exec();
 }
 
 }  // namespace
 
-int remove_oldest(SQLite::Database& db, Microseconds ended_by, int limit) {
-  SQLite::Statement query(db,
+int remove_oldest(Connection& db, Microseconds ended_by, int limit) {
+  Prepared query(db,
                           "SELECT id, coalesce(result, 0), coalesce(ledger, 0) FROM simulations "
                           "WHERE state >= 3 AND pinned = 0 AND end_time <= ? "
                           "ORDER BY end_time LIMIT ?");
@@ -48,7 +46,7 @@ int remove_oldest(SQLite::Database& db, Microseconds ended_by, int limit) {
   return static_cast<int>(rows.size());
 }
 
-std::int64_t used_bytes(SQLite::Database& db) {
+std::int64_t used_bytes(Connection& db) {
   const auto pragma = [&db](const char* name) {
     return db.execAndGet(std::string("PRAGMA ") + name).getInt64();
   };

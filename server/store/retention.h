@@ -1,9 +1,8 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-
 #include <cstdint>
 
+#include "server/store/connection.h"
 #include "server/store/times.h"
 
 namespace tribodyn::server {
@@ -11,9 +10,9 @@ namespace tribodyn::server {
 /// Removes the oldest simulations, at most `limit`, that had ended by `ended_by` and are not
 /// pinned, with their events, and results and ledgers that no other one has; how many. Inside the
 /// caller's transaction. Throws SQLite::Exception.
-int remove_oldest(SQLite::Database& db, Microseconds ended_by, int limit);
+int remove_oldest(Connection& db, Microseconds ended_by, int limit);
 
 /// What the database holds, free pages left out.
-std::int64_t used_bytes(SQLite::Database& db);
+std::int64_t used_bytes(Connection& db);
 
 }  // namespace tribodyn::server

@@ -266,7 +266,7 @@ std::string with_explicit_zeros(const std::string& name, const std::string& body
   return message->SerializeAsString();
 }
 
-void move_resources(SQLite::Database& db, Microseconds now) {
+void move_resources(Connection& db, Microseconds now) {
   SQLite::Statement old(db, "SELECT name, body FROM resources_of_schema_1 ORDER BY name");
   while (old.executeStep()) {
     const std::string name = old.getColumn(0).getString();
@@ -277,7 +277,7 @@ void move_resources(SQLite::Database& db, Microseconds now) {
 }
 
 /// A name that the request leaves out means the default of schema 1.
-void pin_simulations(SQLite::Database& db) {
+void pin_simulations(Connection& db) {
   SQLite::Statement query(db, "SELECT id, request FROM simulations");
   SQLite::Statement pin(db,
                         "UPDATE simulations SET "
@@ -302,7 +302,7 @@ void pin_simulations(SQLite::Database& db) {
 }
 
 /// Assumptions leave the results, and these say which model they are of.
-void split_ledgers(SQLite::Database& db) {
+void split_ledgers(Connection& db) {
   SQLite::Statement query(db, "SELECT id, body FROM results");
   SQLite::Statement keep(db, "UPDATE results SET body = ?2, model_version = ?3 WHERE id = ?1");
   SQLite::Statement refer(db, "UPDATE simulations SET ledger = ?2 WHERE result = ?1");
@@ -324,7 +324,7 @@ void split_ledgers(SQLite::Database& db) {
 }
 
 /// Histories were one blob a column.
-void compress_histories(SQLite::Database& db) {
+void compress_histories(Connection& db) {
   SQLite::Statement query(
       db, "SELECT result, position, name, data FROM history_of_schema_3 ORDER BY result, position");
   while (query.executeStep()) {
@@ -341,7 +341,7 @@ void compress_histories(SQLite::Database& db) {
 
 }  // namespace
 
-void migrate(SQLite::Database& database, int from, Microseconds now) {
+void migrate(Connection& database, int from, Microseconds now) {
   SQLite::Transaction transaction(database);
   if (from < 1) database.exec(kSchema1);
   if (from < 2) {

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-
+#include "server/store/connection.h"
 #include "server/store/times.h"
 
 namespace tribodyn::server {
@@ -43,6 +42,6 @@ inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A
 /// new database goes the same way as an old one, so that there is one description of the tables.
-void migrate(SQLite::Database& database, int from, Microseconds now);
+void migrate(Connection& database, int from, Microseconds now);
 
 }  // namespace tribodyn::server

@@ -40,7 +40,7 @@ std::string operator_of(Comparison comparison) {
 }
 
 /// Whether at most a few simulations bear a label.
-bool is_rare(SQLite::Database& db, const std::string& where,
+bool is_rare(Connection& db, const std::string& where,
              const std::vector<PropertyValue>& values) {
   SQLite::Statement count(
       db, "SELECT count(*) FROM (SELECT 1 FROM simulation_labels WHERE " + where + " LIMIT ?)");
@@ -51,7 +51,7 @@ bool is_rare(SQLite::Database& db, const std::string& where,
   return count.getColumn(0).getInt() < kFew;
 }
 
-Condition label_condition(SQLite::Database& db, const Restriction& restriction) {
+Condition label_condition(Connection& db, const Restriction& restriction) {
   std::string where = "key = ?";
   std::vector<PropertyValue> values = {restriction.key.substr(kLabels.size())};
   if (restriction.comparison != Comparison::kPresent) {
@@ -71,7 +71,7 @@ Condition label_condition(SQLite::Database& db, const Restriction& restriction) 
           values};
 }
 
-Condition condition(SQLite::Database& db, const Restriction& restriction) {
+Condition condition(Connection& db, const Restriction& restriction) {
   if (restriction.key.starts_with(kLabels)) return label_condition(db, restriction);
   if (restriction.key == "lubricant") {
     const bool is_not = restriction.comparison == Comparison::kNotEqual;
@@ -85,7 +85,7 @@ Condition condition(SQLite::Database& db, const Restriction& restriction) {
 
 }  // namespace
 
-Page<StoredSimulation> query_simulations(SQLite::Database& db, const SimulationQuery& query) {
+Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& query) {
   std::string sql = std::string(kSimulationColumns) + "WHERE 1";
   std::vector<PropertyValue> values;
   for (const Restriction& each : query.restrictions) {

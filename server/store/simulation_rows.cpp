@@ -41,8 +41,8 @@ void bind_text_or_null(SQLite::Statement& statement, int index, const std::strin
 }
 
 /// Row of "lubricants/1@2" in revisions.
-std::int64_t revision_row(SQLite::Database& db, const std::string& name) {
-  SQLite::Statement query(
+std::int64_t revision_row(Connection& db, const std::string& name) {
+  Prepared query(
       db,
       "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
       "name = substr(?1, 1, instr(?1, '@') - 1)");
@@ -51,8 +51,8 @@ std::int64_t revision_row(SQLite::Database& db, const std::string& name) {
   return query.getColumn(0).getInt64();
 }
 
-std::optional<std::int64_t> result_row(SQLite::Database& db, const ResultKey& key) {
-  SQLite::Statement query(db,
+std::optional<std::int64_t> result_row(Connection& db, const ResultKey& key) {
+  Prepared query(db,
                           "SELECT id FROM results "
                           "WHERE input_hash = ? AND model_version = ? AND platform = ? AND "
                           "platform <> ''");
@@ -63,8 +63,8 @@ std::optional<std::int64_t> result_row(SQLite::Database& db, const ResultKey& ke
   return query.getColumn(0).getInt64();
 }
 
-void insert_event(SQLite::Database& db, std::int64_t id, const StoredEvent& event) {
-  SQLite::Statement insert(db, "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
+void insert_event(Connection& db, std::int64_t id, const StoredEvent& event) {
+  Prepared insert(db, "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
   insert.bind(1, id);
   insert.bind(2, event.sequence);
   insert.bind(3, event.time);
@@ -75,9 +75,9 @@ void insert_event(SQLite::Database& db, std::int64_t id, const StoredEvent& even
 }
 
 /// The simulation that an earlier request of this id made.
-std::optional<Added> repeated_request(SQLite::Database& db, const NewSimulation& simulation) {
+std::optional<Added> repeated_request(Connection& db, const NewSimulation& simulation) {
   if (simulation.request_id.empty()) return std::nullopt;
-  SQLite::Statement query(db, "SELECT id, request_hash FROM simulations WHERE request_id = ?");
+  Prepared query(db, "SELECT id, request_hash FROM simulations WHERE request_id = ?");
   query.bind(1, simulation.request_id);
   if (!query.executeStep()) return std::nullopt;
   const bool is_same = query.getColumn(1).getString() == simulation.request_hash;
@@ -86,8 +86,8 @@ std::optional<Added> repeated_request(SQLite::Database& db, const NewSimulation&
 }
 
 /// A QUEUED row with its first event.
-std::int64_t insert_row(SQLite::Database& db, const NewSimulation& simulation, Microseconds now) {
-  SQLite::Statement insert(
+std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microseconds now) {
+  Prepared insert(
       db,
       "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
       "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle, client, "
@@ -111,7 +111,7 @@ std::int64_t insert_row(SQLite::Database& db, const NewSimulation& simulation, M
   insert.exec();
   const std::int64_t id = db.getLastInsertRowid();
   for (const auto& [key, value] : simulation.labels) {
-    SQLite::Statement label(db, "INSERT INTO simulation_labels VALUES (?, ?, ?)");
+    Prepared label(db, "INSERT INTO simulation_labels VALUES (?, ?, ?)");
     label.bind(1, key);
     label.bind(2, value);
     label.bind(3, id);
@@ -121,9 +121,9 @@ std::int64_t insert_row(SQLite::Database& db, const NewSimulation& simulation, M
   return id;
 }
 
-std::int64_t insert_result(SQLite::Database& db, const NewResult& result,
+std::int64_t insert_result(Connection& db, const NewResult& result,
                            const std::vector<CompressedColumn>& history, Microseconds now) {
-  SQLite::Statement insert(
+  Prepared insert(
       db,
       "INSERT INTO results (input_hash, model_version, platform, create_time, body) "
       "VALUES (?, ?, ?, ?, ?)");
@@ -141,8 +141,8 @@ std::int64_t insert_result(SQLite::Database& db, const NewResult& result,
 }
 
 /// Bit for bit, histories too.
-bool is_same_result(SQLite::Database& db, std::int64_t row, const NewResult& result) {
-  SQLite::Statement body(db, "SELECT 1 FROM results WHERE id = ? AND body = ?");
+bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) {
+  Prepared body(db, "SELECT 1 FROM results WHERE id = ? AND body = ?");
   body.bind(1, row);
   bind_blob(body, 2, result.body);
   if (!body.executeStep()) return false;
@@ -159,12 +159,12 @@ bool is_same_result(SQLite::Database& db, std::int64_t row, const NewResult& res
 
 }  // namespace
 
-std::int64_t ledger_row(SQLite::Database& db, const std::string& body) {
+std::int64_t ledger_row(Connection& db, const std::string& body) {
   const std::string hash = sha256(body);
-  SQLite::Statement find(db, "SELECT id FROM ledgers WHERE content_hash = ?");
+  Prepared find(db, "SELECT id FROM ledgers WHERE content_hash = ?");
   find.bind(1, hash);
   if (find.executeStep()) return find.getColumn(0).getInt64();
-  SQLite::Statement insert(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)");
+  Prepared insert(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)");
   insert.bind(1, hash);
   bind_blob(insert, 2, body);
   insert.exec();
@@ -199,7 +199,7 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   return out;
 }
 
-Added insert_simulation(SQLite::Database& db, const NewSimulation& simulation, Microseconds now,
+Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
                         bool may_wait) {
   if (const auto repeated = repeated_request(db, simulation)) return *repeated;
   std::optional<std::int64_t> result;
@@ -213,8 +213,8 @@ Added insert_simulation(SQLite::Database& db, const NewSimulation& simulation, M
   return {Added::Kind::kServed, id};
 }
 
-std::optional<StoredEvent> change_state(SQLite::Database& db, const StateChange& change) {
-  SQLite::Statement update(
+std::optional<StoredEvent> change_state(Connection& db, const StateChange& change) {
+  Prepared update(
       db,
       "UPDATE simulations SET state = ?2, sequence = sequence + 1, attempt = attempt + (?2 = 1), "
       "lost_attempts = lost_attempts + ?9, "
@@ -244,9 +244,9 @@ std::optional<StoredEvent> change_state(SQLite::Database& db, const StateChange&
   return event;
 }
 
-std::optional<StoredEvent> query_next_event(SQLite::Database& db, std::int64_t id,
+std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
                                             std::int64_t after_sequence) {
-  SQLite::Statement query(db,
+  Prepared query(db,
                           "SELECT sequence, time, state, attempt, reason FROM events "
                           "WHERE simulation = ? AND sequence > ? ORDER BY sequence LIMIT 1");
   query.bind(1, id);
@@ -257,9 +257,9 @@ std::optional<StoredEvent> query_next_event(SQLite::Database& db, std::int64_t i
                      query.getColumn(3).getInt(), query.getColumn(4).getString()};
 }
 
-std::optional<StoredEvent> start_simulation(SQLite::Database& db, std::int64_t id, Microseconds now,
+std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
                                             const ResultKey& key) {
-  SQLite::Statement update(
+  Prepared update(
       db, "UPDATE simulations SET input_hash = ? WHERE id = ? AND state = 1 RETURNING is_forced");
   update.bind(1, key.input_hash);
   update.bind(2, id);
@@ -276,7 +276,7 @@ std::optional<StoredEvent> start_simulation(SQLite::Database& db, std::int64_t i
                            .cache_hit = result.has_value()});
 }
 
-std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t id,
+std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id,
                                              Microseconds now, const NewResult& result,
                                              const std::vector<CompressedColumn>& history) {
   std::optional<std::int64_t> row = result_row(db, result.key);
@@ -298,9 +298,9 @@ std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t 
                            .result = row});
 }
 
-std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now) {
+std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
   std::vector<std::pair<std::int64_t, int>> running;
-  SQLite::Statement find(
+  Prepared find(
       db, "SELECT id, lost_attempts FROM simulations WHERE state IN (1, 2) AND state = 2");
   while (find.executeStep()) {
     running.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
@@ -317,7 +317,7 @@ std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now) {
     change_state(db, change);
   }
   std::vector<Waiting> waiting;
-  SQLite::Statement query(
+  Prepared query(
       db,
       "SELECT id, lost_attempts, deadline_time, client, cost_seconds FROM simulations "
       "WHERE state IN (1, 2) AND state = 1 ORDER BY id");

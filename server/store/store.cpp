@@ -1,6 +1,5 @@
 #include "server/store/store.h"
 
-#include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 #include <sqlite3.h>
 
@@ -35,7 +34,8 @@ void check_deadline(const std::filesystem::path& path) {
   }
 }
 
-SQLite::Database open_writer(const std::filesystem::path& path) try {
+Connection open_writer(const std::filesystem::path& path) try {
+  configure_sqlite();
   return {path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMilliseconds};
 } catch (const SQLite::Exception& error) {
   throw translate_error(error, path);
@@ -83,14 +83,18 @@ Store::Store(const std::filesystem::path& database)
     : path_(one_path(database)),
       lock_(path_),
       writer_(open_writer(path_)),
-      group_commit_(writer_, writer_mutex_),
-      readers_(path_, kReaderConnections) {
+      group_commit_(writer_, writer_mutex_) {
   open_schema();
   heed_deadlines(writer_);
+  try {
+    readers_.open(path_, kReaderConnections);
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
 }
 
 void Store::open_schema() {
-  write([this](SQLite::Database& db) {
+  write([this](Connection& db) {
     const auto pragma = [&db](const char* name) {
       return db.execAndGet(std::string("PRAGMA ") + name).getInt();
     };
@@ -119,7 +123,7 @@ void Store::open_schema() {
 }
 
 void Store::add_resources(const std::vector<NewResource>& resources, Microseconds now) {
-  write([&](SQLite::Database& db) {
+  write([&](Connection& db) {
     SQLite::Transaction transaction(db);
     for (const NewResource& each : resources) {
       if (!is_taken(db, each.name)) insert_resource(db, each, now);
@@ -129,8 +133,8 @@ void Store::add_resources(const std::vector<NewResource>& resources, Microsecond
 }
 
 std::optional<StoredResource> Store::resource(const std::string& name) {
-  return read([&](SQLite::Database& db) -> std::optional<StoredResource> {
-    SQLite::Statement query(
+  return read([&](Connection& db) -> std::optional<StoredResource> {
+    Prepared query(
         db, std::string(kResourceColumns) +
                 "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?");
     query.bind(1, name);
@@ -140,8 +144,8 @@ std::optional<StoredResource> Store::resource(const std::string& name) {
 }
 
 std::optional<StoredResource> Store::revision(const std::string& name, int revision) {
-  return read([&](SQLite::Database& db) -> std::optional<StoredResource> {
-    SQLite::Statement query(db, std::string(kResourceColumns) +
+  return read([&](Connection& db) -> std::optional<StoredResource> {
+    Prepared query(db, std::string(kResourceColumns) +
                                     "FROM resources r JOIN revisions v ON v.resource = r.id "
                                     "WHERE r.name = ? AND v.revision = ?");
     query.bind(1, name);
@@ -152,13 +156,13 @@ std::optional<StoredResource> Store::revision(const std::string& name, int revis
 }
 
 Page<StoredResource> Store::resources(const ResourceQuery& query) {
-  return read([&](SQLite::Database& db) { return query_resources(db, query); });
+  return read([&](Connection& db) { return query_resources(db, query); });
 }
 
 Page<StoredResource> Store::revisions(const std::string& name, int before, int limit,
                                       std::size_t byte_limit) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(db, std::string(kResourceColumns) +
+  return read([&](Connection& db) {
+    Prepared query(db, std::string(kResourceColumns) +
                                     "FROM resources r JOIN revisions v ON v.resource = r.id "
                                     "WHERE r.name = ? AND v.revision < ? "
                                     "ORDER BY v.revision DESC LIMIT ?");
@@ -170,8 +174,8 @@ Page<StoredResource> Store::revisions(const std::string& name, int before, int l
 }
 
 std::vector<std::string> Store::resource_names(const std::string& collection) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(
+  return read([&](Connection& db) {
+    Prepared query(
         db,
         "SELECT name FROM resources WHERE collection = ? AND delete_time IS NULL ORDER BY name");
     query.bind(1, collection);
@@ -183,7 +187,7 @@ std::vector<std::string> Store::resource_names(const std::string& collection) {
 
 std::optional<std::vector<StoredResource>> Store::write_resources(
     const std::vector<ResourceWrite>& writes, Microseconds now) {
-  return write([&](SQLite::Database& db) -> std::optional<std::vector<StoredResource>> {
+  return write([&](Connection& db) -> std::optional<std::vector<StoredResource>> {
     SQLite::Transaction transaction(db);
     std::vector<StoredResource> written;
     written.reserve(writes.size());
@@ -199,7 +203,7 @@ std::optional<std::vector<StoredResource>> Store::write_resources(
 
 template <class Change>
 bool Store::change(const StoredResource& present, const Change& change) {
-  return write([&](SQLite::Database& db) {
+  return write([&](Connection& db) {
     SQLite::Transaction transaction(db);
     if (!is_unchanged(db, present)) return false;
     change(db);
@@ -209,8 +213,8 @@ bool Store::change(const StoredResource& present, const Change& change) {
 }
 
 bool Store::delete_resource(const StoredResource& present, Microseconds now) {
-  return change(present, [&](SQLite::Database& db) {
-    SQLite::Statement mark(db, "UPDATE resources SET delete_time = ? WHERE id = ?");
+  return change(present, [&](Connection& db) {
+    Prepared mark(db, "UPDATE resources SET delete_time = ? WHERE id = ?");
     mark.bind(1, now);
     mark.bind(2, present.id);
     mark.exec();
@@ -218,8 +222,8 @@ bool Store::delete_resource(const StoredResource& present, Microseconds now) {
 }
 
 bool Store::undelete_resource(const StoredResource& present) {
-  return change(present, [&](SQLite::Database& db) {
-    SQLite::Statement mark(db, "UPDATE resources SET delete_time = NULL WHERE id = ?");
+  return change(present, [&](Connection& db) {
+    Prepared mark(db, "UPDATE resources SET delete_time = NULL WHERE id = ?");
     mark.bind(1, present.id);
     mark.exec();
   });
@@ -228,13 +232,13 @@ bool Store::undelete_resource(const StoredResource& present) {
 Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait) {
   Added added;
   write_together(
-      [&](SQLite::Database& db) { added = insert_simulation(db, simulation, now, may_wait); });
+      [&](Connection& db) { added = insert_simulation(db, simulation, now, may_wait); });
   return added;
 }
 
 std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
-  return read([&](SQLite::Database& db) -> std::optional<StoredSimulation> {
-    SQLite::Statement query(db, std::string(kSimulationColumns) + "WHERE id = ?");
+  return read([&](Connection& db) -> std::optional<StoredSimulation> {
+    Prepared query(db, std::string(kSimulationColumns) + "WHERE id = ?");
     query.bind(1, id);
     if (!query.executeStep()) return std::nullopt;
     return stored_simulation(query);
@@ -242,8 +246,8 @@ std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
 }
 
 std::optional<std::int64_t> Store::simulation_of_request(const std::string& request_id) {
-  return read([&](SQLite::Database& db) -> std::optional<std::int64_t> {
-    SQLite::Statement query(db, "SELECT id FROM simulations WHERE request_id = ?");
+  return read([&](Connection& db) -> std::optional<std::int64_t> {
+    Prepared query(db, "SELECT id FROM simulations WHERE request_id = ?");
     query.bind(1, request_id);
     if (!query.executeStep()) return std::nullopt;
     return query.getColumn(0).getInt64();
@@ -251,12 +255,12 @@ std::optional<std::int64_t> Store::simulation_of_request(const std::string& requ
 }
 
 Page<StoredSimulation> Store::simulations(const SimulationQuery& query) {
-  return read([&](SQLite::Database& db) { return query_simulations(db, query); });
+  return read([&](Connection& db) { return query_simulations(db, query); });
 }
 
 bool Store::set_pinned(std::int64_t id, bool is_pinned) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Statement update(db, "UPDATE simulations SET pinned = ? WHERE id = ?");
+  return write([&](Connection& db) {
+    Prepared update(db, "UPDATE simulations SET pinned = ? WHERE id = ?");
     update.bind(1, is_pinned ? 1 : 0);
     update.bind(2, id);
     return update.exec() > 0;
@@ -264,7 +268,7 @@ bool Store::set_pinned(std::int64_t id, bool is_pinned) {
 }
 
 int Store::remove_oldest(Microseconds ended_by, int limit) {
-  return write([&](SQLite::Database& db) {
+  return write([&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     const int removed = server::remove_oldest(db, ended_by, limit);
     transaction.commit();
@@ -273,17 +277,17 @@ int Store::remove_oldest(Microseconds ended_by, int limit) {
 }
 
 std::int64_t Store::used_bytes() {
-  return read([](SQLite::Database& db) { return server::used_bytes(db); });
+  return read([](Connection& db) { return server::used_bytes(db); });
 }
 
 std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after_sequence) {
-  return read([&](SQLite::Database& db) { return query_next_event(db, id, after_sequence); });
+  return read([&](Connection& db) { return query_next_event(db, id, after_sequence); });
 }
 
 template <class Change>
 std::optional<StoredEvent> Store::change_simulation(const Change& change) {
   std::optional<StoredEvent> event;
-  write_together([&](SQLite::Database& db) {
+  write_together([&](Connection& db) {
     event = change(db);
     if (!event) throw Undone();
   });
@@ -293,18 +297,18 @@ std::optional<StoredEvent> Store::change_simulation(const Change& change) {
 std::optional<StoredEvent> Store::mark_running(std::int64_t id, Microseconds now,
                                                const ResultKey& key) {
   return change_simulation(
-      [&](SQLite::Database& db) { return start_simulation(db, id, now, key); });
+      [&](Connection& db) { return start_simulation(db, id, now, key); });
 }
 
 std::optional<StoredEvent> Store::mark_queued(std::int64_t id, Microseconds now,
                                               const std::string& reason) {
-  return change_simulation([&](SQLite::Database& db) {
+  return change_simulation([&](Connection& db) {
     return change_state(db, {.id = id, .to = StoredState::kQueued, .time = now, .reason = reason});
   });
 }
 
 std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds now) {
-  return change_simulation([&](SQLite::Database& db) {
+  return change_simulation([&](Connection& db) {
     return change_state(db, {.id = id, .to = StoredState::kCancelled, .time = now});
   });
 }
@@ -312,7 +316,7 @@ std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds n
 std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
                                               const std::string& reason,
                                               const std::string& message) {
-  return change_simulation([&](SQLite::Database& db) {
+  return change_simulation([&](Connection& db) {
     return change_state(db, {.id = id,
                              .to = StoredState::kFailed,
                              .time = now,
@@ -327,11 +331,11 @@ std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds n
   std::vector<CompressedColumn> history;
   for (const StoredColumn& each : result.history) history.push_back(compress(each));
   return change_simulation(
-      [&](SQLite::Database& db) { return finish_simulation(db, id, now, result, history); });
+      [&](Connection& db) { return finish_simulation(db, id, now, result, history); });
 }
 
 std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
-  return write([&](SQLite::Database& db) {
+  return write([&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     std::vector<Waiting> waiting = requeue_lost(db, now);
     transaction.commit();
@@ -340,8 +344,8 @@ std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
 }
 
 std::optional<std::string> Store::result(std::int64_t id) {
-  return read([&](SQLite::Database& db) -> std::optional<std::string> {
-    SQLite::Statement query(db,
+  return read([&](Connection& db) -> std::optional<std::string> {
+    Prepared query(db,
                             "SELECT r.body, l.body FROM simulations s "
                             "JOIN results r ON r.id = s.result "
                             "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
@@ -353,8 +357,8 @@ std::optional<std::string> Store::result(std::int64_t id) {
 }
 
 HistoryShape Store::history_shape(std::int64_t id) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(db, "SELECT result FROM simulations WHERE id = ?");
+  return read([&](Connection& db) {
+    Prepared query(db, "SELECT result FROM simulations WHERE id = ?");
     query.bind(1, id);
     const bool has_result = query.executeStep() && !query.getColumn(0).isNull();
     return has_result ? query_history_shape(db, query.getColumn(0).getInt64()) : HistoryShape();
@@ -364,7 +368,7 @@ HistoryShape Store::history_shape(std::int64_t id) {
 bool Store::read_history(std::int64_t column, int level, std::int64_t start,
                          std::span<double> values) {
   return read(
-      [&](SQLite::Database& db) { return query_history(db, column, level, start, values); });
+      [&](Connection& db) { return query_history(db, column, level, start, values); });
 }
 
 std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,

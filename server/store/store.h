@@ -1,7 +1,5 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
@@ -116,7 +114,7 @@ class Store {
   const std::filesystem::path path_;
   DatabaseLock lock_;
   std::mutex writer_mutex_;
-  SQLite::Database writer_;  // guarded by writer_mutex_
+  Connection writer_;  // guarded by writer_mutex_
   GroupCommit group_commit_;
   ReaderPool readers_;
 };
