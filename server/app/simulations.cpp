@@ -50,10 +50,6 @@ std::optional<Microseconds> deadline_time(const v1::Simulation& requested, Micro
 NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
                              const SimulationInputs& inputs, const std::string& request_hash,
                              const Caller& caller) {
-  v1::SimulationResult ledger;
-  for (v1::Assumption& assumption : assumptions(inputs)) {
-    *ledger.add_assumptions() = std::move(assumption);
-  }
   const v1::Simulation& effective = inputs.effective;
   std::vector<std::pair<std::string, std::string>> labels;
   for (const v1::Label& each : inputs.requested.labels()) {
@@ -61,7 +57,7 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
   }
   return {.request = inputs.requested.SerializeAsString(),
           .key = result_key(inputs),
-          .ledger = ledger.SerializeAsString(),
+          .ledger = ledger(inputs),
           .request_id = request.request_id(),
           .request_hash = request_hash,
           .is_forced = request.force(),

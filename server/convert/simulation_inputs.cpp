@@ -170,13 +170,14 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
     check_labels(asked.labels(), join_path(path, "labels"), violations);
   }
 
-  const auto find = [&]<class Resource>(Resource* out, const std::string& name,
+  const auto find = [&]<class Resource>(std::shared_ptr<const Resource>* out,
+                                        const std::string& name,
                                         const std::string& otherwise, const char* collection,
                                         const char* field) {
     auto found = find_resource<Resource>(lookup, name.empty() ? otherwise : name, collection,
                                          join_path(path, field), violations);
     if (!found) return std::string();
-    *out = std::move(found->resource);
+    *out = found->resource;
     return found->revision_name;
   };
   const std::string lubricant =
@@ -193,10 +194,10 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
     const double rise = asked.has_inlet_temperature_rise_kelvin()
                             ? asked.inlet_temperature_rise_kelvin()
                             : kDefaultInletTemperatureRiseKelvin;
-    check_fluid_at_inlet(inputs.lubricant, sump, rise, join_path(path, "lubricant"), violations);
+    check_fluid_at_inlet(*inputs.lubricant, sump, rise, join_path(path, "lubricant"), violations);
   }
   if (!gear_set.empty()) {
-    check_mesh_data(inputs.gear_set, asked.model_options(),
+    check_mesh_data(*inputs.gear_set, asked.model_options(),
                     join_path(path, "model_options.load_dependent_mesh_data"), violations);
   }
   if (violations.size() > before) return std::nullopt;
@@ -209,12 +210,12 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
 }
 
 Scene scene(const SimulationInputs& inputs) {
-  return {.lubricant = to_core(inputs.lubricant),
-          .gear_set = to_core(inputs.gear_set),
-          .roughness = roughness(inputs.surface),
-          .boundary = boundary_friction(inputs.surface),
-          .solid = solid(inputs.gear_set),
-          .vehicle = to_core(inputs.vehicle),
+  return {.lubricant = to_core(*inputs.lubricant),
+          .gear_set = to_core(*inputs.gear_set),
+          .roughness = roughness(*inputs.surface),
+          .boundary = boundary_friction(*inputs.surface),
+          .solid = solid(*inputs.gear_set),
+          .vehicle = to_core(*inputs.vehicle),
           .sump_temperature = inputs.effective.sump_temperature_celsius() + kZeroCelsius,
           .inlet_temperature_rise = inputs.effective.inlet_temperature_rise_kelvin(),
           .options = to_core(inputs.effective.model_options())};

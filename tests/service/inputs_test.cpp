@@ -30,9 +30,9 @@ SimulationInputs inputs_of(const v1::Simulation& simulation) {
 
 TEST(Inputs, DefaultsAreThoseOfTheContract) {
   const SimulationInputs inputs = inputs_of(point_simulation());
-  EXPECT_EQ(inputs.gear_set.name(), "gearSets/A");
-  EXPECT_EQ(inputs.surface.name(), "surfaces/run-in");
-  EXPECT_EQ(inputs.vehicle.name(), "vehicles/passenger-car");
+  EXPECT_EQ(inputs.gear_set->name(), "gearSets/A");
+  EXPECT_EQ(inputs.surface->name(), "surfaces/run-in");
+  EXPECT_EQ(inputs.vehicle->name(), "vehicles/passenger-car");
   const Scene physical = scene(inputs);
   EXPECT_EQ(physical.sump_temperature, 313.15);
   EXPECT_EQ(physical.inlet_temperature_rise, 20);
