@@ -296,7 +296,11 @@ class ContactsService final : public v1::Contacts::CallbackService, UnaryService
   }
 };
 
-class SimulationsService final : public v1::Simulations::CallbackService, UnaryService {
+/// The streams of bytes, see StreamReactor.
+using SimulationStreams = v1::Simulations::WithRawCallbackMethod_WatchSimulation<
+    v1::Simulations::WithRawCallbackMethod_ReadHistory<v1::Simulations::CallbackService>>;
+
+class SimulationsService final : public SimulationStreams, UnaryService {
  public:
   SimulationsService(Application& application, const TimeLimits& limits, LiveStreams& live)
       : UnaryService(application, limits), limits_(limits), live_(live), workers_(kWorkers) {}
@@ -327,20 +331,32 @@ class SimulationsService final : public v1::Simulations::CallbackService, UnaryS
                          v1::Simulation* response) override {
     return answer(context, response, [&] { return unpin_simulation(application_, *request); });
   }
-  grpc::ServerWriteReactor<v1::SimulationEvent>* WatchSimulation(
-      Context* context, const v1::WatchSimulationRequest* request) override {
-    return StreamReactor<v1::SimulationEvent>::start(
-        live_, *context, time_left(*context, limits_.stream), limits_.unread,
-        [&] { return watch_simulation(application_, *request); });
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchSimulation(
+      Context* context, const grpc::ByteBuffer* bytes) override {
+    return stream<v1::SimulationEvent>(context, bytes, watch_simulation);
   }
-  grpc::ServerWriteReactor<v1::ReadHistoryResponse>* ReadHistory(
-      Context* context, const v1::ReadHistoryRequest* request) override {
-    return StreamReactor<v1::ReadHistoryResponse>::start(
-        live_, *context, time_left(*context, limits_.stream), limits_.unread,
-        [&] { return read_history(application_, *request); });
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* ReadHistory(Context* context,
+                                                          const grpc::ByteBuffer* bytes) override {
+    return stream<v1::ReadHistoryResponse>(context, bytes, read_history);
   }
 
  private:
+  template <class Message, class Request>
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* stream(
+      Context* context, const grpc::ByteBuffer* bytes,
+      StreamOutcome<Message> (*open)(Application&, const Request&)) {
+    const auto opened = [&]() -> StreamOutcome<Message> {
+      grpc::ByteBuffer copy = *bytes;  // of the references only
+      Request request;
+      if (!grpc::SerializationTraits<Request>::Deserialize(&copy, &request).ok()) {
+        return invalid({{"", "the request cannot be read"}});
+      }
+      return open(application_, request);
+    };
+    return StreamReactor<Message>::start(live_, *context, time_left(*context, limits_.stream),
+                                         limits_.unread, opened);
+  }
+
   const TimeLimits limits_;
   LiveStreams& live_;
   Workers workers_;

@@ -2,12 +2,16 @@
 
 #include <zstd.h>
 
+#include <algorithm>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace tribodyn::server {
@@ -65,12 +69,46 @@ struct FreeContext {
   void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
-/// Its own for every thread, as making one takes longer than a block.
-ZSTD_DCtx* context() {
-  thread_local const std::unique_ptr<ZSTD_DCtx, FreeContext> kContext(ZSTD_createDCtx());
-  if (!kContext) throw std::bad_alloc();
-  return kContext.get();
-}
+/// What decompressing a block takes besides the block.
+struct Workspace {
+  std::unique_ptr<ZSTD_DCtx, FreeContext> context{ZSTD_createDCtx()};
+  std::vector<char> planes;
+};
+
+/// A few of them, lent to one thread at a time, as making one takes longer than a block and one for
+/// every thread that ever reads a history takes megabytes. Safe for concurrent access.
+class Workspaces {
+ public:
+  std::unique_ptr<Workspace> borrow() {
+    std::unique_lock lock(mutex_);
+    returned_.wait(lock, [this] { return !idle_.empty() || made_ < kMost; });
+    if (idle_.empty()) {
+      auto fresh = std::make_unique<Workspace>();
+      if (!fresh->context) throw std::bad_alloc();
+      ++made_;
+      return fresh;
+    }
+    auto out = std::move(idle_.back());
+    idle_.pop_back();
+    return out;
+  }
+
+  void give_back(std::unique_ptr<Workspace> workspace) {
+    {
+      const std::lock_guard lock(mutex_);
+      idle_.push_back(std::move(workspace));
+    }
+    returned_.notify_one();
+  }
+
+ private:
+  static constexpr int kMost = 4;
+
+  std::mutex mutex_;
+  std::condition_variable returned_;
+  std::vector<std::unique_ptr<Workspace>> idle_;  // guarded by mutex_
+  int made_ = 0;                                  // guarded by mutex_
+};
 
 }  // namespace
 
@@ -86,14 +124,16 @@ std::string compress_column(std::span<const double> values) {
 }
 
 void decompress_column(std::string_view compressed, std::span<double> values) {
-  thread_local std::vector<char> planes;
-  planes.resize(values.size_bytes());
-  const std::size_t size = ZSTD_decompressDCtx(context(), planes.data(), planes.size(),
-                                               compressed.data(), compressed.size());
-  if (ZSTD_isError(size) != 0 || size != planes.size()) {
-    throw std::runtime_error("a history column is damaged");
-  }
-  join_planes(planes.data(), values);
+  static Workspaces workspaces;
+  auto workspace = workspaces.borrow();
+  std::vector<char>& planes = workspace->planes;
+  planes.resize(std::max(planes.size(), values.size_bytes()));
+  const std::size_t size = ZSTD_decompressDCtx(
+      workspace->context.get(), planes.data(), planes.size(), compressed.data(), compressed.size());
+  const bool is_whole = ZSTD_isError(size) == 0 && size == values.size_bytes();
+  if (is_whole) join_planes(planes.data(), values);
+  workspaces.give_back(std::move(workspace));
+  if (!is_whole) throw std::runtime_error("a history column is damaged");
 }
 
 }  // namespace tribodyn::server
