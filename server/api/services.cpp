@@ -32,7 +32,7 @@ using Clock = std::chrono::system_clock;
 
 constexpr char kClientMetadata[] = "tribodyn-client";
 constexpr std::size_t kLongestClient = 100;
-constexpr int kWorkers = 32;  // as many writes as share a commit
+constexpr int kWorkers = 8;  // more only wait for the processors
 
 /// What its client and the server still allow of a call. A limit of nothing leaves nothing,
 /// whatever happens between two looks at the clock.
