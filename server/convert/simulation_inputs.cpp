@@ -171,9 +171,8 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
   }
 
   const auto find = [&]<class Resource>(std::shared_ptr<const Resource>* out,
-                                        const std::string& name,
-                                        const std::string& otherwise, const char* collection,
-                                        const char* field) {
+                                        const std::string& name, const std::string& otherwise,
+                                        const char* collection, const char* field) {
     auto found = find_resource<Resource>(lookup, name.empty() ? otherwise : name, collection,
                                          join_path(path, field), violations);
     if (!found) return std::string();

@@ -128,8 +128,8 @@ void decompress_column(std::string_view compressed, std::span<double> values) {
   auto workspace = workspaces.borrow();
   std::vector<char>& planes = workspace->planes;
   planes.resize(std::max(planes.size(), values.size_bytes()));
-  const std::size_t size = ZSTD_decompressDCtx(
-      workspace->context.get(), planes.data(), planes.size(), compressed.data(), compressed.size());
+  const std::size_t size = ZSTD_decompressDCtx(workspace->context.get(), planes.data(),
+                                               planes.size(), compressed.data(), compressed.size());
   const bool is_whole = ZSTD_isError(size) == 0 && size == values.size_bytes();
   if (is_whole) join_planes(planes.data(), values);
   workspaces.give_back(std::move(workspace));

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tribodyn::server {
 namespace {
@@ -10,8 +11,9 @@ namespace {
 constexpr auto kLookAround = std::chrono::milliseconds(20);
 constexpr double kShareOfOne = 0.75;  // of the limits, for one client
 constexpr double kWorthAsking = 0.1;
-constexpr double kLeastRetry = 1;      // s
-constexpr double kLongestRetry = 600;  // s
+constexpr double kLeastRetry = 1;         // s
+constexpr double kLongestRetry = 600;     // s
+constexpr double kServiceSeconds = 2e-3;  // of a processor, for what is done around a small job
 
 }  // namespace
 
@@ -54,14 +56,27 @@ Admission JobQueue::reserve(const QueuedJob& job) {
   if (stopping_ || !has_room) {
     if (own.jobs == 0) reserved_of_.erase(job.client);
     // Until a tenth of what waits is done.
-    const double seconds = kWorthAsking * all_seconds / thread_count_;
-    return {false, static_cast<int>(std::clamp(seconds, kLeastRetry, kLongestRetry))};
+    return {false, turn_away(job, kWorthAsking * all_seconds / thread_count_)};
   }
   for (Reserved* each : {&own, &reserved_}) {
     ++each->jobs;
     each->cost_seconds += job.cost_seconds;
   }
   return {true, 0};
+}
+
+/// When the next job of the client may come [s].
+int JobQueue::turn_away(const QueuedJob& job, double least_seconds) {
+  using std::chrono::duration;
+  using std::chrono::steady_clock;
+  const auto now = steady_clock::now();
+  std::erase_if(turns_, [now](const auto& each) { return each.second < now; });
+  steady_clock::time_point& turn = turns_[job.client];
+  const double seconds = std::clamp(std::max(least_seconds, duration<double>(turn - now).count()),
+                                    kLeastRetry, kLongestRetry);
+  const double work = std::max(job.cost_seconds, kServiceSeconds) / thread_count_;
+  turn = now + std::chrono::duration_cast<steady_clock::duration>(duration<double>(seconds + work));
+  return static_cast<int>(std::lround(seconds));
 }
 
 void JobQueue::give_back(const QueuedJob& job) {

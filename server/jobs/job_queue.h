@@ -41,7 +41,9 @@ struct QueueLimits {
   double cost_seconds = 360'000;  ///< estimated, of one processor
 };
 
-/// Whether a job has a place, and when it is worth asking again if not.
+/// Whether a job has a place, and when it is worth asking again if not: the jobs of a client that
+/// were turned away one after another are told to come one after another, as fast as they can be
+/// worked through, so that they do not all come back at once.
 struct Admission {
   bool is_admitted = false;
   int retry_seconds = 0;
@@ -100,6 +102,7 @@ class JobQueue {
   void run();
   void enqueue(const QueuedJob& job);
   void give_back(const QueuedJob& job);
+  int turn_away(const QueuedJob& job, double least_seconds);
   bool only_interactive() const;
   bool may_begin() const;
 
@@ -115,7 +118,8 @@ class JobQueue {
   int running_bulk_ = 0;                                         // guarded by mutex_
   Reserved reserved_;                                            // guarded by mutex_
   std::map<std::string, Reserved> reserved_of_;                  // guarded by mutex_; by client
-  bool stopping_ = false;                                        // guarded by mutex_
+  std::map<std::string, std::chrono::steady_clock::time_point> turns_;  // guarded by mutex_
+  bool stopping_ = false;                                               // guarded by mutex_
   std::vector<std::thread> threads_;
 };
 

@@ -54,8 +54,8 @@ CompressedColumn compress(const StoredColumn& column) {
 
 void insert_history_column(Connection& db, std::int64_t result, std::int64_t position,
                            const CompressedColumn& column) {
-  Prepared insert(
-      db, "INSERT INTO history_columns (result, position, name, rows) VALUES (?, ?, ?, ?)");
+  Prepared insert(db,
+                  "INSERT INTO history_columns (result, position, name, rows) VALUES (?, ?, ?, ?)");
   insert.bind(1, result);
   insert.bind(2, position);
   insert.bind(3, column.name);
@@ -77,8 +77,8 @@ void insert_history_column(Connection& db, std::int64_t result, std::int64_t pos
 }
 
 HistoryShape query_history_shape(Connection& db, std::int64_t result) {
-  Prepared query(
-      db, "SELECT id, name, rows FROM history_columns WHERE result = ? ORDER BY position");
+  Prepared query(db,
+                 "SELECT id, name, rows FROM history_columns WHERE result = ? ORDER BY position");
   query.bind(1, result);
   HistoryShape shape;
   while (query.executeStep()) {
@@ -96,8 +96,8 @@ bool query_history(Connection& db, std::int64_t column, int level, std::int64_t 
   const std::int64_t size = level_size(level, rows_of(db, column));
   if (start + count > size) return false;
   Prepared query(db,
-                          "SELECT data FROM history_blocks WHERE history_column = ? AND level = ? "
-                          "AND number BETWEEN ? AND ? ORDER BY number");
+                 "SELECT data FROM history_blocks WHERE history_column = ? AND level = ? "
+                 "AND number BETWEEN ? AND ? ORDER BY number");
   query.bind(1, column);
   query.bind(2, level);
   query.bind(3, start / kHistoryBlock);

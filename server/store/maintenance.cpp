@@ -162,8 +162,7 @@ void check_properties(Connection& db, Problems& problems) {
   }
 }
 
-std::optional<std::string> revision_body(Connection& db, const std::string& name,
-                                         int revision) {
+std::optional<std::string> revision_body(Connection& db, const std::string& name, int revision) {
   SQLite::Statement query(db,
                           "SELECT v.body FROM revisions v JOIN resources r ON r.id = v.resource "
                           "WHERE r.name = ? AND v.revision = ?");

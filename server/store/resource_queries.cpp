@@ -82,8 +82,7 @@ bool has_index(const Restriction& restriction) {
 }
 
 /// How many rows a restriction selects; kFew stands for more.
-int count_up_to_few(Connection& db, const std::string& collection,
-                    const Restriction& restriction) {
+int count_up_to_few(Connection& db, const std::string& collection, const Restriction& restriction) {
   const Clause rows = selected(collection, restriction);
   SQLite::Statement query(db, "SELECT count(*) FROM (SELECT 1 FROM properties d WHERE" + rows.sql +
                                   " LIMIT " + std::to_string(kFew) + ")");

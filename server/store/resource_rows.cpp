@@ -23,10 +23,9 @@ void insert_properties(Connection& db, const StoredResource& resource) {
 
 /// Adds the row and makes it the present one.
 void add_revision(Connection& db, const StoredResource& added) {
-  Prepared insert(
-      db,
-      "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
-      "VALUES (?, ?, ?, ?, ?)");
+  Prepared insert(db,
+                  "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
+                  "VALUES (?, ?, ?, ?, ?)");
   insert.bind(1, added.id);
   insert.bind(2, added.revision);
   insert.bind(3, added.revision_create_time);
@@ -57,17 +56,16 @@ bool is_taken(Connection& db, const std::string& name) {
 
 bool is_unchanged(Connection& db, const StoredResource& present) {
   Prepared unchanged(db,
-                              "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
-                              "WHERE r.id = ? AND v.revision = ? AND "
-                              "(r.delete_time IS NULL) = ?");
+                     "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
+                     "WHERE r.id = ? AND v.revision = ? AND "
+                     "(r.delete_time IS NULL) = ?");
   unchanged.bind(1, present.id);
   unchanged.bind(2, present.revision);
   unchanged.bind(3, present.delete_time ? 0 : 1);
   return unchanged.executeStep();
 }
 
-StoredResource insert_resource(Connection& db, const NewResource& resource,
-                               Microseconds now) {
+StoredResource insert_resource(Connection& db, const NewResource& resource, Microseconds now) {
   Prepared insert(
       db, "INSERT INTO resources (name, collection, present, create_time) VALUES (?, ?, 0, ?)");
   insert.bind(1, resource.name);

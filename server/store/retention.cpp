@@ -21,9 +21,9 @@ void run(Connection& db, const char* sql, std::int64_t row) {
 
 int remove_oldest(Connection& db, Microseconds ended_by, int limit) {
   Prepared query(db,
-                          "SELECT id, coalesce(result, 0), coalesce(ledger, 0) FROM simulations "
-                          "WHERE state >= 3 AND pinned = 0 AND end_time <= ? "
-                          "ORDER BY end_time LIMIT ?");
+                 "SELECT id, coalesce(result, 0), coalesce(ledger, 0) FROM simulations "
+                 "WHERE state >= 3 AND pinned = 0 AND end_time <= ? "
+                 "ORDER BY end_time LIMIT ?");
   query.bind(1, ended_by);
   query.bind(2, limit);
   std::vector<Row> rows;

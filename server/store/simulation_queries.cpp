@@ -40,8 +40,7 @@ std::string operator_of(Comparison comparison) {
 }
 
 /// Whether at most a few simulations bear a label.
-bool is_rare(Connection& db, const std::string& where,
-             const std::vector<PropertyValue>& values) {
+bool is_rare(Connection& db, const std::string& where, const std::vector<PropertyValue>& values) {
   SQLite::Statement count(
       db, "SELECT count(*) FROM (SELECT 1 FROM simulation_labels WHERE " + where + " LIMIT ?)");
   int index = 0;

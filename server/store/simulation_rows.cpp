@@ -42,10 +42,9 @@ void bind_text_or_null(SQLite::Statement& statement, int index, const std::strin
 
 /// Row of "lubricants/1@2" in revisions.
 std::int64_t revision_row(Connection& db, const std::string& name) {
-  Prepared query(
-      db,
-      "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
-      "name = substr(?1, 1, instr(?1, '@') - 1)");
+  Prepared query(db,
+                 "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
+                 "name = substr(?1, 1, instr(?1, '@') - 1)");
   query.bind(1, name);
   if (!query.executeStep()) throw SQLite::Exception("no such revision");
   return query.getColumn(0).getInt64();
@@ -53,9 +52,9 @@ std::int64_t revision_row(Connection& db, const std::string& name) {
 
 std::optional<std::int64_t> result_row(Connection& db, const ResultKey& key) {
   Prepared query(db,
-                          "SELECT id FROM results "
-                          "WHERE input_hash = ? AND model_version = ? AND platform = ? AND "
-                          "platform <> ''");
+                 "SELECT id FROM results "
+                 "WHERE input_hash = ? AND model_version = ? AND platform = ? AND "
+                 "platform <> ''");
   query.bind(1, key.input_hash);
   query.bind(2, key.model_version);
   query.bind(3, key.platform);
@@ -123,10 +122,9 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
 
 std::int64_t insert_result(Connection& db, const NewResult& result,
                            const std::vector<CompressedColumn>& history, Microseconds now) {
-  Prepared insert(
-      db,
-      "INSERT INTO results (input_hash, model_version, platform, create_time, body) "
-      "VALUES (?, ?, ?, ?, ?)");
+  Prepared insert(db,
+                  "INSERT INTO results (input_hash, model_version, platform, create_time, body) "
+                  "VALUES (?, ?, ?, ?, ?)");
   insert.bind(1, result.key.input_hash);
   insert.bind(2, result.key.model_version);
   insert.bind(3, result.key.platform);
@@ -247,8 +245,8 @@ std::optional<StoredEvent> change_state(Connection& db, const StateChange& chang
 std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
                                             std::int64_t after_sequence) {
   Prepared query(db,
-                          "SELECT sequence, time, state, attempt, reason FROM events "
-                          "WHERE simulation = ? AND sequence > ? ORDER BY sequence LIMIT 1");
+                 "SELECT sequence, time, state, attempt, reason FROM events "
+                 "WHERE simulation = ? AND sequence > ? ORDER BY sequence LIMIT 1");
   query.bind(1, id);
   query.bind(2, after_sequence);
   if (!query.executeStep()) return std::nullopt;
@@ -276,8 +274,8 @@ std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Mic
                            .cache_hit = result.has_value()});
 }
 
-std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id,
-                                             Microseconds now, const NewResult& result,
+std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
+                                             const NewResult& result,
                                              const std::vector<CompressedColumn>& history) {
   std::optional<std::int64_t> row = result_row(db, result.key);
   if (row && !is_same_result(db, *row, result)) {
@@ -300,8 +298,8 @@ std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id,
 
 std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
   std::vector<std::pair<std::int64_t, int>> running;
-  Prepared find(
-      db, "SELECT id, lost_attempts FROM simulations WHERE state IN (1, 2) AND state = 2");
+  Prepared find(db,
+                "SELECT id, lost_attempts FROM simulations WHERE state IN (1, 2) AND state = 2");
   while (find.executeStep()) {
     running.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
   }
@@ -317,10 +315,9 @@ std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
     change_state(db, change);
   }
   std::vector<Waiting> waiting;
-  Prepared query(
-      db,
-      "SELECT id, lost_attempts, deadline_time, client, cost_seconds FROM simulations "
-      "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
+  Prepared query(db,
+                 "SELECT id, lost_attempts, deadline_time, client, cost_seconds FROM simulations "
+                 "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
   while (query.executeStep()) {
     waiting.push_back({query.getColumn(0).getInt64(), query.getColumn(1).getInt(),
                        time_of(query.getColumn(2)), query.getColumn(3).getString(),

@@ -49,8 +49,8 @@ std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
 // As Store::mark_running, mark_succeeded and requeue_unfinished.
 std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
                                             const ResultKey& key);
-std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id,
-                                             Microseconds now, const NewResult& result,
+std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
+                                             const NewResult& result,
                                              const std::vector<CompressedColumn>& history);
 std::vector<Waiting> requeue_lost(Connection& db, Microseconds now);
 

@@ -134,9 +134,9 @@ void Store::add_resources(const std::vector<NewResource>& resources, Microsecond
 
 std::optional<StoredResource> Store::resource(const std::string& name) {
   return read([&](Connection& db) -> std::optional<StoredResource> {
-    Prepared query(
-        db, std::string(kResourceColumns) +
-                "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?");
+    Prepared query(db,
+                   std::string(kResourceColumns) +
+                       "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?");
     query.bind(1, name);
     if (!query.executeStep()) return std::nullopt;
     return stored_resource(query);
@@ -146,8 +146,8 @@ std::optional<StoredResource> Store::resource(const std::string& name) {
 std::optional<StoredResource> Store::revision(const std::string& name, int revision) {
   return read([&](Connection& db) -> std::optional<StoredResource> {
     Prepared query(db, std::string(kResourceColumns) +
-                                    "FROM resources r JOIN revisions v ON v.resource = r.id "
-                                    "WHERE r.name = ? AND v.revision = ?");
+                           "FROM resources r JOIN revisions v ON v.resource = r.id "
+                           "WHERE r.name = ? AND v.revision = ?");
     query.bind(1, name);
     query.bind(2, revision);
     if (!query.executeStep()) return std::nullopt;
@@ -163,9 +163,9 @@ Page<StoredResource> Store::revisions(const std::string& name, int before, int l
                                       std::size_t byte_limit) {
   return read([&](Connection& db) {
     Prepared query(db, std::string(kResourceColumns) +
-                                    "FROM resources r JOIN revisions v ON v.resource = r.id "
-                                    "WHERE r.name = ? AND v.revision < ? "
-                                    "ORDER BY v.revision DESC LIMIT ?");
+                           "FROM resources r JOIN revisions v ON v.resource = r.id "
+                           "WHERE r.name = ? AND v.revision < ? "
+                           "ORDER BY v.revision DESC LIMIT ?");
     query.bind(1, name);
     query.bind(2, before == 0 ? std::numeric_limits<int>::max() : before);
     query.bind(3, limit + 1);
@@ -231,8 +231,7 @@ bool Store::undelete_resource(const StoredResource& present) {
 
 Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait) {
   Added added;
-  write_together(
-      [&](Connection& db) { added = insert_simulation(db, simulation, now, may_wait); });
+  write_together([&](Connection& db) { added = insert_simulation(db, simulation, now, may_wait); });
   return added;
 }
 
@@ -296,8 +295,7 @@ std::optional<StoredEvent> Store::change_simulation(const Change& change) {
 
 std::optional<StoredEvent> Store::mark_running(std::int64_t id, Microseconds now,
                                                const ResultKey& key) {
-  return change_simulation(
-      [&](Connection& db) { return start_simulation(db, id, now, key); });
+  return change_simulation([&](Connection& db) { return start_simulation(db, id, now, key); });
 }
 
 std::optional<StoredEvent> Store::mark_queued(std::int64_t id, Microseconds now,
@@ -346,9 +344,9 @@ std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
 std::optional<std::string> Store::result(std::int64_t id) {
   return read([&](Connection& db) -> std::optional<std::string> {
     Prepared query(db,
-                            "SELECT r.body, l.body FROM simulations s "
-                            "JOIN results r ON r.id = s.result "
-                            "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
+                   "SELECT r.body, l.body FROM simulations s "
+                   "JOIN results r ON r.id = s.result "
+                   "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
     query.bind(1, id);
     if (!query.executeStep()) return std::nullopt;
     // The bytes of two messages in a row are those of both merged.
@@ -367,8 +365,7 @@ HistoryShape Store::history_shape(std::int64_t id) {
 
 bool Store::read_history(std::int64_t column, int level, std::int64_t start,
                          std::span<double> values) {
-  return read(
-      [&](Connection& db) { return query_history(db, column, level, start, values); });
+  return read([&](Connection& db) { return query_history(db, column, level, start, values); });
 }
 
 std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,
