@@ -1,5 +1,7 @@
 #include "tests/benchmark/load_client.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -83,6 +85,12 @@ ProcessFigures process_figures(int process_id) {
     const std::string value = line.substr(line.find(':') + 1);
     if (line.starts_with("VmRSS:")) out.resident_bytes = 1024 * std::stod(value);
     if (line.starts_with("Threads:")) out.threads = std::stoi(value);
+  }
+  std::ifstream stat(folder + "/stat");
+  std::string word;
+  for (int field = 1; field <= 15 && stat >> word; ++field) {
+    if (field < 14) continue;  // clock ticks in user mode, then in the kernel
+    out.processor_seconds += std::stod(word) / static_cast<double>(sysconf(_SC_CLK_TCK));
   }
   std::error_code ignored;
   for ([[maybe_unused]] const auto& each :

@@ -28,6 +28,7 @@ Latencies closed_loop(int under_way, int count, const StartRequest& start);
 /// What the system says of a process.
 struct ProcessFigures {
   double resident_bytes = 0;
+  double processor_seconds = 0;  ///< of all its threads since it began
   int threads = 0;
   int descriptors = 0;
 };

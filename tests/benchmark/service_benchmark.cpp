@@ -1,6 +1,7 @@
 // The server under load: what it adds to an empty gRPC method, a bare commit, an empty stream and
 // the core's own time. Figures that are compared are of one run on one machine. usage:
-// service_benchmark [RESULTS.json]      default: build/benchmark/results.json
+// service_benchmark [RESULTS.json [PART...]]      default: build/benchmark/results.json, all parts:
+// requests, lists, histories, watchers, overload, refusals, overhead, estimates
 #include <SQLiteCpp/Database.h>
 #include <fmt/format.h>
 #include <grpcpp/generic/generic_stub.h>
@@ -8,15 +9,23 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <thread>
 
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "server/convert/cost_estimate.h"
 #include "server/convert/simulation_inputs.h"
 #include "server/jobs/compute.h"
+#include "server/jobs/platform.h"
 #include "tests/benchmark/load_client.h"
 #include "tests/benchmark/measurements.h"
 #include "tests/service/raw_client.h"
@@ -63,13 +72,13 @@ class Server {
   const std::string& address() const { return address_; }
   int id() const { return server_of(database()); }
   Stub& stub() const { return *stub_; }
-  std::unique_ptr<Stub> another_stub() const {
+  std::shared_ptr<grpc::Channel> another_channel() const {
     grpc::ChannelArguments own;  // a connection of its own
     own.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
     own.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
-    return v1::Simulations::NewStub(
-        grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), own));
+    return grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), own);
   }
+  std::unique_ptr<Stub> another_stub() const { return v1::Simulations::NewStub(another_channel()); }
 
  private:
   TemporaryFolder folder_;
@@ -383,72 +392,183 @@ void measure_watchers(std::vector<Measurement>& out) {
   out.push_back({"latest_of_950_watchers_hears_an_event", 1e3 * latest, "ms", 100});
 }
 
-void measure_overload(std::vector<Measurement>& out) {
-  constexpr int kSubmissions = 10'000;
-  const Server server;
-  const auto bulk = server.another_stub();
-  const auto single = server.another_stub();
-  RawClient health(connect(server.address()));
-  std::atomic<bool> stop = false;
-  double slowest_health = 0;
-  std::thread checker([&] {
-    while (!stop) {
+/// Asks for the server's health all the time, over a connection of its own.
+class HealthProbe {
+ public:
+  explicit HealthProbe(const Server& server)
+      : client_(server.another_channel()), thread_([this] { ask(); }) {}
+  /// The longest that an answer took [s].
+  double stop() {
+    stop_ = true;
+    thread_.join();
+    return slowest_;
+  }
+
+ private:
+  void ask() {
+    while (!stop_) {
       const auto begin = Clock::now();
-      health.call("/grpc.health.v1.Health/Check", "");
-      slowest_health = std::max(slowest_health, seconds_since(begin));
+      client_.call("/grpc.health.v1.Health/Check", "");
+      slowest_ = std::max(slowest_, seconds_since(begin));
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
-  });
-  std::atomic<int> unexplained = 0;
-  std::atomic<int> accepted = 0;
-  std::atomic<int> answered = 0;
-  const auto waiting = [&](const std::string& filter) {
-    grpc::ClientContext context;
-    v1::ListSimulationsRequest request;
-    request.set_filter(filter);
-    request.set_page_size(1000);
-    v1::ListSimulationsResponse page;
-    server.stub().ListSimulations(&context, request, &page);
-    return page.simulations_size();
-  };
+  }
+
+  RawClient client_;
+  std::atomic<bool> stop_ = false;
+  double slowest_ = 0;
+  std::thread thread_;
+};
+
+/// How many simulations a filter finds, at most `limit`.
+int count(Stub& stub, const std::string& filter, int limit) {
+  grpc::ClientContext context;
+  v1::ListSimulationsRequest request;
+  request.set_filter(filter);
+  request.set_page_size(limit);
+  v1::ListSimulationsResponse page;
+  stub.ListSimulations(&context, request, &page);
+  return page.simulations_size();
+}
+
+bool all_end(Stub& stub) {
+  return eventually(
+      [&] { return count(stub, "state = QUEUED", 1) + count(stub, "state = RUNNING", 1) == 0; });
+}
+
+/// When a request that was turned away is to come again; nothing for any other answer.
+std::optional<std::chrono::seconds> retry_time(const grpc::Status& status) {
+  google::rpc::Status details;
+  if (status.error_code() != grpc::StatusCode::RESOURCE_EXHAUSTED ||
+      !details.ParseFromString(status.error_details())) {
+    return std::nullopt;
+  }
+  for (const auto& any : details.details()) {
+    google::rpc::RetryInfo info;
+    if (any.UnpackTo(&info)) return seconds(info.retry_delay().seconds());
+  }
+  return std::nullopt;
+}
+
+/// Submits points all at once, and those that are turned away again when they are told to come.
+class Bulk {
+ public:
+  Bulk(Stub& stub, int count) : stub_(stub), count_(count) {
+    for (int i = 0; i < count; ++i) due_.emplace(Clock::now(), i);
+  }
+
+  /// Returns when all are accepted, or refused for good.
+  void run() {
+    std::unique_lock lock(mutex_);
+    while (accepted_ + unexplained_ < count_) {
+      if (due_.empty()) {
+        changed_.wait(lock);
+        continue;
+      }
+      const auto [time, number] = *due_.begin();
+      if (time > Clock::now()) {
+        changed_.wait_until(lock, time);
+        continue;
+      }
+      due_.erase(due_.begin());
+      lock.unlock();
+      submit(number);
+      lock.lock();
+    }
+  }
+
+  int accepted() const {
+    const std::lock_guard lock(mutex_);
+    return accepted_;
+  }
+  int turned_away() const { return turned_away_; }  ///< times; after run()
+  int unexplained() const { return unexplained_; }  ///< after run()
+
+ private:
+  void submit(int number) {
+    const auto call = std::make_shared<Call<v1::CreateSimulationRequest, v1::Simulation>>();
+    *call->request.mutable_simulation() = point_at(20 + 1e-2 * number);
+    stub_.async()->CreateSimulation(
+        &call->context, &call->request, &call->response,
+        [this, call, number](const grpc::Status& status) { note(number, status); });
+  }
+
+  void note(int number, const grpc::Status& status) {
+    const auto retry = retry_time(status);
+    const std::lock_guard lock(mutex_);
+    if (status.ok()) {
+      ++accepted_;
+    } else if (retry) {
+      ++turned_away_;
+      due_.emplace(Clock::now() + *retry, number);
+    } else {
+      ++unexplained_;
+    }
+    changed_.notify_one();
+  }
+
+  Stub& stub_;
+  const int count_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::multimap<Clock::time_point, int> due_;  // guarded by mutex_
+  int accepted_ = 0;                           // guarded by mutex_
+  int turned_away_ = 0;                        // guarded by mutex_
+  int unexplained_ = 0;                        // guarded by mutex_
+};
+
+constexpr int kSubmissions = 10'000;
+
+/// All find room.
+void measure_overload(std::vector<Measurement>& out) {
+  const Server server;
+  const auto many = server.another_stub();
+  const auto single = server.another_stub();
+  HealthProbe health(server);
+  const double processor_before = process_figures(server.id()).processor_seconds;
   const auto begin = Clock::now();
+  Bulk bulk(*many, kSubmissions);
   double curve_seconds = 0;
   int waiting_at_the_end_of_the_curve = 0;
   std::thread curve([&] {
-    eventually([&] { return answered > kSubmissions / 2; });
+    eventually([&] { return bulk.accepted() > kSubmissions / 2; });
     const auto from = Clock::now();
     wait_for(*single, create(*single, curve_simulation()).name());
     curve_seconds = seconds_since(from);
-    waiting_at_the_end_of_the_curve = waiting("state = QUEUED");
+    waiting_at_the_end_of_the_curve = count(*single, "state = QUEUED", 1000);
   });
-  for (int i = 0; i < kSubmissions; ++i) {
-    const auto call = std::make_shared<Call<v1::CreateSimulationRequest, v1::Simulation>>();
-    *call->request.mutable_simulation() = point_at(20 + 1e-2 * i);
-    bulk->async()->CreateSimulation(
-        &call->context, &call->request, &call->response, [&, call](const grpc::Status& status) {
-          const bool is_turned_away = status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED &&
-                                      status.error_details().find("RetryInfo") != std::string::npos;
-          if (status.ok()) ++accepted;
-          if (!status.ok() && !is_turned_away) ++unexplained;
-          ++answered;
-        });
-  }
-  eventually([&] { return answered == kSubmissions; });
+  bulk.run();
   curve.join();
-  const bool all_ended =
-      eventually([&] { return waiting("state = QUEUED") + waiting("state = RUNNING") == 0; });
+  const bool is_done = all_end(server.stub());
   const double all_seconds = seconds_since(begin);
-  stop = true;
-  checker.join();
-  const int failed = waiting("state = FAILED");
-  out.push_back({"overload_submissions_neither_accepted_nor_told_when",
-                 static_cast<double>(unexplained + (all_ended ? 0 : 1) + failed), "-", 0});
-  out.push_back({"overload_submissions_accepted", static_cast<double>(accepted), "-", {}});
-  out.push_back({"overload_slowest_health_check", 1e3 * slowest_health, "ms", 50});
+  const double processor = process_figures(server.id()).processor_seconds - processor_before;
+  const int lost = bulk.unexplained() + (is_done ? 0 : 1) + count(*single, "state = FAILED", 1000);
+  out.push_back(
+      {"overload_submissions_neither_accepted_nor_told_when", static_cast<double>(lost), "-", 0});
+  out.push_back({"overload_slowest_health_check", 1e3 * health.stop(), "ms", 50});
   out.push_back({"overload_bulk_waiting_when_the_curve_ends",
-                 static_cast<double>(waiting_at_the_end_of_the_curve), "at least", 1, false});
+                 static_cast<double>(waiting_at_the_end_of_the_curve), "jobs", 1, false});
   out.push_back({"overload_curve", curve_seconds, "s", {}});
   out.push_back({"overload_all", all_seconds, "s", {}});
+  out.push_back({"processor_time_of_a_point_of_its_own", 1e3 * processor / kSubmissions, "ms", {}});
+}
+
+/// Most are turned away and come again when they are told to.
+void measure_refusals(std::vector<Measurement>& out) {
+  const Server server({"--waiting-simulations", "1000"});
+  const auto many = server.another_stub();
+  HealthProbe health(server);
+  const auto begin = Clock::now();
+  Bulk bulk(*many, kSubmissions);
+  bulk.run();
+  const bool is_done = all_end(server.stub());
+  const int lost =
+      bulk.unexplained() + (is_done ? 0 : 1) + count(server.stub(), "state = FAILED", 1000);
+  out.push_back({"refusals_that_said_when_to_come", static_cast<double>(bulk.turned_away()),
+                 "refusals", 1, false});
+  out.push_back({"refused_submissions_not_finished_in_the_end", static_cast<double>(lost), "-", 0});
+  out.push_back({"refusals_slowest_health_check", 1e3 * health.stop(), "ms", 50});
+  out.push_back({"refusals_all", seconds_since(begin), "s", {}});
 }
 
 /// Ten curves of a thousand points.
@@ -499,6 +619,50 @@ void measure_overhead(std::vector<Measurement>& out) {
   out.push_back({"service_for_10000_points", median(times), "s", {}});
 }
 
+struct EstimatedCase {
+  const char* name;
+  v1::Simulation simulation;
+};
+
+std::vector<EstimatedCase> estimated_cases() {
+  std::vector<EstimatedCase> out = {
+      {"smooth_point", point_at(100)}, {"impacting_point", point_at(40)},
+      {"sharp_point", point_at(65)},   {"quasi_static_point", point_at(65)},
+      {"marched_point", point_at(65)}, {"sharply_marched_point", point_at(65)},
+      {"history", point_at(65)},       {"curve", curve_simulation()},
+      {"long_curve", long_curve(0)}};
+  out[2].simulation.mutable_solver_options()->set_tolerance(1e-6);
+  out[3].simulation.mutable_operating_point()->set_model(v1::QUASI_STATIC);
+  out[4].simulation.mutable_solver_options()->set_method(v1::MARCH);
+  out[5].simulation.mutable_solver_options()->set_method(v1::MARCH);
+  out[5].simulation.mutable_solver_options()->set_relative_tolerance(1e-9);
+  v1::HistoryRequest* history = out[6].simulation.mutable_operating_point()->mutable_history();
+  history->add_columns("mesh_force_newtons");
+  history->set_mesh_cycles(10);
+  history->set_samples_per_mesh_cycle(10'000);
+  return out;
+}
+
+/// Of the core's time for a simulation, over its estimate.
+void measure_estimates(std::vector<Measurement>& out) {
+  double worst = 1;
+  for (const auto& [name, simulation] : estimated_cases()) {
+    Violations violations;
+    const auto inputs = read_simulation(simulation, seed_lookup(), "simulation", violations);
+    if (!inputs) throw std::runtime_error(violations.front().description);
+    std::vector<double> times;
+    for (int run = 0; run < kRuns; ++run) {
+      const auto begin = Clock::now();
+      compute(*inputs, result_key(*inputs), {}, [](double, const StageText&) { return true; });
+      times.push_back(seconds_since(begin));
+    }
+    const double ratio = median(times) / estimate_cost(inputs->effective).processor_seconds();
+    worst = std::max({worst, ratio, 1 / ratio});
+    out.push_back({fmt::format("time_over_estimate_of_{}", name), ratio, "-", {}});
+  }
+  out.push_back({"worst_factor_of_an_estimate", worst, "-", 3});
+}
+
 }  // namespace
 }  // namespace tribodyn::server
 
@@ -508,7 +672,8 @@ int main(int argc, char** argv) {
   const std::vector<std::pair<std::string, Measure>> parts = {
       {"requests", measure_requests},   {"lists", measure_lists},
       {"histories", measure_histories}, {"watchers", measure_watchers},
-      {"overload", measure_overload},   {"overhead", measure_overhead}};
+      {"overload", measure_overload},   {"refusals", measure_refusals},
+      {"overhead", measure_overhead},   {"estimates", measure_estimates}};
   const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
   const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
   for (const auto& [name, measure] : parts) {

@@ -1,4 +1,5 @@
 // The client library against a real tribodynd on a free port of loopback.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tribodyn/client/connection.h>
 #include <unistd.h>
@@ -6,6 +7,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "client/cpp/commands/help_topics.h"
 #include "client/cpp/resources/kind.h"
@@ -238,6 +241,45 @@ TEST(LibraryAlone, AServerThatIsNotThere) {
   } catch (const ServiceError& error) {
     EXPECT_EQ(error.kind(), ServiceError::Kind::kCannotConnect);
   }
+}
+
+v1::Simulation marched_point(double speed_kilometers_per_hour) {
+  v1::Simulation out;
+  out.set_lubricant("lubricants/1");
+  auto* point = out.mutable_operating_point();
+  point->mutable_cruise()->set_speed_kilometers_per_hour(speed_kilometers_per_hour);
+  out.mutable_solver_options()->set_method(v1::MARCH);
+  return out;
+}
+
+TEST(TurnedAway, WhoComesAgainWhenToldIsServedInTheEnd) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                       ("tribodyn_turned_away_test." + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  server::ServerProcess process(
+      {"--listen", "127.0.0.1:0", "--database", folder / "db.sqlite", "--port-file",
+       folder / "port", "--waiting-simulations", "4", "--threads", "1"},
+      folder / "log");
+  const std::string address = server::wait_for_address(folder / "port", process);
+  ASSERT_FALSE(address.empty()) << process.log();
+  constexpr int kClients = 16;
+  std::vector<v1::Simulation::State> states(kClients);
+  std::vector<std::thread> clients;
+  for (int i = 0; i < kClients; ++i) {
+    clients.emplace_back([&, i] {
+      Connection connection(address, std::chrono::seconds(120));
+      try {
+        const auto name = connection.create_simulation(marched_point(40 + i)).name();
+        states[i] = connection.wait_for_end(name).state();
+      } catch (const ServiceError& error) {
+        ADD_FAILURE() << error.what();
+      }
+    });
+  }
+  for (std::thread& client : clients) client.join();
+  EXPECT_THAT(states, testing::Each(v1::Simulation::SUCCEEDED));
+  EXPECT_THAT(process.log(), testing::HasSubstr("event=simulation_not_added"));
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace
