@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <stdexcept>
@@ -26,6 +27,15 @@ SimulationInputs inputs_of(const v1::Simulation& simulation) {
   auto inputs = read_simulation(simulation, seed_lookup(), "simulation", violations);
   if (!inputs) throw std::runtime_error(violations.front().description);
   return *inputs;
+}
+
+/// A copy of what is shared, with a change.
+template <class Resource, class Change>
+std::shared_ptr<const Resource> changed(const std::shared_ptr<const Resource>& resource,
+                                        const Change& change) {
+  auto copy = std::make_shared<Resource>(*resource);
+  change(*copy);
+  return copy;
 }
 
 TEST(Inputs, DefaultsAreThoseOfTheContract) {
@@ -103,18 +113,24 @@ TEST(Hash, DependsOnValuesNotOnWhatTheyAreCalled) {
   EXPECT_EQ(hash.size(), 64U);
   EXPECT_EQ(hash, input_hash(inputs_of(point_simulation())));
   SimulationInputs same = inputs;
-  same.lubricant.set_name("lubricants/other");
-  same.lubricant.set_display_name("other");
-  same.lubricant.set_description("other");
-  same.lubricant.clear_provenance();
+  same.lubricant = changed(inputs.lubricant, [](v1::Lubricant& fluid) {
+    fluid.set_name("lubricants/other");
+    fluid.set_display_name("other");
+    fluid.set_description("other");
+    fluid.clear_provenance();
+  });
   same.effective.set_display_name("other");
   same.effective.set_lubricant("lubricants/other");
   EXPECT_EQ(hash, input_hash(same));
   SimulationInputs other = inputs;
-  other.lubricant.set_thermal_conductivity_watts_per_metre_kelvin(std::nextafter(0.154, 1));
+  other.lubricant = changed(inputs.lubricant, [](v1::Lubricant& fluid) {
+    fluid.set_thermal_conductivity_watts_per_metre_kelvin(std::nextafter(0.154, 1));
+  });
   EXPECT_NE(hash, input_hash(other));
   other = inputs;
-  other.gear_set.mutable_flank_slots(1)->set_load_share(40, 0.5);
+  other.gear_set = changed(inputs.gear_set, [](v1::GearSet& set) {
+    set.mutable_flank_slots(1)->set_load_share(40, 0.5);
+  });
   EXPECT_NE(hash, input_hash(other));
   for (const SimulationInputs& each : {inputs, same, other, inputs}) {
     EXPECT_EQ(input_hash(each), sha256(canonical_inputs(each))) << "whatever is kept of it";
@@ -151,6 +167,18 @@ TEST(Hash, CanonicalTextNamesEveryValueWithAllItsDigits) {
   EXPECT_NE(text.find("\nsimulation.operating_point.model=FULL\n"), std::string::npos);
   EXPECT_EQ(text.find("provenance"), std::string::npos);
   EXPECT_EQ(text.find("lubricants/"), std::string::npos);
+}
+
+TEST(Ledger, IsTheSameSerialisedWhateverIsKeptOfIt) {
+  v1::Simulation other = point_simulation();
+  other.set_lubricant("lubricants/2");
+  other.set_sump_temperature_celsius(90);
+  for (const v1::Simulation& each : {point_simulation(), other, point_simulation()}) {
+    const SimulationInputs inputs = inputs_of(each);
+    v1::SimulationResult expected;
+    for (const v1::Assumption& entry : assumptions(inputs)) *expected.add_assumptions() = entry;
+    EXPECT_EQ(ledger(inputs), expected.SerializeAsString());
+  }
 }
 
 std::map<std::string, v1::Assumption> ledger_of(const v1::Simulation& simulation) {
