@@ -61,8 +61,8 @@ int run(const std::vector<std::string>& arguments) {
   if (!settings) return exit_code;
   static const sigset_t kSignals = block_signals();
   // More heaps would each keep what many readers of histories needed for a moment: 64 of them make
-  // the server grow by 6 MB with two heaps, by 17 with four and by 20 with eight. The solver takes
-  // no memory while it runs.
+  // the server grow by 6 to 10 MB with two heaps, by 17 with four and by 20 with eight. The solver
+  // takes no memory while it runs.
   mallopt(M_ARENA_MAX, 2);
   raise_file_limit();
   umask(077);  // formulations are for their owner

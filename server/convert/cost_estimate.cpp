@@ -12,13 +12,14 @@ struct Work {
   double seconds_each = 0;
 };
 
+constexpr double kPreparationSeconds = 0.2e-3;  // of a scene, whatever is studied
 constexpr Work kQuasiStaticPoint{4000, 4e-6};
 constexpr Work kShotPoint{430, 0.4e-6};  // at the tolerance
 constexpr double kShotTolerance = 1e-3;
 constexpr double kShotOrder = 0.35;  // contact solutions grow so with a sharper one
 constexpr Work kMarchedCycle{2300, 1e-6};
 constexpr double kUsualMarchedCycles = 35;
-constexpr int kFlanks = 3;
+constexpr Work kHistoryRow{3, 0.25e-6};  // three flanks
 
 void add(const Work& work, double count, v1::CostEstimate& out) {
   const double solutions = count * work.contact_solutions;
@@ -40,6 +41,7 @@ void add_points(double points, v1::PointModel model, const v1::SolverOptions& so
 
 v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
   v1::CostEstimate out;
+  out.set_processor_seconds(kPreparationSeconds);
   const v1::SolverOptions& solver = effective.solver_options();
   if (effective.has_inefficiency_curve()) {
     const v1::InefficiencyCurveStudy& curve = effective.inefficiency_curve();
@@ -54,7 +56,7 @@ v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
   if (point.has_history()) {
     const double rows =
         1.0 * point.history().mesh_cycles() * point.history().samples_per_mesh_cycle();
-    add({kFlanks, kMarchedCycle.seconds_each}, rows, out);
+    add(kHistoryRow, rows, out);
   }
   return out;
 }

@@ -10,9 +10,11 @@
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 #include "core/version.h"
 #include "server/convert/canonical_text.h"
+#include "server/convert/cost_estimate.h"
 #include "server/convert/input_hash.h"
 #include "server/convert/ledger.h"
 #include "server/convert/simulation_inputs.h"
@@ -167,6 +169,25 @@ TEST(Hash, CanonicalTextNamesEveryValueWithAllItsDigits) {
   EXPECT_NE(text.find("\nsimulation.operating_point.model=FULL\n"), std::string::npos);
   EXPECT_EQ(text.find("provenance"), std::string::npos);
   EXPECT_EQ(text.find("lubricants/"), std::string::npos);
+}
+
+TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
+  std::vector<v1::Simulation> ascending(6, point_simulation());
+  ascending[1].mutable_solver_options()->set_tolerance(1e-6);
+  ascending[2].mutable_operating_point()->set_model(v1::QUASI_STATIC);
+  ascending[3].mutable_solver_options()->set_method(v1::MARCH);
+  for (const int i : {4, 5}) {
+    auto* history = ascending[i].mutable_operating_point()->mutable_history();
+    history->add_columns("mesh_force_newtons");
+    history->set_mesh_cycles(i == 4 ? 20 : 100);
+    history->set_samples_per_mesh_cycle(10'000);
+  }
+  double before = 0;
+  for (const v1::Simulation& each : ascending) {
+    const double seconds = estimate_cost(inputs_of(each).effective).processor_seconds();
+    EXPECT_GT(seconds, 1.5 * before) << each.ShortDebugString();
+    before = seconds;
+  }
 }
 
 TEST(Ledger, IsTheSameSerialisedWhateverIsKeptOfIt) {
