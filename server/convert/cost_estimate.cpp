@@ -19,7 +19,8 @@ constexpr double kShotTolerance = 1e-3;
 constexpr double kShotOrder = 0.35;  // contact solutions grow so with a sharper one
 constexpr Work kMarchedCycle{2300, 1e-6};
 constexpr double kUsualMarchedCycles = 35;
-constexpr Work kHistoryRow{3, 0.25e-6};  // three flanks
+constexpr Work kSample{3, 2.2e-6};      // of a history, three flanks
+constexpr double kValueSeconds = 6e-9;  // of a history, repeated from the first period
 
 void add(const Work& work, double count, v1::CostEstimate& out) {
   const double solutions = count * work.contact_solutions;
@@ -35,6 +36,15 @@ void add_points(double points, v1::PointModel model, const v1::SolverOptions& so
   }
   add(kMarchedCycle, points * std::min<double>(kUsualMarchedCycles, solver.maximum_mesh_cycles()),
       out);
+}
+
+/// Only a march works out every sample: an orbit repeats.
+void add_history(const v1::HistoryRequest& history, bool is_marched, v1::CostEstimate& out) {
+  const double samples = history.samples_per_mesh_cycle();
+  const double rows = history.mesh_cycles() * samples;
+  add(kSample, is_marched ? rows : samples, out);
+  const int columns = history.columns_size() + 1;  // and time
+  out.set_processor_seconds(out.processor_seconds() + rows * columns * kValueSeconds);
 }
 
 }  // namespace
@@ -53,11 +63,7 @@ v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
   if (point.probe_coexisting_response()) {
     add_points(1, point.model(), solver, out);
   }
-  if (point.has_history()) {
-    const double rows =
-        1.0 * point.history().mesh_cycles() * point.history().samples_per_mesh_cycle();
-    add(kHistoryRow, rows, out);
-  }
+  if (point.has_history()) add_history(point.history(), solver.method() == v1::MARCH, out);
   return out;
 }
 

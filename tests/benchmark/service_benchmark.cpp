@@ -8,6 +8,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <csignal>
@@ -626,20 +627,25 @@ struct EstimatedCase {
 
 std::vector<EstimatedCase> estimated_cases() {
   std::vector<EstimatedCase> out = {
-      {"smooth_point", point_at(100)}, {"impacting_point", point_at(40)},
-      {"sharp_point", point_at(65)},   {"quasi_static_point", point_at(65)},
-      {"marched_point", point_at(65)}, {"sharply_marched_point", point_at(65)},
-      {"history", point_at(65)},       {"curve", curve_simulation()},
+      {"smooth_point", point_at(100)},   {"impacting_point", point_at(40)},
+      {"sharp_point", point_at(65)},     {"quasi_static_point", point_at(65)},
+      {"marched_point", point_at(65)},   {"sharply_marched_point", point_at(65)},
+      {"history", point_at(65)},         {"long_history", point_at(65)},
+      {"marched_history", point_at(65)}, {"curve", curve_simulation()},
       {"long_curve", long_curve(0)}};
   out[2].simulation.mutable_solver_options()->set_tolerance(1e-6);
   out[3].simulation.mutable_operating_point()->set_model(v1::QUASI_STATIC);
   out[4].simulation.mutable_solver_options()->set_method(v1::MARCH);
   out[5].simulation.mutable_solver_options()->set_method(v1::MARCH);
   out[5].simulation.mutable_solver_options()->set_relative_tolerance(1e-9);
-  v1::HistoryRequest* history = out[6].simulation.mutable_operating_point()->mutable_history();
-  history->add_columns("mesh_force_newtons");
-  history->set_mesh_cycles(10);
-  history->set_samples_per_mesh_cycle(10'000);
+  out[8].simulation.mutable_solver_options()->set_method(v1::MARCH);
+  const std::array<std::pair<int, int>, 3> lengths = {{{10, 10'000}, {1000, 1000}, {100, 1000}}};
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    auto* history = out[6 + i].simulation.mutable_operating_point()->mutable_history();
+    history->add_columns("mesh_force_newtons");
+    history->set_mesh_cycles(lengths[i].first);
+    history->set_samples_per_mesh_cycle(lengths[i].second);
+  }
   return out;
 }
 

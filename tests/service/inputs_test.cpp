@@ -177,6 +177,7 @@ TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
   ascending[2].mutable_operating_point()->set_model(v1::QUASI_STATIC);
   ascending[3].mutable_solver_options()->set_method(v1::MARCH);
   for (const int i : {4, 5}) {
+    ascending[i].mutable_solver_options()->set_method(v1::MARCH);
     auto* history = ascending[i].mutable_operating_point()->mutable_history();
     history->add_columns("mesh_force_newtons");
     history->set_mesh_cycles(i == 4 ? 20 : 100);
