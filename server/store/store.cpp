@@ -87,6 +87,9 @@ Store::Store(const std::filesystem::path& database)
   open_schema();
   heed_deadlines(writer_);
   try {
+    // What a writer would undo stays in memory (pages that were there before, a few hundred KiB), so
+    // that no file is opened now and then.
+    writer_.exec("PRAGMA temp_store = MEMORY");
     readers_.open(path_, kReaderConnections);
   } catch (const SQLite::Exception& error) {
     throw translate_error(error, path_);
