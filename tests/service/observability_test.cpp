@@ -7,7 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <regex>
+#include <string>
 
 #include "tests/service/grpc_fixture.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
@@ -43,10 +43,11 @@ class ObservabilityTest : public GrpcTest {
   void SetUp() override {
     more_flags_ = {"--metrics-listen", "127.0.0.1:0"};
     start();
-    std::smatch match;
     const std::string log = process_->log();
-    ASSERT_TRUE(std::regex_search(log, match, std::regex("http://127.0.0.1:([0-9]+)/metrics")));
-    port_ = std::stoi(match[1]);
+    const std::string before = "metrics at http://127.0.0.1:";
+    const auto found = log.find(before);
+    ASSERT_NE(found, std::string::npos) << log;
+    port_ = std::stoi(log.substr(found + before.size()));
   }
 
   v1::Simulation run(const v1::CreateSimulationRequest& request) {
