@@ -130,6 +130,17 @@ TEST(JobQueue, IsBoundedByCostAndLeavesRoomForOthers) {
   EXPECT_TRUE(queue.reserve({5, "b", 100}).is_admitted);
 }
 
+TEST(JobQueue, TellsThoseTurnedAwayToComeOneAfterAnother) {
+  JobQueue queue(2, {.jobs = 1, .cost_seconds = 1000}, [](std::int64_t, const StopSignal&) {});
+  EXPECT_TRUE(queue.reserve({1, "a", 1}).is_admitted);
+  EXPECT_EQ(queue.reserve({2, "b", 20}).retry_seconds, 1);
+  EXPECT_EQ(queue.reserve({3, "b", 20}).retry_seconds, 11) << "after that of 20 s on two";
+  EXPECT_EQ(queue.reserve({4, "b", 20}).retry_seconds, 21);
+  EXPECT_EQ(queue.reserve({5, "c", 20}).retry_seconds, 1) << "others are not held up by them";
+  for (int i = 0; i < 100; ++i) queue.reserve({6, "b", 20});
+  EXPECT_EQ(queue.reserve({6, "b", 20}).retry_seconds, 600);
+}
+
 TEST(JobQueue, KeepsAThreadForInteractiveJobs) {
   std::atomic<int> bulk = 0;
   std::atomic<int> small = 0;
