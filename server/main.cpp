@@ -1,4 +1,5 @@
 // tribodynd: reads its settings, then serves gRPC until told to stop, or carries out a command.
+#include <malloc.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
@@ -59,6 +60,10 @@ int run(const std::vector<std::string>& arguments) {
   const std::optional<Settings> settings = read_settings(arguments, &exit_code);
   if (!settings) return exit_code;
   static const sigset_t kSignals = block_signals();
+  // More heaps would each keep what many readers of histories needed for a moment: 64 of them make
+  // the server grow by 6 to 10 MB with two heaps, by 17 with four and by 20 with eight. The solver
+  // takes no memory while it runs.
+  mallopt(M_ARENA_MAX, 2);
   raise_file_limit();
   umask(077);  // formulations are for their owner
   spdlog::set_default_logger(spdlog::stderr_logger_mt("tribodynd"));

@@ -6,6 +6,7 @@
 
 #include "server/api/grpc_status.h"
 #include "server/api/stream_reactor.h"
+#include "server/api/workers.h"
 #include "server/app/contacts.h"
 #include "server/app/imports.h"
 #include "server/app/resources.h"
@@ -29,10 +30,25 @@ using Unary = grpc::ServerUnaryReactor;
 
 using Clock = std::chrono::system_clock;
 
+constexpr char kClientMetadata[] = "tribodyn-client";
+constexpr std::size_t kLongestClient = 100;
+constexpr int kWorkers = 8;  // more only wait for the processors
+
 /// What its client and the server still allow of a call. A limit of nothing leaves nothing,
 /// whatever happens between two looks at the clock.
 Clock::duration time_left(const Context& context, std::chrono::milliseconds limit) {
   return std::min<Clock::duration>(context.deadline() - Clock::now(), limit);
+}
+
+/// The client that the call names, else its connection.
+Caller caller(const Context& context) {
+  const auto named = context.client_metadata().find(kClientMetadata);
+  if (named == context.client_metadata().end()) return {context.peer()};
+  std::string name(named->second.data(), std::min(named->second.size(), kLongestClient));
+  // It goes into the log, where a line is made of words.
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c <= ' ' || c > '~' || c == '='; }, '_');
+  return {name};
 }
 
 /// Bodies of unary methods, each under its deadline.
@@ -45,6 +61,24 @@ class UnaryService {
   template <class Message, class Body>
   Unary* answer(Context* context, Message* response, const Body& body) const {
     Unary* reactor = context->DefaultReactor();
+    finish(context, reactor, response, body);
+    return reactor;
+  }
+
+  /// The same by a worker, of what waits for the disk.
+  template <class Message, class Body>
+  Unary* answer_later(Workers& workers, Context* context, Message* response,
+                      const Body& body) const {
+    Unary* reactor = context->DefaultReactor();
+    workers.run([=, this] { finish(context, reactor, response, body); });
+    return reactor;
+  }
+
+  Application& application_;
+
+ private:
+  template <class Message, class Body>
+  void finish(Context* context, Unary* reactor, Message* response, const Body& body) const {
     const DeadlineScope deadline(DeadlineScope::Clock::now() + time_left(*context, limit_));
     Outcome<Message> outcome =
         DeadlineScope::has_passed() ? Outcome<Message>(deadline_exceeded()) : body();
@@ -54,12 +88,8 @@ class UnaryService {
     } else {
       reactor->Finish(to_grpc(outcome.error()));
     }
-    return reactor;
   }
 
-  Application& application_;
-
- private:
   const std::chrono::milliseconds limit_;
 };
 
@@ -266,13 +296,19 @@ class ContactsService final : public v1::Contacts::CallbackService, UnaryService
   }
 };
 
-class SimulationsService final : public v1::Simulations::CallbackService, UnaryService {
+/// The streams of bytes, see StreamReactor.
+using SimulationStreams = v1::Simulations::WithRawCallbackMethod_WatchSimulation<
+    v1::Simulations::WithRawCallbackMethod_ReadHistory<v1::Simulations::CallbackService>>;
+
+class SimulationsService final : public SimulationStreams, UnaryService {
  public:
   SimulationsService(Application& application, const TimeLimits& limits, LiveStreams& live)
-      : UnaryService(application, limits), limits_(limits), live_(live) {}
+      : UnaryService(application, limits), limits_(limits), live_(live), workers_(kWorkers) {}
   Unary* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                           v1::Simulation* response) override {
-    return answer(context, response, [&] { return create_simulation(application_, *request); });
+    return answer_later(workers_, context, response, [this, context, request] {
+      return create_simulation(application_, *request, caller(*context));
+    });
   }
   Unary* GetSimulation(Context* context, const v1::GetSimulationRequest* request,
                        v1::Simulation* response) override {
@@ -284,24 +320,46 @@ class SimulationsService final : public v1::Simulations::CallbackService, UnaryS
   }
   Unary* CancelSimulation(Context* context, const v1::CancelSimulationRequest* request,
                           v1::Simulation* response) override {
-    return answer(context, response, [&] { return cancel_simulation(application_, *request); });
+    return answer_later(workers_, context, response,
+                        [this, request] { return cancel_simulation(application_, *request); });
   }
-  grpc::ServerWriteReactor<v1::SimulationEvent>* WatchSimulation(
-      Context* context, const v1::WatchSimulationRequest* request) override {
-    return StreamReactor<v1::SimulationEvent>::start(
-        live_, *context, time_left(*context, limits_.stream), limits_.unread,
-        [&] { return watch_simulation(application_, *request); });
+  Unary* PinSimulation(Context* context, const v1::PinSimulationRequest* request,
+                       v1::Simulation* response) override {
+    return answer(context, response, [&] { return pin_simulation(application_, *request); });
   }
-  grpc::ServerWriteReactor<v1::HistoryChunk>* ReadHistory(
-      Context* context, const v1::ReadHistoryRequest* request) override {
-    return StreamReactor<v1::HistoryChunk>::start(
-        live_, *context, time_left(*context, limits_.stream), limits_.unread,
-        [&] { return read_history(application_, *request); });
+  Unary* UnpinSimulation(Context* context, const v1::UnpinSimulationRequest* request,
+                         v1::Simulation* response) override {
+    return answer(context, response, [&] { return unpin_simulation(application_, *request); });
+  }
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchSimulation(
+      Context* context, const grpc::ByteBuffer* bytes) override {
+    return stream<v1::SimulationEvent>(context, bytes, watch_simulation);
+  }
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* ReadHistory(Context* context,
+                                                          const grpc::ByteBuffer* bytes) override {
+    return stream<v1::ReadHistoryResponse>(context, bytes, read_history);
   }
 
  private:
+  template <class Message, class Request>
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* stream(
+      Context* context, const grpc::ByteBuffer* bytes,
+      StreamOutcome<Message> (*open)(Application&, const Request&)) {
+    const auto opened = [&]() -> StreamOutcome<Message> {
+      grpc::ByteBuffer copy = *bytes;  // of the references only
+      Request request;
+      if (!grpc::SerializationTraits<Request>::Deserialize(&copy, &request).ok()) {
+        return invalid({{"", "the request cannot be read"}});
+      }
+      return open(application_, request);
+    };
+    return StreamReactor<Message>::start(live_, *context, time_left(*context, limits_.stream),
+                                         limits_.unread, opened);
+  }
+
   const TimeLimits limits_;
   LiveStreams& live_;
+  Workers workers_;
 };
 
 }  // namespace

@@ -22,8 +22,8 @@ struct TimeLimits {
 };
 
 /// The gRPC services of tribodyn.v1: a thin shell, one line a method, over server/app. Unary
-/// methods run where gRPC calls them, as none takes long. `application` and `live` must outlive
-/// them.
+/// methods run where gRPC calls them, but for the changes of simulations, of which thousands may
+/// wait for the disk at a time. `application` and `live` must outlive them.
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(Application& application,
                                                           LiveStreams& live,
                                                           const TimeLimits& limits);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <grpcpp/alarm.h>
+#include <grpcpp/impl/codegen/proto_utils.h>
 #include <grpcpp/server_context.h>
+#include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
 #include <chrono>
@@ -24,9 +26,10 @@ namespace tribodyn::server {
 /// Safe for concurrent access: whoever holds `busy_` owns source and stream; nobody holds the mutex
 /// while calling into gRPC. Keeps itself alive until OnDone. At its end it is closed with
 /// DEADLINE_EXCEEDED. A client that reads nothing, so that a write stays under way, is cut off: at
-/// the end, or once that write has taken too long.
+/// the end, or once that write has taken too long. Of a message on its way only the bytes are kept,
+/// so that many readers of large ones cost half.
 template <class Message>
-class StreamReactor final : public grpc::ServerWriteReactor<Message>,
+class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                             public ProgressObserver,
                             public LiveStream,
                             public std::enable_shared_from_this<StreamReactor<Message>> {
@@ -42,10 +45,11 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   /// A stream of the messages of the source that `open` gives, or one that ends at once with the
   /// error. It may last for `left`, and one write of it for `unread`.
   template <class Open>
-  static grpc::ServerWriteReactor<Message>* start(LiveStreams& live,
-                                                  grpc::CallbackServerContext& context,
-                                                  Clock::duration left, Clock::duration unread,
-                                                  const Open& open) {
+  static grpc::ServerWriteReactor<grpc::ByteBuffer>* start(LiveStreams& live,
+                                                           grpc::CallbackServerContext& context,
+                                                           Clock::duration left,
+                                                           Clock::duration unread,
+                                                           const Open& open) {
     auto reactor = std::make_shared<StreamReactor>(live, context, unread);
     reactor->self_ = reactor;
     std::optional<google::rpc::Status> refused;
@@ -179,7 +183,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
             const std::lock_guard lock(mutex_);
             writing_since_ = StopWatch::now();
           }
-          return this->StartWrite(&message_);
+          return this->StartWrite(&bytes_);
         }
         case Step::kEnd:
           return finish(end_);
@@ -193,11 +197,20 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
     }
   }
 
+  /// The next message, if there is one, in `bytes_`.
   Step ask_source() {
+    bytes_.Clear();
     try {
-      const Step step = source_->next(message_);
+      Message message;
+      const Step step = source_->next(message);
       if (step == Step::kEnd) end_ = source_->error();
-      return step;
+      if (step != Step::kMessage) return step;
+      bool own = false;
+      const grpc::Status status =
+          grpc::SerializationTraits<Message>::Serialize(message, &bytes_, &own);
+      if (status.ok()) return step;
+      end_ = error(google::rpc::INTERNAL, "INTERNAL", "the stream broke off");
+      return Step::kEnd;
     } catch (const std::exception&) {
       end_ = error(google::rpc::INTERNAL, "INTERNAL", "the stream broke off");
       return Step::kEnd;
@@ -221,7 +234,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<Message>,
   std::shared_ptr<grpc::Alarm> write_alarm_;  // set by start, then by itself alone
   const Clock::duration unread_;
   Source source_;            // owner of busy_
-  Message message_;          // owner of busy_
+  grpc::ByteBuffer bytes_;   // owner of busy_
   google::rpc::Status end_;  // owner of busy_
   std::mutex mutex_;
   bool busy_ = false;      // guarded by mutex_

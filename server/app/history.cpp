@@ -2,86 +2,162 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
+#include <memory>
+#include <numeric>
 #include <optional>
 
 #include "server/app/guard.h"
 #include "server/app/simulation_lookup.h"
 #include "server/app/streams.h"
 #include "server/convert/constraints.h"
+#include "server/convert/history_columns.h"
 #include "server/convert/resource_names.h"
+#include "server/history/pyramid.h"
+
+static_assert(std::endian::native == std::endian::little, "chunks are little-endian");
 
 namespace tribodyn::server {
 namespace {
 
-/// Rows still to send.
+constexpr int kLargestMaximumPoints = 1'000'000;
+
+/// Columns by their place in the shape, and rows of them.
 struct Window {
-  std::int64_t id = 0;
-  std::vector<std::string> columns;
-  std::int64_t next_row = 0;
+  std::vector<std::size_t> columns;
+  std::int64_t start_row = 0;
   std::int64_t end_row = 0;
-  std::int64_t total_rows = 0;
+  std::int64_t maximum_points = 0;  // 0: all
 };
 
-class HistorySource : public MessageSource<v1::HistoryChunk> {
+/// A place among the open histories, all of which share one budget of memory.
+class OpenHistory {
  public:
-  HistorySource(Store& store, Window window) : store_(store), window_(std::move(window)) {}
+  explicit OpenHistory(std::shared_ptr<std::atomic<int>> open) : open_(std::move(open)) {
+    ++*open_;
+  }
+  ~OpenHistory() { --*open_; }
+  OpenHistory(const OpenHistory&) = delete;
+  OpenHistory& operator=(const OpenHistory&) = delete;
 
-  Step next(v1::HistoryChunk& out) override {
-    if (window_.next_row >= window_.end_row) return Step::kEnd;
-    const auto columns = static_cast<std::int64_t>(window_.columns.size());
-    const std::int64_t count = std::min(window_.end_row - window_.next_row,
-                                        std::max<std::int64_t>(1, kChunkValues / columns));
+  /// Values of a chunk at present: whole blocks, 256 KiB while few read.
+  std::int64_t chunk_values() const {
+    const std::int64_t share = kOpenHistoryValues / std::max(1, open_->load());
+    return std::clamp(share / kHistoryBlock * kHistoryBlock, kHistoryBlock, kChunkValues);
+  }
+
+ private:
+  std::shared_ptr<std::atomic<int>> open_;
+};
+
+/// The schema, then chunks: each column as far as the others before any goes on.
+class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
+ public:
+  HistorySource(Application& application, HistoryShape shape, Window window)
+      : store_(application.store),
+        open_(application.open_histories),
+        shape_(std::move(shape)),
+        window_(std::move(window)),
+        rows_(window_.end_row - window_.start_row) {
+    if (window_.maximum_points == 0 || rows_ <= window_.maximum_points) return;
+    overview_ = overview(window_.start_row, window_.end_row, shape_.rows, window_.maximum_points);
+    rows_ = 2 * overview_->pairs();
+  }
+
+  Step next(v1::ReadHistoryResponse& out) override {
     out.Clear();
-    out.set_start_row(window_.next_row);
-    out.set_total_rows(window_.total_rows);
+    if (!told_schema_) {
+      told_schema_ = true;
+      tell_schema(*out.mutable_schema());
+      return Step::kMessage;
+    }
+    if (next_row_ >= rows_) return Step::kEnd;
+    if (column_ == 0) run_ = std::min(open_.chunk_values(), rows_ - next_row_);
     try {
-      for (const std::string& name : window_.columns) {
-        v1::HistoryChunk::Column* column = out.add_columns();
-        column->set_name(name);
-        const auto values = store_.history_rows(window_.id, name, window_.next_row, count);
-        *column->mutable_values() = {values.begin(), values.end()};
-      }
+      const std::vector<double> values = read(shape_.columns[window_.columns[column_]]);
+      v1::HistoryChunk& chunk = *out.mutable_chunk();
+      chunk.set_column(static_cast<int>(column_));
+      chunk.set_first_row(next_row_);
+      chunk.set_values(values.data(), values.size() * sizeof(double));
     } catch (const StoreError& failure) {
       spdlog::error("{}", failure.what());
       error_ = store_failed();
       return Step::kEnd;
     }
-    window_.next_row += count;
+    if (error_.code() != 0) return Step::kEnd;
+    if (++column_ == window_.columns.size()) {
+      column_ = 0;
+      next_row_ += run_;
+    }
     return Step::kMessage;
   }
 
   google::rpc::Status error() const override { return error_; }
 
  private:
+  void tell_schema(v1::HistorySchema& out) const {
+    for (const std::size_t place : window_.columns) {
+      v1::HistorySchema::Column* column = out.add_columns();
+      column->set_name(shape_.names[place]);
+      column->set_unit(std::string(history_column_unit(shape_.names[place])));
+    }
+    out.set_start_row(window_.start_row);
+    out.set_row_count(rows_);
+    out.set_total_rows(shape_.rows);
+    if (overview_) out.set_rows_per_pair(overview_->rows_per_pair);
+  }
+
+  /// The present run of a column.
+  std::vector<double> read(std::int64_t column) {
+    const auto level = [&](int which, std::int64_t start, std::int64_t count) {
+      std::vector<double> values(static_cast<std::size_t>(count));
+      if (!store_.read_history(column, which, start, values)) {
+        error_ = not_found("tribodyn.v1.HistoryChunk", "", "the history has been evicted");
+      }
+      return values;
+    };
+    if (!overview_) return level(0, window_.start_row + next_row_, run_);
+    return overview_pairs(*overview_, next_row_ / 2, run_ / 2, level);
+  }
+
   Store& store_;
-  Window window_;
+  const OpenHistory open_;
+  const HistoryShape shape_;
+  const Window window_;
+  std::int64_t rows_;  // to come in all
+  std::optional<Overview> overview_;
+  bool told_schema_ = false;
+  std::int64_t next_row_ = 0;
+  std::int64_t run_ = 0;  // rows of the present chunks
+  std::size_t column_ = 0;
   google::rpc::Status error_;
 };
 
-/// The stored names that a request means: "flank_load_newtons" stands for its three flanks.
-std::vector<std::string> expand(const std::string& asked, const std::vector<std::string>& stored) {
-  std::vector<std::string> out;
-  for (const std::string& name : stored) {
-    if (name == asked || name.starts_with(asked + "_flank_")) out.push_back(name);
+/// Places of the stored names that a request means: "flank_load_newtons" stands for its three
+/// flanks.
+std::vector<std::size_t> expand(const std::string& asked, const std::vector<std::string>& stored) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    if (stored[i] == asked || stored[i].starts_with(asked + "_flank_")) out.push_back(i);
   }
   return out;
 }
 
-std::optional<Window> window(const v1::ReadHistoryRequest& request,
-                             const Store::HistoryShape& shape, Violations& violations) {
+std::optional<Window> window(const v1::ReadHistoryRequest& request, const HistoryShape& shape,
+                             Violations& violations) {
   Window out;
-  out.total_rows = shape.rows;
   const int asked = std::min(request.columns_size(), kMaximumHistoryColumns);
   for (int i = 0; i < asked; ++i) {
-    const std::vector<std::string> meant = expand(request.columns(i), shape.names);
+    const std::vector<std::size_t> meant = expand(request.columns(i), shape.names);
     if (meant.empty()) {
       violations.push_back(
           {fmt::format("columns[{}]", i),
            fmt::format("no such column here{}", meant_text(request.columns(i), shape.names))});
     }
-    for (const std::string& name : meant) {
-      if (std::find(out.columns.begin(), out.columns.end(), name) == out.columns.end()) {
-        out.columns.push_back(name);
+    for (const std::size_t place : meant) {
+      if (std::find(out.columns.begin(), out.columns.end(), place) == out.columns.end()) {
+        out.columns.push_back(place);
       }
     }
   }
@@ -89,7 +165,10 @@ std::optional<Window> window(const v1::ReadHistoryRequest& request,
     violations.push_back({"columns", fmt::format("{} columns; legal: at most {}",
                                                  request.columns_size(), kMaximumHistoryColumns)});
   }
-  if (request.columns().empty()) out.columns = shape.names;
+  if (request.columns().empty()) {
+    out.columns.resize(shape.names.size());
+    std::iota(out.columns.begin(), out.columns.end(), 0);
+  }
   const std::int64_t start = request.start_row();
   if (start < 0 || start > shape.rows) {
     violations.push_back(
@@ -99,8 +178,16 @@ std::optional<Window> window(const v1::ReadHistoryRequest& request,
     violations.push_back({"row_count", fmt::format("row_count = {}; legal: 0 (to the end) or more",
                                                    request.row_count())});
   }
+  if (request.max_points() != 0 && (request.max_points() < kLeastMaximumPoints ||
+                                    request.max_points() > kLargestMaximumPoints)) {
+    violations.push_back(
+        {"max_points",
+         fmt::format("max_points = {}; legal: {} to {}, or 0 (all rows)", request.max_points(),
+                     kLeastMaximumPoints, kLargestMaximumPoints)});
+  }
   if (!violations.empty()) return std::nullopt;
-  out.next_row = start;
+  out.maximum_points = request.max_points();
+  out.start_row = start;
   const std::int64_t left = shape.rows - start;
   out.end_row = start + (request.row_count() == 0 ? left : std::min(left, request.row_count()));
   return out;
@@ -108,9 +195,9 @@ std::optional<Window> window(const v1::ReadHistoryRequest& request,
 
 }  // namespace
 
-StreamOutcome<v1::HistoryChunk> read_history(Application& application,
-                                             const v1::ReadHistoryRequest& request) {
-  using Source = std::shared_ptr<MessageSource<v1::HistoryChunk>>;
+StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
+                                                    const v1::ReadHistoryRequest& request) {
+  using Source = std::shared_ptr<MessageSource<v1::ReadHistoryResponse>>;
   return guarded<Source>([&]() -> Outcome<Source> {
     const auto found = find_simulation(application, request.name());
     if (!found.ok()) return found.error();
@@ -119,7 +206,7 @@ StreamOutcome<v1::HistoryChunk> read_history(Application& application,
       return not_possible("NO_RESULT_YET", "tribodyn.v1.Simulation", request.name(),
                           request.name() + " has not succeeded, so it has no history");
     }
-    const Store::HistoryShape shape = application.store.history_shape(stored.id);
+    HistoryShape shape = application.store.history_shape(stored.id);
     if (shape.names.empty()) {
       return not_found("tribodyn.v1.HistoryChunk", request.name(),
                        request.name() + " was run without history");
@@ -127,8 +214,7 @@ StreamOutcome<v1::HistoryChunk> read_history(Application& application,
     Violations violations;
     auto rows = window(request, shape, violations);
     if (!rows) return invalid(violations);
-    rows->id = stored.id;
-    return Source(std::make_shared<HistorySource>(application.store, std::move(*rows)));
+    return Source(std::make_shared<HistorySource>(application, std::move(shape), std::move(*rows)));
   });
 }
 

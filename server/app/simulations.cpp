@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 #include <google/protobuf/util/time_util.h>
+#include <spdlog/spdlog.h>
 
 #include <optional>
 
 #include "server/app/guard.h"
+#include "server/app/list_filter.h"
+#include "server/app/page_token.h"
 #include "server/app/paging.h"
+#include "server/app/result_summary.h"
 #include "server/app/simulation_lookup.h"
 #include "server/convert/cost_estimate.h"
 #include "server/convert/input_hash.h"
@@ -20,7 +24,6 @@ namespace tribodyn::server {
 namespace {
 
 constexpr int kDefaultPageSize = 50;
-constexpr int kRetrySeconds = 10;
 
 static_assert(static_cast<int>(StoredState::kQueued) == v1::Simulation::QUEUED);
 static_assert(static_cast<int>(StoredState::kRunning) == v1::Simulation::RUNNING);
@@ -45,19 +48,23 @@ std::optional<Microseconds> deadline_time(const v1::Simulation& requested, Micro
 }
 
 NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
-                             const SimulationInputs& inputs, const std::string& request_hash) {
-  v1::SimulationResult ledger;
-  for (v1::Assumption& assumption : assumptions(inputs)) {
-    *ledger.add_assumptions() = std::move(assumption);
-  }
+                             const SimulationInputs& inputs, const std::string& request_hash,
+                             const Caller& caller) {
   const v1::Simulation& effective = inputs.effective;
+  std::vector<std::pair<std::string, std::string>> labels;
+  for (const v1::Label& each : inputs.requested.labels()) {
+    labels.emplace_back(each.key(), each.value());
+  }
   return {.request = inputs.requested.SerializeAsString(),
           .key = result_key(inputs),
-          .ledger = ledger.SerializeAsString(),
+          .ledger = ledger(inputs),
           .request_id = request.request_id(),
           .request_hash = request_hash,
           .is_forced = request.force(),
           .deadline_time = deadline_time(inputs.requested, system_time()),
+          .client = caller.client,
+          .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
+          .labels = std::move(labels),
           .lubricant_revision = effective.lubricant_revision(),
           .gear_set_revision = effective.gear_set_revision(),
           .surface_revision = effective.surface_revision(),
@@ -89,6 +96,12 @@ v1::Simulation to_message(Application& application, const StoredSimulation& stor
   out.set_attempt(stored.attempt);
   out.set_cache_hit(stored.cache_hit);
   out.set_event_sequence(stored.sequence);
+  out.set_request_id(stored.request_id);
+  out.set_pinned(stored.is_pinned);
+  const auto& keep = application.jobs.retention().keep;
+  if (keep && stored.end_time && !stored.is_pinned) {
+    *out.mutable_expire_time() = TimeUtil::MicrosecondsToTimestamp(*stored.end_time + *keep);
+  }
   *out.mutable_create_time() = TimeUtil::MicrosecondsToTimestamp(stored.create_time);
   if (stored.start_time) {
     *out.mutable_start_time() = TimeUtil::MicrosecondsToTimestamp(*stored.start_time);
@@ -140,15 +153,82 @@ std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
   return to_message(application, *stored);
 }
 
-google::rpc::Status no_place(Application& application) {
+/// As much of its result as the view asks for, if it has one.
+void set_result(Application& application, v1::SimulationView view, v1::SimulationView otherwise,
+                std::int64_t id, v1::Simulation& out) {
+  const v1::SimulationView meant = view == v1::SIMULATION_VIEW_UNSPECIFIED ? otherwise : view;
+  if (meant == v1::SIMULATION_VIEW_BASIC) return;
+  const auto result = application.store.result(id);
+  if (!result) return;
+  out.mutable_result()->ParseFromString(*result);
+  if (meant == v1::SIMULATION_VIEW_SUMMARY) abridge(*out.mutable_result());
+}
+
+/// As the store understands them.
+std::vector<Restriction> restrictions(const std::string& filter, Violations& violations) {
+  using Comparison = Restriction::Comparison;
+  std::vector<Restriction> out = parse_filter(filter, kSimulations, violations);
+  for (Restriction& each : out) {
+    const bool has_order = each.key == "create_time";
+    const bool is_label = each.key.starts_with("labels.");
+    const bool is_equality =
+        each.comparison == Comparison::kEqual || each.comparison == Comparison::kNotEqual;
+    if (each.key == "name") {
+      violations.push_back({"filter", "a name is not filtered by; get the simulation"});
+    } else if (!has_order && !is_equality &&
+               !(is_label && each.comparison == Comparison::kPresent)) {
+      violations.push_back({"filter", each.key + ": legal: = or !=, of labels also :*"});
+    }
+    const std::string* word = std::get_if<std::string>(&each.value);
+    v1::Simulation::State state = v1::Simulation::STATE_UNSPECIFIED;
+    if (each.key == "state" && word != nullptr && v1::Simulation::State_Parse(*word, &state)) {
+      each.value = std::int64_t{state};
+    }
+  }
+  return out;
+}
+
+bool is_ascending(const std::string& order_by, Violations& violations) {
+  if (order_by == "create_time" || order_by == "create_time asc") return true;
+  if (!order_by.empty() && order_by != "create_time desc") {
+    violations.push_back({"order_by", "legal: create_time, followed by nothing, asc or desc"});
+  }
+  return false;
+}
+
+/// Where the page behind a token begins.
+std::optional<SimulationQuery::Place> place(const std::string& scope, const std::string& token) {
+  const std::optional<PageStart> start = parse_page_token(scope, token);
+  if (!start) return std::nullopt;
+  const auto* time = std::get_if<std::int64_t>(&start->value);
+  const auto id = simulation_id(start->name);
+  if (time == nullptr || !id) return std::nullopt;
+  return SimulationQuery::Place{*time, *id};
+}
+
+/// Joins what the client calls the request, the job and its result. Names only, no inputs.
+void log_submission(const NewSimulation& simulation, const Added& added) {
+  spdlog::info(
+      "event=simulation_{} simulation={} request_id={} client={} input_hash={} cost_seconds={:.6f}",
+      added.kind == Added::Kind::kQueued   ? "queued"
+      : added.kind == Added::Kind::kServed ? "served"
+                                           : "not_added",
+      added.id == 0 ? "-" : simulation_name(added.id), simulation.request_id, simulation.client,
+      simulation.key.input_hash, simulation.cost_seconds);
+}
+
+google::rpc::Status no_place(Application& application, int retry_seconds) {
   if (application.jobs.is_stopping()) return shutting_down();
-  return exhausted("too many simulations wait already; try again later", kRetrySeconds);
+  return exhausted(
+      fmt::format("too many simulations wait already; try again in {} s", retry_seconds),
+      retry_seconds);
 }
 
 }  // namespace
 
 Outcome<v1::Simulation> create_simulation(Application& application,
-                                          const v1::CreateSimulationRequest& request) {
+                                          const v1::CreateSimulationRequest& request,
+                                          const Caller& caller) {
   return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
     Violations violations;
     check_request_id(request.request_id(), violations);
@@ -158,13 +238,19 @@ Outcome<v1::Simulation> create_simulation(Application& application,
     // Before anything else, as what it rests on may have changed since.
     auto earlier = earlier_answer(application, request, text);
     if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
+    const StopWatch watch;
     const auto inputs = read_simulation(request.simulation(), resource_lookup(application.store),
                                         "simulation", violations);
-    if (!inputs) return invalid(violations);
-    const NewSimulation simulation = new_simulation(request, *inputs, sha256(text));
+    application.jobs.metrics().observe(Phase::kValidation, watch.seconds());
+    if (!inputs) {
+      application.jobs.metrics().count(Submission::kInvalid);
+      return invalid(violations);
+    }
+    const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), caller);
     if (request.validate_only()) return preview(*inputs, simulation);
-    const Added added = application.jobs.submit(simulation);
-    if (added.kind == Added::Kind::kNoPlace) return no_place(application);
+    const auto [added, retry_seconds] = application.jobs.submit(simulation);
+    log_submission(simulation, added);
+    if (added.kind == Added::Kind::kNoPlace) return no_place(application, retry_seconds);
     const auto stored = application.store.simulation(added.id);
     if (!stored) return error(google::rpc::INTERNAL, "INTERNAL", "the simulation is gone");
     if (added.kind == Added::Kind::kRequestIdTaken) return request_id_taken(*stored, request, text);
@@ -178,9 +264,7 @@ Outcome<v1::Simulation> get_simulation(Application& application,
     const auto found = find_simulation(application, request.name());
     if (!found.ok()) return found.error();
     v1::Simulation out = to_message(application, found.message());
-    if (const auto result = application.store.result(found.message().id)) {
-      out.mutable_result()->ParseFromString(*result);
-    }
+    set_result(application, request.view(), v1::SIMULATION_VIEW_SUMMARY, found.message().id, out);
     return out;
   });
 }
@@ -189,19 +273,62 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
                                                       const v1::ListSimulationsRequest& request) {
   return guarded<v1::ListSimulationsResponse>([&]() -> Outcome<v1::ListSimulationsResponse> {
     Violations violations;
-    const int size = page_size(request.page_size(), kDefaultPageSize, violations);
-    const std::optional<std::int64_t> before = simulation_id(request.page_token());
-    if (!request.page_token().empty() && !before) add_bad_page_token(violations);
-    if (!violations.empty()) return invalid(violations);
-    const Page<StoredSimulation> page =
-        application.store.simulations(before.value_or(0), size, kMaximumPageBytes);
-    v1::ListSimulationsResponse response;
-    for (const StoredSimulation& row : page.rows) {
-      *response.add_simulations() = to_message(application, row);
+    SimulationQuery query;
+    query.limit = page_size(request.page_size(), kDefaultPageSize, violations);
+    query.byte_limit = kMaximumPageBytes;
+    query.restrictions = restrictions(request.filter(), violations);
+    query.ascending = is_ascending(request.order_by(), violations);
+    const std::string scope =
+        fmt::format("{}\n{}\n{}", kSimulations, request.filter(), request.order_by());
+    if (!request.page_token().empty()) {
+      query.after = place(scope, request.page_token());
+      if (!query.after) add_bad_page_token(violations);
     }
-    if (page.more) response.set_next_page_token(simulation_name(page.rows.back().id));
+    if (!violations.empty()) return invalid(violations);
+    const Page<StoredSimulation> page = application.store.simulations(query);
+    v1::ListSimulationsResponse response;
+    std::size_t bytes = 0;
+    bool is_cut = false;
+    for (const StoredSimulation& row : page.rows) {
+      v1::Simulation next = to_message(application, row);
+      set_result(application, request.view(), v1::SIMULATION_VIEW_BASIC, row.id, next);
+      bytes += next.ByteSizeLong();
+      is_cut = response.simulations_size() > 0 && bytes > kMaximumPageBytes;
+      if (is_cut) break;
+      *response.add_simulations() = std::move(next);
+    }
+    if (page.more || is_cut) {
+      const StoredSimulation& last = page.rows[response.simulations_size() - 1];
+      response.set_next_page_token(page_token(scope, {last.create_time, simulation_name(last.id)}));
+    }
     return response;
   });
+}
+
+namespace {
+
+Outcome<v1::Simulation> set_pinned(Application& application, const std::string& name,
+                                   bool is_pinned) {
+  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
+    const auto found = find_simulation(application, name);
+    if (!found.ok()) return found.error();
+    application.store.set_pinned(found.message().id, is_pinned);
+    v1::GetSimulationRequest now;
+    now.set_name(name);
+    return get_simulation(application, now);
+  });
+}
+
+}  // namespace
+
+Outcome<v1::Simulation> pin_simulation(Application& application,
+                                       const v1::PinSimulationRequest& request) {
+  return set_pinned(application, request.name(), true);
+}
+
+Outcome<v1::Simulation> unpin_simulation(Application& application,
+                                         const v1::UnpinSimulationRequest& request) {
+  return set_pinned(application, request.name(), false);
 }
 
 Outcome<v1::Simulation> cancel_simulation(Application& application,

@@ -16,10 +16,11 @@ using StreamOutcome = Outcome<std::shared_ptr<MessageSource<Message>>>;
 StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
                                                     const v1::WatchSimulationRequest& request);
 
-/// Rows of a history in chunks of at most 256 KiB of numbers.
-StreamOutcome<v1::HistoryChunk> read_history(Application& application,
-                                             const v1::ReadHistoryRequest& request);
+/// The schema of a history or an overview of it, then its rows.
+StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
+                                                    const v1::ReadHistoryRequest& request);
 
-inline constexpr std::int64_t kChunkValues = 32'768;  ///< 256 KiB of doubles
+inline constexpr std::int64_t kChunkValues = 32'768;         ///< 256 KiB of doubles
+inline constexpr std::int64_t kOpenHistoryValues = 524'288;  ///< 4 MiB, in chunks under way
 
 }  // namespace tribodyn::server

@@ -8,6 +8,7 @@
 
 #include "server/convert/check_message.h"
 #include "server/convert/constraints.h"
+#include "server/convert/labels.h"
 #include "server/convert/lubricant_parameters.h"
 #include "server/convert/output_only.h"
 #include "server/convert/provenance.h"
@@ -16,14 +17,6 @@ namespace tribodyn::server {
 namespace {
 
 using google::protobuf::util::MessageDifferencer;
-using Labels = google::protobuf::RepeatedPtrField<v1::Label>;
-
-bool is_key(const std::string& key) {
-  return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
-           c == '_' || c == '.';
-  });
-}
 
 template <class Repeated>
 bool check_count(const Repeated& list, int maximum, const std::string& path,
@@ -31,20 +24,6 @@ bool check_count(const Repeated& list, int maximum, const std::string& path,
   if (list.size() <= maximum) return true;
   violations.push_back({path, fmt::format("{} entries; legal: at most {}", list.size(), maximum)});
   return false;
-}
-
-void check_labels(const Labels& labels, const std::string& path, Violations& violations) {
-  std::set<std::string> keys;
-  for (int i = 0; i < labels.size(); ++i) {
-    const std::string& key = labels.Get(i).key();
-    const std::string here = fmt::format("{}[{}].key", path, i);
-    if (!is_key(key)) {
-      violations.push_back({here, fmt::format("\"{}\"; legal: letters, digits, '-', '_' and '.'",
-                                              plain_excerpt(key))});
-    } else if (!keys.insert(key).second) {
-      violations.push_back({here, fmt::format("\"{}\" is named twice", key)});
-    }
-  }
 }
 
 const char* collection_of(const v1::Lubricant&) { return kLubricants; }
@@ -105,8 +84,7 @@ Resource begin(const Resource& stated, const ResourceLookup& lookup, const std::
 
 template <class Resource>
 Resource end(Resource out) {
-  std::sort(out.mutable_labels()->begin(), out.mutable_labels()->end(),
-            [](const v1::Label& a, const v1::Label& b) { return a.key() < b.key(); });
+  sort_labels(*out.mutable_labels());
   clear_units(*out.mutable_provenance());
   complete_provenance(out, *out.mutable_provenance());
   return out;

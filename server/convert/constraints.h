@@ -49,7 +49,7 @@ std::string not_set_text(const Constraint& constraint);
 // Limits on counts, so that no request can starve the server.
 inline constexpr int kMaximumCurvePoints = 1000;
 inline constexpr int kMaximumHistoryColumns = 100;
-inline constexpr double kMaximumHistoryValues = 4e6;    ///< rows times columns
+inline constexpr double kMaximumHistoryValues = 2e7;    ///< rows times columns: 160 MB
 inline constexpr double kMaximumCurveMeshCycles = 1e7;  ///< points times maximum_mesh_cycles
 inline constexpr int kMaximumBatchSize = 20'000;        ///< requests of one batch
 inline constexpr int kMaximumTextLength = 200;          ///< bytes of a name

@@ -20,7 +20,7 @@ std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& requ
     path = "lubricant";
     auto found =
         find_resource<v1::Lubricant>(lookup, request.lubricant(), kLubricants, path, violations);
-    if (found) lubricant = std::move(found->resource);
+    if (found) lubricant = *found->resource;
   } else {
     violations.push_back({"fluid", "not set; legal: lubricant or lubricant_parameters"});
   }

@@ -12,13 +12,15 @@ struct Work {
   double seconds_each = 0;
 };
 
+constexpr double kPreparationSeconds = 0.2e-3;  // of a scene, whatever is studied
 constexpr Work kQuasiStaticPoint{270, 0.3e-6};
-constexpr Work kShotPoint{430, 0.4e-6};  // at the tolerance
+constexpr Work kShotPoint{400, 0.25e-6};  // at the tolerance
 constexpr double kShotTolerance = 1e-3;
 constexpr double kShotOrder = 0.35;  // contact solutions grow so with a sharper one
 constexpr Work kMarchedCycle{2300, 1e-6};
 constexpr double kUsualMarchedCycles = 35;
-constexpr int kFlanks = 3;
+constexpr Work kSample{3, 2.2e-6};      // of a history, three flanks
+constexpr double kValueSeconds = 6e-9;  // of a history, repeated from the first period
 
 void add(const Work& work, double count, v1::CostEstimate& out) {
   const double solutions = count * work.contact_solutions;
@@ -36,10 +38,20 @@ void add_points(double points, v1::PointModel model, const v1::SolverOptions& so
       out);
 }
 
+/// Only a march works out every sample: an orbit repeats.
+void add_history(const v1::HistoryRequest& history, bool is_marched, v1::CostEstimate& out) {
+  const double samples = history.samples_per_mesh_cycle();
+  const double rows = history.mesh_cycles() * samples;
+  add(kSample, is_marched ? rows : samples, out);
+  const int columns = history.columns_size() + 1;  // and time
+  out.set_processor_seconds(out.processor_seconds() + rows * columns * kValueSeconds);
+}
+
 }  // namespace
 
 v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
   v1::CostEstimate out;
+  out.set_processor_seconds(kPreparationSeconds);
   const v1::SolverOptions& solver = effective.solver_options();
   if (effective.has_inefficiency_curve()) {
     const v1::InefficiencyCurveStudy& curve = effective.inefficiency_curve();
@@ -51,11 +63,7 @@ v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
   if (point.probe_coexisting_response()) {
     add_points(1, point.model(), solver, out);
   }
-  if (point.has_history()) {
-    const double rows =
-        1.0 * point.history().mesh_cycles() * point.history().samples_per_mesh_cycle();
-    add({kFlanks, kMarchedCycle.seconds_each}, rows, out);
-  }
+  if (point.has_history()) add_history(point.history(), solver.method() == v1::MARCH, out);
   return out;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/version.h"
 #include "server/convert/canonical_text.h"
+#include "server/convert/latest_few.h"
 #include "server/convert/output_only.h"
 #include "server/hash/sha256.h"
 
@@ -37,18 +38,37 @@ bool is_label(const FieldDescriptor& field) {
          (is_output_only(field) && !kConstant.contains(field.name()));
 }
 
-}  // namespace
-
-std::string canonical_inputs(const SimulationInputs& inputs) {
+std::string resources_text(const SimulationInputs& inputs) {
   std::string text = std::string("model_version=") + kModelVersion + "\n";
-  add_canonical_text(inputs.lubricant, "lubricant", is_label, text);
-  add_canonical_text(inputs.gear_set, "gear_set", is_label, text);
-  add_canonical_text(inputs.surface, "surface", is_label, text);
-  add_canonical_text(inputs.vehicle, "vehicle", is_label, text);
+  add_canonical_text(*inputs.lubricant, "lubricant", is_label, text);
+  add_canonical_text(*inputs.gear_set, "gear_set", is_label, text);
+  add_canonical_text(*inputs.surface, "surface", is_label, text);
+  add_canonical_text(*inputs.vehicle, "vehicle", is_label, text);
+  return text;
+}
+
+std::string simulation_text(const SimulationInputs& inputs) {
+  std::string text;
   add_canonical_text(inputs.effective, "simulation", is_label, text);
   return text;
 }
 
-std::string input_hash(const SimulationInputs& inputs) { return sha256(canonical_inputs(inputs)); }
+}  // namespace
+
+std::string canonical_inputs(const SimulationInputs& inputs) {
+  return resources_text(inputs) + simulation_text(inputs);
+}
+
+std::string input_hash(const SimulationInputs& inputs) {
+  // The resources' text is most of the work, and many simulations rest on the same ones.
+  static LatestFew<Resources, Sha256> kept;
+  Sha256 hash = kept.get(resources(inputs), [&inputs] {
+    Sha256 begun;
+    begun.add(resources_text(inputs));
+    return begun;
+  });
+  hash.add(simulation_text(inputs));
+  return hash.finish();
+}
 
 }  // namespace tribodyn::server

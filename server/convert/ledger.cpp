@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <utility>
 
 #include "server/convert/constraints.h"
+#include "server/convert/latest_few.h"
 #include "server/convert/output_only.h"
 #include "server/convert/provenance.h"
 #include "server/convert/solver_defaults.h"
@@ -101,17 +103,44 @@ void add_request(Ledger& ledger, const SimulationInputs& inputs) {
       rise ? "stated in the request" : "default: the value published with eq 14");
 }
 
+void add_resources(Ledger& ledger, const SimulationInputs& inputs) {
+  const auto add_all = [&ledger](const auto& resource) {
+    add_numbers(ledger, resource.name(), resource.provenance(), resource, "");
+  };
+  add_all(*inputs.lubricant);
+  add_gear_set(ledger, *inputs.gear_set,
+               inputs.effective.model_options().load_dependent_mesh_data());
+  add_all(*inputs.surface);
+  add_all(*inputs.vehicle);
+}
+
+std::string serialised(Ledger ledger) {
+  v1::SimulationResult out;
+  for (v1::Assumption& each : ledger) *out.add_assumptions() = std::move(each);
+  return out.SerializeAsString();
+}
+
 }  // namespace
 
 std::vector<v1::Assumption> assumptions(const SimulationInputs& inputs) {
   Ledger ledger;
   add_request(ledger, inputs);
-  add_numbers(ledger, inputs.lubricant.name(), inputs.lubricant.provenance(), inputs.lubricant, "");
-  add_gear_set(ledger, inputs.gear_set,
-               inputs.effective.model_options().load_dependent_mesh_data());
-  add_numbers(ledger, inputs.surface.name(), inputs.surface.provenance(), inputs.surface, "");
-  add_numbers(ledger, inputs.vehicle.name(), inputs.vehicle.provenance(), inputs.vehicle, "");
+  add_resources(ledger, inputs);
   return ledger;
+}
+
+std::string ledger(const SimulationInputs& inputs) {
+  static LatestFew<std::pair<Resources, bool>, std::string> kept;
+  const bool load_dependent = inputs.effective.model_options().load_dependent_mesh_data();
+  Ledger of_request;
+  add_request(of_request, inputs);
+  // The bytes of two messages in a row are those of both merged.
+  return serialised(std::move(of_request)) +
+         kept.get({resources(inputs), load_dependent}, [&inputs] {
+           Ledger of_resources;
+           add_resources(of_resources, inputs);
+           return serialised(std::move(of_resources));
+         });
 }
 
 }  // namespace tribodyn::server

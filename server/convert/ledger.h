@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "server/convert/simulation_inputs.h"
@@ -11,5 +12,8 @@ namespace tribodyn::server {
 /// block), surface and vehicle with value, unit, provenance and source, and what the request left
 /// to defaults.
 std::vector<v1::Assumption> assumptions(const SimulationInputs& inputs);
+
+/// The same as a serialised v1::SimulationResult that holds nothing else.
+std::string ledger(const SimulationInputs& inputs);
 
 }  // namespace tribodyn::server

@@ -2,11 +2,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "server/convert/latest_few.h"
 #include "server/convert/violations.h"
 
 namespace tribodyn::server {
@@ -73,9 +75,20 @@ std::string deleted_name_text(std::string_view name);
 /// A resource, and which revision of it this is.
 template <class Resource>
 struct NamedResource {
-  Resource resource;
+  std::shared_ptr<const Resource> resource;  ///< shared with others who asked for it lately
   std::string revision_name;
 };
+
+/// The message of a stored body; null when it is none. Thousands of simulations rest on the same
+/// few, and parsing them takes longer than solving a point.
+template <class Resource>
+std::shared_ptr<const Resource> parse_resource(const std::string& body) {
+  static LatestFew<std::string, std::shared_ptr<const Resource>> kept;
+  return kept.get(body, [&body]() -> std::shared_ptr<const Resource> {
+    auto resource = std::make_shared<Resource>();
+    return resource->ParseFromString(body) ? resource : nullptr;
+  });
+}
 
 /// The resource of that name; a violation at `path` and nothing when there is none or it is
 /// deleted.
@@ -93,7 +106,8 @@ std::optional<NamedResource<Resource>> find_resource(const ResourceLookup& looku
         return std::nullopt;
       }
       out.revision_name = revision_name(parsed->name, found->revision);
-      if (out.resource.ParseFromString(found->body)) return out;
+      out.resource = parse_resource<Resource>(found->body);
+      if (out.resource) return out;
     }
   }
   violations.push_back({path, unknown_name_text(name, collection, lookup.names(collection))});

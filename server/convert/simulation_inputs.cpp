@@ -4,6 +4,7 @@
 
 #include "server/convert/check_message.h"
 #include "server/convert/history_columns.h"
+#include "server/convert/labels.h"
 #include "server/convert/output_only.h"
 #include "server/convert/solver_defaults.h"
 #include "server/convert/study_checks.h"
@@ -172,17 +173,23 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
   const std::size_t before = violations.size();
   SimulationInputs inputs;
   inputs.requested = client_part(request);
+  sort_labels(*inputs.requested.mutable_labels());
   const v1::Simulation& asked = inputs.requested;
   check_message(asked, path, violations);
   check_study(asked, path, violations);
+  if (asked.labels_size() > kMaximumSimulationLabels) {
+    violations.push_back({join_path(path, "labels"), "more than 64 entries"});
+  } else {
+    check_labels(asked.labels(), join_path(path, "labels"), violations);
+  }
 
-  const auto find = [&]<class Resource>(Resource* out, const std::string& name,
-                                        const std::string& otherwise, const char* collection,
-                                        const char* field) {
+  const auto find = [&]<class Resource>(std::shared_ptr<const Resource>* out,
+                                        const std::string& name, const std::string& otherwise,
+                                        const char* collection, const char* field) {
     auto found = find_resource<Resource>(lookup, name.empty() ? otherwise : name, collection,
                                          join_path(path, field), violations);
     if (!found) return std::string();
-    *out = std::move(found->resource);
+    *out = found->resource;
     return found->revision_name;
   };
   const std::string lubricant =
@@ -199,10 +206,10 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
     const double rise = asked.has_inlet_temperature_rise_kelvin()
                             ? asked.inlet_temperature_rise_kelvin()
                             : kDefaultInletTemperatureRiseKelvin;
-    check_fluid_at_inlet(inputs.lubricant, sump, rise, join_path(path, "lubricant"), violations);
+    check_fluid_at_inlet(*inputs.lubricant, sump, rise, join_path(path, "lubricant"), violations);
   }
   if (!gear_set.empty()) {
-    check_mesh_data(inputs.gear_set, asked.model_options(),
+    check_mesh_data(*inputs.gear_set, asked.model_options(),
                     join_path(path, "model_options.load_dependent_mesh_data"), violations);
   }
   if (violations.size() > before) return std::nullopt;
@@ -215,12 +222,12 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
 }
 
 Scene scene(const SimulationInputs& inputs) {
-  return {.lubricant = to_core(inputs.lubricant),
-          .gear_set = to_core(inputs.gear_set),
-          .roughness = roughness(inputs.surface),
-          .boundary = boundary_friction(inputs.surface),
-          .solid = solid(inputs.gear_set),
-          .vehicle = to_core(inputs.vehicle),
+  return {.lubricant = to_core(*inputs.lubricant),
+          .gear_set = to_core(*inputs.gear_set),
+          .roughness = roughness(*inputs.surface),
+          .boundary = boundary_friction(*inputs.surface),
+          .solid = solid(*inputs.gear_set),
+          .vehicle = to_core(*inputs.vehicle),
           .sump_temperature = inputs.effective.sump_temperature_celsius() + kZeroCelsius,
           .inlet_temperature_rise = inputs.effective.inlet_temperature_rise_kelvin(),
           .options = to_core(inputs.effective.model_options())};

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -20,15 +22,23 @@ namespace tribodyn::server {
 
 /// All that a simulation rests on: the request as it came, the same with every default written out
 /// (explicit speeds in ascending order, no zero that means a default) and the revisions that names
-/// mean, and these resources.
+/// mean, and these resources, shared with other simulations (see parse_resource).
 struct SimulationInputs {
   v1::Simulation requested;
   v1::Simulation effective;
-  v1::Lubricant lubricant;
-  v1::GearSet gear_set;
-  v1::Surface surface;
-  v1::Vehicle vehicle;
+  std::shared_ptr<const v1::Lubricant> lubricant;
+  std::shared_ptr<const v1::GearSet> gear_set;
+  std::shared_ptr<const v1::Surface> surface;
+  std::shared_ptr<const v1::Vehicle> vehicle;
 };
+
+/// What a simulation shares with others; equal when these are the same objects.
+using Resources =
+    std::tuple<std::shared_ptr<const v1::Lubricant>, std::shared_ptr<const v1::GearSet>,
+               std::shared_ptr<const v1::Surface>, std::shared_ptr<const v1::Vehicle>>;
+inline Resources resources(const SimulationInputs& inputs) {
+  return {inputs.lubricant, inputs.gear_set, inputs.surface, inputs.vehicle};
+}
 
 /// The request without what only the server sets, and without fields of newer clients.
 v1::Simulation client_part(const v1::Simulation& simulation);

@@ -9,14 +9,17 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <thread>
 
 #include "core/version.h"
 #include "server/api/grpc_server.h"
+#include "server/api/metrics_listener.h"
 #include "server/app/stored_inputs.h"
 #include "server/daemon/service_manager.h"
 #include "server/jobs/golden_case.h"
+#include "server/jobs/platform.h"
 #include "server/store/maintenance.h"
 #include "server/store/seeds.h"
 #include "server/store/store.h"
@@ -66,6 +69,13 @@ SimulationJobs::Options job_options(const Settings& settings) {
   SimulationJobs::Options options;
   options.threads = settings.threads == 0 ? processors : settings.threads;
   options.heartbeat = to_milliseconds(settings.heartbeat_seconds);
+  options.limits.jobs = static_cast<std::size_t>(settings.waiting_simulations);
+  options.limits.cost_seconds = 3600 * settings.waiting_processor_hours;
+  if (settings.keep_days > 0) {
+    options.retention.keep = static_cast<Microseconds>(settings.keep_days * 86'400e6);
+  }
+  options.retention.disk_budget_bytes =
+      static_cast<std::int64_t>(1e6 * settings.disk_budget_megabytes);
   return options;
 }
 
@@ -89,6 +99,18 @@ int complain(int code, const std::string& sentence) {
   return code;
 }
 
+/// Nothing when none are asked for.
+std::unique_ptr<MetricsListener> listen_for_metrics(const Settings& settings,
+                                                    SimulationJobs& jobs) {
+  if (settings.metrics_listen.empty()) return nullptr;
+  jobs.metrics().set_build(TRIBODYN_VERSION, kModelVersion, platform());
+  auto listener =
+      std::make_unique<MetricsListener>(parse_listen_address(settings.metrics_listen),
+                                        [&jobs] { return jobs.metrics().text(jobs.occupancy()); });
+  spdlog::info("metrics at http://{}/metrics", to_text(listener->address()));
+  return listener;
+}
+
 }  // namespace
 
 int serve(const Settings& settings, const ListenAddress& address, const sigset_t& signals) {
@@ -103,6 +125,7 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
       application, address,
       {to_milliseconds(settings.call_limit_seconds), to_milliseconds(settings.stream_limit_seconds),
        to_milliseconds(settings.unread_limit_seconds)});
+  const std::unique_ptr<MetricsListener> metrics = listen_for_metrics(settings, jobs);
   const std::string wrong = check_golden_case();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);
   jobs.start();

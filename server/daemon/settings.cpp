@@ -65,8 +65,31 @@ void add_flags(CLI::App& app, Settings& settings) {
   add_seconds(app, "--drain-seconds", settings.drain_seconds, kLongestDrainSeconds,
               "On SIGTERM running simulations may go on for so long; those that have not ended run "
               "again after the next start. A second SIGTERM ends the wait. Recommended: 20");
+  app.add_option("--waiting-simulations", settings.waiting_simulations,
+                 "More than these do not wait; further ones are told when to come again, and one "
+                 "client may take three quarters. Recommended: 20000")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--waiting-processor-hours", settings.waiting_processor_hours,
+                 "The same for the sum of their estimates. Recommended: 100")
+      ->check(CLI::Range(0.001, 1e6))
+      ->capture_default_str();
+  app.add_option("--keep-days", settings.keep_days,
+                 "Simulations that have ended are removed after so long, unless pinned; 0: never. "
+                 "Recommended: 0")
+      ->check(CLI::Range(0.0, 36500.0))
+      ->capture_default_str();
+  app.add_option(
+         "--disk-budget-megabytes", settings.disk_budget_megabytes,
+         "Beyond it, what ended first is removed, unless pinned; 0: no budget. Recommended: "
+         "half of the disk")
+      ->check(CLI::Range(0.0, 1e9))
+      ->capture_default_str();
   app.add_option("--port-file", settings.port_file,
                  "Write the address here once the server answers; removed at the end");
+  app.add_option("--metrics-listen", settings.metrics_listen,
+                 "Loopback address and port that answer GET /metrics for Prometheus; none by "
+                 "default. Recommended: 127.0.0.1:50652");
   app.add_option("--log-level", settings.log_level, "Recommended: info")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
       ->capture_default_str();

@@ -24,12 +24,17 @@ struct Settings {
   std::string database;
   int threads = 0;
   std::string port_file;
+  std::string metrics_listen;  ///< empty: no metrics
   std::string log_level = "info";
   double call_limit_seconds = 30;
   double stream_limit_seconds = 3600;
   double unread_limit_seconds = 60;
   double heartbeat_seconds = 15;
   double drain_seconds = 20;
+  double keep_days = 0;              ///< 0: for good
+  double disk_budget_megabytes = 0;  ///< 0: none
+  double waiting_processor_hours = 100;
+  int waiting_simulations = 20'000;
 };
 
 /// Nothing when the process is to end with `exit_code`: help was shown, or a sentence said what is

@@ -3,11 +3,17 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tribodyn::server {
 namespace {
 
 constexpr auto kLookAround = std::chrono::milliseconds(20);
+constexpr double kShareOfOne = 0.75;  // of the limits, for one client
+constexpr double kWorthAsking = 0.1;
+constexpr double kLeastRetry = 1;         // s
+constexpr double kLongestRetry = 600;     // s
+constexpr double kServiceSeconds = 2e-3;  // of a processor, for what is done around a small job
 
 }  // namespace
 
@@ -25,10 +31,8 @@ bool StopSignal::wait_for(std::chrono::milliseconds time) const {
   return !requested_.wait_for(lock, time, [this] { return requested(); });
 }
 
-JobQueue::JobQueue(int threads, std::size_t maximum_waiting, Work work)
-    : thread_count_(std::max(1, threads)),
-      maximum_waiting_(maximum_waiting),
-      work_(std::move(work)) {}
+JobQueue::JobQueue(int threads, const QueueLimits& limits, Work work)
+    : thread_count_(std::max(1, threads)), limits_(limits), work_(std::move(work)) {}
 
 JobQueue::~JobQueue() { stop(); }
 
@@ -36,51 +40,98 @@ void JobQueue::start() {
   for (int i = 0; i < thread_count_; ++i) threads_.emplace_back([this] { run(); });
 }
 
-bool JobQueue::reserve() {
+Admission JobQueue::reserve(const QueuedJob& job) {
   const std::lock_guard lock(mutex_);
-  if (stopping_ || waiting_.size() + reserved_ >= maximum_waiting_) return false;
-  ++reserved_;
-  return true;
+  Reserved& own = reserved_of_[job.client];
+  const double all_seconds = waiting_.cost_seconds() + reserved_.cost_seconds;
+  const double own_seconds = waiting_.cost_seconds_of(job.client) + own.cost_seconds;
+  const std::size_t all_jobs = waiting_.size() + reserved_.jobs;
+  const std::size_t own_jobs = waiting_.size_of(job.client) + own.jobs;
+  // Whoever has nothing waiting gets in however large the job is, as long as there is room at all.
+  const bool has_room =
+      all_jobs < limits_.jobs && all_seconds < limits_.cost_seconds &&
+      (own_jobs == 0 ||
+       (static_cast<double>(own_jobs) < kShareOfOne * static_cast<double>(limits_.jobs) &&
+        own_seconds + job.cost_seconds <= kShareOfOne * limits_.cost_seconds));
+  if (stopping_ || !has_room) {
+    if (own.jobs == 0) reserved_of_.erase(job.client);
+    // Until a tenth of what waits is done.
+    return {false, turn_away(job, kWorthAsking * all_seconds / thread_count_)};
+  }
+  for (Reserved* each : {&own, &reserved_}) {
+    ++each->jobs;
+    each->cost_seconds += job.cost_seconds;
+  }
+  return {true, 0};
 }
 
-void JobQueue::release() {
+/// When the next job of the client may come [s].
+int JobQueue::turn_away(const QueuedJob& job, double least_seconds) {
+  using std::chrono::duration;
+  using std::chrono::steady_clock;
+  const auto now = steady_clock::now();
+  std::erase_if(turns_, [now](const auto& each) { return each.second < now; });
+  steady_clock::time_point& turn = turns_[job.client];
+  const double seconds = std::clamp(std::max(least_seconds, duration<double>(turn - now).count()),
+                                    kLeastRetry, kLongestRetry);
+  const double work = std::max(job.cost_seconds, kServiceSeconds) / thread_count_;
+  turn = now + std::chrono::duration_cast<steady_clock::duration>(duration<double>(seconds + work));
+  return static_cast<int>(std::lround(seconds));
+}
+
+void JobQueue::give_back(const QueuedJob& job) {
+  const auto own = reserved_of_.find(job.client);
+  for (Reserved* each : {&own->second, &reserved_}) {
+    --each->jobs;
+    each->cost_seconds = each->jobs == 0 ? 0 : each->cost_seconds - job.cost_seconds;
+  }
+  if (own->second.jobs == 0) reserved_of_.erase(own);
+}
+
+void JobQueue::release(const QueuedJob& job) {
   const std::lock_guard lock(mutex_);
-  --reserved_;
+  give_back(job);
 }
 
-void JobQueue::push(std::int64_t id) {
-  release();
-  enqueue({id, false});
-}
-
-void JobQueue::push_resumed(std::int64_t id, bool alone) { enqueue({id, alone}); }
-
-bool JobQueue::push_missing(std::int64_t id) {
+void JobQueue::push(const QueuedJob& job) {
   {
     const std::lock_guard lock(mutex_);
-    if (running_.contains(id) || std::any_of(waiting_.begin(), waiting_.end(),
-                                             [id](const Waiting& each) { return each.id == id; })) {
-      return false;
-    }
-    waiting_.push_back({id, false});
+    give_back(job);
+    waiting_.push(job);
+  }
+  changed_.notify_one();
+}
+
+void JobQueue::push_resumed(const QueuedJob& job) { enqueue(job); }
+
+bool JobQueue::push_missing(const QueuedJob& job) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (running_.contains(job.id) || waiting_.contains(job.id)) return false;
+    waiting_.push(job);
   }
   changed_.notify_one();
   return true;
 }
 
-void JobQueue::enqueue(const Waiting& job) {
+void JobQueue::enqueue(const QueuedJob& job) {
   {
     const std::lock_guard lock(mutex_);
-    waiting_.push_back(job);
+    waiting_.push(job);
   }
   changed_.notify_one();
 }
 
 void JobQueue::drop(std::int64_t id) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(waiting_, [id](const Waiting& each) { return each.id == id; });
+  waiting_.erase(id);
   const auto running = running_.find(id);
   if (running != running_.end()) running->second->request(StopReason::kEnded);
+}
+
+Occupancy JobQueue::occupancy() const {
+  const std::lock_guard lock(mutex_);
+  return {waiting_.size(), running_.size(), waiting_.cost_seconds()};
 }
 
 bool JobQueue::is_stopping() const {
@@ -110,23 +161,30 @@ void JobQueue::stop() {
   threads_.clear();
 }
 
-/// Whether the first of the waiting may run beside those that run.
+/// Whether all threads but one are taken by jobs that are not interactive.
+bool JobQueue::only_interactive() const {
+  return thread_count_ > 1 && running_bulk_ >= thread_count_ - 1;
+}
+
+/// Whether the next of the waiting may run beside those that run.
 bool JobQueue::may_begin() const {
-  return !waiting_.empty() && !one_runs_alone_ && (!waiting_.front().alone || running_.empty());
+  if (one_runs_alone_) return false;
+  const QueuedJob* next = waiting_.peek(only_interactive());
+  return next != nullptr && (!next->alone || running_.empty());
 }
 
 void JobQueue::run() {
   for (;;) {
-    Waiting job;
+    QueuedJob job;
     const auto signal = std::make_shared<StopSignal>();
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return stopping_ || may_begin(); });
       if (stopping_) return;
-      job = waiting_.front();
-      waiting_.pop_front();
+      job = *waiting_.pop(only_interactive());
       running_[job.id] = signal;
       one_runs_alone_ = job.alone;
+      if (!job.is_interactive()) ++running_bulk_;
     }
     try {
       work_(job.id, *signal);
@@ -137,6 +195,7 @@ void JobQueue::run() {
       const std::lock_guard lock(mutex_);
       running_.erase(job.id);
       if (job.alone) one_runs_alone_ = false;
+      if (!job.is_interactive()) --running_bulk_;
     }
     changed_.notify_all();
     ended_.notify_all();

@@ -5,13 +5,16 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
+
+#include "server/jobs/fair_queue.h"
+#include "server/metrics/metrics.h"
 
 namespace tribodyn::server {
 
@@ -32,15 +35,30 @@ class StopSignal {
   mutable std::condition_variable requested_;
 };
 
-/// Threads that work through jobs, first come first served; a job is a number and what it means is
-/// the caller's. Safe for concurrent access without external synchronization; `start`, `drain`,
-/// `stop` and the destructor from one thread.
+/// What may wait; of each at most three quarters for one client, so that others still get in.
+struct QueueLimits {
+  std::size_t jobs = 20'000;
+  double cost_seconds = 360'000;  ///< estimated, of one processor
+};
+
+/// Whether a job has a place, and when it is worth asking again if not: the jobs of a client that
+/// were turned away one after another are told to come one after another, as fast as they can be
+/// worked through, so that they do not all come back at once.
+struct Admission {
+  bool is_admitted = false;
+  int retry_seconds = 0;
+};
+
+/// Threads that work through jobs in the order of a FairQueue; a job is a number and what it means
+/// is the caller's. Where there are several threads, one is kept for interactive jobs. Safe for
+/// concurrent access without external synchronization; `start`, `drain`, `stop` and the destructor
+/// from one thread.
 class JobQueue {
  public:
   /// Called on a worker's thread; must not throw (what it throws is swallowed).
   using Work = std::function<void(std::int64_t id, const StopSignal& stop)>;
 
-  JobQueue(int threads, std::size_t maximum_waiting, Work work);
+  JobQueue(int threads, const QueueLimits& limits, Work work);
   ~JobQueue();
   JobQueue(const JobQueue&) = delete;
   JobQueue& operator=(const JobQueue&) = delete;
@@ -48,16 +66,19 @@ class JobQueue {
   /// Before it jobs only wait.
   void start();
 
-  /// A place among the waiting, before the job is written down anywhere; false when all are taken.
-  bool reserve();
-  void release();              ///< gives a reserved place back
-  void push(std::int64_t id);  ///< takes the reserved place
-  /// Beyond the limit: a job that a former run accepted. One that may be what killed it runs alone,
-  /// so that it takes no other with it.
-  void push_resumed(std::int64_t id, bool alone = false);
+  /// A place among the waiting, before the job is written down anywhere and has an id.
+  Admission reserve(const QueuedJob& job);
+  void release(const QueuedJob& job);  ///< gives a reserved place back
+  void push(const QueuedJob& job);     ///< takes the reserved place
+  /// Beyond the limits: a job that a former run accepted. One that may be what killed it runs
+  /// alone, so that it takes no other with it.
+  void push_resumed(const QueuedJob& job);
 
   /// The same, of a job that may be here already; true when it was not.
-  bool push_missing(std::int64_t id);
+  bool push_missing(const QueuedJob& job);
+
+  /// How much waits and runs.
+  Occupancy occupancy() const;
 
   /// A job that has ended otherwise: dropped when it waits, signalled when it runs.
   void drop(std::int64_t id);
@@ -72,26 +93,33 @@ class JobQueue {
   void stop();
 
  private:
-  struct Waiting {
-    std::int64_t id = 0;
-    bool alone = false;
+  /// Places given out that no job has taken yet.
+  struct Reserved {
+    std::size_t jobs = 0;
+    double cost_seconds = 0;
   };
 
   void run();
-  void enqueue(const Waiting& job);
+  void enqueue(const QueuedJob& job);
+  void give_back(const QueuedJob& job);
+  int turn_away(const QueuedJob& job, double least_seconds);
+  bool only_interactive() const;
   bool may_begin() const;
 
   const int thread_count_;
-  const std::size_t maximum_waiting_;
+  const QueueLimits limits_;
   const Work work_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::condition_variable ended_;
-  std::deque<Waiting> waiting_;                                  // guarded by mutex_
+  FairQueue waiting_;                                            // guarded by mutex_
   std::map<std::int64_t, std::shared_ptr<StopSignal>> running_;  // guarded by mutex_
   bool one_runs_alone_ = false;                                  // guarded by mutex_
-  std::size_t reserved_ = 0;                                     // guarded by mutex_
-  bool stopping_ = false;                                        // guarded by mutex_
+  int running_bulk_ = 0;                                         // guarded by mutex_
+  Reserved reserved_;                                            // guarded by mutex_
+  std::map<std::string, Reserved> reserved_of_;                  // guarded by mutex_; by client
+  std::map<std::string, std::chrono::steady_clock::time_point> turns_;  // guarded by mutex_
+  bool stopping_ = false;                                               // guarded by mutex_
   std::vector<std::thread> threads_;
 };
 

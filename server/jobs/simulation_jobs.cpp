@@ -17,15 +17,33 @@ milliseconds tick(milliseconds heartbeat) {
   return std::clamp(heartbeat / 4, milliseconds(1), milliseconds(1000));
 }
 
+Submission submission_of(Added::Kind kind) {
+  switch (kind) {
+    case Added::Kind::kQueued:
+      return Submission::kQueued;
+    case Added::Kind::kServed:
+      return Submission::kCacheHit;
+    case Added::Kind::kRepeated:
+      return Submission::kRepeated;
+    case Added::Kind::kRequestIdTaken:
+      return Submission::kInvalid;
+    case Added::Kind::kNoPlace:
+      break;
+  }
+  return Submission::kTurnedAway;
+}
+
 }  // namespace
 
 SimulationJobs::SimulationJobs(Store& store, Options options)
     : store_(store),
       clock_(options.clock),
       heartbeat_(options.heartbeat),
-      runner_(store, board_, options.clock, std::move(options.studies)),
-      queue_(options.threads, options.maximum_waiting,
+      runner_(store, board_, metrics_, options.clock, std::move(options.studies)),
+      queue_(options.threads, options.limits,
              [this](std::int64_t id, const StopSignal& stop) { runner_.run(id, stop); }),
+      retention_(options.retention),
+      janitor_(store, retention_, clock_),
       timekeeper_(tick(heartbeat_), clock_, [this](std::int64_t id) { expire(id); }) {}
 
 SimulationJobs::~SimulationJobs() { stop(); }
@@ -35,43 +53,59 @@ std::size_t SimulationJobs::resume() {
   for (const Waiting& each : waiting) {
     if (each.deadline_time) timekeeper_.add_deadline(each.id, *each.deadline_time);
     const bool last_chance = each.lost_attempts + 1 >= kMaximumLostAttempts;
-    queue_.push_resumed(each.id, last_chance);
+    queue_.push_resumed({each.id, each.client, each.cost_seconds, last_chance});
   }
   return waiting.size();
 }
 
-void SimulationJobs::start() { queue_.start(); }
+void SimulationJobs::start() {
+  queue_.start();
+  janitor_.start();
+}
 
-Added SimulationJobs::submit(const NewSimulation& simulation) {
-  const bool has_place = queue_.reserve();
+SimulationJobs::Submitted SimulationJobs::submit(const NewSimulation& simulation) {
+  QueuedJob job{0, simulation.client, simulation.cost_seconds};
+  const Admission admission = queue_.reserve(job);
+  const bool has_place = admission.is_admitted;
   Added added;
+  const StopWatch watch;
   try {
     added = store_.add_simulation(simulation, clock_(), has_place);
   } catch (...) {
-    if (has_place) queue_.release();
+    if (has_place) queue_.release(job);
     throw;
   }
+  metrics_.observe(Phase::kStore, watch.seconds());
+  metrics_.count(submission_of(added.kind));
   if (added.kind == Added::Kind::kQueued) {
     if (simulation.deadline_time) timekeeper_.add_deadline(added.id, *simulation.deadline_time);
-    queue_.push(added.id);
-    return added;
+    job.id = added.id;
+    queue_.push(job);
+    return {added, 0};
   }
-  if (has_place) queue_.release();
-  return added;
+  if (has_place) queue_.release(job);
+  return {added, admission.retry_seconds};
 }
 
 void SimulationJobs::ensure_queued(const StoredSimulation& simulation) {
-  if (queue_.push_missing(simulation.id) && simulation.deadline_time) {
+  if (queue_.push_missing({simulation.id, simulation.client, simulation.cost_seconds}) &&
+      simulation.deadline_time) {
     timekeeper_.add_deadline(simulation.id, *simulation.deadline_time);
   }
 }
 
-void SimulationJobs::cancel(std::int64_t id) { end(id, store_.mark_cancelled(id, clock_())); }
+void SimulationJobs::cancel(std::int64_t id) {
+  const auto event = store_.mark_cancelled(id, clock_());
+  if (event) metrics_.count(Ending::kCancelled);
+  end(id, event);
+}
 
 void SimulationJobs::expire(std::int64_t id) {
   try {
-    end(id, store_.mark_failed(id, clock_(), "DEADLINE_EXCEEDED",
-                               "it had not ended when its deadline_seconds were over"));
+    const auto event = store_.mark_failed(id, clock_(), "DEADLINE_EXCEEDED",
+                                          "it had not ended when its deadline_seconds were over");
+    if (event) metrics_.count(Ending::kFailed);
+    end(id, event);
   } catch (const StoreError& error) {
     spdlog::error("simulations/{}: {}", id, error.what());
     timekeeper_.add_deadline(id, clock_() + kLookAgain);
@@ -113,6 +147,7 @@ bool SimulationJobs::drain(std::chrono::milliseconds limit, const std::function<
 
 void SimulationJobs::stop() {
   timekeeper_.stop();
+  janitor_.stop();
   queue_.stop();
 }
 

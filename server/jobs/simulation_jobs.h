@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "server/jobs/janitor.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/progress_board.h"
 #include "server/jobs/simulation_runner.h"
 #include "server/jobs/timekeeper.h"
+#include "server/metrics/metrics.h"
 #include "server/store/store.h"
 
 namespace tribodyn::server {
-
-inline constexpr std::size_t kMaximumWaitingSimulations = 10'000;
 
 /// The life of simulations: accepted, queued, run, cancelled, too late, resumed after a crash.
 /// Safe for concurrent access without external synchronization; `resume`, `start`, `drain` and
@@ -25,7 +25,8 @@ class SimulationJobs {
  public:
   struct Options {
     int threads = 1;
-    std::size_t maximum_waiting = kMaximumWaitingSimulations;
+    QueueLimits limits;
+    Retention retention = {};
     Clock clock = system_time;
     StudyFunctions studies;
     /// A watch that has been silent for so long sends a sign of life.
@@ -43,8 +44,13 @@ class SimulationJobs {
   /// Until then simulations are accepted but wait.
   void start();
 
-  /// Writes a simulation down, and queues it unless it is there or served already.
-  Added submit(const NewSimulation& simulation);
+  /// Writes a simulation down, and queues it unless it is there or served already. Where it would
+  /// have to wait and has no place, says when to ask again.
+  struct Submitted {
+    Added added;
+    int retry_seconds = 0;
+  };
+  Submitted submit(const NewSimulation& simulation);
   /// Of a simulation that is QUEUED in the store: its request may have been written and yet been
   /// answered with an error, before it came into the queue.
   void ensure_queued(const StoredSimulation& simulation);
@@ -66,6 +72,9 @@ class SimulationJobs {
   std::optional<Watched> watch(std::int64_t id);
   /// Wakes the observer often enough for heartbeats.
   void wake(const std::weak_ptr<ProgressObserver>& observer) { timekeeper_.observe(observer); }
+  const Retention& retention() const { return retention_; }
+  Metrics& metrics() { return metrics_; }
+  Occupancy occupancy() const { return queue_.occupancy(); }
   std::chrono::milliseconds heartbeat() const { return heartbeat_; }
 
   /// True once nothing more is accepted.
@@ -82,9 +91,12 @@ class SimulationJobs {
   Store& store_;
   const Clock clock_;
   const std::chrono::milliseconds heartbeat_;
+  Metrics metrics_;
   ProgressBoard board_;
   SimulationRunner runner_;
   JobQueue queue_;
+  const Retention retention_;
+  Janitor janitor_;
   Timekeeper timekeeper_;  // last: its thread uses all of the above
 };
 

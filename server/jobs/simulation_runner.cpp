@@ -81,9 +81,13 @@ ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation)
   return out;
 }
 
-SimulationRunner::SimulationRunner(Store& store, ProgressBoard& board, Clock clock,
-                                   StudyFunctions studies)
-    : store_(store), board_(board), clock_(std::move(clock)), studies_(std::move(studies)) {}
+SimulationRunner::SimulationRunner(Store& store, ProgressBoard& board, Metrics& metrics,
+                                   Clock clock, StudyFunctions studies)
+    : store_(store),
+      board_(board),
+      metrics_(metrics),
+      clock_(std::move(clock)),
+      studies_(std::move(studies)) {}
 
 /// Repeats what the store refuses, until it does not or the simulation is to stop.
 template <class Action>
@@ -120,17 +124,23 @@ void SimulationRunner::run(std::int64_t id, const StopSignal& stop) const {
   }
 }
 
+StoredSimulation SimulationRunner::stored(std::int64_t id, const StopSignal& stop) const {
+  auto found = insist(id, stop, [&] { return store_.simulation(id); });
+  if (!found) throw Refusal("STORED_REQUEST_UNREADABLE", "the stored request is gone");
+  return std::move(*found);
+}
+
 /// As they are in the store, read again: a restart may have brought another model.
-SimulationInputs SimulationRunner::inputs_of(std::int64_t id, const StopSignal& stop) const {
-  return insist(id, stop, [&] {
-    const std::optional<StoredSimulation> stored = store_.simulation(id);
+SimulationInputs SimulationRunner::inputs_of(const StoredSimulation& simulation,
+                                             const StopSignal& stop) const {
+  return insist(simulation.id, stop, [&] {
     v1::Simulation request;
-    if (!stored || !request.ParseFromString(stored->request)) {
+    if (!request.ParseFromString(simulation.request)) {
       throw Refusal("STORED_REQUEST_UNREADABLE", "the stored request cannot be read");
     }
     Violations violations;
     auto inputs =
-        read_simulation(request, accepted_lookup(store_, *stored), "simulation", violations);
+        read_simulation(request, accepted_lookup(store_, simulation), "simulation", violations);
     if (!inputs) {
       throw Refusal("INVALID_ARGUMENT",
                     violations.front().field + ": " + violations.front().description);
@@ -139,22 +149,48 @@ SimulationInputs SimulationRunner::inputs_of(std::int64_t id, const StopSignal& 
   });
 }
 
+/// Attempts that end otherwise than with a result are not timed.
+Computed SimulationRunner::compute_timed(const SimulationInputs& inputs, const ResultKey& key,
+                                         const ReportProgress& report) const {
+  const v1::Simulation& asked = inputs.effective;
+  const v1::PointModel model = asked.has_operating_point() ? asked.operating_point().model()
+                                                           : asked.inefficiency_curve().model();
+  const StopWatch watch;
+  Computed computed = compute(inputs, key, studies_, report);
+  metrics_.observe(model == v1::QUASI_STATIC ? Phase::kFriction : Phase::kOrbit, watch.seconds());
+  return computed;
+}
+
 void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop) const {
-  const SimulationInputs inputs = inputs_of(id, stop);
+  const StoredSimulation simulation = stored(id, stop);
+  const double waited = 1e-6 * static_cast<double>(clock_() - simulation.create_time);
+  const StopWatch validation;
+  const SimulationInputs inputs = inputs_of(simulation, stop);
   const ResultKey key = result_key(inputs);
+  metrics_.observe(Phase::kValidation, validation.seconds());
   const auto started = insist(id, stop, [&] { return store_.mark_running(id, clock_(), key); });
+  metrics_.observe(Phase::kQueue, std::max(0.0, waited));
+  if (started && started->state == StoredState::kSucceeded) metrics_.count(Ending::kServedByCache);
   publish(id, started);
   if (!started || started->state != StoredState::kRunning) return;  // ended, or served
   const std::shared_ptr<ProgressChannel> channel = board_.open(id);
   Reporter reporter(*channel, stop);
   if (stop.requested()) throw Cancelled();
-  const auto begin = steady_clock::now();
-  Computed computed = compute(inputs, key, studies_, std::ref(reporter));
+  const StopWatch computing;
+  Computed computed = compute_timed(inputs, key, std::ref(reporter));
+  const double computed_seconds = computing.seconds();
   const NewResult result{key, computed.result.SerializeAsString(), std::move(computed.history)};
-  publish(id, insist(id, stop, [&] { return store_.mark_succeeded(id, clock_(), result); }));
+  const StopWatch storing;
+  const auto ended = insist(id, stop, [&] { return store_.mark_succeeded(id, clock_(), result); });
+  metrics_.observe(Phase::kStore, storing.seconds());
+  if (ended) {
+    metrics_.count(ended->state == StoredState::kSucceeded ? Ending::kSucceeded : Ending::kFailed);
+  }
+  publish(id, ended);
   spdlog::info(
-      "simulations/{} computed in {} ms", id,
-      std::chrono::duration_cast<std::chrono::milliseconds>(steady_clock::now() - begin).count());
+      "event=simulation_computed simulation=simulations/{} request_id={} input_hash={} "
+      "waited_seconds={:.6f} computed_seconds={:.6f} stored_seconds={:.6f}",
+      id, simulation.request_id, key.input_hash, waited, computed_seconds, storing.seconds());
 }
 
 /// Without an event somebody else has ended the simulation, by cancelling it: a channel opened
@@ -191,8 +227,11 @@ void SimulationRunner::stopped(std::int64_t id, const StopSignal& stop) const {
 void SimulationRunner::fail(std::int64_t id, const StopSignal& stop, const std::string& reason,
                             const std::string& message) const {
   // The message may quote inputs, so only the reason is logged.
-  spdlog::warn("simulations/{} failed: {}", id, reason);
-  publish(id, insist(id, stop, [&] { return store_.mark_failed(id, clock_(), reason, message); }));
+  spdlog::warn("event=simulation_failed simulation=simulations/{} reason={}", id, reason);
+  const auto event =
+      insist(id, stop, [&] { return store_.mark_failed(id, clock_(), reason, message); });
+  if (event) metrics_.count(Ending::kFailed);
+  publish(id, event);
 }
 
 }  // namespace tribodyn::server

@@ -7,6 +7,7 @@
 #include "server/jobs/compute.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/progress_board.h"
+#include "server/metrics/metrics.h"
 #include "server/store/store.h"
 
 namespace tribodyn::server {
@@ -26,13 +27,17 @@ ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation)
 /// stops. Safe for concurrent access without external synchronization.
 class SimulationRunner {
  public:
-  SimulationRunner(Store& store, ProgressBoard& board, Clock clock, StudyFunctions studies);
+  SimulationRunner(Store& store, ProgressBoard& board, Metrics& metrics, Clock clock,
+                   StudyFunctions studies);
 
   void run(std::int64_t id, const StopSignal& stop) const;
 
  private:
   void compute_and_save(std::int64_t id, const StopSignal& stop) const;
-  SimulationInputs inputs_of(std::int64_t id, const StopSignal& stop) const;
+  StoredSimulation stored(std::int64_t id, const StopSignal& stop) const;
+  SimulationInputs inputs_of(const StoredSimulation& simulation, const StopSignal& stop) const;
+  Computed compute_timed(const SimulationInputs& inputs, const ResultKey& key,
+                         const ReportProgress& report) const;
   void publish(std::int64_t id, const std::optional<StoredEvent>& event) const;
   void stopped(std::int64_t id, const StopSignal& stop) const;
   void fail(std::int64_t id, const StopSignal& stop, const std::string& reason,
@@ -42,6 +47,7 @@ class SimulationRunner {
 
   Store& store_;
   ProgressBoard& board_;
+  Metrics& metrics_;
   Clock clock_;
   StudyFunctions studies_;
 };

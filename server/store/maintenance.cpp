@@ -13,6 +13,7 @@
 #include "server/hash/sha256.h"
 #include "server/store/connections.h"
 #include "server/store/database_lock.h"
+#include "server/store/history_rows.h"
 #include "server/store/properties.h"
 #include "server/store/resource_types.h"
 #include "server/store/schema.h"
@@ -29,26 +30,26 @@ using Problems = std::vector<std::string>;
 constexpr std::size_t kMaximumProblems = 100;
 constexpr int kPagesAtATime = 1000;
 
-SQLite::Database open(const std::filesystem::path& path, int flags) {
+Connection open(const std::filesystem::path& path, int flags) {
   if ((flags & SQLite::OPEN_CREATE) == 0 && !std::filesystem::exists(path)) {
     throw StoreError(StoreError::Kind::kCannotOpen, "there is no database " + path.string());
   }
   return {path.string(), flags, kBusyTimeoutMilliseconds};
 }
 
-int pragma(SQLite::Database& db, const std::string& name) {
+int pragma(Connection& db, const std::string& name) {
   return db.execAndGet("PRAGMA " + name).getInt();
 }
 
 /// Runs a query that selects what must not be; each row is a sentence.
-void find_rows(SQLite::Database& db, const char* sql, Problems& problems) {
+void find_rows(Connection& db, const char* sql, Problems& problems) {
   SQLite::Statement query(db, sql);
   while (problems.size() < kMaximumProblems && query.executeStep()) {
     problems.push_back(query.getColumn(0).getString());
   }
 }
 
-void check_file(SQLite::Database& db, Problems& problems) {
+void check_file(Connection& db, Problems& problems) {
   SQLite::Statement integrity(db, "PRAGMA integrity_check(20)");
   while (integrity.executeStep()) {
     const std::string row = integrity.getColumn(0).getString();
@@ -61,7 +62,7 @@ void check_file(SQLite::Database& db, Problems& problems) {
   }
 }
 
-void check_rows(SQLite::Database& db, Problems& problems) {
+void check_rows(Connection& db, Problems& problems) {
   for (const char* sql : {
            "SELECT r.name || ': revisions have gaps' FROM resources r JOIN revisions v "
            "ON v.resource = r.id GROUP BY r.id "
@@ -89,10 +90,18 @@ void check_rows(SQLite::Database& db, Problems& problems) {
            "WHERE platform <> '' GROUP BY input_hash, model_version, platform "
            "HAVING count(*) > 1",
            "SELECT 'simulations/' || s.id || ': columns of its history differ in length' "
-           "FROM simulations s JOIN history h ON h.result = s.result GROUP BY s.id "
-           "HAVING min(length(data)) <> max(length(data)) OR max(length(data) % 8) <> 0",
+           "FROM simulations s JOIN history_columns h ON h.result = s.result GROUP BY s.id "
+           "HAVING min(rows) <> max(rows)",
        }) {
     find_rows(db, sql, problems);
+  }
+}
+
+void check_histories(Connection& db, Problems& problems) {
+  SQLite::Statement query(db, "SELECT id, result FROM history_columns");
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    if (is_whole_column(db, query.getColumn(0).getInt64())) continue;
+    problems.push_back("result " + query.getColumn(1).getString() + ": its history is damaged");
   }
 }
 
@@ -101,7 +110,7 @@ bool bears_name(const google::protobuf::Message& message, const std::string& nam
              message, message.GetDescriptor()->FindFieldByName("name")) == name;
 }
 
-void check_bodies(SQLite::Database& db, Problems& problems) {
+void check_bodies(Connection& db, Problems& problems) {
   SQLite::Statement query(db,
                           "SELECT r.name, v.revision, v.content_hash, v.body FROM revisions v "
                           "JOIN resources r ON r.id = v.resource ORDER BY v.id");
@@ -122,7 +131,7 @@ void check_bodies(SQLite::Database& db, Problems& problems) {
   }
 }
 
-std::map<std::string, PropertyValue> stored_properties(SQLite::Database& db, std::int64_t id) {
+std::map<std::string, PropertyValue> stored_properties(Connection& db, std::int64_t id) {
   SQLite::Statement query(db, "SELECT key, value FROM properties WHERE resource = ?");
   query.bind(1, id);
   std::map<std::string, PropertyValue> out;
@@ -136,7 +145,7 @@ std::map<std::string, PropertyValue> stored_properties(SQLite::Database& db, std
   return out;
 }
 
-void check_properties(SQLite::Database& db, Problems& problems) {
+void check_properties(Connection& db, Problems& problems) {
   SQLite::Statement query(db,
                           "SELECT r.id, r.name, r.collection, v.body, r.create_time, v.create_time "
                           "FROM resources r JOIN revisions v ON v.id = r.present");
@@ -153,8 +162,7 @@ void check_properties(SQLite::Database& db, Problems& problems) {
   }
 }
 
-std::optional<std::string> revision_body(SQLite::Database& db, const std::string& name,
-                                         int revision) {
+std::optional<std::string> revision_body(Connection& db, const std::string& name, int revision) {
   SQLite::Statement query(db,
                           "SELECT v.body FROM revisions v JOIN resources r ON r.id = v.resource "
                           "WHERE r.name = ? AND v.revision = ?");
@@ -164,7 +172,7 @@ std::optional<std::string> revision_body(SQLite::Database& db, const std::string
   return query.getColumn(0).getString();
 }
 
-void check_simulations(SQLite::Database& db, const HashInputs& hash_inputs, Problems& problems) {
+void check_simulations(Connection& db, const HashInputs& hash_inputs, Problems& problems) {
   const FindRevision find = [&db](const std::string& name, int revision) {
     return revision_body(db, name, revision);
   };
@@ -201,7 +209,7 @@ void check_simulations(SQLite::Database& db, const HashInputs& hash_inputs, Prob
 }
 
 /// Refuses what is not a database of this program or of a newer one.
-void check_identity(SQLite::Database& db, const std::filesystem::path& path) {
+void check_identity(Connection& db, const std::filesystem::path& path) {
   if (pragma(db, "application_id") != kApplicationId) {
     throw StoreError(StoreError::Kind::kForeign, path.string() + " is no database of this program");
   }
@@ -211,7 +219,7 @@ void check_identity(SQLite::Database& db, const std::filesystem::path& path) {
   }
 }
 
-Problems problems_of(SQLite::Database& db, const std::filesystem::path& path,
+Problems problems_of(Connection& db, const std::filesystem::path& path,
                      const HashInputs& hash_inputs = nullptr) {
   check_identity(db, path);
   Problems problems;
@@ -220,6 +228,7 @@ Problems problems_of(SQLite::Database& db, const std::filesystem::path& path,
   if (pragma(db, "user_version") < kSchemaVersion) return problems;  // the next start migrates it
   db.exec("BEGIN");  // one moment of a database in use
   check_rows(db, problems);
+  check_histories(db, problems);
   check_bodies(db, problems);
   check_properties(db, problems);
   check_simulations(db, hash_inputs, problems);
@@ -264,9 +273,9 @@ class UnfinishedFile {
 };
 
 /// Copies page by page into a new file and has it on disk when it returns.
-void copy_pages(SQLite::Database& from, const std::filesystem::path& to) {
+void copy_pages(Connection& from, const std::filesystem::path& to) {
   translated(to, [&] {
-    SQLite::Database target = open(to, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    Connection target = open(to, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     SQLite::Backup backup(target, from);
     while (backup.executeStep(kPagesAtATime) != SQLITE_DONE) {
       if (backup.getRemainingPageCount() > 0) usleep(1000);
@@ -296,11 +305,11 @@ void backup_database(const std::filesystem::path& database, const std::filesyste
       throw StoreError(StoreError::Kind::kFailed,
                        copy.string() + " exists; name a file that does not");
     }
-    SQLite::Database source = open(database, SQLite::OPEN_READONLY);
+    Connection source = open(database, SQLite::OPEN_READONLY);
     check_identity(source, database);
     const UnfinishedFile unfinished(copy);
     copy_pages(source, unfinished.path());
-    SQLite::Database copied = open(unfinished.path(), SQLite::OPEN_READONLY);
+    Connection copied = open(unfinished.path(), SQLite::OPEN_READONLY);
     const Problems problems = problems_of(copied, unfinished.path());
     if (!problems.empty()) {
       throw StoreError(StoreError::Kind::kCorrupt, database.string() +
@@ -321,7 +330,7 @@ void restore_database(const std::filesystem::path& copy, const std::filesystem::
       throw StoreError(StoreError::Kind::kFailed, copy.string() + " is the database itself");
     }
     const DatabaseLock lock(target);
-    SQLite::Database source = open(copy, SQLite::OPEN_READONLY);
+    Connection source = open(copy, SQLite::OPEN_READONLY);
     const Problems problems = problems_of(source, copy);
     if (!problems.empty()) {
       throw StoreError(StoreError::Kind::kCorrupt,
@@ -337,7 +346,7 @@ void restore_database(const std::filesystem::path& copy, const std::filesystem::
 std::vector<std::string> check_database(const std::filesystem::path& database,
                                         const HashInputs& hash_inputs) {
   return translated(database, [&] {
-    SQLite::Database db = open(database, SQLite::OPEN_READONLY);
+    Connection db = open(database, SQLite::OPEN_READONLY);
     return problems_of(db, database, hash_inputs);
   });
 }

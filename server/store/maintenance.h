@@ -33,7 +33,8 @@ using HashInputs = std::function<std::optional<std::string>(
 /// foreign keys, revisions numbered without gaps with the last one present, content hashes and
 /// properties computed again, input hashes too when `hash_inputs` is there, every body a message
 /// that bears its resource's name, states of simulations that agree with their results, histories
-/// of equal columns. Also while a server runs. Throws StoreError when it cannot be opened or read.
+/// of equal columns and whole blocks. Also while a server runs. Throws StoreError when it cannot be
+/// opened or read.
 std::vector<std::string> check_database(const std::filesystem::path& database,
                                         const HashInputs& hash_inputs = nullptr);
 

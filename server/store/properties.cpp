@@ -71,6 +71,9 @@ const std::vector<PropertyField>& property_fields(std::string_view collection) {
     for (const char* each : {"lubricants", "gearSets", "surfaces", "vehicles"}) {
       out[each] = fields_of(each);
     }
+    out["simulations"] = {{kCreateTime, PropertyKind::kTime},
+                          {"lubricant", PropertyKind::kText},
+                          {"state", PropertyKind::kEnum}};
     return out;
   }();
   static const std::vector<PropertyField> kNone;

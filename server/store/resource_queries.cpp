@@ -82,8 +82,7 @@ bool has_index(const Restriction& restriction) {
 }
 
 /// How many rows a restriction selects; kFew stands for more.
-int count_up_to_few(SQLite::Database& db, const std::string& collection,
-                    const Restriction& restriction) {
+int count_up_to_few(Connection& db, const std::string& collection, const Restriction& restriction) {
   const Clause rows = selected(collection, restriction);
   SQLite::Statement query(db, "SELECT count(*) FROM (SELECT 1 FROM properties d WHERE" + rows.sql +
                                   " LIMIT " + std::to_string(kFew) + ")");
@@ -93,7 +92,7 @@ int count_up_to_few(SQLite::Database& db, const std::string& collection,
 }
 
 /// The restriction that selects the fewest rows if those are few, else null.
-const Restriction* most_selective(SQLite::Database& db, const ResourceQuery& query) {
+const Restriction* most_selective(Connection& db, const ResourceQuery& query) {
   const Restriction* best = nullptr;
   int fewest = kFew;
   for (const Restriction& each : query.restrictions) {
@@ -136,7 +135,7 @@ void add_conditions(Clause& sql, const ResourceQuery& query, const Restriction* 
   }
 }
 
-Clause statement(SQLite::Database& db, const ResourceQuery& query) {
+Clause statement(Connection& db, const ResourceQuery& query) {
   Clause sql{kResourceColumns, {}};
   const bool by_name = query.order_key.empty();
   const Restriction* leading = most_selective(db, query);
@@ -176,7 +175,7 @@ Clause statement(SQLite::Database& db, const ResourceQuery& query) {
 
 }  // namespace
 
-Page<StoredResource> query_resources(SQLite::Database& db, const ResourceQuery& query) {
+Page<StoredResource> query_resources(Connection& db, const ResourceQuery& query) {
   const Clause sql = statement(db, query);
   SQLite::Statement rows(db, sql.sql + " LIMIT " + std::to_string(query.limit + 1));
   bind_all(rows, sql.values);

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-
+#include "server/store/connection.h"
 #include "server/store/stored_resource.h"
 
 namespace tribodyn::server {
@@ -10,6 +9,6 @@ namespace tribodyn::server {
 /// or a property it goes on where the last page ended; a restriction that few resources meet leads,
 /// and what it finds is sorted. Only "contains" and "not equal" have to look at resources one by
 /// one. Throws SQLite::Exception.
-Page<StoredResource> query_resources(SQLite::Database& db, const ResourceQuery& query);
+Page<StoredResource> query_resources(Connection& db, const ResourceQuery& query);
 
 }  // namespace tribodyn::server

@@ -6,9 +6,9 @@
 namespace tribodyn::server {
 namespace {
 
-void insert_properties(SQLite::Database& db, const StoredResource& resource) {
+void insert_properties(Connection& db, const StoredResource& resource) {
   const std::string collection = collection_of(resource.name);
-  SQLite::Statement insert(db, "INSERT INTO properties VALUES (?, ?, ?, ?, ?)");
+  Prepared insert(db, "INSERT INTO properties VALUES (?, ?, ?, ?, ?)");
   for (const Property& each : properties_of(collection, resource.body, resource.create_time,
                                             resource.revision_create_time)) {
     insert.bind(1, resource.id);
@@ -22,18 +22,17 @@ void insert_properties(SQLite::Database& db, const StoredResource& resource) {
 }
 
 /// Adds the row and makes it the present one.
-void add_revision(SQLite::Database& db, const StoredResource& added) {
-  SQLite::Statement insert(
-      db,
-      "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
-      "VALUES (?, ?, ?, ?, ?)");
+void add_revision(Connection& db, const StoredResource& added) {
+  Prepared insert(db,
+                  "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
+                  "VALUES (?, ?, ?, ?, ?)");
   insert.bind(1, added.id);
   insert.bind(2, added.revision);
   insert.bind(3, added.revision_create_time);
   insert.bind(4, added.content_hash);
   bind_blob(insert, 5, added.body);
   insert.exec();
-  SQLite::Statement present(db, "UPDATE resources SET present = ? WHERE id = ?");
+  Prepared present(db, "UPDATE resources SET present = ? WHERE id = ?");
   present.bind(1, db.getLastInsertRowid());
   present.bind(2, added.id);
   present.exec();
@@ -49,26 +48,25 @@ void bind_value(SQLite::Statement& statement, int index, const PropertyValue& va
   std::visit([&](const auto& held) { statement.bind(index, held); }, value);
 }
 
-bool is_taken(SQLite::Database& db, const std::string& name) {
-  SQLite::Statement taken(db, "SELECT 1 FROM resources WHERE name = ?");
+bool is_taken(Connection& db, const std::string& name) {
+  Prepared taken(db, "SELECT 1 FROM resources WHERE name = ?");
   taken.bind(1, name);
   return taken.executeStep();
 }
 
-bool is_unchanged(SQLite::Database& db, const StoredResource& present) {
-  SQLite::Statement unchanged(db,
-                              "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
-                              "WHERE r.id = ? AND v.revision = ? AND "
-                              "(r.delete_time IS NULL) = ?");
+bool is_unchanged(Connection& db, const StoredResource& present) {
+  Prepared unchanged(db,
+                     "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
+                     "WHERE r.id = ? AND v.revision = ? AND "
+                     "(r.delete_time IS NULL) = ?");
   unchanged.bind(1, present.id);
   unchanged.bind(2, present.revision);
   unchanged.bind(3, present.delete_time ? 0 : 1);
   return unchanged.executeStep();
 }
 
-StoredResource insert_resource(SQLite::Database& db, const NewResource& resource,
-                               Microseconds now) {
-  SQLite::Statement insert(
+StoredResource insert_resource(Connection& db, const NewResource& resource, Microseconds now) {
+  Prepared insert(
       db, "INSERT INTO resources (name, collection, present, create_time) VALUES (?, ?, 0, ?)");
   insert.bind(1, resource.name);
   insert.bind(2, collection_of(resource.name));
@@ -87,7 +85,7 @@ StoredResource insert_resource(SQLite::Database& db, const NewResource& resource
   return added;
 }
 
-StoredResource insert_revision(SQLite::Database& db, const StoredResource& present,
+StoredResource insert_revision(Connection& db, const StoredResource& present,
                                const std::string& body, Microseconds now) {
   StoredResource added = present;
   added.revision = present.revision + 1;
@@ -95,7 +93,7 @@ StoredResource insert_revision(SQLite::Database& db, const StoredResource& prese
   added.content_hash = sha256(body);
   added.body = body;
   add_revision(db, added);
-  SQLite::Statement clear(db, "DELETE FROM properties WHERE resource = ?");
+  Prepared clear(db, "DELETE FROM properties WHERE resource = ?");
   clear.bind(1, present.id);
   clear.exec();
   insert_properties(db, added);

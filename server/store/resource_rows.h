@@ -1,11 +1,9 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-#include <SQLiteCpp/Statement.h>
-
 #include <string>
 #include <vector>
 
+#include "server/store/connection.h"
 #include "server/store/properties.h"
 #include "server/store/stored_resource.h"
 #include "server/store/times.h"
@@ -19,16 +17,16 @@ void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes
 void bind_value(SQLite::Statement& statement, int index, const PropertyValue& value);
 
 /// Whether there is a resource of that name, deleted or not.
-bool is_taken(SQLite::Database& db, const std::string& name);
+bool is_taken(Connection& db, const std::string& name);
 
 /// Whether a resource is still as it was read.
-bool is_unchanged(SQLite::Database& db, const StoredResource& present);
+bool is_unchanged(Connection& db, const StoredResource& present);
 
 /// A new resource with its first revision, as it is stored then.
-StoredResource insert_resource(SQLite::Database& db, const NewResource& resource, Microseconds now);
+StoredResource insert_resource(Connection& db, const NewResource& resource, Microseconds now);
 
 /// A further revision, which becomes the present one, as it is stored then.
-StoredResource insert_revision(SQLite::Database& db, const StoredResource& present,
+StoredResource insert_revision(Connection& db, const StoredResource& present,
                                const std::string& body, Microseconds now);
 
 /// Columns of stored_resource, to be followed by the rest of a SELECT over r (resources) and v

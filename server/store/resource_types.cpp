@@ -2,6 +2,7 @@
 
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/simulations.pb.h"
 #include "tribodyn/v1/surfaces.pb.h"
 #include "tribodyn/v1/vehicles.pb.h"
 
@@ -19,6 +20,7 @@ std::unique_ptr<Message> new_resource(std::string_view collection) {
   if (collection == "gearSets") return std::make_unique<v1::GearSet>();
   if (collection == "surfaces") return std::make_unique<v1::Surface>();
   if (collection == "vehicles") return std::make_unique<v1::Vehicle>();
+  if (collection == "simulations") return std::make_unique<v1::Simulation>();
   return nullptr;
 }
 

@@ -3,9 +3,11 @@
 #include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 
+#include <cstring>
 #include <memory>
 #include <string>
 
+#include "server/store/history_rows.h"
 #include "server/store/resource_rows.h"
 #include "server/store/resource_types.h"
 #include "server/store/simulation_rows.h"
@@ -216,6 +218,46 @@ CREATE TRIGGER events_never_change BEFORE UPDATE ON events
 BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
 )sql";
 
+constexpr char kSchema4[] = R"sql(
+ALTER TABLE history RENAME TO history_of_schema_3;
+
+CREATE TABLE history_columns (
+  id INTEGER PRIMARY KEY AUTOINCREMENT,
+  result INTEGER NOT NULL REFERENCES results (id) ON DELETE CASCADE,
+  position INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  rows INTEGER NOT NULL CHECK (rows >= 0),
+  UNIQUE (result, position)
+) STRICT;
+
+CREATE TABLE history_blocks (
+  history_column INTEGER NOT NULL REFERENCES history_columns (id) ON DELETE CASCADE,
+  level INTEGER NOT NULL CHECK (level >= 0),
+  number INTEGER NOT NULL CHECK (number >= 0),
+  data BLOB NOT NULL,
+  UNIQUE (history_column, level, number)
+) STRICT;
+
+ALTER TABLE simulations ADD COLUMN pinned INTEGER NOT NULL DEFAULT 0 CHECK (pinned IN (0, 1));
+ALTER TABLE simulations ADD COLUMN client TEXT NOT NULL DEFAULT '';
+ALTER TABLE simulations ADD COLUMN cost_seconds REAL NOT NULL DEFAULT 0;
+
+CREATE TABLE simulation_labels (
+  key TEXT NOT NULL,
+  value TEXT NOT NULL,
+  simulation INTEGER NOT NULL REFERENCES simulations (id) ON DELETE CASCADE,
+  PRIMARY KEY (key, value, simulation)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX labels_of_simulation ON simulation_labels (simulation);
+
+CREATE INDEX simulations_by_time ON simulations (create_time);
+CREATE INDEX simulations_by_state ON simulations (state, create_time);
+CREATE INDEX simulations_by_lubricant ON simulations (lubricant, create_time);
+CREATE INDEX simulations_by_result ON simulations (result);
+CREATE INDEX simulations_by_ledger ON simulations (ledger);
+CREATE INDEX ended_simulations ON simulations (end_time) WHERE state >= 3 AND pinned = 0;
+)sql";
+
 /// Schema 1 left out zeros; since then what is left out is not known.
 std::string with_explicit_zeros(const std::string& name, const std::string& body) {
   const std::unique_ptr<google::protobuf::Message> message = new_resource(collection_of(name));
@@ -224,7 +266,7 @@ std::string with_explicit_zeros(const std::string& name, const std::string& body
   return message->SerializeAsString();
 }
 
-void move_resources(SQLite::Database& db, Microseconds now) {
+void move_resources(Connection& db, Microseconds now) {
   SQLite::Statement old(db, "SELECT name, body FROM resources_of_schema_1 ORDER BY name");
   while (old.executeStep()) {
     const std::string name = old.getColumn(0).getString();
@@ -235,7 +277,7 @@ void move_resources(SQLite::Database& db, Microseconds now) {
 }
 
 /// A name that the request leaves out means the default of schema 1.
-void pin_simulations(SQLite::Database& db) {
+void pin_simulations(Connection& db) {
   SQLite::Statement query(db, "SELECT id, request FROM simulations");
   SQLite::Statement pin(db,
                         "UPDATE simulations SET "
@@ -260,7 +302,7 @@ void pin_simulations(SQLite::Database& db) {
 }
 
 /// Assumptions leave the results, and these say which model they are of.
-void split_ledgers(SQLite::Database& db) {
+void split_ledgers(Connection& db) {
   SQLite::Statement query(db, "SELECT id, body FROM results");
   SQLite::Statement keep(db, "UPDATE results SET body = ?2, model_version = ?3 WHERE id = ?1");
   SQLite::Statement refer(db, "UPDATE simulations SET ledger = ?2 WHERE result = ?1");
@@ -281,9 +323,25 @@ void split_ledgers(SQLite::Database& db) {
   }
 }
 
+/// Histories were one blob a column.
+void compress_histories(Connection& db) {
+  SQLite::Statement query(
+      db, "SELECT result, position, name, data FROM history_of_schema_3 ORDER BY result, position");
+  while (query.executeStep()) {
+    const SQLite::Column data = query.getColumn(3);
+    StoredColumn column{query.getColumn(2).getString(), {}};
+    column.values.resize(static_cast<std::size_t>(data.getBytes()) / sizeof(double));
+    std::memcpy(column.values.data(), data.getBlob(), column.values.size() * sizeof(double));
+    insert_history_column(db, query.getColumn(0).getInt64(), query.getColumn(1).getInt64(),
+                          compress(column));
+  }
+  query.reset();
+  db.exec("DROP TABLE history_of_schema_3");
+}
+
 }  // namespace
 
-void migrate(SQLite::Database& database, int from, Microseconds now) {
+void migrate(Connection& database, int from, Microseconds now) {
   SQLite::Transaction transaction(database);
   if (from < 1) database.exec(kSchema1);
   if (from < 2) {
@@ -294,6 +352,10 @@ void migrate(SQLite::Database& database, int from, Microseconds now) {
   if (from < 3) {
     database.exec(kSchema3);
     split_ledgers(database);
+  }
+  if (from < 4) {
+    database.exec(kSchema4);
+    compress_histories(database);
   }
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));

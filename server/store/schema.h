@@ -1,12 +1,11 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-
+#include "server/store/connection.h"
 #include "server/store/times.h"
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 3. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 4. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   resources    lubricants, gear sets, surfaces, vehicles: one row a name, with the revision that
@@ -22,7 +21,11 @@ namespace tribodyn::server {
 ///                stated it; request_hash: of all that it stated (request_text.h), to tell a
 ///                repeated request_id from a misused one; lubricant, gear_set, surface, vehicle:
 ///                the revisions it rests on. is_forced: no result that was there before is taken.
-///                Progress is not kept: a job that a crash interrupts starts again.
+///                Progress is not kept: a job that a crash interrupts starts again. client: on
+///                whose behalf it waits (fair share); cost_seconds: estimated, of one processor.
+///                pinned: neither expires nor is evicted; others may go, with their events and with
+///                a result and a ledger that no other one has
+///   simulation_labels  what lists are filtered by beside columns of simulations, of its request
 ///   events       every change of state of a job, numbered 1, 2, ... without gaps, written with it
 ///   ledgers      assumptions of results, each distinct list once: a SimulationResult with nothing
 ///                else. They belong to the job, as they name its resources
@@ -30,12 +33,15 @@ namespace tribodyn::server {
 ///                version and platform, written with the change of state of the first job that
 ///                has it. platform is empty, and the result serves no other job, where it comes
 ///                from an older schema
-///   history      columns of time histories, little-endian doubles, in the order of position
-inline constexpr int kSchemaVersion = 3;
+///   history_columns  of time histories, in the order of position; ids are never used again
+///   history_blocks   a column cut into runs of kHistoryBlock doubles, numbered 0, 1, ..., and each
+///                compressed (column_codec.h): level 0 as it is, levels above it the least and
+///                largest values of runs of its rows (pyramid.h), written once with it
+inline constexpr int kSchemaVersion = 4;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A
 /// new database goes the same way as an old one, so that there is one description of the tables.
-void migrate(SQLite::Database& database, int from, Microseconds now);
+void migrate(Connection& database, int from, Microseconds now);
 
 }  // namespace tribodyn::server

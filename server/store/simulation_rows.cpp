@@ -1,6 +1,7 @@
 #include "server/store/simulation_rows.h"
 
 #include "server/hash/sha256.h"
+#include "server/store/history_rows.h"
 #include "server/store/resource_rows.h"
 
 namespace tribodyn::server {
@@ -11,7 +12,8 @@ const char kSimulationColumns[] =
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
-    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle) "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), "
+    "request_id, pinned, client, cost_seconds "
     "FROM simulations ";
 
 namespace {
@@ -39,21 +41,20 @@ void bind_text_or_null(SQLite::Statement& statement, int index, const std::strin
 }
 
 /// Row of "lubricants/1@2" in revisions.
-std::int64_t revision_row(SQLite::Database& db, const std::string& name) {
-  SQLite::Statement query(
-      db,
-      "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
-      "name = substr(?1, 1, instr(?1, '@') - 1)");
+std::int64_t revision_row(Connection& db, const std::string& name) {
+  Prepared query(db,
+                 "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
+                 "name = substr(?1, 1, instr(?1, '@') - 1)");
   query.bind(1, name);
   if (!query.executeStep()) throw SQLite::Exception("no such revision");
   return query.getColumn(0).getInt64();
 }
 
-std::optional<std::int64_t> result_row(SQLite::Database& db, const ResultKey& key) {
-  SQLite::Statement query(db,
-                          "SELECT id FROM results "
-                          "WHERE input_hash = ? AND model_version = ? AND platform = ? AND "
-                          "platform <> ''");
+std::optional<std::int64_t> result_row(Connection& db, const ResultKey& key) {
+  Prepared query(db,
+                 "SELECT id FROM results "
+                 "WHERE input_hash = ? AND model_version = ? AND platform = ? AND "
+                 "platform <> ''");
   query.bind(1, key.input_hash);
   query.bind(2, key.model_version);
   query.bind(3, key.platform);
@@ -61,8 +62,8 @@ std::optional<std::int64_t> result_row(SQLite::Database& db, const ResultKey& ke
   return query.getColumn(0).getInt64();
 }
 
-void insert_event(SQLite::Database& db, std::int64_t id, const StoredEvent& event) {
-  SQLite::Statement insert(db, "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
+void insert_event(Connection& db, std::int64_t id, const StoredEvent& event) {
+  Prepared insert(db, "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
   insert.bind(1, id);
   insert.bind(2, event.sequence);
   insert.bind(3, event.time);
@@ -73,9 +74,9 @@ void insert_event(SQLite::Database& db, std::int64_t id, const StoredEvent& even
 }
 
 /// The simulation that an earlier request of this id made.
-std::optional<Added> repeated_request(SQLite::Database& db, const NewSimulation& simulation) {
+std::optional<Added> repeated_request(Connection& db, const NewSimulation& simulation) {
   if (simulation.request_id.empty()) return std::nullopt;
-  SQLite::Statement query(db, "SELECT id, request_hash FROM simulations WHERE request_id = ?");
+  Prepared query(db, "SELECT id, request_hash FROM simulations WHERE request_id = ?");
   query.bind(1, simulation.request_id);
   if (!query.executeStep()) return std::nullopt;
   const bool is_same = query.getColumn(1).getString() == simulation.request_hash;
@@ -84,12 +85,12 @@ std::optional<Added> repeated_request(SQLite::Database& db, const NewSimulation&
 }
 
 /// A QUEUED row with its first event.
-std::int64_t insert_row(SQLite::Database& db, const NewSimulation& simulation, Microseconds now) {
-  SQLite::Statement insert(
+std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microseconds now) {
+  Prepared insert(
       db,
       "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
-      "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle) "
-      "VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle, client, "
+      "cost_seconds) VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, now);
   bind_optional(insert, 2, simulation.deadline_time);
   bind_blob(insert, 3, simulation.request);
@@ -104,17 +105,26 @@ std::int64_t insert_row(SQLite::Database& db, const NewSimulation& simulation, M
     ++index;
     if (!each->empty()) insert.bind(index, revision_row(db, *each));
   }
+  insert.bind(13, simulation.client);
+  insert.bind(14, simulation.cost_seconds);
   insert.exec();
   const std::int64_t id = db.getLastInsertRowid();
+  for (const auto& [key, value] : simulation.labels) {
+    Prepared label(db, "INSERT INTO simulation_labels VALUES (?, ?, ?)");
+    label.bind(1, key);
+    label.bind(2, value);
+    label.bind(3, id);
+    label.exec();
+  }
   insert_event(db, id, {.sequence = 1, .time = now, .reason = ""});
   return id;
 }
 
-std::int64_t insert_result(SQLite::Database& db, const NewResult& result, Microseconds now) {
-  SQLite::Statement insert(
-      db,
-      "INSERT INTO results (input_hash, model_version, platform, create_time, body) "
-      "VALUES (?, ?, ?, ?, ?)");
+std::int64_t insert_result(Connection& db, const NewResult& result,
+                           const std::vector<CompressedColumn>& history, Microseconds now) {
+  Prepared insert(db,
+                  "INSERT INTO results (input_hash, model_version, platform, create_time, body) "
+                  "VALUES (?, ?, ?, ?, ?)");
   insert.bind(1, result.key.input_hash);
   insert.bind(2, result.key.model_version);
   insert.bind(3, result.key.platform);
@@ -122,48 +132,37 @@ std::int64_t insert_result(SQLite::Database& db, const NewResult& result, Micros
   bind_blob(insert, 5, result.body);
   insert.exec();
   const std::int64_t row = db.getLastInsertRowid();
-  SQLite::Statement column(
-      db, "INSERT INTO history (result, position, name, data) VALUES (?, ?, ?, ?)");
-  for (std::size_t i = 0; i < result.history.size(); ++i) {
-    const StoredColumn& each = result.history[i];
-    column.bind(1, row);
-    column.bind(2, static_cast<std::int64_t>(i));
-    column.bind(3, each.name);
-    column.bindNoCopy(4, each.values.data(), static_cast<int>(each.values.size() * sizeof(double)));
-    column.exec();
-    column.reset();
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    insert_history_column(db, row, static_cast<std::int64_t>(i), history[i]);
   }
   return row;
 }
 
 /// Bit for bit, histories too.
-bool is_same_result(SQLite::Database& db, std::int64_t row, const NewResult& result) {
-  SQLite::Statement body(db, "SELECT 1 FROM results WHERE id = ? AND body = ?");
+bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) {
+  Prepared body(db, "SELECT 1 FROM results WHERE id = ? AND body = ?");
   body.bind(1, row);
   bind_blob(body, 2, result.body);
   if (!body.executeStep()) return false;
-  SQLite::Statement column(
-      db, "SELECT 1 FROM history WHERE result = ? AND position = ? AND name = ? AND data = ?");
+  const HistoryShape shape = query_history_shape(db, row);
+  if (shape.names.size() != result.history.size()) return false;
   for (std::size_t i = 0; i < result.history.size(); ++i) {
-    const StoredColumn& each = result.history[i];
-    column.bind(1, row);
-    column.bind(2, static_cast<std::int64_t>(i));
-    column.bind(3, each.name);
-    column.bindNoCopy(4, each.values.data(), static_cast<int>(each.values.size() * sizeof(double)));
-    if (!column.executeStep()) return false;
-    column.reset();
+    if (shape.names[i] != result.history[i].name ||
+        !holds_column(db, shape.columns[i], result.history[i].values)) {
+      return false;
+    }
   }
   return true;
 }
 
 }  // namespace
 
-std::int64_t ledger_row(SQLite::Database& db, const std::string& body) {
+std::int64_t ledger_row(Connection& db, const std::string& body) {
   const std::string hash = sha256(body);
-  SQLite::Statement find(db, "SELECT id FROM ledgers WHERE content_hash = ?");
+  Prepared find(db, "SELECT id FROM ledgers WHERE content_hash = ?");
   find.bind(1, hash);
   if (find.executeStep()) return find.getColumn(0).getInt64();
-  SQLite::Statement insert(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)");
+  Prepared insert(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)");
   insert.bind(1, hash);
   bind_blob(insert, 2, body);
   insert.exec();
@@ -191,10 +190,14 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   out.gear_set_revision = query.getColumn(16).getString();
   out.surface_revision = query.getColumn(17).getString();
   out.vehicle_revision = query.getColumn(18).getString();
+  out.request_id = query.getColumn(19).getString();
+  out.is_pinned = query.getColumn(20).getInt() != 0;
+  out.client = query.getColumn(21).getString();
+  out.cost_seconds = query.getColumn(22).getDouble();
   return out;
 }
 
-Added insert_simulation(SQLite::Database& db, const NewSimulation& simulation, Microseconds now,
+Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
                         bool may_wait) {
   if (const auto repeated = repeated_request(db, simulation)) return *repeated;
   std::optional<std::int64_t> result;
@@ -208,8 +211,8 @@ Added insert_simulation(SQLite::Database& db, const NewSimulation& simulation, M
   return {Added::Kind::kServed, id};
 }
 
-std::optional<StoredEvent> change_state(SQLite::Database& db, const StateChange& change) {
-  SQLite::Statement update(
+std::optional<StoredEvent> change_state(Connection& db, const StateChange& change) {
+  Prepared update(
       db,
       "UPDATE simulations SET state = ?2, sequence = sequence + 1, attempt = attempt + (?2 = 1), "
       "lost_attempts = lost_attempts + ?9, "
@@ -239,11 +242,11 @@ std::optional<StoredEvent> change_state(SQLite::Database& db, const StateChange&
   return event;
 }
 
-std::optional<StoredEvent> query_next_event(SQLite::Database& db, std::int64_t id,
+std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
                                             std::int64_t after_sequence) {
-  SQLite::Statement query(db,
-                          "SELECT sequence, time, state, attempt, reason FROM events "
-                          "WHERE simulation = ? AND sequence > ? ORDER BY sequence LIMIT 1");
+  Prepared query(db,
+                 "SELECT sequence, time, state, attempt, reason FROM events "
+                 "WHERE simulation = ? AND sequence > ? ORDER BY sequence LIMIT 1");
   query.bind(1, id);
   query.bind(2, after_sequence);
   if (!query.executeStep()) return std::nullopt;
@@ -252,9 +255,9 @@ std::optional<StoredEvent> query_next_event(SQLite::Database& db, std::int64_t i
                      query.getColumn(3).getInt(), query.getColumn(4).getString()};
 }
 
-std::optional<StoredEvent> start_simulation(SQLite::Database& db, std::int64_t id, Microseconds now,
+std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
                                             const ResultKey& key) {
-  SQLite::Statement update(
+  Prepared update(
       db, "UPDATE simulations SET input_hash = ? WHERE id = ? AND state = 1 RETURNING is_forced");
   update.bind(1, key.input_hash);
   update.bind(2, id);
@@ -271,8 +274,9 @@ std::optional<StoredEvent> start_simulation(SQLite::Database& db, std::int64_t i
                            .cache_hit = result.has_value()});
 }
 
-std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t id,
-                                             Microseconds now, const NewResult& result) {
+std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
+                                             const NewResult& result,
+                                             const std::vector<CompressedColumn>& history) {
   std::optional<std::int64_t> row = result_row(db, result.key);
   if (row && !is_same_result(db, *row, result)) {
     return change_state(db,
@@ -284,7 +288,7 @@ std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t 
                          .error_message = "equal inputs have another result, of model " +
                                           result.key.model_version + " on " + result.key.platform});
   }
-  if (!row) row = insert_result(db, result, now);
+  if (!row) row = insert_result(db, result, history, now);
   return change_state(db, {.id = id,
                            .to = StoredState::kSucceeded,
                            .time = now,
@@ -292,10 +296,10 @@ std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t 
                            .result = row});
 }
 
-std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now) {
+std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
   std::vector<std::pair<std::int64_t, int>> running;
-  SQLite::Statement find(
-      db, "SELECT id, lost_attempts FROM simulations WHERE state IN (1, 2) AND state = 2");
+  Prepared find(db,
+                "SELECT id, lost_attempts FROM simulations WHERE state IN (1, 2) AND state = 2");
   while (find.executeStep()) {
     running.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
   }
@@ -311,12 +315,13 @@ std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now) {
     change_state(db, change);
   }
   std::vector<Waiting> waiting;
-  SQLite::Statement query(db,
-                          "SELECT id, lost_attempts, deadline_time FROM simulations "
-                          "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
+  Prepared query(db,
+                 "SELECT id, lost_attempts, deadline_time, client, cost_seconds FROM simulations "
+                 "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
   while (query.executeStep()) {
-    waiting.push_back(
-        {query.getColumn(0).getInt64(), query.getColumn(1).getInt(), time_of(query.getColumn(2))});
+    waiting.push_back({query.getColumn(0).getInt64(), query.getColumn(1).getInt(),
+                       time_of(query.getColumn(2)), query.getColumn(3).getString(),
+                       query.getColumn(4).getDouble()});
   }
   return waiting;
 }

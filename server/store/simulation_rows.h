@@ -1,13 +1,11 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-#include <SQLiteCpp/Statement.h>
-
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "server/store/connection.h"
 #include "server/store/stored_simulation.h"
 #include "server/store/times.h"
 
@@ -17,7 +15,7 @@ namespace tribodyn::server {
 // transaction. All throw SQLite::Exception.
 
 /// The row of a serialised list of assumptions, added when it is not there.
-std::int64_t ledger_row(SQLite::Database& db, const std::string& body);
+std::int64_t ledger_row(Connection& db, const std::string& body);
 
 /// Columns of stored_simulation, to be followed by the rest of a SELECT over simulations.
 extern const char kSimulationColumns[];
@@ -25,7 +23,7 @@ inline constexpr int kRequestColumn = 8;
 StoredSimulation stored_simulation(const SQLite::Statement& query);
 
 /// As Store::add_simulation.
-Added insert_simulation(SQLite::Database& db, const NewSimulation& simulation, Microseconds now,
+Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
                         bool may_wait);
 
 /// One step of the state machine, and what the row says afterwards.
@@ -43,16 +41,17 @@ struct StateChange {
 };
 
 /// Changes the state and writes the event; nothing when the state does not allow it.
-std::optional<StoredEvent> change_state(SQLite::Database& db, const StateChange& change);
+std::optional<StoredEvent> change_state(Connection& db, const StateChange& change);
 
-std::optional<StoredEvent> query_next_event(SQLite::Database& db, std::int64_t id,
+std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
                                             std::int64_t after_sequence);
 
 // As Store::mark_running, mark_succeeded and requeue_unfinished.
-std::optional<StoredEvent> start_simulation(SQLite::Database& db, std::int64_t id, Microseconds now,
+std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
                                             const ResultKey& key);
-std::optional<StoredEvent> finish_simulation(SQLite::Database& db, std::int64_t id,
-                                             Microseconds now, const NewResult& result);
-std::vector<Waiting> requeue_lost(SQLite::Database& db, Microseconds now);
+std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
+                                             const NewResult& result,
+                                             const std::vector<CompressedColumn>& history);
+std::vector<Waiting> requeue_lost(Connection& db, Microseconds now);
 
 }  // namespace tribodyn::server

@@ -1,21 +1,19 @@
 #include "server/store/store.h"
 
-#include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #include "server/store/deadline.h"
 #include "server/store/resource_queries.h"
 #include "server/store/resource_rows.h"
+#include "server/store/retention.h"
 #include "server/store/schema.h"
+#include "server/store/simulation_queries.h"
 #include "server/store/simulation_rows.h"
 #include "server/store/translate_error.h"
-
-static_assert(std::endian::native == std::endian::little, "history columns are little-endian");
 
 namespace tribodyn::server {
 namespace {
@@ -36,38 +34,15 @@ void check_deadline(const std::filesystem::path& path) {
   }
 }
 
-SQLite::Database open_writer(const std::filesystem::path& path) try {
+Connection open_writer(const std::filesystem::path& path) try {
+  configure_sqlite();
   return {path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMilliseconds};
 } catch (const SQLite::Exception& error) {
   throw translate_error(error, path);
 }
 
-/// Incremental reading of one blob.
-class BlobReader {
- public:
-  BlobReader(SQLite::Database& database, std::int64_t row_id) {
-    if (sqlite3_blob_open(database.getHandle(), "main", "history", "data", row_id, 0, &blob_) !=
-        SQLITE_OK) {
-      const SQLite::Exception error(database.getHandle());
-      sqlite3_blob_close(blob_);
-      throw error;
-    }
-  }
-  ~BlobReader() { sqlite3_blob_close(blob_); }
-  BlobReader(const BlobReader&) = delete;
-  BlobReader& operator=(const BlobReader&) = delete;
-
-  std::vector<double> read(std::int64_t start, std::int64_t count) {
-    std::vector<double> values(static_cast<std::size_t>(count));
-    const int status = sqlite3_blob_read(blob_, values.data(), static_cast<int>(count * 8),
-                                         static_cast<int>(start * 8));
-    if (status != SQLITE_OK) throw SQLite::Exception("cannot read a history column", status);
-    return values;
-  }
-
- private:
-  sqlite3_blob* blob_ = nullptr;
-};
+/// Thrown by a change that is not to be.
+struct Undone {};
 
 }  // namespace
 
@@ -77,6 +52,17 @@ auto Store::write(const Action& action) {
   check_deadline(path_);
   try {
     return action(writer_);
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
+}
+
+void Store::write_together(const GroupCommit::Action& action) {
+  check_deadline(path_);
+  try {
+    group_commit_.run(action);
+  } catch (const Undone&) {
+    return;
   } catch (const SQLite::Exception& error) {
     throw translate_error(error, path_);
   }
@@ -97,13 +83,21 @@ Store::Store(const std::filesystem::path& database)
     : path_(one_path(database)),
       lock_(path_),
       writer_(open_writer(path_)),
-      readers_(path_, kReaderConnections) {
+      group_commit_(writer_, writer_mutex_) {
   open_schema();
   heed_deadlines(writer_);
+  try {
+    // What a writer would undo stays in memory (pages that were there before, a few hundred KiB), so
+    // that no file is opened now and then.
+    writer_.exec("PRAGMA temp_store = MEMORY");
+    readers_.open(path_, kReaderConnections);
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
 }
 
 void Store::open_schema() {
-  write([this](SQLite::Database& db) {
+  write([this](Connection& db) {
     const auto pragma = [&db](const char* name) {
       return db.execAndGet(std::string("PRAGMA ") + name).getInt();
     };
@@ -132,7 +126,7 @@ void Store::open_schema() {
 }
 
 void Store::add_resources(const std::vector<NewResource>& resources, Microseconds now) {
-  write([&](SQLite::Database& db) {
+  write([&](Connection& db) {
     SQLite::Transaction transaction(db);
     for (const NewResource& each : resources) {
       if (!is_taken(db, each.name)) insert_resource(db, each, now);
@@ -142,10 +136,10 @@ void Store::add_resources(const std::vector<NewResource>& resources, Microsecond
 }
 
 std::optional<StoredResource> Store::resource(const std::string& name) {
-  return read([&](SQLite::Database& db) -> std::optional<StoredResource> {
-    SQLite::Statement query(
-        db, std::string(kResourceColumns) +
-                "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?");
+  return read([&](Connection& db) -> std::optional<StoredResource> {
+    Prepared query(db,
+                   std::string(kResourceColumns) +
+                       "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?");
     query.bind(1, name);
     if (!query.executeStep()) return std::nullopt;
     return stored_resource(query);
@@ -153,10 +147,10 @@ std::optional<StoredResource> Store::resource(const std::string& name) {
 }
 
 std::optional<StoredResource> Store::revision(const std::string& name, int revision) {
-  return read([&](SQLite::Database& db) -> std::optional<StoredResource> {
-    SQLite::Statement query(db, std::string(kResourceColumns) +
-                                    "FROM resources r JOIN revisions v ON v.resource = r.id "
-                                    "WHERE r.name = ? AND v.revision = ?");
+  return read([&](Connection& db) -> std::optional<StoredResource> {
+    Prepared query(db, std::string(kResourceColumns) +
+                           "FROM resources r JOIN revisions v ON v.resource = r.id "
+                           "WHERE r.name = ? AND v.revision = ?");
     query.bind(1, name);
     query.bind(2, revision);
     if (!query.executeStep()) return std::nullopt;
@@ -165,16 +159,16 @@ std::optional<StoredResource> Store::revision(const std::string& name, int revis
 }
 
 Page<StoredResource> Store::resources(const ResourceQuery& query) {
-  return read([&](SQLite::Database& db) { return query_resources(db, query); });
+  return read([&](Connection& db) { return query_resources(db, query); });
 }
 
 Page<StoredResource> Store::revisions(const std::string& name, int before, int limit,
                                       std::size_t byte_limit) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(db, std::string(kResourceColumns) +
-                                    "FROM resources r JOIN revisions v ON v.resource = r.id "
-                                    "WHERE r.name = ? AND v.revision < ? "
-                                    "ORDER BY v.revision DESC LIMIT ?");
+  return read([&](Connection& db) {
+    Prepared query(db, std::string(kResourceColumns) +
+                           "FROM resources r JOIN revisions v ON v.resource = r.id "
+                           "WHERE r.name = ? AND v.revision < ? "
+                           "ORDER BY v.revision DESC LIMIT ?");
     query.bind(1, name);
     query.bind(2, before == 0 ? std::numeric_limits<int>::max() : before);
     query.bind(3, limit + 1);
@@ -183,8 +177,8 @@ Page<StoredResource> Store::revisions(const std::string& name, int before, int l
 }
 
 std::vector<std::string> Store::resource_names(const std::string& collection) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(
+  return read([&](Connection& db) {
+    Prepared query(
         db,
         "SELECT name FROM resources WHERE collection = ? AND delete_time IS NULL ORDER BY name");
     query.bind(1, collection);
@@ -196,7 +190,7 @@ std::vector<std::string> Store::resource_names(const std::string& collection) {
 
 std::optional<std::vector<StoredResource>> Store::write_resources(
     const std::vector<ResourceWrite>& writes, Microseconds now) {
-  return write([&](SQLite::Database& db) -> std::optional<std::vector<StoredResource>> {
+  return write([&](Connection& db) -> std::optional<std::vector<StoredResource>> {
     SQLite::Transaction transaction(db);
     std::vector<StoredResource> written;
     written.reserve(writes.size());
@@ -212,7 +206,7 @@ std::optional<std::vector<StoredResource>> Store::write_resources(
 
 template <class Change>
 bool Store::change(const StoredResource& present, const Change& change) {
-  return write([&](SQLite::Database& db) {
+  return write([&](Connection& db) {
     SQLite::Transaction transaction(db);
     if (!is_unchanged(db, present)) return false;
     change(db);
@@ -222,8 +216,8 @@ bool Store::change(const StoredResource& present, const Change& change) {
 }
 
 bool Store::delete_resource(const StoredResource& present, Microseconds now) {
-  return change(present, [&](SQLite::Database& db) {
-    SQLite::Statement mark(db, "UPDATE resources SET delete_time = ? WHERE id = ?");
+  return change(present, [&](Connection& db) {
+    Prepared mark(db, "UPDATE resources SET delete_time = ? WHERE id = ?");
     mark.bind(1, now);
     mark.bind(2, present.id);
     mark.exec();
@@ -231,25 +225,22 @@ bool Store::delete_resource(const StoredResource& present, Microseconds now) {
 }
 
 bool Store::undelete_resource(const StoredResource& present) {
-  return change(present, [&](SQLite::Database& db) {
-    SQLite::Statement mark(db, "UPDATE resources SET delete_time = NULL WHERE id = ?");
+  return change(present, [&](Connection& db) {
+    Prepared mark(db, "UPDATE resources SET delete_time = NULL WHERE id = ?");
     mark.bind(1, present.id);
     mark.exec();
   });
 }
 
 Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const Added added = insert_simulation(db, simulation, now, may_wait);
-    transaction.commit();
-    return added;
-  });
+  Added added;
+  write_together([&](Connection& db) { added = insert_simulation(db, simulation, now, may_wait); });
+  return added;
 }
 
 std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
-  return read([&](SQLite::Database& db) -> std::optional<StoredSimulation> {
-    SQLite::Statement query(db, std::string(kSimulationColumns) + "WHERE id = ?");
+  return read([&](Connection& db) -> std::optional<StoredSimulation> {
+    Prepared query(db, std::string(kSimulationColumns) + "WHERE id = ?");
     query.bind(1, id);
     if (!query.executeStep()) return std::nullopt;
     return stored_simulation(query);
@@ -257,53 +248,68 @@ std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
 }
 
 std::optional<std::int64_t> Store::simulation_of_request(const std::string& request_id) {
-  return read([&](SQLite::Database& db) -> std::optional<std::int64_t> {
-    SQLite::Statement query(db, "SELECT id FROM simulations WHERE request_id = ?");
+  return read([&](Connection& db) -> std::optional<std::int64_t> {
+    Prepared query(db, "SELECT id FROM simulations WHERE request_id = ?");
     query.bind(1, request_id);
     if (!query.executeStep()) return std::nullopt;
     return query.getColumn(0).getInt64();
   });
 }
 
-Page<StoredSimulation> Store::simulations(std::int64_t before, int limit, std::size_t byte_limit) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(
-        db, std::string(kSimulationColumns) + "WHERE id < ? ORDER BY id DESC LIMIT ?");
-    query.bind(1, before == 0 ? std::numeric_limits<std::int64_t>::max() : before);
-    query.bind(2, limit + 1);
-    return read_page<StoredSimulation>(query, limit, byte_limit, kRequestColumn, stored_simulation);
+Page<StoredSimulation> Store::simulations(const SimulationQuery& query) {
+  return read([&](Connection& db) { return query_simulations(db, query); });
+}
+
+bool Store::set_pinned(std::int64_t id, bool is_pinned) {
+  return write([&](Connection& db) {
+    Prepared update(db, "UPDATE simulations SET pinned = ? WHERE id = ?");
+    update.bind(1, is_pinned ? 1 : 0);
+    update.bind(2, id);
+    return update.exec() > 0;
   });
 }
 
+int Store::remove_oldest(Microseconds ended_by, int limit) {
+  return write([&](Connection& db) {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const int removed = server::remove_oldest(db, ended_by, limit);
+    transaction.commit();
+    return removed;
+  });
+}
+
+std::int64_t Store::used_bytes() {
+  return read([](Connection& db) { return server::used_bytes(db); });
+}
+
 std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after_sequence) {
-  return read([&](SQLite::Database& db) { return query_next_event(db, id, after_sequence); });
+  return read([&](Connection& db) { return query_next_event(db, id, after_sequence); });
 }
 
 template <class Change>
 std::optional<StoredEvent> Store::change_simulation(const Change& change) {
-  return write([&](SQLite::Database& db) {
-    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    std::optional<StoredEvent> event = change(db);
-    if (event) transaction.commit();
-    return event;
+  std::optional<StoredEvent> event;
+  write_together([&](Connection& db) {
+    event = change(db);
+    if (!event) throw Undone();
   });
+  return event;
 }
 
 std::optional<StoredEvent> Store::mark_running(std::int64_t id, Microseconds now,
                                                const ResultKey& key) {
-  return change_simulation(
-      [&](SQLite::Database& db) { return start_simulation(db, id, now, key); });
+  return change_simulation([&](Connection& db) { return start_simulation(db, id, now, key); });
 }
 
 std::optional<StoredEvent> Store::mark_queued(std::int64_t id, Microseconds now,
                                               const std::string& reason) {
-  return change_simulation([&](SQLite::Database& db) {
+  return change_simulation([&](Connection& db) {
     return change_state(db, {.id = id, .to = StoredState::kQueued, .time = now, .reason = reason});
   });
 }
 
 std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds now) {
-  return change_simulation([&](SQLite::Database& db) {
+  return change_simulation([&](Connection& db) {
     return change_state(db, {.id = id, .to = StoredState::kCancelled, .time = now});
   });
 }
@@ -311,7 +317,7 @@ std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds n
 std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
                                               const std::string& reason,
                                               const std::string& message) {
-  return change_simulation([&](SQLite::Database& db) {
+  return change_simulation([&](Connection& db) {
     return change_state(db, {.id = id,
                              .to = StoredState::kFailed,
                              .time = now,
@@ -322,12 +328,15 @@ std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
 
 std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds now,
                                                  const NewResult& result) {
+  // Before anybody has to wait for it.
+  std::vector<CompressedColumn> history;
+  for (const StoredColumn& each : result.history) history.push_back(compress(each));
   return change_simulation(
-      [&](SQLite::Database& db) { return finish_simulation(db, id, now, result); });
+      [&](Connection& db) { return finish_simulation(db, id, now, result, history); });
 }
 
 std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
-  return write([&](SQLite::Database& db) {
+  return write([&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     std::vector<Waiting> waiting = requeue_lost(db, now);
     transaction.commit();
@@ -336,11 +345,11 @@ std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
 }
 
 std::optional<std::string> Store::result(std::int64_t id) {
-  return read([&](SQLite::Database& db) -> std::optional<std::string> {
-    SQLite::Statement query(db,
-                            "SELECT r.body, l.body FROM simulations s "
-                            "JOIN results r ON r.id = s.result "
-                            "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
+  return read([&](Connection& db) -> std::optional<std::string> {
+    Prepared query(db,
+                   "SELECT r.body, l.body FROM simulations s "
+                   "JOIN results r ON r.id = s.result "
+                   "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
     query.bind(1, id);
     if (!query.executeStep()) return std::nullopt;
     // The bytes of two messages in a row are those of both merged.
@@ -348,33 +357,30 @@ std::optional<std::string> Store::result(std::int64_t id) {
   });
 }
 
-Store::HistoryShape Store::history_shape(std::int64_t id) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(
-        db,
-        "SELECT name, length(data) / 8 FROM history "
-        "WHERE result = (SELECT result FROM simulations WHERE id = ?) ORDER BY position");
+HistoryShape Store::history_shape(std::int64_t id) {
+  return read([&](Connection& db) {
+    Prepared query(db, "SELECT result FROM simulations WHERE id = ?");
     query.bind(1, id);
-    HistoryShape shape;
-    while (query.executeStep()) {
-      shape.names.push_back(query.getColumn(0).getString());
-      shape.rows = query.getColumn(1).getInt64();
-    }
-    return shape;
+    const bool has_result = query.executeStep() && !query.getColumn(0).isNull();
+    return has_result ? query_history_shape(db, query.getColumn(0).getInt64()) : HistoryShape();
   });
+}
+
+bool Store::read_history(std::int64_t column, int level, std::int64_t start,
+                         std::span<double> values) {
+  return read([&](Connection& db) { return query_history(db, column, level, start, values); });
 }
 
 std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,
                                         std::int64_t start, std::int64_t count) {
-  return read([&](SQLite::Database& db) {
-    SQLite::Statement query(db,
-                            "SELECT id FROM history WHERE "
-                            "result = (SELECT result FROM simulations WHERE id = ?) AND name = ?");
-    query.bind(1, id);
-    query.bind(2, column);
-    if (!query.executeStep()) throw SQLite::Exception("no such history column");
-    return BlobReader(db, query.getColumn(0).getInt64()).read(start, count);
-  });
+  const HistoryShape shape = history_shape(id);
+  const auto found = std::find(shape.names.begin(), shape.names.end(), column);
+  std::vector<double> values(static_cast<std::size_t>(count));
+  if (found == shape.names.end() ||
+      !read_history(shape.columns[found - shape.names.begin()], 0, start, values)) {
+    throw StoreError(StoreError::Kind::kFailed, "no such history column");
+  }
+  return values;
 }
 
 }  // namespace tribodyn::server

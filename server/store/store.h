@@ -1,16 +1,17 @@
 #pragma once
 
-#include <SQLiteCpp/Database.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "server/store/connections.h"
 #include "server/store/database_lock.h"
+#include "server/store/group_commit.h"
+#include "server/store/history_rows.h"
 #include "server/store/store_error.h"
 #include "server/store/stored_resource.h"
 #include "server/store/stored_simulation.h"
@@ -53,8 +54,14 @@ class Store {
   Added add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait = true);
   std::optional<StoredSimulation> simulation(std::int64_t id);
   std::optional<std::int64_t> simulation_of_request(const std::string& request_id);
-  /// Newest first, ids below `before` (0: from the newest); limits as of revisions.
-  Page<StoredSimulation> simulations(std::int64_t before, int limit, std::size_t byte_limit);
+  Page<StoredSimulation> simulations(const SimulationQuery& query);
+  /// Keeps a simulation from being removed, or gives it up again; false when there is none.
+  bool set_pinned(std::int64_t id, bool is_pinned);
+  /// Removes the oldest simulations, at most `limit`, that had ended by then and are not pinned,
+  /// with results that no other one has; how many.
+  int remove_oldest(Microseconds ended_by, int limit);
+  /// Bytes that the database holds, free ones left out.
+  std::int64_t used_bytes();
   /// The change of state that follows the one of that number (0: the first).
   std::optional<StoredEvent> next_event(std::int64_t id, std::int64_t after_sequence);
 
@@ -81,13 +88,11 @@ class Store {
 
   /// Serialised SimulationResult with the assumptions of this simulation.
   std::optional<std::string> result(std::int64_t id);
-  /// Names of the stored columns, and how many rows each has.
-  struct HistoryShape {
-    std::vector<std::string> names;
-    std::int64_t rows = 0;
-  };
   HistoryShape history_shape(std::int64_t id);
-  /// Rows [start, start + count) of one column, read in place.
+  /// Doubles [start, start + values.size()) of a level (pyramid.h) of a column; false when the
+  /// column is gone.
+  bool read_history(std::int64_t column, int level, std::int64_t start, std::span<double> values);
+  /// Rows [start, start + count) of one column.
   std::vector<double> history_rows(std::int64_t id, const std::string& column, std::int64_t start,
                                    std::int64_t count);
 
@@ -101,13 +106,16 @@ class Store {
   std::optional<StoredEvent> change_simulation(const Change& change);
   template <class Action>
   auto write(const Action& action);
+  /// In a transaction that it may share with others.
+  void write_together(const GroupCommit::Action& action);
   template <class Action>
   auto read(const Action& action);
 
   const std::filesystem::path path_;
   DatabaseLock lock_;
   std::mutex writer_mutex_;
-  SQLite::Database writer_;  // guarded by writer_mutex_
+  Connection writer_;  // guarded by writer_mutex_
+  GroupCommit group_commit_;
   ReaderPool readers_;
 };
 

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/store/life_cycle.h"
+#include "server/store/stored_resource.h"
 #include "server/store/times.h"
 
 namespace tribodyn::server {
@@ -26,6 +28,9 @@ struct NewSimulation {
   std::string request_hash = {};  ///< of all that the client stated
   bool is_forced = false;
   std::optional<Microseconds> deadline_time = {};
+  std::string client = {};  ///< on whose behalf
+  double cost_seconds = 0;  ///< estimated, of one processor
+  std::vector<std::pair<std::string, std::string>> labels = {};
   // The revisions it rests on, "lubricants/1@2"; each exists or is empty.
   std::string lubricant_revision = {};
   std::string gear_set_revision = {};
@@ -42,9 +47,13 @@ struct StoredSimulation {
   std::optional<Microseconds> start_time;
   std::optional<Microseconds> end_time;
   std::optional<Microseconds> deadline_time;
-  std::string request;  ///< serialised Simulation
+  std::string request;     ///< serialised Simulation
+  std::string request_id;  ///< empty: none
   std::string request_hash;
   bool is_forced = false;
+  bool is_pinned = false;
+  std::string client;
+  double cost_seconds = 0;
   bool cache_hit = false;
   std::string input_hash;
   std::string error_reason;
@@ -54,6 +63,20 @@ struct StoredSimulation {
   std::string gear_set_revision;
   std::string surface_revision;
   std::string vehicle_revision;
+};
+
+/// Which simulations are listed, by time of creation and, of equal ones, by id.
+struct SimulationQuery {
+  /// All of them hold: "state" as its number, "lubricant", "create_time", "labels.KEY".
+  std::vector<Restriction> restrictions = {};
+  bool ascending = false;
+  struct Place {
+    Microseconds create_time = 0;
+    std::int64_t id = 0;
+  };
+  std::optional<Place> after = {};
+  int limit = 0;
+  std::size_t byte_limit = 0;  ///< of requests; a page holds at least one row
 };
 
 /// A change of state as it is kept.
@@ -70,11 +93,20 @@ struct StoredColumn {
   std::vector<double> values;
 };
 
+/// A column as it goes to disk: its levels (pyramid.h), each in compressed blocks.
+struct CompressedColumn {
+  std::string name;
+  std::int64_t rows = 0;
+  std::vector<std::vector<std::string>> levels;
+};
+
 /// A simulation that waits.
 struct Waiting {
   std::int64_t id = 0;
   int lost_attempts = 0;
   std::optional<Microseconds> deadline_time;
+  std::string client;
+  double cost_seconds = 0;
 };
 
 /// What became of a request to add a simulation.

@@ -15,8 +15,6 @@
 namespace tribodyn {
 namespace {
 
-bool met(const Measurement& m) { return m.at_most ? m.value <= *m.target : m.value >= *m.target; }
-
 /// Held until the end of a scope; other processes wait.
 class FileLock {
  public:
@@ -36,6 +34,11 @@ class FileLock {
 
 }  // namespace
 
+bool is_met(const Measurement& m) {
+  if (!m.target) return true;
+  return m.at_most ? m.value <= *m.target : m.value >= *m.target;
+}
+
 void record(const std::string& path, const std::vector<Measurement>& measurements) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   if (!folder.empty()) std::filesystem::create_directories(folder);
@@ -50,7 +53,7 @@ void record(const std::string& path, const std::vector<Measurement>& measurement
                             {"target", nullptr}, {"met", nullptr},   {"machine", machine_name()}};
     if (m.target) {
       entry["target"] = *m.target;
-      entry["met"] = met(m);
+      entry["met"] = is_met(m);
     }
     const auto same = std::find_if(list.begin(), list.end(), [&](const nlohmann::json& e) {
       return e.value("name", "") == m.name;
@@ -79,7 +82,7 @@ void print(const std::vector<Measurement>& measurements) {
     std::printf("%-52s %10.4g %-22s", m.name.c_str(), m.value, m.unit.c_str());
     if (m.target) {
       std::printf(" %s %g: %s", m.at_most ? "at most" : "at least", *m.target,
-                  met(m) ? "met" : "missed");
+                  is_met(m) ? "met" : "missed");
     }
     std::printf("\n");
   }

@@ -15,6 +15,9 @@ struct Measurement {
   bool at_most = true;           ///< the target is met at or below it; otherwise at or above it
 };
 
+/// Whether it has no target or meets it.
+bool is_met(const Measurement& measurement);
+
 /// Enters figures into the list of {name, value, unit, target, met, machine} in a JSON file, made
 /// if it is not there. A figure of the same name is replaced, others stay: several benchmarks,
 /// also at the same time, may write to one file (it is locked, and replaced as a whole).

@@ -105,9 +105,9 @@ v1::Simulation sample_point() {
   return simulation;
 }
 
-v1::HistoryChunk sample_history() {
+v1::History sample_history() {
   constexpr int kRows = 384;
-  v1::HistoryChunk history;
+  v1::History history;
   history.set_total_rows(kRows);
   for (const char* name : {"time_seconds", "mesh_force_newtons", "flank_load_newtons_flank_0",
                            "flank_load_newtons_flank_1", "flank_load_newtons_flank_2"}) {

@@ -13,6 +13,6 @@ v1::Simulation sample_curve(const std::string& lubricant, double level);
 v1::Simulation sample_point();
 
 /// Two mesh cycles of time, one scalar and three flank columns.
-v1::HistoryChunk sample_history();
+v1::History sample_history();
 
 }  // namespace tribodyn::client

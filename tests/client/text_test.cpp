@@ -273,7 +273,7 @@ TEST(HistoryReport, AFlankWithoutLoadHasNoTemperature) {
   EXPECT_TRUE(zero_means_no_contact("flank_contact_temperature_kelvin_flank_0"));
   EXPECT_FALSE(zero_means_no_contact("flank_load_newtons_flank_0"));
   EXPECT_FALSE(zero_means_no_contact("mesh_force_newtons"));
-  v1::HistoryChunk history;
+  v1::History history;
   auto& column = *history.add_columns();
   column.set_name("flank_contact_temperature_kelvin_flank_0");
   for (const double value : {0.0, 350.0, 370.0}) column.add_values(value);

@@ -2,12 +2,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
+
 #include "google/rpc/error_details.pb.h"
 #include "server/app/contacts.h"
 #include "server/app/errors.h"
 #include "server/app/resources.h"
 #include "server/app/simulations.h"
 #include "server/app/streams.h"
+#include "server/jobs/janitor.h"
+#include "server/store/maintenance.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -117,6 +122,153 @@ TEST_F(AppTest, ASimulationIsAcceptedListedAndRead) {
   EXPECT_EQ(curve.inefficiency_curve().speed_step_kilometers_per_hour(), 10) << "as requested";
 }
 
+/// What came of a history: its schema, and the columns put together.
+struct ReadHistory {
+  v1::HistorySchema schema;
+  std::vector<std::vector<double>> columns;
+  std::vector<v1::HistoryChunk> chunks;
+};
+
+ReadHistory read_all(const StreamOutcome<v1::ReadHistoryResponse>& outcome) {
+  ReadHistory out;
+  v1::ReadHistoryResponse part;
+  while (outcome.message()->next(part) == MessageSource<v1::ReadHistoryResponse>::Step::kMessage) {
+    if (part.has_schema()) {
+      EXPECT_TRUE(out.chunks.empty());
+      out.schema = part.schema();
+      out.columns.resize(out.schema.columns_size());
+      continue;
+    }
+    const v1::HistoryChunk& chunk = part.chunk();
+    std::vector<double>& column = out.columns.at(chunk.column());
+    EXPECT_EQ(chunk.first_row(), column.size());
+    const std::size_t count = chunk.values().size() / sizeof(double);
+    column.resize(column.size() + count);
+    std::memcpy(column.data() + column.size() - count, chunk.values().data(),
+                chunk.values().size());
+    out.chunks.push_back(chunk);
+  }
+  EXPECT_EQ(outcome.message()->error().code(), 0);
+  for (const auto& column : out.columns) EXPECT_EQ(column.size(), out.schema.row_count());
+  return out;
+}
+
+v1::Simulation with_history(int cycles, int samples) {
+  v1::Simulation simulation = point_simulation();
+  v1::HistoryRequest* history = simulation.mutable_operating_point()->mutable_history();
+  history->add_columns("mesh_force_newtons");
+  history->add_columns("flank_load_newtons");
+  history->set_mesh_cycles(cycles);
+  history->set_samples_per_mesh_cycle(samples);
+  return simulation;
+}
+
+v1::Simulation labelled(const std::string& project, double speed) {
+  v1::Simulation out = point_simulation();
+  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(speed);
+  v1::Label* label = out.add_labels();
+  label->set_key("project");
+  label->set_value(project);
+  return out;
+}
+
+TEST_F(AppTest, SimulationsAreFoundByStateLubricantTimeAndLabel) {
+  const std::string axle = finished(labelled("axle", 30));
+  const std::string other = finished(labelled("other", 31));
+  const std::string curve = finished(curve_simulation());
+  const auto names = [&](const std::string& filter, const std::string& order = "") {
+    v1::ListSimulationsRequest request;
+    request.set_filter(filter);
+    request.set_order_by(order);
+    std::vector<std::string> out;
+    const auto page = list_simulations(app_, request);
+    EXPECT_TRUE(page.ok()) << filter << ": " << page.error().message();
+    for (const auto& each : page.message().simulations()) out.push_back(each.name());
+    return out;
+  };
+  using testing::ElementsAre;
+  EXPECT_THAT(names(""), ElementsAre(curve, other, axle));
+  EXPECT_THAT(names("", "create_time"), ElementsAre(axle, other, curve));
+  EXPECT_THAT(names("labels.project = axle"), ElementsAre(axle));
+  EXPECT_THAT(names("labels.project:*", "create_time asc"), ElementsAre(axle, other));
+  EXPECT_THAT(names("labels.project != axle"), ElementsAre(curve, other));
+  EXPECT_THAT(names("lubricant = \"lubricants/2\""), ElementsAre(curve));
+  EXPECT_THAT(names("lubricant = \"lubricants/1@1\" AND state = SUCCEEDED"),
+              ElementsAre(other, axle));
+  EXPECT_THAT(names("state = FAILED"), ElementsAre());
+  EXPECT_EQ(names("create_time > 2020-01-01T00:00:00Z AND state != QUEUED").size(), 3U);
+  EXPECT_THAT(names("create_time > 2199-01-01T00:00:00Z"), ElementsAre());
+  v1::ListSimulationsRequest bad;
+  for (const char* filter : {"state > FAILED", "stat = FAILED", "state = FAILD", "name = x"}) {
+    bad.set_filter(filter);
+    EXPECT_EQ(list_simulations(app_, bad).error().code(), google::rpc::INVALID_ARGUMENT) << filter;
+  }
+  bad.set_filter("");
+  bad.set_order_by("end_time");
+  EXPECT_EQ(list_simulations(app_, bad).error().code(), google::rpc::INVALID_ARGUMENT);
+}
+
+TEST_F(AppTest, AListOfFullViewsHasResultsAndAllPagesTogetherHoldEverySimulationOnce) {
+  std::vector<std::string> expected;
+  for (int i = 0; i < 7; ++i) expected.push_back(finished(labelled("axle", 40 + i)));
+  std::reverse(expected.begin(), expected.end());
+  v1::ListSimulationsRequest request;
+  request.set_page_size(3);
+  request.set_filter("labels.project = axle");
+  request.set_view(v1::SIMULATION_VIEW_FULL);
+  std::vector<std::string> names;
+  do {
+    const auto page = list_simulations(app_, request).message();
+    for (const auto& each : page.simulations()) {
+      EXPECT_TRUE(each.has_result());
+      names.push_back(each.name());
+    }
+    request.set_page_token(page.next_page_token());
+  } while (!request.page_token().empty());
+  EXPECT_EQ(names, expected);
+  request.set_filter("");
+  request.set_page_token(list_simulations(app_, request).message().next_page_token());
+  request.set_filter("state = SUCCEEDED");
+  EXPECT_EQ(list_simulations(app_, request).error().code(), google::rpc::INVALID_ARGUMENT)
+      << "a token belongs to its filter";
+}
+
+TEST_F(AppTest, WhatIsPinnedOutlivesExpiryAndDiskBudget) {
+  const std::string pinned = finished(with_history(10, 5000));
+  const std::string served = finished(with_history(10, 5000));
+  const std::string other = finished(labelled("axle", 50));
+  EXPECT_TRUE(bench_.get(served).cache_hit());
+  EXPECT_TRUE(pin_simulation(app_, named<v1::PinSimulationRequest>(pinned)).message().pinned());
+  const Microseconds later = system_time() + 120'000'000;
+  const auto names = [&] {
+    std::vector<std::string> out;
+    const auto page = list_simulations(app_, {}).message();
+    for (const auto& each : page.simulations()) out.push_back(each.name());
+    return out;
+  };
+  Janitor early(bench_.store(), {.keep = 600'000'000}, [later] { return later; });
+  early.clean();
+  EXPECT_EQ(names().size(), 3U) << "not yet";
+  Janitor within(bench_.store(), {.disk_budget_bytes = 1 << 30}, [later] { return later; });
+  within.clean();
+  EXPECT_EQ(names().size(), 3U) << "there is room";
+  Janitor full(bench_.store(), {.disk_budget_bytes = 1}, [later] { return later; });
+  full.clean();
+  EXPECT_THAT(names(), testing::ElementsAre(pinned));
+  EXPECT_EQ(get_simulation(app_, named<v1::GetSimulationRequest>(other)).error().code(),
+            google::rpc::NOT_FOUND);
+  const auto history = read_all(read_history(app_, named<v1::ReadHistoryRequest>(pinned)));
+  EXPECT_EQ(history.columns[0].size(), 50'000U) << "shared with one that is gone";
+  EXPECT_FALSE(
+      unpin_simulation(app_, named<v1::UnpinSimulationRequest>(pinned)).message().pinned());
+  const std::int64_t before = bench_.store().used_bytes();
+  Janitor late(bench_.store(), {.keep = 1'000'000}, [later] { return later; });
+  late.clean();
+  EXPECT_TRUE(names().empty());
+  EXPECT_LT(bench_.store().used_bytes(), before - 20'000) << "its history is gone too";
+  EXPECT_TRUE(check_database(bench_.database()).empty());
+}
+
 TEST_F(AppTest, CancellingIsIdempotentAndLeavesTheEndedAlone) {
   const std::string name = finished(point_simulation());
   for (int i = 0; i < 2; ++i) {
@@ -182,45 +334,79 @@ TEST_F(AppTest, EverythingWrongWithAContactAtOnceStillFits) {
   }
 }
 
-std::vector<v1::HistoryChunk> read_all(const StreamOutcome<v1::HistoryChunk>& outcome) {
-  std::vector<v1::HistoryChunk> out;
-  v1::HistoryChunk chunk;
-  while (outcome.message()->next(chunk) == MessageSource<v1::HistoryChunk>::Step::kMessage) {
-    out.push_back(chunk);
-  }
-  EXPECT_EQ(outcome.message()->error().code(), 0);
-  return out;
-}
-
-v1::Simulation with_history(int cycles, int samples) {
-  v1::Simulation simulation = point_simulation();
-  v1::HistoryRequest* history = simulation.mutable_operating_point()->mutable_history();
-  history->add_columns("mesh_force_newtons");
-  history->add_columns("flank_load_newtons");
-  history->set_mesh_cycles(cycles);
-  history->set_samples_per_mesh_cycle(samples);
-  return simulation;
-}
-
-TEST_F(AppTest, HistoriesComeInChunksColumnByColumn) {
+TEST_F(AppTest, HistoriesComeAsASchemaAndChunks) {
   const std::string name = finished(with_history(10, 5000));
   EXPECT_EQ(bench_.get(name).result().history_rows(), 50'000);
   EXPECT_EQ(bench_.get(name).result().history_columns_size(), 4);
-  const auto chunks = read_all(read_history(app_, named<v1::ReadHistoryRequest>(name)));
-  EXPECT_GT(chunks.size(), 5U);
-  std::int64_t row = 0;
-  for (const auto& chunk : chunks) {
-    EXPECT_EQ(chunk.start_row(), row);
-    EXPECT_EQ(chunk.total_rows(), 50'000);
-    EXPECT_LE(chunk.ByteSizeLong(), 300'000U);
-    ASSERT_EQ(chunk.columns_size(), 4);
-    EXPECT_EQ(chunk.columns(2).name(), "flank_load_newtons_flank_1");
-    for (int i = 0; i < chunk.columns(2).values_size(); ++i) {
-      ASSERT_EQ(chunk.columns(2).values(i), 1000.0 + static_cast<double>(row + i));
-    }
-    row += chunk.columns(0).values_size();
+  const auto read = read_all(read_history(app_, named<v1::ReadHistoryRequest>(name)));
+  EXPECT_EQ(read.schema.total_rows(), 50'000);
+  EXPECT_EQ(read.schema.rows_per_pair(), 0);
+  ASSERT_EQ(read.schema.columns_size(), 4);
+  EXPECT_EQ(read.schema.columns(2).name(), "flank_load_newtons_flank_1");
+  EXPECT_EQ(read.schema.columns(2).unit(), "N");
+  EXPECT_EQ(read.chunks.size(), 8U);
+  for (const auto& chunk : read.chunks) EXPECT_LE(chunk.values().size(), 262'144U);
+  for (std::size_t i = 0; i < read.columns[2].size(); ++i) {
+    ASSERT_EQ(read.columns[2][i], 1000.0 + static_cast<double>(i));
   }
-  EXPECT_EQ(row, 50'000);
+}
+
+TEST_F(AppTest, TheSummaryOfTheLongestCurveIsSmall) {
+  v1::Simulation simulation = curve_simulation();
+  auto* curve = simulation.mutable_inefficiency_curve();
+  curve->set_last_speed_kilometers_per_hour(119.9);
+  curve->set_speed_step_kilometers_per_hour(0.1);
+  auto request = named<v1::GetSimulationRequest>(finished(simulation));
+  const auto summary = get_simulation(app_, request).message();
+  EXPECT_EQ(summary.result().points_size(), 1000);
+  EXPECT_TRUE(summary.result().is_abridged());
+  EXPECT_EQ(summary.result().points(999).result().inefficiency_rms_percent(), 1.5);
+  EXPECT_LT(summary.result().ByteSizeLong(), 65'536U);
+  request.set_view(v1::SIMULATION_VIEW_BASIC);
+  EXPECT_FALSE(get_simulation(app_, request).message().has_result());
+  request.set_view(v1::SIMULATION_VIEW_FULL);
+  const auto full = get_simulation(app_, request).message().result();
+  EXPECT_FALSE(full.is_abridged());
+  EXPECT_GT(full.ByteSizeLong(), 65'536U);
+}
+
+TEST_F(AppTest, ManyReadersGetSmallerChunks) {
+  const std::string name = finished(with_history(10, 5000));
+  const auto request = named<v1::ReadHistoryRequest>(name);
+  std::vector<StreamOutcome<v1::ReadHistoryResponse>> readers;
+  for (int i = 0; i < 64; ++i) readers.push_back(read_history(app_, request));
+  std::size_t bytes = 0;
+  for (const auto& chunk : read_all(readers.front()).chunks) {
+    bytes = std::max(bytes, chunk.values().size());
+  }
+  EXPECT_EQ(bytes, 65'536U) << "one block each";
+  readers.erase(readers.begin() + 1, readers.end());
+  EXPECT_EQ(read_all(read_history(app_, request)).chunks.front().values().size(), 262'144U);
+}
+
+TEST_F(AppTest, AnOverviewHoldsTheExtremesOfEveryRun) {
+  const std::string name = finished(with_history(10, 5000));
+  auto request = named<v1::ReadHistoryRequest>(name);
+  request.set_start_row(123);
+  request.set_row_count(40'000);
+  for (const int points : {4, 100, 4000, 30'000}) {
+    request.set_max_points(points);
+    const auto read = read_all(read_history(app_, request));
+    const std::int64_t run = read.schema.rows_per_pair();
+    EXPECT_LE(read.schema.row_count(), points);
+    EXPECT_GE(read.schema.row_count(), points / 3) << "no coarser than it must be";
+    EXPECT_EQ(read.schema.start_row(), 123);
+    for (std::int64_t k = 0; k < read.schema.row_count() / 2; ++k) {
+      const std::int64_t first = (123 / run + k) * run;
+      ASSERT_EQ(read.columns[1][2 * k], static_cast<double>(std::max<std::int64_t>(123, first)));
+      ASSERT_EQ(read.columns[1][2 * k + 1],
+                static_cast<double>(std::min<std::int64_t>(40'123, first + run) - 1));
+    }
+  }
+  request.set_max_points(40'000);
+  EXPECT_EQ(read_all(read_history(app_, request)).schema.rows_per_pair(), 0) << "there is room";
+  request.set_max_points(3);
+  EXPECT_EQ(read_history(app_, request).error().code(), google::rpc::INVALID_ARGUMENT);
 }
 
 TEST_F(AppTest, HistoriesAreReadInPart) {
@@ -230,14 +416,14 @@ TEST_F(AppTest, HistoriesAreReadInPart) {
   request.add_columns("flank_load_newtons_flank_2");
   request.set_start_row(90);
   request.set_row_count(5);
-  auto chunks = read_all(read_history(app_, request));
-  ASSERT_EQ(chunks.size(), 1U);
-  ASSERT_EQ(chunks[0].columns_size(), 3) << "a flank column stands for its three flanks";
-  EXPECT_THAT(chunks[0].columns(2).values(), testing::ElementsAre(2090, 2091, 2092, 2093, 2094));
+  auto read = read_all(read_history(app_, request));
+  ASSERT_EQ(read.chunks.size(), 3U) << "a flank column stands for its three flanks";
+  EXPECT_EQ(read.schema.start_row(), 90);
+  EXPECT_THAT(read.columns[2], testing::ElementsAre(2090, 2091, 2092, 2093, 2094));
   request.set_row_count(1000);
-  EXPECT_EQ(read_all(read_history(app_, request))[0].columns(0).values_size(), 10);
+  EXPECT_EQ(read_all(read_history(app_, request)).columns[0].size(), 10U);
   request.set_start_row(100);
-  EXPECT_TRUE(read_all(read_history(app_, request)).empty());
+  EXPECT_TRUE(read_all(read_history(app_, request)).chunks.empty());
   request.set_start_row(101);
   request.set_row_count(-1);
   request.add_columns("mesh_forces");
@@ -280,7 +466,7 @@ TEST_F(AppTest, AWatchShowsEveryChangeOfState) {
 
 TEST_F(AppTest, TooManyWaitingSimulationsAreTurnedAwayWithARetry) {
   auto release = std::make_shared<std::atomic<bool>>(false);
-  Bench small(patient_studies(release), 1, 1);
+  Bench small(patient_studies(release), 1, {.jobs = 1});
   const std::string running = small.create(point_simulation());
   ASSERT_TRUE(small.reaches(running, v1::Simulation::RUNNING));
   small.create(point_simulation());

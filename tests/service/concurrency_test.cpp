@@ -80,9 +80,12 @@ TEST(Concurrency, CreateWatchReadCancelAllAtOnce) {
       if (done.state() == v1::Simulation::SUCCEEDED) {
         v1::ReadHistoryRequest read;
         read.set_name(name);
-        v1::HistoryChunk chunk;
-        read_history(app, read).message()->next(chunk);
-        EXPECT_EQ(chunk.columns(0).values_size(), 192);
+        const auto history = read_history(app, read);
+        v1::ReadHistoryResponse part;
+        history.message()->next(part);
+        EXPECT_EQ(part.schema().row_count(), 192);
+        history.message()->next(part);
+        EXPECT_EQ(part.chunk().values().size(), 192 * sizeof(double));
       } else {
         EXPECT_EQ(done.state(), v1::Simulation::CANCELLED);
       }
@@ -130,7 +133,7 @@ std::vector<std::int64_t> numbers(Application& app, const std::string& name, std
 }
 
 TEST(Concurrency, SubmitTwiceWatchCancelAndExpireAllAtOnce) {
-  Bench bench(quick_studies(), 4, 100'000, std::chrono::milliseconds(1));
+  Bench bench(quick_studies(), 4, {.jobs = 100'000}, std::chrono::milliseconds(1));
   Application app = bench.application();
   constexpr int kThreads = 6;
   constexpr int kRounds = 40;
@@ -175,7 +178,7 @@ TEST(Concurrency, SubmitTwiceWatchCancelAndExpireAllAtOnce) {
 
 TEST(Concurrency, DrainingWhileFedWatchedAndCancelled) {
   auto release = std::make_shared<std::atomic<bool>>(false);
-  Bench bench(patient_studies(release), 3, 1000, std::chrono::milliseconds(1));
+  Bench bench(patient_studies(release), 3, {.jobs = 1000}, std::chrono::milliseconds(1));
   Application app = bench.application();
   std::atomic<int> accepted = 0;
   std::thread drainer([&] {

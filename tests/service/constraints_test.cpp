@@ -252,9 +252,9 @@ INSTANTIATE_TEST_SUITE_P(Table, ConstraintRow, testing::ValuesIn(all_rows()), ro
 /// Numbers that have no range of their own, with what checks them.
 const std::set<std::string>& checked_elsewhere() {
   static const std::set<std::string> kNames = {
-      "page_size",                // paging.h; every method: all_methods_test.cpp
-      "after_sequence",           // against the events that there are: jobs_test.cpp
-      "start_row", "row_count"};  // against the history's own length: app_test.cpp
+      "page_size",                              // paging.h; every method: all_methods_test.cpp
+      "after_sequence",                         // against the events that there are: jobs_test.cpp
+      "start_row", "row_count", "max_points"};  // against the history's own length: app_test.cpp
   return kNames;
 }
 

@@ -171,10 +171,10 @@ TEST_F(GrpcTest, ASimulationIsCreatedWatchedReadAndListed) {
   v1::ReadHistoryRequest read;
   read.set_name(created.name());
   auto reader = simulations_->ReadHistory(&context, read);
-  int rows = 0;
-  for (v1::HistoryChunk chunk; reader->Read(&chunk);) {
-    EXPECT_EQ(chunk.columns_size(), 4);
-    rows += chunk.columns(0).values_size();
+  std::size_t rows = 0;
+  for (v1::ReadHistoryResponse part; reader->Read(&part);) {
+    EXPECT_TRUE(!part.has_schema() || part.schema().columns_size() == 4);
+    rows += part.chunk().values().size() / sizeof(double) / 4;
   }
   EXPECT_TRUE(reader->Finish().ok());
   EXPECT_EQ(rows, 192);
@@ -264,8 +264,8 @@ class UnreadStreamsTest : public GrpcTest {
     const auto reader = simulations_->ReadHistory(&context, request_);
     std::this_thread::sleep_for(first_pause);
     int rows = 0;
-    for (v1::HistoryChunk chunk; reader->Read(&chunk);) {
-      rows += chunk.columns(0).values_size();
+    for (v1::ReadHistoryResponse part; reader->Read(&part);) {
+      rows += static_cast<int>(part.chunk().values().size() / sizeof(double));
       std::this_thread::sleep_for(pause);
     }
     return {rows, reader->Finish()};

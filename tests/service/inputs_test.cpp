@@ -6,15 +6,19 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 #include "core/version.h"
 #include "server/convert/canonical_text.h"
+#include "server/convert/cost_estimate.h"
 #include "server/convert/input_hash.h"
 #include "server/convert/ledger.h"
 #include "server/convert/simulation_inputs.h"
+#include "server/hash/sha256.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -27,11 +31,20 @@ SimulationInputs inputs_of(const v1::Simulation& simulation) {
   return *inputs;
 }
 
+/// A copy of what is shared, with a change.
+template <class Resource, class Change>
+std::shared_ptr<const Resource> changed(const std::shared_ptr<const Resource>& resource,
+                                        const Change& change) {
+  auto copy = std::make_shared<Resource>(*resource);
+  change(*copy);
+  return copy;
+}
+
 TEST(Inputs, DefaultsAreThoseOfTheContract) {
   const SimulationInputs inputs = inputs_of(point_simulation());
-  EXPECT_EQ(inputs.gear_set.name(), "gearSets/A");
-  EXPECT_EQ(inputs.surface.name(), "surfaces/run-in");
-  EXPECT_EQ(inputs.vehicle.name(), "vehicles/passenger-car");
+  EXPECT_EQ(inputs.gear_set->name(), "gearSets/A");
+  EXPECT_EQ(inputs.surface->name(), "surfaces/run-in");
+  EXPECT_EQ(inputs.vehicle->name(), "vehicles/passenger-car");
   const Scene physical = scene(inputs);
   EXPECT_EQ(physical.sump_temperature, 313.15);
   EXPECT_EQ(physical.inlet_temperature_rise, 20);
@@ -113,19 +126,28 @@ TEST(Hash, DependsOnValuesNotOnWhatTheyAreCalled) {
   EXPECT_EQ(hash.size(), 64U);
   EXPECT_EQ(hash, input_hash(inputs_of(point_simulation())));
   SimulationInputs same = inputs;
-  same.lubricant.set_name("lubricants/other");
-  same.lubricant.set_display_name("other");
-  same.lubricant.set_description("other");
-  same.lubricant.clear_provenance();
+  same.lubricant = changed(inputs.lubricant, [](v1::Lubricant& fluid) {
+    fluid.set_name("lubricants/other");
+    fluid.set_display_name("other");
+    fluid.set_description("other");
+    fluid.clear_provenance();
+  });
   same.effective.set_display_name("other");
   same.effective.set_lubricant("lubricants/other");
   EXPECT_EQ(hash, input_hash(same));
   SimulationInputs other = inputs;
-  other.lubricant.set_thermal_conductivity_watts_per_metre_kelvin(std::nextafter(0.154, 1));
+  other.lubricant = changed(inputs.lubricant, [](v1::Lubricant& fluid) {
+    fluid.set_thermal_conductivity_watts_per_metre_kelvin(std::nextafter(0.154, 1));
+  });
   EXPECT_NE(hash, input_hash(other));
   other = inputs;
-  other.gear_set.mutable_flank_slots(1)->set_load_share(40, 0.5);
+  other.gear_set = changed(inputs.gear_set, [](v1::GearSet& set) {
+    set.mutable_flank_slots(1)->set_load_share(40, 0.5);
+  });
   EXPECT_NE(hash, input_hash(other));
+  for (const SimulationInputs& each : {inputs, same, other, inputs}) {
+    EXPECT_EQ(input_hash(each), sha256(canonical_inputs(each))) << "whatever is kept of it";
+  }
 }
 
 TEST(Hash, StatedDefaultsEqualUnstatedOnes) {
@@ -160,6 +182,38 @@ TEST(Hash, CanonicalTextNamesEveryValueWithAllItsDigits) {
   EXPECT_NE(text.find("\nsimulation.operating_point.model=AUTOMATIC_MODEL\n"), std::string::npos);
   EXPECT_EQ(text.find("provenance"), std::string::npos);
   EXPECT_EQ(text.find("lubricants/"), std::string::npos);
+}
+
+TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
+  std::vector<v1::Simulation> ascending(6, point_simulation());
+  ascending[1].mutable_solver_options()->set_tolerance(1e-6);
+  ascending[2].mutable_operating_point()->set_model(v1::QUASI_STATIC);
+  ascending[3].mutable_solver_options()->set_method(v1::MARCH);
+  for (const int i : {4, 5}) {
+    ascending[i].mutable_solver_options()->set_method(v1::MARCH);
+    auto* history = ascending[i].mutable_operating_point()->mutable_history();
+    history->add_columns("mesh_force_newtons");
+    history->set_mesh_cycles(i == 4 ? 20 : 100);
+    history->set_samples_per_mesh_cycle(10'000);
+  }
+  double before = 0;
+  for (const v1::Simulation& each : ascending) {
+    const double seconds = estimate_cost(inputs_of(each).effective).processor_seconds();
+    EXPECT_GT(seconds, 1.5 * before) << each.ShortDebugString();
+    before = seconds;
+  }
+}
+
+TEST(Ledger, IsTheSameSerialisedWhateverIsKeptOfIt) {
+  v1::Simulation other = point_simulation();
+  other.set_lubricant("lubricants/2");
+  other.set_sump_temperature_celsius(90);
+  for (const v1::Simulation& each : {point_simulation(), other, point_simulation()}) {
+    const SimulationInputs inputs = inputs_of(each);
+    v1::SimulationResult expected;
+    for (const v1::Assumption& entry : assumptions(inputs)) *expected.add_assumptions() = entry;
+    EXPECT_EQ(ledger(inputs), expected.SerializeAsString());
+  }
 }
 
 std::map<std::string, v1::Assumption> ledger_of(const v1::Simulation& simulation) {

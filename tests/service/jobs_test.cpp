@@ -26,14 +26,14 @@ StudyFunctions throwing(const Thrown& thrown) {
 TEST(JobQueue, RunsWhatIsPushedInOrder) {
   std::mutex mutex;
   std::vector<std::int64_t> done;
-  JobQueue queue(1, 100, [&](std::int64_t id, const StopSignal&) {
+  JobQueue queue(1, {.jobs = 100}, [&](std::int64_t id, const StopSignal&) {
     const std::lock_guard lock(mutex);
     done.push_back(id);
   });
   queue.start();
   for (int id = 1; id <= 20; ++id) {
-    ASSERT_TRUE(queue.reserve());
-    queue.push(id);
+    ASSERT_TRUE(queue.reserve({}).is_admitted);
+    queue.push({id});
   }
   EXPECT_TRUE(eventually([&] {
     const std::lock_guard lock(mutex);
@@ -45,37 +45,127 @@ TEST(JobQueue, RunsWhatIsPushedInOrder) {
 
 TEST(JobQueue, TurnsAwayWhatIsTooMuch) {
   std::atomic<bool> release = false;
-  JobQueue queue(1, 2, [&](std::int64_t, const StopSignal& stop) {
+  JobQueue queue(1, {.jobs = 2}, [&](std::int64_t, const StopSignal& stop) {
     while (!release && !stop.requested()) std::this_thread::yield();
   });
   queue.start();
-  ASSERT_TRUE(queue.reserve());
-  ASSERT_TRUE(queue.reserve());
-  EXPECT_FALSE(queue.reserve()) << "reserved places count";
-  queue.release();
-  EXPECT_TRUE(queue.reserve());
-  queue.push(1);
-  queue.push(2);
+  ASSERT_TRUE(queue.reserve({}).is_admitted);
+  ASSERT_TRUE(queue.reserve({}).is_admitted);
+  EXPECT_FALSE(queue.reserve({}).is_admitted) << "reserved places count";
+  queue.release({});
+  EXPECT_TRUE(queue.reserve({}).is_admitted);
+  queue.push({1});
+  queue.push({2});
   EXPECT_TRUE(eventually([&] {  // one of them runs by now
-    if (!queue.reserve()) return false;
-    queue.release();
+    if (!queue.reserve({}).is_admitted) return false;
+    queue.release({});
     return true;
   }));
-  queue.push_resumed(3);
-  queue.push_resumed(4);
-  EXPECT_FALSE(queue.reserve()) << "resumed jobs count but are never turned away";
+  queue.push_resumed({3});
+  queue.push_resumed({4});
+  EXPECT_FALSE(queue.reserve({}).is_admitted) << "resumed jobs count but are never turned away";
   release = true;
+}
+
+/// Ids in the order in which they leave.
+std::vector<std::int64_t> emptied(FairQueue& queue) {
+  std::vector<std::int64_t> out;
+  while (const auto job = queue.pop(false)) out.push_back(job->id);
+  return out;
+}
+
+TEST(FairQueue, ServesClientsInTurnHoweverMuchOneBrings) {
+  FairQueue queue;
+  for (int id = 1; id <= 100; ++id) queue.push({id, "bulk", 0.1});
+  for (int i = 0; i < 10; ++i) queue.pop(false);
+  queue.push({1000, "curve", 0.5});
+  queue.push({1001, "curve", 0.5});
+  const auto order = emptied(queue);
+  const auto place = [&](std::int64_t id) {
+    return std::find(order.begin(), order.end(), id) - order.begin();
+  };
+  EXPECT_LE(place(1000), 1);
+  EXPECT_LE(place(1001), 8) << "five points of the other one in between";
+  EXPECT_GE(place(1001), 4) << "no credit for the time away";
+  EXPECT_EQ(order.back(), 100);
+}
+
+TEST(FairQueue, SmallJobsOfAClientPassLargeOnesThatDoNotStarve) {
+  FairQueue queue;
+  queue.push({1, "a", 5});
+  for (int id = 2; id <= 101; ++id) queue.push({id, "a", 0.5});
+  EXPECT_EQ(queue.peek(false)->id, 2);
+  for (int id = 102; id < 300; ++id) {
+    if (queue.pop(false)->id == 1) {
+      EXPECT_GT(id, 102 + 8) << "as much as it is large has passed it";
+      return;
+    }
+    queue.push({id, "a", 0.5});  // more and more of them
+  }
+  FAIL() << "the large one never came";
+}
+
+TEST(FairQueue, KnowsWhatWaits) {
+  FairQueue queue;
+  queue.push({1, "a", 2});
+  queue.push({2, "b", 3});
+  EXPECT_FALSE(queue.pop(true)) << "neither is interactive";
+  EXPECT_EQ(queue.cost_seconds(), 5);
+  EXPECT_EQ(queue.size_of("a"), 1U);
+  EXPECT_TRUE(queue.erase(1));
+  EXPECT_FALSE(queue.erase(1));
+  EXPECT_EQ(queue.cost_seconds_of("a"), 0);
+  EXPECT_EQ(queue.size(), 1U);
+}
+
+TEST(JobQueue, IsBoundedByCostAndLeavesRoomForOthers) {
+  JobQueue queue(2, {.jobs = 100, .cost_seconds = 1000}, [](std::int64_t, const StopSignal&) {});
+  EXPECT_TRUE(queue.reserve({1, "a", 5000}).is_admitted) << "whatever it costs, it must run once";
+  const Admission refused = queue.reserve({2, "b", 1});
+  EXPECT_FALSE(refused.is_admitted);
+  EXPECT_EQ(refused.retry_seconds, 250) << "a tenth of 5000 s on two processors";
+  queue.release({1, "a", 5000});
+  EXPECT_TRUE(queue.reserve({3, "a", 700}).is_admitted);
+  EXPECT_FALSE(queue.reserve({4, "a", 100}).is_admitted) << "three quarters are for one client";
+  EXPECT_TRUE(queue.reserve({5, "b", 100}).is_admitted);
+}
+
+TEST(JobQueue, TellsThoseTurnedAwayToComeOneAfterAnother) {
+  JobQueue queue(2, {.jobs = 1, .cost_seconds = 1000}, [](std::int64_t, const StopSignal&) {});
+  EXPECT_TRUE(queue.reserve({1, "a", 1}).is_admitted);
+  EXPECT_EQ(queue.reserve({2, "b", 20}).retry_seconds, 1);
+  EXPECT_EQ(queue.reserve({3, "b", 20}).retry_seconds, 11) << "after that of 20 s on two";
+  EXPECT_EQ(queue.reserve({4, "b", 20}).retry_seconds, 21);
+  EXPECT_EQ(queue.reserve({5, "c", 20}).retry_seconds, 1) << "others are not held up by them";
+  for (int i = 0; i < 100; ++i) queue.reserve({6, "b", 20});
+  EXPECT_EQ(queue.reserve({6, "b", 20}).retry_seconds, 600);
+}
+
+TEST(JobQueue, KeepsAThreadForInteractiveJobs) {
+  std::atomic<int> bulk = 0;
+  std::atomic<int> small = 0;
+  JobQueue queue(2, {}, [&](std::int64_t id, const StopSignal& stop) {
+    ++(id < 10 ? bulk : small);
+    while (id < 10 && !stop.requested()) std::this_thread::yield();
+  });
+  queue.start();
+  for (int id = 1; id <= 5; ++id) queue.push_resumed({id, "a", 100});
+  EXPECT_TRUE(eventually([&] { return bulk == 1; }));
+  for (int id = 10; id < 30; ++id) queue.push_resumed({id, "b", 0.1});
+  EXPECT_TRUE(eventually([&] { return small == 20; }));
+  EXPECT_EQ(bulk, 1);
+  EXPECT_EQ(queue.occupancy().waiting, 4U);
 }
 
 TEST(JobQueue, ADefectiveJobDoesNotEndTheThread) {
   std::atomic<int> done = 0;
-  JobQueue queue(1, 10, [&](std::int64_t id, const StopSignal&) {
+  JobQueue queue(1, {.jobs = 10}, [&](std::int64_t id, const StopSignal&) {
     ++done;
     if (id == 1) throw std::runtime_error("defect");
   });
   queue.start();
-  queue.push_resumed(1);
-  queue.push_resumed(2);
+  queue.push_resumed({1});
+  queue.push_resumed({2});
   EXPECT_TRUE(eventually([&] { return done == 2; }));
 }
 
@@ -83,16 +173,16 @@ TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
   std::atomic<int> started = 0;
   std::atomic<int> shut_down = 0;
   {
-    JobQueue queue(2, 10, [&](std::int64_t, const StopSignal& stop) {
+    JobQueue queue(2, {.jobs = 10}, [&](std::int64_t, const StopSignal& stop) {
       ++started;
       while (!stop.requested()) std::this_thread::yield();
       if (stop.reason() == StopReason::kShutdown) ++shut_down;
     });
     queue.start();
-    for (int id = 1; id <= 5; ++id) queue.push_resumed(id);
+    for (int id = 1; id <= 5; ++id) queue.push_resumed({id});
     EXPECT_TRUE(eventually([&] { return started == 2; }));
     queue.stop();
-    EXPECT_FALSE(queue.reserve());
+    EXPECT_FALSE(queue.reserve({}).is_admitted);
   }
   EXPECT_EQ(started, 2);
   EXPECT_EQ(shut_down, 2);
@@ -102,14 +192,14 @@ TEST(JobQueue, AJobThatMayKillTheServerRunsAlone) {
   std::atomic<int> running = 0;
   std::atomic<int> done = 0;
   std::atomic<int> together = 0;
-  JobQueue queue(4, 100, [&](std::int64_t id, const StopSignal&) {
+  JobQueue queue(4, {.jobs = 100}, [&](std::int64_t id, const StopSignal&) {
     const int others = running++;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     if (id % 3 == 0 && (others != 0 || running != 1)) ++together;
     --running;
     ++done;
   });
-  for (int id = 1; id <= 60; ++id) queue.push_resumed(id, id % 3 == 0);
+  for (int id = 1; id <= 60; ++id) queue.push_resumed({id, "", 0, id % 3 == 0});
   queue.start();
   EXPECT_TRUE(eventually([&] { return done == 60; }));
   EXPECT_EQ(together, 0);
@@ -318,14 +408,14 @@ TEST(GoldenCase, ComesOutAsItShouldAndAWrongOneIsNamed) {
 
 TEST(SimulationJobs, TooManyWaitingAreTurnedAway) {
   auto release = std::make_shared<std::atomic<bool>>(false);
-  Bench bench(patient_studies(release), 1, 2);
+  Bench bench(patient_studies(release), 1, {.jobs = 2});
   const std::string running = bench.create(point_simulation());
   ASSERT_TRUE(bench.reaches(running, v1::Simulation::RUNNING));
   bench.create(point_simulation());
   bench.create(point_simulation());
   EXPECT_EQ(bench.jobs()
                 .submit({.request = "request", .key = {std::string(64, 'a'), "model", "platform"}})
-                .kind,
+                .added.kind,
             Added::Kind::kNoPlace);
   *release = true;
 }

@@ -231,7 +231,7 @@ TEST_F(LifeCycle, WhatWaitsIsServedOnceItsTwinIsDone) {
 }
 
 TEST_F(LifeCycle, AFullQueueStillServesWhatIsKnown) {
-  Bench bench(quick_studies(), 1, 1);
+  Bench bench(quick_studies(), 1, {.jobs = 1});
   finished(bench, request_of(point_simulation()));
   bench.restart(patient_studies(release_));
   ASSERT_TRUE(bench.reaches(bench.create(curve_simulation()), State::RUNNING));
@@ -261,7 +261,7 @@ TEST_F(LifeCycle, CheckingSaysHashInputsAndCostAndRunsNothing) {
   request.mutable_simulation()->mutable_solver_options()->set_method(v1::MARCH);
   EXPECT_GT(create(bench, request).message().cost_estimate().contact_solutions(), 5 * sharper);
   request.mutable_simulation()->clear_solver_options();
-  EXPECT_TRUE(bench.store().simulations(0, 10, 1000).rows.empty());
+  EXPECT_TRUE(bench.store().simulations({.limit = 10, .byte_limit = 1000}).rows.empty());
   request.set_validate_only(false);
   EXPECT_EQ(create(bench, request).message().input_hash(), checked.input_hash());
 }
@@ -308,7 +308,7 @@ class Waker : public ProgressObserver {
 };
 
 TEST_F(LifeCycle, AQuietWatchSendsHeartbeatsAndIsWokenForThem) {
-  Bench bench(patient_studies(release_), 1, 10, std::chrono::milliseconds(40));
+  Bench bench(patient_studies(release_), 1, {.jobs = 10}, std::chrono::milliseconds(40));
   ASSERT_TRUE(bench.reaches(bench.create(curve_simulation()), State::RUNNING));
   const std::string waiting = bench.create(point_simulation());
   const auto source = watch(bench, waiting).message();

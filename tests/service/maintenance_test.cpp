@@ -66,7 +66,7 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
     EXPECT_EQ(stored->revision, 1);
     EXPECT_EQ(stored->body, seed.body) << seed.name;
   }
-  EXPECT_EQ(store.simulations(0, 100, 1 << 30).rows.size(), 7U);
+  EXPECT_EQ(store.simulations({.limit = 100, .byte_limit = 1 << 30}).rows.size(), 7U);
   EXPECT_EQ(store.simulation(1)->lubricant_revision, "lubricants/2@1");
   EXPECT_EQ(store.simulation(1)->gear_set_revision, "gearSets/B@1");
   EXPECT_EQ(store.simulation(2)->gear_set_revision, "gearSets/A@1")
@@ -178,7 +178,9 @@ TEST_F(MaintenanceTest, CheckFindsWhatIsWrong) {
        "SELECT 9, input_hash, model_version, platform, 1, body FROM results",
        "more than one result"},
       {"UPDATE simulations SET input_hash = printf('%064d', 0)", "of other inputs"},
-      {"UPDATE history SET data = x'0000'", "history"},
+      {"UPDATE history_blocks SET data = x'0000'", "history"},
+      {"DELETE FROM history_blocks", "history"},
+      {"UPDATE history_columns SET rows = 3", "history"},
   };
   for (const auto& [sql, problem] : cases) {
     for (const char* suffix : {"", "-wal", "-shm"}) std::filesystem::remove(path() + suffix);

@@ -42,7 +42,7 @@ class SameBitsTest : public GrpcTest {
       v1::ReadHistoryRequest read;
       read.set_name(name);
       auto reader = simulations_->ReadHistory(&context, read);
-      for (v1::HistoryChunk chunk; reader->Read(&chunk);) out += chunk.SerializeAsString();
+      for (v1::ReadHistoryResponse part; reader->Read(&part);) out += part.SerializeAsString();
       reader->Finish();
       return out;
     }

@@ -164,12 +164,13 @@ TEST_F(StoreTest, WhatACrashInterruptedIsQueuedAgainAndResultsStay) {
 TEST_F(StoreTest, IdsAreNeverUsedAgainAndListsAreNewestFirst) {
   Store store(path());
   for (int i = 0; i < 5; ++i) store.add_simulation({.request = "r", .key = kKey}, i);
-  const auto page = store.simulations(0, 2, 1000);
+  const auto page = store.simulations({.limit = 2, .byte_limit = 1000});
   ASSERT_EQ(page.rows.size(), 2U);
   EXPECT_TRUE(page.more);
   EXPECT_EQ(page.rows[0].id, 5);
-  EXPECT_EQ(store.simulations(4, 10, 1000).rows.size(), 3U);
-  EXPECT_FALSE(store.simulations(4, 10, 1000).more);
+  EXPECT_EQ(store.simulations({.after = {{3, 4}}, .limit = 10, .byte_limit = 1000}).rows.size(),
+            3U);
+  EXPECT_FALSE(store.simulations({.after = {{3, 4}}, .limit = 10, .byte_limit = 1000}).more);
 }
 
 TEST_F(StoreTest, TheSchemaKeepsOutWhatMakesNoSense) {

@@ -188,9 +188,9 @@ bool eventually(const std::function<bool()>& condition) {
   return condition();
 }
 
-Bench::Bench(StudyFunctions studies, int threads, std::size_t maximum_waiting,
+Bench::Bench(StudyFunctions studies, int threads, const QueueLimits& limits,
              std::chrono::milliseconds heartbeat)
-    : threads_(threads), maximum_waiting_(maximum_waiting), heartbeat_(heartbeat) {
+    : threads_(threads), limits_(limits), heartbeat_(heartbeat) {
   open(std::move(studies));
 }
 
@@ -199,7 +199,7 @@ void Bench::open(StudyFunctions studies) {
   store_->add_resources(seed_resources(), system_time());
   SimulationJobs::Options options;
   options.threads = threads_;
-  options.maximum_waiting = maximum_waiting_;
+  options.limits = limits_;
   options.studies = std::move(studies);
   options.heartbeat = heartbeat_;
   jobs_ = std::make_unique<SimulationJobs>(*store_, options);

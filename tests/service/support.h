@@ -67,7 +67,7 @@ bool eventually(const std::function<bool()>& condition);
 class Bench {
  public:
   explicit Bench(StudyFunctions studies = quick_studies(), int threads = 2,
-                 std::size_t maximum_waiting = kMaximumWaitingSimulations,
+                 const QueueLimits& limits = {},
                  std::chrono::milliseconds heartbeat = std::chrono::seconds(15));
 
   Store& store() { return *store_; }
@@ -89,7 +89,7 @@ class Bench {
 
   TemporaryFolder folder_;
   int threads_;
-  std::size_t maximum_waiting_;
+  QueueLimits limits_;
   std::chrono::milliseconds heartbeat_;
   std::unique_ptr<Store> store_;
   std::unique_ptr<SimulationJobs> jobs_;

@@ -206,9 +206,9 @@ TEST(History, ColumnsAreKnownDistinctAndNotTooMany) {
   history->mutable_columns()->DeleteSubrange(1, 1);
   EXPECT_THAT(check(simulation), IsEmpty());
   history->set_mesh_cycles(1000);
-  history->set_samples_per_mesh_cycle(1334);
+  history->set_samples_per_mesh_cycle(6667);
   EXPECT_THAT(check(simulation), violation("simulation.operating_point.history",
-                                           "4002000 values; legal: at most 4000000"))
+                                           "20001000 values; legal: at most 20000000"))
       << "a flank column counts three times";
   for (int i = 0; i < 10'000; ++i) history->add_columns("x");
   EXPECT_LT(check(simulation).size(), 120U);

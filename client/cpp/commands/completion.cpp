@@ -69,7 +69,7 @@ std::vector<std::string> names_of(const std::string& collection, const std::stri
   try {
     Connection connection(server_address(options.server), kPatience);
     if (collection == "simulations") {
-      for (const auto& simulation : connection.list_simulations(50).resources) {
+      for (const auto& simulation : connection.list_simulations({.limit = 50}).resources) {
         names.push_back(resource_id(simulation.name()));
       }
     }

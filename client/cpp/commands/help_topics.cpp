@@ -74,10 +74,12 @@ where anything differs; a table changes only what its columns tell of. At most 2
   tribodyn lubricants list --filter 'labels.project = "axle" AND condition = SHEARED'
   tribodyn lubricants list --filter 'pressure_viscosity_coefficient_per_pascal > 1.5e-8'
   tribodyn lubricants list --label project=axle --order-by 'create_time desc' --limit 20
+  tribodyn jobs list --filter 'state = FAILED AND create_time > 2026-01-31T12:00:00Z'
 
 Restrictions are joined by AND. Operators: = != < <= > >= and ":" (contains; `labels.key:*` means:
 is there). Texts with blanks stand in double quotes. Numbers are in the unit of the field's name.
-`tribodyn schema` lists the fields under "lubricants.filter" and so on.
+`tribodyn schema` lists the fields under "lubricants.filter" and so on. Jobs have state, lubricant
+(lubricants/1, or lubricants/1@2 for a revision), create_time and labels.
 )"},
       {"configuration", "configuration file and environment",
        R"(Configuration

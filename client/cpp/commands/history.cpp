@@ -5,6 +5,7 @@
 #include "client/cpp/commands/operating_point.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/plot/history_plot.h"
+#include "client/cpp/report/history_file.h"
 #include "client/cpp/report/history_report.h"
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/text/text.h"
@@ -12,6 +13,7 @@
 namespace tribodyn::client {
 namespace {
 
+constexpr int kPlottedPoints = 4000;
 constexpr char kTimeColumn[] = "time_seconds";
 
 struct HistoryFlags {
@@ -20,6 +22,8 @@ struct HistoryFlags {
   v1::HistoryRequest history;
   std::string simulation;
   std::string csv_path;
+  std::string numpy_path;
+  int maximum_points = 0;
   std::string plot_path;
 };
 
@@ -41,8 +45,16 @@ void add_history_flags(FlagList& list, HistoryFlags& flags) {
             "Read the history of this finished simulation instead of computing one.",
             [&](const std::string& name) { flags.simulation = name; });
   list.group("Files");
-  list.text("--csv", "FILE", "Also write the samples as CSV.",
+  list.whole_number("--max-points", {"samples", "4 to 1000000", "all"},
+                    "Print an overview where there are more: least and largest value of each run "
+                    "of samples, one after the other",
+                    [&](int count) { flags.maximum_points = count; });
+  list.text("--csv", "FILE",
+            "Also write all samples as CSV. What an interrupted download left is gone on with.",
             [&](const std::string& path) { flags.csv_path = path; });
+  list.text("--npy", "FILE.npy",
+            "The same for NumPy: numpy.load(\"FILE.npy\")[\"mesh_force_newtons\"].",
+            [&](const std::string& path) { flags.numpy_path = path; });
   list.text("--plot", "FILE.svg", "Also draw every column against time.",
             [&](const std::string& path) { flags.plot_path = path; });
 }
@@ -75,13 +87,16 @@ int run_history(HistoryFlags& flags, const CommonOptions& options) {
           : connection.get_simulation(resource_name("simulations", flags.simulation));
   if (simulation.name().empty()) return kExitOk;  // detached
   if (simulation.state() != v1::Simulation::SUCCEEDED) return report_failures({simulation});
-  const v1::HistoryChunk history = connection.read_history(simulation.name());
+  HistoryOptions read;
+  read.maximum_points = flags.maximum_points;
+  const v1::History history = connection.read_history(simulation.name(), read);
   switch (options.output_format) {
     case OutputFormat::kTable:
-      std::cout << printable(simulation.name()) << ": " << study_text(simulation) << ", "
-                << printable(simulation.lubricant()) << ", " << inputs_text(simulation) << "\n\n"
-                << history_summary(history)
-                << "\nThe samples: --output csv, or --csv FILE; a picture: --plot FILE.svg.\n";
+      std::cout
+          << printable(simulation.name()) << ": " << study_text(simulation) << ", "
+          << printable(simulation.lubricant()) << ", " << inputs_text(simulation) << "\n\n"
+          << history_summary(history)
+          << "\nThe samples: --output csv, --csv FILE or --npy FILE; a picture: --plot FILE.svg.\n";
       break;
     case OutputFormat::kCsv:
       std::cout << history_csv(history);
@@ -89,8 +104,17 @@ int run_history(HistoryFlags& flags, const CommonOptions& options) {
     case OutputFormat::kJson:
       std::cout << json_text(history);
   }
-  if (!flags.csv_path.empty()) write_file(flags.csv_path, history_csv(history));
-  if (!flags.plot_path.empty()) write_file(flags.plot_path, history_plot(simulation, history));
+  if (!flags.csv_path.empty()) {
+    download_history(connection, simulation, flags.csv_path, HistoryFile::Format::kCsv);
+  }
+  if (!flags.numpy_path.empty()) {
+    download_history(connection, simulation, flags.numpy_path, HistoryFile::Format::kNumpy);
+  }
+  if (!flags.plot_path.empty()) {
+    read.maximum_points = kPlottedPoints;
+    write_file(flags.plot_path,
+               history_plot(simulation, connection.read_history(simulation.name(), read)));
+  }
   return kExitOk;
 }
 

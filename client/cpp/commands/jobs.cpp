@@ -19,7 +19,7 @@ using google::protobuf::util::TimeUtil;
 
 struct JobFlags {
   std::vector<std::string> names;
-  int limit = 20;
+  ListOptions list;
   bool shows_assumptions = false;
 };
 
@@ -90,7 +90,7 @@ std::string jobs_text(const std::vector<v1::Simulation>& simulations, OutputForm
 }
 
 int run_list(const JobFlags& flags, const CommonOptions& options) {
-  const auto list = options.connect().list_simulations(flags.limit);
+  const auto list = options.connect().list_simulations(flags.list);
   std::cout << jobs_text(list.resources, options.output_format, false);
   if (list.has_more && options.output_format == OutputFormat::kTable) {
     std::cerr << "There are more; --limit raises their number.\n";
@@ -167,14 +167,28 @@ int run_again(const JobFlags& flags, const CommonOptions& options) {
   return report_failures(jobs);
 }
 
-int run_cancel(const JobFlags& flags, const CommonOptions& options) {
+/// Does the same to each, and shows how they stand then.
+int run_each(const JobFlags& flags, const CommonOptions& options,
+             v1::Simulation (Connection::*action)(const std::string&)) {
   Connection connection = options.connect();
   std::vector<v1::Simulation> jobs;
   for (const std::string& name : flags.names) {
-    jobs.push_back(connection.cancel_simulation(resource_name("simulations", name)));
+    jobs.push_back((connection.*action)(resource_name("simulations", name)));
   }
   std::cout << jobs_text(jobs, options.output_format, false);
   return kExitOk;
+}
+
+int run_cancel(const JobFlags& flags, const CommonOptions& options) {
+  return run_each(flags, options, &Connection::cancel_simulation);
+}
+
+int run_pin(const JobFlags& flags, const CommonOptions& options) {
+  return run_each(flags, options, &Connection::pin_simulation);
+}
+
+int run_unpin(const JobFlags& flags, const CommonOptions& options) {
+  return run_each(flags, options, &Connection::unpin_simulation);
 }
 
 Command job_command(const char* path, const char* summary, const char* about, const char* example,
@@ -208,6 +222,7 @@ Command job_command(const char* path, const char* summary, const char* about, co
 
 Command jobs_list_command() {
   const auto flags = std::make_shared<JobFlags>();
+  flags->list.limit = 20;
   Command command{"jobs list",
                   "the newest jobs of the server",
                   "Lists jobs, newest first.",
@@ -216,9 +231,16 @@ Command jobs_list_command() {
                   {},
                   {}};
   command.flags.whole_number("--limit,-n", {"jobs", "1 to 100000", "20"}, "How many",
-                             [flags](int value) { flags->limit = value; });
+                             [flags](int value) { flags->list.limit = value; });
+  command.flags.text("--filter", "FILTER",
+                     "Restrictions joined by AND, e.g. 'state = FAILED AND lubricant = "
+                     "lubricants/1 AND create_time > 2026-01-31T00:00:00Z AND labels.project = "
+                     "axle'.",
+                     [flags](const std::string& text) { flags->list.filter = text; });
+  command.flags.text("--order-by", "FIELD", "create_time for the oldest first.",
+                     [flags](const std::string& text) { flags->list.order_by = text; });
   command.check = [flags](Complaints& complaints) {
-    if (flags->limit < 1 || flags->limit > 100000) {
+    if (flags->list.limit < 1 || flags->list.limit > 100000) {
       complaints.emplace_back("--limit must be 1 to 100000");
     }
   };
@@ -256,6 +278,18 @@ Command jobs_rerun_command() {
 Command jobs_cancel_command() {
   return job_command("jobs cancel", "stop jobs", "Stops jobs; one that has ended is left as it is.",
                      "tribodyn jobs cancel 12", true, false, run_cancel);
+}
+
+Command jobs_pin_command() {
+  return job_command("jobs pin", "keep jobs and their results for good",
+                     "Keeps jobs from expiring and from making room for others.",
+                     "tribodyn jobs pin 12", true, false, run_pin);
+}
+
+Command jobs_unpin_command() {
+  return job_command("jobs unpin", "give pinned jobs up again",
+                     "Lets jobs expire and make room for others as usual.",
+                     "tribodyn jobs unpin 12", true, false, run_unpin);
 }
 
 }  // namespace tribodyn::client

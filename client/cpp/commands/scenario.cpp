@@ -99,6 +99,14 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   flags.group("Job");
   flags.text("--display-name", "TEXT", "A title for the job, shown by `tribodyn jobs list`.",
              [&](const std::string& text) { simulation.set_display_name(text); });
+  flags.texts("--label", "KEY=VALUE",
+              "Attach a label; `tribodyn jobs list --filter 'labels.KEY = VALUE'` finds the job.",
+              [&](const std::string& text) {
+                const std::size_t equals = text.find('=');
+                v1::Label& label = *simulation.add_labels();
+                label.set_key(text.substr(0, equals));
+                if (equals != std::string::npos) label.set_value(text.substr(equals + 1));
+              });
   flags.toggle("--detach", "Submit the job and return at once.", [&] { scenario.detach = true; });
   flags.toggle("--validate-only", "Have the server check everything; run nothing.",
                [&] { scenario.create.validate_only = true; });

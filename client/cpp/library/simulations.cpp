@@ -46,6 +46,7 @@ v1::Simulation Connection::create_simulation(const v1::Simulation& simulation,
 v1::Simulation Connection::get_simulation(const std::string& name) {
   v1::GetSimulationRequest request;
   request.set_name(name);
+  request.set_view(v1::SIMULATION_VIEW_FULL);
   return services_->call(*services_->simulations, &v1::Simulations::Stub::GetSimulation, request);
 }
 
@@ -56,9 +57,24 @@ v1::Simulation Connection::cancel_simulation(const std::string& name) {
                          request);
 }
 
-Listing<v1::Simulation> Connection::list_simulations(int limit) {
+v1::Simulation Connection::pin_simulation(const std::string& name) {
+  v1::PinSimulationRequest request;
+  request.set_name(name);
+  return services_->call(*services_->simulations, &v1::Simulations::Stub::PinSimulation, request);
+}
+
+v1::Simulation Connection::unpin_simulation(const std::string& name) {
+  v1::UnpinSimulationRequest request;
+  request.set_name(name);
+  return services_->call(*services_->simulations, &v1::Simulations::Stub::UnpinSimulation, request);
+}
+
+Listing<v1::Simulation> Connection::list_simulations(const ListOptions& options) {
   Listing<v1::Simulation> all;
   v1::ListSimulationsRequest request;
+  request.set_filter(options.filter);
+  request.set_order_by(options.order_by);
+  const int limit = options.limit;
   do {
     const int missing = limit - static_cast<int>(all.resources.size());
     request.set_page_size(limit == 0 ? kLargestPage : std::min(missing, kLargestPage));
@@ -104,27 +120,6 @@ v1::Simulation Connection::wait_for_end(
     if (!pause(backoff.next(kBetweenWatches), stop)) break;
   }
   return get_simulation(name);
-}
-
-v1::HistoryChunk Connection::read_history(const std::string& name) {
-  v1::ReadHistoryRequest request;
-  request.set_name(name);
-  grpc::ClientContext context;
-  const auto reader = services_->simulations->ReadHistory(&context, request);
-  v1::HistoryChunk all;
-  v1::HistoryChunk chunk;
-  while (reader->Read(&chunk)) {
-    if (all.columns_size() == 0) {
-      all = chunk;
-      continue;
-    }
-    for (int c = 0; c < std::min(all.columns_size(), chunk.columns_size()); ++c) {
-      all.mutable_columns(c)->mutable_values()->MergeFrom(chunk.columns(c).values());
-    }
-  }
-  const grpc::Status status = reader->Finish();
-  if (!status.ok()) throw service_error(status, address());
-  return all;
 }
 
 }  // namespace tribodyn::client

@@ -48,9 +48,9 @@ bool is_abscissa(const std::string& name) {
 }
 
 /// Columns by quantity, in the order they came.
-std::vector<std::pair<std::string, std::vector<const v1::HistoryChunk::Column*>>> grouped(
-    const v1::HistoryChunk& history) {
-  std::vector<std::pair<std::string, std::vector<const v1::HistoryChunk::Column*>>> groups;
+std::vector<std::pair<std::string, std::vector<const v1::History::Column*>>> grouped(
+    const v1::History& history) {
+  std::vector<std::pair<std::string, std::vector<const v1::History::Column*>>> groups;
   for (const auto& column : history.columns()) {
     if (is_abscissa(column.name())) continue;
     const std::string quantity = column_quantity(column.name());
@@ -65,7 +65,7 @@ std::vector<std::pair<std::string, std::vector<const v1::HistoryChunk::Column*>>
   return groups;
 }
 
-std::vector<double> scaled(const v1::HistoryChunk::Column& column, double factor) {
+std::vector<double> scaled(const v1::History::Column& column, double factor) {
   std::vector<double> values;
   values.reserve(column.values_size());
   const bool has_gaps = zero_means_no_contact(column.name());
@@ -77,8 +77,8 @@ std::vector<double> scaled(const v1::HistoryChunk::Column& column, double factor
 }
 
 /// Time in ms, else mesh phase, else the row.
-std::pair<std::string, std::vector<double>> abscissa(const v1::HistoryChunk& history) {
-  const v1::HistoryChunk::Column* phase = nullptr;
+std::pair<std::string, std::vector<double>> abscissa(const v1::History& history) {
+  const v1::History::Column* phase = nullptr;
   for (const auto& column : history.columns()) {
     if (column.name() == kTimeColumn) return {"Time, ms", scaled(column, 1e3)};
     if (is_abscissa(column.name())) phase = &column;
@@ -113,7 +113,7 @@ ColumnTitle column_title(const std::string& column) {
   return {unit.empty() ? words : words + ", " + unit, factor};
 }
 
-std::string history_plot(const v1::Simulation& simulation, const v1::HistoryChunk& history) {
+std::string history_plot(const v1::Simulation& simulation, const v1::History& history) {
   const auto groups = grouped(history);
   const auto [x_title, x] = abscissa(history);
   const double height = kTop + kPanelPitch * static_cast<double>(groups.size()) + 20;

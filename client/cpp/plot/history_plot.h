@@ -8,7 +8,7 @@ namespace tribodyn::client {
 
 /// Small multiples of a history's columns against time, the three flank slots of one quantity in
 /// one panel.
-std::string history_plot(const v1::Simulation& simulation, const v1::HistoryChunk& history);
+std::string history_plot(const v1::Simulation& simulation, const v1::History& history);
 
 /// "mesh_force_newtons" as a title and a factor into a readable unit: {"Mesh force, N", 1}.
 struct ColumnTitle {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr char kFlankMark[] = "_flank_";
 
-std::vector<std::string> summary_row(const v1::HistoryChunk::Column& column) {
+std::vector<std::string> summary_row(const v1::History::Column& column) {
   std::vector<double> values(column.values().begin(), column.values().end());
   if (zero_means_no_contact(column.name())) std::erase(values, 0.0);
   if (values.empty()) return {column.name(), "0", "-", "-", "-"};
@@ -41,7 +41,7 @@ bool zero_means_no_contact(const std::string& column) {
   return quantity != column && !quantity.ends_with("_newtons");
 }
 
-std::string history_summary(const v1::HistoryChunk& history) {
+std::string history_summary(const v1::History& history) {
   Table table({{"Column", "", Table::Align::kLeft},
                {"samples", ""},
                {"minimum", ""},
@@ -51,7 +51,7 @@ std::string history_summary(const v1::HistoryChunk& history) {
   return table.text();
 }
 
-std::string history_csv(const v1::HistoryChunk& history) {
+std::string history_csv(const v1::History& history) {
   std::vector<std::string> cells;
   int rows = 0;
   for (const auto& column : history.columns()) {

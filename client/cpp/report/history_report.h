@@ -14,9 +14,9 @@ bool zero_means_no_contact(const std::string& column);
 std::string column_quantity(const std::string& column);
 
 /// Least, mean and largest value of each column; of flank slots while they carry load.
-std::string history_summary(const v1::HistoryChunk& history);
+std::string history_summary(const v1::History& history);
 
 /// One line a sample; headers are the columns' names, which carry their units.
-std::string history_csv(const v1::HistoryChunk& history);
+std::string history_csv(const v1::History& history);
 
 }  // namespace tribodyn::client

@@ -1,4 +1,5 @@
 // The client library against a real tribodynd on a free port of loopback.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tribodyn/client/connection.h>
 #include <unistd.h>
@@ -6,6 +7,8 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "client/cpp/commands/help_topics.h"
 #include "client/cpp/resources/kind.h"
@@ -184,7 +187,7 @@ TEST_F(Library, ASimulationIsFollowedToItsEnd) {
   EXPECT_EQ(ended.state(), v1::Simulation::SUCCEEDED);
   EXPECT_GT(events, 0);
   EXPECT_EQ(ended.lubricant_revision(), "lubricants/1@1");
-  EXPECT_EQ(connection.list_simulations(1).resources.size(), 1U);
+  EXPECT_EQ(connection.list_simulations({.limit = 1}).resources.size(), 1U);
 }
 
 // The client tells units from names; the server has them in its table of constraints.
@@ -238,6 +241,67 @@ TEST(LibraryAlone, AServerThatIsNotThere) {
   } catch (const ServiceError& error) {
     EXPECT_EQ(error.kind(), ServiceError::Kind::kCannotConnect);
   }
+}
+
+v1::Simulation quick_point(double speed_kilometers_per_hour) {
+  v1::Simulation out;
+  out.set_lubricant("lubricants/1");
+  auto* point = out.mutable_operating_point();
+  point->mutable_cruise()->set_speed_kilometers_per_hour(speed_kilometers_per_hour);
+  return out;
+}
+
+/// Does not end on its own.
+v1::Simulation endless_curve() {
+  v1::Simulation out;
+  out.set_lubricant("lubricants/1");
+  auto* curve = out.mutable_inefficiency_curve();
+  curve->set_first_speed_kilometers_per_hour(60);
+  curve->set_last_speed_kilometers_per_hour(80);
+  curve->set_speed_step_kilometers_per_hour(0.0201);
+  auto* solver = out.mutable_solver_options();
+  solver->set_method(v1::MARCH);
+  solver->set_relative_tolerance(1e-11);
+  solver->set_settling_tolerance(1e-12);
+  solver->set_maximum_mesh_cycles(10'000);
+  return out;
+}
+
+TEST(TurnedAway, WhoComesAgainWhenToldIsServedInTheEnd) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() /
+                                       ("tribodyn_turned_away_test." + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  server::ServerProcess process(
+      {"--listen", "127.0.0.1:0", "--database", folder / "db.sqlite", "--port-file",
+       folder / "port", "--waiting-simulations", "4", "--threads", "1"},
+      folder / "log");
+  const std::string address = server::wait_for_address(folder / "port", process);
+  ASSERT_FALSE(address.empty()) << process.log();
+  const auto until = [](const auto& holds) {
+    while (!holds()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  };
+  Connection connection(address, std::chrono::seconds(120));
+  const std::string endless = connection.create_simulation(endless_curve()).name();
+  until([&] { return connection.get_simulation(endless).state() == v1::Simulation::RUNNING; });
+  // Three of them find a place, as one client may take three quarters.
+  constexpr int kClients = 6;
+  std::vector<v1::Simulation::State> states(kClients);
+  std::vector<std::thread> clients;
+  for (int i = 0; i < kClients; ++i) {
+    clients.emplace_back([&, i] {
+      try {
+        const auto name = connection.create_simulation(quick_point(40 + i)).name();
+        states[i] = connection.wait_for_end(name).state();
+      } catch (const ServiceError& error) {
+        ADD_FAILURE() << error.what();
+      }
+    });
+  }
+  until([&] { return process.log().find("simulation_not_added") != std::string::npos; });
+  connection.cancel_simulation(endless);
+  for (std::thread& client : clients) client.join();
+  EXPECT_THAT(states, testing::Each(v1::Simulation::SUCCEEDED));
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

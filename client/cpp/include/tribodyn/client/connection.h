@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <stop_token>
@@ -28,8 +29,8 @@ std::string server_address(const std::string& address = "");
 /// Which resources to list, and in which order.
 struct ListOptions {
   /// AIP-160: restrictions joined by AND, e.g. `labels.project = "axle" AND condition = SHEARED`.
-  std::string filter;
-  std::string order_by;       ///< "name", or a field of the filter; " desc" turns it round
+  std::string filter = {};
+  std::string order_by = {};  ///< "name", or a field of the filter; " desc" turns it round
   bool show_deleted = false;  ///< also those that were deleted
   int limit = 0;              ///< at most so many; 0: all
   bool basic = false;         ///< gear sets without their tables
@@ -63,13 +64,27 @@ struct CreateOptions {
   std::string request_id = {};  ///< so that a repeated request makes no second one; empty: random
 };
 
+/// Which part of a history is read.
+struct HistoryOptions {
+  std::vector<std::string> columns = {};  ///< empty: all
+  std::int64_t start_row = 0;
+  std::int64_t row_count = 0;  ///< 0: to the end
+  int maximum_points = 0;      ///< 0: all rows; else an overview where there are more
+};
+
+/// A run of rows: values of each column of the schema, all as many.
+struct HistoryRows {
+  std::int64_t first_row = 0;  ///< counted from the first one asked for
+  std::vector<std::vector<double>> columns;
+};
+
 /// A server and its services. Safe for concurrent use. Nothing is sent before the first call; every
 /// call throws ServiceError, at last: where that is safe, a server that is lost or turns a request
 /// away is asked again within the time limit. `Resource` is v1::Lubricant, v1::GearSet, v1::Surface
 /// or v1::Vehicle.
 class Connection {
  public:
-  /// `timeout` bounds every call but wait_for_end() and read_history().
+  /// `timeout` bounds every call but wait_for_end() and the reading of histories.
   explicit Connection(std::string address,
                       std::chrono::duration<double> timeout = std::chrono::seconds(30));
   ~Connection();
@@ -123,8 +138,12 @@ class Connection {
                                    const CreateOptions& options = {});
   v1::Simulation get_simulation(const std::string& name);
   v1::Simulation cancel_simulation(const std::string& name);
-  /// Newest first; limit 0: all.
-  Listing<v1::Simulation> list_simulations(int limit = 0);
+  /// Without results; newest first unless ordered otherwise. Filters by state, lubricant,
+  /// create_time and labels.
+  Listing<v1::Simulation> list_simulations(const ListOptions& options = {});
+  /// Keeps it from expiring and from being evicted, or gives it up again.
+  v1::Simulation pin_simulation(const std::string& name);
+  v1::Simulation unpin_simulation(const std::string& name);
   /// Blocks until the simulation has ended and returns it with its result. `on_event` hears of each
   /// change of state, once and in order, and of progress, in the calling thread. A stream that
   /// breaks is taken up again behind what was heard, for a while. When `stop` is requested, the
@@ -132,8 +151,13 @@ class Connection {
   v1::Simulation wait_for_end(const std::string& name,
                               const std::function<void(const v1::SimulationEvent&)>& on_event = {},
                               const std::stop_token& stop = {});
-  /// All rows of all columns, joined into one chunk.
-  v1::HistoryChunk read_history(const std::string& name);
+  /// A history, or an overview of it, put together.
+  v1::History read_history(const std::string& name, const HistoryOptions& options = {});
+  /// Hands over rows as they come, each once and in order, in the calling thread. A stream that
+  /// breaks is taken up again at the first row that is missing, for a while.
+  void stream_history(const std::string& name, const HistoryOptions& options,
+                      const std::function<void(const v1::HistorySchema&)>& on_schema,
+                      const std::function<void(const HistoryRows&)>& on_rows);
 
   v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request);
 

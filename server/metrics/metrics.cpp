@@ -1,0 +1,109 @@
+#include "server/metrics/metrics.h"
+
+#include <prometheus/counter.h>
+#include <prometheus/gauge.h>
+#include <prometheus/histogram.h>
+#include <prometheus/registry.h>
+#include <prometheus/text_serializer.h>
+
+#include <map>
+#include <utility>
+
+namespace tribodyn::server {
+namespace {
+
+/// From 0.1 ms to 17 minutes, each three times the one before.
+prometheus::Histogram::BucketBoundaries boundaries() {
+  prometheus::Histogram::BucketBoundaries out;
+  for (double bound = 1e-4; bound < 2000; bound *= 3) out.push_back(bound);
+  return out;
+}
+
+const std::map<Phase, const char*>& phase_names() {
+  static const std::map<Phase, const char*> kNames = {{Phase::kQueue, "queue"},
+                                                      {Phase::kValidation, "validation"},
+                                                      {Phase::kOrbit, "orbit"},
+                                                      {Phase::kFriction, "friction"},
+                                                      {Phase::kStore, "store"}};
+  return kNames;
+}
+
+}  // namespace
+
+struct Metrics::Families {
+  prometheus::Registry registry;
+  std::map<Phase, prometheus::Histogram*> phases;
+  std::map<Submission, prometheus::Counter*> submissions;
+  std::map<Ending, prometheus::Counter*> endings;
+  prometheus::Gauge* waiting = nullptr;
+  prometheus::Gauge* running = nullptr;
+  prometheus::Gauge* waiting_seconds = nullptr;
+};
+
+Metrics::Metrics() : families_(std::make_unique<Families>()) {
+  prometheus::Registry& registry = families_->registry;
+  auto& phases = prometheus::BuildHistogram()
+                     .Name("tribodyn_phase_seconds")
+                     .Help("What simulations spend their time on")
+                     .Register(registry);
+  for (const auto& [phase, name] : phase_names()) {
+    families_->phases[phase] = &phases.Add({{"phase", name}}, boundaries());
+  }
+  auto& submissions = prometheus::BuildCounter()
+                          .Name("tribodyn_submissions_total")
+                          .Help("Requests to simulate, by what became of them")
+                          .Register(registry);
+  for (const auto& [submission, name] : {std::pair{Submission::kQueued, "queued"},
+                                         {Submission::kCacheHit, "cache_hit"},
+                                         {Submission::kRepeated, "repeated"},
+                                         {Submission::kTurnedAway, "turned_away"},
+                                         {Submission::kInvalid, "invalid"}}) {
+    families_->submissions[submission] = &submissions.Add({{"outcome", name}});
+  }
+  auto& endings = prometheus::BuildCounter()
+                      .Name("tribodyn_simulations_ended_total")
+                      .Help("Simulations that were queued, by how they ended")
+                      .Register(registry);
+  for (const auto& [ending, name] : {std::pair{Ending::kSucceeded, "succeeded"},
+                                     {Ending::kFailed, "failed"},
+                                     {Ending::kCancelled, "cancelled"},
+                                     {Ending::kServedByCache, "cache_hit"}}) {
+    families_->endings[ending] = &endings.Add({{"outcome", name}});
+  }
+  const auto gauge = [&registry](const char* name, const char* help) {
+    return &prometheus::BuildGauge().Name(name).Help(help).Register(registry).Add({});
+  };
+  families_->waiting = gauge("tribodyn_simulations_waiting", "Simulations that wait");
+  families_->running = gauge("tribodyn_simulations_running", "Simulations that run");
+  families_->waiting_seconds = gauge("tribodyn_waiting_processor_seconds",
+                                     "Estimate of what waits, in seconds of one processor");
+}
+
+Metrics::~Metrics() = default;
+
+void Metrics::observe(Phase phase, double seconds) {
+  families_->phases.at(phase)->Observe(seconds);
+}
+
+void Metrics::count(Submission submission) { families_->submissions.at(submission)->Increment(); }
+
+void Metrics::count(Ending ending) { families_->endings.at(ending)->Increment(); }
+
+void Metrics::set_build(const std::string& version, const std::string& model_version,
+                        const std::string& platform) {
+  prometheus::BuildGauge()
+      .Name("tribodyn_build_info")
+      .Help("Always 1; what runs is in the labels")
+      .Register(families_->registry)
+      .Add({{"version", version}, {"model_version", model_version}, {"platform", platform}})
+      .Set(1);
+}
+
+std::string Metrics::text(const Occupancy& occupancy) const {
+  families_->waiting->Set(static_cast<double>(occupancy.waiting));
+  families_->running->Set(static_cast<double>(occupancy.running));
+  families_->waiting_seconds->Set(occupancy.waiting_seconds);
+  return prometheus::TextSerializer().Serialize(families_->registry.Collect());
+}
+
+}  // namespace tribodyn::server

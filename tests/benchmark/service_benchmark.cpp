@@ -1,0 +1,694 @@
+// The server under load: what it adds to an empty gRPC method, a bare commit, an empty stream and
+// the core's own time. Figures that are compared are of one run on one machine. usage:
+// service_benchmark [RESULTS.json [PART...]]      default: build/benchmark/results.json, all parts:
+// requests, lists, histories, watchers, overload, refusals, overhead, estimates
+#include <SQLiteCpp/Database.h>
+#include <fmt/format.h>
+#include <grpcpp/generic/generic_stub.h>
+#include <grpcpp/grpcpp.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "server/convert/cost_estimate.h"
+#include "server/convert/simulation_inputs.h"
+#include "server/jobs/compute.h"
+#include "server/jobs/platform.h"
+#include "tests/benchmark/load_client.h"
+#include "tests/benchmark/measurements.h"
+#include "tests/service/raw_client.h"
+#include "tests/service/server_process.h"
+#include "tests/service/support.h"
+#include "tribodyn/v1/simulations.grpc.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Stub = v1::Simulations::Stub;
+using std::chrono::seconds;
+
+constexpr int kRuns = 5;
+constexpr double kMegabyte = 1e6;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// A tribodynd over a database in a folder of its own.
+class Server {
+ public:
+  explicit Server(std::vector<std::string> flags = {}) : flags_(std::move(flags)) { start(); }
+
+  void start() {
+    std::filesystem::remove(folder_.file("port"));
+    std::vector<std::string> all = {"--listen",    "127.0.0.1:0",        "--database",  database(),
+                                    "--port-file", folder_.file("port"), "--log-level", "warn"};
+    all.insert(all.end(), flags_.begin(), flags_.end());
+    process_ = std::make_unique<ServerProcess>(all, folder_.file("log"));
+    address_ = wait_for_address(folder_.file("port"), *process_);
+    if (address_.empty()) throw std::runtime_error(process_->log());
+    stub_ = v1::Simulations::NewStub(connect(address_));
+  }
+  void stop() {
+    process_->signal(SIGTERM);
+    process_->wait(seconds(40));
+  }
+
+  std::string database() const { return folder_.file("tribodyn.db"); }
+  std::string file(const std::string& name) const { return folder_.file(name); }
+  const std::string& address() const { return address_; }
+  int id() const { return server_of(database()); }
+  Stub& stub() const { return *stub_; }
+  std::shared_ptr<grpc::Channel> another_channel() const {
+    grpc::ChannelArguments own;  // a connection of its own
+    own.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
+    own.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
+    return grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), own);
+  }
+  std::unique_ptr<Stub> another_stub() const { return v1::Simulations::NewStub(another_channel()); }
+
+ private:
+  TemporaryFolder folder_;
+  std::vector<std::string> flags_;
+  std::unique_ptr<ServerProcess> process_;
+  std::string address_;
+  std::unique_ptr<Stub> stub_;
+};
+
+/// Another process that answers with nothing.
+class EmptyServer {
+ public:
+  EmptyServer()
+      : pipe_(popen((std::string(EMPTY_SERVER_PATH) + " " + folder_.file("port")).c_str(), "w")) {
+    if (!eventually([&] { return std::filesystem::exists(folder_.file("port")); })) {
+      throw std::runtime_error("the empty server does not start");
+    }
+    std::string address;
+    std::ifstream(folder_.file("port")) >> address;
+    stub_ = v1::Simulations::NewStub(connect(address));
+  }
+  ~EmptyServer() { pclose(pipe_); }
+  EmptyServer(const EmptyServer&) = delete;
+  EmptyServer& operator=(const EmptyServer&) = delete;
+  Stub& stub() const { return *stub_; }
+
+ private:
+  TemporaryFolder folder_;
+  FILE* pipe_;
+  std::unique_ptr<Stub> stub_;
+};
+
+/// What a call needs until it has ended.
+template <class Request, class Response>
+struct Call {
+  grpc::ClientContext context;
+  Request request;
+  Response response;
+};
+
+StartRequest gets(Stub& stub, const std::string& name) {
+  return [&stub, name](int, const std::function<void(bool)>& done) {
+    const auto call = std::make_shared<Call<v1::GetSimulationRequest, v1::Simulation>>();
+    call->request.set_name(name);
+    stub.async()->GetSimulation(&call->context, &call->request, &call->response,
+                                [call, done](const grpc::Status& status) { done(status.ok()); });
+  };
+}
+
+v1::Simulation point_at(double speed) {
+  v1::Simulation out = point_simulation();
+  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(speed);
+  return out;
+}
+
+/// Points that no earlier request has asked for.
+StartRequest creates(Stub& stub, double first_speed) {
+  return [&stub, first_speed](int number, const std::function<void(bool)>& done) {
+    const auto call = std::make_shared<Call<v1::CreateSimulationRequest, v1::Simulation>>();
+    *call->request.mutable_simulation() = point_at(first_speed + 1e-4 * number);
+    stub.async()->CreateSimulation(&call->context, &call->request, &call->response,
+                                   [call, done](const grpc::Status& status) { done(status.ok()); });
+  };
+}
+
+v1::Simulation create(Stub& stub, const v1::Simulation& simulation, bool force = false) {
+  grpc::ClientContext context;
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = simulation;
+  request.set_force(force);
+  v1::Simulation out;
+  const grpc::Status status = stub.CreateSimulation(&context, request, &out);
+  if (!status.ok()) throw std::runtime_error(status.error_message());
+  return out;
+}
+
+/// Follows it to its end.
+v1::Simulation::State wait_for(Stub& stub, const std::string& name) {
+  grpc::ClientContext context;
+  v1::WatchSimulationRequest request;
+  request.set_name(name);
+  const auto reader = stub.WatchSimulation(&context, request);
+  v1::SimulationEvent event;
+  while (reader->Read(&event)) {
+  }
+  reader->Finish();
+  return event.state();
+}
+
+/// Bare commits as the store makes them, at the same rate.
+Latencies commits(const std::string& file, double rate, seconds time) {
+  SQLite::Database db(file, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  db.execAndGet("PRAGMA journal_mode = WAL");
+  db.exec("PRAGMA synchronous = FULL");
+  db.exec("CREATE TABLE IF NOT EXISTS rows (id INTEGER PRIMARY KEY, body BLOB)");
+  return open_loop(rate, time, [&](int, const std::function<void(bool)>& done) {
+    db.exec("INSERT INTO rows (body) VALUES (randomblob(500))");
+    done(true);
+  });
+}
+
+void measure_requests(std::vector<Measurement>& out) {
+  const Server server;
+  const EmptyServer empty;
+  const std::string name = create(server.stub(), point_simulation()).name();
+  wait_for(server.stub(), name);
+  std::vector<double> get_ratios, submit_ratios, get_times, submit_times, commit_times;
+  for (int run = 0; run < kRuns; ++run) {
+    const double nothing = open_loop(1000, seconds(2), gets(empty.stub(), name)).percentile(0.99);
+    const double get = open_loop(1000, seconds(2), gets(server.stub(), name)).percentile(0.99);
+    const double commit = commits(server.file("bare.db"), 200, seconds(2)).percentile(0.99);
+    const double submit =
+        open_loop(200, seconds(2), creates(server.stub(), 30 + run)).percentile(0.99);
+    get_ratios.push_back(get / nothing);
+    submit_ratios.push_back((submit - 2e-3) / commit);
+    get_times.push_back(get);
+    submit_times.push_back(submit);
+    commit_times.push_back(commit);
+  }
+  out.push_back({"get_at_1000_per_second_p99_over_empty_method", median(get_ratios), "-", 5});
+  out.push_back({"get_at_1000_per_second_p99", 1e3 * median(get_times), "ms", {}});
+  out.push_back(
+      {"submit_at_200_per_second_p99_less_2_ms_over_commit", median(submit_ratios), "-", 5});
+  out.push_back({"submit_at_200_per_second_p99", 1e3 * median(submit_times), "ms", {}});
+  out.push_back({"bare_commit_at_200_per_second_p99", 1e3 * median(commit_times), "ms", {}});
+}
+
+/// Median time of a page of 50 among so many stored jobs [s].
+double page_seconds(int jobs) {
+  Server server;
+  wait_for(server.stub(), create(server.stub(), point_simulation()).name());
+  server.stop();
+  {
+    SQLite::Database db(server.database(), SQLite::OPEN_READWRITE);
+    db.exec(fmt::format(
+        "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < {}) "
+        "INSERT INTO simulations (state, sequence, create_time, start_time, end_time, request, "
+        "request_hash, input_hash, result, ledger, lubricant, gear_set, surface, vehicle) "
+        "SELECT state, 0, create_time + 1000 * i, start_time, end_time, request, request_hash, "
+        "input_hash, result, ledger, lubricant, gear_set, surface, vehicle FROM n, simulations",
+        jobs - 1));
+  }
+  server.start();
+  std::vector<double> times;
+  v1::ListSimulationsRequest request;
+  for (int i = 0; i < 200; ++i) {
+    grpc::ClientContext context;
+    v1::ListSimulationsResponse page;
+    const auto begin = Clock::now();
+    const grpc::Status status = server.stub().ListSimulations(&context, request, &page);
+    times.push_back(seconds_since(begin));
+    if (!status.ok() || page.simulations_size() != 50) throw std::runtime_error("no page");
+    request.set_page_token(page.next_page_token());
+  }
+  return median(times);
+}
+
+void measure_lists(std::vector<Measurement>& out) {
+  const double many = page_seconds(100'000);
+  const double few = page_seconds(100);
+  out.push_back({"page_of_100000_jobs_over_page_of_100", many / few, "-", 3});
+  out.push_back({"page_of_50_among_100000_jobs", 1e3 * many, "ms", {}});
+}
+
+/// Reads a stream to its end; seconds until the first message and in all.
+std::pair<double, double> read_stream(Stub& stub, const v1::ReadHistoryRequest& request) {
+  grpc::ClientContext context;
+  const auto begin = Clock::now();
+  const auto reader = stub.ReadHistory(&context, request);
+  v1::ReadHistoryResponse part;
+  double first = 0;
+  while (reader->Read(&part)) {
+    if (first == 0) first = seconds_since(begin);
+  }
+  if (!reader->Finish().ok()) throw std::runtime_error("a history broke off");
+  return {first, seconds_since(begin)};
+}
+
+void measure_histories(std::vector<Measurement>& out) {
+  const Server server;
+  const EmptyServer empty;
+  v1::Simulation simulation = point_simulation();
+  v1::HistoryRequest* history = simulation.mutable_operating_point()->mutable_history();
+  for (const char* column :
+       {"time_seconds", "mesh_force_newtons", "dynamic_transmission_error_metres",
+        "mesh_loss_power_watts", "pinion_speed_radians_per_second", "gear_speed_radians_per_second",
+        "pinion_shaft_torque_newton_metres", "inefficiency_percent"}) {
+    history->add_columns(column);
+  }
+  history->set_mesh_cycles(20);
+  history->set_samples_per_mesh_cycle(100'000);
+  const std::string name = create(server.stub(), simulation).name();
+  if (wait_for(server.stub(), name) != v1::Simulation::SUCCEEDED) {
+    throw std::runtime_error("no history");
+  }
+  v1::ReadHistoryRequest all;
+  all.set_name(name);
+  v1::ReadHistoryRequest nothing;
+  nothing.set_row_count(8 * 2'000'000 / 32'768);  // chunks
+  v1::ReadHistoryRequest overview = all;
+  overview.set_max_points(4000);
+  std::vector<double> firsts, ratios, rates, overviews;
+  for (int run = 0; run < kRuns; ++run) {
+    const auto [empty_first, empty_time] = read_stream(empty.stub(), nothing);
+    const auto [first, time] = read_stream(server.stub(), all);
+    firsts.push_back(first);
+    ratios.push_back(empty_time / time);
+    rates.push_back(128 / time);
+    overviews.push_back(read_stream(server.stub(), overview).second);
+  }
+  out.push_back({"history_first_message", 1e3 * median(firsts), "ms", 10});
+  out.push_back({"history_rate_over_empty_stream", median(ratios), "-", 1.0 / 3, false});
+  out.push_back({"history_rate", median(rates), "MB/s", {}});
+  out.push_back({"history_overview_of_4000_points", 1e3 * median(overviews), "ms", 20});
+  all.set_row_count(250'000);
+  const double growth = memory_growth(server.id(), [&] {
+    std::vector<std::thread> readers;
+    for (int i = 0; i < 64; ++i) {
+      readers.emplace_back([&] { read_stream(*server.another_stub(), all); });
+    }
+    for (std::thread& reader : readers) reader.join();
+  });
+  out.push_back({"memory_growth_with_64_readers", growth / kMegabyte, "MB", 16});
+}
+
+/// A watch that reads, or does not, until it is told.
+class Watcher final : public grpc::ClientReadReactor<v1::SimulationEvent> {
+ public:
+  Watcher(Stub& stub, const std::string& name, bool reads) {
+    request_.set_name(name);
+    stub.async()->WatchSimulation(&context_, &request_, this);
+    if (reads) StartRead(&event_);
+    AddHold();  // until finish()
+    StartCall();
+  }
+  void OnReadDone(bool ok) override {
+    if (!ok) return;
+    ++events;
+    if (event_.state() == v1::Simulation::CANCELLED) {
+      heard = Clock::now();
+      has_heard = true;
+    }
+    StartRead(&event_);
+  }
+  void OnDone(const grpc::Status&) override { is_done = true; }
+  void finish() {
+    context_.TryCancel();
+    RemoveHold();
+    eventually([&] { return is_done.load(); });
+  }
+
+  std::atomic<int> events = 0;
+  std::atomic<bool> has_heard = false;
+  std::atomic<bool> is_done = false;
+  Clock::time_point heard;
+
+ private:
+  grpc::ClientContext context_;
+  v1::WatchSimulationRequest request_;
+  v1::SimulationEvent event_;
+};
+
+/// Simulations that do not end on their own.
+v1::Simulation endless() {
+  v1::Simulation out = curve_simulation();
+  auto* curve = out.mutable_inefficiency_curve();
+  curve->set_first_speed_kilometers_per_hour(60);
+  curve->set_last_speed_kilometers_per_hour(80);
+  curve->set_speed_step_kilometers_per_hour(0.0201);
+  out.mutable_solver_options()->set_method(v1::MARCH);
+  out.mutable_solver_options()->set_relative_tolerance(1e-11);
+  out.mutable_solver_options()->set_settling_tolerance(1e-12);
+  out.mutable_solver_options()->set_maximum_mesh_cycles(10'000);
+  return out;
+}
+
+void measure_watchers(std::vector<Measurement>& out) {
+  constexpr int kWatchers = 1000;
+  constexpr int kStalled = 50;
+  const Server server({"--threads", "1"});
+  const std::string name = create(server.stub(), endless()).name();
+  std::vector<std::unique_ptr<Stub>> stubs;
+  for (int i = 0; i < 20; ++i) stubs.push_back(server.another_stub());
+  std::vector<std::unique_ptr<Watcher>> watchers;
+  double latest = 0;
+  const double growth = memory_growth(server.id(), [&] {
+    for (int i = 0; i < kWatchers; ++i) {
+      watchers.push_back(std::make_unique<Watcher>(*stubs[i % 20], name, i >= kStalled));
+    }
+    const auto all = [&](auto holds) {
+      return eventually([&] {
+        return std::all_of(watchers.begin() + kStalled, watchers.end(),
+                           [&](const auto& each) { return holds(*each); });
+      });
+    };
+    all([](const Watcher& each) { return each.events > 1; });
+    std::this_thread::sleep_for(seconds(3));
+    grpc::ClientContext context;
+    v1::CancelSimulationRequest cancel;
+    cancel.set_name(name);
+    v1::Simulation ended;
+    const auto begin = Clock::now();
+    server.stub().CancelSimulation(&context, cancel, &ended);
+    all([](const Watcher& each) { return each.has_heard.load(); });
+    for (int i = kStalled; i < kWatchers; ++i) {
+      latest = std::max(latest, std::chrono::duration<double>(watchers[i]->heard - begin).count());
+    }
+  });
+  for (const auto& each : watchers) each->finish();
+  out.push_back({"memory_growth_with_1000_watchers", growth / kMegabyte, "MB", 64});
+  out.push_back({"latest_of_950_watchers_hears_an_event", 1e3 * latest, "ms", 100});
+}
+
+/// Asks for the server's health all the time, over a connection of its own.
+class HealthProbe {
+ public:
+  explicit HealthProbe(const Server& server)
+      : client_(server.another_channel()), thread_([this] { ask(); }) {}
+  /// The longest that an answer took [s].
+  double stop() {
+    stop_ = true;
+    thread_.join();
+    return slowest_;
+  }
+
+ private:
+  void ask() {
+    while (!stop_) {
+      const auto begin = Clock::now();
+      client_.call("/grpc.health.v1.Health/Check", "");
+      slowest_ = std::max(slowest_, seconds_since(begin));
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
+  RawClient client_;
+  std::atomic<bool> stop_ = false;
+  double slowest_ = 0;
+  std::thread thread_;
+};
+
+/// How many simulations a filter finds, at most `limit`.
+int count(Stub& stub, const std::string& filter, int limit) {
+  grpc::ClientContext context;
+  v1::ListSimulationsRequest request;
+  request.set_filter(filter);
+  request.set_page_size(limit);
+  v1::ListSimulationsResponse page;
+  stub.ListSimulations(&context, request, &page);
+  return page.simulations_size();
+}
+
+bool all_end(Stub& stub) {
+  return eventually(
+      [&] { return count(stub, "state = QUEUED", 1) + count(stub, "state = RUNNING", 1) == 0; });
+}
+
+/// When a request that was turned away is to come again; nothing for any other answer.
+std::optional<std::chrono::seconds> retry_time(const grpc::Status& status) {
+  google::rpc::Status details;
+  if (status.error_code() != grpc::StatusCode::RESOURCE_EXHAUSTED ||
+      !details.ParseFromString(status.error_details())) {
+    return std::nullopt;
+  }
+  for (const auto& any : details.details()) {
+    google::rpc::RetryInfo info;
+    if (any.UnpackTo(&info)) return seconds(info.retry_delay().seconds());
+  }
+  return std::nullopt;
+}
+
+/// Submits points all at once, and those that are turned away again when they are told to come.
+class Bulk {
+ public:
+  Bulk(Stub& stub, int count) : stub_(stub), count_(count) {
+    for (int i = 0; i < count; ++i) due_.emplace(Clock::now(), i);
+  }
+
+  /// Returns when all are accepted, or refused for good.
+  void run() {
+    std::unique_lock lock(mutex_);
+    while (accepted_ + unexplained_ < count_) {
+      if (due_.empty()) {
+        changed_.wait(lock);
+        continue;
+      }
+      const auto [time, number] = *due_.begin();
+      if (time > Clock::now()) {
+        changed_.wait_until(lock, time);
+        continue;
+      }
+      due_.erase(due_.begin());
+      lock.unlock();
+      submit(number);
+      lock.lock();
+    }
+  }
+
+  int accepted() const {
+    const std::lock_guard lock(mutex_);
+    return accepted_;
+  }
+  int turned_away() const { return turned_away_; }  ///< times; after run()
+  int unexplained() const { return unexplained_; }  ///< after run()
+
+ private:
+  void submit(int number) {
+    const auto call = std::make_shared<Call<v1::CreateSimulationRequest, v1::Simulation>>();
+    *call->request.mutable_simulation() = point_at(20 + 1e-2 * number);
+    stub_.async()->CreateSimulation(
+        &call->context, &call->request, &call->response,
+        [this, call, number](const grpc::Status& status) { note(number, status); });
+  }
+
+  void note(int number, const grpc::Status& status) {
+    const auto retry = retry_time(status);
+    const std::lock_guard lock(mutex_);
+    if (status.ok()) {
+      ++accepted_;
+    } else if (retry) {
+      ++turned_away_;
+      due_.emplace(Clock::now() + *retry, number);
+    } else {
+      ++unexplained_;
+    }
+    changed_.notify_one();
+  }
+
+  Stub& stub_;
+  const int count_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::multimap<Clock::time_point, int> due_;  // guarded by mutex_
+  int accepted_ = 0;                           // guarded by mutex_
+  int turned_away_ = 0;                        // guarded by mutex_
+  int unexplained_ = 0;                        // guarded by mutex_
+};
+
+constexpr int kSubmissions = 10'000;
+
+/// All find room.
+void measure_overload(std::vector<Measurement>& out) {
+  const Server server;
+  const auto many = server.another_stub();
+  const auto single = server.another_stub();
+  HealthProbe health(server);
+  const double processor_before = process_figures(server.id()).processor_seconds;
+  const auto begin = Clock::now();
+  Bulk bulk(*many, kSubmissions);
+  double curve_seconds = 0;
+  int waiting_at_the_end_of_the_curve = 0;
+  std::thread curve([&] {
+    eventually([&] { return bulk.accepted() > kSubmissions / 2; });
+    const auto from = Clock::now();
+    wait_for(*single, create(*single, curve_simulation()).name());
+    curve_seconds = seconds_since(from);
+    waiting_at_the_end_of_the_curve = count(*single, "state = QUEUED", 1000);
+  });
+  bulk.run();
+  curve.join();
+  const bool is_done = all_end(server.stub());
+  const double all_seconds = seconds_since(begin);
+  const double processor = process_figures(server.id()).processor_seconds - processor_before;
+  const int lost = bulk.unexplained() + (is_done ? 0 : 1) + count(*single, "state = FAILED", 1000);
+  out.push_back(
+      {"overload_submissions_neither_accepted_nor_told_when", static_cast<double>(lost), "-", 0});
+  out.push_back({"overload_slowest_health_check", 1e3 * health.stop(), "ms", 50});
+  out.push_back({"overload_bulk_waiting_when_the_curve_ends",
+                 static_cast<double>(waiting_at_the_end_of_the_curve), "jobs", 1, false});
+  out.push_back({"overload_curve", curve_seconds, "s", {}});
+  out.push_back({"overload_all", all_seconds, "s", {}});
+  out.push_back({"processor_time_of_a_point_of_its_own", 1e3 * processor / kSubmissions, "ms", {}});
+}
+
+/// Most are turned away and come again when they are told to.
+void measure_refusals(std::vector<Measurement>& out) {
+  const Server server({"--waiting-simulations", "1000"});
+  const auto many = server.another_stub();
+  HealthProbe health(server);
+  const auto begin = Clock::now();
+  Bulk bulk(*many, kSubmissions);
+  bulk.run();
+  const bool is_done = all_end(server.stub());
+  const int lost =
+      bulk.unexplained() + (is_done ? 0 : 1) + count(server.stub(), "state = FAILED", 1000);
+  out.push_back({"refusals_that_said_when_to_come", static_cast<double>(bulk.turned_away()),
+                 "refusals", 1, false});
+  out.push_back({"refused_submissions_not_finished_in_the_end", static_cast<double>(lost), "-", 0});
+  out.push_back({"refusals_slowest_health_check", 1e3 * health.stop(), "ms", 50});
+  out.push_back({"refusals_all", seconds_since(begin), "s", {}});
+}
+
+/// Ten curves of a thousand points.
+v1::Simulation long_curve(int number) {
+  v1::Simulation out = curve_simulation();
+  auto* curve = out.mutable_inefficiency_curve();
+  curve->set_first_speed_kilometers_per_hour(20 + 0.01 * number);
+  curve->set_last_speed_kilometers_per_hour(119.9 + 0.01 * number);
+  curve->set_speed_step_kilometers_per_hour(0.1);
+  return out;
+}
+
+void measure_overhead(std::vector<Measurement>& out) {
+  const Server server({"--threads", "1"});
+  std::vector<double> ratios, times;
+  for (int run = 0; run < kRuns; ++run) {
+    double core = 0;
+    for (int i = 0; i < 10; ++i) {
+      Violations violations;
+      const auto inputs = read_simulation(long_curve(i), seed_lookup(), "simulation", violations);
+      const Scene physical = scene(*inputs);
+      const CurveStudy study = std::get<CurveStudy>(server::study(*inputs));
+      const auto begin = Clock::now();
+      sweep_speed(physical, study.vehicle_speeds, study.ascent_angle, study.options,
+                  [](const SweepPoint&) {});
+      core += seconds_since(begin);
+    }
+    const auto begin = Clock::now();
+    std::vector<std::string> names;
+    for (int i = 0; i < 10; ++i) {
+      v1::Simulation simulation = long_curve(10 * run + i);
+      names.push_back(create(server.stub(), simulation).name());
+    }
+    for (const std::string& name : names) {
+      wait_for(server.stub(), name);
+      grpc::ClientContext context;
+      v1::GetSimulationRequest get;
+      get.set_name(name);
+      get.set_view(v1::SIMULATION_VIEW_FULL);
+      v1::Simulation done;
+      server.stub().GetSimulation(&context, get, &done);
+      if (done.result().points_size() != 1000) throw std::runtime_error("no result");
+    }
+    times.push_back(seconds_since(begin));
+    ratios.push_back(times.back() / core);
+  }
+  out.push_back({"service_over_core_for_10000_points", median(ratios), "-", 1.15});
+  out.push_back({"service_for_10000_points", median(times), "s", {}});
+}
+
+struct EstimatedCase {
+  const char* name;
+  v1::Simulation simulation;
+};
+
+std::vector<EstimatedCase> estimated_cases() {
+  std::vector<EstimatedCase> out = {
+      {"smooth_point", point_at(100)},   {"impacting_point", point_at(40)},
+      {"sharp_point", point_at(65)},     {"quasi_static_point", point_at(65)},
+      {"marched_point", point_at(65)},   {"sharply_marched_point", point_at(65)},
+      {"history", point_at(65)},         {"long_history", point_at(65)},
+      {"marched_history", point_at(65)}, {"curve", curve_simulation()},
+      {"long_curve", long_curve(0)}};
+  out[2].simulation.mutable_solver_options()->set_tolerance(1e-6);
+  out[3].simulation.mutable_operating_point()->set_model(v1::QUASI_STATIC);
+  out[4].simulation.mutable_solver_options()->set_method(v1::MARCH);
+  out[5].simulation.mutable_solver_options()->set_method(v1::MARCH);
+  out[5].simulation.mutable_solver_options()->set_relative_tolerance(1e-9);
+  out[8].simulation.mutable_solver_options()->set_method(v1::MARCH);
+  const std::array<std::pair<int, int>, 3> lengths = {{{10, 10'000}, {1000, 1000}, {100, 1000}}};
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    auto* history = out[6 + i].simulation.mutable_operating_point()->mutable_history();
+    history->add_columns("mesh_force_newtons");
+    history->set_mesh_cycles(lengths[i].first);
+    history->set_samples_per_mesh_cycle(lengths[i].second);
+  }
+  return out;
+}
+
+/// Of the core's time for a simulation, over its estimate.
+void measure_estimates(std::vector<Measurement>& out) {
+  double worst = 1;
+  for (const auto& [name, simulation] : estimated_cases()) {
+    Violations violations;
+    const auto inputs = read_simulation(simulation, seed_lookup(), "simulation", violations);
+    if (!inputs) throw std::runtime_error(violations.front().description);
+    std::vector<double> times;
+    for (int run = 0; run < kRuns; ++run) {
+      const auto begin = Clock::now();
+      compute(*inputs, result_key(*inputs), {}, [](double, const StageText&) { return true; });
+      times.push_back(seconds_since(begin));
+    }
+    const double ratio = median(times) / estimate_cost(inputs->effective).processor_seconds();
+    worst = std::max({worst, ratio, 1 / ratio});
+    out.push_back({fmt::format("time_over_estimate_of_{}", name), ratio, "-", {}});
+  }
+  out.push_back({"worst_factor_of_an_estimate", worst, "-", 3});
+}
+
+}  // namespace
+}  // namespace tribodyn::server
+
+int main(int argc, char** argv) {
+  using namespace tribodyn::server;
+  using Measure = void (*)(std::vector<tribodyn::Measurement>&);
+  const std::vector<std::pair<std::string, Measure>> parts = {
+      {"requests", measure_requests},   {"lists", measure_lists},
+      {"histories", measure_histories}, {"watchers", measure_watchers},
+      {"overload", measure_overload},   {"refusals", measure_refusals},
+      {"overhead", measure_overhead},   {"estimates", measure_estimates}};
+  const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
+  const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
+  for (const auto& [name, measure] : parts) {
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) continue;
+    std::vector<tribodyn::Measurement> figures;
+    measure(figures);
+    tribodyn::print(figures);
+    std::fflush(stdout);
+    tribodyn::record(path, figures);
+  }
+  return 0;
+}

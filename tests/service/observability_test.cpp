@@ -1,0 +1,136 @@
+// What the server tells of itself: metrics, and a log that joins request, job and result and holds
+// no formulation.
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <string>
+
+#include "tests/service/grpc_fixture.h"
+#include "tribodyn/v1/lubricants.grpc.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// What comes back for a request, head and body.
+std::string http_get(int port, const std::string& path) {
+  const int connection = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in name{};
+  name.sin_family = AF_INET;
+  name.sin_port = htons(static_cast<std::uint16_t>(port));
+  name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  EXPECT_EQ(connect(connection, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
+  const std::string request = "GET " + path + " HTTP/1.1\r\nHost: x\r\n\r\n";
+  EXPECT_EQ(send(connection, request.data(), request.size(), 0),
+            static_cast<ssize_t>(request.size()));
+  std::string out;
+  char part[4096];
+  for (ssize_t count = 0; (count = recv(connection, part, sizeof(part), 0)) > 0;) {
+    out.append(part, static_cast<std::size_t>(count));
+  }
+  close(connection);
+  return out;
+}
+
+class ObservabilityTest : public GrpcTest {
+ protected:
+  void SetUp() override {
+    more_flags_ = {"--metrics-listen", "127.0.0.1:0"};
+    start();
+    const std::string log = process_->log();
+    const std::string before = "metrics at http://127.0.0.1:";
+    const auto found = log.find(before);
+    ASSERT_NE(found, std::string::npos) << log;
+    port_ = std::stoi(log.substr(found + before.size()));
+  }
+
+  v1::Simulation run(const v1::CreateSimulationRequest& request) {
+    grpc::ClientContext context;
+    context.AddMetadata("tribodyn-client", "bench 7=x");
+    v1::Simulation out;
+    const grpc::Status status = simulations_->CreateSimulation(&context, request, &out);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    EXPECT_TRUE(eventually([&] { return get(out.name()).state() == v1::Simulation::SUCCEEDED; }));
+    return get(out.name());
+  }
+
+  int port_ = 0;
+};
+
+TEST_F(ObservabilityTest, MetricsTellPhasesCountsCacheHitsAndTheBuild) {
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = point_simulation();
+  run(request);
+  EXPECT_TRUE(run(request).cache_hit());
+  const std::string text = http_get(port_, "/metrics");
+  EXPECT_THAT(text, HasSubstr("200 OK"));
+  for (const char* phase : {"queue", "validation", "orbit", "friction", "store"}) {
+    EXPECT_THAT(text, HasSubstr(std::string("tribodyn_phase_seconds_bucket{phase=\"") + phase));
+  }
+  EXPECT_THAT(text, HasSubstr("tribodyn_phase_seconds_count{phase=\"orbit\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("tribodyn_submissions_total{outcome=\"queued\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("tribodyn_submissions_total{outcome=\"cache_hit\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("tribodyn_simulations_ended_total{outcome=\"succeeded\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("tribodyn_simulations_waiting 0\n"));
+  EXPECT_THAT(text, HasSubstr("tribodyn_build_info{"));
+  EXPECT_THAT(http_get(port_, "/other"), HasSubstr("404"));
+}
+
+TEST_F(ObservabilityTest, OneIdJoinsRequestJobAndResultInTheLog) {
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = point_simulation();
+  request.set_request_id("req-4711");
+  const v1::Simulation done = run(request);
+  EXPECT_EQ(done.request_id(), "req-4711");
+  const std::string hash = done.result().input_hash();
+  EXPECT_THAT(process_->log(),
+              HasSubstr("event=simulation_queued simulation=" + done.name() +
+                        " request_id=req-4711 client=bench_7_x input_hash=" + hash));
+  EXPECT_TRUE(eventually([&] {
+    return process_->log().find("event=simulation_computed simulation=" + done.name() +
+                                " request_id=req-4711 input_hash=" + hash) != std::string::npos;
+  }));
+}
+
+TEST_F(ObservabilityTest, NoFormulationIsLogged) {
+  auto lubricants = v1::Lubricants::NewStub(channel_);
+  v1::CreateLubricantRequest fresh;
+  fresh.set_lubricant_id("hushed-blend");
+  v1::Lubricant& fluid = *fresh.mutable_lubricant();
+  fluid = seed<v1::Lubricant>("lubricants/1");
+  fluid.clear_name();
+  fluid.set_display_name("Whispered Ester");
+  fluid.set_description("clandestine polymer");
+  fluid.set_thermal_conductivity_watts_per_metre_kelvin(0.1539137);
+  v1::Label* label = fluid.add_labels();
+  label->set_key("recipe");
+  label->set_value("unspoken");
+  v1::Lubricant created;
+  grpc::ClientContext context;
+  const grpc::Status status = lubricants->CreateLubricant(&context, fresh, &created);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = point_simulation();
+  request.mutable_simulation()->set_lubricant("lubricants/hushed-blend");
+  request.mutable_simulation()->set_display_name("veiled title");
+  request.mutable_simulation()->set_sump_temperature_celsius(41.5937);
+  run(request);
+  v1::Simulation wrong = request.simulation();
+  wrong.set_sump_temperature_celsius(-3971.5);
+  v1::Simulation refused;
+  EXPECT_FALSE(GrpcTest::create(wrong, &refused).ok());
+  for (const char* word : {"hushed", "Whispered", "clandestine", "0.15391", "unspoken", "recipe",
+                           "veiled", "41.59", "3971"}) {
+    EXPECT_THAT(process_->log(), Not(HasSubstr(word)));
+  }
+}
+
+}  // namespace
+}  // namespace tribodyn::server
