@@ -14,7 +14,7 @@ struct Work {
 
 constexpr double kPreparationSeconds = 0.2e-3;  // of a scene, whatever is studied
 constexpr Work kQuasiStaticPoint{270, 0.3e-6};
-constexpr Work kShotPoint{400, 0.25e-6};  // at the tolerance
+constexpr Work kShotPoint{430, 0.25e-6};  // at the tolerance
 constexpr double kShotTolerance = 1e-3;
 constexpr double kShotOrder = 0.35;  // contact solutions grow so with a sharper one
 constexpr Work kMarchedCycle{2300, 1e-6};

@@ -108,12 +108,12 @@ TEST_F(DaemonTest, ATerminationEndsStreamsAndKeepsWorkForTheNextStart) {
   cancel(running.name());
 }
 
-/// A curve of half a second: of three points or, as a sanitizer slows the core, of one.
+/// A curve of half a second: of seven points or, as a sanitizer slows the core, of one.
 v1::Simulation some_seconds() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr double kStep = 130;
 #else
-  constexpr double kStep = 60;
+  constexpr double kStep = 20;
 #endif
   v1::Simulation simulation = curve_simulation();
   simulation.mutable_inefficiency_curve()->set_speed_step_kilometers_per_hour(kStep);
@@ -126,11 +126,17 @@ class DrainTest : public GrpcTest {
   void SetUp() override {
     drain_seconds_ = "25";
     start();
-    ASSERT_TRUE(create(some_seconds(), &running_).ok());
+    ASSERT_TRUE(create(simulation(), &running_).ok());
     ASSERT_TRUE(
         eventually([&] { return get(running_.name()).state() == v1::Simulation::RUNNING; }));
   }
+  virtual v1::Simulation simulation() const { return some_seconds(); }
   v1::Simulation running_;
+};
+
+class EndlessDrainTest : public DrainTest {
+ protected:
+  v1::Simulation simulation() const override { return long_simulation(); }
 };
 
 TEST_F(DrainTest, WhatRunsMayEndWhileNothingNewIsAccepted) {
@@ -155,7 +161,7 @@ TEST_F(DrainTest, WhatRunsMayEndWhileNothingNewIsAccepted) {
   EXPECT_EQ(get(running_.name()).attempt(), 1);
 }
 
-TEST_F(DrainTest, ASecondSignalEndsTheWaitAndLosesNothing) {
+TEST_F(EndlessDrainTest, ASecondSignalEndsTheWaitAndLosesNothing) {
   process_->signal(SIGTERM);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   EXPECT_TRUE(process_->running());
