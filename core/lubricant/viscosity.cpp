@@ -35,29 +35,44 @@ double log_viscosity_under_pressure(double log_ambient_viscosity, double factor,
          factor * std::expm1(index * std::log1p(kRoelandsPressureCoefficient * pressure));
 }
 
-double reciprocal_asymptotic_coefficient(double factor, double index) {
+namespace {
+
+/// Eq 33's coefficient [1/Pa] and its derivative by the index.
+ValueAndSlope coefficient_and_slope(double factor, double index) {
   // int_0^inf exp(-v) (1 + v/L)^(1/Z - 1) dv / (Z c L); the integrand peaks near v = 1/Z - 1 - L
   // and falls as exp(-v) beyond, so panels of width 4 up to its hundred-e-fold tail lose nothing.
   constexpr double kPanel = 4;
   const auto& rule = gauss_legendre<20>();
   const double power = 1 / index - 1;
   const double end = 60 + 6 * std::max(0.0, power);
-  double integral = 0;
+  double integral = 0, by_power = 0;
   for (double start = 0; start < end; start += kPanel) {
-    const auto v = start + kPanel * rule.node;
-    integral += kPanel * (rule.weight * (power * (v / factor).log1p() - v).exp()).sum();
+    const auto v = (start + kPanel * rule.node).eval();
+    const auto logarithm = (v / factor).log1p().eval();
+    const auto part = (rule.weight * (power * logarithm - v).exp()).eval();
+    integral += kPanel * part.sum();
+    by_power += kPanel * (logarithm * part).sum();
   }
-  return index * kRoelandsPressureCoefficient * factor / integral;
+  const double coefficient = index * kRoelandsPressureCoefficient * factor / integral;
+  return {coefficient, coefficient * (1 / index + by_power / (integral * index * index))};
+}
+
+}  // namespace
+
+double reciprocal_asymptotic_coefficient(double factor, double index) {
+  return coefficient_and_slope(factor, index).value;
 }
 
 double index_from_reciprocal_asymptotic(double factor, double coefficient) {
   constexpr double kLow = 0.05, kHigh = 3;
   const auto excess = [&](double index) {
-    return reciprocal_asymptotic_coefficient(factor, index) / coefficient - 1;
+    const ValueAndSlope at = coefficient_and_slope(factor, index);
+    return ValueAndSlope{at.value / coefficient - 1, at.slope / coefficient};
   };
-  if (factor > 0) {
-    const double low = excess(kLow), high = excess(kHigh);
-    if (low <= 0 && high >= 0) return bracketed_root(excess, kLow, kHigh, low, high);
+  if (factor > 0 && coefficient > 0) {
+    const double start = index_from_houpert(factor, coefficient);
+    const double index = safeguarded_newton(excess, kLow, kHigh, start, true, 1e-9);
+    if (std::abs(excess(index).value) < 1e-9) return index;
   }
   throw Refusal("PRESSURE_VISCOSITY_INDEX",
                 "no Roelands index Z in [0.05, 3] gives a pressure-viscosity coefficient of " +

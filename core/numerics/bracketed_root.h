@@ -70,6 +70,7 @@ double safeguarded_newton(Function&& f, double lower, double upper, double start
     if (at.value == 0) return x;
     ((at.value > 0) == rising ? upper : lower) = x;
     double next = x - at.value / at.slope;
+    if (next == x) return x;
     if (!(next > lower && next < upper) || std::abs(next - x) > 0.5 * std::abs(before_last)) {
       next = 0.5 * (lower + upper);
     }

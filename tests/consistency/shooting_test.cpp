@@ -162,6 +162,7 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
       if (r.method != SteadyStateMethod::kShooting) continue;
       ++shot;
       PointOptions from_there = marched();
+      if (full_run()) from_there.relative_tolerance = 1e-11;
       from_there.carried_state =
           CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
                        r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
