@@ -203,7 +203,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
   int index = 0;                   // of an event
   if (pieces != nullptr) {
     pieces->clear();
-    pieces->reserve(static_cast<std::size_t>(grid_.steps() * period_));
+    pieces->reserve(static_cast<std::size_t>(grid_.steps()) * static_cast<std::size_t>(period_));
   }
   y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
   if (s != nullptr) {
@@ -276,7 +276,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
       ++taken_;
       if (pieces != nullptr) {
         const bool on_grid = piece == 0 && !happens;
-        pieces->emplace_back(phase, h, on_grid ? node : -1, system_.regime, y, half, to);
+        pieces->push_back({phase, h, on_grid ? node : -1, system_.regime, y, half, to});
       }
       y = to;
       if (s != nullptr) *s = s_to;

@@ -92,7 +92,6 @@ struct Mechanics {
 
 /// Everything at one instant, for records and histories.
 struct Instant : Mechanics {
-  Instant() : Mechanics{} {}
   std::array<double, kFlankPairs> load{};
   std::array<FlankMotion, kFlankPairs> motion{};
   std::array<ContactSolution, kFlankPairs> contact{};
