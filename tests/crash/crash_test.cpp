@@ -5,10 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <memory>
+#include <set>
 #include <thread>
 
 #include "server/store/maintenance.h"
@@ -56,9 +59,12 @@ class CrashTest : public testing::Test {
     ASSERT_EQ(process_->wait(), 128 + SIGKILL) << process_->log();
   }
 
-  /// Clients at work, a server that is killed `count` times, and once it is dead for the last time,
-  /// whatever `plant` does to its database.
-  void play(int count, const std::function<void(const std::string&)>& plant = {}) {
+  using Enough = std::function<bool(const History&)>;
+
+  /// Clients at work, a server that is killed `count` times, for the last time when they have been
+  /// told `enough`, and once it is dead whatever `plant` does to its database.
+  void play(int count, const Enough& enough = {},
+            const std::function<void(const std::string&)>& plant = {}) {
     const auto seed = static_cast<std::uint64_t>(
         number_from("TRIBODYN_TEST_SEED", static_cast<int>(std::random_device()() % 1'000'000)));
     RecordProperty("seed", static_cast<int>(seed));
@@ -76,6 +82,13 @@ class CrashTest : public testing::Test {
     }
     for (int crash = 0; crash < count && !HasFatalFailure(); ++crash) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50 + random() % 600));
+      if (crash + 1 == count && enough) {
+        EXPECT_TRUE(server::eventually([&] {
+          bool told = false;
+          recorder_.write([&](const History& history) { told = enough(history); });
+          return told;
+        }));
+      }
       kill_server();
       ++crashes;
       if (crash + 1 < count) start();
@@ -169,26 +182,51 @@ void change(const std::string& database, const std::string& sql) {
   raw.exec(sql);
 }
 
+/// How many simulations clients know to have succeeded, by scene.
+std::map<std::string, std::set<std::string>> successes(const History& history) {
+  std::map<std::string, std::string> scene;
+  for (const auto& each : history.submissions) scene[each.name] = each.scene;
+  std::map<std::string, std::set<std::string>> out;
+  for (const auto& each : history.ended) {
+    if (each.state == v1::Simulation::SUCCEEDED && scene.contains(each.name)) {
+      out[scene[each.name]].insert(each.name);
+    }
+  }
+  return out;
+}
+
 TEST_F(CrashTest, ALostAcknowledgementIsFound) {
-  play(2, [](const std::string& database) {
-    change(database,
-           "DELETE FROM events WHERE simulation = 1; DELETE FROM simulations WHERE id = 1");
-  });
-  EXPECT_THAT(violations(recorder_.finished()),
-              Contains("simulations/1 was acknowledged and is lost"));
+  std::string lost;
+  play(
+      2, [](const History& history) { return !history.submissions.empty(); },
+      [&](const std::string& database) {
+        lost = recorder_.finished().submissions.front().name;
+        const std::string id = lost.substr(lost.find('/') + 1);
+        change(database, "DELETE FROM events WHERE simulation = " + id +
+                             "; DELETE FROM simulations WHERE id = " + id);
+      });
+  EXPECT_THAT(violations(recorder_.finished()), Contains(lost + " was acknowledged and is lost"));
 }
 
 TEST_F(CrashTest, AGapInTheEventsIsFound) {
-  play(2, [](const std::string& database) {
-    change(database,
-           "DELETE FROM events WHERE sequence = 2 AND simulation = "
-           "(SELECT min(id) FROM simulations WHERE state = 3 AND cache_hit = 0)");
-  });
+  play(
+      2, [](const History& history) { return !successes(history).empty(); },
+      [](const std::string& database) {
+        change(database,
+               "DELETE FROM events WHERE sequence = 2 AND simulation = "
+               "(SELECT min(id) FROM simulations WHERE state = 3 AND cache_hit = 0)");
+      });
   EXPECT_THAT(violations(recorder_.finished()), Contains(HasSubstr(": a gap before event 3")));
 }
 
 TEST_F(CrashTest, ADoubleResultIsFound) {
-  play(3, [](const std::string& database) {
+  const auto shared = [](const History& history) {
+    const auto by_scene = successes(history);
+    return by_scene.size() > 1 &&
+           std::any_of(by_scene.begin(), by_scene.end(),
+                       [](const auto& one) { return one.second.size() > 1; });
+  };
+  play(3, shared, [](const std::string& database) {
     change(database,
            "DROP INDEX one_result_per_input;"
            "INSERT INTO results SELECT 1000000, input_hash, model_version, platform, create_time, "
