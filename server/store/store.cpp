@@ -87,8 +87,8 @@ Store::Store(const std::filesystem::path& database)
   open_schema();
   heed_deadlines(writer_);
   try {
-    // What a writer would undo stays in memory (pages that were there before, a few hundred KiB), so
-    // that no file is opened now and then.
+    // What a writer would undo stays in memory (pages that were there before, a few hundred KiB),
+    // so that no file is opened now and then.
     writer_.exec("PRAGMA temp_store = MEMORY");
     readers_.open(path_, kReaderConnections);
   } catch (const SQLite::Exception& error) {
