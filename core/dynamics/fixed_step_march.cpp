@@ -16,11 +16,6 @@ constexpr int kTorque = 7;  // column of the unknown torque
 /// Phase in the tables: the end of a period is an end there too.
 double inside_cycle(double phase) { return phase - std::floor(phase); }
 
-/// Of the flanks together [N].
-double load_of(const ContactRegime& r, const Mechanics& at) {
-  return r.side != 0 && r.loaded ? std::max(0.0, r.side * at.mesh_force) : 0;
-}
-
 }  // namespace
 
 void FixedStepMarch::sensitivity_rates(const MarchState& y, const Mechanics& at,
@@ -37,7 +32,7 @@ void FixedStepMarch::sensitivity_rates(const MarchState& y, const Mechanics& at,
       stiffness * s[kWinding] +
       damping * ((m.pinion_contact_radius - m.static_transmission_error_slope) * s[kPinionSpeed] -
                  m.gear_contact_radius * s[kGearSpeed]);
-  const double load_by_force = load_of(r, at) > 0 ? r.side : 0;
+  const double load_by_force = r.load(at.mesh_force) > 0 ? r.side : 0;
   const Row pinion_shaft = d.pinion_shaft_stiffness * s[kPinionShaftTwist] +
                            d.pinion_shaft_damping * (s[kPinionShaftSpeed] - s[kPinionSpeed]);
   const Row gear_shaft = d.gear_shaft_stiffness * s[kGearShaftTwist] +
@@ -89,7 +84,7 @@ void FixedStepMarch::step(LaggedFriction& friction, const Span& span, const Marc
     const FrictionPerLoad here = friction.at(span.phase + kNode[i] * h);
     Mechanics at;
     system_.mechanics(*phases[i], stage.data(), at);
-    const double load = load_of(system_.regime, at);
+    const double load = system_.regime.load(at.mesh_force);
     at.pinion_friction_torque = here.pinion * load;
     at.gear_friction_torque = here.gear * load;
     system_.motion(stage.data(), at, rate.data());

@@ -133,8 +133,7 @@ void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
 
   std::array<FlankKinematics, kFlankPairs> flanks;
   mesh_.flanks(interval_, phase, flanks);
-  const double load =
-      regime.side != 0 && regime.loaded ? std::max(0.0, regime.side * out.mesh_force) : 0;
+  const double load = regime.load(out.mesh_force);
   std::array<ContactConditions, kFlankPairs> conditions{};
   for (int k = 0; k < kFlankPairs; ++k) {
     out.load[k] = flanks[k].load_share * load;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -63,6 +64,10 @@ enum RecordComponent {
 struct ContactRegime {
   int side = 1;  ///< +1 drive flanks, 0 gap, -1 coast flanks
   bool loaded = true;
+  /// What presses the flanks together under a mesh force [N]: what the contacts share.
+  double load(double mesh_force) const {
+    return side != 0 && loaded ? std::max(0.0, side * mesh_force) : 0;
+  }
 };
 
 struct Torques {

@@ -73,9 +73,7 @@ void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, 
                                  const double* state, Place& place, Instant& at) {
   place.first = count_;
   place.count = 0;
-  const double load = piece.regime.side != 0 && piece.regime.loaded
-                          ? std::max(0.0, piece.regime.side * at.mesh_force)
-                          : 0;
+  const double load = piece.regime.load(at.mesh_force);
   place.load = load;
   at.load = {};
   if (!(load > 0)) return;

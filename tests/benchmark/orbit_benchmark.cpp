@@ -16,6 +16,7 @@
 #include "core/vehicle/vehicle.h"
 #include "tests/benchmark/marching_solvers.h"
 #include "tests/benchmark/measurements.h"
+#include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"
 
 // Work against true error at eight operating points: this solver at several tolerances, against
@@ -88,17 +89,6 @@ PointResult truth_of(PreparedScene& scene, const OperatingCondition& condition, 
   options.relative_tolerance = 1e-10;
   options.settling_tolerance = 1e-9;
   return solve_prepared_point(scene, condition, options);
-}
-
-double true_error(const PointFigures& r, const PointResult& truth) {
-  const auto relative = [](double a, double b) { return std::abs(a / b - 1); };
-  const Extremes& y = truth.dynamic_transmission_error;
-  const double size = std::max(std::abs(y.minimum), std::abs(y.maximum));
-  return std::max(
-      {relative(r.inefficiency_rms.value(), truth.inefficiency_rms.value()),
-       relative(r.inefficiency_energy_mean.value(), truth.inefficiency_energy_mean.value()),
-       relative(r.pinion_torque, truth.pinion_torque), std::abs(r.dte_minimum - y.minimum) / size,
-       std::abs(r.dte_maximum - y.maximum) / size});
 }
 
 /// One way through the transient, cycle by cycle.

@@ -9,6 +9,7 @@
 
 #include "core/study/operating_point.h"
 #include "tests/benchmark/measurements.h"
+#include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"
 
 // Where a cheaper model pays: time and true error of the quasi-static model, of the full one and of
@@ -24,17 +25,6 @@ constexpr double kSpeeds[] = {1, 2, 5, 10, 20, 140};  // [km/h]
 constexpr double kTolerances[] = {1e-3, 1e-2, 5e-2};
 constexpr PointModel kModels[] = {PointModel::kQuasiStatic, PointModel::kFull,
                                   PointModel::kAutomatic};
-
-double true_error(const PointFigures& r, const PointResult& truth) {
-  const auto relative = [](double a, double b) { return std::abs(a / b - 1); };
-  const Extremes& y = truth.dynamic_transmission_error;
-  const double size = std::max(std::abs(y.minimum), std::abs(y.maximum));
-  return std::max(
-      {relative(r.inefficiency_rms.value(), truth.inefficiency_rms.value()),
-       relative(r.inefficiency_energy_mean.value(), truth.inefficiency_energy_mean.value()),
-       relative(r.pinion_torque, truth.pinion_torque), std::abs(r.dte_minimum - y.minimum) / size,
-       std::abs(r.dte_maximum - y.maximum) / size});
-}
 
 struct Run {
   PointFigures figures;

@@ -9,12 +9,11 @@
 #include "core/dynamics/mesh_cycle_march.h"
 #include "core/study/operating_point.h"
 #include "tests/consistency/contact_case.h"
+#include "tests/support/cruise.h"
 
 // What the kinematics and the power of the gear pair must add up to, by formulas of the test's own.
 namespace tribodyn {
 namespace {
-
-constexpr double kKilometersPerHour = 1 / 3.6;
 
 /// A system with all that it refers to.
 struct Bench {
@@ -281,12 +280,6 @@ TEST(TransmissionErrorIdentities, AThousandCyclesOfTurningDoNotWindUp) {
     EXPECT_NEAR(later.transmission_error, first.transmission_error, 1e-15);
     EXPECT_NEAR(later.mesh.mesh_stiffness, first.mesh.mesh_stiffness, 1e-9 * 1e8);
   }
-}
-
-OperatingCondition cruise(double kilometers_per_hour) {
-  OperatingCondition c;
-  c.vehicle_speed = kilometers_per_hour * kKilometersPerHour;
-  return c;
 }
 
 /// Puts a solved point into the bench, ready to march on.

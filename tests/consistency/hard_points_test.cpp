@@ -14,16 +14,11 @@
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "run_length.h"
+#include "tests/support/cruise.h"
 #include "tests/support/reference_scene.h"
 
 namespace tribodyn {
 namespace {
-
-OperatingCondition cruise(double kilometers_per_hour) {
-  OperatingCondition condition;
-  condition.vehicle_speed = kilometers_per_hour / 3.6;
-  return condition;
-}
 
 OperatingCondition prescribed(double pinion_torque, double kilometers_per_hour) {
   const Scene scene = reference_scene();

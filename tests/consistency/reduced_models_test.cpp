@@ -20,19 +20,14 @@
 #include "core/study/operating_point.h"
 #include "core/study/quasi_static.h"
 #include "core/study/speed_sweep.h"
-#include "figure_error.h"
 #include "run_length.h"
+#include "tests/support/cruise.h"
+#include "tests/support/figure_error.h"
 #include "tests/support/realistic_contacts.h"
 #include "tests/support/reference_scene.h"
 
 namespace tribodyn {
 namespace {
-
-OperatingCondition cruise(double kilometers_per_hour) {
-  OperatingCondition condition;
-  condition.vehicle_speed = kilometers_per_hour / 3.6;
-  return condition;
-}
 
 OperatingCondition prescribed(double pinion_torque, double pinion_speed) {
   OperatingCondition condition;

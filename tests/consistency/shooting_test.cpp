@@ -14,18 +14,13 @@
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
 #include "core/study/speed_sweep.h"
-#include "figure_error.h"
 #include "run_length.h"
+#include "tests/support/cruise.h"
+#include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"
 
 namespace tribodyn {
 namespace {
-
-OperatingCondition cruise(double kilometers_per_hour) {
-  OperatingCondition condition;
-  condition.vehicle_speed = kilometers_per_hour / 3.6;
-  return condition;
-}
 
 PointOptions marched(PointStart start = PointStart::kQuasiStatic) {
   PointOptions options;

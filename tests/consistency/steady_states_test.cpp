@@ -9,16 +9,11 @@
 #include "core/study/operating_point.h"
 #include "core/study/speed_sweep.h"
 #include "run_length.h"
+#include "tests/support/cruise.h"
 #include "tests/support/reference_scene.h"
 
 namespace tribodyn {
 namespace {
-
-OperatingCondition cruise(double kilometers_per_hour) {
-  OperatingCondition condition;
-  condition.vehicle_speed = kilometers_per_hour / 3.6;
-  return condition;
-}
 
 PointResult point(double kilometers_per_hour, PointStart start = PointStart::kQuasiStatic,
                   bool probe = false) {
