@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 
@@ -9,12 +8,9 @@
 #include "core/dynamics/mesh_cycle_march.h"
 #include "core/dynamics/mesh_grid.h"
 #include "core/dynamics/orbit_friction.h"
+#include "core/dynamics/section_map.h"
 
 namespace tribodyn {
-
-/// Derivatives of time and the seven states, in the order of MarchComponent, by the seven states at
-/// the section and by the unknown torque.
-using Sensitivity = std::array<Eigen::Array<double, 1, 8>, 8>;
 
 /// Classical Runge-Kutta steps of even length over mesh phase, under lagged friction. Steps end on
 /// contact loss, regain and load events, which are located on true steps; derivatives by the start

@@ -6,8 +6,43 @@
 
 #include "core/contact/flank_contact_batch.h"
 #include "core/gear/mesh_data.h"
+#include "core/numerics/columns.h"
 
 namespace tribodyn {
+
+/// Rows of what eqs 8-11 need of the pinion's angle, at many phases.
+enum MeshRow {
+  kPinionRadiusRow,    ///< R_p [m]
+  kStiffnessRow,       ///< k_m [N/m]
+  kStiffnessSlopeRow,  ///< dk_m/dphi_p
+  kErrorRow,           ///< e [m]
+  kErrorSlopeRow,      ///< de/dphi_p
+  kOffsetRow,          ///< from where the series are around [rad]
+  kSeriesRow,          ///< of R_g and of the radius integral, in turn, for each power
+  kMeshRows = kSeriesRow + 2 * MeshExpansion::kTerms
+};
+
+/// Rows of the loaded contacts of a grid: FlankKinematics but for the radii.
+enum ContactRow {
+  kLoadShareRow,
+  kPinionVelocityXRow,
+  kPinionVelocityYRow,
+  kGearVelocityXRow,
+  kGearVelocityYRow,
+  kContactPointVelocityXRow,
+  kContactPointVelocityYRow,
+  kPinionArmRow,
+  kGearArmRow,
+  kContactRows
+};
+
+/// The loaded contacts of a grid, node after node.
+struct GridContacts {
+  std::vector<int> node;   ///< of each
+  std::vector<int> first;  ///< contact of each node; at last their number
+  Columns kinematics;      ///< kContactRows
+  ContactGeometries geometries;
+};
 
 /// A mesh cycle cut into even steps, with everything at their ends and middles that depends on the
 /// gear set alone: made once, used by every speed, fluid and sweep. Immutable.
@@ -24,14 +59,23 @@ class MeshGrid {
   /// Node n is at mesh phase n / (2 steps), n = 0 ... 2 steps.
   const MeshPhase& at(int node) const { return nodes_[node]; }
   const std::array<FlankKinematics, kFlankPairs>& flanks(int node) const { return flanks_[node]; }
-  /// Flank pair k at node n is contact kFlankPairs n + k.
-  const ContactGeometries& geometries() const { return geometries_; }
+  /// The contact of flank pair k at node n; -1: it has no load.
+  int contact(int node, int k) const { return contact_[node][k]; }
+  const GridContacts& contacts() const { return contacts_; }
+  /// kMeshRows at the steps' starts, one more for the end of the cycle, and at their middles.
+  const Columns& mesh_at_starts() const { return mesh_at_starts_; }
+  const Columns& mesh_at_middles() const { return mesh_at_middles_; }
+  /// Up to which distance the series there serve [rad]; 0: there are none.
+  double series_reach() const { return series_reach_; }
 
  private:
   int steps_;
   std::vector<MeshPhase> nodes_;
   std::vector<std::array<FlankKinematics, kFlankPairs>> flanks_;
-  ContactGeometries geometries_;
+  std::vector<std::array<int, kFlankPairs>> contact_;
+  GridContacts contacts_;
+  Columns mesh_at_starts_, mesh_at_middles_;
+  double series_reach_;
 };
 
 /// Grids of one gear set, made when they are first asked for. One thread at a time.

@@ -105,7 +105,7 @@ void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, 
     arrays_.pinion_arm[i] = motion.pinion_friction_arm;
     arrays_.gear_arm[i] = motion.gear_friction_arm;
     if (piece.node >= 0) {
-      geometries_.copy(i, grid.geometries(), kFlankPairs * (piece.node + part) + k);
+      geometries_.copy(i, grid.contacts().geometries, grid.contact(piece.node + part, k));
     } else {
       geometries_.set(i, flank.radius_x, flank.radius_y);
     }
@@ -147,24 +147,30 @@ void OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& 
   }
 }
 
-bool OrbitFriction::solve_contacts(FlankContactBatchResults results) {
+bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int count,
+                                   const FlankContactBatchConditions& conditions,
+                                   FlankContactBatchResults results) {
   results.friction = arrays_.friction.data();
   results.status = arrays_.status.data();
-  contacts_.solve(geometries_, 0, count_,
-                  {arrays_.load.data(), arrays_.pinion_x.data(), arrays_.pinion_y.data(),
-                   arrays_.gear_x.data(), arrays_.gear_y.data()},
-                  results);
-  system_.count_contacts(count_);
-  for (int i = 0; i < count_; ++i) {
+  contacts_.solve(geometries, 0, count, conditions, results);
+  system_.count_contacts(count);
+  for (int i = 0; i < count; ++i) {
     if (arrays_.status[i] != ContactStatus::kOk) system_.refuse(arrays_.status[i]);
   }
   return system_.refusal() == ContactStatus::kOk;
 }
 
+bool OrbitFriction::solve_gathered(const FlankContactBatchResults& results) {
+  return solve_contacts(geometries_, count_,
+                        {arrays_.load.data(), arrays_.pinion_x.data(), arrays_.pinion_y.data(),
+                         arrays_.gear_x.data(), arrays_.gear_y.data()},
+                        results);
+}
+
 bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
                              double light, LaggedFriction& friction, OrbitFigures& f) {
   gather(grid, pieces, nullptr);
-  if (!solve_contacts({})) return false;
+  if (!solve_gathered({})) return false;
   friction.clear();
   f = {};
   least_pressing_force_ = 1e300;
@@ -211,6 +217,59 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
   return true;
 }
 
+bool OrbitFriction::evaluate(const StepBlock& block, const CycleResponse& response,
+                             LaggedFriction& friction, OrbitFigures& f) {
+  const MeshGrid& grid = block.grid;
+  const GridContacts& contacts = grid.contacts();
+  const auto count = static_cast<int>(contacts.node.size());
+  seen_.resize(kSeenRows, contacts.node.size());
+  arrays_.friction.resize(std::max(arrays_.friction.size(), contacts.node.size()));
+  arrays_.status.resize(arrays_.friction.size());
+  see_contacts(instruction_set(), block, response, seen_);
+  if (!solve_contacts(contacts.geometries, count,
+                      {seen_[kSeenLoad], seen_[kSeenPinionX], seen_[kSeenPinionY],
+                       seen_[kSeenGearX], seen_[kSeenGearY]},
+                      {})) {
+    return false;
+  }
+  friction.clear();
+  f = {};
+  least_pressing_force_ = 1e300;
+  const int steps = grid.steps(), last = 2 * steps;
+  double low = 1e300, high = -1e300, squares = 0, time = 0;
+  for (int node = 0; node <= last; ++node) {
+    const Columns& at = node % 2 == 0 ? response.start : response.middle;
+    const int lane = node / 2;
+    double loss = 0;
+    FrictionPerLoad torque;
+    for (int n = contacts.first[node]; n < contacts.first[node + 1]; ++n) {
+      torque.pinion += seen_[kSeenPinionArm][n] * arrays_.friction[n];
+      torque.gear += seen_[kSeenGearArm][n] * arrays_.friction[n];
+      loss += seen_[kSeenSlidingSpeed][n] * arrays_.friction[n];
+    }
+    const double load = block.side * at[kMeshForceRow][lane];
+    friction.add(0.5 * node / steps, {torque.pinion / load, torque.gear / load});
+    least_pressing_force_ = std::min(least_pressing_force_, load);
+    // Simpson's rule.
+    const double weight = node == 0 || node == last ? 1 : node % 2 == 0 ? 2 : 4;
+    const double duration = weight / (6 * steps) * system_.cycle_angle() / at[kPinionSpeed][lane];
+    const double share = loss / at[kPinionShaftSpeed][lane];
+    f.loss_energy += duration * loss;
+    squares += duration * share * share;
+    time += duration;
+    if (node == last) break;
+    const Columns& next = node % 2 == 0 ? response.middle : response.start;
+    const int to = (node + 1) / 2;
+    add_cubic_extremes(at[kTransmissionErrorRow][lane], at[kTransmissionVelocityRow][lane],
+                       next[kTransmissionErrorRow][to], next[kTransmissionVelocityRow][to],
+                       next[kTime][to] - at[kTime][lane], low, high);
+  }
+  f.loss_rms = std::sqrt(squares / time);
+  f.dte_minimum = low;
+  f.dte_maximum = high;
+  return true;
+}
+
 bool OrbitFriction::solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
                           std::vector<SolvedPiece>& solved) {
   solved.resize(pieces.size());
@@ -239,7 +298,7 @@ bool OrbitFriction::solve(const MeshGrid& grid, const std::vector<OrbitPiece>& p
   }
   const auto at_centre = std::make_unique<bool[]>(count_);
   results.limiting_stress_at_centre = at_centre.get();
-  if (!solve_contacts(results)) return false;
+  if (!solve_gathered(results)) return false;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     for (int part = 0; part < 3; ++part) {
       Instant& at = solved[i].at[part];

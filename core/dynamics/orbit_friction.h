@@ -7,6 +7,7 @@
 #include "core/dynamics/gear_pair_system.h"
 #include "core/dynamics/lagged_friction.h"
 #include "core/dynamics/mesh_grid.h"
+#include "core/dynamics/step_block.h"
 
 namespace tribodyn {
 
@@ -48,9 +49,13 @@ class OrbitFriction {
   /// refused; the system tells why.
   bool evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, double light,
                 LaggedFriction& friction, OrbitFigures& figures);
+  /// The same on a response, filled, whose flanks press together all the time.
+  bool evaluate(const StepBlock& block, const CycleResponse& response, LaggedFriction& friction,
+                OrbitFigures& figures);
   /// Smallest force that pressed touching flanks together at the instants of the last evaluation;
   /// negative: they were held together [N].
   double least_pressing_force() const { return least_pressing_force_; }
+  InstructionSet instruction_set() const { return contacts_.instruction_set(); }
   /// Everything at the pieces' instants. False as above.
   bool solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
              std::vector<SolvedPiece>& solved);
@@ -72,12 +77,16 @@ class OrbitFriction {
   void add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part, const double* state,
                     Place& place, Instant& at);
   /// False when one is refused.
-  bool solve_contacts(FlankContactBatchResults results);
+  bool solve_contacts(const ContactGeometries& geometries, int count,
+                      const FlankContactBatchConditions& conditions,
+                      FlankContactBatchResults results);
+  bool solve_gathered(const FlankContactBatchResults& results);
 
   GearPairSystem& system_;
   const FlankContactBatch& contacts_;
   ContactGeometries geometries_;
   std::vector<Place> places_;  // three of a piece
+  Columns seen_;               // SeenRow
   Arrays arrays_;
   int count_ = 0;  // contacts
   double least_pressing_force_ = 0;

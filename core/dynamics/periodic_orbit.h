@@ -1,42 +1,17 @@
 #pragma once
 
-#include <Eigen/LU>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "core/dynamics/fixed_step_march.h"
+#include "core/dynamics/section_map.h"
 #include "core/dynamics/steady_state.h"
 
 namespace tribodyn {
 
-/// How the state after a period follows the state at the section and the unknown torque.
-class SectionMap {
- public:
-  static constexpr int kUnknowns = 8;  // the seven states and the torque
-  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
-
-  /// `scale`: of the unknowns. `period`: of the time's residual [s].
-  SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period);
-
-  /// Newton's step from a residual, both scaled.
-  Vector step(const Vector& residual) const { return factors_.solve(-residual); }
-  /// Floquet, modulus; but for the one nearest to 1: the train as a whole runs on at any speed.
-  /// Computed once; copies made after that know it.
-  double largest_multiplier() const;
-  /// Not below that, at half the price, and mostly within a percent; infinite where it cannot tell.
-  /// Computed once like that.
-  double multiplier_bound() const;
-  /// Not above the distance of any multiplier from -1, where periods double.
-  double distance_from_doubling() const;
-
- private:
-  double bound_of_multipliers() const;
-
-  Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
-  Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;   // scaled
-  mutable double largest_multiplier_ = -1, multiplier_bound_ = -1;  // not computed yet
-};
+struct CycleDerivatives;
 
 /// Where shooting begins, and what it has found so far.
 struct PeriodicOrbit {
@@ -46,6 +21,8 @@ struct PeriodicOrbit {
   int period = 1;  ///< [mesh cycles]
   LaggedFriction friction;
   std::optional<SectionMap> map;  ///< from here or near; empty: not known
+  /// Of all steps, where they have been taken side by side.
+  std::shared_ptr<const CycleDerivatives> cycle_derivatives;
   std::vector<OrbitPiece> pieces;
   OrbitFigures figures;
   double defect = 0;       ///< scaled change of the state in the last step of Newton
@@ -80,14 +57,13 @@ bool approach_without_friction(GearPairSystem& system, OrbitFriction& friction,
                                long& marched_cycles);
 
 /// The periodic response of the whole system with the unknown torque, without marching through
-/// transients: Newton's method on the section state (single shooting, variational equations) under
-/// lagged friction, friction evaluated anew on the response found, and so on until neither moves.
-/// Derivatives are kept while they serve. An orbit found before, on another grid, lends its
-/// friction and figures: then one sweep may do. At the end friction and motion belong to each other
-/// as in the full system; what is left is the error of the grid's steps. Starts from `orbit`
-/// (state, torques, friction, map) and leaves the response there. False where it does not converge;
-/// the orbit is then of no use. Where flanks kept together clearly pull, it may end before it
-/// converges. Adds to `statistics`.
+/// transients: Newton's method (SingleShooting, MultipleShooting) under lagged friction, friction
+/// evaluated anew on the response found, and so on until neither moves. Derivatives are kept while
+/// they serve. An orbit found before, on another grid, lends its friction and figures: then one
+/// sweep may do. At the end friction and motion belong to each other as in the full system; what is
+/// left is the error of the grid's steps. Starts from `orbit` (state, torques, friction, map) and
+/// leaves the response there. False where it does not converge; the orbit is then of no use. Where
+/// flanks kept together clearly pull, it may end before it converges. Adds to `statistics`.
 bool solve_periodic_orbit(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
                           const OrbitRequest& request, PeriodicOrbit& orbit,
                           MarchStatistics& statistics, long& marched_cycles);

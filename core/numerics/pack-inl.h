@@ -52,6 +52,9 @@ HWY_INLINE Pack load_any(const double* from) {  // of any alignment
 HWY_INLINE void store(Pack x, double* to) {
   for (int k = 0; k < kWide; ++k) hn::Store(x.v[k], kTag, to + k * lanes());
 }
+HWY_INLINE void store_any(Pack x, double* to) {
+  for (int k = 0; k < kWide; ++k) hn::StoreU(x.v[k], kTag, to + k * lanes());
+}
 HWY_INLINE Pack operator+(Pack x, Pack y) {
   Pack out;
   for (int k = 0; k < kWide; ++k) out.v[k] = hn::Add(x.v[k], y.v[k]);

@@ -1,0 +1,77 @@
+#include "core/dynamics/section_map.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include "core/dynamics/gear_pair_system.h"
+
+namespace tribodyn {
+
+SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period) {
+  Eigen::Matrix<double, kUnknowns, kUnknowns> jacobian;
+  for (int i = 0; i + 1 < kUnknowns; ++i) {
+    jacobian.row(i) = sensitivity[i + 1].matrix();
+    monodromy_.row(i) = sensitivity[i + 1].head<kUnknowns - 1>().matrix() / scale(i);
+    jacobian(i, i) -= 1;
+    jacobian.row(i) /= scale(i);
+  }
+  jacobian.row(kUnknowns - 1) = sensitivity[kTime].matrix() / period;
+  factors_.compute(jacobian * scale.asDiagonal());
+  monodromy_ *= scale.head<kUnknowns - 1>().asDiagonal();
+}
+
+double SectionMap::multiplier_bound() const {
+  if (multiplier_bound_ < 0) multiplier_bound_ = bound_of_multipliers();
+  return multiplier_bound_;
+}
+
+double SectionMap::distance_from_doubling() const {
+  using Square = Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>;
+  return 1 / Eigen::PartialPivLU<Square>(monodromy_ + Square::Identity()).inverse().norm();
+}
+
+/// |lambda|^k is at most the norm of the k-th power, once the multiplier nearest to 1 is taken out.
+double SectionMap::bound_of_multipliers() const {
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  constexpr int kIterations = 3, kSquarings = 10;
+  constexpr double kFound = 1e-6;
+  using Square = Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>;
+  using Direction = Eigen::Matrix<double, kUnknowns - 1, 1>;
+  const Eigen::PartialPivLU<Square> factors(monodromy_ - Square::Identity());
+  Direction right = Direction::Ones(), left = Direction::Ones();
+  for (int i = 0; i < kIterations; ++i) {
+    right = factors.solve(right).normalized();
+    left = factors.transpose().solve(left).normalized();
+  }
+  const double overlap = left.dot(right);
+  const double nearest = left.dot(monodromy_ * right) / overlap;
+  const double missed = (monodromy_ * right - nearest * right).norm() +
+                        (monodromy_.transpose() * left - nearest * left).norm();
+  if (!(missed < kFound * std::abs(overlap))) return kUnknown;
+  Square power = monodromy_ - nearest / overlap * right * left.transpose();
+  double log_norm = 0, exponent = 1;  // of the power: e^log_norm times the matrix at hand
+  for (int i = 0; i < kSquarings; ++i) {
+    power = (power * power).eval();
+    const double norm = power.norm();
+    if (norm == 0) return 0;
+    exponent *= 2;
+    log_norm = 2 * log_norm + std::log(norm);
+    power /= norm;
+  }
+  return std::exp(log_norm / exponent);
+}
+
+double SectionMap::largest_multiplier() const {
+  if (largest_multiplier_ >= 0) return largest_multiplier_;
+  Eigen::Matrix<std::complex<double>, kUnknowns - 1, 1> multipliers =
+      Eigen::EigenSolver<Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>>(monodromy_, false)
+          .eigenvalues();
+  Eigen::Index free = 0;
+  (multipliers.array() - 1.0).abs().minCoeff(&free);
+  multipliers(free) = 0;
+  return largest_multiplier_ = multipliers.cwiseAbs().maxCoeff();
+}
+
+}  // namespace tribodyn

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/LU>
+#include <array>
+
+namespace tribodyn {
+
+/// Derivatives of time and the seven states, in the order of MarchComponent, by the seven states at
+/// the section and by the unknown torque.
+using Sensitivity = std::array<Eigen::Array<double, 1, 8>, 8>;
+
+/// How the state after a period follows the state at the section and the unknown torque.
+class SectionMap {
+ public:
+  static constexpr int kUnknowns = 8;  // the seven states and the torque
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+
+  /// `scale`: of the unknowns. `period`: of the time's residual [s].
+  SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period);
+
+  /// Newton's step from a residual, both scaled.
+  Vector step(const Vector& residual) const { return factors_.solve(-residual); }
+  /// Floquet, modulus; but for the one nearest to 1: the train as a whole runs on at any speed.
+  /// Computed once; copies made after that know it.
+  double largest_multiplier() const;
+  /// Not below that, at half the price, and mostly within a percent; infinite where it cannot tell.
+  /// Computed once like that.
+  double multiplier_bound() const;
+  /// Not above the distance of any multiplier from -1, where periods double.
+  double distance_from_doubling() const;
+
+ private:
+  double bound_of_multipliers() const;
+
+  Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
+  Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;   // scaled
+  mutable double largest_multiplier_ = -1, multiplier_bound_ = -1;  // not computed yet
+};
+
+}  // namespace tribodyn

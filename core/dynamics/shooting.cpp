@@ -1,0 +1,70 @@
+#include "core/dynamics/shooting.h"
+
+#include <algorithm>
+
+namespace tribodyn {
+namespace {
+
+constexpr int kUnknowns = SectionMap::kUnknowns;
+
+MarchScales scales_at(const Torques& torques, GearPairSystem& system, double mean_pinion_speed) {
+  system.set_torques(torques);
+  return march_scales(system, mean_pinion_speed);
+}
+
+}  // namespace
+
+Shooting::Shooting(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
+                   const OrbitRequest& request, PeriodicOrbit& orbit)
+    : system_(system),
+      friction_(friction),
+      grid_(grid),
+      request_(request),
+      orbit_(orbit),
+      scales_(scales_at(orbit.torques, system, request.mean_pinion_speed)),
+      mean_force_(scales_.torque / system.mesh().mean_pinion_contact_radius()),
+      period_time_(orbit.period * system.cycle_angle() / request.mean_pinion_speed) {
+  for (int i = 0; i + 1 < kUnknowns; ++i) scale_(i) = scales_.of(system.mesh(), i + 1);
+  scale_(kUnknowns - 1) = scales_.torque;
+}
+
+bool Shooting::converge(double enough) {
+  orbit_.moved = 0;
+  constexpr int kMostSteps = 20, kMostDerivatives = 6;
+  double last = 0;
+  int derivatives = 0;
+  for (int i = 0; i < kMostSteps; ++i) {
+    if (!orbit_.map) ++derivatives;
+    const Step step = improve();
+    orbit_.defect = step.longest;
+    if (!(step.longest < 1e9)) return false;
+    orbit_.moved = std::max(orbit_.moved, step.section);
+    if (step.longest < enough) return true;
+    if (i > 0 && step.longest > 0.2 * last) {
+      if (derivatives >= kMostDerivatives) return false;
+      orbit_.map.reset();
+    }
+    last = step.longest;
+  }
+  return false;
+}
+
+void Shooting::throw_if_interrupted() const {
+  if (request_.interrupted && request_.interrupted()) throw Cancelled();
+}
+
+void Shooting::add_to_unknown(double change) {
+  Torques t = system_.torques();
+  (request_.solve_wheel_torque ? t.wheel : t.pinion) += change;
+  system_.set_torques(t);
+}
+
+void Shooting::take_figures() {
+  orbit_.least_pressing_force = friction_.least_pressing_force() / mean_force_;
+  orbit_.contact_loss = std::any_of(orbit_.pieces.begin(), orbit_.pieces.end(),
+                                    [](const OrbitPiece& p) { return p.regime.side == 0; });
+  orbit_.figures.torque =
+      request_.solve_wheel_torque ? system_.torques().wheel : system_.torques().pinion;
+}
+
+}  // namespace tribodyn

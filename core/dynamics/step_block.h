@@ -1,0 +1,73 @@
+#pragma once
+
+#include <vector>
+
+#include "core/contact/flank_contact_batch.h"
+#include "core/dynamics/gear_pair_system.h"
+#include "core/dynamics/mesh_grid.h"
+#include "core/numerics/columns.h"
+
+namespace tribodyn {
+
+/// Rows of a response at many phases: the components of MarchComponent up to kWheelSpeed, then
+enum ResponseRow {
+  kMeshForceRow = kWheelSpeed + 1,
+  kTransmissionErrorRow,
+  kTransmissionVelocityRow,
+  kResponseRows
+};
+
+/// A response over one mesh cycle whose flanks stay together, at the nodes of a grid: one lane for
+/// each step. Starts have one lane more, the end of the cycle.
+struct CycleResponse {
+  Columns start, middle;  ///< kResponseRows
+  Columns rate;           ///< of time and states at the starts, by phase
+};
+
+/// Friction torques per newton of load [m] at the same nodes.
+enum FrictionRow { kPinionFrictionRow, kGearFrictionRow, kFrictionRows };
+struct CycleFriction {
+  Columns start, middle;  ///< kFrictionRows
+};
+
+/// The steps of a mesh cycle side by side: each starts from a state of its own.
+struct StepBlock {
+  const GearPairSystem& system;  ///< its torques and constants
+  const MeshGrid& grid;
+  int side;  ///< on which the flanks stay together, whatever the force
+  bool solve_wheel_torque;
+  const CycleFriction& friction;
+};
+
+/// Of time and the seven states at a step's end (rows) by the seven states at its start and the
+/// unknown torque.
+inline constexpr int kDerivativeRows = 8, kDerivativeColumns = 8;
+
+/// One classical Runge-Kutta step from every start of `response` (time is not read): states at
+/// their ends, kTime their durations, to `end`; derivatives, row after row, to `derivatives` unless
+/// null. False where the grid's series do not reach that far or a number means nothing.
+bool take_steps(InstructionSet instruction_set, const StepBlock& block,
+                const CycleResponse& response, Columns& end, Columns* derivatives);
+
+/// Fills rates and mechanics of the starts, the middles (by the cubic through both ends) and their
+/// mechanics. Times and states at the starts are given. False as above.
+bool fill_response(InstructionSet instruction_set, const StepBlock& block, CycleResponse& response);
+
+/// Rows of what the contacts of a grid see in a response, in the grid's order.
+enum SeenRow {
+  kSeenLoad,
+  kSeenPinionX,
+  kSeenPinionY,
+  kSeenGearX,
+  kSeenGearY,
+  kSeenSlidingSpeed,
+  kSeenPinionArm,
+  kSeenGearArm,
+  kSeenRows
+};
+
+/// Fills `seen`, which has a lane for each contact of the grid.
+void see_contacts(InstructionSet instruction_set, const StepBlock& block,
+                  const CycleResponse& response, Columns& seen);
+
+}  // namespace tribodyn
