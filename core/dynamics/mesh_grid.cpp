@@ -45,11 +45,11 @@ MeshGrid::MeshGrid(const MeshData& mesh, int steps, double reduced_modulus,
       nodes_(2 * steps + 1),
       flanks_(2 * steps + 1),
       contact_(2 * steps + 1),
-      contacts_{{}, {}, {}, ContactGeometries(reduced_modulus, options)},
+      contacts_{1, {}, {}, {}, ContactGeometries(reduced_modulus, options)},
+      contacts_at_starts_{2, {}, {}, {}, ContactGeometries(reduced_modulus, options)},
       mesh_at_starts_(kMeshRows, steps + 1),
       mesh_at_middles_(kMeshRows, steps + 1),
       series_reach_(mesh.series_reach()) {
-  GridContacts& c = contacts_;
   for (int n = 0; n <= 2 * steps; ++n) {
     const double phase = 0.5 * n / steps;
     const double theta = 2 * std::numbers::pi * phase;
@@ -59,28 +59,36 @@ MeshGrid::MeshGrid(const MeshData& mesh, int steps, double reduced_modulus,
     }
     const int interval = std::min(static_cast<int>(phase * mesh.intervals()), mesh.intervals() - 1);
     mesh.flanks(interval, phase, flanks_[n]);
-    c.first.push_back(static_cast<int>(c.node.size()));
+  }
+  list(contacts_);
+  list(contacts_at_starts_);
+  for (auto& of_node : contact_) of_node.fill(-1);
+  int next = 0;
+  for (int n = 0; n <= 2 * steps; ++n) {
     for (int k = 0; k < kFlankPairs; ++k) {
-      contact_[n][k] = -1;
-      if (!(flanks_[n][k].load_share > 0)) continue;
-      contact_[n][k] = static_cast<int>(c.node.size());
+      if (flanks_[n][k].load_share > 0) contact_[n][k] = next++;
+    }
+  }
+}
+
+void MeshGrid::list(GridContacts& c) const {
+  std::vector<const FlankKinematics*> loaded;
+  for (int n = 0; n <= 2 * steps_; n += c.stride) {
+    c.first.push_back(static_cast<int>(loaded.size()));
+    for (const FlankKinematics& flank : flanks_[n]) {
+      if (!(flank.load_share > 0)) continue;
+      loaded.push_back(&flank);
       c.node.push_back(n);
     }
   }
-  const std::size_t count = c.node.size();
-  c.first.push_back(static_cast<int>(count));
-  c.kinematics.resize(kContactRows, count);
-  c.geometries.resize(count);
-  for (int n = 0; n <= 2 * steps; ++n) {
-    for (int k = 0; k < kFlankPairs; ++k) {
-      const int i = contact_[n][k];
-      if (i < 0) continue;
-      const FlankKinematics& flank = flanks_[n][k];
-      for (int row = 0; row < kContactRows; ++row) {
-        c.kinematics[row][i] = flank.*kContactColumns[row];
-      }
-      c.geometries.set(i, flank.radius_x, flank.radius_y);
+  c.first.push_back(static_cast<int>(loaded.size()));
+  c.kinematics.resize(kContactRows, loaded.size());
+  c.geometries.resize(loaded.size());
+  for (std::size_t i = 0; i < loaded.size(); ++i) {
+    for (int row = 0; row < kContactRows; ++row) {
+      c.kinematics[row][i] = loaded[i]->*kContactColumns[row];
     }
+    c.geometries.set(i, loaded[i]->radius_x, loaded[i]->radius_y);
   }
 }
 

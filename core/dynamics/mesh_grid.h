@@ -36,10 +36,11 @@ enum ContactRow {
   kContactRows
 };
 
-/// The loaded contacts of a grid, node after node.
+/// The loaded contacts at every node of a grid or at every other, the steps' starts.
 struct GridContacts {
-  std::vector<int> node;   ///< of each
-  std::vector<int> first;  ///< contact of each node; at last their number
+  int stride;              ///< of the nodes: 1 or 2
+  std::vector<int> node;   ///< of each contact
+  std::vector<int> first;  ///< contact of each of the nodes; at last their number
   Columns kinematics;      ///< kContactRows
   ContactGeometries geometries;
 };
@@ -59,9 +60,10 @@ class MeshGrid {
   /// Node n is at mesh phase n / (2 steps), n = 0 ... 2 steps.
   const MeshPhase& at(int node) const { return nodes_[node]; }
   const std::array<FlankKinematics, kFlankPairs>& flanks(int node) const { return flanks_[node]; }
-  /// The contact of flank pair k at node n; -1: it has no load.
+  /// The contact of flank pair k at node n among contacts(); -1: it has no load.
   int contact(int node, int k) const { return contact_[node][k]; }
   const GridContacts& contacts() const { return contacts_; }
+  const GridContacts& contacts_at_starts() const { return contacts_at_starts_; }
   /// kMeshRows at the steps' starts, one more for the end of the cycle, and at their middles.
   const Columns& mesh_at_starts() const { return mesh_at_starts_; }
   const Columns& mesh_at_middles() const { return mesh_at_middles_; }
@@ -69,11 +71,13 @@ class MeshGrid {
   double series_reach() const { return series_reach_; }
 
  private:
+  void list(GridContacts& contacts) const;
+
   int steps_;
   std::vector<MeshPhase> nodes_;
   std::vector<std::array<FlankKinematics, kFlankPairs>> flanks_;
   std::vector<std::array<int, kFlankPairs>> contact_;
-  GridContacts contacts_;
+  GridContacts contacts_, contacts_at_starts_;
   Columns mesh_at_starts_, mesh_at_middles_;
   double series_reach_;
 };

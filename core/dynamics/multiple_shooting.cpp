@@ -10,25 +10,10 @@ namespace tribodyn {
 namespace {
 
 constexpr int kUnknowns = SectionMap::kUnknowns;
+double square(double x) { return x * x; }
+
 constexpr int kStates = 7;
 using Vector = SectionMap::Vector;
-using Square = CycleDerivatives::Square;
-
-/// Eigen's own of this size are made for large matrices.
-Vector product(const Square& a, const Vector& x) {
-  Vector even = a.col(0) * x(0), odd = a.col(1) * x(1);
-  for (int j = 2; j < kUnknowns; j += 2) {
-    even += a.col(j) * x(j);
-    odd += a.col(j + 1) * x(j + 1);
-  }
-  return even + odd;
-}
-Square product(const Square& a, const Square& b) {
-  Square out;
-  for (int j = 0; j < kUnknowns; ++j) out.col(j) = product(a, Vector(b.col(j)));
-  return out;
-}
-
 }  // namespace
 
 bool MultipleShooting::applies(const MeshGrid& grid, const OrbitRequest& request,
@@ -38,16 +23,24 @@ bool MultipleShooting::applies(const MeshGrid& grid, const OrbitRequest& request
 }
 
 MultipleShooting::MultipleShooting(GearPairSystem& system, OrbitFriction& friction,
-                                   const MeshGrid& grid, const OrbitRequest& request,
-                                   PeriodicOrbit& orbit)
+                                   CycleStorage& storage, const MeshGrid& grid,
+                                   const OrbitRequest& request, PeriodicOrbit& orbit)
     : Shooting(system, friction, grid, request, orbit),
       instruction_set_(friction.instruction_set()),
       steps_(grid.steps()),
-      block_{system, grid, side(), request.solve_wheel_torque, lagged_},
-      end_(kUnknowns, steps_),
-      particular_(steps_ + 1),
-      duration_(steps_) {
+      response_(storage.response),
+      lagged_(storage.lagged),
+      end_(storage.end),
+      derivatives_(storage.derivatives),
+      change_(storage.change),
+      duration_(storage.duration),
+      per_scale_(scale_.cwiseInverse()),
+      block_{system, grid, side(), request.solve_wheel_torque, lagged_} {
   system.regime = orbit.regime = {block_.side, true};
+  per_scale_(kStates) = 0;  // the torque has a residual of its own
+  end_.resize(kUnknowns, steps_);
+  change_.resize(std::size_t{kUnknowns} * (steps_ + 1));
+  duration_.resize(steps_);
   response_.start.resize(kResponseRows, steps_ + 1);
   response_.middle.resize(kResponseRows, steps_ + 1);
   response_.rate.resize(kUnknowns, steps_ + 1);
@@ -59,6 +52,7 @@ MultipleShooting::MultipleShooting(GearPairSystem& system, OrbitFriction& fricti
     start_from_pieces();
   }
   spread_friction();
+  orbit.friction_change = 0;
 }
 
 void MultipleShooting::start_from_state() {
@@ -92,35 +86,38 @@ void MultipleShooting::start_from_pieces() {
 }
 
 void MultipleShooting::spread_friction() {
+  double change = 0, size = 0;
   for (int node = 0; node <= 2 * steps_; ++node) {
     const FrictionPerLoad at = orbit_.friction.at(0.5 * node / steps_);
     Columns& to = node % 2 == 0 ? lagged_.start : lagged_.middle;
-    to[kPinionFrictionRow][node / 2] = at.pinion;
-    to[kGearFrictionRow][node / 2] = at.gear;
+    double& pinion = to[kPinionFrictionRow][node / 2];
+    double& gear = to[kGearFrictionRow][node / 2];
+    change += square(at.pinion - pinion) + square(at.gear - gear);
+    size += square(at.pinion) + square(at.gear);
+    pinion = at.pinion;
+    gear = at.gear;
   }
+  orbit_.friction_change = size > 0 ? std::sqrt(change / size) : 0;
 }
 
 void MultipleShooting::take_derivatives() {
+  constexpr std::size_t kMatrix = CycleDerivatives::kMatrix;
   auto made = std::make_shared<CycleDerivatives>();
-  made->steps.resize(steps_);
-  Square from_section = Square::Identity();
-  Vector time = Vector::Zero();
-  for (int s = 0; s < steps_; ++s) {
-    CycleDerivatives::Step& step = made->steps[s];
-    for (int j = 0; j < kUnknowns; ++j) {
-      step.duration(j) = derivatives_[j][s];
-      for (int i = 0; i < kStates; ++i) {
-        step.state(i, j) = derivatives_[kDerivativeColumns * (i + 1) + j][s];
-      }
-      step.state(kStates, j) = j == kStates ? 1 : 0;
-    }
-    step.from_section = from_section;
-    for (int j = 0; j < kUnknowns; ++j) time(j) += from_section.col(j).dot(step.duration);
-    from_section = product(step.state, from_section);
-  }
+  made->steps = steps_;
+  made->step.resize(kMatrix * steps_);
+  made->from_section.resize(kMatrix * (steps_ + 1));
+  for (int i = 0; i < kStates; ++i) made->from_section[kUnknowns * i + i] = 1;
+  compose_steps(instruction_set_, derivatives_, *made);
   Sensitivity sensitivity;
-  sensitivity[kTime] = time.transpose().array();
-  for (int i = 0; i < kStates; ++i) sensitivity[i + 1] = from_section.row(i).array();
+  const double* const whole = made->from_section.data() + kMatrix * steps_;
+  for (int j = 0; j < kUnknowns; ++j) {
+    for (int i = 0; i < kStates; ++i) sensitivity[i + 1](j) = whole[kUnknowns * j + i];
+    double time = 0;
+    for (int s = 1; s <= steps_; ++s) {
+      time += made->from_section[kMatrix * s + kUnknowns * j + kStates];
+    }
+    sensitivity[kTime](j) = time;
+  }
   orbit_.map.emplace(sensitivity, scale_, period_time_);
   orbit_.cycle_derivatives = std::move(made);
 }
@@ -129,39 +126,38 @@ Shooting::Step MultipleShooting::improve() {
   constexpr double kBrokenDown = std::numeric_limits<double>::quiet_NaN();
   throw_if_interrupted();
   const bool anew = !orbit_.map || orbit_.cycle_derivatives == nullptr ||
-                    static_cast<int>(orbit_.cycle_derivatives->steps.size()) != steps_;
+                    orbit_.cycle_derivatives->steps != steps_;
   if (anew) derivatives_.resize(kDerivativeRows * kDerivativeColumns, steps_);
   if (!take_steps(instruction_set_, block_, response_, end_, anew ? &derivatives_ : nullptr)) {
     return {kBrokenDown, kBrokenDown};
   }
   evaluations_ += 4L * steps_;
   if (anew) take_derivatives();
-  const std::vector<CycleDerivatives::Step>& derivatives = orbit_.cycle_derivatives->steps;
+  const CycleDerivatives& derivatives = *orbit_.cycle_derivatives;
 
-  // What the residuals alone do, from a section that does not move.
-  Vector p = Vector::Zero();
+  // From a section that does not move, what is missing at the end; then the section moves.
+  follow_residuals(instruction_set_, derivatives, response_, end_, change_.data());
+  const auto change_at = [&](int s) { return change_.data() + std::ptrdiff_t{kUnknowns} * s; };
   double time = 0;
-  for (int s = 0; s < steps_; ++s) {
-    particular_[s] = p;
-    time += end_[kTime][s] + derivatives[s].duration.dot(p);
-    p = product(derivatives[s].state, p);
-    for (int i = 0; i < kStates; ++i) p(i) += end_[i + 1][s] - response_.start[i + 1][s + 1];
-  }
-  Vector residual = p.cwiseQuotient(scale_);
+  for (int s = 1; s <= steps_; ++s) time += change_at(s)[kStates];
+  Vector residual = Eigen::Map<const Vector>(change_at(steps_)).cwiseProduct(per_scale_);
   residual(kStates) = time / period_time_ - 1;
   const Vector step = orbit_.map->step(residual);
   const Vector at_section = step.cwiseProduct(scale_);
-  double longest = step.norm();
+  const double length =
+      std::max(step.norm(), add_section_change(instruction_set_, derivatives, at_section.data(),
+                                               per_scale_.data(), change_.data()));
   for (int s = 0; s < steps_; ++s) {
-    const Vector change = particular_[s] + product(derivatives[s].from_section, at_section);
-    duration_[s] = end_[kTime][s] + derivatives[s].duration.dot(change);
-    longest = std::max(longest, change.cwiseQuotient(scale_).norm());
-    for (int i = 0; i < kStates; ++i) response_.start[i + 1][s] += change(i);
+    for (int i = 0; i < kStates; ++i) response_.start[i + 1][s] += change_at(s)[i];
+    duration_[s] = change_at(s + 1)[kStates];
   }
   for (int i = 0; i < kStates; ++i) response_.start[i + 1][steps_] = response_.start[i + 1][0];
   add_to_unknown(at_section(kStates));
   is_filled_ = false;
-  return {step.norm(), longest};
+  // Two steps with the same derivatives tell how much is left.
+  const double shorter = last_step_ > 0 && !anew ? length / last_step_ : 1;
+  last_step_ = length;
+  return {step.norm(), shorter < 0.5 ? length * shorter / (1 - shorter) : length};
 }
 
 bool MultipleShooting::fill() {
@@ -174,7 +170,8 @@ bool MultipleShooting::fill() {
   return fill_response(instruction_set_, block_, response_);
 }
 
-bool MultipleShooting::evaluate_friction() {
+bool MultipleShooting::evaluate_friction(const GridContacts& contacts) {
+  last_step_ = 0;
   if (!fill()) return false;
   const double light = 1e-3 * mean_force_;
   double least = std::numeric_limits<double>::infinity();
@@ -184,7 +181,7 @@ bool MultipleShooting::evaluate_friction() {
   }
   bool good = false;
   if (least > light) {
-    good = friction_.evaluate(block_, response_, orbit_.friction, orbit_.figures);
+    good = friction_.evaluate(block_, contacts, response_, orbit_.friction, orbit_.figures);
   } else {
     write_pieces();
     good = friction_.evaluate(grid_, orbit_.pieces, light, orbit_.friction, orbit_.figures);
@@ -200,7 +197,6 @@ void MultipleShooting::write_pieces() {
   orbit_.pieces.resize(steps_);
   for (int s = 0; s < steps_; ++s) {
     OrbitPiece& piece = orbit_.pieces[s];
-    piece = {};
     piece.phase = static_cast<double>(s) / steps_;
     piece.length = 1.0 / steps_;
     piece.node = 2 * s;

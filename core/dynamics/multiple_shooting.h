@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "core/dynamics/shooting.h"
@@ -8,16 +7,13 @@
 
 namespace tribodyn {
 
-/// How the states at all steps' starts follow the section state and the unknown torque, in one mesh
-/// cycle of one grid. Unknowns: the seven states, then the torque.
-struct CycleDerivatives {
-  using Square = Eigen::Matrix<double, SectionMap::kUnknowns, SectionMap::kUnknowns>;
-  struct Step {
-    Square state;                 ///< over the step; the torque stays
-    SectionMap::Vector duration;  ///< of the step [s]
-    Square from_section;          ///< from the section to the step's start
-  };
-  std::vector<Step> steps;
+/// What multiple shooting works on, kept from one response to the next.
+struct CycleStorage {
+  CycleResponse response;
+  CycleFriction lagged;
+  Columns end, derivatives;      ///< of take_steps()
+  std::vector<double> change;    ///< of the starts, and durations: eight numbers of each
+  std::vector<double> duration;  ///< of the steps [s]
 };
 
 /// Newton's method on the states at all steps' starts, for one mesh cycle of flanks that stay
@@ -29,14 +25,16 @@ class MultipleShooting final : public Shooting {
   static bool applies(const MeshGrid& grid, const OrbitRequest& request,
                       const PeriodicOrbit& orbit);
   /// As Shooting. Starts from the orbit's pieces, of whatever grid, or else from its state alone.
-  MultipleShooting(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
-                   const OrbitRequest& request, PeriodicOrbit& orbit);
+  MultipleShooting(GearPairSystem& system, OrbitFriction& friction, CycleStorage& storage,
+                   const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit);
 
-  bool evaluate_friction() override;
+  bool evaluate_friction() override { return evaluate_friction(grid_.contacts()); }
+  bool estimate_friction() override { return evaluate_friction(grid_.contacts_at_starts()); }
   void finish(MarchStatistics& statistics, long& marched_cycles) override;
 
  private:
   Step improve() override;
+  bool evaluate_friction(const GridContacts& contacts);
   void start_from_pieces();
   void start_from_state();
   void spread_friction();
@@ -46,13 +44,14 @@ class MultipleShooting final : public Shooting {
 
   InstructionSet instruction_set_;
   int steps_;
-  CycleResponse response_;
-  bool is_filled_ = false;  // but for its states at starts
-  CycleFriction lagged_;
+  CycleResponse& response_;
+  CycleFriction& lagged_;
+  Columns &end_, &derivatives_;
+  std::vector<double>&change_, &duration_;
+  bool is_filled_ = false;  // the response, but for its states at starts
+  SectionMap::Vector per_scale_;
+  double last_step_ = 0;  // with the derivatives at hand; 0: none
   StepBlock block_;
-  Columns end_, derivatives_;
-  std::vector<SectionMap::Vector> particular_;  // what the residuals alone do to the starts
-  std::vector<double> duration_;
   long evaluations_ = 0;
 };
 

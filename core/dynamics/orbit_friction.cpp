@@ -12,6 +12,8 @@ void add_cubic_extremes(double x0, double v0, double x1, double v1, double h, do
                         double& high) {
   low = std::min({low, x0, x1});
   high = std::max({high, x0, x1});
+  const double beyond = 4.0 / 27 * h * (std::abs(v0) + std::abs(v1));  // at most
+  if (std::max(x0, x1) + beyond <= high && std::min(x0, x1) - beyond >= low) return;
   // x'(t) = v0 + 2 b t + 3 a t^2 with t in [0, 1].
   const double s0 = v0 * h, s1 = v1 * h, rise = x1 - x0;
   const double a = s0 + s1 - 2 * rise, b = 3 * rise - 2 * s0 - s1;
@@ -217,15 +219,14 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
   return true;
 }
 
-bool OrbitFriction::evaluate(const StepBlock& block, const CycleResponse& response,
-                             LaggedFriction& friction, OrbitFigures& f) {
-  const MeshGrid& grid = block.grid;
-  const GridContacts& contacts = grid.contacts();
+bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contacts,
+                             const CycleResponse& response, LaggedFriction& friction,
+                             OrbitFigures& f) {
   const auto count = static_cast<int>(contacts.node.size());
   seen_.resize(kSeenRows, contacts.node.size());
   arrays_.friction.resize(std::max(arrays_.friction.size(), contacts.node.size()));
   arrays_.status.resize(arrays_.friction.size());
-  see_contacts(instruction_set(), block, response, seen_);
+  see_contacts(instruction_set(), block, contacts, response, seen_);
   if (!solve_contacts(contacts.geometries, count,
                       {seen_[kSeenLoad], seen_[kSeenPinionX], seen_[kSeenPinionY],
                        seen_[kSeenGearX], seen_[kSeenGearY]},
@@ -235,31 +236,33 @@ bool OrbitFriction::evaluate(const StepBlock& block, const CycleResponse& respon
   friction.clear();
   f = {};
   least_pressing_force_ = 1e300;
-  const int steps = grid.steps(), last = 2 * steps;
+  const int last = 2 * block.grid.steps();
   double low = 1e300, high = -1e300, squares = 0, time = 0;
-  for (int node = 0; node <= last; ++node) {
+  for (int place = 0, node = 0; node <= last; ++place, node += contacts.stride) {
     const Columns& at = node % 2 == 0 ? response.start : response.middle;
     const int lane = node / 2;
     double loss = 0;
     FrictionPerLoad torque;
-    for (int n = contacts.first[node]; n < contacts.first[node + 1]; ++n) {
+    for (int n = contacts.first[place]; n < contacts.first[place + 1]; ++n) {
       torque.pinion += seen_[kSeenPinionArm][n] * arrays_.friction[n];
       torque.gear += seen_[kSeenGearArm][n] * arrays_.friction[n];
       loss += seen_[kSeenSlidingSpeed][n] * arrays_.friction[n];
     }
     const double load = block.side * at[kMeshForceRow][lane];
-    friction.add(0.5 * node / steps, {torque.pinion / load, torque.gear / load});
+    friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load});
     least_pressing_force_ = std::min(least_pressing_force_, load);
-    // Simpson's rule.
-    const double weight = node == 0 || node == last ? 1 : node % 2 == 0 ? 2 : 4;
-    const double duration = weight / (6 * steps) * system_.cycle_angle() / at[kPinionSpeed][lane];
+    // By Simpson's rule, or by trapezoids where there are no middles.
+    const double inside = contacts.stride == 2 ? 6 : node % 2 == 0 ? 2 : 4;
+    const double weight = node == 0 || node == last ? (contacts.stride == 2 ? 3 : 1) : inside;
+    const double duration = weight / (3 * last) * system_.cycle_angle() / at[kPinionSpeed][lane];
     const double share = loss / at[kPinionShaftSpeed][lane];
     f.loss_energy += duration * loss;
     squares += duration * share * share;
     time += duration;
     if (node == last) break;
-    const Columns& next = node % 2 == 0 ? response.middle : response.start;
-    const int to = (node + 1) / 2;
+    const int next_node = node + contacts.stride;
+    const Columns& next = next_node % 2 == 0 ? response.start : response.middle;
+    const int to = next_node / 2;
     add_cubic_extremes(at[kTransmissionErrorRow][lane], at[kTransmissionVelocityRow][lane],
                        next[kTransmissionErrorRow][to], next[kTransmissionVelocityRow][to],
                        next[kTime][to] - at[kTime][lane], low, high);

@@ -49,9 +49,10 @@ class OrbitFriction {
   /// refused; the system tells why.
   bool evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, double light,
                 LaggedFriction& friction, OrbitFigures& figures);
-  /// The same on a response, filled, whose flanks press together all the time.
-  bool evaluate(const StepBlock& block, const CycleResponse& response, LaggedFriction& friction,
-                OrbitFigures& figures);
+  /// The same on a response, filled, whose flanks press together all the time. `contacts`: those of
+  /// the block's grid at which friction is evaluated.
+  bool evaluate(const StepBlock& block, const GridContacts& contacts, const CycleResponse& response,
+                LaggedFriction& friction, OrbitFigures& figures);
   /// Smallest force that pressed touching flanks together at the instants of the last evaluation;
   /// negative: they were held together [N].
   double least_pressing_force() const { return least_pressing_force_; }

@@ -28,7 +28,10 @@ struct PeriodicOrbit {
   double defect = 0;       ///< scaled change of the state in the last step of Newton
   double moved = 0;        ///< longest step of Newton under the last friction, scaled
   double contraction = 0;  ///< of the error in a sweep; 0: none made yet
-  double unsettled = 0;    ///< estimate of what further sweeps would still change, relative
+  /// Of friction per load in the last evaluation, relative, root of the mean square; 0: unknown.
+  double friction_change = 0;
+  double response = 0;   ///< of the figures to all of the friction, relative; 0: unknown
+  double unsettled = 0;  ///< estimate of what further sweeps would still change, relative
   bool contact_loss = false;
   /// Smallest force that pressed touching flanks together, over the mean one; negative: they were
   /// held together.
@@ -47,31 +50,5 @@ struct OrbitRequest {
   double tolerance = 1e-6;      ///< of the figures, relative: sweeps go on until then
   std::function<bool()> interrupted;  ///< true: throws Cancelled
 };
-
-/// The periodic response without friction, to a permille: where every lubricant's response is near,
-/// and the same for all. Starts from `orbit` (state, torques) and leaves state, torques, map and
-/// pieces there. False where it does not converge. Adds to `statistics`.
-bool approach_without_friction(GearPairSystem& system, OrbitFriction& friction,
-                               const MeshGrid& grid, const OrbitRequest& request,
-                               PeriodicOrbit& orbit, MarchStatistics& statistics,
-                               long& marched_cycles);
-
-/// The periodic response of the whole system with the unknown torque, without marching through
-/// transients: Newton's method (SingleShooting, MultipleShooting) under lagged friction, friction
-/// evaluated anew on the response found, and so on until neither moves. Derivatives are kept while
-/// they serve. An orbit found before, on another grid, lends its friction and figures: then one
-/// sweep may do. At the end friction and motion belong to each other as in the full system; what is
-/// left is the error of the grid's steps. Starts from `orbit` (state, torques, friction, map) and
-/// leaves the response there. False where it does not converge; the orbit is then of no use. Where
-/// flanks kept together clearly pull, it may end before it converges. Adds to `statistics`.
-bool solve_periodic_orbit(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
-                          const OrbitRequest& request, PeriodicOrbit& orbit,
-                          MarchStatistics& statistics, long& marched_cycles);
-
-/// The map at the response itself, in place of one from near: multipliers by it are good to 3e-3
-/// also where contact is lost or periods double. False where the march breaks down.
-bool renew_map(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
-               const OrbitRequest& request, PeriodicOrbit& orbit, MarchStatistics& statistics,
-               long& marched_cycles);
 
 }  // namespace tribodyn

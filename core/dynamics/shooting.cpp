@@ -36,15 +36,15 @@ bool Shooting::converge(double enough) {
   for (int i = 0; i < kMostSteps; ++i) {
     if (!orbit_.map) ++derivatives;
     const Step step = improve();
-    orbit_.defect = step.longest;
-    if (!(step.longest < 1e9)) return false;
+    orbit_.defect = step.left;
+    if (!(step.left < 1e9)) return false;
     orbit_.moved = std::max(orbit_.moved, step.section);
-    if (step.longest < enough) return true;
-    if (i > 0 && step.longest > 0.2 * last) {
+    if (step.left < enough) return true;
+    if (i > 0 && step.left > 0.2 * last) {
       if (derivatives >= kMostDerivatives) return false;
       orbit_.map.reset();
     }
-    last = step.longest;
+    last = step.left;
   }
   return false;
 }

@@ -16,6 +16,8 @@ class Shooting {
   bool converge(double enough);
   /// Friction on the response as it is, and the figures with it. False when refused.
   virtual bool evaluate_friction() = 0;
+  /// The same at fewer places, good enough to begin with.
+  virtual bool estimate_friction() { return evaluate_friction(); }
   /// Hands over what has become of the response, and the work.
   virtual void finish(MarchStatistics& statistics, long& marched_cycles) = 0;
 
@@ -28,7 +30,7 @@ class Shooting {
   /// Lengths of a step of Newton's method, scaled.
   struct Step {
     double section;  ///< of the state at the section and of the torque
-    double longest;  ///< anywhere
+    double left;     ///< at most, anywhere, to the response
   };
   /// One step, with the derivatives at hand if there are any; NaN where that breaks down.
   virtual Step improve() = 0;

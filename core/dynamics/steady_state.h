@@ -45,7 +45,7 @@ MarchState static_start(const GearPairSystem& system, double mean_pinion_speed,
 /// 1, 2, 3, 4 mesh cycles are looked for; where none settles within the work limit, `settled` is
 /// false.
 ///
-/// Slow and sure: solve_periodic_orbit() is tried first.
+/// Slow and sure: OrbitSolver is tried first.
 SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
                                const SteadyStateRequest& request);
 

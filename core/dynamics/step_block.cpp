@@ -10,6 +10,8 @@
 #include "core/numerics/pack-inl.h"
 // NOLINTEND(bugprone-suspicious-include,misc-redundant-expression)
 
+#include <algorithm>
+
 #include "core/dynamics/step_block.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -216,6 +218,52 @@ HWY_INLINE Mask beyond(int lane, int steps) {
 
 HWY_INLINE bool all(Mask x) { return !any(~x); }
 
+constexpr int kSize = 8;  // of a matrix
+using RowTag = hn::CappedTag<double, kSize>;
+using RowVector = hn::Vec<RowTag>;
+constexpr RowTag kRow;
+constexpr int kParts = kSize / (HWY_MAX_BYTES / 8 < kSize ? HWY_MAX_BYTES / 8 : kSize);
+
+/// Eight numbers.
+struct Row {
+  RowVector v[kParts];
+};
+HWY_INLINE int part_lanes() { return static_cast<int>(hn::Lanes(kRow)); }
+HWY_INLINE Row load_row(const double* from) {
+  Row out;
+  for (int k = 0; k < kParts; ++k) out.v[k] = hn::LoadU(kRow, from + k * part_lanes());
+  return out;
+}
+HWY_INLINE void store_row(const Row& x, double* to) {
+  for (int k = 0; k < kParts; ++k) hn::StoreU(x.v[k], kRow, to + k * part_lanes());
+}
+HWY_INLINE Row plus(const Row& x, const Row& y) {
+  Row out;
+  for (int k = 0; k < kParts; ++k) out.v[k] = hn::Add(x.v[k], y.v[k]);
+  return out;
+}
+/// a x + y with a number a.
+HWY_INLINE Row add_scaled(double a, const double* x, const Row& y) {
+  Row out;
+  const RowVector factor = hn::Set(kRow, a);
+  for (int k = 0; k < kParts; ++k) {
+    out.v[k] = hn::MulAdd(factor, hn::LoadU(kRow, x + k * part_lanes()), y.v[k]);
+  }
+  return out;
+}
+/// y + the columns of a matrix times the first `count` of x.
+template <int kCount>
+HWY_INLINE Row add_product(const double* matrix, const double* x, Row even) {
+  const double nothing[kSize] = {};
+  Row odd = load_row(nothing);
+  for (int j = 0; j + 1 < kCount; j += 2) {
+    even = add_scaled(x[j], matrix + kSize * j, even);
+    odd = add_scaled(x[j + 1], matrix + kSize * (j + 1), odd);
+  }
+  if (kCount % 2 == 1) even = add_scaled(x[kCount - 1], matrix + kSize * (kCount - 1), even);
+  return plus(even, odd);
+}
+
 }  // namespace
 
 bool steps_in_lanes(const StepBlock& block, const CycleResponse& response, Columns& end,
@@ -296,8 +344,60 @@ bool fill_lanes(const StepBlock& block, CycleResponse& response) {
   return all_good;
 }
 
-void see_in_lanes(const StepBlock& block, const CycleResponse& response, Columns& seen) {
-  const GridContacts& contacts = block.grid.contacts();
+void compose_matrices(const Columns& derivatives, CycleDerivatives& out) {
+  constexpr std::size_t kMatrix = CycleDerivatives::kMatrix;
+  const double nothing[kSize] = {};
+  for (int s = 0; s < out.steps; ++s) {
+    double* const step = out.step.data() + kMatrix * s;
+    for (int j = 0; j < kSize; ++j) {
+      for (int i = 0; i + 1 < kSize; ++i) {
+        step[kSize * j + i] = derivatives[kDerivativeColumns * (i + 1) + j][s];
+      }
+      step[kSize * j + kSize - 1] = derivatives[j][s];
+    }
+    const double* const from = out.from_section.data() + kMatrix * s;
+    double* const to = out.from_section.data() + kMatrix * (s + 1);
+    for (int j = 0; j < kSize; ++j) {
+      const Row direct = load_row(j == kTorque ? step + kSize * kTorque : nothing);
+      store_row(add_product<kTorque>(step, from + kSize * j, direct), to + kSize * j);
+    }
+  }
+}
+
+void follow_in_rows(const CycleDerivatives& derivatives, const CycleResponse& response,
+                    const Columns& end, double* particular) {
+  std::fill_n(particular, kSize, 0.0);
+  double residual[kSize];
+  for (int s = 0; s < derivatives.steps; ++s) {
+    for (int i = 1; i < kStates; ++i) residual[i - 1] = end[i][s] - response.start[i][s + 1];
+    residual[kSize - 1] = end[kTime][s];
+    const double* const matrix = derivatives.step.data() + CycleDerivatives::kMatrix * s;
+    double* const at = particular + kSize * s;
+    store_row(add_product<kTorque>(matrix, at, load_row(residual)), at + kSize);
+  }
+}
+
+double add_section_in_rows(const CycleDerivatives& derivatives, const double* section,
+                           const double* per_scale, double* particular) {
+  const double nothing[kSize] = {};
+  const Row scale = load_row(per_scale);
+  Row largest = load_row(nothing);
+  for (int s = 0; s <= derivatives.steps; ++s) {
+    const double* const matrix = derivatives.from_section.data() + CycleDerivatives::kMatrix * s;
+    double* const at = particular + kSize * s;
+    const Row sum = add_product<kSize>(matrix, section, load_row(at));
+    store_row(sum, at);
+    for (int k = 0; k < kParts; ++k) {
+      largest.v[k] = hn::Max(largest.v[k], hn::Abs(hn::Mul(sum.v[k], scale.v[k])));
+    }
+  }
+  double found[kSize];
+  store_row(largest, found);
+  return *std::max_element(found, found + kSize);
+}
+
+void see_in_lanes(const StepBlock& block, const GridContacts& contacts,
+                  const CycleResponse& response, Columns& seen) {
   const int count = static_cast<int>(contacts.node.size());
   // What the contacts of a node share, where the contact is.
   for (int i = 0; i < count; ++i) {
@@ -380,19 +480,67 @@ bool fill_response(InstructionSet instruction_set, const StepBlock& block,
   }
 }
 
-void see_contacts(InstructionSet instruction_set, const StepBlock& block,
-                  const CycleResponse& response, Columns& seen) {
+void compose_steps(InstructionSet instruction_set, const Columns& derivatives,
+                   CycleDerivatives& out) {
   switch (instruction_set) {
 #if HWY_TARGETS & HWY_AVX3
     case InstructionSet::kAvx512:
-      return N_AVX3::see_in_lanes(block, response, seen);
+      return N_AVX3::compose_matrices(derivatives, out);
 #endif
 #if HWY_TARGETS & HWY_AVX2
     case InstructionSet::kAvx2:
-      return N_AVX2::see_in_lanes(block, response, seen);
+      return N_AVX2::compose_matrices(derivatives, out);
 #endif
     default:
-      return HWY_STATIC_DISPATCH(see_in_lanes)(block, response, seen);
+      return HWY_STATIC_DISPATCH(compose_matrices)(derivatives, out);
+  }
+}
+
+void follow_residuals(InstructionSet instruction_set, const CycleDerivatives& derivatives,
+                      const CycleResponse& response, const Columns& end, double* particular) {
+  switch (instruction_set) {
+#if HWY_TARGETS & HWY_AVX3
+    case InstructionSet::kAvx512:
+      return N_AVX3::follow_in_rows(derivatives, response, end, particular);
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case InstructionSet::kAvx2:
+      return N_AVX2::follow_in_rows(derivatives, response, end, particular);
+#endif
+    default:
+      return HWY_STATIC_DISPATCH(follow_in_rows)(derivatives, response, end, particular);
+  }
+}
+
+double add_section_change(InstructionSet instruction_set, const CycleDerivatives& derivatives,
+                          const double* section, const double* per_scale, double* particular) {
+  switch (instruction_set) {
+#if HWY_TARGETS & HWY_AVX3
+    case InstructionSet::kAvx512:
+      return N_AVX3::add_section_in_rows(derivatives, section, per_scale, particular);
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case InstructionSet::kAvx2:
+      return N_AVX2::add_section_in_rows(derivatives, section, per_scale, particular);
+#endif
+    default:
+      return HWY_STATIC_DISPATCH(add_section_in_rows)(derivatives, section, per_scale, particular);
+  }
+}
+
+void see_contacts(InstructionSet instruction_set, const StepBlock& block,
+                  const GridContacts& contacts, const CycleResponse& response, Columns& seen) {
+  switch (instruction_set) {
+#if HWY_TARGETS & HWY_AVX3
+    case InstructionSet::kAvx512:
+      return N_AVX3::see_in_lanes(block, contacts, response, seen);
+#endif
+#if HWY_TARGETS & HWY_AVX2
+    case InstructionSet::kAvx2:
+      return N_AVX2::see_in_lanes(block, contacts, response, seen);
+#endif
+    default:
+      return HWY_STATIC_DISPATCH(see_in_lanes)(block, contacts, response, seen);
   }
 }
 

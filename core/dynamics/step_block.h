@@ -53,7 +53,31 @@ bool take_steps(InstructionSet instruction_set, const StepBlock& block,
 /// mechanics. Times and states at the starts are given. False as above.
 bool fill_response(InstructionSet instruction_set, const StepBlock& block, CycleResponse& response);
 
-/// Rows of what the contacts of a grid see in a response, in the grid's order.
+/// How the states at the steps' starts, and the steps' durations, follow the section state and the
+/// unknown torque. Matrices of 8 x 8 in columns: seven states and the duration of the step before,
+/// by seven states and the torque.
+struct CycleDerivatives {
+  static constexpr std::size_t kMatrix = 64;
+  int steps = 0;
+  std::vector<double> step;          ///< of each step, by its start
+  std::vector<double> from_section;  ///< of each start and the end of the cycle, by the section
+};
+
+/// From the derivatives of take_steps().
+void compose_steps(InstructionSet instruction_set, const Columns& derivatives,
+                   CycleDerivatives& out);
+
+/// What the steps' residuals (their ends less the next starts) alone do to the starts and
+/// durations: 8 numbers for each start and the end of the cycle.
+void follow_residuals(InstructionSet instruction_set, const CycleDerivatives& derivatives,
+                      const CycleResponse& response, const Columns& end, double* particular);
+
+/// Adds to each of `particular` what a change of the section state and the torque (8 numbers) does.
+/// Returns the largest change of a state, each over its scale (7 numbers, then 0).
+double add_section_change(InstructionSet instruction_set, const CycleDerivatives& derivatives,
+                          const double* section, const double* per_scale, double* particular);
+
+/// Rows of what contacts see in a response.
 enum SeenRow {
   kSeenLoad,
   kSeenPinionX,
@@ -66,8 +90,8 @@ enum SeenRow {
   kSeenRows
 };
 
-/// Fills `seen`, which has a lane for each contact of the grid.
+/// Fills `seen`, which has a lane for each of the grid's contacts.
 void see_contacts(InstructionSet instruction_set, const StepBlock& block,
-                  const CycleResponse& response, Columns& seen);
+                  const GridContacts& contacts, const CycleResponse& response, Columns& seen);
 
 }  // namespace tribodyn

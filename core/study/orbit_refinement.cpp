@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/dynamics/orbit_solver.h"
 #include "core/study/step_sequence.h"
 
 namespace tribodyn {
@@ -57,9 +58,8 @@ bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
 }
 
 /// `repels`: set where a response is found that surely does, or may where periods double.
-std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitFriction& friction,
-                                   MeshGrids& grids, const OrbitSearch& search, bool& repels,
-                                   MarchStatistics& statistics, long& marched_cycles) {
+std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, MeshGrids& grids,
+                                   const OrbitSearch& search, bool& repels) {
   OrbitRequest request;
   request.mean_pinion_speed = search.mean_pinion_speed;
   request.solve_wheel_torque = search.solve_wheel_torque;
@@ -93,8 +93,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitFriction& fricti
       if (!have_coarser) {
         const auto approach = [&] {
           orbit = origin;
-          return approach_without_friction(system, friction, grid, request, orbit, statistics,
-                                           marched_cycles);
+          return solver.approach_without_friction(grid, request, orbit);
         };
         if (search.frictionless == nullptr) {
           if (!approach()) return false;
@@ -102,8 +101,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitFriction& fricti
           return false;
         }
       }
-      return solve_periodic_orbit(system, friction, grid, request, orbit, statistics,
-                                  marched_cycles);
+      return solver.solve(grid, request, orbit);
     };
     bool found = false;
     if (request.keep_contact) {
@@ -156,8 +154,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitFriction& fricti
       // A map from near may know nothing of a flank that hardly parts, nor of what friction does
       // to the multipliers: 0.02 where periods double.
       const bool doubles = best.orbit.map->distance_from_doubling() < kNearDoubling;
-      if ((best.orbit.contact_loss || doubles) &&
-          !renew_map(system, friction, grid, request, best.orbit, statistics, marched_cycles)) {
+      if ((best.orbit.contact_loss || doubles) && !solver.renew_map(grid, request, best.orbit)) {
         return std::nullopt;
       }
       const double doubt = margin(system, search);
@@ -180,17 +177,17 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
                                          MarchStatistics& statistics, long& marched_cycles) {
   constexpr int kLongestPeriod = 4;
   OrbitSearch next = search;
-  OrbitFriction friction(system, contacts);
+  OrbitSolver solver(system, contacts, statistics, marched_cycles);
   const Torques torques = system.torques();
   for (bool patient = false;; patient = true) {
     bool repels = false;
     system.set_torques(torques);
-    auto found = refine(system, friction, grids, next, repels, statistics, marched_cycles);
+    auto found = refine(system, solver, grids, next, repels);
     if (found && next.period > search.period && is_half_as_long(system, search, found->orbit)) {
       next.period /= 2;
       next.start = found->orbit.state;
       next.few_cycles = next.first_cycles = 1;
-      found = refine(system, friction, grids, next, repels, statistics, marched_cycles);
+      found = refine(system, solver, grids, next, repels);
     }
     if (found || (patient && !repels) || 2 * next.period > kLongestPeriod) return found;
     // Periods double where a response begins to repel, and a branch may end between neighbours: to
