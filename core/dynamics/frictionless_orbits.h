@@ -24,7 +24,6 @@ class FrictionlessOrbits {
       return known->second.has_value();
     }
     const bool converged = approach();
-    if (converged) orbit.map->multiplier_bound();  // computed for all copies
     if (orbits_.size() >= kMost) orbits_.clear();
     orbits_.emplace(where, converged ? std::optional(orbit) : std::nullopt);
     return converged;

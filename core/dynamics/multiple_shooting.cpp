@@ -102,14 +102,10 @@ void MultipleShooting::spread_friction() {
 
 void MultipleShooting::take_derivatives() {
   constexpr std::size_t kMatrix = CycleDerivatives::kMatrix;
-  auto made = std::make_shared<CycleDerivatives>();
-  made->steps = steps_;
-  made->step.resize(kMatrix * steps_);
-  made->from_section.resize(kMatrix * (steps_ + 1));
-  for (int i = 0; i < kStates; ++i) made->from_section[kUnknowns * i + i] = 1;
+  auto made = std::make_shared<CycleDerivatives>(steps_);
   compose_steps(instruction_set_, derivatives_, *made);
   Sensitivity sensitivity;
-  const double* const whole = made->from_section.data() + kMatrix * steps_;
+  const double* const whole = made->from_section.get() + kMatrix * steps_;
   for (int j = 0; j < kUnknowns; ++j) {
     for (int i = 0; i < kStates; ++i) sensitivity[i + 1](j) = whole[kUnknowns * j + i];
     double time = 0;

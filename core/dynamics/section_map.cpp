@@ -22,9 +22,9 @@ SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, doub
   monodromy_ *= scale.head<kUnknowns - 1>().asDiagonal();
 }
 
-double SectionMap::multiplier_bound() const {
-  if (multiplier_bound_ < 0) multiplier_bound_ = bound_of_multipliers();
-  return multiplier_bound_;
+bool SectionMap::multipliers_are_below(double limit) const {
+  if (!(multiplier_bound_ < limit)) multiplier_bound_ = bound_of_multipliers(limit);
+  return multiplier_bound_ < limit;
 }
 
 double SectionMap::distance_from_doubling() const {
@@ -33,7 +33,8 @@ double SectionMap::distance_from_doubling() const {
 }
 
 /// |lambda|^k is at most the norm of the k-th power, once the multiplier nearest to 1 is taken out.
-double SectionMap::bound_of_multipliers() const {
+/// A bound below `enough` will do.
+double SectionMap::bound_of_multipliers(double enough) const {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   constexpr int kIterations = 3, kSquarings = 10;
   constexpr double kFound = 1e-6;
@@ -52,15 +53,17 @@ double SectionMap::bound_of_multipliers() const {
   if (!(missed < kFound * std::abs(overlap))) return kUnknown;
   Square power = monodromy_ - nearest / overlap * right * left.transpose();
   double log_norm = 0, exponent = 1;  // of the power: e^log_norm times the matrix at hand
-  for (int i = 0; i < kSquarings; ++i) {
-    power = (power * power).eval();
+  for (int i = 0;; ++i) {
     const double norm = power.norm();
     if (norm == 0) return 0;
-    exponent *= 2;
-    log_norm = 2 * log_norm + std::log(norm);
+    log_norm += std::log(norm);
+    const double bound = std::exp(log_norm / exponent);
+    if (bound < enough || i == kSquarings) return bound;
     power /= norm;
+    power = power.lazyProduct(power).eval();
+    log_norm *= 2;
+    exponent *= 2;
   }
-  return std::exp(log_norm / exponent);
 }
 
 double SectionMap::largest_multiplier() const {

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <array>
+#include <limits>
 
 namespace tribodyn {
 
@@ -23,18 +24,19 @@ class SectionMap {
   /// Floquet, modulus; but for the one nearest to 1: the train as a whole runs on at any speed.
   /// Computed once; copies made after that know it.
   double largest_multiplier() const;
-  /// Not below that, at half the price, and mostly within a percent; infinite where it cannot tell.
-  /// Computed once like that.
-  double multiplier_bound() const;
+  /// Whether that is surely below a limit, at a fraction of the price. False where it cannot tell,
+  /// mostly within a percent. A proof is remembered like that.
+  bool multipliers_are_below(double limit) const;
   /// Not above the distance of any multiplier from -1, where periods double.
   double distance_from_doubling() const;
 
  private:
-  double bound_of_multipliers() const;
+  double bound_of_multipliers(double enough) const;
 
   Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
   Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;   // scaled
-  mutable double largest_multiplier_ = -1, multiplier_bound_ = -1;  // not computed yet
+  mutable double largest_multiplier_ = -1;  // not computed yet
+  mutable double multiplier_bound_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace tribodyn

@@ -347,16 +347,20 @@ bool fill_lanes(const StepBlock& block, CycleResponse& response) {
 void compose_matrices(const Columns& derivatives, CycleDerivatives& out) {
   constexpr std::size_t kMatrix = CycleDerivatives::kMatrix;
   const double nothing[kSize] = {};
+  for (int j = 0; j < kSize; ++j) {
+    double* const column = out.from_section.get() + kSize * j;
+    for (int i = 0; i < kSize; ++i) column[i] = i == j && j < kTorque ? 1 : 0;
+  }
   for (int s = 0; s < out.steps; ++s) {
-    double* const step = out.step.data() + kMatrix * s;
+    double* const step = out.step.get() + kMatrix * s;
     for (int j = 0; j < kSize; ++j) {
       for (int i = 0; i + 1 < kSize; ++i) {
         step[kSize * j + i] = derivatives[kDerivativeColumns * (i + 1) + j][s];
       }
       step[kSize * j + kSize - 1] = derivatives[j][s];
     }
-    const double* const from = out.from_section.data() + kMatrix * s;
-    double* const to = out.from_section.data() + kMatrix * (s + 1);
+    const double* const from = out.from_section.get() + kMatrix * s;
+    double* const to = out.from_section.get() + kMatrix * (s + 1);
     for (int j = 0; j < kSize; ++j) {
       const Row direct = load_row(j == kTorque ? step + kSize * kTorque : nothing);
       store_row(add_product<kTorque>(step, from + kSize * j, direct), to + kSize * j);
@@ -371,7 +375,7 @@ void follow_in_rows(const CycleDerivatives& derivatives, const CycleResponse& re
   for (int s = 0; s < derivatives.steps; ++s) {
     for (int i = 1; i < kStates; ++i) residual[i - 1] = end[i][s] - response.start[i][s + 1];
     residual[kSize - 1] = end[kTime][s];
-    const double* const matrix = derivatives.step.data() + CycleDerivatives::kMatrix * s;
+    const double* const matrix = derivatives.step.get() + CycleDerivatives::kMatrix * s;
     double* const at = particular + kSize * s;
     store_row(add_product<kTorque>(matrix, at, load_row(residual)), at + kSize);
   }
@@ -383,7 +387,7 @@ double add_section_in_rows(const CycleDerivatives& derivatives, const double* se
   const Row scale = load_row(per_scale);
   Row largest = load_row(nothing);
   for (int s = 0; s <= derivatives.steps; ++s) {
-    const double* const matrix = derivatives.from_section.data() + CycleDerivatives::kMatrix * s;
+    const double* const matrix = derivatives.from_section.get() + CycleDerivatives::kMatrix * s;
     double* const at = particular + kSize * s;
     const Row sum = add_product<kSize>(matrix, section, load_row(at));
     store_row(sum, at);

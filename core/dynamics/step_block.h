@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <memory>
 
 #include "core/contact/flank_contact_batch.h"
 #include "core/dynamics/gear_pair_system.h"
@@ -58,9 +58,13 @@ bool fill_response(InstructionSet instruction_set, const StepBlock& block, Cycle
 /// by seven states and the torque.
 struct CycleDerivatives {
   static constexpr std::size_t kMatrix = 64;
-  int steps = 0;
-  std::vector<double> step;          ///< of each step, by its start
-  std::vector<double> from_section;  ///< of each start and the end of the cycle, by the section
+  explicit CycleDerivatives(int count)
+      : steps(count),
+        step(std::make_unique_for_overwrite<double[]>(kMatrix * count)),
+        from_section(std::make_unique_for_overwrite<double[]>(kMatrix * (count + 1))) {}
+  int steps;
+  std::unique_ptr<double[]> step;          ///< of each step, by its start
+  std::unique_ptr<double[]> from_section;  ///< of each start and the end of the cycle, by the section
 };
 
 /// From the derivatives of take_steps().

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/dynamics/orbit_solver.h"
 #include "core/study/step_sequence.h"
@@ -88,7 +89,8 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
     // Sweeps go on until what they leave is well below what the step length can give.
     request.tolerance =
         have_coarser ? 0.2 * search.tolerance : std::max(5 * search.tolerance, 1e-4);
-    PeriodicOrbit orbit = have_coarser ? best.orbit : origin;
+    const OrbitFigures coarser = best.orbit.figures;
+    PeriodicOrbit orbit = have_coarser ? std::move(best.orbit) : origin;
     const auto solve = [&] {
       if (!have_coarser) {
         const auto approach = [&] {
@@ -133,7 +135,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
     }
     double estimate = 0;
     if (have_coarser) {
-      const double difference = orbit.figures.distance(best.orbit.figures);
+      const double difference = orbit.figures.distance(coarser);
       // Second order at kinks and events; more only where two halvings have shown it.
       const double finer = static_cast<double>(steps) / best.steps_per_mesh_cycle;
       double gain = square(finer);
@@ -158,7 +160,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
         return std::nullopt;
       }
       const double doubt = margin(system, search);
-      if (best.orbit.map->multiplier_bound() < 1 - doubt) return best;
+      if (best.orbit.map->multipliers_are_below(1 - doubt)) return best;
       const double multiplier = best.orbit.map->largest_multiplier();
       if (multiplier < 1 - doubt) return best;
       // In doubt whether the period has doubled, it is looked for.
