@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -42,6 +43,24 @@ class LaggedFriction {
     const double t = std::clamp((phase - from.phase) * from.per_width, 0.0, 1.0);
     const FrictionPerLoad &a = from.value, &b = nodes_[cursor_ + 1].value;
     return {a.pinion + t * (b.pinion - a.pinion), a.gear + t * (b.gear - a.gear)};
+  }
+
+  /// The same, at once where value number i is at that phase.
+  FrictionPerLoad at(double phase, std::size_t i) {
+    return i < nodes_.size() && nodes_[i].phase == phase ? nodes_[i].value : at(phase);
+  }
+
+  /// How far it is from another one: root of the mean square at its own phases, relative.
+  double distance(LaggedFriction& other) const {
+    double change = 0, size = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const Node& node = nodes_[i];
+      const FrictionPerLoad there = other.at(node.phase, i);
+      const double pinion = node.value.pinion - there.pinion, gear = node.value.gear - there.gear;
+      change += pinion * pinion + gear * gear;
+      size += node.value.pinion * node.value.pinion + node.value.gear * node.value.gear;
+    }
+    return size > 0 ? std::sqrt(change / size) : 0;
   }
 
  private:

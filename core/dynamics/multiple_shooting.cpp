@@ -10,8 +10,6 @@ namespace tribodyn {
 namespace {
 
 constexpr int kUnknowns = SectionMap::kUnknowns;
-double square(double x) { return x * x; }
-
 constexpr int kStates = 7;
 using Vector = SectionMap::Vector;
 }  // namespace
@@ -52,7 +50,6 @@ MultipleShooting::MultipleShooting(GearPairSystem& system, OrbitFriction& fricti
     start_from_pieces();
   }
   spread_friction();
-  orbit.friction_change = 0;
 }
 
 void MultipleShooting::start_from_state() {
@@ -86,18 +83,13 @@ void MultipleShooting::start_from_pieces() {
 }
 
 void MultipleShooting::spread_friction() {
-  double change = 0, size = 0;
   for (int node = 0; node <= 2 * steps_; ++node) {
-    const FrictionPerLoad at = orbit_.friction.at(0.5 * node / steps_);
+    const FrictionPerLoad at = orbit_.friction.at(static_cast<double>(node) / (2 * steps_),
+                                                  static_cast<std::size_t>(node));
     Columns& to = node % 2 == 0 ? lagged_.start : lagged_.middle;
-    double& pinion = to[kPinionFrictionRow][node / 2];
-    double& gear = to[kGearFrictionRow][node / 2];
-    change += square(at.pinion - pinion) + square(at.gear - gear);
-    size += square(at.pinion) + square(at.gear);
-    pinion = at.pinion;
-    gear = at.gear;
+    to[kPinionFrictionRow][node / 2] = at.pinion;
+    to[kGearFrictionRow][node / 2] = at.gear;
   }
-  orbit_.friction_change = size > 0 ? std::sqrt(change / size) : 0;
 }
 
 void MultipleShooting::take_derivatives() {
@@ -118,14 +110,14 @@ void MultipleShooting::take_derivatives() {
   orbit_.cycle_derivatives = std::move(made);
 }
 
-Shooting::Step MultipleShooting::improve() {
+double MultipleShooting::improve() {
   constexpr double kBrokenDown = std::numeric_limits<double>::quiet_NaN();
   throw_if_interrupted();
   const bool anew = !orbit_.map || orbit_.cycle_derivatives == nullptr ||
                     orbit_.cycle_derivatives->steps != steps_;
   if (anew) derivatives_.resize(kDerivativeRows * kDerivativeColumns, steps_);
   if (!take_steps(instruction_set_, block_, response_, end_, anew ? &derivatives_ : nullptr)) {
-    return {kBrokenDown, kBrokenDown};
+    return kBrokenDown;
   }
   evaluations_ += 4L * steps_;
   if (anew) take_derivatives();
@@ -153,7 +145,7 @@ Shooting::Step MultipleShooting::improve() {
   // Two steps with the same derivatives tell how much is left.
   const double shorter = last_step_ > 0 && !anew ? length / last_step_ : 1;
   last_step_ = length;
-  return {step.norm(), shorter < 0.5 ? length * shorter / (1 - shorter) : length};
+  return shorter < 0.5 ? length * shorter / (1 - shorter) : length;
 }
 
 bool MultipleShooting::fill() {
@@ -166,7 +158,7 @@ bool MultipleShooting::fill() {
   return fill_response(instruction_set_, block_, response_);
 }
 
-bool MultipleShooting::evaluate_friction(const GridContacts& contacts) {
+bool MultipleShooting::evaluate(Places places) {
   last_step_ = 0;
   if (!fill()) return false;
   const double light = 1e-3 * mean_force_;
@@ -177,13 +169,14 @@ bool MultipleShooting::evaluate_friction(const GridContacts& contacts) {
   }
   bool good = false;
   if (least > light) {
+    const GridContacts& contacts =
+        places == Places::kAll ? grid_.contacts() : grid_.contacts_at_starts();
     good = friction_.evaluate(block_, contacts, response_, orbit_.friction, orbit_.figures);
   } else {
     write_pieces();
     good = friction_.evaluate(grid_, orbit_.pieces, light, orbit_.friction, orbit_.figures);
   }
   if (!good) return false;
-  take_figures();
   orbit_.contact_loss = false;
   spread_friction();
   return true;

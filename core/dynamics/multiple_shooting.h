@@ -28,13 +28,11 @@ class MultipleShooting final : public Shooting {
   MultipleShooting(GearPairSystem& system, OrbitFriction& friction, CycleStorage& storage,
                    const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit);
 
-  bool evaluate_friction() override { return evaluate_friction(grid_.contacts()); }
-  bool estimate_friction() override { return evaluate_friction(grid_.contacts_at_starts()); }
   void finish(MarchStatistics& statistics, long& marched_cycles) override;
 
  private:
-  Step improve() override;
-  bool evaluate_friction(const GridContacts& contacts);
+  double improve() override;
+  bool evaluate(Places places) override;
   void start_from_pieces();
   void start_from_state();
   void spread_friction();

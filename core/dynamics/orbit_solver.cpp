@@ -10,40 +10,32 @@ namespace {
 /// Sweeps until friction and motion belong to each other.
 bool sweep(Shooting& shooting, const OrbitRequest& request, PeriodicOrbit& orbit) {
   constexpr int kMostSweeps = 24;
-  constexpr double kLikelyContraction = 0.2, kUnmeasured = 0.3;
-  constexpr double kCaution = 3;  // by experience they respond within a tenth as before
+  constexpr double kCaution = 3;  // on a response that is nearly the same for all of the friction
   const auto parts_for_sure = [&](double pull) {
     return request.keep_contact && orbit.least_pressing_force < -pull;
   };
-  double last_change = 0, change_ahead = 0;
-  const bool first_friction = orbit.contraction == 0;
+  const bool first_friction = orbit.response == 0;
   if (first_friction) {
-    if (!shooting.estimate_friction()) return false;
+    if (!shooting.evaluate_friction(Shooting::Places::kFew)) return false;
     // Friction calms some responses.
     if (parts_for_sure(0.25)) return true;
-    orbit.contraction = kLikelyContraction;
   }
   OrbitFigures previous = orbit.figures;
+  double ahead = 0;  // change of the figures by friction that has been evaluated since
   for (int sweep = 1; sweep < kMostSweeps; ++sweep) {
     // No better than the friction is known.
-    const double enough = std::max({1e-11, 0.2 * request.tolerance, 0.1 * change_ahead});
+    const double enough = std::max({1e-11, 0.2 * request.tolerance, 0.1 * ahead});
+    const double friction_change = orbit.friction_change, defect = orbit.defect;
     if (!shooting.converge(enough) || !shooting.evaluate_friction()) return false;
     const double change = orbit.figures.distance(previous);
     previous = orbit.figures;
-    if (first_friction && sweep == 1) orbit.response = change;  // to all of the friction
-    if (orbit.friction_change > 0) {
-      change_ahead = kCaution * orbit.response * orbit.friction_change;
-      orbit.unsettled = change_ahead + orbit.defect;
-    } else {
-      // Sweeps contract like a geometric series; the first change is not theirs alone.
-      const bool measured = last_change > 0;
-      if (measured) orbit.contraction = std::clamp(change / last_change, 0.02, 0.9);
-      const double contraction = std::max(orbit.contraction, measured ? 0.0 : kUnmeasured);
-      const double moved = measured ? change : std::max(change, 0.1 * orbit.moved);
-      orbit.unsettled = moved * contraction / (1 - contraction) + orbit.defect;
-      change_ahead = orbit.contraction * change;
+    if (first_friction && sweep == 1) {
+      orbit.response = change;
+    } else if (sweep > 1) {
+      orbit.response = std::max(orbit.response, (change - defect - orbit.defect) / friction_change);
     }
-    last_change = change;
+    ahead = kCaution * orbit.response * orbit.friction_change;
+    orbit.unsettled = ahead + orbit.defect;
     if (orbit.unsettled <= request.tolerance || change < 1e-13) return true;
     if (parts_for_sure(kClearPull + change)) return true;
   }

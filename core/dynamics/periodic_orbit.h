@@ -25,12 +25,11 @@ struct PeriodicOrbit {
   std::shared_ptr<const CycleDerivatives> cycle_derivatives;
   std::vector<OrbitPiece> pieces;
   OrbitFigures figures;
-  double defect = 0;       ///< scaled change of the state in the last step of Newton
-  double moved = 0;        ///< longest step of Newton under the last friction, scaled
-  double contraction = 0;  ///< of the error in a sweep; 0: none made yet
-  /// Of friction per load in the last evaluation, relative, root of the mean square; 0: unknown.
+  double defect = 0;  ///< scaled change of the state in the last step of Newton, or what it left
+  /// What the last evaluation changed of the friction per load, relative (LaggedFriction).
   double friction_change = 0;
-  double response = 0;   ///< of the figures to all of the friction, relative; 0: unknown
+  /// Of the figures to all of the friction, relative; 0: not known. They go nearly in proportion.
+  double response = 0;
   double unsettled = 0;  ///< estimate of what further sweeps would still change, relative
   bool contact_loss = false;
   /// Smallest force that pressed touching flanks together, over the mean one; negative: they were

@@ -34,8 +34,8 @@ class SectionMap {
   double bound_of_multipliers(double enough) const;
 
   Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
-  Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;   // scaled
-  mutable double largest_multiplier_ = -1;  // not computed yet
+  Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;  // scaled
+  mutable double largest_multiplier_ = -1;                         // not computed yet
   mutable double multiplier_bound_ = std::numeric_limits<double>::infinity();
 };
 

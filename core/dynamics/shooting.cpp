@@ -1,6 +1,7 @@
 #include "core/dynamics/shooting.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tribodyn {
 namespace {
@@ -29,22 +30,19 @@ Shooting::Shooting(GearPairSystem& system, OrbitFriction& friction, const MeshGr
 }
 
 bool Shooting::converge(double enough) {
-  orbit_.moved = 0;
   constexpr int kMostSteps = 20, kMostDerivatives = 6;
   double last = 0;
   int derivatives = 0;
   for (int i = 0; i < kMostSteps; ++i) {
     if (!orbit_.map) ++derivatives;
-    const Step step = improve();
-    orbit_.defect = step.left;
-    if (!(step.left < 1e9)) return false;
-    orbit_.moved = std::max(orbit_.moved, step.section);
-    if (step.left < enough) return true;
-    if (i > 0 && step.left > 0.2 * last) {
+    const double left = orbit_.defect = improve();
+    if (!(left < 1e9)) return false;
+    if (left < enough) return true;
+    if (i > 0 && left > 0.2 * last) {
       if (derivatives >= kMostDerivatives) return false;
       orbit_.map.reset();
     }
-    last = step.left;
+    last = left;
   }
   return false;
 }
@@ -59,12 +57,14 @@ void Shooting::add_to_unknown(double change) {
   system_.set_torques(t);
 }
 
-void Shooting::take_figures() {
+bool Shooting::evaluate_friction(Places places) {
+  std::swap(friction_before_, orbit_.friction);
+  if (!evaluate(places)) return false;
+  orbit_.friction_change = orbit_.friction.distance(friction_before_);
   orbit_.least_pressing_force = friction_.least_pressing_force() / mean_force_;
-  orbit_.contact_loss = std::any_of(orbit_.pieces.begin(), orbit_.pieces.end(),
-                                    [](const OrbitPiece& p) { return p.regime.side == 0; });
   orbit_.figures.torque =
       request_.solve_wheel_torque ? system_.torques().wheel : system_.torques().pinion;
+  return true;
 }
 
 }  // namespace tribodyn

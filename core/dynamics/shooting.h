@@ -14,10 +14,10 @@ class Shooting {
   /// Improves until a step is shorter than `enough`, with derivatives from elsewhere while they
   /// serve.
   bool converge(double enough);
-  /// Friction on the response as it is, and the figures with it. False when refused.
-  virtual bool evaluate_friction() = 0;
-  /// The same at fewer places, good enough to begin with.
-  virtual bool estimate_friction() { return evaluate_friction(); }
+  enum class Places { kAll, kFew };
+  /// Friction on the response as it is, at fewer places where that will do, and the figures with
+  /// it. False when refused.
+  bool evaluate_friction(Places places = Places::kAll);
   /// Hands over what has become of the response, and the work.
   virtual void finish(MarchStatistics& statistics, long& marched_cycles) = 0;
 
@@ -27,18 +27,15 @@ class Shooting {
   Shooting(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,
            const OrbitRequest& request, PeriodicOrbit& orbit);
 
-  /// Lengths of a step of Newton's method, scaled.
-  struct Step {
-    double section;  ///< of the state at the section and of the torque
-    double left;     ///< at most, anywhere, to the response
-  };
-  /// One step, with the derivatives at hand if there are any; NaN where that breaks down.
-  virtual Step improve() = 0;
+  /// One step of Newton's method, with the derivatives at hand if there are any. Returns how far it
+  /// may be to the response, scaled: the step's length or less; NaN where that breaks down.
+  virtual double improve() = 0;
+
+  /// Friction and figures but the torque, and whether contact is lost.
+  virtual bool evaluate(Places places) = 0;
 
   void throw_if_interrupted() const;
   void add_to_unknown(double change);
-  /// What follows from evaluated friction.
-  void take_figures();
   int side() const { return system_.torques().pinion >= 0 ? 1 : -1; }
 
   GearPairSystem& system_;
@@ -49,6 +46,7 @@ class Shooting {
   MarchScales scales_;
   double mean_force_, period_time_;
   SectionMap::Vector scale_;
+  LaggedFriction friction_before_;
 };
 
 }  // namespace tribodyn

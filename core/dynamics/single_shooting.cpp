@@ -45,9 +45,8 @@ bool SingleShooting::renew_map() {
   return true;
 }
 
-Shooting::Step SingleShooting::improve() {
-  constexpr Step kBrokenDown{std::numeric_limits<double>::quiet_NaN(),
-                             std::numeric_limits<double>::quiet_NaN()};
+double SingleShooting::improve() {
+  constexpr double kBrokenDown = std::numeric_limits<double>::quiet_NaN();
   MarchState y = orbit_.state;
   if (orbit_.map) {
     if (!march(y, nullptr)) return kBrokenDown;
@@ -64,16 +63,14 @@ Shooting::Step SingleShooting::improve() {
   const SectionMap::Vector step = orbit_.map->step(residual);
   for (int i = 0; i + 1 < kUnknowns; ++i) orbit_.state[i + 1] += scale_(i) * step(i);
   add_to_unknown(scale_(kUnknowns - 1) * step(kUnknowns - 1));
-  return {step.norm(), step.norm()};
+  return step.norm();
 }
 
-bool SingleShooting::evaluate_friction() {
-  if (!friction_.evaluate(grid_, orbit_.pieces, 1e-3 * mean_force_, orbit_.friction,
-                          orbit_.figures)) {
-    return false;
-  }
-  take_figures();
-  return true;
+bool SingleShooting::evaluate(Places) {
+  orbit_.contact_loss = std::any_of(orbit_.pieces.begin(), orbit_.pieces.end(),
+                                    [](const OrbitPiece& p) { return p.regime.side == 0; });
+  return friction_.evaluate(grid_, orbit_.pieces, 1e-3 * mean_force_, orbit_.friction,
+                            orbit_.figures);
 }
 
 void SingleShooting::start_regime(const MarchState& state) {

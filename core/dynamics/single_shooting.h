@@ -17,12 +17,12 @@ class SingleShooting final : public Shooting {
   bool let_run(int cycles);
   /// Derivatives at the state as it is. Leaves state and pieces. False where the march breaks down.
   bool renew_map();
-  bool evaluate_friction() override;
   void finish(MarchStatistics& statistics, long& marched_cycles) override;
 
  private:
   /// The pieces are those before the step.
-  Step improve() override;
+  double improve() override;
+  bool evaluate(Places places) override;
   bool march(MarchState& state, Sensitivity* sensitivity);
   void start_regime(const MarchState& state);
 

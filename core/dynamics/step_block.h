@@ -63,8 +63,9 @@ struct CycleDerivatives {
         step(std::make_unique_for_overwrite<double[]>(kMatrix * count)),
         from_section(std::make_unique_for_overwrite<double[]>(kMatrix * (count + 1))) {}
   int steps;
-  std::unique_ptr<double[]> step;          ///< of each step, by its start
-  std::unique_ptr<double[]> from_section;  ///< of each start and the end of the cycle, by the section
+  std::unique_ptr<double[]> step;  ///< of each step, by its start
+  std::unique_ptr<double[]>
+      from_section;  ///< of each start and the end of the cycle, by the section
 };
 
 /// From the derivatives of take_steps().

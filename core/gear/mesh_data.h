@@ -96,8 +96,8 @@ class MeshData {
     return f;
   }
 
-  /// Largest distance of the gear's angle from where MeshPhase's expansion is around [rad]; 0: there
-  /// are no expansions.
+  /// Largest distance of the gear's angle from where MeshPhase's expansion is around [rad]; 0:
+  /// there are no expansions.
   double series_reach() const { return reach_; }
 
   int intervals() const { return intervals_; }  ///< of the tables per mesh cycle

@@ -140,17 +140,17 @@ class Sweeps {
     double last_change = 0;
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
       if (request_.interrupted && request_.interrupted()) throw Cancelled();
-      const bool first = orbit.contraction == 0;
+      const bool first = contraction_ == 0;
       const OrbitFigures previous = orbit.figures;
       if (!evaluate(grid, orbit)) return false;
       if (first) {
-        orbit.contraction = kUnmeasured;
+        contraction_ = kUnmeasured;
         continue;
       }
       const double change = orbit.figures.distance(previous);
-      if (last_change > 0) orbit.contraction = std::clamp(change / last_change, 0.01, 0.9);
+      if (last_change > 0) contraction_ = std::clamp(change / last_change, 0.01, 0.9);
       last_change = change;
-      orbit.unsettled = change * orbit.contraction / (1 - orbit.contraction);
+      orbit.unsettled = change * contraction_ / (1 - contraction_);
       if (orbit.unsettled <= enough || change < 1e-13) return true;
     }
     return false;
@@ -174,6 +174,7 @@ class Sweeps {
   GearPairSystem& system_;
   const QuasiStaticRequest& request_;
   OrbitFriction friction_;
+  double contraction_ = 0;  // of the error in a sweep; 0: none made yet
 };
 
 /// What the equilibria at a grid's nodes ask of the driveline. `friction`: what holds them.
