@@ -17,16 +17,20 @@ constexpr double FlankKinematics::*kContactColumns[] = {&FlankKinematics::load_s
                                                         &FlankKinematics::gear_friction_arm};
 static_assert(std::size(kContactColumns) == kContactRows);
 
-void set_lane(const MeshPhase& phase, int lane, Columns& columns) {
+/// The gear lags by `lag` more or less [rad].
+void set_lane(const MeshData& mesh, const MeshPhase& phase, double lag, int lane,
+              Columns& columns) {
   const MeshFunctions& f = phase.pinion;
+  double offset = 0;
+  const MeshExpansion* const expansion = mesh.nearest_expansion(phase.theta - lag, offset);
   columns[kPinionRadiusRow][lane] = f.pinion_contact_radius;
   columns[kStiffnessRow][lane] = f.mesh_stiffness;
   columns[kStiffnessSlopeRow][lane] = f.mesh_stiffness_slope;
   columns[kErrorRow][lane] = f.static_transmission_error;
   columns[kErrorSlopeRow][lane] = f.static_transmission_error_slope;
-  columns[kOffsetRow][lane] = phase.offset;
+  columns[kOffsetRow][lane] = offset + lag;
   for (int power = 0; power < MeshExpansion::kTerms; ++power) {
-    const auto& term = phase.expansion->term[power];
+    const auto& term = expansion->term[power];
     double* const radius = columns[kSeriesRow + 2 * power];
     double* const integral = columns[kSeriesRow + 2 * power + 1];
     radius[lane] = term[MeshExpansion::kGearRadius];
@@ -39,7 +43,7 @@ void set_lane(const MeshPhase& phase, int lane, Columns& columns) {
 
 }  // namespace
 
-MeshGrid::MeshGrid(const MeshData& mesh, int steps, double reduced_modulus,
+MeshGrid::MeshGrid(const MeshData& mesh, double half_backlash, int steps, double reduced_modulus,
                    const ModelOptions& options)
     : steps_(steps),
       nodes_(2 * steps + 1),
@@ -47,15 +51,24 @@ MeshGrid::MeshGrid(const MeshData& mesh, int steps, double reduced_modulus,
       contact_(2 * steps + 1),
       contacts_{1, {}, {}, {}, ContactGeometries(reduced_modulus, options)},
       contacts_at_starts_{2, {}, {}, {}, ContactGeometries(reduced_modulus, options)},
-      mesh_at_starts_(kMeshRows, steps + 1),
-      mesh_at_middles_(kMeshRows, steps + 1),
-      series_reach_(mesh.series_reach()) {
+      series_reach_(2 * mesh.series_reach()) {
+  // From flanks that touch on the drive side to those on the coast side.
+  const double through_gap =
+      -2 * half_backlash * mesh.gear_teeth() / mesh.mean_gear_contact_radius();
+  for (MeshColumns* columns : {&drive_, &coast_}) {
+    columns->starts.resize(kMeshRows, steps + 1);
+    columns->middles.resize(kMeshRows, steps + 1);
+  }
   for (int n = 0; n <= 2 * steps; ++n) {
     const double phase = 0.5 * n / steps;
     const double theta = 2 * std::numbers::pi * phase;
     nodes_[n] = mesh.at_phase(theta);
     if (series_reach_ > 0) {
-      set_lane(nodes_[n], n / 2, n % 2 == 0 ? mesh_at_starts_ : mesh_at_middles_);
+      const auto set = [&](MeshColumns& columns, double lag) {
+        set_lane(mesh, nodes_[n], lag, n / 2, n % 2 == 0 ? columns.starts : columns.middles);
+      };
+      set(drive_, 0);
+      set(coast_, through_gap);
     }
     const int interval = std::min(static_cast<int>(phase * mesh.intervals()), mesh.intervals() - 1);
     mesh.flanks(interval, phase, flanks_[n]);
@@ -93,7 +106,8 @@ void MeshGrid::list(GridContacts& c) const {
 }
 
 const MeshGrid& MeshGrids::with_steps(int steps) {
-  return grids_.try_emplace(steps, mesh_, steps, reduced_modulus_, options_).first->second;
+  return grids_.try_emplace(steps, mesh_, half_backlash_, steps, reduced_modulus_, options_)
+      .first->second;
 }
 
 }  // namespace tribodyn

@@ -51,7 +51,8 @@ class MeshGrid {
  public:
   /// `steps` in the mesh cycle, at least 1; E' and options as of the contacts. Nodes
   /// refer to the mesh.
-  MeshGrid(const MeshData& mesh, int steps, double reduced_modulus, const ModelOptions& options);
+  MeshGrid(const MeshData& mesh, double half_backlash, int steps, double reduced_modulus,
+           const ModelOptions& options);
 
   MeshGrid(const MeshGrid&) = delete;
   MeshGrid& operator=(const MeshGrid&) = delete;
@@ -64,10 +65,14 @@ class MeshGrid {
   int contact(int node, int k) const { return contact_[node][k]; }
   const GridContacts& contacts() const { return contacts_; }
   const GridContacts& contacts_at_starts() const { return contacts_at_starts_; }
-  /// kMeshRows at the steps' starts, one more for the end of the cycle, and at their middles.
-  const Columns& mesh_at_starts() const { return mesh_at_starts_; }
-  const Columns& mesh_at_middles() const { return mesh_at_middles_; }
-  /// Up to which distance the series there serve [rad]; 0: there are none.
+  /// Eqs 8-11 where flanks touch on one side.
+  struct MeshColumns {
+    /// kMeshRows at the steps' starts, one more for the end of the cycle, and at their middles.
+    Columns starts, middles;
+  };
+  const MeshColumns& mesh_columns(int side) const { return side > 0 ? drive_ : coast_; }
+  /// Up to which distance the series there serve, to 4e-11 of the highest harmonic [rad]; 0: there
+  /// are none.
   double series_reach() const { return series_reach_; }
 
  private:
@@ -78,7 +83,7 @@ class MeshGrid {
   std::vector<std::array<FlankKinematics, kFlankPairs>> flanks_;
   std::vector<std::array<int, kFlankPairs>> contact_;
   GridContacts contacts_, contacts_at_starts_;
-  Columns mesh_at_starts_, mesh_at_middles_;
+  MeshColumns drive_, coast_;
   double series_reach_;
 };
 
@@ -86,12 +91,17 @@ class MeshGrid {
 class MeshGrids {
  public:
   /// As MeshGrid; keeps the reference.
-  MeshGrids(const MeshData& mesh, double reduced_modulus, const ModelOptions& options)
-      : mesh_(mesh), reduced_modulus_(reduced_modulus), options_(options) {}
+  MeshGrids(const MeshData& mesh, double half_backlash, double reduced_modulus,
+            const ModelOptions& options)
+      : mesh_(mesh),
+        half_backlash_(half_backlash),
+        reduced_modulus_(reduced_modulus),
+        options_(options) {}
   const MeshGrid& with_steps(int steps);
 
  private:
   const MeshData& mesh_;
+  double half_backlash_;
   double reduced_modulus_;
   ModelOptions options_;
   std::map<int, MeshGrid> grids_;

@@ -1,6 +1,7 @@
 #include "core/dynamics/orbit_solver.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/dynamics/single_shooting.h"
 
@@ -54,16 +55,17 @@ OrbitSolver::OrbitSolver(GearPairSystem& system, const FlankContactBatch& contac
 bool OrbitSolver::approach_without_friction(const MeshGrid& grid, const OrbitRequest& request,
                                             PeriodicOrbit& orbit) {
   constexpr double kNearEnough = 1e-3;  // friction changes the response by some percent
-  bool good = false;
   if (MultipleShooting::applies(grid, request, orbit)) {
-    MultipleShooting together(system_, friction_, storage_, grid, request, orbit);
-    good = together.converge(kNearEnough);
-    together.finish(statistics_, marched_cycles_);
-  } else {
-    SingleShooting shooting(system_, friction_, grid, request, orbit);
-    good = shooting.let_run(request.first_cycles) && shooting.converge(kNearEnough);
+    PeriodicOrbit together = orbit;
+    MultipleShooting shooting(system_, friction_, storage_, grid, request, together);
+    const bool good = shooting.converge(kNearEnough);
     shooting.finish(statistics_, marched_cycles_);
+    if (good) orbit = std::move(together);
+    if (good) return true;
   }
+  SingleShooting shooting(system_, friction_, grid, request, orbit);
+  const bool good = shooting.let_run(request.first_cycles) && shooting.converge(kNearEnough);
+  shooting.finish(statistics_, marched_cycles_);
   return good;
 }
 
@@ -73,7 +75,8 @@ bool OrbitSolver::solve(const MeshGrid& grid, const OrbitRequest& request, Perio
     shooting.finish(statistics_, marched_cycles_);
     return good;
   };
-  if (MultipleShooting::applies(grid, request, orbit)) {
+  // On as it began.
+  if (orbit.cycle_derivatives != nullptr && MultipleShooting::applies(grid, request, orbit)) {
     return solve(MultipleShooting(system_, friction_, storage_, grid, request, orbit));
   }
   return solve(SingleShooting(system_, friction_, grid, request, orbit));

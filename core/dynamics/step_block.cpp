@@ -269,14 +269,14 @@ HWY_INLINE Row add_product(const double* matrix, const double* x, Row even) {
 bool steps_in_lanes(const StepBlock& block, const CycleResponse& response, Columns& end,
                     Columns* derivatives) {
   const Constants c(block);
-  const MeshGrid& grid = block.grid;
-  const int steps = grid.steps();
+  const MeshGrid::MeshColumns& mesh = block.grid.mesh_columns(block.side);
+  const int steps = block.grid.steps();
   const double h = 1.0 / steps;
   bool all_good = true;
   for (int lane = 0; lane < steps; lane += pack_lanes()) {
-    const Phase start{grid.mesh_at_starts(), &block.friction.start, lane};
-    const Phase middle{grid.mesh_at_middles(), &block.friction.middle, lane};
-    const Phase last{grid.mesh_at_starts(), &block.friction.start, lane + 1};
+    const Phase start{mesh.starts, &block.friction.start, lane};
+    const Phase middle{mesh.middles, &block.friction.middle, lane};
+    const Phase last{mesh.starts, &block.friction.start, lane + 1};
     const Phase* const phases[4] = {&start, &middle, &middle, &last};
     Pack y[kStates], sum[kStates], stage[kStates], rate[kStates];
     y[kTime] = sum[kTime] = 0;
@@ -306,8 +306,8 @@ bool steps_in_lanes(const StepBlock& block, const CycleResponse& response, Colum
 
 bool fill_lanes(const StepBlock& block, CycleResponse& response) {
   const Constants c(block);
-  const MeshGrid& grid = block.grid;
-  const int steps = grid.steps();
+  const MeshGrid::MeshColumns& mesh = block.grid.mesh_columns(block.side);
+  const int steps = block.grid.steps();
   const double h = 1.0 / steps;
   const double half_backlash = block.system.dynamics().half_backlash;
   Columns& rate = response.rate;
@@ -324,7 +324,7 @@ bool fill_lanes(const StepBlock& block, CycleResponse& response) {
   };
   Pack y[kStates];
   for (int lane = 0; lane <= steps; lane += pack_lanes()) {
-    const Phase phase{grid.mesh_at_starts(), &block.friction.start, lane};
+    const Phase phase{mesh.starts, &block.friction.start, lane};
     for (int i = 0; i < kStates; ++i) y[i] = load_any(response.start[i] + lane);
     const PackMechanics m = fill(phase, lane, response.start, y, ~nowhere());
     Pack dy[kStates];
@@ -339,7 +339,7 @@ bool fill_lanes(const StepBlock& block, CycleResponse& response) {
                    0.5 * (load_any(at) + load_any(at + 1)));
       store_any(y[i], response.middle[i] + lane);
     }
-    fill({grid.mesh_at_middles(), nullptr, lane}, lane, response.middle, y, ~nowhere());
+    fill({mesh.middles, nullptr, lane}, lane, response.middle, y, ~nowhere());
   }
   return all_good;
 }

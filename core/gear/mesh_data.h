@@ -96,8 +96,10 @@ class MeshData {
     return f;
   }
 
-  /// Largest distance of the gear's angle from where MeshPhase's expansion is around [rad]; 0:
-  /// there are no expansions.
+  /// The expansion around the angle that is nearest to theta, and how far theta is from there. Null
+  /// where there is none. Valid as long as this object.
+  const MeshExpansion* nearest_expansion(double theta, double& offset) const;
+  /// Up to which distance an expansion serves [rad]; 0: there are none.
   double series_reach() const { return reach_; }
 
   int intervals() const { return intervals_; }  ///< of the tables per mesh cycle
@@ -120,8 +122,6 @@ class MeshData {
   void expand();
   static void add(const Harmonic& harmonic, double order, double cosine, double sine,
                   MeshExpansion& to);
-  /// Null where there is none.
-  const MeshExpansion* nearest_expansion(double theta, double& offset) const;
   std::array<double, 2> gear_functions(const MeshPhase& phase, double lag) const;
   int pinion_teeth_, gear_teeth_, intervals_;
   double pinion_radius_, gear_radius_, stiffness_, error_;

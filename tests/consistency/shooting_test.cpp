@@ -142,7 +142,7 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   std::cout << "seed " << seed << '\n';
   RecordProperty("seed", std::to_string(seed));
   std::mt19937_64 random(seed);
-  const int count = full_run() ? 500 : 40;
+  const int count = full_run() ? 500 : 60;
   int shot = 0, above = 0, untold = 0;
   std::vector<double> over;
   for (int i = 0; i < count; ++i) {
