@@ -1,7 +1,6 @@
 #include "core/dynamics/multiple_shooting.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -12,6 +11,7 @@ namespace {
 constexpr int kUnknowns = SectionMap::kUnknowns;
 constexpr int kStates = 7;
 using Vector = SectionMap::Vector;
+
 }  // namespace
 
 bool MultipleShooting::applies(const MeshGrid& grid, const OrbitRequest& request,

@@ -240,13 +240,12 @@ TEST(ShootingWork, FrictionEvaluationsOfAPointAreFew) {
     long most;
   };
   for (const Scenario& at :
-       {Scenario{20, PointStart::kQuasiStatic, 1100},
-        Scenario{37.5, PointStart::kQuasiStatic, 1800},
-        Scenario{67.5, PointStart::kQuasiStatic, 850},
-        Scenario{67.5, PointStart::kLargeVibration, 550},
-        Scenario{72.5, PointStart::kQuasiStatic, 700}, Scenario{80, PointStart::kQuasiStatic, 900},
-        Scenario{100, PointStart::kQuasiStatic, 420},
-        Scenario{140, PointStart::kQuasiStatic, 420}}) {
+       {Scenario{20, PointStart::kQuasiStatic, 720}, Scenario{37.5, PointStart::kQuasiStatic, 1200},
+        Scenario{67.5, PointStart::kQuasiStatic, 370},
+        Scenario{67.5, PointStart::kLargeVibration, 510},
+        Scenario{72.5, PointStart::kQuasiStatic, 340}, Scenario{80, PointStart::kQuasiStatic, 800},
+        Scenario{100, PointStart::kQuasiStatic, 280},
+        Scenario{140, PointStart::kQuasiStatic, 280}}) {
     SCOPED_TRACE(at.kilometers_per_hour);
     PointOptions options;
     options.model = PointModel::kFull;
