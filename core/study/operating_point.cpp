@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/dynamics/steady_state.h"
@@ -148,6 +149,7 @@ std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Opera
   search.mean_pinion_speed = target.mean_pinion_speed;
   search.solve_wheel_torque = target.solve_wheel_torque;
   search.tolerance = options.tolerance;
+  search.patient = options.method != SteadyStateMethod::kShooting;
   if (options.progress) search.interrupted = [&] { return !options.progress(0); };
   if (from) {
     if (from->period == 0) return std::nullopt;
@@ -297,10 +299,12 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
                  (chosen = choose_quasi_static(system, contacts, grids, target, options))) {
         result = quasi_static_result(system, contacts, grids, target, options, *chosen);
       } else if (std::optional<PointResult> shot;
-                 options.method == SteadyStateMethod::kAutomatic &&
+                 options.method != SteadyStateMethod::kMarch &&
                  (shot = solve_by_shooting(system, contacts, grids, target, options, start, from,
                                            history))) {
         result = *std::move(shot);
+      } else if (options.method == SteadyStateMethod::kShooting) {
+        throw Refusal("NOT_FOUND_BY_SHOOTING", "shooting finds no response that surely attracts");
       } else {
         system.set_torques(target.torques);
         // Together they are solved to 1e-10.
@@ -348,6 +352,12 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
                                                       other.contact_loss};
       break;
     }
+  }
+  const double multiplier = result.statistics.largest_multiplier;
+  if (multiplier > 0 && result.period_in_mesh_cycles > 0) {
+    const double period = result.period_in_mesh_cycles * 2 * std::numbers::pi /
+                          (scene.gear_set.pinion_teeth * result.mean_pinion_speed);
+    result.statistics.slowest_decay_rate = -std::log(multiplier) / period;
   }
   result.warnings = range_warnings(scene, result);
   return result;

@@ -48,8 +48,9 @@ enum class PointStart {
 /// How the steady state of the full model is found.
 enum class SteadyStateMethod {
   kAutomatic,  ///< by shooting; marched where shooting finds no attracting response
-  kShooting,   ///< found by shooting; only in results
-  kMarch,      ///< marched until it repeats
+  /// Found by shooting. Asked for: refused with NOT_FOUND_BY_SHOOTING where marching had to decide.
+  kShooting,
+  kMarch,  ///< marched until it repeats
 };
 
 /// A neighbour's steady state, to start from. Speeds and wind-up are shifted to the new point.
@@ -109,6 +110,8 @@ struct SolverStatistics {
   long accelerations = 0;         ///< accepted extrapolations towards the steady state
   double periodicity_defect = 0;  ///< relative change of the section state over the last period
   double largest_multiplier = 0;  ///< Floquet, modulus; below 1: the response is attracting
+  /// At which the slowest disturbance dies out: like e^(-rate t); 0: no multiplier is known [1/s].
+  double slowest_decay_rate = 0;
 };
 
 /// Work over the recorded steady state [J]; input = output + losses + stored + parametric.

@@ -192,6 +192,7 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
       found = refine(system, solver, grids, next, repels);
     }
     if (found || (patient && !repels) || 2 * next.period > kLongestPeriod) return found;
+    if (!search.patient) return found;
     // Periods double where a response begins to repel, and a branch may end between neighbours: to
     // what follows patience leads.
     if (repels) next.period *= 2;

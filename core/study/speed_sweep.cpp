@@ -1,10 +1,75 @@
 #include "core/study/speed_sweep.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/refusal.h"
 
 namespace tribodyn {
+namespace {
+
+CarriedState carried_from(const PointResult& r) {
+  return {r.section_state, r.mean_pinion_speed,     r.pinion_torque,
+          r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
+}
+
+OperatingCondition cruise(double speed, double ascent_angle) {
+  OperatingCondition condition;
+  condition.kind = OperatingCondition::Kind::kCruise;
+  condition.vehicle_speed = speed;
+  condition.ascent_angle = ascent_angle;
+  return condition;
+}
+
+/// How much wider the one's transmission error swings than the other's, over the wider swing.
+double distance(const PointResult& a, const PointResult& b) {
+  const auto swing = [](const PointResult& r) {
+    return r.dynamic_transmission_error.maximum - r.dynamic_transmission_error.minimum;
+  };
+  const double larger = std::max(swing(a), swing(b));
+  return larger > 0 ? std::abs(swing(a) - swing(b)) / larger : 0;
+}
+
+bool may_be_branches(const PointResult& a, const PointResult& b) {
+  constexpr double kFar = 0.3;
+  return a.settled && b.settled &&
+         (a.contact_loss != b.contact_loss || a.period_in_mesh_cycles != b.period_in_mesh_cycles ||
+          distance(a, b) > kFar);
+}
+
+/// Whether a branch ends between two points of a sweep: where, as far as responses are found
+/// without much ado.
+std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, PointOptions options,
+                                    PointResult before, PointResult after) {
+  constexpr double kNear = 0.1;           // what is on one branch goes on like that
+  constexpr double kEnough = 0.04 / 3.6;  // [m/s]
+  if (options.method == SteadyStateMethod::kAutomatic) {
+    options.method = SteadyStateMethod::kShooting;  // close to an end marching takes its time
+  }
+  options.history = {};
+  options.probe_coexisting_response = false;
+  while (std::abs(after.vehicle_speed - before.vehicle_speed) > 1.001 * kEnough) {
+    const double ahead = 0.5 * (after.vehicle_speed - before.vehicle_speed);
+    const double step = std::copysign(std::max(std::abs(ahead), kEnough), ahead);
+    options.carried_state = carried_from(before);
+    const double speed = before.vehicle_speed + step;
+    PointResult between;
+    try {
+      between = solve_prepared_point(scene, cruise(speed, ascent_angle), options);
+    } catch (const Refusal&) {
+      after.vehicle_speed = speed;  // the branch is not found there
+      continue;
+    }
+    if (!between.settled) break;
+    const double first = distance(before, between), second = distance(between, after);
+    if (std::max(first, second) < kNear) return std::nullopt;
+    (first > second ? after : before) = std::move(between);
+  }
+  if (distance(before, after) < kNear) return std::nullopt;
+  return BranchEnd{before.vehicle_speed, after.vehicle_speed};
+}
+
+}  // namespace
 
 std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehicle_speeds,
                                     double ascent_angle, const SweepOptions& options,
@@ -28,18 +93,16 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
         return options.point.progress((done + fraction) / count);
       };
     }
-    OperatingCondition condition;
-    condition.kind = OperatingCondition::Kind::kCruise;
-    condition.vehicle_speed = speed;
-    condition.ascent_angle = ascent_angle;
     SweepPoint next;
     next.vehicle_speed = speed;
     try {
       if (!prepared) prepared.emplace(scene);
-      next.result = solve_prepared_point(*prepared, condition, point);
-      const PointResult& r = *next.result;
-      point.carried_state = CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
-                                         r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
+      next.result = solve_prepared_point(*prepared, cruise(speed, ascent_angle), point);
+      point.carried_state = carried_from(*next.result);
+      if (!out.empty() && out.back().result && may_be_branches(*out.back().result, *next.result)) {
+        next.branch_end =
+            branch_end(*prepared, ascent_angle, point, *out.back().result, *next.result);
+      }
     } catch (const Refusal& refusal) {
       next.refusal_reason = refusal.reason();
       next.refusal_sentence = refusal.what();

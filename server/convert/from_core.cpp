@@ -27,6 +27,7 @@ void set(v1::SolverStatistics* out, const SolverStatistics& statistics) {
   out->set_accelerations(statistics.accelerations);
   out->set_periodicity_defect(statistics.periodicity_defect);
   out->set_largest_multiplier(statistics.largest_multiplier);
+  out->set_slowest_decay_rate_per_second(statistics.slowest_decay_rate);
 }
 
 void set(v1::PowerBalance* out, const PowerBalance& balance) {
@@ -203,6 +204,12 @@ v1::CurvePoint to_curve_point(const SweepPoint& point) {
   } else {
     out.set_refusal_reason(point.refusal_reason);
     out.set_refusal_message(point.refusal_sentence);
+  }
+  if (point.branch_end) {
+    out.mutable_branch_end()->set_followed_to_kilometers_per_hour(
+        kilometers_per_hour(point.branch_end->followed_to));
+    out.mutable_branch_end()->set_gone_at_kilometers_per_hour(
+        kilometers_per_hour(point.branch_end->gone_at));
   }
   return out;
 }

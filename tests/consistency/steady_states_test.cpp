@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "core/study/operating_point.h"
@@ -114,6 +115,54 @@ TEST(SteadyStates, TheDoubledPeriodIsFollowedDownToWhereTheSingleOneAttractsToo)
     // Marching with friction in the loop takes some 200,000.
     EXPECT_LE(at.result->statistics.contact_solutions, 10000);
   }
+}
+
+/// Of a sweep: where branches end [km/h].
+std::vector<double> branch_ends(const std::vector<double>& kilometers_per_hour,
+                                SweepDirection direction) {
+  SweepOptions options;
+  options.direction = direction;
+  std::vector<double> speeds, out;
+  for (const double speed : kilometers_per_hour) speeds.push_back(speed / 3.6);
+  for (const SweepPoint& at : sweep_speed(reference_scene(), speeds, 0, options)) {
+    if (!at.branch_end) continue;
+    const double sign = direction == SweepDirection::kUp ? 1 : -1;
+    const double width = 3.6 * sign * (at.branch_end->gone_at - at.branch_end->followed_to);
+    EXPECT_GT(width, 0);
+    EXPECT_LT(width, 0.041);
+    out.push_back(3.6 * at.branch_end->gone_at);
+  }
+  return out;
+}
+
+// The quiet branch ends between 71 and 71.5 km/h, the loud one between 65.5 and 65 km/h
+// (numerics of the reference: two stable responses from 65.25 to 71.25).
+TEST(SteadyStates, BranchEndsAreLocatedAlikeFromAnySpacing) {
+  if (kShortRun) GTEST_SKIP();
+  const std::vector<double> up = branch_ends({60, 65, 70, 75}, SweepDirection::kUp);
+  ASSERT_EQ(up.size(), 1u);
+  EXPECT_NEAR(up[0], 71.25, 0.26);
+  const std::vector<double> fine = branch_ends({70.6, 70.9, 71.2, 71.5}, SweepDirection::kUp);
+  ASSERT_EQ(fine.size(), 1u);
+  EXPECT_NEAR(fine[0], up[0], 0.05);
+  const std::vector<double> down = branch_ends({60, 70, 72}, SweepDirection::kDown);
+  ASSERT_EQ(down.size(), 1u);
+  EXPECT_NEAR(down[0], 65.25, 0.3);
+}
+
+TEST(SteadyStates, ResonancesAreNoEndsOfBranches) {
+  if (kShortRun) GTEST_SKIP();
+  EXPECT_TRUE(branch_ends({20, 30, 35, 37.5, 40, 50}, SweepDirection::kUp).empty());
+  EXPECT_TRUE(branch_ends({75, 80, 85, 100, 140}, SweepDirection::kUp).empty());
+}
+
+// The faster decay is, the sooner a march settles: a disturbance is e times smaller after 1/rate.
+TEST(SteadyStates, DecayIsThatOfTheMultiplier) {
+  const PointResult r = point(100);
+  const double mesh_cycle = 2 * std::numbers::pi / (13 * r.mean_pinion_speed);
+  EXPECT_NEAR(std::exp(-r.statistics.slowest_decay_rate * mesh_cycle),
+              r.statistics.largest_multiplier, 1e-12);
+  EXPECT_GT(r.statistics.slowest_decay_rate, 0);
 }
 
 TEST(SteadyStates, ARepellingOrbitIsLeft) {

@@ -240,8 +240,11 @@ TEST(FromCore, ACurveOfAThousandPointsFitsIntoOneAnswer) {
 }
 
 TEST(FromCore, ARefusedPointKeepsItsPlaceOnTheCurve) {
-  const v1::CurvePoint point = to_curve_point(SweepPoint{
-      .vehicle_speed = 10, .result = {}, .refusal_reason = "WORK_LIMIT", .refusal_sentence = "s"});
+  const v1::CurvePoint point = to_curve_point(SweepPoint{.vehicle_speed = 10,
+                                                         .result = {},
+                                                         .refusal_reason = "WORK_LIMIT",
+                                                         .refusal_sentence = "s",
+                                                         .branch_end = {}});
   EXPECT_EQ(point.speed_kilometers_per_hour(), 36);
   EXPECT_FALSE(point.has_result());
   EXPECT_EQ(point.refusal_reason(), "WORK_LIMIT");

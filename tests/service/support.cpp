@@ -147,7 +147,8 @@ StudyFunctions quick_studies() {
       points.push_back({.vehicle_speed = speed,
                         .result = made_up_point(speed, {}),
                         .refusal_reason = "",
-                        .refusal_sentence = ""});
+                        .refusal_sentence = "",
+                        .branch_end = {}});
       on_point(points.back());
     }
     return points;

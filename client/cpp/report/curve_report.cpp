@@ -100,6 +100,15 @@ void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
     if (!point.result().settled()) ++without_period;
     if (!point.result().has_estimated_relative_error()) ++without_estimate;
   }
+  for (const v1::CurvePoint& point : result.points()) {
+    if (!point.has_branch_end()) continue;
+    const auto& end = point.branch_end();
+    sheet.remark("The branch of steady states that the curve follows " +
+                 std::string(result.direction() == v1::DOWN ? "down" : "up") + " ends between " +
+                 significant(end.followed_to_kilometers_per_hour(), 5) + " and " +
+                 significant(end.gone_at_kilometers_per_hour(), 5) +
+                 " km/h: there the response jumps.");
+  }
   if (without_period > 0) {
     sheet.remark(std::to_string(without_period) +
                  " of the speeds did not settle to a period: they are averages over a record.");

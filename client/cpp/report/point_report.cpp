@@ -206,6 +206,10 @@ void add_solver(const v1::Simulation& simulation, const v1::PointResult& result,
   const auto& statistics = result.statistics();
   sheet.line("periodicity defect", significant(statistics.periodicity_defect(), 3));
   sheet.line("largest Floquet multiplier", significant(statistics.largest_multiplier(), 3));
+  if (statistics.slowest_decay_rate_per_second() != 0) {
+    sheet.line("slowest disturbance decays at",
+               significant(statistics.slowest_decay_rate_per_second(), 3), "1/s");
+  }
   sheet.line("marched", std::to_string(statistics.mesh_cycles()) + " mesh cycles, " +
                             std::to_string(statistics.accepted_steps()) + " steps (" +
                             std::to_string(statistics.rejected_steps()) + " rejected), " +
