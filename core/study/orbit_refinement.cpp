@@ -127,7 +127,8 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
       }
     }
     if (!found) {
-      if (system.take_refusal() != ContactStatus::kOk || ++failures == kMostFailures) {
+      if (system.take_refusal() != ContactStatus::kOk || !search.patient ||
+          ++failures == kMostFailures) {
         return std::nullopt;
       }
       have_coarser = false;

@@ -46,6 +46,7 @@ std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, P
   if (options.method == SteadyStateMethod::kAutomatic) {
     options.method = SteadyStateMethod::kShooting;  // close to an end marching takes its time
   }
+  options.tolerance = std::max(options.tolerance, 0.1 * kNear);
   options.history = {};
   options.probe_coexisting_response = false;
   while (std::abs(after.vehicle_speed - before.vehicle_speed) > 1.001 * kEnough) {
