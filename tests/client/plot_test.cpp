@@ -99,6 +99,24 @@ TEST(CurvePlot, LeavesAGapWhereASpeedWasRefused) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
+TEST(CurvePlot, BreaksTheLineWhereABranchEnds) {
+  const auto lines_of = [](const v1::Simulation& curve) {
+    const std::string svg = curve_plot({curve}, {});
+    int lines = 0;
+    for (std::size_t at = 0; (at = svg.find("<polyline", at)) != std::string::npos; ++at) ++lines;
+    return lines;
+  };
+  v1::Simulation curve = sample_curve("1", 1);
+  const int whole = lines_of(curve);
+  v1::BranchEnd* end = curve.mutable_result()->mutable_points(10)->mutable_branch_end();
+  end->set_followed_to_kilometers_per_hour(69.1);
+  end->set_gone_at_kilometers_per_hour(69.14);
+  const int broken_below = lines_of(curve);
+  EXPECT_GT(broken_below, whole);
+  curve.mutable_result()->set_direction(v1::DOWN);
+  EXPECT_EQ(lines_of(curve), broken_below);
+}
+
 TEST(CurvePlot, SurvivesOnePointAndNone) {
   v1::Simulation curve = sample_curve("1", 1);
   curve.mutable_result()->mutable_points()->DeleteSubrange(1, 24);

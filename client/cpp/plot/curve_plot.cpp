@@ -20,14 +20,23 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLongestLabel = 22;
 constexpr int kLongestNote = 30;
 
+/// The line is broken where a branch ends: the response jumps there.
 template <class Value>
 Series series_of(const v1::Simulation& simulation, std::size_t index, Value value) {
   Series series;
   series.colour = series_colour(index);
+  const bool down = simulation.result().direction() == v1::DOWN;
+  const auto add = [&](double x, double y, bool hollow) {
+    series.x.push_back(x);
+    series.y.push_back(y);
+    series.hollow.push_back(hollow);
+  };
   for (const v1::CurvePoint& point : simulation.result().points()) {
-    series.x.push_back(point.speed_kilometers_per_hour());
-    series.y.push_back(point.has_result() ? value(point.result()) : kNone);
-    series.hollow.push_back(point.result().contact_loss());
+    const double jump = point.branch_end().followed_to_kilometers_per_hour();
+    if (point.has_branch_end() && !down) add(jump, kNone, false);
+    add(point.speed_kilometers_per_hour(), point.has_result() ? value(point.result()) : kNone,
+        point.result().contact_loss());
+    if (point.has_branch_end() && down) add(jump, kNone, false);
   }
   return series;
 }
