@@ -113,6 +113,7 @@ TEST(CurvePlot, BreaksTheLineWhereABranchEnds) {
   end->set_gone_at_kilometers_per_hour(69.14);
   const int broken_below = lines_of(curve);
   EXPECT_GT(broken_below, whole);
+  EXPECT_NE(curve_plot({curve}, {}).find("the response jumps"), std::string::npos);
   curve.mutable_result()->set_direction(v1::DOWN);
   EXPECT_EQ(lines_of(curve), broken_below);
 }

@@ -20,6 +20,14 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLongestLabel = 22;
 constexpr int kLongestNote = 30;
 
+bool has_branch_end(const std::vector<v1::Simulation>& simulations) {
+  return std::any_of(simulations.begin(), simulations.end(), [](const v1::Simulation& simulation) {
+    const auto& points = simulation.result().points();
+    return std::any_of(points.begin(), points.end(),
+                       [](const v1::CurvePoint& point) { return point.has_branch_end(); });
+  });
+}
+
 /// The line is broken where a branch ends: the response jumps there.
 template <class Value>
 Series series_of(const v1::Simulation& simulation, std::size_t index, Value value) {
@@ -183,9 +191,13 @@ std::string curve_plot(const std::vector<v1::Simulation>& simulations,
     draw_panel(panel, svg);
   }
   svg.text({kLeft, kHeight - 30}, caption(simulations), {11.5, "start", "#555", false, 0});
-  svg.text({kLeft, kHeight - 13},
-           "Mesh (conjunctional) loss only: bearings, churning and seals are not in it.",
-           {11.5, "start", "#555", false, 0});
+  svg.text(
+      {kLeft, kHeight - 13},
+      std::string("Mesh (conjunctional) loss only: bearings, churning and seals are not in it.") +
+          (has_branch_end(simulations)
+               ? " Lines break where the branch that they follow ends: the response jumps."
+               : ""),
+      {11.5, "start", "#555", false, 0});
   return svg.finish();
 }
 
