@@ -149,6 +149,7 @@ std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Opera
   search.mean_pinion_speed = target.mean_pinion_speed;
   search.solve_wheel_torque = target.solve_wheel_torque;
   search.tolerance = options.tolerance;
+  search.maximum_mesh_cycles = options.maximum_mesh_cycles;
   search.patient = options.method != SteadyStateMethod::kShooting;
   if (options.progress) search.interrupted = [&] { return !options.progress(0); };
   if (from) {

@@ -58,9 +58,10 @@ bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
   return difference < 1e-3;
 }
 
+/// `cycles_left`: to march in search of a response, whether its first one is known or not.
 /// `repels`: set where a response is found that surely does, or may where periods double.
 std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, MeshGrids& grids,
-                                   const OrbitSearch& search, bool& repels) {
+                                   const OrbitSearch& search, int& cycles_left, bool& repels) {
   OrbitRequest request;
   request.mean_pinion_speed = search.mean_pinion_speed;
   request.solve_wheel_torque = search.solve_wheel_torque;
@@ -121,6 +122,8 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
       // Newton's method leads to the response that is near; others are found by patience.
       for (const int cycles : {search.few_cycles, search.first_cycles}) {
         if (found) break;
+        if (!have_coarser) cycles_left -= cycles * search.period;
+        if (cycles_left < 0) return std::nullopt;
         request.first_cycles = cycles;
         found = solve();
         if (have_coarser || search.few_cycles == search.first_cycles) break;
@@ -180,17 +183,18 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
                                          MarchStatistics& statistics, long& marched_cycles) {
   constexpr int kLongestPeriod = 4;
   OrbitSearch next = search;
+  int cycles_left = search.maximum_mesh_cycles;
   OrbitSolver solver(system, contacts, statistics, marched_cycles);
   const Torques torques = system.torques();
   for (bool patient = false;; patient = true) {
     bool repels = false;
     system.set_torques(torques);
-    auto found = refine(system, solver, grids, next, repels);
+    auto found = refine(system, solver, grids, next, cycles_left, repels);
     if (found && next.period > search.period && is_half_as_long(system, search, found->orbit)) {
       next.period /= 2;
       next.start = found->orbit.state;
       next.few_cycles = next.first_cycles = 1;
-      found = refine(system, solver, grids, next, repels);
+      found = refine(system, solver, grids, next, cycles_left, repels);
     }
     if (found || (patient && !repels) || 2 * next.period > kLongestPeriod) return found;
     if (!search.patient) return found;
