@@ -30,7 +30,7 @@ class FrictionlessOrbits {
   }
 
  private:
-  static constexpr std::size_t kMost = 4000;
+  static constexpr std::size_t kMost = 500;
   using Key = std::array<double, 8 + kMarchComponents>;
   static Key key(int steps, const OrbitRequest& request, const PeriodicOrbit& origin);
 

@@ -61,6 +61,7 @@ class PhaseSystem {
   void derivative(double progress, const State& y, State& dy) {
     constexpr double kNoRate = std::numeric_limits<double>::quiet_NaN();  // fails the step
     if (std::isfinite(y[kPinionSpeed])) pinion_speed_ = y[kPinionSpeed];
+    if (std::isfinite(y[kPinionShaftSpeed])) shaft_speed_ = y[kPinionShaftSpeed];
     if (y[kPinionSpeed] <= 0) {
       dy.fill(kNoRate);
       return;
@@ -80,10 +81,18 @@ class PhaseSystem {
   }
   void on_no_step() const {
     // Phase goes like the root of time where the pinion stops: steps end before the speed is zero.
-    if (pinion_speed_ * scales_.time * system_.mesh().mean_pinion_contact_radius() <
-        0.05 * scales_.length) {
+    const auto stands = [&](double speed) {
+      return speed * scales_.time * system_.mesh().mean_pinion_contact_radius() <
+             0.05 * scales_.length;
+    };
+    if (stands(pinion_speed_)) {
       throw Refusal("NO_FORWARD_ROTATION",
                     "the pinion comes to a stop: the march over mesh phase needs forward rotation");
+    }
+    if (stands(shaft_speed_)) {
+      throw Refusal("NO_FORWARD_ROTATION",
+                    "the pinion shaft comes to a stop: the share of power that is lost (eq 30) has "
+                    "no value there");
     }
     throw_if_refused(refusal_);
   }
@@ -145,7 +154,7 @@ class PhaseSystem {
   MarchScales scales_;
   State scale_;
   GradedPiece piece_;
-  double pinion_speed_ = 0;                     ///< in the last evaluation
+  double pinion_speed_ = 0, shaft_speed_ = 0;   ///< in the last evaluation
   ContactStatus refusal_ = ContactStatus::kOk;  ///< of the last evaluations
   Instant instant_;
 };

@@ -17,12 +17,13 @@ constexpr double FlankKinematics::*kContactColumns[] = {&FlankKinematics::load_s
                                                         &FlankKinematics::gear_friction_arm};
 static_assert(std::size(kContactColumns) == kContactRows);
 
-/// The gear lags by `lag` more or less [rad].
-void set_lane(const MeshData& mesh, const MeshPhase& phase, double lag, int lane,
+/// The gear lags by `lag` more or less [rad]. False where there is no series.
+bool set_lane(const MeshData& mesh, const MeshPhase& phase, double lag, int lane,
               Columns& columns) {
   const MeshFunctions& f = phase.pinion;
   double offset = 0;
   const MeshExpansion* const expansion = mesh.nearest_expansion(phase.theta - lag, offset);
+  if (expansion == nullptr) return false;
   columns[kPinionRadiusRow][lane] = f.pinion_contact_radius;
   columns[kStiffnessRow][lane] = f.mesh_stiffness;
   columns[kStiffnessSlopeRow][lane] = f.mesh_stiffness_slope;
@@ -39,6 +40,7 @@ void set_lane(const MeshData& mesh, const MeshPhase& phase, double lag, int lane
     radius[lane] += f.gear_contact_radius;
     integral[lane] += f.radius_integral;
   }
+  return true;
 }
 
 }  // namespace
@@ -63,13 +65,10 @@ MeshGrid::MeshGrid(const MeshData& mesh, double half_backlash, int steps, double
     const double phase = 0.5 * n / steps;
     const double theta = 2 * std::numbers::pi * phase;
     nodes_[n] = mesh.at_phase(theta);
-    if (series_reach_ > 0) {
-      const auto set = [&](MeshColumns& columns, double lag) {
-        set_lane(mesh, nodes_[n], lag, n / 2, n % 2 == 0 ? columns.starts : columns.middles);
-      };
-      set(drive_, 0);
-      set(coast_, through_gap);
-    }
+    const auto set = [&](MeshColumns& columns, double lag) {
+      return set_lane(mesh, nodes_[n], lag, n / 2, n % 2 == 0 ? columns.starts : columns.middles);
+    };
+    if (!set(drive_, 0) || !set(coast_, through_gap)) series_reach_ = 0;
     const int interval = std::min(static_cast<int>(phase * mesh.intervals()), mesh.intervals() - 1);
     mesh.flanks(interval, phase, flanks_[n]);
   }

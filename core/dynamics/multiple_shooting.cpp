@@ -142,8 +142,9 @@ double MultipleShooting::improve() {
   for (int i = 0; i < kStates; ++i) response_.start[i + 1][steps_] = response_.start[i + 1][0];
   add_to_unknown(at_section(kStates));
   is_filled_ = false;
-  // Two steps with the same derivatives tell how much is left.
-  const double shorter = last_step_ > 0 && !anew ? length / last_step_ : 1;
+  // Two steps with the same derivatives tell how much is left; the first one, where they were new,
+  // came twice as near as those that follow will.
+  const double shorter = last_step_ > 0 && !anew ? 2 * length / last_step_ : 1;
   last_step_ = length;
   return shorter < 0.5 ? length * shorter / (1 - shorter) : length;
 }

@@ -30,9 +30,9 @@ bool sweep(Shooting& shooting, const OrbitRequest& request, PeriodicOrbit& orbit
     if (!shooting.converge(enough) || !shooting.evaluate_friction()) return false;
     const double change = orbit.figures.distance(previous);
     previous = orbit.figures;
-    if (first_friction && sweep == 1) {
-      orbit.response = change;
-    } else if (sweep > 1) {
+    if (friction_change > 0 && first_friction && sweep == 1) {
+      orbit.response = change / friction_change;
+    } else if (friction_change > 0 && sweep > 1) {
       orbit.response = std::max(orbit.response, (change - defect - orbit.defect) / friction_change);
     }
     ahead = kCaution * orbit.response * orbit.friction_change;

@@ -1,7 +1,6 @@
 #include "core/dynamics/single_shooting.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "core/dynamics/period_correction.h"

@@ -64,7 +64,7 @@ struct Phase {
   HWY_INLINE Pack torque(FrictionRow row) const { return load_any((*friction)[row] + lane); }
 };
 
-/// As Mechanics.
+/// As Mechanics, but for half the backlash that the transmission error lacks.
 struct PackMechanics {
   Pack pinion_radius, gear_radius, relative_radius;  // the last R_p - e'
   Pack stiffness, transmission_error, velocity, deflection, force;

@@ -9,7 +9,8 @@ namespace tribodyn {
 inline constexpr std::size_t kColumnLanes = 16;
 
 /// Rows of numbers, each as long as the next multiple of kColumnLanes, and as many may be read
-/// beyond the last. Zero at first.
+/// beyond the last. Zero at
+/// first; with another size what is there means nothing.
 class Columns {
  public:
   Columns() = default;

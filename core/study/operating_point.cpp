@@ -37,6 +37,8 @@ MarchState point_start(GearPairSystem& system, const FlankContactBatch& contacts
   }
   const double load =
       std::abs(system.torques().pinion) / system.mesh().functions(0, 0).pinion_contact_radius;
+  // Under hardly any load friction may be anything: a start needs none.
+  if (!(std::abs(friction.pinion) * load < 0.5 * std::abs(system.torques().pinion))) friction = {};
   return static_start(system, target.mean_pinion_speed, friction.pinion * load,
                       friction.gear * load, offset);
 }
@@ -305,7 +307,8 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
                                            history))) {
         result = *std::move(shot);
       } else if (options.method == SteadyStateMethod::kShooting) {
-        throw Refusal("NOT_FOUND_BY_SHOOTING", "shooting finds no response that surely attracts");
+        throw Refusal("NOT_FOUND_BY_SHOOTING",
+                      "shooting finds no response, or none that surely attracts");
       } else {
         system.set_torques(target.torques);
         // Together they are solved to 1e-10.

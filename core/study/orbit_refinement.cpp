@@ -58,8 +58,9 @@ bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
   return difference < 1e-3;
 }
 
-/// `cycles_left`: to march in search of a response, whether its first one is known or not.
-/// `repels`: set where a response is found that surely does, or may where periods double.
+/// `cycles_left`: to march in search of a response; charged also where one is known already, so
+/// that answers do not depend on that. `repels`: set where a response is found that surely does, or
+/// may where periods double.
 std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, MeshGrids& grids,
                                    const OrbitSearch& search, int& cycles_left, bool& repels) {
   OrbitRequest request;
@@ -115,6 +116,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
         // Flanks would have to pull: contact is lost, and the start decides how.
         request.keep_contact = false;
         have_coarser = false;
+        halving_difference = 0;
       }
       doubtful_pull /= 4;
     }
@@ -123,7 +125,10 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
       for (const int cycles : {search.few_cycles, search.first_cycles}) {
         if (found) break;
         if (!have_coarser) cycles_left -= cycles * search.period;
-        if (cycles_left < 0) return std::nullopt;
+        if (cycles_left < 0) {
+          system.take_refusal();
+          return std::nullopt;
+        }
         request.first_cycles = cycles;
         found = solve();
         if (have_coarser || search.few_cycles == search.first_cycles) break;
@@ -135,6 +140,7 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
         return std::nullopt;
       }
       have_coarser = false;
+      halving_difference = 0;
       continue;
     }
     double estimate = 0;

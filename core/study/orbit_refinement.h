@@ -17,7 +17,7 @@ struct OrbitSearch {
   bool try_contact_first = true;    ///< the response without contact loss, if there is one
   int few_cycles = 12;              ///< periods marched from the start when there is none,
   int first_cycles = 60;            ///< and when that does not lead to any
-  int maximum_mesh_cycles = 4000;   ///< marched in all
+  int maximum_mesh_cycles = 4000;   ///< marched in search of a response
   bool patient = true;              ///< further tries, and hundreds of cycles in the end
   bool renew_friction = false;      ///< on the way: they lead where friction leads
   double tolerance = 1e-5;          ///< wanted, of the figures; see RefinedOrbit::estimated_error

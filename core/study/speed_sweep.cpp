@@ -43,9 +43,10 @@ std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, P
                                     PointResult before, PointResult after) {
   constexpr double kNear = 0.1;           // what is on one branch goes on like that
   constexpr double kEnough = 0.04 / 3.6;  // [m/s]
-  if (options.method == SteadyStateMethod::kAutomatic) {
-    options.method = SteadyStateMethod::kShooting;  // close to an end marching takes its time
-  }
+  PointOptions patient = options;
+  patient.maximum_mesh_cycles = std::min(patient.maximum_mesh_cycles, 1000);
+  options.method = SteadyStateMethod::kShooting;  // close to an end marching takes its time
+  bool beyond_is_known = true;
   options.tolerance = std::max(options.tolerance, 0.1 * kNear);
   options.history = {};
   options.probe_coexisting_response = false;
@@ -59,12 +60,22 @@ std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, P
       between = solve_prepared_point(scene, cruise(speed, ascent_angle), options);
     } catch (const Refusal&) {
       after.vehicle_speed = speed;  // the branch is not found there
+      beyond_is_known = false;
       continue;
     }
-    if (!between.settled) break;
     const double first = distance(before, between), second = distance(between, after);
     if (std::max(first, second) < kNear) return std::nullopt;
+    if (first > second) beyond_is_known = true;
     (first > second ? after : before) = std::move(between);
+  }
+  if (!beyond_is_known) {  // it may go on in another way, as with a period that doubles
+    try {
+      patient.carried_state = carried_from(before);
+      after = solve_prepared_point(scene, cruise(after.vehicle_speed, ascent_angle), patient);
+    } catch (const Refusal&) {
+      return std::nullopt;
+    }
+    if (!after.settled) return std::nullopt;
   }
   if (distance(before, after) < kNear) return std::nullopt;
   return BranchEnd{before.vehicle_speed, after.vehicle_speed};

@@ -419,7 +419,7 @@ TEST(HardPoints, RandomGearSetsAndFluids) {
       }
     } catch (const Refusal& refusal) {
       ++refused;
-      EXPECT_NE(refusal.reason(), "NOT_FINITE");
+      EXPECT_NE(refusal.reason(), "NOT_FINITE") << refusal.what();
       EXPECT_GT(std::string(refusal.what()).size(), 20u);
     }
   }

@@ -105,9 +105,8 @@ void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
     const auto& end = point.branch_end();
     sheet.remark("The branch of steady states that the curve follows " +
                  std::string(result.direction() == v1::DOWN ? "down" : "up") + " ends between " +
-                 significant(end.followed_to_kilometers_per_hour(), 4) + " and " +
-                 significant(end.gone_at_kilometers_per_hour(), 4) +
-                 " km/h: there the response jumps.");
+                 fixed(end.followed_to_kilometers_per_hour(), 2) + " and " +
+                 fixed(end.gone_at_kilometers_per_hour(), 2) + " km/h: there the response jumps.");
   }
   if (without_period > 0) {
     sheet.remark(std::to_string(without_period) +
