@@ -14,9 +14,9 @@ namespace tribodyn {
 enum MeshRow {
   kPinionRadiusRow,    ///< R_p [m]
   kStiffnessRow,       ///< k_m [N/m]
-  kStiffnessSlopeRow,  ///< dk_m/dphi_p
+  kStiffnessSlopeRow,  ///< dk_m/dphi_p [N/m/rad]
   kErrorRow,           ///< e [m]
-  kErrorSlopeRow,      ///< de/dphi_p
+  kErrorSlopeRow,      ///< de/dphi_p [m/rad]
   kOffsetRow,          ///< from where the series are around [rad]
   kSeriesRow,          ///< of R_g and of the radius integral, in turn, for each power
   kMeshRows = kSeriesRow + 2 * MeshExpansion::kTerms
@@ -49,8 +49,8 @@ struct GridContacts {
 /// gear set alone: made once, used by every speed, fluid and sweep. Immutable.
 class MeshGrid {
  public:
-  /// `steps` in the mesh cycle, at least 1; E' and options as of the contacts. Nodes
-  /// refer to the mesh.
+  /// half_backlash b [m]; `steps` in the mesh cycle, at least 1; E' [Pa] and options as of the
+  /// contacts. Nodes refer to the mesh.
   MeshGrid(const MeshData& mesh, double half_backlash, int steps, double reduced_modulus,
            const ModelOptions& options);
 

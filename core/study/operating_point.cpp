@@ -332,8 +332,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       spent = result.statistics;
       data_torque = result.pinion_torque;
       if (chosen) continue;  // it starts anew
-      from = CarriedState{result.section_state, result.mean_pinion_speed,     result.pinion_torque,
-                          result.wheel_torque,  result.period_in_mesh_cycles, result.contact_loss};
+      from = carried_from(result);
     }
   };
 

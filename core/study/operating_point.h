@@ -190,6 +190,12 @@ struct PointResult {
   History history;
 };
 
+/// A result as the start of a neighbour's search.
+inline CarriedState carried_from(const PointResult& r) {
+  return {r.section_state, r.mean_pinion_speed,     r.pinion_torque,
+          r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
+}
+
 /// Solves one operating point. Throws Refusal (reasons: contact_status_name, NO_FORWARD_ROTATION,
 /// WORK_LIMIT, ...) or Cancelled.
 PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,

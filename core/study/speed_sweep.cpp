@@ -8,11 +8,6 @@
 namespace tribodyn {
 namespace {
 
-CarriedState carried_from(const PointResult& r) {
-  return {r.section_state, r.mean_pinion_speed,     r.pinion_torque,
-          r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
-}
-
 OperatingCondition cruise(double speed, double ascent_angle) {
   OperatingCondition condition;
   condition.kind = OperatingCondition::Kind::kCruise;
@@ -37,8 +32,7 @@ bool may_be_branches(const PointResult& a, const PointResult& b) {
           distance(a, b) > kFar);
 }
 
-/// Whether a branch ends between two points of a sweep: where, as far as responses are found
-/// without much ado.
+/// Whether a branch ends between two points of a sweep, and where; of several ends one.
 std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, PointOptions options,
                                     PointResult before, PointResult after) {
   constexpr double kNear = 0.1;           // what is on one branch goes on like that

@@ -103,8 +103,7 @@ void expect_right(const Scene& scene, const OperatingCondition& condition, const
   march.tolerance = 1e-6;
   if (!cheaper) {
     march.method = SteadyStateMethod::kMarch;
-    march.carried_state = CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
-                                       r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
+    march.carried_state = carried_from(r);
   }
   const PointResult exact = solve_operating_point(scene, condition, march);
   ASSERT_TRUE(exact.settled);
@@ -232,9 +231,7 @@ TEST(HardPoints, AroundTheFoldsBothWays) {
       expect_right(reference_scene(), condition, r);
       count += r.contact_loss != lost;
       lost = r.contact_loss;
-      options.carried_state =
-          CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
-                       r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
+      options.carried_state = carried_from(r);
     }
     return count;
   };
@@ -404,8 +401,7 @@ TEST(HardPoints, RandomGearSetsAndFluids) {
       if (!cheaper) march.method = SteadyStateMethod::kMarch;
       march.tolerance = 1e-6;
       march.maximum_mesh_cycles = 2000;
-      march.carried_state = CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
-                                         r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
+      march.carried_state = carried_from(r);
       const PointResult exact = solve_operating_point(place.scene, place.condition, march);
       if (!exact.settled) {
         ++untold;

@@ -158,9 +158,7 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
       ++shot;
       PointOptions from_there = marched();
       if (full_run()) from_there.relative_tolerance = 1e-11;
-      from_there.carried_state =
-          CarriedState{r.section_state, r.mean_pinion_speed,     r.pinion_torque,
-                       r.wheel_torque,  r.period_in_mesh_cycles, r.contact_loss};
+      from_there.carried_state = carried_from(r);
       const PointResult exact = solve_operating_point(place.scene, place.condition, from_there);
       if (!exact.settled) {
         ++untold;  // the march rattles on and tells nothing
