@@ -23,13 +23,13 @@ class LaggedFriction {
     nodes_.clear();
     cursor_ = 0;
   }
-  /// Phases [cycles] must not fall.
-  void add(double phase, const FrictionPerLoad& value) {
+  /// Phases [cycles] must not fall. load [N]: there, on all flanks.
+  void add(double phase, const FrictionPerLoad& value, double load) {
     if (!nodes_.empty()) {
       const double width = phase - nodes_.back().phase;
       nodes_.back().per_width = width > 0 ? 1 / width : 0;
     }
-    nodes_.push_back({phase, 0, value});
+    nodes_.push_back({phase, 0, load, value});
   }
   /// The last value added, or none.
   FrictionPerLoad last() const { return nodes_.empty() ? FrictionPerLoad{} : nodes_.back().value; }
@@ -50,15 +50,18 @@ class LaggedFriction {
     return i < nodes_.size() && nodes_[i].phase == phase ? nodes_[i].value : at(phase);
   }
 
-  /// How far it is from another one: root of the mean square at its own phases, relative.
+  /// How far it is from another one: root of the mean square of the torques that they make of the
+  /// loads at its own phases, relative.
   double distance(LaggedFriction& other) const {
     double change = 0, size = 0;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const Node& node = nodes_[i];
       const FrictionPerLoad there = other.at(node.phase, i);
       const double pinion = node.value.pinion - there.pinion, gear = node.value.gear - there.gear;
-      change += pinion * pinion + gear * gear;
-      size += node.value.pinion * node.value.pinion + node.value.gear * node.value.gear;
+      const double weight = node.load * node.load;
+      change += weight * (pinion * pinion + gear * gear);
+      size += weight *
+              (node.value.pinion * node.value.pinion + node.value.gear * node.value.gear);
     }
     return size > 0 ? std::sqrt(change / size) : 0;
   }
@@ -67,6 +70,7 @@ class LaggedFriction {
   struct Node {
     double phase;
     double per_width;  ///< of the way to the next
+    double load;       ///< [N]
     FrictionPerLoad value;
   };
   std::vector<Node> nodes_;

@@ -193,7 +193,7 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
         // Across a gap it goes from the value before to that after: no jump where a flank meets.
         if (place.load > light) {
           friction.add(p.phase + 0.5 * part * p.length,
-                       {torque.pinion / place.load, torque.gear / place.load});
+                       {torque.pinion / place.load, torque.gear / place.load}, place.load);
         }
       }
       if (p.regime.side != 0) {
@@ -249,7 +249,7 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
       loss += seen_[kSeenSlidingSpeed][n] * arrays_.friction[n];
     }
     const double load = block.side * at[kMeshForceRow][lane];
-    friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load});
+    friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load}, load);
     least_pressing_force_ = std::min(least_pressing_force_, load);
     // By Simpson's rule, or by trapezoids where there are no middles.
     const double inside = contacts.stride == 2 ? 6 : node % 2 == 0 ? 2 : 4;

@@ -26,7 +26,7 @@ struct PeriodicOrbit {
   std::vector<OrbitPiece> pieces;
   OrbitFigures figures;
   double defect = 0;  ///< scaled change of the state in the last step of Newton, or what it left
-  /// What the last evaluation changed of the friction per load, relative (LaggedFriction).
+  /// What the last evaluation changed of the friction, relative (LaggedFriction::distance).
   double friction_change = 0;
   /// Of the figures to all of the friction, relative; 0: not known. They go nearly in proportion.
   double response = 0;

@@ -11,6 +11,7 @@ namespace tribodyn {
 namespace {
 
 constexpr double kSafety = 1.7;  // on the error that two step lengths tell
+constexpr double kSweepShare = 0.4;  // of the tolerance: may be left by sweeps
 constexpr int kPatience = 300;   // periods
 constexpr double kNearDoubling = 0.06;
 constexpr int kMostFailures = 3;
@@ -88,9 +89,9 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
   const StepSequence sequence(system.mesh().intervals(), static_cast<int>(least));
   for (int steps = sequence.first(); steps <= kFinest; steps = sequence.after(steps)) {
     const MeshGrid& grid = grids.with_steps(steps);
-    // Sweeps go on until what they leave is well below what the step length can give.
+    // The error is shared between the steps and what sweeps leave.
     request.tolerance =
-        have_coarser ? 0.2 * search.tolerance : std::max(5 * search.tolerance, 1e-4);
+        have_coarser ? kSweepShare * search.tolerance : std::max(5 * search.tolerance, 1e-4);
     const OrbitFigures coarser = best.orbit.figures;
     PeriodicOrbit orbit = have_coarser ? std::move(best.orbit) : origin;
     const auto solve = [&] {

@@ -48,7 +48,7 @@ struct Bench {
     // Any friction will do that varies.
     for (int n = 0; n <= 2 * steps; ++n) {
       const double phase = 0.5 * n / steps;
-      friction.add(phase, {-1e-3 * (1 + std::sin(6 * phase)), -2e-3 * (1 - 0.5 * phase)});
+      friction.add(phase, {-1e-3 * (1 + std::sin(6 * phase)), -2e-3 * (1 - 0.5 * phase)}, 1);
     }
     start = static_start(system, kSpeed, 0, 0, 0);
     const MarchScales scales = march_scales(system, kSpeed);
