@@ -18,69 +18,67 @@ double inside_cycle(double phase) { return phase - std::floor(phase); }
 
 }  // namespace
 
-void FixedStepMarch::sensitivity_rates(const MarchState& y, const Mechanics& at,
-                                       const FrictionPerLoad& friction, const Rates& dy,
-                                       const Sensitivity& s, Sensitivity& ds) const {
-  using Row = Eigen::Array<double, 1, 8>;
-  const DrivelineDynamics& d = system_.dynamics();
+FixedStepMarch::FixedStepMarch(GearPairSystem& system, const MarchScales& scales,
+                               const MeshGrid& grid, int period, bool solve_wheel_torque,
+                               double event_tolerance, InstructionSet instruction_set)
+    : system_(system),
+      scales_(scales),
+      grid_(grid),
+      period_(period),
+      event_tolerance_(event_tolerance),
+      instruction_set_(instruction_set) {
+  const DrivelineDynamics& d = system.dynamics();
+  constants_ = {d.pinion_shaft_stiffness,
+                d.pinion_shaft_damping,
+                d.gear_shaft_stiffness,
+                d.gear_shaft_damping,
+                1 / d.pinion_shaft_inertia,
+                1 / d.pinion_inertia,
+                1 / d.gear_inertia,
+                1 / d.wheel_inertia,
+                system.mesh().mean_pinion_contact_radius(),
+                system.mesh().mean_gear_contact_radius(),
+                {}};
+  constants_.per_torque[solve_wheel_torque ? 3 : 0] =
+      solve_wheel_torque ? -1 / d.wheel_inertia : 1 / d.pinion_shaft_inertia;
+}
+
+SensitivityStage FixedStepMarch::sensitivity_stage(const MarchState& y, const Mechanics& at,
+                                                   const FrictionPerLoad& friction,
+                                                   const Rates& rate) const {
   const MeshFunctions& m = at.mesh;
   const ContactRegime& r = system_.regime;
-  const double stiffness = r.side == 0 ? 0 : m.mesh_stiffness;
-  const double damping =
-      r.side == 0 && system_.options().damping_in_contact_only ? 0 : d.mesh_damping;
-  const Row force =
-      stiffness * s[kWinding] +
-      damping * ((m.pinion_contact_radius - m.static_transmission_error_slope) * s[kPinionSpeed] -
-                 m.gear_contact_radius * s[kGearSpeed]);
   const double load_by_force = r.load(at.mesh_force) > 0 ? r.side : 0;
-  const Row pinion_shaft = d.pinion_shaft_stiffness * s[kPinionShaftTwist] +
-                           d.pinion_shaft_damping * (s[kPinionShaftSpeed] - s[kPinionSpeed]);
-  const Row gear_shaft = d.gear_shaft_stiffness * s[kGearShaftTwist] +
-                         d.gear_shaft_damping * (s[kGearSpeed] - s[kWheelSpeed]);
-  Row pinion_torque =
-      (load_by_force * friction.pinion - m.pinion_contact_radius) * force + pinion_shaft;
+  SensitivityStage out;
+  out.relative_radius = m.pinion_contact_radius - m.static_transmission_error_slope;
+  out.gear_radius = m.gear_contact_radius;
+  out.stiffness = r.side == 0 ? 0 : m.mesh_stiffness;
+  out.damping = r.side == 0 && system_.options().damping_in_contact_only
+                    ? 0
+                    : system_.dynamics().mesh_damping;
+  out.pinion_arm = load_by_force * friction.pinion - m.pinion_contact_radius;
+  out.gear_arm = load_by_force * friction.gear + m.gear_contact_radius;
+  out.torque_per_winding = 0;
   if (system_.options().energy_consistent) {
-    pinion_torque += m.static_transmission_error_slope * force;
-    if (r.side != 0) pinion_torque -= m.mesh_stiffness_slope * at.deflection * s[kWinding];
+    out.pinion_arm += m.static_transmission_error_slope;
+    if (r.side != 0) out.torque_per_winding = -m.mesh_stiffness_slope * at.deflection;
   }
-  ds[kTime].setZero();
-  ds[kPinionShaftTwist] = s[kPinionShaftSpeed] - s[kPinionSpeed];
-  ds[kWinding] = system_.mesh().mean_pinion_contact_radius() * s[kPinionSpeed] -
-                 system_.mesh().mean_gear_contact_radius() * s[kGearSpeed];
-  ds[kGearShaftTwist] = s[kGearSpeed] - s[kWheelSpeed];
-  ds[kPinionShaftSpeed] = -pinion_shaft / d.pinion_shaft_inertia;
-  ds[kPinionSpeed] = pinion_torque / d.pinion_inertia;
-  ds[kGearSpeed] = ((m.gear_contact_radius + load_by_force * friction.gear) * force - gear_shaft) /
-                   d.gear_inertia;
-  ds[kWheelSpeed] = gear_shaft / d.wheel_inertia;
-  if (solve_wheel_torque_) {
-    ds[kWheelSpeed](kTorque) -= 1 / d.wheel_inertia;
-  } else {
-    ds[kPinionShaftSpeed](kTorque) += 1 / d.pinion_shaft_inertia;
-  }
-  // From time to phase.
-  const double to_phase = system_.cycle_angle() / y[kPinionSpeed];
-  const Row faster = s[kPinionSpeed] / y[kPinionSpeed];
-  for (int i = 0; i < kStates; ++i) ds[i] = to_phase * ds[i] - dy[i] * faster;
+  out.time = rate[kTime];
+  out.per_speed = 1 / y[kPinionSpeed];
+  out.rate = rate;
+  return out;
 }
 
 void FixedStepMarch::step(LaggedFriction& friction, const Span& span, const MarchState& y,
-                          const Sensitivity* s, MarchState& to, Sensitivity* s_to) {
+                          MarchState& to) {
   const MeshPhase* const phases[4] = {span.start, span.middle, span.middle, span.end};
   const double h = span.length;
   constexpr double kNode[4] = {0, 0.5, 0.5, 1}, kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
   MarchState stage = y;
   Rates rate{};
-  Sensitivity s_stage, s_rate;
   to = y;
-  if (s != nullptr) s_stage = *s_to = *s;
   for (int i = 0; i < 4; ++i) {
-    if (i > 0) {
-      for (int j = 0; j < kStates; ++j) stage[j] = y[j] + kNode[i] * h * rate[j];
-      if (s != nullptr) {
-        for (int j = 0; j < kStates; ++j) s_stage[j] = (*s)[j] + kNode[i] * h * s_rate[j];
-      }
-    }
+    for (int j = 0; j < kStates && i > 0; ++j) stage[j] = y[j] + kNode[i] * h * rate[j];
     const FrictionPerLoad here = friction.at(span.phase + kNode[i] * h);
     Mechanics at;
     system_.mechanics(*phases[i], stage.data(), at);
@@ -89,10 +87,7 @@ void FixedStepMarch::step(LaggedFriction& friction, const Span& span, const Marc
     at.gear_friction_torque = here.gear * load;
     system_.motion(stage.data(), at, rate.data());
     for (int j = 0; j < kStates; ++j) to[j] += kWeight[i] * h * rate[j];
-    if (s != nullptr) {
-      sensitivity_rates(stage, at, here, rate, s_stage, s_rate);
-      for (int j = 0; j < kStates; ++j) (*s_to)[j] += kWeight[i] * h * s_rate[j];
-    }
+    if (keep_stages_) stages_[i] = sensitivity_stage(stage, at, here, rate);
     if (i == 0) first_rate_ = rate;
   }
   last_rate_ = rate;
@@ -156,7 +151,7 @@ double FixedStepMarch::locate(LaggedFriction& friction, int index, double first,
                               double high, Part&& part, const MarchState& y, MarchState& to) {
   const auto true_step = [&](double length) {
     const Span span = part(length);
-    step(friction, span, y, nullptr, to, nullptr);
+    step(friction, span, y, to);
     return events(*span.end, to)[index];
   };
   // First by the cubic through both ends, which costs no steps.
@@ -201,12 +196,12 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
     pieces->reserve(static_cast<std::size_t>(grid_.steps()) * static_cast<std::size_t>(period_));
   }
   y[kTime] = y[kLossWork] = y[kLossShareSquared] = 0;
+  keep_stages_ = s != nullptr;
   if (s != nullptr) {
     for (auto& row : *s) row.setZero();
     for (int i = 0; i < kTorque; ++i) (*s)[i + 1](i) = 1;
   }
   MarchState to{};
-  Sensitivity s_to;
   std::optional<Events> at_end_before;  // of the step before, in the same regime
   for (int i = 0; i < grid_.steps() * period_; ++i) {
     const int node = 2 * (i % grid_.steps());
@@ -227,7 +222,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
         return Span{phase, end - phase, &at_start, &at_middle, &grid_.at(node + 2)};
       };
       Span span = whole();
-      step(friction, span, y, s, to, s != nullptr ? &s_to : nullptr);
+      step(friction, span, y, to);
       bool happens = false;
       MarchState half = middle(y, to, h);
       if (!keep_contact) {
@@ -239,7 +234,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
           const double peak = peak_of(at_first, events(*span.middle, half), at_high);
           if (peak > 0) {
             high = peak * h;
-            step(friction, part(high), y, nullptr, to, nullptr);
+            step(friction, part(high), y, to);
             at_high = events(at_end, to);
           }
         }
@@ -260,10 +255,9 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
           }
           span = part(h);
         }
-        const bool is_taken = happens && s == nullptr;
-        if (!happens && high < h) span = whole();
-        if (!is_taken && (happens || high < h)) {
-          step(friction, span, y, s, to, s != nullptr ? &s_to : nullptr);
+        if (!happens && high < h) {
+          span = whole();
+          step(friction, span, y, to);
         }
         if (happens || high < h) half = middle(y, to, h);
       }
@@ -274,7 +268,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
         pieces->push_back({phase, h, on_grid ? node : -1, system_.regime, y, half, to});
       }
       y = to;
-      if (s != nullptr) *s = s_to;
+      if (s != nullptr) advance_sensitivity(instruction_set_, constants_, stages_, h, *s);
       phase += h;
       if (happens) {
         at_start = at_end;

@@ -9,6 +9,7 @@
 #include "core/dynamics/mesh_grid.h"
 #include "core/dynamics/orbit_friction.h"
 #include "core/dynamics/section_map.h"
+#include "core/dynamics/step_sensitivity.h"
 
 namespace tribodyn {
 
@@ -20,13 +21,8 @@ class FixedStepMarch {
   /// The grid's steps in each of `period` mesh cycles. Events are located to `event_tolerance`, of
   /// the scales of length and force. Keeps the references.
   FixedStepMarch(GearPairSystem& system, const MarchScales& scales, const MeshGrid& grid,
-                 int period, bool solve_wheel_torque, double event_tolerance)
-      : system_(system),
-        scales_(scales),
-        grid_(grid),
-        period_(period),
-        solve_wheel_torque_(solve_wheel_torque),
-        event_tolerance_(event_tolerance) {}
+                 int period, bool solve_wheel_torque, double event_tolerance,
+                 InstructionSet instruction_set);
 
   /// One period from `state`, in the system's regime or in steady contact of one side however the
   /// force may turn (`keep_contact`). Time and works start from zero. False where it breaks down:
@@ -46,10 +42,9 @@ class FixedStepMarch {
     double phase, length;  ///< [cycles]
     const MeshPhase *start, *middle, *end;
   };
-  void sensitivity_rates(const MarchState& y, const Mechanics& at, const FrictionPerLoad& friction,
-                         const Rates& dy, const Sensitivity& s, Sensitivity& ds) const;
-  void step(LaggedFriction& friction, const Span& span, const MarchState& y, const Sensitivity* s,
-            MarchState& to, Sensitivity* s_to);
+  SensitivityStage sensitivity_stage(const MarchState& y, const Mechanics& at,
+                                     const FrictionPerLoad& friction, const Rates& rate) const;
+  void step(LaggedFriction& friction, const Span& span, const MarchState& y, MarchState& to);
   template <class Part>
   double locate(LaggedFriction& friction, int index, double first, double last, double high,
                 Part&& part, const MarchState& y, MarchState& to);
@@ -60,10 +55,14 @@ class FixedStepMarch {
   const MarchScales& scales_;
   const MeshGrid& grid_;
   int period_;
-  bool solve_wheel_torque_;
   double event_tolerance_;
+  InstructionSet instruction_set_;
+  SensitivityConstants constants_;
   long evaluations_ = 0, taken_ = 0, events_ = 0;
+  // Of the last step.
   Rates first_rate_{}, last_rate_{};
+  bool keep_stages_ = false;
+  std::array<SensitivityStage, 4> stages_;
 };
 
 }  // namespace tribodyn

@@ -60,8 +60,7 @@ class LaggedFriction {
       const double pinion = node.value.pinion - there.pinion, gear = node.value.gear - there.gear;
       const double weight = node.load * node.load;
       change += weight * (pinion * pinion + gear * gear);
-      size += weight *
-              (node.value.pinion * node.value.pinion + node.value.gear * node.value.gear);
+      size += weight * (node.value.pinion * node.value.pinion + node.value.gear * node.value.gear);
     }
     return size > 0 ? std::sqrt(change / size) : 0;
   }

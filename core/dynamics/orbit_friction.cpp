@@ -249,7 +249,8 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
       loss += seen_[kSeenSlidingSpeed][n] * arrays_.friction[n];
     }
     const double load = block.side * at[kMeshForceRow][lane];
-    friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load}, load);
+    friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load},
+                 load);
     least_pressing_force_ = std::min(least_pressing_force_, load);
     // By Simpson's rule, or by trapezoids where there are no middles.
     const double inside = contacts.stride == 2 ? 6 : node % 2 == 0 ? 2 : 4;

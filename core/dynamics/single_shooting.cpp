@@ -14,7 +14,7 @@ SingleShooting::SingleShooting(GearPairSystem& system, OrbitFriction& friction,
                                PeriodicOrbit& orbit)
     : Shooting(system, friction, grid, request, orbit),
       march_(system, scales_, grid, orbit.period, request.solve_wheel_torque,
-             std::clamp(1e-4 * request.tolerance, 1e-12, 1e-9)) {}
+             std::clamp(1e-4 * request.tolerance, 1e-12, 1e-9), friction.instruction_set()) {}
 
 bool SingleShooting::march(MarchState& state, Sensitivity* s) {
   throw_if_interrupted();

@@ -52,7 +52,8 @@ struct Bench {
     }
     start = static_start(system, kSpeed, 0, 0, 0);
     const MarchScales scales = march_scales(system, kSpeed);
-    FixedStepMarch march(system, scales, grid, 1, solve_wheel_torque, 1e-9);
+    FixedStepMarch march(system, scales, grid, 1, solve_wheel_torque, 1e-9,
+                         InstructionSet::kPortable);
     MarchState y = start;
     marched = march.run(friction, true, y, &sensitivity, &pieces);
     for (Columns* columns : {&lagged.start, &lagged.middle}) {
