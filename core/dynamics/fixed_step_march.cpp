@@ -129,6 +129,16 @@ double peak_of(const std::array<double, 2>& first, const std::array<double, 2>& 
   return 0;
 }
 
+/// Where in [0, 1] the parabola through values at 0, 1/2 and 1 rises through zero, from `first` <=
+/// 0 to `last` > 0, and its slope there; 0: nowhere.
+double rising_root(double first, double middle, double last, double& slope) {
+  const double bend = 2 * (first - 2 * middle + last), start = last - first - bend;
+  const double square = start * start - 4 * bend * std::min(first, 0.0);
+  slope = square > 0 ? std::sqrt(square) : 0;
+  if (slope == 0) return 0;
+  return start >= 0 ? -2 * std::min(first, 0.0) / (start + slope) : (slope - start) / (2 * bend);
+}
+
 /// Length at which a function passes through zero, from `first` at 0 to `last` > 0 at `high`; zero
 /// is what is nearer to it than `nothing`.
 template <class Function>
@@ -154,7 +164,7 @@ double FixedStepMarch::locate(LaggedFriction& friction, int index, double first,
     step(friction, span, y, to);
     return events(*span.end, to)[index];
   };
-  // First by the cubic through both ends, which costs no steps.
+  // First by the cubic through both ends and a parabola, which cost no steps.
   const double start = part(high).phase;
   const MarchState end = to;
   const Rates start_rate = first_rate_, end_rate = last_rate_;
@@ -168,19 +178,18 @@ double FixedStepMarch::locate(LaggedFriction& friction, int index, double first,
     }
     return events(system_.at_phase(inside_cycle(start + length)), state)[index];
   };
-  const double nearest = 1e-6 * high, probe = 1e-3 * high;
-  double x = root_of(first, last, high, 1e-7, on_cubic);
-  if (x > nearest && x > probe) {
-    double slope = (on_cubic(x) - on_cubic(x - probe)) / probe;
-    double before = 0, value_before = 0;
-    for (int i = 0; i < 6 && slope > 0 && x > nearest && x <= high; ++i) {
-      const double value = true_step(x);
-      if (std::abs(value) <= event_tolerance_) return x;
-      if (i > 0) slope = (value - value_before) / (x - before);
-      before = x;
-      value_before = value;
-      x -= value / slope;
-    }
+  const double nearest = 1e-6 * high;
+  double slope = 0, before = 0, value_before = 0;
+  double x = high * rising_root(first, on_cubic(0.5 * high), last, slope);
+  slope /= high;
+  if (slope > 0) x -= on_cubic(x) / slope;
+  for (int i = 0; i < 6 && slope > 0 && x > nearest && x <= high; ++i) {
+    const double value = true_step(x);
+    if (std::abs(value) <= event_tolerance_) return x;
+    if (i > 0) slope = (value - value_before) / (x - before);
+    before = x;
+    value_before = value;
+    x -= value / slope;
   }
   x = root_of(first, last, high, event_tolerance_, true_step);
   true_step(x);
