@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/contact/asperity_functions.h"
+#include "core/contact/ratio_integrals.h"
 #include "core/numerics/gauss_legendre.h"
 
 namespace tribodyn {
@@ -44,30 +45,42 @@ const Chebyshev<N>& chebyshev() {
   return rule;
 }
 
-constexpr int kTerms = 28;
+constexpr int kTerms = kRatioPoints;
 using Square = Eigen::Matrix<double, kTerms, kTerms>;
 
-/// R at the Chebyshev points of L (rows) and s (columns), cumulatively in s.
-Square ratio_values(const Eigen::Array<double, kTerms, 1>& factor,
-                    const Eigen::Array<double, kTerms, 1>& depth, double index) {
-  constexpr int kNodes = 8;
+RatioRule ratio_rule(const Eigen::Array<double, kTerms, 1>& depth, double index) {
+  constexpr int kNodes = RatioInterval::kNodes;
   const auto& rule = gauss_legendre<kNodes>();
-  Square values;
-  Eigen::Array<double, kTerms, 1> integral = Eigen::Array<double, kTerms, 1>::Zero();
-  double before = 0, growth_before = 0;
-  for (int j = kTerms - 1; j >= 0; --j) {  // depth rises
-    const double growth = std::expm1(index * depth(j));
-    integral *= (factor * (growth_before - growth)).exp();
+  RatioRule out;
+  double before = 0;
+  for (int j = 0; j < kTerms; ++j) {
+    const double end = depth(kTerms - 1 - j);  // it rises
+    const double scaled_pressure = std::expm1(end);
+    RatioInterval& interval = out[j];
+    interval.growth = std::expm1(index * end);
+    interval.per_square = 2 / (scaled_pressure * scaled_pressure);
     for (int n = 0; n < kNodes; ++n) {
-      const double s = before + (depth(j) - before) * rule.node(n);
+      const double s = before + (end - before) * rule.node(n);
       const double q = std::expm1(s);
-      integral += (depth(j) - before) * rule.weight(n) * q * (q + 1) *
-                  (factor * (std::expm1(index * s) - growth)).exp();
+      interval.weight[n] = (end - before) * rule.weight(n) * q * (q + 1);
+      interval.less[n] = std::expm1(index * s) - interval.growth;
     }
-    const double q = std::expm1(depth(j));
-    values.col(j) = (2 / (q * q) * integral).matrix();
-    before = depth(j);
-    growth_before = growth;
+    before = end;
+  }
+  return out;
+}
+
+/// R at the Chebyshev points of L (rows) and s (columns).
+Square ratio_values(InstructionSet instruction_set, const Eigen::Array<double, kTerms, 1>& factor,
+                    const Eigen::Array<double, kTerms, 1>& depth, double index) {
+  RatioLanes lanes{};
+  std::copy_n(factor.data(), kTerms, lanes.begin());
+  std::array<RatioLanes, kTerms> rising;
+  integrate_ratios(instruction_set, ratio_rule(depth, index), lanes, rising);
+  Square values;
+  for (int j = 0; j < kTerms; ++j) {
+    values.col(j) =
+        Eigen::Map<const Eigen::Matrix<double, kTerms, 1>>(rising[kTerms - 1 - j].data());
   }
   return values;
 }
@@ -103,7 +116,8 @@ BivariatePolynomial truncated(const Square& coefficients, double tolerance) {
 
 }  // namespace
 
-bool tabulate_ratio(double least_factor, double greatest_factor, ContactBlockTables& tables) {
+bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double greatest_factor,
+                    ContactBlockTables& tables) {
   const auto& rule = chebyshev<kTerms>();
   const double centre = 0.5 * (least_factor + greatest_factor);
   const double half = std::max(0.5 * (greatest_factor - least_factor), 1e-3);
@@ -114,8 +128,8 @@ bool tabulate_ratio(double least_factor, double greatest_factor, ContactBlockTab
   double deepest =
       std::min(kDeepest, std::log1p(kMostFolds / std::max(greatest_factor, 1e-3)) / tables.index);
   for (int attempt = 0; attempt < 8; ++attempt, deepest *= 0.85) {
-    const Square values =
-        ratio_values(centre + half * rule.point, 0.5 * deepest * (1 + rule.point), tables.index);
+    const Square values = ratio_values(instruction_set, centre + half * rule.point,
+                                       0.5 * deepest * (1 + rule.point), tables.index);
     const Square coefficients = rule.to_coefficients * values * rule.to_coefficients.transpose();
     const double tail = std::max(coefficients.bottomRows<2>().cwiseAbs().maxCoeff(),
                                  coefficients.rightCols<2>().cwiseAbs().maxCoeff());

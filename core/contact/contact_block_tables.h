@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "core/contact/flank_contact_batch.h"
 #include "core/lubricant/lubricant.h"
 
 namespace tribodyn {
@@ -80,7 +81,8 @@ struct ContactBlockTables {
 
 /// Fills the polynomials of R for L in [least_factor, greatest_factor]; Z is `index`. Takes as much
 /// depth as 28 terms allow. False when that is nothing.
-bool tabulate_ratio(double least_factor, double greatest_factor, ContactBlockTables& tables);
+bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double greatest_factor,
+                    ContactBlockTables& tables);
 
 /// Fills the polynomials of F_2 and F_5/2.
 void tabulate_asperities(ContactBlockTables& tables);

@@ -157,11 +157,12 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   const AsPublished& p = options.as_published;
   const bool one_switch_at_most = !t.limited || (tau_zero > 0 && gamma >= 0);
   const bool proved = one_equilibrium || t.limited;
-  t.covered = !p.eq17_atan && !p.eq31_32_logarithm && !p.eq43_44_polynomials &&
-              options.hertz_load == HertzLoad::kFilmLoad && one_switch_at_most && proved &&
-              (t.newtonian || oil.relaxation_time > 0) && t.hottest > t.inlet_temperature + 1 &&
-              std::isfinite(t.log_film) &&
-              tabulate_ratio(factor_at(t.hottest), factor_at(t.inlet_temperature), t);
+  t.covered =
+      !p.eq17_atan && !p.eq31_32_logarithm && !p.eq43_44_polynomials &&
+      options.hertz_load == HertzLoad::kFilmLoad && one_switch_at_most && proved &&
+      (t.newtonian || oil.relaxation_time > 0) && t.hottest > t.inlet_temperature + 1 &&
+      std::isfinite(t.log_film) &&
+      tabulate_ratio(instruction_set, factor_at(t.hottest), factor_at(t.inlet_temperature), t);
   tabulate_asperities(t);
   if (t.covered && t.limited && !t.isothermal) fit_start(instruction_set, t);
   tables_ = std::move(tables);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "core/numerics/bracketed_root.h"
 #include "core/numerics/gauss_legendre.h"
@@ -37,36 +38,49 @@ double log_viscosity_under_pressure(double log_ambient_viscosity, double factor,
 
 namespace {
 
-/// Eq 33's coefficient [1/Pa] and its derivative by the index.
-ValueAndSlope coefficient_and_slope(double factor, double index) {
-  // int_0^inf exp(-v) (1 + v/L)^(1/Z - 1) dv / (Z c L); the integrand peaks near v = 1/Z - 1 - L
-  // and falls as exp(-v) beyond, so panels of width 4 up to its hundred-e-fold tail lose nothing.
-  constexpr double kPanel = 4;
-  const auto& rule = gauss_legendre<20>();
-  const double power = 1 / index - 1;
-  const double end = 60 + 6 * std::max(0.0, power);
-  double integral = 0, by_power = 0;
-  for (double start = 0; start < end; start += kPanel) {
-    const auto v = (start + kPanel * rule.node).eval();
-    const auto logarithm = (v / factor).log1p().eval();
-    const auto part = (rule.weight * (power * logarithm - v).exp()).eval();
-    integral += kPanel * part.sum();
-    by_power += kPanel * (logarithm * part).sum();
+/// Eq 33 at one L: int_0^inf exp(-v) (1 + v/L)^(1/Z - 1) dv / (Z c L). The integrand peaks near
+/// v = 1/Z - 1 - L and falls as exp(-v) beyond, so panels of width 4 up to its hundred-e-fold tail
+/// lose nothing.
+class ReciprocalAsymptotic {
+ public:
+  explicit ReciprocalAsymptotic(double factor) : factor_(factor) {}
+
+  /// Its coefficient [1/Pa] and the derivative by the index.
+  ValueAndSlope at(double index) {
+    const auto& rule = gauss_legendre<kNodes>();
+    const double power = 1 / index - 1;
+    const double end = 60 + 6 * std::max(0.0, power);
+    double integral = 0, by_power = 0;
+    for (std::size_t i = 0; kPanel * static_cast<double>(i) < end; ++i) {
+      const Nodes v = kPanel * static_cast<double>(i) + kPanel * rule.node;
+      if (i == logarithms_.size()) logarithms_.emplace_back((v / factor_).log1p());
+      const Nodes part = rule.weight * (power * logarithms_[i] - v).exp();
+      integral += kPanel * part.sum();
+      by_power += kPanel * (logarithms_[i] * part).sum();
+    }
+    const double coefficient = index * kRoelandsPressureCoefficient * factor_ / integral;
+    return {coefficient, coefficient * (1 / index + by_power / (integral * index * index))};
   }
-  const double coefficient = index * kRoelandsPressureCoefficient * factor / integral;
-  return {coefficient, coefficient * (1 / index + by_power / (integral * index * index))};
-}
+
+ private:
+  static constexpr double kPanel = 4;
+  static constexpr int kNodes = 20;
+  using Nodes = Eigen::Array<double, kNodes, 1>;
+  double factor_;
+  std::vector<Nodes> logarithms_;  // ln(1 + v/L) of each panel
+};
 
 }  // namespace
 
 double reciprocal_asymptotic_coefficient(double factor, double index) {
-  return coefficient_and_slope(factor, index).value;
+  return ReciprocalAsymptotic(factor).at(index).value;
 }
 
 double index_from_reciprocal_asymptotic(double factor, double coefficient) {
   constexpr double kLow = 0.05, kHigh = 3;
+  ReciprocalAsymptotic law(factor);
   const auto excess = [&](double index) {
-    const ValueAndSlope at = coefficient_and_slope(factor, index);
+    const ValueAndSlope at = law.at(index);
     return ValueAndSlope{at.value / coefficient - 1, at.slope / coefficient};
   };
   if (factor > 0 && coefficient > 0) {
