@@ -19,8 +19,10 @@ struct FrictionPerLoad {
 /// the response that follows. Between its phases a straight line.
 class LaggedFriction {
  public:
-  void clear() {
+  /// Empty, with room for as many phases.
+  void clear(std::size_t room) {
     nodes_.clear();
+    nodes_.reserve(room);
     cursor_ = 0;
   }
   /// Phases [cycles] must not fall. load [N]: there, on all flanks.

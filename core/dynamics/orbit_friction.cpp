@@ -173,7 +173,7 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
                              double light, LaggedFriction& friction, OrbitFigures& f) {
   gather(grid, pieces, nullptr);
   if (!solve_gathered({})) return false;
-  friction.clear();
+  friction.clear(places_.size());
   f = {};
   least_pressing_force_ = 1e300;
   double low = 1e300, high = -1e300, squares = 0, time = 0, loss = 0;
@@ -233,7 +233,7 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
                       {})) {
     return false;
   }
-  friction.clear();
+  friction.clear(contacts.first.size());
   f = {};
   least_pressing_force_ = 1e300;
   const int last = 2 * block.grid.steps();
