@@ -10,9 +10,9 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kSafety = 1.7;  // on the error that two step lengths tell
+constexpr double kSafety = 1.7;      // on the error that two step lengths tell
 constexpr double kSweepShare = 0.4;  // of the tolerance: may be left by sweeps
-constexpr int kPatience = 300;   // periods
+constexpr int kPatience = 300;       // periods
 constexpr double kNearDoubling = 0.06;
 constexpr int kMostFailures = 3;
 constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
@@ -87,7 +87,8 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
                search.tolerance < kLoose || !search.try_contact_first ? 24.0 : 12.0);
   if (least > kFinest) return std::nullopt;
   const StepSequence sequence(system.mesh().intervals(), static_cast<int>(least));
-  for (int steps = sequence.first(); steps <= kFinest; steps = sequence.after(steps)) {
+  for (int steps = sequence.first(); steps <= kFinest;
+       steps = sequence.after(steps, best.estimated_error / search.tolerance)) {
     const MeshGrid& grid = grids.with_steps(steps);
     // The error is shared between the steps and what sweeps leave.
     request.tolerance =

@@ -258,7 +258,10 @@ std::optional<QuasiStatic> solve_quasi_static(GearPairSystem& system,
   Sweeps sweeps(system, contacts, request);
   QuasiStatic best;
   const StepSequence sequence(system.mesh().intervals(), request.tolerance < kLoose ? 24 : 12);
-  for (int steps = sequence.first();; steps = sequence.after(steps)) {
+  const auto after = [&](int steps) {
+    return sequence.after(steps, best.discretisation_error / request.tolerance);
+  };
+  for (int steps = sequence.first();; steps = after(steps)) {
     const bool first = best.steps_per_mesh_cycle == 0;
     const double enough = first ? std::max(5 * request.tolerance, 1e-4) : 0.2 * request.tolerance;
     const OrbitFigures coarser = best.orbit.figures;
@@ -272,7 +275,7 @@ std::optional<QuasiStatic> solve_quasi_static(GearPairSystem& system,
     }
     best.steps_per_mesh_cycle = steps;
     const bool enough_steps = !first && best.discretisation_error <= request.tolerance;
-    if (enough_steps || sequence.after(steps) > kFinest) break;
+    if (enough_steps || after(steps) > kFinest) break;
   }
   best.orbit.regime = system.regime;
   return best;

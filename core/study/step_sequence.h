@@ -16,10 +16,10 @@ class StepSequence {
     }
   }
   int first() const { return coarsest_; }
-  int after(int steps) const {
-    // Most need no more than one of these.
+  /// `excess`: the error over what is wanted. Where little is missing, few more are tried.
+  int after(int steps, double excess) const {
     if (steps == coarsest_) return coarsest_ * 5 / 3;
-    if (steps == coarsest_ * 5 / 3) return coarsest_ * 5 / 2;
+    if (steps == coarsest_ * 5 / 3 && excess < 2) return coarsest_ * 5 / 2;
     if (steps % intervals_ == 0 || 3 * steps <= intervals_) return 2 * steps;
     int next = intervals_;
     while (next < 2 * steps) next *= 2;
