@@ -44,6 +44,19 @@ double kink_error(int steps, int intervals) {
   return steps % intervals == 0 ? 0 : 0.025 / square(steps);
 }
 
+/// Of the figures on steps that are `finer` times shorter than those before, and what that changed.
+/// `halving_difference`: what two halvings ago did, 0: there were none.
+double step_error_of(double difference, double finer, double halving_difference,
+                     double coarser_error) {
+  // Second order at kinks and events; more only where two halvings have shown it.
+  double gain = square(finer);
+  if (finer == 2 && halving_difference > 0) {
+    gain = std::clamp(halving_difference / std::max(difference, 1e-300), 2.5, 8.0);
+  }
+  // Two step lengths may agree by accident, three rarely do.
+  return std::max(kSafety * difference / (gain - 1), coarser_error / (2 * square(finer)));
+}
+
 /// Whether the state at half of the period is that at its start.
 bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
                      const PeriodicOrbit& orbit) {
@@ -109,6 +122,8 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
       }
       return solver.solve(grid, request, orbit);
     };
+    const double finer = have_coarser ? static_cast<double>(steps) / best.steps_per_mesh_cycle : 0;
+    const double kinks = kink_error(steps, system.mesh().intervals());
     bool found = false;
     if (request.keep_contact) {
       request.first_cycles = 0;
@@ -136,6 +151,22 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
         if (have_coarser || search.few_cycles == search.first_cycles) break;
       }
     }
+    double step_error = 0;
+    const auto judge = [&] {
+      step_error = std::max(step_error_of(orbit.figures.distance(coarser), finer,
+                                          halving_difference, best.estimated_error),
+                            kinks);
+      return search.tolerance - step_error;  // left for sweeps
+    };
+    if (found && have_coarser) {
+      const double left = judge();
+      // They are cheaper than another grid.
+      if (left > 0 && orbit.unsettled > left) {
+        request.tolerance = left;
+        found = solver.solve(grid, request, orbit);
+        judge();
+      }
+    }
     if (!found) {
       if (system.take_refusal() != ContactStatus::kOk || !search.patient ||
           ++failures == kMostFailures) {
@@ -145,23 +176,8 @@ std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, 
       halving_difference = 0;
       continue;
     }
-    double estimate = 0;
-    if (have_coarser) {
-      const double difference = orbit.figures.distance(coarser);
-      // Second order at kinks and events; more only where two halvings have shown it.
-      const double finer = static_cast<double>(steps) / best.steps_per_mesh_cycle;
-      double gain = square(finer);
-      const bool halving = steps == 2 * best.steps_per_mesh_cycle;
-      if (halving && halving_difference > 0) {
-        gain = std::clamp(halving_difference / std::max(difference, 1e-300), 2.5, 8.0);
-      }
-      // Two step lengths may agree by accident, three rarely do.
-      const double step_error =
-          std::max({kSafety * difference / (gain - 1), best.estimated_error / (2 * square(finer)),
-                    kink_error(steps, system.mesh().intervals())});
-      estimate = step_error + orbit.unsettled;
-      halving_difference = halving ? difference : 0;
-    }
+    const double estimate = have_coarser ? step_error + orbit.unsettled : 0;
+    halving_difference = have_coarser && finer == 2 ? orbit.figures.distance(coarser) : 0;
     best = {std::move(orbit), steps, estimate};
     const bool pulls = request.keep_contact && best.orbit.least_pressing_force < 0;
     if (have_coarser && estimate <= search.tolerance && !pulls) {
