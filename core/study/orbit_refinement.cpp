@@ -44,19 +44,6 @@ double kink_error(int steps, int intervals) {
   return steps % intervals == 0 ? 0 : 0.025 / square(steps);
 }
 
-/// Of the figures on steps that are `finer` times shorter than those before, and what that changed.
-/// `halving_difference`: what two halvings ago did, 0: there were none.
-double step_error_of(double difference, double finer, double halving_difference,
-                     double coarser_error) {
-  // Second order at kinks and events; more only where two halvings have shown it.
-  double gain = square(finer);
-  if (finer == 2 && halving_difference > 0) {
-    gain = std::clamp(halving_difference / std::max(difference, 1e-300), 2.5, 8.0);
-  }
-  // Two step lengths may agree by accident, three rarely do.
-  return std::max(kSafety * difference / (gain - 1), coarser_error / (2 * square(finer)));
-}
-
 /// Whether the state at half of the period is that at its start.
 bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
                      const PeriodicOrbit& orbit) {
@@ -72,133 +59,179 @@ bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
   return difference < 1e-3;
 }
 
-/// `cycles_left`: to march in search of a response; charged also where one is known already, so
-/// that answers do not depend on that. `repels`: set where a response is found that surely does, or
-/// may where periods double.
-std::optional<RefinedOrbit> refine(GearPairSystem& system, OrbitSolver& solver, MeshGrids& grids,
-                                   const OrbitSearch& search, int& cycles_left, bool& repels) {
-  OrbitRequest request;
-  request.mean_pinion_speed = search.mean_pinion_speed;
-  request.solve_wheel_torque = search.solve_wheel_torque;
-  request.interrupted = search.interrupted;
-  request.renew_friction = search.renew_friction;
-  request.keep_contact = search.try_contact_first;
-
-  PeriodicOrbit origin;
-  origin.state = search.start;
-  origin.torques = system.torques();
-  origin.period = search.period;
-
-  RefinedOrbit best;
-  bool have_coarser = false;
-  int failures = 0;
-  double halving_difference = 0;
-  double doubtful_pull = kClearPull;  // of the mean force: as little may be the steps' error
-  // Seven steps for an oscillation tell its height to some percent; fewer tell nothing.
-  const double least =
-      std::max(7 * mesh_oscillations(system, search.mean_pinion_speed),
-               search.tolerance < kLoose || !search.try_contact_first ? 24.0 : 12.0);
-  if (least > kFinest) return std::nullopt;
-  const StepSequence sequence(system.mesh().intervals(), static_cast<int>(least));
-  for (int steps = sequence.first(); steps <= kFinest;
-       steps = sequence.after(steps, best.estimated_error / search.tolerance)) {
-    const MeshGrid& grid = grids.with_steps(steps);
-    // The error is shared between the steps and what sweeps leave.
-    request.tolerance =
-        have_coarser ? kSweepShare * search.tolerance : std::max(5 * search.tolerance, 1e-4);
-    const OrbitFigures coarser = best.orbit.figures;
-    PeriodicOrbit orbit = have_coarser ? std::move(best.orbit) : origin;
-    const auto solve = [&] {
-      if (!have_coarser) {
-        const auto approach = [&] {
-          orbit = origin;
-          return solver.approach_without_friction(grid, request, orbit);
-        };
-        if (search.frictionless == nullptr) {
-          if (!approach()) return false;
-        } else if (!search.frictionless->find(steps, request, origin, approach, orbit)) {
-          return false;
-        }
-      }
-      return solver.solve(grid, request, orbit);
-    };
-    const double finer = have_coarser ? static_cast<double>(steps) / best.steps_per_mesh_cycle : 0;
-    const double kinks = kink_error(steps, system.mesh().intervals());
-    bool found = false;
-    if (request.keep_contact) {
-      request.first_cycles = 0;
-      found = solve() && !(orbit.least_pressing_force < -doubtful_pull);
-      if (!found) {
-        if (system.take_refusal() != ContactStatus::kOk) return std::nullopt;
-        // Flanks would have to pull: contact is lost, and the start decides how.
-        request.keep_contact = false;
-        have_coarser = false;
-        halving_difference = 0;
-      }
-      doubtful_pull /= 4;
-    }
-    if (!request.keep_contact) {
-      // Newton's method leads to the response that is near; others are found by patience.
-      for (const int cycles : {search.few_cycles, search.first_cycles}) {
-        if (found) break;
-        if (!have_coarser) cycles_left -= cycles * search.period;
-        if (cycles_left < 0) {
-          system.take_refusal();
-          return std::nullopt;
-        }
-        request.first_cycles = cycles;
-        found = solve();
-        if (have_coarser || search.few_cycles == search.first_cycles) break;
-      }
-    }
-    double step_error = 0;
-    const auto judge = [&] {
-      step_error = std::max(step_error_of(orbit.figures.distance(coarser), finer,
-                                          halving_difference, best.estimated_error),
-                            kinks);
-      return search.tolerance - step_error;  // left for sweeps
-    };
-    if (found && have_coarser) {
-      const double left = judge();
-      // They are cheaper than another grid.
-      if (left > 0 && orbit.unsettled > left) {
-        request.tolerance = left;
-        found = solver.solve(grid, request, orbit);
-        judge();
-      }
-    }
-    if (!found) {
-      if (system.take_refusal() != ContactStatus::kOk || !search.patient ||
-          ++failures == kMostFailures) {
-        return std::nullopt;
-      }
-      have_coarser = false;
-      halving_difference = 0;
-      continue;
-    }
-    const double estimate = have_coarser ? step_error + orbit.unsettled : 0;
-    halving_difference = have_coarser && finer == 2 ? orbit.figures.distance(coarser) : 0;
-    best = {std::move(orbit), steps, estimate};
-    const bool pulls = request.keep_contact && best.orbit.least_pressing_force < 0;
-    if (have_coarser && estimate <= search.tolerance && !pulls) {
-      // A map from near may know nothing of a flank that hardly parts, nor of what friction does
-      // to the multipliers: 0.02 where periods double.
-      const bool doubles = best.orbit.map->distance_from_doubling() < kNearDoubling;
-      if ((best.orbit.contact_loss || doubles) && !solver.renew_map(grid, request, best.orbit)) {
-        return std::nullopt;
-      }
-      const double doubt = margin(system, search);
-      if (best.orbit.map->multipliers_are_below(1 - doubt)) return best;
-      const double multiplier = best.orbit.map->largest_multiplier();
-      if (multiplier < 1 - doubt) return best;
-      // In doubt whether the period has doubled, it is looked for.
-      repels = multiplier > 1 + doubt || (doubles && multiplier > 1 - doubt);
-      return std::nullopt;
-    }
-    have_coarser = true;
+/// The search for one response, on one grid after another.
+class Refinement {
+ public:
+  /// `cycles_left`: to march in search of a response; charged also where one is known already, so
+  /// that answers do not depend on that. Keeps the references.
+  Refinement(GearPairSystem& system, OrbitSolver& solver, MeshGrids& grids,
+             const OrbitSearch& search, int& cycles_left)
+      : system_(system),
+        solver_(solver),
+        grids_(grids),
+        search_(search),
+        cycles_left_(cycles_left) {
+    request_.mean_pinion_speed = search.mean_pinion_speed;
+    request_.solve_wheel_torque = search.solve_wheel_torque;
+    request_.interrupted = search.interrupted;
+    request_.renew_friction = search.renew_friction;
+    request_.keep_contact = search.try_contact_first;
+    origin_.state = search.start;
+    origin_.torques = system.torques();
+    origin_.period = search.period;
   }
-  return std::nullopt;
-}
+
+  std::optional<RefinedOrbit> run() {
+    // Seven steps for an oscillation tell its height to some percent; fewer tell nothing.
+    const double least =
+        std::max(7 * mesh_oscillations(system_, search_.mean_pinion_speed),
+                 search_.tolerance < kLoose || !search_.try_contact_first ? 24.0 : 12.0);
+    if (least > kFinest) return std::nullopt;
+    const StepSequence sequence(system_.mesh().intervals(), static_cast<int>(least));
+    for (int steps = sequence.first(); steps <= kFinest && !is_over_;
+         steps = sequence.after(steps, coarser_.error / search_.tolerance)) {
+      const MeshGrid& grid = grids_.with_steps(steps);
+      if (!find(grid)) continue;
+      const bool is_compared = coarser_.steps > 0;
+      const double error = is_compared ? step_error(grid) + orbit_.unsettled : 0;
+      const bool pulls = request_.keep_contact && orbit_.least_pressing_force < 0;
+      if (is_compared && error <= search_.tolerance && !pulls) {
+        if (!attracts(grid)) return std::nullopt;
+        return RefinedOrbit{std::move(orbit_), steps, error};
+      }
+      const bool halved = steps == 2 * coarser_.steps;
+      coarser_ = {steps, orbit_.figures, error, halved ? change() : 0};
+    }
+    return std::nullopt;
+  }
+
+  /// A response was found that surely repels, or may where periods double.
+  bool repels() const { return repels_; }
+
+ private:
+  /// What the grid before has told.
+  struct Coarser {
+    int steps = 0;  ///< 0: there is none
+    OrbitFigures figures;
+    double error = 0;
+    double halving_difference =
+        0;  ///< of its figures to those of twice its step length; 0: unknown
+  };
+
+  double change() const { return orbit_.figures.distance(coarser_.figures); }
+
+  /// Of the figures, by what shorter steps have changed.
+  double step_error(const MeshGrid& grid) const {
+    const double finer = static_cast<double>(grid.steps()) / coarser_.steps;
+    // Second order at kinks and events; more only where two halvings have shown it.
+    double gain = square(finer);
+    if (finer == 2 && coarser_.halving_difference > 0) {
+      gain = std::clamp(coarser_.halving_difference / std::max(change(), 1e-300), 2.5, 8.0);
+    }
+    // Two step lengths may agree by accident, three rarely do.
+    return std::max({kSafety * change() / (gain - 1), coarser_.error / (2 * square(finer)),
+                     kink_error(grid.steps(), system_.mesh().intervals())});
+  }
+
+  /// The response on a grid. False where there is none on it; over where none is to be expected.
+  bool find(const MeshGrid& grid) {
+    // The error is shared between the steps and what sweeps leave.
+    request_.tolerance = coarser_.steps > 0 ? kSweepShare * search_.tolerance
+                                            : std::max(5 * search_.tolerance, 1e-4);
+    bool found = request_.keep_contact && find_in_contact(grid);
+    if (is_over_) return false;
+    if (!request_.keep_contact) found = find_anywhere(grid);
+    if (is_over_) return false;
+    if (found && coarser_.steps > 0) found = sweep_on(grid);
+    if (found) return true;
+    is_over_ = system_.take_refusal() != ContactStatus::kOk || !search_.patient ||
+               ++failures_ == kMostFailures;
+    coarser_ = {};
+    return false;
+  }
+
+  /// Flanks kept together. Where they would have to pull, contact is lost from then on, and the
+  /// start decides how.
+  bool find_in_contact(const MeshGrid& grid) {
+    request_.first_cycles = 0;
+    const bool found = solve(grid) && !(orbit_.least_pressing_force < -doubtful_pull_);
+    doubtful_pull_ /= 4;
+    if (found) return true;
+    is_over_ = system_.take_refusal() != ContactStatus::kOk;
+    request_.keep_contact = false;
+    coarser_ = {};
+    return false;
+  }
+
+  /// Newton's method leads to the response that is near; others are found by patience.
+  bool find_anywhere(const MeshGrid& grid) {
+    for (const int cycles : {search_.few_cycles, search_.first_cycles}) {
+      if (coarser_.steps == 0) cycles_left_ -= cycles * search_.period;
+      if (cycles_left_ < 0) {
+        system_.take_refusal();
+        is_over_ = true;
+        return false;
+      }
+      request_.first_cycles = cycles;
+      if (solve(grid)) return true;
+      if (coarser_.steps > 0 || search_.few_cycles == search_.first_cycles) break;
+    }
+    return false;
+  }
+
+  /// From the coarser grid's response, or without friction from the start.
+  bool solve(const MeshGrid& grid) {
+    if (coarser_.steps == 0) {
+      const auto approach = [&] {
+        orbit_ = origin_;
+        return solver_.approach_without_friction(grid, request_, orbit_);
+      };
+      const bool good =
+          search_.frictionless != nullptr
+              ? search_.frictionless->find(grid.steps(), request_, origin_, approach, orbit_)
+              : approach();
+      if (!good) return false;
+    }
+    return solver_.solve(grid, request_, orbit_);
+  }
+
+  /// Where only sweeps are missing, they are cheaper than another grid.
+  bool sweep_on(const MeshGrid& grid) {
+    const double left = search_.tolerance - step_error(grid);
+    if (!(left > 0) || orbit_.unsettled <= left) return true;
+    request_.tolerance = left;
+    return solver_.solve(grid, request_, orbit_);
+  }
+
+  /// Whether the response surely does.
+  bool attracts(const MeshGrid& grid) {
+    // A map from near may know nothing of a flank that hardly parts, nor of what friction does to
+    // the multipliers: 0.02 where periods double.
+    const bool doubles = orbit_.map->distance_from_doubling() < kNearDoubling;
+    if ((orbit_.contact_loss || doubles) && !solver_.renew_map(grid, request_, orbit_)) {
+      return false;
+    }
+    const double doubt = margin(system_, search_);
+    if (orbit_.map->multipliers_are_below(1 - doubt)) return true;
+    const double multiplier = orbit_.map->largest_multiplier();
+    if (multiplier < 1 - doubt) return true;
+    // In doubt whether the period has doubled, it is looked for.
+    repels_ = multiplier > 1 + doubt || (doubles && multiplier > 1 - doubt);
+    return false;
+  }
+
+  GearPairSystem& system_;
+  OrbitSolver& solver_;
+  MeshGrids& grids_;
+  const OrbitSearch& search_;
+  int& cycles_left_;
+  OrbitRequest request_;
+  PeriodicOrbit origin_, orbit_;
+  Coarser coarser_;
+  int failures_ = 0;
+  double doubtful_pull_ = kClearPull;  // of the mean force: as little may be the steps' error
+  bool is_over_ = false, repels_ = false;
+};
 
 }  // namespace
 
@@ -211,14 +244,15 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
   OrbitSolver solver(system, contacts, statistics, marched_cycles);
   const Torques torques = system.torques();
   for (bool patient = false;; patient = true) {
-    bool repels = false;
     system.set_torques(torques);
-    auto found = refine(system, solver, grids, next, cycles_left, repels);
+    Refinement refinement(system, solver, grids, next, cycles_left);
+    auto found = refinement.run();
+    const bool repels = refinement.repels();
     if (found && next.period > search.period && is_half_as_long(system, search, found->orbit)) {
       next.period /= 2;
       next.start = found->orbit.state;
       next.few_cycles = next.first_cycles = 1;
-      found = refine(system, solver, grids, next, cycles_left, repels);
+      found = Refinement(system, solver, grids, next, cycles_left).run();
     }
     if (found || (patient && !repels) || 2 * next.period > kLongestPeriod) return found;
     if (!search.patient) return found;
