@@ -8,6 +8,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "core/numerics/dispatch.h"
 #include "core/numerics/pack-inl.h"
 // NOLINTEND(bugprone-suspicious-include,misc-redundant-expression)
 
@@ -697,70 +698,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tribodyn {
 
-bool has_instructions(InstructionSet instruction_set) {
-  // Asking a virtual processor takes some 20 us.
-  [[maybe_unused]] static const std::int64_t supported = hwy::SupportedTargets();
-  switch (instruction_set) {
-    case InstructionSet::kPortable:
-      return true;
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return (supported & HWY_AVX2) != 0;
-#endif
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return (supported & HWY_AVX3) != 0;
-#endif
-    default:
-      return false;
-  }
-}
-
 void solve_contact_block(InstructionSet instruction_set, const ContactBlockTables& tables,
                          int count, const ContactBlockInputs& in, ContactBlockResults& out) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::solve_block(tables, count, in, out);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::solve_block(tables, count, in, out);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(solve_block)(tables, count, in, out);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, solve_block, tables, count, in, out)
 }
 
 void sample_rises(InstructionSet instruction_set, const ContactBlockTables& tables,
                   const StartSamples& samples, double* rise) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::sample_rises(tables, samples, rise);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::sample_rises(tables, samples, rise);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(sample_rises)(tables, samples, rise);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, sample_rises, tables, samples, rise)
 }
 
 void vector_exponential(InstructionSet instruction_set, const double* x, double* y, std::size_t n) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::exponentials(x, y, n);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::exponentials(x, y, n);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(exponentials)(x, y, n);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, exponentials, x, y, n)
 }
 
 }  // namespace tribodyn

@@ -51,7 +51,4 @@ void fit_start(InstructionSet instruction_set, ContactBlockTables& tables);
 /// multiple of 8, the arrays aligned to 64 bytes.
 void vector_exponential(InstructionSet instruction_set, const double* x, double* y, std::size_t n);
 
-/// Whether the CPU has the instructions.
-bool has_instructions(InstructionSet instruction_set);
-
 }  // namespace tribodyn

@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "core/contact/flank_contact_batch.h"
 #include "core/lubricant/lubricant.h"
+#include "core/numerics/instruction_set.h"
 
 namespace tribodyn {
 

@@ -6,6 +6,7 @@
 
 #include "core/contact/flank_contact.h"
 #include "core/model_options.h"
+#include "core/numerics/instruction_set.h"
 
 namespace tribodyn {
 
@@ -73,13 +74,6 @@ struct FlankContactBatchResults {
   double* limiting_stress_area_share = nullptr;  ///< [-]
   bool* limiting_stress_at_centre = nullptr;
   ContactStatus* status = nullptr;
-};
-
-/// Which instructions a batch is solved with.
-enum class InstructionSet {
-  kPortable,  ///< what every CPU of the architecture has
-  kAvx2,      ///< AVX2 with fused multiply-add
-  kAvx512,    ///< AVX-512 F, BW, DQ, VL
 };
 
 /// The friction kernel of FlankContactModel for many contacts at once.

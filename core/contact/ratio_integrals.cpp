@@ -7,6 +7,7 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "core/numerics/dispatch.h"
 #include "core/numerics/pack-inl.h"
 // NOLINTEND(bugprone-suspicious-include,misc-redundant-expression)
 
@@ -51,18 +52,7 @@ namespace tribodyn {
 
 void integrate_ratios(InstructionSet instruction_set, const RatioRule& rule,
                       const RatioLanes& factor, std::array<RatioLanes, kRatioPoints>& values) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::integrate_in_lanes(rule, factor, values);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::integrate_in_lanes(rule, factor, values);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(integrate_in_lanes)(rule, factor, values);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, integrate_in_lanes, rule, factor, values)
 }
 
 }  // namespace tribodyn

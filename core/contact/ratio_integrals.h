@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/contact/flank_contact_batch.h"
+#include "core/numerics/instruction_set.h"
 
 namespace tribodyn {
 

@@ -7,6 +7,7 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "core/numerics/dispatch.h"
 #include "core/numerics/row-inl.h"
 // NOLINTEND(bugprone-suspicious-include,misc-redundant-expression)
 
@@ -83,18 +84,7 @@ namespace tribodyn {
 void advance_sensitivity(InstructionSet instruction_set, const SensitivityConstants& constants,
                          const std::array<SensitivityStage, 4>& stages, double length,
                          Sensitivity& sensitivity) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::advance_in_rows(constants, stages, length, sensitivity);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::advance_in_rows(constants, stages, length, sensitivity);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(advance_in_rows)(constants, stages, length, sensitivity);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, advance_in_rows, constants, stages, length, sensitivity)
 }
 
 }  // namespace tribodyn

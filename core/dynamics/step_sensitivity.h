@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "core/contact/flank_contact_batch.h"
 #include "core/dynamics/section_map.h"
+#include "core/numerics/instruction_set.h"
 
 namespace tribodyn {
 
