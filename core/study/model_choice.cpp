@@ -37,10 +37,12 @@ bool may_choose(const PointOptions& options, const std::optional<CarriedState>& 
 
 std::optional<QuasiStaticAnswer> choose_quasi_static(GearPairSystem& system,
                                                      const FlankContactBatch& contacts,
-                                                     MeshGrids& grids,
+                                                     PreparedGearSet& gear_set,
                                                      const OperatingTarget& target,
                                                      const PointOptions& options) {
-  if (!quasi_static_may_do(system, grids, quasi_static_request(target, options))) {
+  MeshGrids& grids = gear_set.grids();
+  if (!gear_set.quasi_static_chances().may_do(system, grids,
+                                              quasi_static_request(target, options))) {
     return std::nullopt;
   }
   auto answer = answer_quasi_statically(system, contacts, grids, target, options);

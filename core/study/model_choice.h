@@ -33,7 +33,7 @@ bool may_choose(const PointOptions& options, const std::optional<CarriedState>& 
 /// but for the count of contacts. It is tried where the mechanics alone leave hope.
 std::optional<QuasiStaticAnswer> choose_quasi_static(GearPairSystem& system,
                                                      const FlankContactBatch& contacts,
-                                                     MeshGrids& grids,
+                                                     PreparedGearSet& gear_set,
                                                      const OperatingTarget& target,
                                                      const PointOptions& options);
 

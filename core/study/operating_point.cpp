@@ -299,7 +299,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       if (options.model == PointModel::kQuasiStatic) {
         result = solve_quasi_static_point(system, contacts, grids, target, options);
       } else if (may_choose(options, from) &&
-                 (chosen = choose_quasi_static(system, contacts, grids, target, options))) {
+                 (chosen = choose_quasi_static(system, contacts, gear_set, target, options))) {
         result = quasi_static_result(system, contacts, grids, target, options, *chosen);
       } else if (std::optional<PointResult> shot;
                  options.method != SteadyStateMethod::kMarch &&
@@ -371,13 +371,14 @@ namespace {
 /// As pinned or as chosen. Nothing where the full model must answer, or nothing can.
 std::optional<QuasiStaticAnswer> quasi_static_for(GearPairSystem& system,
                                                   const FlankContactBatch& contacts,
-                                                  MeshGrids& grids, const OperatingTarget& target,
+                                                  PreparedGearSet& gear_set,
+                                                  const OperatingTarget& target,
                                                   const PointOptions& options) {
   if (options.model == PointModel::kQuasiStatic && system.torques().pinion != 0) {
-    return answer_quasi_statically(system, contacts, grids, target, options);
+    return answer_quasi_statically(system, contacts, gear_set.grids(), target, options);
   }
   if (!may_choose(options, std::nullopt)) return std::nullopt;
-  return choose_quasi_static(system, contacts, grids, target, options);
+  return choose_quasi_static(system, contacts, gear_set, target, options);
 }
 
 PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit,
@@ -417,7 +418,7 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
     GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
                           scene.options);
     system.set_torques(target.torques);
-    if (const auto chosen = quasi_static_for(system, contacts, gear_set.grids(), target, plain)) {
+    if (const auto chosen = quasi_static_for(system, contacts, gear_set, target, plain)) {
       PointFigures figures =
           figures_of(system, chosen->solution.orbit, chosen->estimated_error, target);
       figures.model = PointModel::kQuasiStatic;

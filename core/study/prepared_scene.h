@@ -5,6 +5,7 @@
 #include "core/contact/flank_contact_batch.h"
 #include "core/dynamics/frictionless_orbits.h"
 #include "core/dynamics/mesh_grid.h"
+#include "core/study/quasi_static.h"
 #include "core/study/scene.h"
 
 namespace tribodyn {
@@ -23,12 +24,14 @@ class PreparedGearSet {
   MeshGrids& grids() { return grids_; }
   /// For studies that meet the same speeds and loads with many lubricants.
   FrictionlessOrbits& frictionless_orbits() { return frictionless_orbits_; }
+  QuasiStaticChances& quasi_static_chances() { return quasi_static_chances_; }
 
  private:
   GearSet gear_set_;
   MeshData mesh_;
   MeshGrids grids_;
   FrictionlessOrbits frictionless_orbits_;
+  QuasiStaticChances quasi_static_chances_;
 };
 
 /// A scene with everything that its points share. One thread at a time. Keeps the scene's

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 
 #include "core/dynamics/periodic_orbit.h"
@@ -52,5 +55,17 @@ double quasi_static_model_error(GearPairSystem& system, const FlankContactBatch&
 /// beyond the tolerance. Costs two microseconds where that is far off, eight where it is near.
 bool quasi_static_may_do(GearPairSystem& system, MeshGrids& grids,
                          const QuasiStaticRequest& request);
+
+/// What quasi_static_may_do has said, for the lubricants that come after: it does not depend on
+/// them. Of one gear set and its options; one thread at a time; bounded.
+class QuasiStaticChances {
+ public:
+  bool may_do(GearPairSystem& system, MeshGrids& grids, const QuasiStaticRequest& request);
+
+ private:
+  static constexpr std::size_t kMost = 500;
+  /// Speed, torques, tolerance and which torque is unknown.
+  std::map<std::array<double, 5>, bool> known_;
+};
 
 }  // namespace tribodyn
