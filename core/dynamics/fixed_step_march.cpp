@@ -33,10 +33,15 @@ void FixedStepMarch::sensitivity_rates(const MarchState& y, const Mechanics& at,
       damping * ((m.pinion_contact_radius - m.static_transmission_error_slope) * s[kPinionSpeed] -
                  m.gear_contact_radius * s[kGearSpeed]);
   const double load_by_force = r.load(at.mesh_force) > 0 ? r.side : 0;
-  const Row pinion_shaft = d.pinion_shaft_stiffness * s[kPinionShaftTwist] +
-                           d.pinion_shaft_damping * (s[kPinionShaftSpeed] - s[kPinionSpeed]);
-  const Row gear_shaft = d.gear_shaft_stiffness * s[kGearShaftTwist] +
-                         d.gear_shaft_damping * (s[kGearSpeed] - s[kWheelSpeed]);
+  Row pinion_shaft = d.pinion_shaft_stiffness * s[kPinionShaftTwist] +
+                     d.pinion_shaft_damping * (s[kPinionShaftSpeed] - s[kPinionSpeed]);
+  Row gear_shaft = d.gear_shaft_stiffness * s[kGearShaftTwist] +
+                   d.gear_shaft_damping * (s[kGearSpeed] - s[kWheelSpeed]);
+  if (!system_.has_shafts()) {
+    pinion_shaft.setZero();
+    gear_shaft.setZero();
+    (solve_wheel_torque_ ? gear_shaft : pinion_shaft)(kTorque) = 1;
+  }
   Row pinion_torque =
       (load_by_force * friction.pinion - m.pinion_contact_radius) * force + pinion_shaft;
   if (system_.options().energy_consistent) {
@@ -62,6 +67,7 @@ void FixedStepMarch::sensitivity_rates(const MarchState& y, const Mechanics& at,
   const double to_phase = system_.cycle_angle() / y[kPinionSpeed];
   const Row faster = s[kPinionSpeed] / y[kPinionSpeed];
   for (int i = 0; i < kStates; ++i) ds[i] = to_phase * ds[i] - dy[i] * faster;
+  for (const int i : states_of(system_.driveline()).still) ds[i].setZero();
 }
 
 void FixedStepMarch::step(LaggedFriction& friction, const Span& span, const MarchState& y,

@@ -28,14 +28,12 @@ struct OperatingCondition {
   double pinion_speed = 0;   ///< kPrescribedTorque, mean [rad/s]
 };
 
-/// There is no one-degree model (x alone, constant torques on I_p and I_g). On the reference gear
-/// set it is off by 1e-3 at 45 and 100 km/h, 6e-3 at 60, 1e-2 at 80, 8e-2 at half the resonance and
-/// 2e-4 at 140; it would save a fifth of a full point's time at best, more than half of which goes
-/// into friction; and with shafts infinitely soft shooting has nothing to hold the rotors.
 enum class PointModel {
   kAutomatic,    ///< the cheapest whose estimated error is within the tolerance; not in results
   kFull,         ///< steady state of the 4-DoF system, friction in the loop
   kQuasiStatic,  ///< static equilibrium at constant speed, phase by phase
+  /// As kFull, but T_s and T_w act on I_p and I_g themselves: x is the one elastic degree.
+  kOneDegree,
 };
 
 /// Where a single point starts; it decides the branch where two responses coexist.

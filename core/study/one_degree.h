@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/study/orbit_refinement.h"
+
+namespace tribodyn {
+
+/// How far the figures of a response under constant torques (Driveline::kConstantTorques) are from
+/// those of the full model, relative, as PointResult::estimated_relative_error means it. Shafts,
+/// pinion-shaft rotor and wheel are added to first order (shaft_correction), load and power of the
+/// flanks are moved with it at the friction coefficients found, and the figures compared; a margin
+/// comes on top. No contact is solved. Infinite where that cannot tell: flanks part or may, the
+/// correction is not small, or the ripple of the stiffness may keep a vibration going.
+double one_degree_model_error(GearPairSystem& system, MeshGrids& grids, const OrbitSearch& search,
+                              const RefinedOrbit& found);
+
+}  // namespace tribodyn
