@@ -122,29 +122,31 @@ struct Answer {
   double growth = 0;                ///< as of InertialCorrection
 };
 
+/// The ripple of the stiffness is added `rounds` times, each time to what it made of the last.
 Answer answer_of(const GearPairSystem& system, const Harmonics& harmonics,
                  const std::vector<MeshSides>& at, const std::vector<Complex>& source,
-                 const std::vector<double>& stiffness) {
+                 const std::vector<double>& stiffness, int rounds) {
   const int count = harmonics.count();
   Answer out;
-  std::vector<Complex>& correction = out.correction;
-  std::vector<Complex> amplification(count), more(count);
-  correction.resize(count);
+  std::vector<Complex> amplification(count), plain(count), more(count);
   for (int h = 0; h < count; ++h) {
     amplification[h] = at[h].amplification();
-    correction[h] = amplification[h] * source[h];
+    plain[h] = amplification[h] * source[h];
   }
-  std::vector<double> force = harmonics.signal(correction);
-  for (std::size_t n = 0; n < force.size(); ++n) {
-    force[n] = (stiffness[n] - system.mesh().mean_mesh_stiffness()) * force[n];
+  out.correction = plain;
+  const double length = length_of(plain);
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<double> force = harmonics.signal(out.correction);
+    for (std::size_t n = 0; n < force.size(); ++n) {
+      force[n] = (stiffness[n] - system.mesh().mean_mesh_stiffness()) * force[n];
+    }
+    out.ripple = harmonics.of(force);
+    for (int h = 0; h < count; ++h) {
+      more[h] = -amplification[h] * at[h].compliance * out.ripple[h];
+      out.correction[h] = plain[h] + more[h];
+    }
+    if (round == 0) out.growth = length > 0 ? length_of(more) / length : 0;
   }
-  out.ripple = harmonics.of(force);
-  const double length = length_of(correction);
-  for (int h = 0; h < count; ++h) {
-    more[h] = -amplification[h] * at[h].compliance * out.ripple[h];
-    correction[h] += more[h];
-  }
-  out.growth = length > 0 ? length_of(more) / length : 0;
   return out;
 }
 
@@ -191,7 +193,7 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
                     pinion_radius * pinion_torque[h - 1] * here.per_pinion -
                     gear_radius * gear_torque[h - 1] * here.per_gear;
   }
-  const Answer answer = answer_of(system, harmonics, at, source, motion.mesh_stiffness);
+  const Answer answer = answer_of(system, harmonics, at, source, motion.mesh_stiffness, 1);
 
   InertialCorrection out;
   const std::vector<Complex>&correction = answer.correction, &ripple = answer.ripple;
@@ -231,6 +233,7 @@ void TwoRotorMotion::resize(std::size_t count) {
 
 ShaftCorrection shaft_correction(const GearPairSystem& system, double mean_pinion_speed,
                                  const TwoRotorMotion& motion) {
+  constexpr int kRounds = 3;  // growth is that of the first
   const DrivelineDynamics& d = system.dynamics();
   const int phases = static_cast<int>(motion.mesh_stiffness.size());
   const Harmonics harmonics(phases, std::min(phases / 2 - 1, kMostHarmonics));
@@ -246,14 +249,15 @@ ShaftCorrection shaft_correction(const GearPairSystem& system, double mean_pinio
   at.reserve(count);
   for (int h = 0; h < count; ++h) {
     const double frequency = first * (h + 1);
-    const MeshSides& here = at.emplace_back(system, frequency);
+    MeshSides& here = at.emplace_back(system, frequency);
+    here.compliance = pinion_radius * motion.pinion_arm * here.per_pinion +
+                      gear_radius * motion.gear_arm * here.per_gear;
     const double alone = -1 / square(frequency);
     pinion[h] = pinion_torque[h] * (here.per_pinion - alone / d.pinion_inertia);
     gear[h] = gear_torque[h] * (here.per_gear - alone / d.gear_inertia);
     source[h] = pinion_radius * pinion[h] - gear_radius * gear[h];
   }
-  const Answer answer = answer_of(system, harmonics, at, source, motion.mesh_stiffness);
-
+  const Answer answer = answer_of(system, harmonics, at, source, motion.mesh_stiffness, kRounds);
   ShaftCorrection out;
   out.growth = answer.growth;
   std::vector<Complex> velocity(count), shaft(count);
@@ -262,11 +266,11 @@ ShaftCorrection shaft_correction(const GearPairSystem& system, double mean_pinio
     const Complex rate = Complex{0, first * (h + 1)};
     const Complex force = here.mesh * answer.correction[h] + answer.ripple[h];
     const Complex whole_pinion =
-        rate * here.per_pinion * (pinion_torque[h] - pinion_radius * force);
-    const Complex whole_gear = rate * here.per_gear * (gear_torque[h] + gear_radius * force);
+        rate * here.per_pinion * (pinion_torque[h] - motion.pinion_arm * force);
+    const Complex whole_gear = rate * here.per_gear * (gear_torque[h] + motion.gear_arm * force);
     velocity[h] = rate * answer.correction[h];
-    pinion[h] = rate * (pinion[h] - pinion_radius * force * here.per_pinion);
-    gear[h] = rate * (gear[h] + gear_radius * force * here.per_gear);
+    pinion[h] = rate * (pinion[h] - motion.pinion_arm * force * here.per_pinion);
+    gear[h] = rate * (gear[h] + motion.gear_arm * force * here.per_gear);
     shaft[h] = whole_pinion * here.shaft_share;
     out.shaft_damping_power +=
         0.5 * (d.pinion_shaft_damping * std::norm(whole_pinion * (1.0 - here.shaft_share)) +

@@ -50,6 +50,9 @@ struct TwoRotorMotion {
   std::vector<double> pinion_torque;   ///< -R_p F + T_fr,p [N m]
   std::vector<double> gear_torque;     ///< R_g F + T_fr,g [N m]
   std::vector<double> mesh_stiffness;  ///< k_m [N/m]
+  /// Of more mesh force with the friction that comes with it, in the mean: R_p and R_g less and
+  /// more what friction takes [m].
+  double pinion_arm = 0, gear_arm = 0;
   void resize(std::size_t count);
 };
 
@@ -67,7 +70,8 @@ struct ShaftCorrection {
 /// As inertial_correction(), from the rotors alone to those with shafts: under the same torques
 /// each moves by the difference of 1/D and -1/(Omega^2 I) otherwise, and the mesh answers,
 ///   (1 + Y (k + i Omega c)) dx = R_p tau_p (1/D_p + 1/(Omega^2 I_p))
-///                              - R_g tau_g (1/D_g + 1/(Omega^2 I_g)).
+///                              - R_g tau_g (1/D_g + 1/(Omega^2 I_g)),
+/// with one R in each term of Y the arm under friction: on a resonance it counts.
 ShaftCorrection shaft_correction(const GearPairSystem& system, double mean_pinion_speed,
                                  const TwoRotorMotion& motion);
 

@@ -64,7 +64,8 @@ struct CycleDerivatives {
         unknowns(unknowns_of_a_step),
         step(std::make_unique_for_overwrite<double[]>(matrix() * count)),
         from_section(std::make_unique_for_overwrite<double[]>(matrix() * (count + 1))) {}
-  std::size_t matrix() const { return static_cast<std::size_t>(unknowns * unknowns); }
+  /// Numbers of one.
+  std::size_t matrix() const { return static_cast<std::size_t>(unknowns) * unknowns; }
   int steps, unknowns;
   std::unique_ptr<double[]> step;  ///< of each step, by its start
   std::unique_ptr<double[]>
