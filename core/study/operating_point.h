@@ -35,10 +35,10 @@ enum class PointModel {
   /// As kFull, but T_s and T_w act on I_p and I_g themselves (Driveline::kConstantTorques): x is
   /// the one elastic degree. For comparison with one-degree literature; kAutomatic never takes it:
   /// friction is most of either, so where flanks stay together it takes 0.84 of a full point's
-  /// time, and with its estimate, without which it cannot be chosen, all of it. On the reference
-  /// gear set it is off by 2e-4 at 140 km/h, 1e-3 at 45 and 100, 6e-3 at 60, 1e-2 at 80 and 8e-2 at
-  /// half the resonance (37.5); its quiet branch ends at 70 km/h (71.5 in the full model), its loud
-  /// one at 59 (65).
+  /// time, and with its estimate, without which it cannot be chosen, all of it or more. On the
+  /// reference gear set it is off by 2e-4 at 140 km/h, 1e-3 at 45 and 100, 6e-3 at 60, 1e-2 at 80
+  /// and 8e-2 at half the resonance (37.5); its quiet branch ends at 70 km/h (71.5 in the full
+  /// model), its loud one at 59 (65).
   kOneDegree,
 };
 
