@@ -28,19 +28,27 @@ FixedStepMarch::FixedStepMarch(GearPairSystem& system, const MarchScales& scales
       event_tolerance_(event_tolerance),
       instruction_set_(instruction_set) {
   const DrivelineDynamics& d = system.dynamics();
-  constants_ = {d.pinion_shaft_stiffness,
-                d.pinion_shaft_damping,
-                d.gear_shaft_stiffness,
-                d.gear_shaft_damping,
-                1 / d.pinion_shaft_inertia,
-                1 / d.pinion_inertia,
-                1 / d.gear_inertia,
-                1 / d.wheel_inertia,
-                system.mesh().mean_pinion_contact_radius(),
-                system.mesh().mean_gear_contact_radius(),
-                {}};
-  constants_.per_torque[solve_wheel_torque ? 3 : 0] =
-      solve_wheel_torque ? -1 / d.wheel_inertia : 1 / d.pinion_shaft_inertia;
+  const MeshData& mesh = system.mesh();
+  SensitivityConstants& c = constants_;
+  c = {};
+  c.per_pinion_inertia = 1 / d.pinion_inertia;
+  c.per_gear_inertia = 1 / d.gear_inertia;
+  c.pinion_radius = mesh.mean_pinion_contact_radius();
+  c.gear_radius = mesh.mean_gear_contact_radius();
+  if (!system.has_shafts()) {
+    (solve_wheel_torque ? c.gear_per_torque : c.pinion_per_torque) =
+        solve_wheel_torque ? -c.per_gear_inertia : c.per_pinion_inertia;
+    return;
+  }
+  c.shafts = 1;
+  c.pinion_shaft_stiffness = d.pinion_shaft_stiffness;
+  c.pinion_shaft_damping = d.pinion_shaft_damping;
+  c.gear_shaft_stiffness = d.gear_shaft_stiffness;
+  c.gear_shaft_damping = d.gear_shaft_damping;
+  c.per_pinion_shaft_inertia = 1 / d.pinion_shaft_inertia;
+  c.per_wheel_inertia = 1 / d.wheel_inertia;
+  (solve_wheel_torque ? c.wheel_per_torque : c.pinion_shaft_per_torque) =
+      solve_wheel_torque ? -c.per_wheel_inertia : c.per_pinion_shaft_inertia;
 }
 
 SensitivityStage FixedStepMarch::sensitivity_stage(const MarchState& y, const Mechanics& at,

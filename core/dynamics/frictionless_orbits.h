@@ -10,7 +10,7 @@ namespace tribodyn {
 
 /// Responses without friction that have been found before, for the lubricants that come after. An
 /// entry depends on gear set, load, speed and start alone: a response is the same bits from here
-/// and found anew. Of one gear set and its options; one thread at a time; bounded.
+/// and found anew. Of one gear set, driveline and its options; one thread at a time; bounded.
 class FrictionlessOrbits {
  public:
   /// The response from `origin` on a grid of `steps`, by `approach` where it is new: that solves

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/contact/flank_contact_batch.h"
@@ -51,7 +52,7 @@ enum RecordComponent {
   kLimitedCentreTime,
   kGapTime,
   kCoastTime,
-  kPinionShaftAngle,  ///< int phidot_s dt
+  kPinionShaftAngle,  ///< of what T_s turns: int phidot_s dt, phidot_p without a shaft
   kWheelAngle,
   kShaftDampingWork,
   kMeshDampingWork,
@@ -74,6 +75,21 @@ struct Torques {
   double pinion = 0;  ///< T_s [N m]
   double wheel = 0;   ///< T_w [N m]
 };
+
+/// What stands between the gears and their torques.
+enum class Driveline {
+  kElasticShafts,  ///< shafts, pinion-shaft rotor and wheel: eqs 1-4, four degrees of freedom
+  /// T_s and T_w act on I_p and I_g themselves: a semi-definite pair of rotors whose one elastic
+  /// degree is x. What is cut off stands still in the state: the outer rotors turn at the mean
+  /// speeds, as behind infinitely soft shafts, and no twist is read.
+  kConstantTorques,
+};
+
+/// Components of MarchComponent that move with a driveline, time left out, and those that do not.
+struct DrivelineStates {
+  std::span<const int> moving, still;
+};
+DrivelineStates states_of(Driveline driveline);
 
 /// Forces and torques at one instant.
 struct Mechanics {
@@ -108,7 +124,8 @@ class GearPairSystem {
  public:
   /// Keeps references: mesh, contact and dynamics must outlive it.
   GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
-                 const DrivelineDynamics& dynamics, const ModelOptions& options);
+                 const DrivelineDynamics& dynamics, const ModelOptions& options,
+                 Driveline driveline = Driveline::kElasticShafts);
 
   /// The contacts of an instant are solved together from now on; null: one by one, by the
   /// reference. Figures that no record holds are left out. Keeps the reference.
@@ -155,11 +172,13 @@ class GearPairSystem {
   double cycle_angle() const { return cycle_angle_; }  ///< phi_p per mesh cycle, 2 pi/N_p
   void to_march(const SectionState& section, double* state) const;
   SectionState to_section(const double* state) const;
-  /// Kinetic and elastic energy [J].
+  /// Kinetic and elastic energy of what moves [J].
   double stored_energy(double phase, const double* state) const;
 
   const MeshData& mesh() const { return mesh_; }
   const DrivelineDynamics& dynamics() const { return dynamics_; }
+  Driveline driveline() const { return driveline_; }
+  bool has_shafts() const { return driveline_ == Driveline::kElasticShafts; }
   const FlankContactModel& contact_model() const { return contact_; }
   const ModelOptions& options() const { return options_; }
   long contact_solutions() const { return contact_solutions_; }
@@ -181,6 +200,7 @@ class GearPairSystem {
   std::optional<ContactGeometries> geometries_;
   const DrivelineDynamics& dynamics_;
   ModelOptions options_;
+  Driveline driveline_;
   Torques torques_;
   struct Inverse {
     double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;
@@ -213,10 +233,15 @@ inline void GearPairSystem::mechanics(const MeshPhase& phase, const double* y,
                                       Mechanics& out) const {
   kinematics(phase, y, out);
   const DrivelineDynamics& d = dynamics_;
-  out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
-                            d.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
-  out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
-                          d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
+  if (has_shafts()) {
+    out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
+                              d.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+    out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
+                            d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
+  } else {
+    out.pinion_shaft_torque = torques_.pinion;
+    out.gear_shaft_torque = torques_.wheel;
+  }
   out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
 }
 
@@ -252,14 +277,18 @@ inline void GearPairSystem::motion(const double* y, const Mechanics& at, double*
   // Eqs 1-4 in time, then by phase.
   const double time = cycle_angle_ / y[kPinionSpeed];
   dy[kTime] = time;
-  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
   dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
                          mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
+  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);
+  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);
+  if (!has_shafts()) {
+    dy[kPinionShaftTwist] = dy[kGearShaftTwist] = dy[kPinionShaftSpeed] = dy[kWheelSpeed] = 0;
+    return;
+  }
+  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
   dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
   dy[kPinionShaftSpeed] =
       time * ((torques_.pinion - at.pinion_shaft_torque) * inverse_.pinion_shaft_inertia);
-  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);
-  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);
   dy[kWheelSpeed] = time * ((at.gear_shaft_torque - torques_.wheel) * inverse_.wheel_inertia);
 }
 

@@ -65,21 +65,22 @@ class Harmonics {
 };
 
 /// The two sides of the mesh at one frequency [rad/s].
-struct Driveline {
+struct MeshSides {
   Complex per_pinion, per_gear;  ///< 1 / D_p, 1 / D_g [1/(N m)]
   Complex shaft_share;           ///< phi_s over phi_p
+  Complex wheel_share;           ///< phi_w over phi_g
   Complex compliance;            ///< Y [m/N]
   Complex mesh;                  ///< k + i Omega c [N/m]
   Complex damper;                ///< i Omega c
 
-  Driveline(const GearPairSystem& system, double frequency) {
+  MeshSides(const GearPairSystem& system, double frequency) {
     const DrivelineDynamics& d = system.dynamics();
     const double f2 = square(frequency);
     const Complex pinion_shaft{d.pinion_shaft_stiffness, frequency * d.pinion_shaft_damping};
     const Complex gear_shaft{d.gear_shaft_stiffness, frequency * d.gear_shaft_damping};
     shaft_share = pinion_shaft * inverse(pinion_shaft - f2 * d.pinion_shaft_inertia);
     per_pinion = inverse(-f2 * (d.pinion_inertia + d.pinion_shaft_inertia * shaft_share));
-    const Complex wheel_share = gear_shaft * inverse(gear_shaft - f2 * d.wheel_inertia);
+    wheel_share = gear_shaft * inverse(gear_shaft - f2 * d.wheel_inertia);
     per_gear = inverse(-f2 * (d.gear_inertia + d.wheel_inertia * wheel_share));
     compliance = square(system.mesh().mean_pinion_contact_radius()) * per_pinion +
                  square(system.mesh().mean_gear_contact_radius()) * per_gear;
@@ -114,6 +115,54 @@ double length_of(const std::vector<Complex>& v) {
   return std::sqrt(sum);
 }
 
+/// What the mesh makes of displacements between its sides.
+struct Answer {
+  std::vector<Complex> correction;  ///< of x
+  std::vector<Complex> ripple;      ///< of the force that the ripple of the stiffness adds
+  double growth = 0;                ///< as of InertialCorrection
+};
+
+/// The ripple of the stiffness is added `rounds` times, each time to what it made of the last.
+Answer answer_of(const GearPairSystem& system, const Harmonics& harmonics,
+                 const std::vector<MeshSides>& at, const std::vector<Complex>& source,
+                 const std::vector<double>& stiffness, int rounds) {
+  const int count = harmonics.count();
+  Answer out;
+  std::vector<Complex> amplification(count), plain(count), more(count);
+  for (int h = 0; h < count; ++h) {
+    amplification[h] = at[h].amplification();
+    plain[h] = amplification[h] * source[h];
+  }
+  out.correction = plain;
+  const double length = length_of(plain);
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<double> force = harmonics.signal(out.correction);
+    for (std::size_t n = 0; n < force.size(); ++n) {
+      force[n] = (stiffness[n] - system.mesh().mean_mesh_stiffness()) * force[n];
+    }
+    out.ripple = harmonics.of(force);
+    for (int h = 0; h < count; ++h) {
+      more[h] = -amplification[h] * at[h].compliance * out.ripple[h];
+      out.correction[h] = plain[h] + more[h];
+    }
+    if (round == 0) out.growth = length > 0 ? length_of(more) / length : 0;
+  }
+  return out;
+}
+
+/// The mean force is that of the torques. Returns the largest |of x| that is left.
+double keep_mean_force(const GearPairSystem& system, const std::vector<double>& stiffness,
+                       std::vector<double>& transmission_error) {
+  const int phases = static_cast<int>(transmission_error.size());
+  double mean_force = 0, largest = 0;
+  for (int n = 0; n < phases; ++n) mean_force += stiffness[n] * transmission_error[n] / phases;
+  for (double& x : transmission_error) {
+    x -= mean_force / system.mesh().mean_mesh_stiffness();
+    largest = std::max(largest, std::abs(x));
+  }
+  return largest;
+}
+
 }  // namespace
 
 void ImposedMotion::resize(std::size_t count) {
@@ -135,31 +184,21 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
   std::vector<Complex> pinion_torque(count);
   if (!motion.pinion_torque.empty()) pinion_torque = harmonics.of(motion.pinion_torque);
 
-  std::vector<Driveline> at;
-  std::vector<Complex> amplification(count), source(count), correction(count);
+  std::vector<MeshSides> at;
+  std::vector<Complex> source(count);
   at.reserve(count);
   for (int h = 1; h <= count; ++h) {
-    const Driveline& here = at.emplace_back(system, first * h);
-    amplification[h - 1] = here.amplification();
+    const MeshSides& here = at.emplace_back(system, first * h);
     source[h - 1] = -winding[h - 1] - here.compliance * here.damper * error[h - 1] +
                     pinion_radius * pinion_torque[h - 1] * here.per_pinion -
                     gear_radius * gear_torque[h - 1] * here.per_gear;
-    correction[h - 1] = amplification[h - 1] * source[h - 1];
   }
+  const Answer answer = answer_of(system, harmonics, at, source, motion.mesh_stiffness, 1);
 
-  // What the ripple of the stiffness makes of it.
   InertialCorrection out;
-  const double mean_stiffness = system.mesh().mean_mesh_stiffness();
-  std::vector<double> dx = harmonics.signal(correction), force(phases);
-  for (int n = 0; n < phases; ++n) {
-    force[n] = (motion.mesh_stiffness[n] - mean_stiffness) * dx[n];
-  }
-  const std::vector<Complex> ripple = harmonics.of(force);
-  const double length = length_of(correction);
-  std::vector<Complex> more(count), velocity(count), pinion(count), shaft(count);
+  const std::vector<Complex>&correction = answer.correction, &ripple = answer.ripple;
+  std::vector<Complex> velocity(count), pinion(count), shaft(count);
   for (int h = 0; h < count; ++h) {
-    more[h] = -amplification[h] * at[h].compliance * ripple[h];
-    correction[h] += more[h];
     const Complex rate = Complex{0, first * (h + 1)};
     const Complex whole_force = at[h].mesh * correction[h] + at[h].damper * error[h] + ripple[h];
     const Complex angle = (pinion_torque[h] - pinion_radius * whole_force) * at[h].per_pinion;
@@ -167,32 +206,82 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
     pinion[h] = rate * angle;
     shaft[h] = pinion[h] * at[h].shaft_share;
   }
-  out.growth = length > 0 ? length_of(more) / length : 0;
+  out.growth = answer.growth;
   out.transmission_error = harmonics.signal(correction);
   out.transmission_velocity = harmonics.signal(velocity);
   out.pinion_speed = harmonics.signal(pinion);
   out.pinion_shaft_speed = harmonics.signal(shaft);
-  // The mean force is that of the torques.
-  double mean_force = 0;
-  for (int n = 0; n < phases; ++n) {
-    mean_force += motion.mesh_stiffness[n] * out.transmission_error[n] / phases;
-  }
-  for (double& x : out.transmission_error) {
-    x -= mean_force / mean_stiffness;
-    out.largest = std::max(out.largest, std::abs(x));
-  }
+  out.largest = keep_mean_force(system, motion.mesh_stiffness, out.transmission_error);
 
   // Beyond the highest: what is asked falls like kinks do, what is answered is known.
   const double asked_winding = edge_of(winding), asked_torque = edge_of(gear_torque),
                asked_pinion_torque = edge_of(pinion_torque);
   const int last = static_cast<int>(std::min(1.5 * mesh_frequency(system) / first, 1e4));
   for (int h = count + 1; h <= last && motion.tail; ++h) {
-    const Driveline here(system, first * h);
+    const MeshSides here(system, first * h);
     const double asked = asked_winding +
                          pinion_radius * asked_pinion_torque * std::abs(here.per_pinion) +
                          gear_radius * asked_torque * std::abs(here.per_gear);
     out.unresolved += asked * square(1.0 / h) * std::abs(here.amplification());
   }
+  return out;
+}
+
+void TwoRotorMotion::resize(std::size_t count) {
+  for (auto* v : {&pinion_torque, &gear_torque, &mesh_stiffness}) v->resize(count);
+}
+
+ShaftCorrection shaft_correction(const GearPairSystem& system, double mean_pinion_speed,
+                                 const TwoRotorMotion& motion) {
+  constexpr int kRounds = 3;  // growth is that of the first
+  const DrivelineDynamics& d = system.dynamics();
+  const int phases = static_cast<int>(motion.mesh_stiffness.size());
+  const Harmonics harmonics(phases, std::min(phases / 2 - 1, kMostHarmonics));
+  const int count = harmonics.count();
+  const double first = mean_pinion_speed * system.mesh().pinion_teeth();
+  const double pinion_radius = system.mesh().mean_pinion_contact_radius();
+  const double gear_radius = system.mesh().mean_gear_contact_radius();
+  const std::vector<Complex> pinion_torque = harmonics.of(motion.pinion_torque);
+  const std::vector<Complex> gear_torque = harmonics.of(motion.gear_torque);
+
+  std::vector<MeshSides> at;
+  std::vector<Complex> pinion(count), gear(count), source(count);
+  at.reserve(count);
+  for (int h = 0; h < count; ++h) {
+    const double frequency = first * (h + 1);
+    MeshSides& here = at.emplace_back(system, frequency);
+    here.compliance = pinion_radius * motion.pinion_arm * here.per_pinion +
+                      gear_radius * motion.gear_arm * here.per_gear;
+    const double alone = -1 / square(frequency);
+    pinion[h] = pinion_torque[h] * (here.per_pinion - alone / d.pinion_inertia);
+    gear[h] = gear_torque[h] * (here.per_gear - alone / d.gear_inertia);
+    source[h] = pinion_radius * pinion[h] - gear_radius * gear[h];
+  }
+  const Answer answer = answer_of(system, harmonics, at, source, motion.mesh_stiffness, kRounds);
+  ShaftCorrection out;
+  out.growth = answer.growth;
+  std::vector<Complex> velocity(count), shaft(count);
+  for (int h = 0; h < count; ++h) {
+    const MeshSides& here = at[h];
+    const Complex rate = Complex{0, first * (h + 1)};
+    const Complex force = here.mesh * answer.correction[h] + answer.ripple[h];
+    const Complex whole_pinion =
+        rate * here.per_pinion * (pinion_torque[h] - motion.pinion_arm * force);
+    const Complex whole_gear = rate * here.per_gear * (gear_torque[h] + motion.gear_arm * force);
+    velocity[h] = rate * answer.correction[h];
+    pinion[h] = rate * (pinion[h] - motion.pinion_arm * force * here.per_pinion);
+    gear[h] = rate * (gear[h] + motion.gear_arm * force * here.per_gear);
+    shaft[h] = whole_pinion * here.shaft_share;
+    out.shaft_damping_power +=
+        0.5 * (d.pinion_shaft_damping * std::norm(whole_pinion * (1.0 - here.shaft_share)) +
+               d.gear_shaft_damping * std::norm(whole_gear * (1.0 - here.wheel_share)));
+  }
+  out.transmission_error = harmonics.signal(answer.correction);
+  out.transmission_velocity = harmonics.signal(velocity);
+  out.pinion_speed = harmonics.signal(pinion);
+  out.gear_speed = harmonics.signal(gear);
+  out.pinion_shaft_speed = harmonics.signal(shaft);
+  keep_mean_force(system, motion.mesh_stiffness, out.transmission_error);
   return out;
 }
 

@@ -9,7 +9,7 @@ namespace tribodyn {
 namespace {
 
 constexpr int kUnknowns = SectionMap::kUnknowns;
-constexpr int kStates = 7;
+constexpr int kTorque = kUnknowns - 1;
 using Vector = SectionMap::Vector;
 
 }  // namespace
@@ -26,18 +26,20 @@ MultipleShooting::MultipleShooting(GearPairSystem& system, OrbitFriction& fricti
     : Shooting(system, friction, grid, request, orbit),
       instruction_set_(friction.instruction_set()),
       steps_(grid.steps()),
+      moving_(states_of(system.driveline()).moving),
+      unknowns_(moving_.size() + 1),
       response_(storage.response),
       lagged_(storage.lagged),
       end_(storage.end),
       derivatives_(storage.derivatives),
       change_(storage.change),
       duration_(storage.duration),
-      per_scale_(scale_.cwiseInverse()),
       block_{system, grid, side(), request.solve_wheel_torque, lagged_} {
   system.regime = orbit.regime = {block_.side, true};
-  per_scale_(kStates) = 0;  // the torque has a residual of its own
+  // The torque has a residual of its own: 0.
+  for (std::size_t i = 0; i < moving_.size(); ++i) per_scale_[i] = 1 / scale_(moving_[i] - 1);
   end_.resize(kUnknowns, steps_);
-  change_.resize(std::size_t{kUnknowns} * (steps_ + 1));
+  change_.resize(unknowns_ * (steps_ + 1));
   duration_.resize(steps_);
   response_.start.resize(kResponseRows, steps_ + 1);
   response_.middle.resize(kResponseRows, steps_ + 1);
@@ -93,20 +95,23 @@ void MultipleShooting::spread_friction() {
 }
 
 void MultipleShooting::take_derivatives() {
-  constexpr std::size_t kMatrix = CycleDerivatives::kMatrix;
-  auto made = std::make_shared<CycleDerivatives>(steps_);
+  auto made = std::make_shared<CycleDerivatives>(steps_, static_cast<int>(unknowns_));
   compose_steps(instruction_set_, derivatives_, *made);
   Sensitivity sensitivity;
-  const double* const whole = made->from_section.get() + kMatrix * steps_;
-  for (int j = 0; j < kUnknowns; ++j) {
-    for (int i = 0; i < kStates; ++i) sensitivity[i + 1](j) = whole[kUnknowns * j + i];
+  for (auto& row : sensitivity) row.setZero();
+  const double* const whole = made->from_section.get() + made->matrix() * steps_;
+  for (std::size_t j = 0; j < unknowns_; ++j) {
+    const int by = j < moving_.size() ? moving_[j] - 1 : kTorque;
+    for (std::size_t i = 0; i < moving_.size(); ++i) {
+      sensitivity[moving_[i]](by) = whole[unknowns_ * j + i];
+    }
     double time = 0;
     for (int s = 1; s <= steps_; ++s) {
-      time += made->from_section[kMatrix * s + kUnknowns * j + kStates];
+      time += made->from_section[made->matrix() * s + unknowns_ * j + unknowns_ - 1];
     }
-    sensitivity[kTime](j) = time;
+    sensitivity[kTime](by) = time;
   }
-  orbit_.map.emplace(sensitivity, scale_, period_time_);
+  orbit_.map.emplace(sensitivity, scale_, period_time_, states_of(system_.driveline()).still);
   orbit_.cycle_derivatives = std::move(made);
 }
 
@@ -115,7 +120,7 @@ double MultipleShooting::improve() {
   throw_if_interrupted();
   const bool anew = !orbit_.map || orbit_.cycle_derivatives == nullptr ||
                     orbit_.cycle_derivatives->steps != steps_;
-  if (anew) derivatives_.resize(kDerivativeRows * kDerivativeColumns, steps_);
+  if (anew) derivatives_.resize(unknowns_ * unknowns_, steps_);
   if (!take_steps(instruction_set_, block_, response_, end_, anew ? &derivatives_ : nullptr)) {
     return kBrokenDown;
   }
@@ -125,22 +130,30 @@ double MultipleShooting::improve() {
 
   // From a section that does not move, what is missing at the end; then the section moves.
   follow_residuals(instruction_set_, derivatives, response_, end_, change_.data());
-  const auto change_at = [&](int s) { return change_.data() + std::ptrdiff_t{kUnknowns} * s; };
+  const auto change_at = [&](int s) { return change_.data() + unknowns_ * s; };
+  const std::size_t last = moving_.size();
   double time = 0;
-  for (int s = 1; s <= steps_; ++s) time += change_at(s)[kStates];
-  Vector residual = Eigen::Map<const Vector>(change_at(steps_)).cwiseProduct(per_scale_);
-  residual(kStates) = time / period_time_ - 1;
+  for (int s = 1; s <= steps_; ++s) time += change_at(s)[last];
+  Vector residual = Vector::Zero();
+  for (std::size_t i = 0; i < last; ++i) {
+    residual(moving_[i] - 1) = change_at(steps_)[i] * per_scale_[i];
+  }
+  residual(kTorque) = time / period_time_ - 1;
   const Vector step = orbit_.map->step(residual);
-  const Vector at_section = step.cwiseProduct(scale_);
+  std::array<double, kUnknowns> at_section{};
+  for (std::size_t i = 0; i < last; ++i) {
+    at_section[i] = step(moving_[i] - 1) * scale_(moving_[i] - 1);
+  }
+  at_section[last] = step(kTorque) * scale_(kTorque);
   const double length =
       std::max(step.norm(), add_section_change(instruction_set_, derivatives, at_section.data(),
                                                per_scale_.data(), change_.data()));
   for (int s = 0; s < steps_; ++s) {
-    for (int i = 0; i < kStates; ++i) response_.start[i + 1][s] += change_at(s)[i];
-    duration_[s] = change_at(s + 1)[kStates];
+    for (std::size_t i = 0; i < last; ++i) response_.start[moving_[i]][s] += change_at(s)[i];
+    duration_[s] = change_at(s + 1)[last];
   }
-  for (int i = 0; i < kStates; ++i) response_.start[i + 1][steps_] = response_.start[i + 1][0];
-  add_to_unknown(at_section(kStates));
+  for (const int i : moving_) response_.start[i][steps_] = response_.start[i][0];
+  add_to_unknown(at_section[last]);
   is_filled_ = false;
   // Two steps with the same derivatives tell how much is left; the first one, where they were new,
   // came twice as near as those that follow will.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "core/dynamics/shooting.h"
@@ -12,7 +14,7 @@ struct CycleStorage {
   CycleResponse response;
   CycleFriction lagged;
   Columns end, derivatives;      ///< of take_steps()
-  std::vector<double> change;    ///< of the starts, and durations: eight numbers of each
+  std::vector<double> change;    ///< of the starts, and durations: all unknowns of each
   std::vector<double> duration;  ///< of the steps [s]
 };
 
@@ -42,12 +44,14 @@ class MultipleShooting final : public Shooting {
 
   InstructionSet instruction_set_;
   int steps_;
+  std::span<const int> moving_;  ///< components
+  std::size_t unknowns_;         ///< of a step
   CycleResponse& response_;
   CycleFriction& lagged_;
   Columns &end_, &derivatives_;
   std::vector<double>&change_, &duration_;
   bool is_filled_ = false;  // the response, but for its states at starts
-  SectionMap::Vector per_scale_;
+  std::array<double, SectionMap::kUnknowns> per_scale_{};
   double last_step_ = 0;  // with the derivatives at hand; 0: none
   StepBlock block_;
   long evaluations_ = 0;

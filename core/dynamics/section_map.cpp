@@ -9,7 +9,8 @@
 
 namespace tribodyn {
 
-SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period) {
+SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period,
+                       std::span<const int> still) {
   Eigen::Matrix<double, kUnknowns, kUnknowns> jacobian;
   for (int i = 0; i + 1 < kUnknowns; ++i) {
     jacobian.row(i) = sensitivity[i + 1].matrix();
@@ -18,6 +19,12 @@ SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, doub
     jacobian.row(i) /= scale(i);
   }
   jacobian.row(kUnknowns - 1) = sensitivity[kTime].matrix() / period;
+  for (const int component : still) {
+    const int i = component - 1;
+    jacobian.row(i).setZero();
+    jacobian(i, i) = 1;
+    monodromy_.row(i).setZero();
+  }
   factors_.compute(jacobian * scale.asDiagonal());
   monodromy_ *= scale.head<kUnknowns - 1>().asDiagonal();
 }
@@ -36,21 +43,25 @@ double SectionMap::distance_from_doubling() const {
 /// A bound below `enough` will do.
 double SectionMap::bound_of_multipliers(double enough) const {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
-  constexpr int kIterations = 3, kSquarings = 10;
+  constexpr int kFewestIterations = 3, kMostIterations = 8, kSquarings = 10;
   constexpr double kFound = 1e-6;
   using Square = Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>;
   using Direction = Eigen::Matrix<double, kUnknowns - 1, 1>;
   const Eigen::PartialPivLU<Square> factors(monodromy_ - Square::Identity());
   Direction right = Direction::Ones(), left = Direction::Ones();
-  for (int i = 0; i < kIterations; ++i) {
+  double overlap = 0, nearest = 0;
+  bool found = false;
+  for (int i = 1; !found; ++i) {
+    if (i > kMostIterations) return kUnknown;
     right = factors.solve(right).normalized();
     left = factors.transpose().solve(left).normalized();
+    if (i < kFewestIterations) continue;
+    overlap = left.dot(right);
+    nearest = left.dot(monodromy_ * right) / overlap;
+    const double missed = (monodromy_ * right - nearest * right).norm() +
+                          (monodromy_.transpose() * left - nearest * left).norm();
+    found = missed < kFound * std::abs(overlap);
   }
-  const double overlap = left.dot(right);
-  const double nearest = left.dot(monodromy_ * right) / overlap;
-  const double missed = (monodromy_ * right - nearest * right).norm() +
-                        (monodromy_.transpose() * left - nearest * left).norm();
-  if (!(missed < kFound * std::abs(overlap))) return kUnknown;
   Square power = monodromy_ - nearest / overlap * right * left.transpose();
   double log_norm = 0, exponent = 1;  // of the power: e^log_norm times the matrix at hand
   for (int i = 0;; ++i) {

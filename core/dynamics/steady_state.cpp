@@ -87,19 +87,21 @@ class PeriodMap {
     constexpr double kStep = 1e-4;
     const Torques torques = system_.torques();
     const ContactRegime regime = system_.regime;
-    constexpr int kStates = kUnknowns - 1;
+    const std::span<const int> moving = states_of(system_.driveline()).moving;
+    const auto states = static_cast<Eigen::Index>(moving.size());
     const Vector origin = pack(state);
     MarchState moved = state;
     march(moved, period);
     const Vector image = pack(moved);
-    Eigen::MatrixXd jacobian(kStates, kStates);
-    for (int j = 0; j < kStates; ++j) {
+    Eigen::MatrixXd jacobian(states, states);
+    for (Eigen::Index j = 0; j < states; ++j) {
       Vector shifted = origin;
-      shifted(j) += kStep;
+      shifted(moving[j] - 1) += kStep;
       moved = state;
       unpack(shifted, moved);
       march(moved, period);
-      jacobian.col(j) = (pack(moved) - image).head<kStates>() / kStep;
+      const Vector change = pack(moved) - image;
+      for (Eigen::Index i = 0; i < states; ++i) jacobian(i, j) = change(moving[i] - 1) / kStep;
     }
     system_.set_torques(torques);
     system_.regime = regime;

@@ -39,30 +39,34 @@ struct StepBlock {
   const CycleFriction& friction;
 };
 
-/// Of time and the seven states at a step's end (rows) by the seven states at its start and the
-/// unknown torque.
-inline constexpr int kDerivativeRows = 8, kDerivativeColumns = 8;
+/// Unknowns of a step: the states that move with a driveline, and the torque. 8, or 4.
+inline int unknowns_of(Driveline driveline) {
+  return static_cast<int>(states_of(driveline).moving.size()) + 1;
+}
 
-/// One classical Runge-Kutta step from every start of `response` (time is not read): states at
-/// their ends, kTime their durations, to `end`; derivatives, row after row, to `derivatives` unless
-/// null. False where the grid's series do not reach that far or a number means nothing.
+/// One classical Runge-Kutta step from every start of `response` (time is not read): moving states
+/// at their ends, kTime their durations, to `end`. Unless null, to `derivatives` those of duration
+/// and moving states at a step's end (rows) by moving states at its start and the torque (columns),
+/// row after row. False where the grid's series do not reach that far or a number means nothing.
 bool take_steps(InstructionSet instruction_set, const StepBlock& block,
                 const CycleResponse& response, Columns& end, Columns* derivatives);
 
-/// Fills rates and mechanics of the starts, the middles (by the cubic through both ends) and their
-/// mechanics. Times and states at the starts are given. False as above.
+/// Fills rates (of what moves) and mechanics of the starts, the middles (by the cubic through both
+/// ends) and their mechanics. Times and states at the starts are given. False as above.
 bool fill_response(InstructionSet instruction_set, const StepBlock& block, CycleResponse& response);
 
 /// How the states at the steps' starts, and the steps' durations, follow the section state and the
-/// unknown torque. Matrices of 8 x 8 in columns: seven states and the duration of the step before,
-/// by seven states and the torque.
+/// unknown torque. Square matrices in columns: moving states and the duration of the step before,
+/// by moving states and the torque.
 struct CycleDerivatives {
-  static constexpr std::size_t kMatrix = 64;
-  explicit CycleDerivatives(int count)
+  CycleDerivatives(int count, int unknowns_of_a_step)
       : steps(count),
-        step(std::make_unique_for_overwrite<double[]>(kMatrix * count)),
-        from_section(std::make_unique_for_overwrite<double[]>(kMatrix * (count + 1))) {}
-  int steps;
+        unknowns(unknowns_of_a_step),
+        step(std::make_unique_for_overwrite<double[]>(matrix() * count)),
+        from_section(std::make_unique_for_overwrite<double[]>(matrix() * (count + 1))) {}
+  /// Numbers of one.
+  std::size_t matrix() const { return static_cast<std::size_t>(unknowns) * unknowns; }
+  int steps, unknowns;
   std::unique_ptr<double[]> step;  ///< of each step, by its start
   std::unique_ptr<double[]>
       from_section;  ///< of each start and the end of the cycle, by the section
@@ -73,12 +77,12 @@ void compose_steps(InstructionSet instruction_set, const Columns& derivatives,
                    CycleDerivatives& out);
 
 /// What the steps' residuals (their ends less the next starts) alone do to the starts and
-/// durations: 8 numbers for each start and the end of the cycle.
+/// durations: numbers of all unknowns for each start and the end of the cycle.
 void follow_residuals(InstructionSet instruction_set, const CycleDerivatives& derivatives,
                       const CycleResponse& response, const Columns& end, double* particular);
 
-/// Adds to each of `particular` what a change of the section state and the torque (8 numbers) does.
-/// Returns the largest change of a state, each over its scale (7 numbers, then 0).
+/// Adds to each of `particular` what a change of the section's unknowns does. Returns the largest
+/// change of a state, each over its scale (the last number 0: not the duration).
 double add_section_change(InstructionSet instruction_set, const CycleDerivatives& derivatives,
                           const double* section, const double* per_scale, double* particular);
 

@@ -10,6 +10,7 @@
 #include "core/refusal.h"
 #include "core/study/history_sampler.h"
 #include "core/study/model_choice.h"
+#include "core/study/one_degree.h"
 #include "core/study/operating_target.h"
 #include "core/study/orbit_record.h"
 #include "core/study/orbit_refinement.h"
@@ -92,9 +93,23 @@ PointResult empty_result(const OperatingTarget& target, PointModel model) {
   return out;
 }
 
-PointResult solve_full(GearPairSystem& system, const OperatingTarget& target,
-                       const PointOptions& options, const MarchState& start, int first_period,
-                       const HistoryRequest& history_request) {
+/// Infinite: it cannot be told.
+template <class Result>
+void set_estimate(double error, Result& out) {
+  if (std::isfinite(error)) out.estimated_relative_error = error;
+}
+
+Driveline driveline_of(PointModel model) {
+  return model == PointModel::kOneDegree ? Driveline::kConstantTorques : Driveline::kElasticShafts;
+}
+
+PointModel dynamic_model(const GearPairSystem& system) {
+  return system.has_shafts() ? PointModel::kFull : PointModel::kOneDegree;
+}
+
+PointResult solve_by_marching(GearPairSystem& system, const OperatingTarget& target,
+                              const PointOptions& options, const MarchState& start,
+                              int first_period, const HistoryRequest& history_request) {
   SteadyStateRequest request;
   request.first_period = first_period;
   request.mean_pinion_speed = target.mean_pinion_speed;
@@ -113,10 +128,10 @@ PointResult solve_full(GearPairSystem& system, const OperatingTarget& target,
   }
   const SteadyState steady = solve_steady_state(system, start, request);
 
-  PointResult out = empty_result(target, PointModel::kFull);
+  PointResult out = empty_result(target, dynamic_model(system));
   out.settled = steady.settled;
-  // Of both by experience: their errors are some ten times smaller.
-  if (steady.settled) {
+  // Of both by experience: their errors are some ten times smaller. A model's own is not told.
+  if (steady.settled && system.has_shafts()) {
     out.estimated_relative_error = 3 * request.tolerance + 300 * request.march.relative_tolerance;
   }
   out.period_in_mesh_cycles = steady.period;
@@ -169,6 +184,17 @@ std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Opera
   return search;
 }
 
+/// As refine_orbit(), the estimate with that of the model's own error.
+std::optional<RefinedOrbit> shoot(GearPairSystem& system, const FlankContactBatch& contacts,
+                                  MeshGrids& grids, const OrbitSearch& search,
+                                  MarchStatistics& statistics, long& marched_cycles) {
+  auto found = refine_orbit(system, contacts, grids, search, statistics, marched_cycles);
+  if (found && !system.has_shafts()) {
+    found->estimated_error += one_degree_model_error(system, grids, search, *found);
+  }
+  return found;
+}
+
 /// Everything that follows from a response; its pieces with their contacts, none when one is
 /// refused. Counts contacts.
 std::vector<SolvedPiece> fill_from_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
@@ -204,13 +230,13 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   MarchStatistics statistics;
   long cycles = 0;
   const std::optional<RefinedOrbit> refined =
-      refine_orbit(system, contacts, grids, *search, statistics, cycles);
+      shoot(system, contacts, grids, *search, statistics, cycles);
   if (!refined) return std::nullopt;
   const PeriodicOrbit& orbit = refined->orbit;
 
-  PointResult out = empty_result(target, PointModel::kFull);
+  PointResult out = empty_result(target, dynamic_model(system));
   out.method = SteadyStateMethod::kShooting;
-  out.estimated_relative_error = refined->estimated_error;
+  set_estimate(refined->estimated_error, out);
   const auto pieces = fill_from_orbit(system, contacts, grids, orbit, refined->steps_per_mesh_cycle,
                                       target.mean_pinion_speed, out);
   if (pieces.empty()) return std::nullopt;
@@ -231,7 +257,7 @@ PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch&
                                 MeshGrids& grids, const OperatingTarget& target,
                                 const PointOptions& options, QuasiStaticAnswer& answer) {
   PointResult out = empty_result(target, PointModel::kQuasiStatic);
-  if (std::isfinite(answer.estimated_error)) out.estimated_relative_error = answer.estimated_error;
+  set_estimate(answer.estimated_error, out);
   const QuasiStatic& solution = answer.solution;
   fill_from_orbit(system, contacts, grids, solution.orbit, solution.steps_per_mesh_cycle,
                   target.mean_pinion_speed, out);
@@ -290,7 +316,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       }
       PreparedGearSet& gear_set = at_data_torque ? *at_data_torque : prepared.gear_set();
       GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
-                            scene.options);
+                            scene.options, driveline_of(options.model));
       system.set_torques(target.torques);
       const bool last_pass = !scene.options.load_dependent_mesh_data || pass >= 12;
       PointResult result;
@@ -319,7 +345,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
                 : point_start(system, contacts, grids, target, options,
                               start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0);
         const int first_period = from ? std::max(1, from->period) : 1;
-        result = solve_full(system, target, options, state, first_period, history);
+        result = solve_by_marching(system, target, options, state, first_period, history);
       }
       result.statistics.mesh_cycles += spent.mesh_cycles;
       result.statistics.right_hand_sides += spent.right_hand_sides;
@@ -397,8 +423,9 @@ PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit
   out.contact_loss = orbit.contact_loss;
   out.settled = true;
   out.period_in_mesh_cycles = orbit.period;
-  if (std::isfinite(estimated_error)) out.estimated_relative_error = estimated_error;
+  set_estimate(estimated_error, out);
   out.contact_solutions = system.contact_solutions();
+  out.model = dynamic_model(system);
   return out;
 }
 
@@ -416,7 +443,7 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
   if (options.method == SteadyStateMethod::kAutomatic && !scene.options.load_dependent_mesh_data) {
     const FlankContactBatch& contacts = prepared.contacts();
     GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
-                          scene.options);
+                          scene.options, driveline_of(options.model));
     system.set_torques(target.torques);
     if (const auto chosen = quasi_static_for(system, contacts, gear_set, target, plain)) {
       PointFigures figures =
@@ -427,15 +454,15 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
     if (options.model == PointModel::kAutomatic)
       plain.model = PointModel::kFull;  // it is found out
     std::optional<OrbitSearch> search;
-    if (plain.model == PointModel::kFull) {
+    if (plain.model != PointModel::kQuasiStatic) {
       search = search_from(system, target, plain, plain.start, std::nullopt);
     }
     MarchStatistics statistics;
     long cycles = 0;
     std::optional<RefinedOrbit> found;
     if (search) {
-      search->frictionless = &gear_set.frictionless_orbits();
-      found = refine_orbit(system, contacts, gear_set.grids(), *search, statistics, cycles);
+      search->frictionless = &gear_set.frictionless_orbits(system.driveline());
+      found = shoot(system, contacts, gear_set.grids(), *search, statistics, cycles);
     }
     if (found) return figures_of(system, found->orbit, found->estimated_error, target);
   }

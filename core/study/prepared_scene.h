@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "core/contact/flank_contact_batch.h"
@@ -23,14 +24,16 @@ class PreparedGearSet {
   const MeshData& mesh() const { return mesh_; }
   MeshGrids& grids() { return grids_; }
   /// For studies that meet the same speeds and loads with many lubricants.
-  FrictionlessOrbits& frictionless_orbits() { return frictionless_orbits_; }
+  FrictionlessOrbits& frictionless_orbits(Driveline driveline = Driveline::kElasticShafts) {
+    return frictionless_orbits_[static_cast<std::size_t>(driveline)];
+  }
   QuasiStaticChances& quasi_static_chances() { return quasi_static_chances_; }
 
  private:
   GearSet gear_set_;
   MeshData mesh_;
   MeshGrids grids_;
-  FrictionlessOrbits frictionless_orbits_;
+  std::array<FrictionlessOrbits, 2> frictionless_orbits_;  // of each driveline
   QuasiStaticChances quasi_static_chances_;
 };
 

@@ -89,9 +89,20 @@ void set_losses(v1::PointResult* out, const PointResult& result) {
   out->set_boundary_to_viscous_friction_ratio(result.boundary_to_viscous_friction_ratio);
 }
 
+v1::PointModel point_model(PointModel model) {
+  switch (model) {
+    case PointModel::kQuasiStatic:
+      return v1::QUASI_STATIC;
+    case PointModel::kOneDegree:
+      return v1::ONE_DEGREE;
+    default:
+      return v1::FULL;
+  }
+}
+
 void set_solver(v1::PointResult* out, const PointResult& result) {
-  out->set_model(result.model == PointModel::kQuasiStatic ? v1::QUASI_STATIC : v1::FULL);
-  if (result.model == PointModel::kFull) {
+  out->set_model(point_model(result.model));
+  if (result.model != PointModel::kQuasiStatic) {
     out->set_steady_state_method(result.method == SteadyStateMethod::kShooting ? v1::SHOOTING
                                                                                : v1::MARCH);
   }

@@ -129,6 +129,8 @@ PointModel point_model(v1::PointModel model) {
       return PointModel::kFull;
     case v1::QUASI_STATIC:
       return PointModel::kQuasiStatic;
+    case v1::ONE_DEGREE:
+      return PointModel::kOneDegree;
     default:
       return PointModel::kAutomatic;
   }

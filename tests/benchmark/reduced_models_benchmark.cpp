@@ -12,19 +12,21 @@
 #include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"
 
-// Where a cheaper model pays: time and true error of the quasi-static model, of the full one and of
-// the automatic choice, at slow and fast points and three tolerances, on the reference gear set.
-// The truth is the full model at 1e-6. Gear set and fluid are prepared, responses without friction
-// are not. Times are medians of interleaved turns.
+// Where a cheaper model pays: time and true error of the quasi-static model, of the one-degree one,
+// of the full one and of the automatic choice, at slow and fast points and three tolerances, on the
+// reference gear set. The truth is the full model at 1e-6. Gear set and fluid are prepared,
+// responses without friction are not. Times are medians of interleaved turns.
 namespace tribodyn {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kSpeeds[] = {1, 2, 5, 10, 20, 140};  // [km/h]
+constexpr double kSpeeds[] = {1, 2, 5, 10, 20, 37.5, 45, 60, 80, 100, 140};  // [km/h]
 constexpr double kTolerances[] = {1e-3, 1e-2, 5e-2};
-constexpr PointModel kModels[] = {PointModel::kQuasiStatic, PointModel::kFull,
-                                  PointModel::kAutomatic};
+constexpr int kModelCount = 4;
+constexpr PointModel kModels[kModelCount] = {PointModel::kQuasiStatic, PointModel::kOneDegree,
+                                             PointModel::kFull, PointModel::kAutomatic};
+enum { kQuasiStatic, kOneDegree, kFull, kAutomatic };  // places in it
 
 struct Run {
   PointFigures figures;
@@ -33,7 +35,8 @@ struct Run {
 
 Run run_once(PreparedScene& scene, const OperatingCondition& condition,
              const PointOptions& options) {
-  scene.gear_set().frictionless_orbits() = {};
+  scene.gear_set().frictionless_orbits(Driveline::kElasticShafts) = {};
+  scene.gear_set().frictionless_orbits(Driveline::kConstantTorques) = {};
   const auto start = Clock::now();
   PointFigures figures = solve_point_figures(scene, condition, options);
   return {figures, std::chrono::duration<double, std::micro>(Clock::now() - start).count()};
@@ -53,8 +56,10 @@ int run(const std::string& path, int turns) {
   std::vector<Measurement> figures;
   std::printf("%s; medians of %d turns; times in us\n\n", machine_name().c_str(), turns);
   std::printf(
-      "               quasi-static                 full                 automatic\n"
-      " km/h  asked   time  says    errs      time  says    errs      time  errs    model\n");
+      "               quasi-static             one degree               full"
+      "                automatic\n"
+      " km/h  asked   time  says    errs     time  says    errs     time  says    errs"
+      "     time    errs  model\n");
   for (const double speed : kSpeeds) {
     OperatingCondition condition;
     condition.vehicle_speed = speed / 3.6;
@@ -63,10 +68,10 @@ int run(const std::string& path, int turns) {
     sharp.tolerance = 1e-6;
     const PointResult truth = solve_prepared_point(prepared, condition, sharp);
     for (const double tolerance : kTolerances) {
-      std::vector<double> times[3];
-      PointFigures r[3];
+      std::vector<double> times[kModelCount];
+      PointFigures r[kModelCount];
       for (int turn = 0; turn < turns; ++turn) {
-        for (int m = 0; m < 3; ++m) {
+        for (int m = 0; m < kModelCount; ++m) {
           PointOptions options;
           options.model = kModels[m];
           options.tolerance = tolerance;
@@ -75,22 +80,28 @@ int run(const std::string& path, int turns) {
           times[m].push_back(once.microseconds);
         }
       }
-      double error[3], time[3];
-      for (int m = 0; m < 3; ++m) {
+      double error[kModelCount], time[kModelCount];
+      std::printf("%5g  %.0e", speed, tolerance);
+      for (int m = 0; m < kModelCount; ++m) {
         error[m] = true_error(r[m], truth);
         time[m] = median(times[m]);
+        std::printf("%s%7.0f ", m > 0 ? " " : "", time[m]);
+        if (m != kAutomatic) std::printf("%6s ", estimate_text(r[m]).c_str());
+        std::printf("%7.0e", error[m]);
       }
-      std::printf("%5g  %.0e %6.0f %6s %7.0e  %8.0f %6s %7.0e  %8.0f %7.0e  %s\n", speed, tolerance,
-                  time[0], estimate_text(r[0]).c_str(), error[0], time[1],
-                  estimate_text(r[1]).c_str(), error[1], time[2], error[2],
-                  r[2].model == PointModel::kQuasiStatic ? "quasi-static" : "full");
-      const std::string at = std::to_string(static_cast<int>(speed)) + " km/h at " +
-                             std::to_string(tolerance).substr(0, 5);
+      std::printf("  %s\n",
+                  r[kAutomatic].model == PointModel::kQuasiStatic ? "quasi-static" : "full");
+      const std::string at =
+          std::to_string(speed).substr(0, 4) + " km/h at " + std::to_string(tolerance).substr(0, 5);
       figures.push_back(
-          {"automatic, true error over tolerance, " + at, error[2] / tolerance, "-", 1.0});
-      figures.push_back({"automatic over full model, time, " + at, time[2] / time[1], "-", {}});
+          {"automatic, true error over tolerance, " + at, error[kAutomatic] / tolerance, "-", 1.0});
+      figures.push_back(
+          {"automatic over full model, time, " + at, time[kAutomatic] / time[kFull], "-", {}});
+      figures.push_back(
+          {"one degree over full model, time, " + at, time[kOneDegree] / time[kFull], "-", {}});
       if (speed == 1 && tolerance == 1e-3) {
-        figures.push_back({"quasi-static point with its estimates, " + at, time[0], "us", 99.0});
+        figures.push_back(
+            {"quasi-static point with its estimates, " + at, time[kQuasiStatic], "us", 99.0});
       }
     }
   }

@@ -141,6 +141,14 @@ out_is_json
 out_has '"inefficiencyEnergyMeanPercent": [0-9]'
 expect 0 point --lubricant 1 --speed 72.5 --model quasi-static
 out_has 'estimated error +not estimated'
+expect 0 point --lubricant 1 --speed 50 --model one-degree
+out_has 'model used +one degree of freedom +as asked'
+out_has 'steady state by +shooting'
+out_has 'estimated error +[0-9.]+ +%'
+expect 0 point --lubricant 1 --speed 50 --model one-degree --output json
+out_has '"model": "ONE_DEGREE"'
+expect 0 point --lubricant 1 --speed 72.5 --model one-degree
+out_has 'estimated error +not estimated'
 expect 0 point --lubricant 1 --speed 1
 out_has 'model used +quasi-static +its estimated error is within the tolerance'
 expect 0 point --lubricant 1 --speed 50 --model automatic

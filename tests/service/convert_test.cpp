@@ -185,6 +185,22 @@ TEST(FromCore, OptionalAndRepeatedPartsOfAPointComeBack) {
   EXPECT_FALSE(to_curve_point(PointResult()).result().has_coexisting_response());
 }
 
+TEST(FromCore, EveryModelAndHowItWasSolvedComeBack) {
+  PointResult core = full_result();
+  core.method = SteadyStateMethod::kShooting;
+  const auto arrived = [&](PointModel model) {
+    core.model = model;
+    return to_message(core, 20);
+  };
+  EXPECT_EQ(arrived(PointModel::kFull).model(), v1::FULL);
+  EXPECT_EQ(arrived(PointModel::kFull).steady_state_method(), v1::SHOOTING);
+  EXPECT_EQ(arrived(PointModel::kOneDegree).model(), v1::ONE_DEGREE);
+  EXPECT_EQ(arrived(PointModel::kOneDegree).steady_state_method(), v1::SHOOTING);
+  EXPECT_EQ(arrived(PointModel::kQuasiStatic).model(), v1::QUASI_STATIC);
+  EXPECT_EQ(arrived(PointModel::kQuasiStatic).steady_state_method(),
+            v1::STEADY_STATE_METHOD_UNSPECIFIED);
+}
+
 TEST(FromCore, NoFieldOfAPointIsForgotten) {
   PointResult core = full_result();
   // Everything else gets some value that is not zero.

@@ -69,6 +69,7 @@ TEST(Inputs, EveryModelArrives) {
   EXPECT_EQ(arrived(v1::AUTOMATIC_MODEL), PointModel::kAutomatic);
   EXPECT_EQ(arrived(v1::FULL), PointModel::kFull);
   EXPECT_EQ(arrived(v1::QUASI_STATIC), PointModel::kQuasiStatic);
+  EXPECT_EQ(arrived(v1::ONE_DEGREE), PointModel::kOneDegree);
 }
 
 TEST(Inputs, EveryOperatingConditionArrives) {

@@ -27,13 +27,15 @@ v1::OperatingPointStudy operating_point_study(const OperatingPointFlags& point);
 template <class Study>
 void add_model_and_start_flags(FlagList& flags, Study& study) {
   flags.choice(
-      "--model", {"automatic", "full", "quasi-static"},
+      "--model", {"automatic", "full", "quasi-static", "one-degree"},
       "automatic: the cheapest whose estimated error is within --tolerance, the report "
       "says which; full: the four degrees of freedom in time; quasi-static: equilibrium "
-      "at constant speed, phase by phase. Curves, histories, --start and "
-      "--probe-coexisting-response take the full one. Default: automatic.",
+      "at constant speed, phase by phase; one-degree: the transmission error in time, the shafts "
+      "carry constant torques (never taken by automatic). Curves, histories, --start and "
+      "--probe-coexisting-response take the full one unless asked. Default: automatic.",
       [&study](int index) {
-        constexpr v1::PointModel kModels[] = {v1::AUTOMATIC_MODEL, v1::FULL, v1::QUASI_STATIC};
+        constexpr v1::PointModel kModels[] = {v1::AUTOMATIC_MODEL, v1::FULL, v1::QUASI_STATIC,
+                                              v1::ONE_DEGREE};
         study.set_model(kModels[index]);
       });
   flags.choice(

@@ -172,11 +172,19 @@ void add_energy_balance(const v1::PowerBalance& power, const Precision& precisio
                                    " parametric (gap " + significant(gap, 2) + ")");
 }
 
+std::string model_name(v1::PointModel model) {
+  if (model == v1::QUASI_STATIC) return "quasi-static";
+  return model == v1::ONE_DEGREE ? "one degree of freedom" : "full (4 degrees of freedom)";
+}
+
 /// Why the model is the one that was used.
 std::string model_reason(const v1::Simulation& simulation, const v1::PointResult& result) {
   const v1::OperatingPointStudy& study = simulation.operating_point();
   if (simulation.has_inefficiency_curve()) return "";
-  if (study.model() == v1::FULL || study.model() == v1::QUASI_STATIC) return "as asked";
+  if (study.model() == v1::FULL || study.model() == v1::QUASI_STATIC ||
+      study.model() == v1::ONE_DEGREE) {
+    return "as asked";
+  }
   if (result.model() == v1::QUASI_STATIC) return "its estimated error is within the tolerance";
   if (study.probe_coexisting_response() || study.has_history() ||
       study.start() == v1::LARGE_VIBRATION || simulation.solver_options().method() == v1::MARCH) {
@@ -188,9 +196,7 @@ std::string model_reason(const v1::Simulation& simulation, const v1::PointResult
 void add_solver(const v1::Simulation& simulation, const v1::PointResult& result,
                 const Precision& precision, Sheet& sheet) {
   sheet.heading("Solver");
-  sheet.line("model used",
-             result.model() == v1::QUASI_STATIC ? "quasi-static" : "full (4 degrees of freedom)",
-             "", model_reason(simulation, result));
+  sheet.line("model used", model_name(result.model()), "", model_reason(simulation, result));
   if (result.steady_state_method() != v1::STEADY_STATE_METHOD_UNSPECIFIED) {
     sheet.line("steady state by", result.steady_state_method() == v1::SHOOTING
                                       ? "shooting under lagged friction"
