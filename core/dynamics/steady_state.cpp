@@ -213,6 +213,7 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
   int period = request.first_period, failures = 0, plain_left = kFirstCycles, confirmed = 0,
       without_gain = 0;
   double best = kNone, reported = 0;
+  bool extrapolated = false;  // the state has not been marched to
   Vector best_image, marched = map.pack(state);
   Extrapolation extrapolation;
   std::vector<Vector> sections;  // of consecutive plain mesh cycles, for finding the period
@@ -223,7 +224,17 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
       if (!request.progress(reported)) throw Cancelled();
     }
     const Vector argument = map.pack(state);
-    map.advance(state, period);
+    try {
+      map.advance(state, period);
+    } catch (const Refusal&) {
+      if (!extrapolated) throw;
+      // Nobody knows where that was: back to where the march was last.
+      extrapolated = false;
+      map.unpack(best < kNone ? best_image : marched, state);
+      plain_left = std::min(16 * ++failures, 96);
+      continue;
+    }
+    extrapolated = false;
     const Vector image = map.pack(state);
     out.defect = (image - argument).norm();
     if (out.defect <= wanted) {
@@ -276,6 +287,7 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
     extrapolation.add(argument, image);
     if (extrapolation.ready()) {
       map.unpack(extrapolation.next(), state);
+      extrapolated = true;
       ++out.accelerations;
     }
   }
