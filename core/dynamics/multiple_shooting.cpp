@@ -162,20 +162,19 @@ bool MultipleShooting::fill() {
 bool MultipleShooting::evaluate(Places places) {
   last_step_ = 0;
   if (!fill()) return false;
-  const double light = 1e-3 * mean_force_;
   double least = std::numeric_limits<double>::infinity();
   for (int s = 0; s <= steps_; ++s) {
     least = std::min(least, block_.side * response_.start[kMeshForceRow][s]);
     if (s < steps_) least = std::min(least, block_.side * response_.middle[kMeshForceRow][s]);
   }
   bool good = false;
-  if (least > light) {
+  if (least > light_load()) {
     const GridContacts& contacts =
         places == Places::kAll ? grid_.contacts() : grid_.contacts_at_starts();
     good = friction_.evaluate(block_, contacts, response_, orbit_.friction, orbit_.figures);
   } else {
     write_pieces();
-    good = friction_.evaluate(grid_, orbit_.pieces, light, orbit_.friction, orbit_.figures);
+    good = friction_.evaluate(grid_, orbit_.pieces, light_load(), orbit_.friction, orbit_.figures);
   }
   if (!good) return false;
   orbit_.contact_loss = false;
