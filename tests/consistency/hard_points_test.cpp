@@ -24,14 +24,10 @@
 namespace tribodyn {
 namespace {
 
-OperatingCondition prescribed(double pinion_torque, double kilometers_per_hour) {
+OperatingCondition prescribed_at(double pinion_torque, double kilometers_per_hour) {
   const Scene scene = reference_scene();
-  OperatingCondition condition;
-  condition.kind = OperatingCondition::Kind::kPrescribedTorque;
-  condition.pinion_torque = pinion_torque;
-  condition.pinion_speed = kilometers_per_hour / 3.6 / scene.vehicle.wheel_radius *
-                           scene.gear_set.gear_teeth / scene.gear_set.pinion_teeth;
-  return condition;
+  return prescribed(pinion_torque, kilometers_per_hour / 3.6 / scene.vehicle.wheel_radius *
+                                       scene.gear_set.gear_teeth / scene.gear_set.pinion_teeth);
 }
 
 void expect_finite(const Extremes& e, const char* what) {
@@ -254,7 +250,8 @@ TEST(HardPoints, CoastRunsOnTheOtherFlanks) {
     for (const double speed : {20.0, 72.5, 140.0}) {
       if (kShortRun && speed != 72.5) continue;
       SCOPED_TRACE(std::to_string(torque) + " N m at " + std::to_string(speed));
-      const PointResult r = solve_operating_point(reference_scene(), prescribed(torque, speed), {});
+      const PointResult r =
+          solve_operating_point(reference_scene(), prescribed_at(torque, speed), {});
       expect_sound(reference_scene(), r, {});
       EXPECT_TRUE(r.settled);
       EXPECT_TRUE(r.coast_side_contact);
@@ -272,7 +269,7 @@ TEST(HardPoints, AlmostNoTorqueRattlesOrSettles) {
   for (const double speed : {20.0, 72.5, 140.0}) {
     if (kShortRun && speed != 72.5) continue;
     SCOPED_TRACE(speed);
-    EXPECT_TRUE(expect_an_answer(reference_scene(), prescribed(1, speed)));
+    EXPECT_TRUE(expect_an_answer(reference_scene(), prescribed_at(1, speed)));
   }
 }
 
@@ -281,7 +278,7 @@ TEST(HardPoints, NoTorqueFloatsAndSaysThatItHasNotSettled) {
   PointOptions options;
   options.maximum_mesh_cycles = 150;
   options.recorded_mesh_cycles = 5;
-  const PointResult r = solve_operating_point(reference_scene(), prescribed(0, 72.5), options);
+  const PointResult r = solve_operating_point(reference_scene(), prescribed_at(0, 72.5), options);
   expect_sound(reference_scene(), r, options);
   EXPECT_FALSE(r.settled);
   EXPECT_FALSE(r.inefficiency_rms.has_value());
@@ -289,7 +286,7 @@ TEST(HardPoints, NoTorqueFloatsAndSaysThatItHasNotSettled) {
 }
 
 TEST(HardPoints, HeavyTorqueKnocksAcrossTheBacklash) {
-  EXPECT_TRUE(expect_an_answer(reference_scene(), prescribed(300, 72.5)));
+  EXPECT_TRUE(expect_an_answer(reference_scene(), prescribed_at(300, 72.5)));
 }
 
 TEST(HardPoints, LooseAndTightTolerances) {
@@ -362,7 +359,7 @@ WildPlace wild_place(std::mt19937_64& random) {
   scale(rough.composite_rms_height, 3);
   scale(place.scene.boundary.asperity_friction_coefficient, 3);
   if (between(0, 1) < 0.3) {
-    place.condition = prescribed(between(-100, 250), place.condition.vehicle_speed * 3.6);
+    place.condition = prescribed_at(between(-100, 250), place.condition.vehicle_speed * 3.6);
   }
   return place;
 }
