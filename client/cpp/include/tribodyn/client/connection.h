@@ -33,6 +33,8 @@ struct ListOptions {
   std::string order_by = {};  ///< "name", or a field of the filter; " desc" turns it round
   bool show_deleted = false;  ///< also those that were deleted
   int limit = 0;              ///< at most so many; 0: all
+  /// To go on where a list ended: its Listing::next_page_token, with the same filter and order.
+  std::string page_token = {};
   bool basic = false;         ///< gear sets without their tables
 };
 
@@ -41,6 +43,7 @@ template <class Resource>
 struct Listing {
   std::vector<Resource> resources;
   bool has_more = false;  ///< `limit` ended it
+  std::string next_page_token = {};  ///< where it did; empty: there are no more
 };
 
 /// A resource of a batch of updates.
