@@ -45,6 +45,15 @@ class PeriodMap {
     system_.regime = system_.regime_of(0, state.data());
   }
 
+  /// Whether an extrapolation leaves the mesh about where it is: far out the march goes step by
+  /// tiny step.
+  bool is_sensible(const Vector& from, const Vector& to) const {
+    constexpr double kFar = 100;  // of the backlash and the static deflection
+    constexpr int kWindingUnknown = 1;
+    const double moved = std::abs(to(kWindingUnknown) - from(kWindingUnknown)) * scales_.length;
+    return moved < kFar * (2 * system_.dynamics().half_backlash + scales_.length);
+  }
+
   /// Mesh cycles at constant torques; returns the time that they take.
   double march(MarchState& state, int cycles) {
     double time = 0;
@@ -286,7 +295,9 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
     }
     extrapolation.add(argument, image);
     if (extrapolation.ready()) {
-      map.unpack(extrapolation.next(), state);
+      const Vector next = extrapolation.next();
+      if (!map.is_sensible(image, next)) continue;
+      map.unpack(next, state);
       extrapolated = true;
       ++out.accelerations;
     }

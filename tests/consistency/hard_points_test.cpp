@@ -20,6 +20,7 @@
 #include "tests/support/cruise.h"
 #include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"
+#include "tests/support/refusal_reason.h"
 
 namespace tribodyn {
 namespace {
@@ -308,7 +309,7 @@ struct WildPlace {
   OperatingCondition condition;
 };
 
-WildPlace wild_place(std::mt19937_64& random) {
+WildPlace wild_place(std::mt19937_64& random, double inertia_factor = 5, double shaft_factor = 5) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
@@ -328,11 +329,11 @@ WildPlace wild_place(std::mt19937_64& random) {
   DrivelineDynamics& d = gear_set.dynamics;
   for (double* inertia :
        {&d.pinion_shaft_inertia, &d.pinion_inertia, &d.gear_inertia, &d.wheel_inertia}) {
-    scale(*inertia, 5);
+    scale(*inertia, inertia_factor);
   }
   for (double* shaft : {&d.pinion_shaft_stiffness, &d.gear_shaft_stiffness, &d.pinion_shaft_damping,
                         &d.gear_shaft_damping}) {
-    scale(*shaft, 5);
+    scale(*shaft, shaft_factor);
   }
   scale(d.mesh_damping, 5);
   d.half_backlash = between(0, 3e-4);
@@ -362,6 +363,25 @@ WildPlace wild_place(std::mt19937_64& random) {
     place.condition = prescribed_at(between(-100, 250), place.condition.vehicle_speed * 3.6);
   }
   return place;
+}
+
+// Extrapolation once led to a winding of half a metre there, whence no step succeeds.
+TEST(HardPoints, InertiasAThousandTimesOffAreMarchedToAnAnswer) {
+  std::mt19937_64 random(5);
+  for (int i = 0; i <= 252; ++i) {
+    const WildPlace place = wild_place(random, 1000, 30);
+    if (i != 115 && i != 252) continue;
+    SCOPED_TRACE(i);
+    PointOptions options;
+    options.method = SteadyStateMethod::kMarch;
+    options.tolerance = 1e-2;
+    options.relative_tolerance = 1e-4;
+    options.settling_tolerance = 1e-3;
+    options.maximum_mesh_cycles = 400;
+    options.recorded_mesh_cycles = 1;
+    EXPECT_EQ(refusal_reason([&] { solve_operating_point(place.scene, place.condition, options); }),
+              "none");
+  }
 }
 
 // Right by the march, or said to be none: nothing wrong is presented as good.
