@@ -33,7 +33,14 @@ GearPairSystem::GearPairSystem(const MeshData& mesh, const FlankContactModel& co
       inverse_{1 / dynamics.pinion_shaft_inertia, 1 / dynamics.pinion_inertia,
                1 / dynamics.gear_inertia, 1 / dynamics.wheel_inertia},
       lag_per_winding_(mesh.gear_teeth() / mesh.mean_gear_contact_radius()),
-      cycle_angle_(2 * std::numbers::pi / mesh.pinion_teeth()) {}
+      cycle_angle_(2 * std::numbers::pi / mesh.pinion_teeth()) {
+  if (has_shafts()) {
+    shafts_ = {1, dynamics.pinion_shaft_stiffness, dynamics.pinion_shaft_damping,
+               dynamics.gear_shaft_stiffness, dynamics.gear_shaft_damping};
+  } else {
+    inverse_.pinion_shaft_inertia = inverse_.wheel_inertia = 0;
+  }
+}
 
 MeshPhase GearPairSystem::at_phase(double phase) const {
   return mesh_.at_phase(2 * std::numbers::pi * phase);

@@ -131,7 +131,10 @@ class GearPairSystem {
   /// reference. Figures that no record holds are left out. Keeps the reference.
   void solve_together(const FlankContactBatch* contacts);
 
-  void set_torques(const Torques& torques) { torques_ = torques; }
+  void set_torques(const Torques& torques) {
+    torques_ = torques;
+    if (!has_shafts()) constant_ = torques;
+  }
   const Torques& torques() const { return torques_; }
   /// Table interval that the mesh phase is in; phases are continued by its straight lines.
   void set_interval(int interval) { interval_ = interval; }
@@ -202,8 +205,13 @@ class GearPairSystem {
   ModelOptions options_;
   Driveline driveline_;
   Torques torques_;
+  Torques constant_;  // on the gears themselves
+  struct Shafts {
+    double present;  // 1; or 0, and so all of them
+    double pinion_stiffness, pinion_damping, gear_stiffness, gear_damping;
+  } shafts_{};
   struct Inverse {
-    double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;
+    double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;  // 0: it stands still
   } inverse_;
   double lag_per_winding_;  // of N_g phi_g behind N_p phi_p [rad/m]
   double cycle_angle_;
@@ -232,16 +240,12 @@ inline void GearPairSystem::kinematics(const MeshPhase& phase, const double* y,
 inline void GearPairSystem::mechanics(const MeshPhase& phase, const double* y,
                                       Mechanics& out) const {
   kinematics(phase, y, out);
-  const DrivelineDynamics& d = dynamics_;
-  if (has_shafts()) {
-    out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
-                              d.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
-    out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
-                            d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
-  } else {
-    out.pinion_shaft_torque = torques_.pinion;
-    out.gear_shaft_torque = torques_.wheel;
-  }
+  const Shafts& s = shafts_;
+  out.pinion_shaft_torque = s.pinion_stiffness * y[kPinionShaftTwist] +
+                            s.pinion_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]) +
+                            constant_.pinion;
+  out.gear_shaft_torque = s.gear_stiffness * y[kGearShaftTwist] +
+                          s.gear_damping * (y[kGearSpeed] - y[kWheelSpeed]) + constant_.wheel;
   out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
 }
 
@@ -275,20 +279,16 @@ inline void GearPairSystem::motion(const double* y, const Mechanics& at, double*
   const double gear_torque =
       m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque;
   // Eqs 1-4 in time, then by phase.
-  const double time = cycle_angle_ / y[kPinionSpeed];
+  const double time = cycle_angle_ / y[kPinionSpeed], twisting = time * shafts_.present;
   dy[kTime] = time;
+  dy[kPinionShaftTwist] = twisting * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
   dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
                          mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
-  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);
-  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);
-  if (!has_shafts()) {
-    dy[kPinionShaftTwist] = dy[kGearShaftTwist] = dy[kPinionShaftSpeed] = dy[kWheelSpeed] = 0;
-    return;
-  }
-  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
-  dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
+  dy[kGearShaftTwist] = twisting * (y[kGearSpeed] - y[kWheelSpeed]);
   dy[kPinionShaftSpeed] =
       time * ((torques_.pinion - at.pinion_shaft_torque) * inverse_.pinion_shaft_inertia);
+  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);
+  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);
   dy[kWheelSpeed] = time * ((at.gear_shaft_torque - torques_.wheel) * inverse_.wheel_inertia);
 }
 

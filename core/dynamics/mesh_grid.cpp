@@ -6,16 +6,7 @@
 namespace tribodyn {
 namespace {
 
-constexpr double FlankKinematics::*kContactColumns[] = {&FlankKinematics::load_share,
-                                                        &FlankKinematics::pinion_velocity_x,
-                                                        &FlankKinematics::pinion_velocity_y,
-                                                        &FlankKinematics::gear_velocity_x,
-                                                        &FlankKinematics::gear_velocity_y,
-                                                        &FlankKinematics::contact_point_velocity_x,
-                                                        &FlankKinematics::contact_point_velocity_y,
-                                                        &FlankKinematics::pinion_friction_arm,
-                                                        &FlankKinematics::gear_friction_arm};
-static_assert(std::size(kContactColumns) == kContactRows);
+static_assert(std::size(kColumnsButRadii) == kContactRows);
 
 /// The gear lags by `lag` more or less [rad]. False where there is no series.
 bool set_lane(const MeshData& mesh, const MeshPhase& phase, double lag, int lane,
@@ -98,7 +89,7 @@ void MeshGrid::list(GridContacts& c) const {
   c.geometries.resize(loaded.size());
   for (std::size_t i = 0; i < loaded.size(); ++i) {
     for (int row = 0; row < kContactRows; ++row) {
-      c.kinematics[row][i] = loaded[i]->*kContactColumns[row];
+      c.kinematics[row][i] = loaded[i]->*kColumnsButRadii[row];
     }
     c.geometries.set(i, loaded[i]->radius_x, loaded[i]->radius_y);
   }

@@ -22,7 +22,7 @@ enum MeshRow {
   kMeshRows = kSeriesRow + 2 * MeshExpansion::kTerms
 };
 
-/// Rows of the loaded contacts of a grid: FlankKinematics but for the radii.
+/// Rows of the loaded contacts of a grid, as kColumnsButRadii.
 enum ContactRow {
   kLoadShareRow,
   kPinionVelocityXRow,

@@ -148,11 +148,12 @@ double MultipleShooting::improve() {
   const double length =
       std::max(step.norm(), add_section_change(instruction_set_, derivatives, at_section.data(),
                                                per_scale_.data(), change_.data()));
-  for (int s = 0; s < steps_; ++s) {
-    for (std::size_t i = 0; i < last; ++i) response_.start[moving_[i]][s] += change_at(s)[i];
-    duration_[s] = change_at(s + 1)[last];
+  for (std::size_t i = 0; i < last; ++i) {
+    double* const start = response_.start[moving_[i]];
+    for (int s = 0; s < steps_; ++s) start[s] += change_at(s)[i];
+    start[steps_] = start[0];
   }
-  for (const int i : moving_) response_.start[i][steps_] = response_.start[i][0];
+  for (int s = 0; s < steps_; ++s) duration_[s] = change_at(s + 1)[last];
   add_to_unknown(at_section[last]);
   is_filled_ = false;
   // Two steps with the same derivatives tell how much is left; the first one, where they were new,
@@ -175,20 +176,19 @@ bool MultipleShooting::fill() {
 bool MultipleShooting::evaluate(Places places) {
   last_step_ = 0;
   if (!fill()) return false;
-  const double light = 1e-3 * mean_force_;
   double least = std::numeric_limits<double>::infinity();
   for (int s = 0; s <= steps_; ++s) {
     least = std::min(least, block_.side * response_.start[kMeshForceRow][s]);
     if (s < steps_) least = std::min(least, block_.side * response_.middle[kMeshForceRow][s]);
   }
   bool good = false;
-  if (least > light) {
+  if (least > light_load()) {
     const GridContacts& contacts =
         places == Places::kAll ? grid_.contacts() : grid_.contacts_at_starts();
     good = friction_.evaluate(block_, contacts, response_, orbit_.friction, orbit_.figures);
   } else {
     write_pieces();
-    good = friction_.evaluate(grid_, orbit_.pieces, light, orbit_.friction, orbit_.figures);
+    good = friction_.evaluate(grid_, orbit_.pieces, light_load(), orbit_.friction, orbit_.figures);
   }
   if (!good) return false;
   orbit_.contact_loss = false;

@@ -15,8 +15,10 @@ class OrbitSolver {
               MarchStatistics& statistics, long& marched_cycles);
 
   /// The periodic response without friction, to a permille: where every lubricant's response is
-  /// near, and the same for all. Starts from `orbit` (state, torques) and leaves state, torques,
-  /// map and pieces there. False where it does not converge.
+  /// near, and the same for all. With request.renew_friction it is this lubricant's: the periods
+  /// marched first have friction, evaluated anew now and then, and the response that of the last
+  /// of them. Starts from `orbit` (state, torques) and leaves state, torques, map and pieces there,
+  /// and friction if there is any. False where it does not converge.
   bool approach_without_friction(const MeshGrid& grid, const OrbitRequest& request,
                                  PeriodicOrbit& orbit);
 

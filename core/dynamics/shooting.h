@@ -36,6 +36,8 @@ class Shooting {
 
   void throw_if_interrupted() const;
   void add_to_unknown(double change);
+  /// Under less load friction is not told per newton [N].
+  double light_load() const { return 1e-3 * mean_force_; }
   int side() const { return system_.torques().pinion >= 0 ? 1 : -1; }
 
   GearPairSystem& system_;

@@ -68,8 +68,7 @@ double SingleShooting::improve() {
 bool SingleShooting::evaluate(Places) {
   orbit_.contact_loss = std::any_of(orbit_.pieces.begin(), orbit_.pieces.end(),
                                     [](const OrbitPiece& p) { return p.regime.side == 0; });
-  return friction_.evaluate(grid_, orbit_.pieces, 1e-3 * mean_force_, orbit_.friction,
-                            orbit_.figures);
+  return friction_.evaluate(grid_, orbit_.pieces, light_load(), orbit_.friction, orbit_.figures);
 }
 
 void SingleShooting::start_regime(const MarchState& state) {

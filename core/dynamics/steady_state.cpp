@@ -45,6 +45,15 @@ class PeriodMap {
     system_.regime = system_.regime_of(0, state.data());
   }
 
+  /// Whether an extrapolation leaves the mesh about where it is: far out the march goes step by
+  /// tiny step.
+  bool is_sensible(const Vector& from, const Vector& to) const {
+    constexpr double kFar = 100;  // of the backlash and the static deflection
+    constexpr int kWindingUnknown = 1;
+    const double moved = std::abs(to(kWindingUnknown) - from(kWindingUnknown)) * scales_.length;
+    return moved < kFar * (2 * system_.dynamics().half_backlash + scales_.length);
+  }
+
   /// Mesh cycles at constant torques; returns the time that they take.
   double march(MarchState& state, int cycles) {
     double time = 0;
@@ -215,6 +224,7 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
   int period = request.first_period, failures = 0, plain_left = kFirstCycles, confirmed = 0,
       without_gain = 0;
   double best = kNone, reported = 0;
+  bool extrapolated = false;  // the state has not been marched to
   Vector best_image, marched = map.pack(state);
   Extrapolation extrapolation;
   std::vector<Vector> sections;  // of consecutive plain mesh cycles, for finding the period
@@ -225,7 +235,17 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
       if (!request.progress(reported)) throw Cancelled();
     }
     const Vector argument = map.pack(state);
-    map.advance(state, period);
+    try {
+      map.advance(state, period);
+    } catch (const Refusal&) {
+      if (!extrapolated) throw;
+      // Nobody knows where that was: back to where the march was last.
+      extrapolated = false;
+      map.unpack(best < kNone ? best_image : marched, state);
+      plain_left = std::min(16 * ++failures, 96);
+      continue;
+    }
+    extrapolated = false;
     const Vector image = map.pack(state);
     out.defect = (image - argument).norm();
     if (out.defect <= wanted) {
@@ -277,7 +297,10 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
     }
     extrapolation.add(argument, image);
     if (extrapolation.ready()) {
-      map.unpack(extrapolation.next(), state);
+      const Vector next = extrapolation.next();
+      if (!map.is_sensible(image, next)) continue;
+      map.unpack(next, state);
+      extrapolated = true;
       ++out.accelerations;
     }
   }

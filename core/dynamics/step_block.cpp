@@ -7,7 +7,9 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "core/numerics/dispatch.h"
 #include "core/numerics/pack-inl.h"
+#include "core/numerics/row-inl.h"
 // NOLINTEND(bugprone-suspicious-include,misc-redundant-expression)
 
 #include <algorithm>
@@ -266,57 +268,17 @@ HWY_INLINE Mask beyond(int lane, int steps) {
 
 HWY_INLINE bool all(Mask x) { return !any(~x); }
 
-/// As many numbers as a step has unknowns.
-template <int kSize>
-struct Row {
-  static_assert(kSize == 4 || kSize == 8);
-  using Tag = hn::CappedTag<double, kSize>;
-  static constexpr int kParts = kSize / (HWY_MAX_BYTES / 8 < kSize ? HWY_MAX_BYTES / 8 : kSize);
-  static HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(Tag())); }
-  hn::Vec<Tag> v[kParts];
-};
-template <int kSize>
-HWY_INLINE Row<kSize> load_row(const double* from) {
-  Row<kSize> out;
-  for (int k = 0; k < out.kParts; ++k) {
-    out.v[k] = hn::LoadU(typename Row<kSize>::Tag(), from + k * out.lanes());
-  }
-  return out;
-}
-template <int kSize>
-HWY_INLINE void store_row(const Row<kSize>& x, double* to) {
-  for (int k = 0; k < x.kParts; ++k) {
-    hn::StoreU(x.v[k], typename Row<kSize>::Tag(), to + k * x.lanes());
-  }
-}
-template <int kSize>
-HWY_INLINE Row<kSize> plus(const Row<kSize>& x, const Row<kSize>& y) {
-  Row<kSize> out;
-  for (int k = 0; k < out.kParts; ++k) out.v[k] = hn::Add(x.v[k], y.v[k]);
-  return out;
-}
-/// a x + y with a number a.
-template <int kSize>
-HWY_INLINE Row<kSize> add_scaled(double a, const double* x, const Row<kSize>& y) {
-  using Tag = typename Row<kSize>::Tag;
-  Row<kSize> out;
-  const auto factor = hn::Set(Tag(), a);
-  for (int k = 0; k < out.kParts; ++k) {
-    out.v[k] = hn::MulAdd(factor, hn::LoadU(Tag(), x + k * out.lanes()), y.v[k]);
-  }
-  return out;
-}
 /// y + the columns of a matrix times the first `kCount` of x.
 template <int kCount, int kSize>
 HWY_INLINE Row<kSize> add_product(const double* matrix, const double* x, Row<kSize> even) {
-  const double nothing[kSize] = {};
-  Row<kSize> odd = load_row<kSize>(nothing);
+  const auto column = [&](int j) HWY_ATTR { return load_row<kSize>(matrix + kSize * j); };
+  Row<kSize> odd = 0;
   for (int j = 0; j + 1 < kCount; j += 2) {
-    even = add_scaled(x[j], matrix + kSize * j, even);
-    odd = add_scaled(x[j + 1], matrix + kSize * (j + 1), odd);
+    even = fused(x[j], column(j), even);
+    odd = fused(x[j + 1], column(j + 1), odd);
   }
-  if (kCount % 2 == 1) even = add_scaled(x[kCount - 1], matrix + kSize * (kCount - 1), even);
-  return plus(even, odd);
+  if (kCount % 2 == 1) even = fused(x[kCount - 1], column(kCount - 1), even);
+  return even + odd;
 }
 
 template <class Train>
@@ -558,98 +520,33 @@ HWY_AFTER_NAMESPACE();
 namespace tribodyn {
 bool take_steps(InstructionSet instruction_set, const StepBlock& block,
                 const CycleResponse& response, Columns& end, Columns* derivatives) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::steps_in_lanes(block, response, end, derivatives);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::steps_in_lanes(block, response, end, derivatives);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(steps_in_lanes)(block, response, end, derivatives);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, steps_in_lanes, block, response, end, derivatives)
 }
 
 bool fill_response(InstructionSet instruction_set, const StepBlock& block,
                    CycleResponse& response) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::fill_lanes(block, response);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::fill_lanes(block, response);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(fill_lanes)(block, response);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, fill_lanes, block, response)
 }
 
 void compose_steps(InstructionSet instruction_set, const Columns& derivatives,
                    CycleDerivatives& out) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::compose_matrices(derivatives, out);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::compose_matrices(derivatives, out);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(compose_matrices)(derivatives, out);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, compose_matrices, derivatives, out)
 }
 
 void follow_residuals(InstructionSet instruction_set, const CycleDerivatives& derivatives,
                       const CycleResponse& response, const Columns& end, double* particular) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::follow_in_rows(derivatives, response, end, particular);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::follow_in_rows(derivatives, response, end, particular);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(follow_in_rows)(derivatives, response, end, particular);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, follow_in_rows, derivatives, response, end, particular)
 }
 
 double add_section_change(InstructionSet instruction_set, const CycleDerivatives& derivatives,
                           const double* section, const double* per_scale, double* particular) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::add_section_in_rows(derivatives, section, per_scale, particular);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::add_section_in_rows(derivatives, section, per_scale, particular);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(add_section_in_rows)(derivatives, section, per_scale, particular);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, add_section_in_rows, derivatives, section, per_scale,
+                       particular)
 }
 
 void see_contacts(InstructionSet instruction_set, const StepBlock& block,
                   const GridContacts& contacts, const CycleResponse& response, Columns& seen) {
-  switch (instruction_set) {
-#if HWY_TARGETS & HWY_AVX3
-    case InstructionSet::kAvx512:
-      return N_AVX3::see_in_lanes(block, contacts, response, seen);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-    case InstructionSet::kAvx2:
-      return N_AVX2::see_in_lanes(block, contacts, response, seen);
-#endif
-    default:
-      return HWY_STATIC_DISPATCH(see_in_lanes)(block, contacts, response, seen);
-  }
+  TRIBODYN_RETURN_WITH(instruction_set, see_in_lanes, block, contacts, response, seen)
 }
 
 }  // namespace tribodyn

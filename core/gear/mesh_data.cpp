@@ -11,18 +11,6 @@ double coefficient(const std::vector<double>& list, std::size_t i) {
   return i < list.size() ? list[i] : 0;
 }
 
-constexpr double FlankKinematics::*kColumns[] = {&FlankKinematics::load_share,
-                                                 &FlankKinematics::radius_x,
-                                                 &FlankKinematics::radius_y,
-                                                 &FlankKinematics::pinion_velocity_x,
-                                                 &FlankKinematics::pinion_velocity_y,
-                                                 &FlankKinematics::gear_velocity_x,
-                                                 &FlankKinematics::gear_velocity_y,
-                                                 &FlankKinematics::contact_point_velocity_x,
-                                                 &FlankKinematics::contact_point_velocity_y,
-                                                 &FlankKinematics::pinion_friction_arm,
-                                                 &FlankKinematics::gear_friction_arm};
-
 constexpr double kManyTurns = 1e6;                  // [rad] beyond, an angle has lost its digits
 constexpr std::size_t kMostExpandedHarmonics = 32;  // beyond, the expansions take too long to make
 
@@ -175,9 +163,12 @@ void MeshData::flanks(int interval, double phase,
   const auto& left = samples_[interval];
   const auto& right = samples_[interval + 1];
   for (int k = 0; k < kFlankPairs; ++k) {
-    for (const auto column : kColumns) {
+    const auto interpolate = [&](double FlankKinematics::*column) {
       out[k].*column = left[k].*column + t * (right[k].*column - left[k].*column);
-    }
+    };
+    interpolate(&FlankKinematics::radius_x);
+    interpolate(&FlankKinematics::radius_y);
+    for (const auto column : kColumnsButRadii) interpolate(column);
   }
 }
 

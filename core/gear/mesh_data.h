@@ -40,6 +40,18 @@ struct FlankKinematics {
   double pinion_friction_arm, gear_friction_arm;
 };
 
+/// All of them but the radii.
+inline constexpr double FlankKinematics::*kColumnsButRadii[] = {
+    &FlankKinematics::load_share,
+    &FlankKinematics::pinion_velocity_x,
+    &FlankKinematics::pinion_velocity_y,
+    &FlankKinematics::gear_velocity_x,
+    &FlankKinematics::gear_velocity_y,
+    &FlankKinematics::contact_point_velocity_x,
+    &FlankKinematics::contact_point_velocity_y,
+    &FlankKinematics::pinion_friction_arm,
+    &FlankKinematics::gear_friction_arm};
+
 /// Sliding and lever arms of one flank pair at given speeds.
 struct FlankMotion {
   double pinion_x, pinion_y, gear_x, gear_y;  ///< surface velocities [m/s]

@@ -253,6 +253,22 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   return out;
 }
 
+/// With the march's reason where it would not begin either: a contact that is refused.
+[[noreturn]] void refuse_shooting(GearPairSystem& system, const FlankContactBatch& contacts,
+                                  MeshGrids& grids, const OperatingTarget& target,
+                                  const PointOptions& options) {
+  system.set_torques(target.torques);
+  point_start(system, contacts, grids, target, options, 0);
+  throw Refusal(
+      "NOT_FOUND_BY_SHOOTING",
+      "method = SHOOTING finds no response, or none that surely attracts, at a mean "
+      "pinion speed of " +
+          number_text(target.mean_pinion_speed) + " rad/s and " +
+          (target.solve_wheel_torque ? "a pinion torque of " + number_text(target.torques.pinion)
+                                     : "a wheel torque of " + number_text(target.torques.wheel)) +
+          " N m; AUTOMATIC or MARCH may");
+}
+
 PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch& contacts,
                                 MeshGrids& grids, const OperatingTarget& target,
                                 const PointOptions& options, QuasiStaticAnswer& answer) {
@@ -333,8 +349,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
                                            history))) {
         result = *std::move(shot);
       } else if (options.method == SteadyStateMethod::kShooting) {
-        throw Refusal("NOT_FOUND_BY_SHOOTING",
-                      "shooting finds no response, or none that surely attracts");
+        refuse_shooting(system, contacts, grids, target, options);
       } else {
         system.set_torques(target.torques);
         // Together they are solved to 1e-10.

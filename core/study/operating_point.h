@@ -52,7 +52,8 @@ enum class PointStart {
 /// How the steady state of the full model, or the one-degree one, is found.
 enum class SteadyStateMethod {
   kAutomatic,  ///< by shooting; marched where shooting finds no attracting response
-  /// Found by shooting. Asked for: refused with NOT_FOUND_BY_SHOOTING where marching had to decide.
+  /// Found by shooting. Asked for: refused with NOT_FOUND_BY_SHOOTING where marching had to decide,
+  /// or as the march would be where a contact is refused at the quasi-static start.
   kShooting,
   kMarch,  ///< marched until it repeats
 };
@@ -115,6 +116,8 @@ struct SolverStatistics {
   double periodicity_defect = 0;  ///< relative change of the section state over the last period
   double largest_multiplier = 0;  ///< Floquet, modulus; below 1: the response is attracting
   /// At which the slowest disturbance dies out: like e^(-rate t); 0: no multiplier is known [1/s].
+  /// -ln(multiplier) over the period, and the multiplier is good to 3e-3: the rate to 3e-3 over the
+  /// period, which is all of it where disturbances hardly die out.
   double slowest_decay_rate = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/refusal.h"
 
@@ -32,47 +33,75 @@ bool may_be_branches(const PointResult& a, const PointResult& b) {
           distance(a, b) > kFar);
 }
 
+constexpr double kNear = 0.1;           // what is on one branch goes on like that
+constexpr double kEnough = 0.04 / 3.6;  // [m/s]
+
+/// Where a branch may end: a response on it, one on another, and between them or at the other one
+/// the nearest speed at which the branch is not found.
+struct Bracket {
+  PointResult before, beyond;
+  double gone_at;  // [m/s]
+};
+
+/// Looks for the branch at a speed. False where it goes on to the response beyond.
+bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOptions options,
+               Bracket& bracket) {
+  options.carried_state = carried_from(bracket.before);
+  PointResult found;
+  try {
+    found = solve_prepared_point(scene, cruise(speed, ascent_angle), options);
+  } catch (const Refusal&) {
+    bracket.gone_at = speed;
+    return options.method == SteadyStateMethod::kShooting;  // which finds nothing, or too little
+  }
+  const double first = distance(bracket.before, found), second = distance(found, bracket.beyond);
+  if (found.settled && std::max(first, second) < kNear) return false;
+  if (found.settled && first <= second) {
+    bracket.before = std::move(found);
+    return true;
+  }
+  bracket.gone_at = speed;
+  if (found.settled) bracket.beyond = std::move(found);
+  return true;
+}
+
+/// The same, halving the speed in between until that is enough.
+bool narrow(PreparedScene& scene, double ascent_angle, const PointOptions& options,
+            Bracket& bracket) {
+  for (;;) {
+    const double width = bracket.gone_at - bracket.before.vehicle_speed;
+    if (std::abs(width) <= 1.001 * kEnough) return true;
+    const double step = std::copysign(std::max(0.5 * std::abs(width), kEnough), width);
+    const double speed = bracket.before.vehicle_speed + step;
+    if (!narrow_at(scene, ascent_angle, speed, options, bracket)) return false;
+  }
+}
+
 /// Whether a branch ends between two points of a sweep, and where; of several ends one.
 std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, PointOptions options,
-                                    PointResult before, PointResult after) {
-  constexpr double kNear = 0.1;           // what is on one branch goes on like that
-  constexpr double kEnough = 0.04 / 3.6;  // [m/s]
-  PointOptions patient = options;
-  patient.maximum_mesh_cycles = std::min(patient.maximum_mesh_cycles, 1000);
-  options.method = SteadyStateMethod::kShooting;  // close to an end marching takes its time
-  bool beyond_is_known = true;
+                                    const PointResult& before, const PointResult& after) {
+  constexpr int kPatience = 1000, kLittlePatience = 300;  // [mesh cycles]
+  options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kPatience);
   options.tolerance = std::max(options.tolerance, 0.1 * kNear);
   options.history = {};
   options.probe_coexisting_response = false;
-  while (std::abs(after.vehicle_speed - before.vehicle_speed) > 1.001 * kEnough) {
-    const double ahead = 0.5 * (after.vehicle_speed - before.vehicle_speed);
-    const double step = std::copysign(std::max(std::abs(ahead), kEnough), ahead);
-    options.carried_state = carried_from(before);
-    const double speed = before.vehicle_speed + step;
-    PointResult between;
-    try {
-      between = solve_prepared_point(scene, cruise(speed, ascent_angle), options);
-    } catch (const Refusal&) {
-      after.vehicle_speed = speed;  // the branch is not found there
-      beyond_is_known = false;
-      continue;
+  Bracket bracket{before, after, after.vehicle_speed};
+  if (options.method != SteadyStateMethod::kMarch) {
+    PointOptions quick = options;
+    quick.method = SteadyStateMethod::kShooting;  // close to an end marching takes its time
+    if (!narrow(scene, ascent_angle, quick, bracket)) return std::nullopt;
+    if (bracket.gone_at != bracket.beyond.vehicle_speed) {
+      if (options.method == SteadyStateMethod::kShooting) return std::nullopt;
+      // It may go on in another way, as with a period that doubles, or attract too weakly for
+      // shooting to tell.
+      const double speed = std::exchange(bracket.gone_at, bracket.beyond.vehicle_speed);
+      if (!narrow_at(scene, ascent_angle, speed, options, bracket)) return std::nullopt;
     }
-    const double first = distance(before, between), second = distance(between, after);
-    if (std::max(first, second) < kNear) return std::nullopt;
-    if (first > second) beyond_is_known = true;
-    (first > second ? after : before) = std::move(between);
   }
-  if (!beyond_is_known) {  // it may go on in another way, as with a period that doubles
-    try {
-      patient.carried_state = carried_from(before);
-      after = solve_prepared_point(scene, cruise(after.vehicle_speed, ascent_angle), patient);
-    } catch (const Refusal&) {
-      return std::nullopt;
-    }
-    if (!after.settled) return std::nullopt;
-  }
-  if (distance(before, after) < kNear) return std::nullopt;
-  return BranchEnd{before.vehicle_speed, after.vehicle_speed};
+  options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kLittlePatience);
+  if (!narrow(scene, ascent_angle, options, bracket)) return std::nullopt;
+  if (distance(bracket.before, bracket.beyond) < kNear) return std::nullopt;
+  return BranchEnd{bracket.before.vehicle_speed, bracket.gone_at};
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ struct SweepOptions {
 /// direction.
 struct BranchEnd {
   double followed_to = 0;  ///< the last speed on the branch [m/s]
-  double gone_at = 0;      ///< the first one beyond, as a rule 0.04 km/h on [m/s]
+  double gone_at = 0;      ///< where it is not found any more, 0.04 km/h on [m/s]
 };
 
 /// One point of a sweep: a result, or the reason why there is none. A refused point does not end
@@ -35,8 +35,10 @@ struct SweepPoint {
 
 /// Cruise points over `vehicle_speeds` [m/s], visited in the order of the direction, each started
 /// from the steady state before it. Where neighbours differ like two branches, the speed is halved
-/// in between until a jump is located or there is none. Returned in ascending speed. `on_point` is
-/// called after each.
+/// in between until a jump is located or there is none, by the points' method: by shooting first
+/// and then, where that cannot tell, by some hundred mesh cycles of marching at a speed; by either
+/// alone where it is asked for. By kShooting alone no end is told that it does not see beyond.
+/// Returned in ascending speed. `on_point` is called after each.
 std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehicle_speeds,
                                     double ascent_angle, const SweepOptions& options,
                                     const std::function<void(const SweepPoint&)>& on_point = {});

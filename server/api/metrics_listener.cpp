@@ -57,12 +57,14 @@ MetricsListener::MetricsListener(const ListenAddress& address, std::function<std
 void MetricsListener::answer(int connection) const {
   const Clock::time_point end = Clock::now() + kLimit;
   const std::string head = read_head(connection, end);
-  const bool is_known = head.starts_with("GET /metrics ");
+  const bool is_head = head.starts_with("HEAD ");
+  const bool is_known = head.starts_with(is_head ? "HEAD /metrics " : "GET /metrics ");
   const std::string body = is_known ? text_() : "GET /metrics\n";
   write_all(connection,
             std::string("HTTP/1.0 ") + (is_known ? "200 OK" : "404 Not Found") +
                 "\r\nContent-Type: text/plain; version=0.0.4; charset=utf-8\r\nContent-Length: " +
-                std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" + body,
+                std::to_string(body.size()) + "\r\nConnection: close\r\n\r\n" +
+                (is_head ? "" : body),
             end);
   shutdown(connection, SHUT_WR);
 }

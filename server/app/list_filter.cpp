@@ -10,6 +10,7 @@
 #include <cmath>
 #include <optional>
 
+#include "server/convert/output_only.h"
 #include "server/convert/resource_names.h"
 #include "server/store/resource_types.h"
 
@@ -129,11 +130,17 @@ std::optional<PropertyValue> time_value(const std::string& text) {
   return TimeUtil::TimestampToMicroseconds(time);
 }
 
+/// A state is never unspecified; what a resource states may be.
 std::vector<std::string> enum_names(const std::string& key, const std::string& collection) {
   const auto message = new_resource(collection);
-  const auto* values = message->GetDescriptor()->FindFieldByName(key)->enum_type();
+  const auto* field = message->GetDescriptor()->FindFieldByName(key);
+  const bool may_be_missing = !is_output_only(*field);
+  const auto* values = field->enum_type();
   std::vector<std::string> names;
-  for (int i = 0; i < values->value_count(); ++i) names.push_back(values->value(i)->name());
+  for (int i = 0; i < values->value_count(); ++i) {
+    if (may_be_missing || values->value(i)->number() != 0)
+      names.push_back(values->value(i)->name());
+  }
   return names;
 }
 

@@ -136,13 +136,23 @@ PointModel point_model(v1::PointModel model) {
   }
 }
 
+SteadyStateMethod steady_state_method(v1::SteadyStateMethod method) {
+  switch (method) {
+    case v1::SHOOTING:
+      return SteadyStateMethod::kShooting;
+    case v1::MARCH:
+      return SteadyStateMethod::kMarch;
+    default:
+      return SteadyStateMethod::kAutomatic;
+  }
+}
+
 PointOptions point_options(const v1::SolverOptions& solver, v1::PointModel model,
                            v1::PointStart start) {
   PointOptions out;
   out.model = point_model(model);
   out.start = start == v1::LARGE_VIBRATION ? PointStart::kLargeVibration : PointStart::kQuasiStatic;
-  out.method =
-      solver.method() == v1::MARCH ? SteadyStateMethod::kMarch : SteadyStateMethod::kAutomatic;
+  out.method = steady_state_method(solver.method());
   out.tolerance = solver.tolerance();
   out.relative_tolerance = solver.relative_tolerance();
   out.settling_tolerance = solver.settling_tolerance();

@@ -104,6 +104,15 @@ err_has 'ABORTED|etag'
 expect 0 lubricants list --label project=axle --output csv
 out_lines 2
 expect 0 lubricants list --filter 'labels.project:*' --order-by 'name desc' --limit 1
+expect 0 lubricants list --order-by name --limit 2 --output csv
+out_lines 3
+token=$(grep -oE -- '--page-token [0-9a-f]+' "$folder/err" | cut -d' ' -f2)
+expect 0 lubricants list --order-by name --limit 0 --page-token "$token" --output csv
+cp "$folder/out" rest.csv
+expect 0 lubricants list --order-by name --output csv
+tail -n +4 "$folder/out" | cmp -s - <(tail -n +2 rest.csv) || fail "a page token skips or repeats"
+expect 1 lubricants list --page-token nonsense
+err_has 'page_token'
 expect 0 lubricants delete my-oil
 expect 0 lubricants list
 out_lacks '^my-oil '

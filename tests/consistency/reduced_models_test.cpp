@@ -23,19 +23,12 @@
 #include "run_length.h"
 #include "tests/support/cruise.h"
 #include "tests/support/figure_error.h"
+#include "tests/support/random_place.h"
 #include "tests/support/realistic_contacts.h"
 #include "tests/support/reference_scene.h"
 
 namespace tribodyn {
 namespace {
-
-OperatingCondition prescribed(double pinion_torque, double pinion_speed) {
-  OperatingCondition condition;
-  condition.kind = OperatingCondition::Kind::kPrescribedTorque;
-  condition.pinion_torque = pinion_torque;
-  condition.pinion_speed = pinion_speed;
-  return condition;
-}
 
 PointOptions pinned(PointModel model, double tolerance = 1e-3) {
   PointOptions options;
@@ -267,58 +260,6 @@ TEST(InertialCorrection, KnowsWhereTheStiffnessMayKeepAVibrationGoing) {
   EXPECT_FALSE(possible(calm, 0.15, 2));
 }
 
-/// Scenes over the ranges of the validation table and beyond: slow and fast, every part of the
-/// driveline and of the model changed.
-struct RandomPlace {
-  Scene scene;
-  OperatingCondition condition;
-};
-
-RandomPlace random_place(std::mt19937_64& random) {
-  const auto between = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
-  const auto change = [&](double& value, double most) { value *= std::exp(between(-most, most)); };
-  const int fluid = static_cast<int>(between(1, 4)), kind = static_cast<int>(between(0, 8));
-  const double speed = std::exp(between(std::log(1.0), std::log(220.0)));
-  RandomPlace place{reference_scene(fluid, between(-30, 140)), cruise(speed)};
-  Scene& scene = place.scene;
-  if (kind == 4) scene.gear_set = reference_gear_set("B");
-  DrivelineDynamics& d = scene.gear_set.dynamics;
-  FourierSeries& k = scene.gear_set.series.mesh_stiffness;
-  const auto scale_ripple = [&](double factor) {
-    for (std::vector<double>* series : {&k.sine, &k.cosine}) {
-      for (double& c : *series) c *= factor;
-    }
-  };
-  if (kind == 1) change(d.mesh_damping, 1.6);
-  if (kind == 2) {
-    const double factor = std::exp(between(-2.3, 2.3));
-    k.mean *= factor;
-    scale_ripple(factor);
-  }
-  if (kind == 3) d.half_backlash *= between(0, 3);
-  if (kind == 5) {
-    place.condition =
-        prescribed(between(-60, 150), speed / 3.6 / scene.vehicle.wheel_radius * 36 / 13);
-  }
-  if (kind == 6) {
-    scene.options.energy_consistent = between(0, 1) < 0.5;
-    scene.options.damping_in_contact_only = between(0, 1) < 0.5;
-    scene.options.isothermal = between(0, 1) < 0.5;
-    scene.options.newtonian = between(0, 1) < 0.5;
-    scale_ripple(std::exp(between(-2.3, 1)));
-  }
-  if (kind == 7) {
-    for (double* part :
-         {&d.pinion_shaft_stiffness, &d.gear_shaft_stiffness, &d.pinion_inertia, &d.gear_inertia,
-          &d.wheel_inertia, &d.pinion_shaft_damping, &d.gear_shaft_damping}) {
-      change(*part, 1);
-    }
-  }
-  return place;
-}
-
 /// Of a cheaper model, over random scenes. `on_known` sees those with an estimate, and their truth.
 void expect_honest_estimates(
     PointModel model, double tolerance,
@@ -332,7 +273,9 @@ void expect_honest_estimates(
   std::vector<double> over;
   for (int i = 0; i < count; ++i) {
     SCOPED_TRACE(testing::Message() << "scene " << i);
-    const RandomPlace place = random_place(random);
+    const double log_speed =
+        std::uniform_real_distribution<double>(std::log(1.0), std::log(220.0))(random);
+    const RandomPlace place = random_place(random, std::exp(log_speed));
     try {
       const PointResult cheap =
           solve_operating_point(place.scene, place.condition, pinned(model, tolerance));
@@ -452,14 +395,7 @@ TEST(ModelChoice, IsTheFullModelWhereABranchOrAHistoryIsAskedFor) {
   EXPECT_EQ(used([](PointOptions& o) { o.probe_coexisting_response = true; }), PointModel::kFull);
   EXPECT_EQ(used([](PointOptions& o) { o.history.columns = {HistoryColumn::kMeshForce}; }),
             PointModel::kFull);
-  EXPECT_EQ(used([&](PointOptions& o) {
-              o.carried_state = CarriedState{neighbour.section_state,
-                                             neighbour.mean_pinion_speed,
-                                             neighbour.pinion_torque,
-                                             neighbour.wheel_torque,
-                                             1,
-                                             false};
-            }),
+  EXPECT_EQ(used([&](PointOptions& o) { o.carried_state = carried_from(neighbour); }),
             PointModel::kFull);
   EXPECT_EQ(used([](PointOptions& o) { o.model = PointModel::kFull; }), PointModel::kFull);
 }

@@ -17,7 +17,9 @@
 #include "run_length.h"
 #include "tests/support/cruise.h"
 #include "tests/support/figure_error.h"
+#include "tests/support/random_place.h"
 #include "tests/support/reference_scene.h"
+#include "tests/support/refusal_reason.h"
 
 namespace tribodyn {
 namespace {
@@ -101,38 +103,6 @@ INSTANTIATE_TEST_SUITE_P(
       return name + (place.param.start == PointStart::kLargeVibration ? "_down" : "_up");
     });
 
-/// Scenes over wide ranges, some of them hard.
-struct RandomPlace {
-  Scene scene;
-  OperatingCondition condition;
-};
-
-RandomPlace random_place(std::mt19937_64& random) {
-  const auto between = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
-  const int fluid = static_cast<int>(between(1, 4)), change = static_cast<int>(between(0, 6));
-  RandomPlace place{reference_scene(fluid, between(-30, 140)), cruise(between(3, 220))};
-  GearSet& gear_set = place.scene.gear_set;
-  if (change == 1) gear_set.dynamics.mesh_damping *= std::exp(between(-1.6, 1.6));
-  if (change == 2) {
-    const double factor = std::exp(between(-2.3, 2.3));
-    FourierSeries& k = gear_set.series.mesh_stiffness;
-    k.mean *= factor;
-    for (double& c : k.sine) c *= factor;
-    for (double& c : k.cosine) c *= factor;
-  }
-  if (change == 3) gear_set.dynamics.half_backlash *= between(0, 3);
-  if (change == 4) gear_set = reference_gear_set("B");
-  if (change == 5) {
-    place.condition.kind = OperatingCondition::Kind::kPrescribedTorque;
-    place.condition.pinion_torque = between(-60, 150);
-    place.condition.pinion_speed =
-        place.condition.vehicle_speed / place.scene.vehicle.wheel_radius * 36 / 13;
-  }
-  return place;
-}
-
 // The march starts on the response found: it must stay there, and tells the error. Which of two
 // coexisting responses a start leads to is not asked here.
 TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
@@ -146,7 +116,8 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   int shot = 0, above = 0, untold = 0;
   std::vector<double> over;
   for (int i = 0; i < count; ++i) {
-    const RandomPlace place = random_place(random);
+    const double speed = std::uniform_real_distribution<double>(3, 220)(random);
+    const RandomPlace place = random_place(random, speed);
     PointOptions options;
     options.model = PointModel::kFull;
     if (i % 2 == 1) {
@@ -186,6 +157,94 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   EXPECT_LE(above, std::max(1.0, 0.01 * count));
   EXPECT_GT(median, 1);
   EXPECT_LT(median, full_run() ? 10 : 20);  // few scenes scatter
+}
+
+TEST(ShootingAtPrescribedTorque, FindsTheWheelTorqueOfTheMarch) {
+  for (const double torque : {60.0, 8.0, -25.0}) {
+    for (const double pinion_speed : {60.0, 190.0, 300.0}) {
+      SCOPED_TRACE(testing::Message() << torque << " N m at " << pinion_speed << " rad/s");
+      const OperatingCondition condition = prescribed(torque, pinion_speed);
+      PointOptions options;
+      options.model = PointModel::kFull;
+      options.method = SteadyStateMethod::kShooting;
+      options.tolerance = 1e-5;
+      const PointResult shot = solve_operating_point(reference_scene(), condition, options);
+      PointOptions march = marched();
+      march.carried_state = carried_from(shot);
+      const PointResult exact = solve_operating_point(reference_scene(), condition, march);
+      EXPECT_EQ(shot.pinion_torque, torque);
+      EXPECT_EQ(shot.contact_loss, exact.contact_loss);
+      EXPECT_LT(true_error(shot, exact), 1e-5);
+      // What the loss power takes from the wheel.
+      const double ratio = 36.0 / 13;
+      EXPECT_NEAR((torque - shot.wheel_torque / ratio) * pinion_speed, shot.mesh_loss_power,
+                  0.3 * shot.mesh_loss_power);
+    }
+  }
+}
+
+/// The same gear set, described so that no power series are made of it: harmonics of nothing.
+GearSet without_series(GearSet gear_set) {
+  MeshSeries& s = gear_set.series;
+  for (FourierSeries* each : {&s.pinion_contact_radius, &s.gear_contact_radius, &s.mesh_stiffness,
+                              &s.static_transmission_error}) {
+    each->sine.resize(40, 0.0);
+    each->cosine.resize(40, 0.0);
+  }
+  return gear_set;
+}
+
+TEST(GearSetsWithoutSeries, HaveTheSameResponsesByShootingStepAfterStep) {
+  const Scene scene = reference_scene();
+  Scene plain = scene;
+  plain.gear_set = without_series(scene.gear_set);
+  ASSERT_EQ(PreparedScene(plain).gear_set().grids().with_steps(24).series_reach(), 0);
+  ASSERT_GT(PreparedScene(scene).gear_set().grids().with_steps(24).series_reach(), 0);
+  for (const OperatingCondition& condition :
+       {cruise(20), cruise(72.5), cruise(100), prescribed(-25, 300)}) {
+    for (const PointModel model : {PointModel::kFull, PointModel::kQuasiStatic}) {
+      SCOPED_TRACE(testing::Message()
+                   << 3.6 * condition.vehicle_speed << " km/h, model " << static_cast<int>(model));
+      PointOptions options;
+      options.model = model;
+      options.tolerance = 1e-5;
+      const PointResult with = solve_operating_point(scene, condition, options);
+      const PointResult without = solve_operating_point(plain, condition, options);
+      EXPECT_EQ(without.method, with.method);
+      EXPECT_EQ(without.contact_loss, with.contact_loss);
+      EXPECT_LT(true_error(without, with), 2e-5) << "each is good to 1e-5";
+      EXPECT_NEAR(without.statistics.largest_multiplier, with.statistics.largest_multiplier, 3e-3);
+    }
+  }
+}
+
+TEST(ShootingAlone, RefusesByNameWithTheValuesWhatItCannotFind) {
+  PointOptions options;
+  options.method = SteadyStateMethod::kShooting;
+  const auto said = [&](const Scene& scene, const OperatingCondition& condition) {
+    return refusal_of([&] { solve_operating_point(scene, condition, options); });
+  };
+  // The response of one mesh cycle repels.
+  const std::string repelled = said(reference_scene(), cruise(150));
+  EXPECT_TRUE(repelled.starts_with("NOT_FOUND_BY_SHOOTING: method = SHOOTING")) << repelled;
+  EXPECT_NE(repelled.find("412.088 rad/s"), std::string::npos) << repelled;
+  EXPECT_NE(repelled.find("241.146 N m"), std::string::npos) << repelled;
+}
+
+TEST(ShootingAlone, TellsTheRefusalOfAContactAsTheMarchDoes) {
+  Scene scene = reference_scene();
+  scene.options.no_limiting_shear_stress = true;
+  scene.lubricant.vogel_viscosity_prefactor = 1e-300;  // no film
+  std::string reasons[2];
+  for (const SteadyStateMethod method : {SteadyStateMethod::kShooting, SteadyStateMethod::kMarch}) {
+    PointOptions options;
+    options.method = method;
+    reasons[method == SteadyStateMethod::kMarch] =
+        refusal_reason([&] { solve_operating_point(scene, cruise(72.5), options); });
+  }
+  EXPECT_EQ(reasons[0], reasons[1]);
+  EXPECT_NE(reasons[0], "none");
+  EXPECT_NE(reasons[0], "NOT_FOUND_BY_SHOOTING");
 }
 
 TEST(ShootingHistories, AreThoseOfTheMarch) {
@@ -279,11 +338,7 @@ TEST(PointFigures, AreTheSameBitsAloneAndInCompany) {
 TEST(PointFigures, AreThoseOfTheWholeResult) {
   const Scene scene = reference_scene();
   PreparedScene prepared(scene);
-  OperatingCondition coast;
-  coast.kind = OperatingCondition::Kind::kPrescribedTorque;
-  coast.pinion_torque = -20;
-  coast.pinion_speed = 300;
-  for (const OperatingCondition& condition : {cruise(72.5), cruise(100), coast}) {
+  for (const OperatingCondition& condition : {cruise(72.5), cruise(100), prescribed(-20, 300)}) {
     const PointFigures brief = solve_point_figures(prepared, condition, {});
     const PointResult whole = solve_operating_point(scene, condition, {});
     const double error =

@@ -11,6 +11,7 @@
 #include "core/study/speed_sweep.h"
 #include "run_length.h"
 #include "tests/support/cruise.h"
+#include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"
 
 namespace tribodyn {
@@ -123,9 +124,11 @@ TEST(SteadyStates, TheDoubledPeriodIsFollowedDownToWhereTheSingleOneAttractsToo)
 
 /// Of a sweep: where branches end [km/h].
 std::vector<double> branch_ends(const std::vector<double>& kilometers_per_hour,
-                                SweepDirection direction) {
+                                SweepDirection direction,
+                                SteadyStateMethod method = SteadyStateMethod::kAutomatic) {
   SweepOptions options;
   options.direction = direction;
+  options.point.method = method;
   std::vector<double> speeds, out;
   for (const double speed : kilometers_per_hour) speeds.push_back(speed / 3.6);
   for (const SweepPoint& at : sweep_speed(reference_scene(), speeds, 0, options)) {
@@ -151,6 +154,47 @@ TEST(SteadyStates, BranchEndsAreLocatedAlikeFromAnySpacing) {
   const std::vector<double> down = branch_ends({60, 70, 72}, SweepDirection::kDown);
   ASSERT_EQ(down.size(), 1u);
   EXPECT_NEAR(down[0], 65.25, 0.3);
+}
+
+// The orbit of one mesh cycle repels from 149.4 km/h (the reference's numerics) to 155.8, where it
+// attracts so weakly that shooting alone cannot tell; that of two cycles lives beyond both.
+TEST(SteadyStates, TheSpeedWhereThePeriodDoublesOnTheWayUpIsThatOfTheMarch) {
+  if (kShortRun) GTEST_SKIP() << "minutes under sanitizers";
+  const std::vector<double> speeds = {145, 148, 151};
+  const std::vector<double> found = branch_ends(speeds, SweepDirection::kUp);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0], 149.4, 0.1);
+  const std::vector<double> marched =
+      branch_ends(speeds, SweepDirection::kUp, SteadyStateMethod::kMarch);
+  ASSERT_EQ(marched.size(), 1u);
+  EXPECT_NEAR(found[0], marched[0], 0.082) << "each is located to 0.041 km/h";
+}
+
+TEST(SteadyStates, DownAcrossTheDoublingEveryPointIsThatOfTheMarch) {
+  if (kShortRun) GTEST_SKIP() << "minutes under sanitizers";
+  SweepOptions options;
+  options.direction = SweepDirection::kDown;
+  const std::vector<double> speeds = {150 / 3.6, 152.5 / 3.6, 157.5 / 3.6, 165 / 3.6};
+  const std::vector<SweepPoint> shot = sweep_speed(reference_scene(), speeds, 0, options);
+  options.point.method = SteadyStateMethod::kMarch;
+  const std::vector<SweepPoint> marched = sweep_speed(reference_scene(), speeds, 0, options);
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    SCOPED_TRACE(3.6 * speeds[i]);
+    const PointResult &a = shot[i].result.value(), &b = marched[i].result.value();
+    const bool doubled = i < 2;
+    EXPECT_TRUE(a.settled);
+    EXPECT_EQ(a.period_in_mesh_cycles, doubled ? 2 : 1);
+    EXPECT_EQ(a.contact_loss, doubled);
+    EXPECT_LT(a.statistics.largest_multiplier, 1);
+    EXPECT_EQ(b.period_in_mesh_cycles, a.period_in_mesh_cycles);
+    EXPECT_LT(true_error(a, b),
+              a.estimated_relative_error.value() + b.estimated_relative_error.value());
+    ASSERT_EQ(shot[i].branch_end.has_value(), i == 1);
+    ASSERT_EQ(marched[i].branch_end.has_value(), i == 1);
+  }
+  const double gone_at = 3.6 * shot[1].branch_end->gone_at;
+  EXPECT_NEAR(gone_at, 155.8, 0.1);
+  EXPECT_NEAR(gone_at, 3.6 * marched[1].branch_end->gone_at, 0.082);
 }
 
 TEST(SteadyStates, ResonancesAreNoEndsOfBranches) {

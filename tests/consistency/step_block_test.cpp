@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -234,6 +236,126 @@ TEST_P(StepsSideBySide, AreGivenUpWhereTheyMeanNothing) {
   }
 }
 
+/// Everything that a block of steps gives.
+struct Given {
+  Given(InstructionSet set, const Bench& bench)
+      : steps(bench.grid.steps()),
+        unknowns(bench.moving().size() + 1),
+        end(kWheelSpeed + 1, steps),
+        derivatives(unknowns * unknowns, steps),
+        composed(steps, static_cast<int>(unknowns)),
+        filled(bench.response),
+        particular(unknowns * (steps + 1)),
+        seen(kSeenRows, bench.grid.contacts().node.size()) {
+    EXPECT_TRUE(take_steps(set, bench.block(), bench.response, end, &derivatives));
+    compose_steps(set, derivatives, composed);
+    EXPECT_TRUE(fill_response(set, bench.block(), filled));
+    follow_residuals(set, composed, bench.response, end, particular.data());
+    // Of the moving states, then of the torque.
+    constexpr double kSection[] = {1e-6, -2e-7, 3e-6, 0.1, -0.2, 0.05, 0.03};
+    constexpr double kPerScale[] = {1e5, 1e6, 1e5, 10, 10, 30, 30};
+    std::vector<double> section, per_scale;
+    for (const int i : bench.moving()) {
+      section.push_back(kSection[i - 1]);
+      per_scale.push_back(kPerScale[i - 1]);
+    }
+    section.push_back(0.5);
+    per_scale.push_back(0);
+    longest =
+        add_section_change(set, composed, section.data(), per_scale.data(), particular.data());
+    see_contacts(set, bench.block(), bench.grid.contacts(), filled, seen);
+  }
+
+  int steps;
+  std::size_t unknowns;
+  Columns end, derivatives;
+  CycleDerivatives composed;
+  CycleResponse filled;
+  std::vector<double> particular;
+  double longest = 0;
+  Columns seen;
+};
+
+testing::AssertionResult same_bits(const double* a, const double* b, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (std::memcmp(a + i, b + i, sizeof(double)) == 0) continue;
+    return testing::AssertionFailure() << "number " << i << ": " << a[i] << " and " << b[i];
+  }
+  return testing::AssertionSuccess();
+}
+
+testing::AssertionResult same_bits(const Columns& a, const Columns& b, int rows,
+                                   std::size_t length) {
+  for (int row = 0; row < rows; ++row) {
+    const auto same = same_bits(a[row], b[row], length);
+    if (!same) return testing::AssertionFailure() << "row " << row << ", " << same.message();
+  }
+  return testing::AssertionSuccess();
+}
+
+TEST_P(StepsSideBySide, AreTheSameBitsInEveryWidthWithFusedMultiplyAdds) {
+  if (!FlankContactBatch::supported(InstructionSet::kAvx512)) GTEST_SKIP() << "no AVX-512 here";
+  for (const int steps : {5, 16, 31}) {
+    SCOPED_TRACE(steps);
+    const Bench bench(GetParam(), steps, false);
+    const Given narrow(InstructionSet::kAvx2, bench), wide(InstructionSet::kAvx512, bench);
+    const auto count = static_cast<std::size_t>(steps);
+    EXPECT_TRUE(same_bits(narrow.end, wide.end, kWheelSpeed + 1, count));
+    const std::size_t matrix = narrow.unknowns * narrow.unknowns;
+    EXPECT_TRUE(same_bits(narrow.derivatives, wide.derivatives, static_cast<int>(matrix), count));
+    EXPECT_TRUE(same_bits(narrow.composed.step.get(), wide.composed.step.get(), matrix * count));
+    EXPECT_TRUE(same_bits(narrow.composed.from_section.get(), wide.composed.from_section.get(),
+                          matrix * (count + 1)));
+    EXPECT_TRUE(
+        same_bits(narrow.particular.data(), wide.particular.data(), narrow.particular.size()));
+    EXPECT_EQ(narrow.longest, wide.longest);
+    EXPECT_TRUE(same_bits(narrow.filled.start, wide.filled.start, kResponseRows, count + 1));
+    EXPECT_TRUE(same_bits(narrow.filled.middle, wide.filled.middle, kResponseRows, count));
+    EXPECT_TRUE(same_bits(narrow.filled.rate, wide.filled.rate, kWheelSpeed + 1, count + 1));
+    EXPECT_TRUE(same_bits(narrow.seen, wide.seen, kSeenRows, bench.grid.contacts().node.size()));
+  }
+}
+
+// Without fused multiply-adds sums are rounded once more; nothing else may differ.
+TEST_P(StepsSideBySide, DifferInTheLastDigitsWithoutFusedMultiplyAdds) {
+  constexpr int kSteps = 16;
+  const Bench bench(GetParam(), kSteps, false);
+  const Given plain(InstructionSet::kPortable, bench);
+  for (const InstructionSet set : supported_instruction_sets()) {
+    SCOPED_TRACE(FlankContactBatch::name(set));
+    const Given fused(set, bench);
+    for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
+      for (int s = 0; s < kSteps; ++s) {
+        const double size = std::max(std::abs(plain.end[i][s]), bench.scale(i));
+        EXPECT_NEAR(fused.end[i][s], plain.end[i][s], 1e-13 * size);
+      }
+    }
+    EXPECT_NEAR(fused.longest, plain.longest, 1e-11 * plain.longest);
+  }
+}
+
+TEST_P(StepsSideBySide, DoNotKnowTheirNeighbours) {
+  constexpr int kSteps = 16;
+  const Bench bench(GetParam(), kSteps, false);
+  for (const InstructionSet set : supported_instruction_sets()) {
+    SCOPED_TRACE(FlankContactBatch::name(set));
+    Columns end(kWheelSpeed + 1, kSteps), end_in_company(kWheelSpeed + 1, kSteps);
+    ASSERT_TRUE(take_steps(set, bench.block(), bench.response, end, nullptr));
+    for (const int kept : {0, 3, 7, 8, kSteps - 1}) {
+      CycleResponse company = bench.response;
+      for (int s = 0; s < kSteps; ++s) {
+        if (s == kept) continue;
+        company.start[kPinionSpeed][s] *= 1.5;
+        company.start[kWinding][s] *= 0.5;
+      }
+      take_steps(set, bench.block(), company, end_in_company, nullptr);
+      for (int i = kTime; i <= kWheelSpeed; ++i) {
+        EXPECT_TRUE(same_bits(end[i] + kept, end_in_company[i] + kept, 1)) << i << ' ' << kept;
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Cases, StepsSideBySide,
     testing::Values(
@@ -251,51 +373,209 @@ INSTANTIATE_TEST_SUITE_P(
                  Driveline::kConstantTorques}),
     [](const auto& place) { return place.param.name; });
 
+/// A system at a speed and under a torque with all that its periodic responses need.
+struct OrbitBench {
+  OrbitBench(double pinion_torque, double pinion_speed, bool wheel_torque = false,
+             std::optional<InstructionSet> set = std::nullopt,
+             Driveline driveline = Driveline::kElasticShafts)
+      : scene(reference_scene()),
+        mesh(scene.gear_set),
+        contacts({scene.lubricant, scene.solid, scene.roughness, scene.boundary,
+                  scene.sump_temperature, scene.inlet_temperature_rise, scene.options}),
+        batch(set ? FlankContactBatch(contacts, *set) : FlankContactBatch(contacts)),
+        system(mesh, contacts, scene.gear_set.dynamics, scene.options, driveline),
+        grids(mesh, scene.gear_set.dynamics.half_backlash,
+              reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
+              scene.options),
+        solver(system, batch, statistics, cycles) {
+    aim(pinion_torque, pinion_speed, wheel_torque);
+  }
+
+  void aim(double pinion_torque, double pinion_speed, bool wheel_torque) {
+    request = {};
+    request.mean_pinion_speed = pinion_speed;
+    request.solve_wheel_torque = wheel_torque;
+    request.keep_contact = true;
+    request.tolerance = 1e-9;  // contacts are solved to 1e-10
+    origin = {};
+    origin.torques = {pinion_torque, pinion_torque * 36 / 13};
+    system.set_torques(origin.torques);
+    origin.state = static_start(system, pinion_speed, 0, 0, 0);
+  }
+
+  bool solve(int steps, PeriodicOrbit& orbit) { return solve(steps, orbit, solver); }
+  bool solve(int steps, PeriodicOrbit& orbit, OrbitSolver& by) {
+    const MeshGrid& grid = grids.with_steps(steps);
+    orbit = origin;
+    return by.approach_without_friction(grid, request, orbit) && by.solve(grid, request, orbit);
+  }
+
+  /// By one march of the whole cycle after the other.
+  PeriodicOrbit alone(int steps) {
+    OrbitFriction friction(system, batch);
+    PeriodicOrbit orbit = origin;
+    SingleShooting shooting(system, friction, grids.with_steps(steps), request, orbit);
+    EXPECT_TRUE(shooting.converge(1e-3));
+    for (int sweep = 0; sweep < 12; ++sweep) {
+      EXPECT_TRUE(shooting.evaluate_friction());
+      EXPECT_TRUE(shooting.converge(1e-10));
+    }
+    EXPECT_TRUE(shooting.evaluate_friction());
+    shooting.finish(statistics, cycles);
+    return orbit;
+  }
+
+  Scene scene;
+  MeshData mesh;
+  FlankContactModel contacts;
+  FlankContactBatch batch;
+  GearPairSystem system;
+  MeshGrids grids;
+  MarchStatistics statistics;
+  long cycles = 0;
+  OrbitSolver solver;
+  OrbitRequest request;
+  PeriodicOrbit origin;
+};
+
+void expect_near(const PeriodicOrbit& a, const PeriodicOrbit& b) {
+  EXPECT_NEAR(a.torques.pinion, b.torques.pinion, 1e-6 * std::abs(b.torques.pinion));
+  EXPECT_NEAR(a.torques.wheel, b.torques.wheel, 1e-6 * std::abs(b.torques.wheel));
+  // The middles of steps are by other rates: no better than the steps themselves.
+  EXPECT_LT(a.figures.distance(b.figures), 3e-4);
+}
+
+void expect_same_bits(const PeriodicOrbit& a, const PeriodicOrbit& b) {
+  EXPECT_TRUE(same_bits(a.state.data(), b.state.data(), a.state.size()));
+  EXPECT_EQ(a.torques.pinion, b.torques.pinion);
+  EXPECT_EQ(a.torques.wheel, b.torques.wheel);
+  EXPECT_EQ(a.figures.loss_rms, b.figures.loss_rms);
+  EXPECT_EQ(a.figures.loss_energy, b.figures.loss_energy);
+  EXPECT_EQ(a.figures.dte_minimum, b.figures.dte_minimum);
+  EXPECT_EQ(a.figures.dte_maximum, b.figures.dte_maximum);
+  EXPECT_EQ(a.unsettled, b.unsettled);
+  EXPECT_EQ(a.contact_loss, b.contact_loss);
+  EXPECT_EQ(a.least_pressing_force, b.least_pressing_force);
+  EXPECT_EQ(a.map->largest_multiplier(), b.map->largest_multiplier());
+  ASSERT_EQ(a.pieces.size(), b.pieces.size());
+  for (std::size_t i = 0; i < a.pieces.size(); ++i) {
+    EXPECT_TRUE(same_bits(a.pieces[i].middle.data(), b.pieces[i].middle.data(), kWheelSpeed + 1));
+  }
+}
+
 class MultipleShootingOn : public testing::TestWithParam<Driveline> {};
 
-TEST_P(MultipleShootingOn, FindsWhatSingleShootingFinds) {
-  for (const double torque : {40.0, -25.0}) {
-    for (const double speed : {60.0, 230.0, 400.0}) {
+TEST_P(MultipleShootingOn, FindsWhatSingleShootingFindsForEitherTorque) {
+  // By maps from near. Of shafts a multiplier hardly depends on the response, of the mesh it does.
+  const double near = GetParam() == Driveline::kElasticShafts ? 2e-3 : 6e-3;
+  for (const bool wheel : {false, true}) {
+    for (const double torque : {40.0, -25.0}) {
+      for (const double speed : {60.0, 230.0, 400.0}) {
+        SCOPED_TRACE(testing::Message() << torque << " N m at " << speed << " rad/s, " << wheel);
+        OrbitBench bench(torque, speed, wheel, std::nullopt, GetParam());
+        PeriodicOrbit together;
+        ASSERT_TRUE(
+            MultipleShooting::applies(bench.grids.with_steps(24), bench.request, bench.origin));
+        ASSERT_TRUE(bench.solve(24, together));
+        const PeriodicOrbit alone = bench.alone(24);
+        expect_near(together, alone);
+        const double expected = alone.map->largest_multiplier();
+        EXPECT_NEAR(together.map->largest_multiplier(), expected, near);
+        EXPECT_TRUE(together.map->multipliers_are_below(1.01 * expected + near));
+        EXPECT_FALSE(together.map->multipliers_are_below(0.99 * expected));
+      }
+    }
+  }
+}
+
+// Kept together where they would part: there, friction is not told by the newton.
+TEST(MultipleShooting, FindsWhatSingleShootingFindsWhereFlanksPull) {
+  for (const bool wheel : {false, true}) {
+    int pulled = 0;
+    for (const double speed : {198.5, 200.0, 202.0}) {
       SCOPED_TRACE(speed);
-      const StepCase c{"", torque, {}, GetParam()};
-      Bench bench(c, 24, false);
-      const FlankContactBatch batch(bench.contacts);
-      OrbitRequest request;
-      request.mean_pinion_speed = speed;
-      request.keep_contact = true;
-      request.tolerance = 1e-10;
-      PeriodicOrbit origin;
-      origin.torques = {torque, torque * 41 / 13};
-      bench.system.set_torques(origin.torques);
-      origin.state = static_start(bench.system, speed, 0, 0, 0);
-
-      MarchStatistics statistics;
-      long cycles = 0;
-      OrbitSolver solver(bench.system, batch, statistics, cycles);
-      PeriodicOrbit together = origin;
-      ASSERT_TRUE(MultipleShooting::applies(bench.grid, request, together));
-      ASSERT_TRUE(solver.approach_without_friction(bench.grid, request, together));
-      ASSERT_TRUE(solver.solve(bench.grid, request, together));
-
-      OrbitFriction friction(bench.system, batch);
-      PeriodicOrbit alone = origin;
-      SingleShooting shooting(bench.system, friction, bench.grid, request, alone);
+      OrbitBench bench(20.1, speed, wheel);
+      PeriodicOrbit orbit = bench.origin;
+      const MeshGrid& grid = bench.grids.with_steps(48);
+      OrbitFriction friction(bench.system, bench.batch);
+      CycleStorage storage;
+      MultipleShooting shooting(bench.system, friction, storage, grid, bench.request, orbit);
       ASSERT_TRUE(shooting.converge(1e-3));
       for (int sweep = 0; sweep < 12; ++sweep) {
         ASSERT_TRUE(shooting.evaluate_friction());
         ASSERT_TRUE(shooting.converge(1e-10));
       }
       ASSERT_TRUE(shooting.evaluate_friction());
-      shooting.finish(statistics, cycles);
-      EXPECT_NEAR(together.torques.pinion, alone.torques.pinion, 1e-6 * std::abs(torque));
-      // The middles of steps are by other rates: no better than the steps themselves.
-      EXPECT_LT(together.figures.distance(alone.figures), 3e-4);
-      // By maps from near. Of shafts it hardly depends on the response, of the mesh it does.
-      const double expected = alone.map->largest_multiplier();
-      const double near = GetParam() == Driveline::kElasticShafts ? 2e-3 : 6e-3;
-      EXPECT_NEAR(together.map->largest_multiplier(), expected, near);
-      EXPECT_TRUE(together.map->multipliers_are_below(1.01 * expected + near));
-      EXPECT_FALSE(together.map->multipliers_are_below(0.99 * expected));
+      shooting.finish(bench.statistics, bench.cycles);
+      const PeriodicOrbit alone = bench.alone(48);
+      expect_near(orbit, alone);
+      EXPECT_NEAR(orbit.least_pressing_force, alone.least_pressing_force, 1e-3);
+      EXPECT_FALSE(orbit.contact_loss);
+      pulled += orbit.least_pressing_force < 0;
+    }
+    EXPECT_EQ(pulled, 3);
+  }
+}
+
+TEST(MultipleShooting, GoesOnFromPiecesOfAnotherGrid) {
+  for (const bool wheel : {false, true}) {
+    OrbitBench bench(40, 230, wheel);
+    for (const int coarse : {17, 24, 96}) {
+      for (const int fine : {24, 31, 48}) {
+        SCOPED_TRACE(testing::Message() << "from " << coarse << " to " << fine);
+        PeriodicOrbit carried, fresh;
+        ASSERT_TRUE(bench.solve(coarse, carried));
+        const long before = bench.statistics.right_hand_sides;
+        ASSERT_TRUE(bench.solver.solve(bench.grids.with_steps(fine), bench.request, carried));
+        const long on_the_way = bench.statistics.right_hand_sides - before;
+        ASSERT_TRUE(bench.solve(fine, fresh));
+        EXPECT_EQ(carried.pieces.size(), static_cast<std::size_t>(fine));
+        EXPECT_LT(carried.figures.distance(fresh.figures), 1e-8);
+        EXPECT_NEAR(carried.torques.pinion, fresh.torques.pinion, 1e-7);
+        EXPECT_NEAR(carried.torques.wheel, fresh.torques.wheel, 1e-7);
+        EXPECT_LE(on_the_way, bench.statistics.right_hand_sides - before - on_the_way)
+            << "and is not slower for it";
+      }
+    }
+  }
+}
+
+TEST(OrbitSolver, UsedForManySearchesFindsTheSameBitsAsAFreshOne) {
+  struct Search {
+    double torque, speed;
+    bool wheel, keep_contact;
+    int steps;
+  };
+  OrbitBench reused(40, 230);
+  for (const Search& at : {Search{40, 230, false, true, 24}, Search{40, 230, false, true, 96},
+                           Search{-25, 60, true, true, 12}, Search{20.1, 200, false, true, 48},
+                           Search{20.1, 200, false, false, 48}, Search{40, 400, true, true, 31},
+                           Search{-25, 230, false, true, 24}, Search{40, 230, false, true, 24}}) {
+    SCOPED_TRACE(testing::Message()
+                 << at.torque << " N m at " << at.speed << " rad/s on " << at.steps);
+    OrbitBench fresh(at.torque, at.speed, at.wheel);
+    reused.aim(at.torque, at.speed, at.wheel);
+    for (OrbitBench* bench : {&fresh, &reused}) {
+      bench->request.keep_contact = at.keep_contact;
+      bench->request.first_cycles = at.keep_contact ? 0 : 60;
+    }
+    PeriodicOrbit a, b;
+    ASSERT_TRUE(fresh.solve(at.steps, a));
+    ASSERT_TRUE(reused.solve(at.steps, b));
+    expect_same_bits(a, b);
+  }
+}
+
+TEST(OrbitSolver, FindsTheSameBitsInEveryWidthWithFusedMultiplyAdds) {
+  if (!FlankContactBatch::supported(InstructionSet::kAvx512)) GTEST_SKIP() << "no AVX-512 here";
+  for (const bool wheel : {false, true}) {
+    for (const double speed : {60.0, 230.0}) {
+      OrbitBench narrow(40, speed, wheel, InstructionSet::kAvx2);
+      OrbitBench wide(40, speed, wheel, InstructionSet::kAvx512);
+      PeriodicOrbit a, b;
+      ASSERT_TRUE(narrow.solve(31, a));
+      ASSERT_TRUE(wide.solve(31, b));
+      expect_same_bits(a, b);
     }
   }
 }

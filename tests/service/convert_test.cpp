@@ -1,4 +1,5 @@
 // Messages to core values and results back, field by field.
+#include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -264,6 +265,29 @@ TEST(FromCore, ARefusedPointKeepsItsPlaceOnTheCurve) {
   EXPECT_EQ(point.speed_kilometers_per_hour(), 36);
   EXPECT_FALSE(point.has_result());
   EXPECT_EQ(point.refusal_reason(), "WORK_LIMIT");
+}
+
+TEST(FromCore, ABranchEndArrivesThroughBytesAndJson) {
+  SweepPoint reached;
+  reached.vehicle_speed = 75 / 3.6;
+  reached.result = full_result();
+  EXPECT_FALSE(to_curve_point(reached).has_branch_end());
+  reached.branch_end = BranchEnd{.followed_to = 71.29 / 3.6, .gone_at = 71.33 / 3.6};
+  const v1::CurvePoint sent = to_curve_point(reached);
+  v1::CurvePoint by_bytes, by_json;
+  ASSERT_TRUE(by_bytes.ParseFromString(sent.SerializeAsString()));
+  std::string json;
+  ASSERT_TRUE(google::protobuf::util::MessageToJsonString(sent, &json).ok());
+  EXPECT_NE(json.find("\"branchEnd\":{\"followedToKilometersPerHour\":71.29,"
+                      "\"goneAtKilometersPerHour\":71.33}"),
+            std::string::npos)
+      << json;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(json, &by_json).ok());
+  for (const v1::CurvePoint& arrived : {by_bytes, by_json}) {
+    EXPECT_EQ(arrived.branch_end().followed_to_kilometers_per_hour(), 71.29);
+    EXPECT_EQ(arrived.branch_end().gone_at_kilometers_per_hour(), 71.33);
+    EXPECT_EQ(arrived.SerializeAsString(), sent.SerializeAsString());
+  }
 }
 
 TEST(FromCore, SpeedsComeBackAsTheyWereStated) {

@@ -185,6 +185,46 @@ TEST_F(GrpcTest, ASimulationIsCreatedWatchedReadAndListed) {
   EXPECT_EQ(list.simulations_size(), 1);
 }
 
+TEST_F(GrpcTest, ShootingAloneIsUsedOrFailsByNameWithTheValues) {
+  v1::Simulation request = point_simulation();
+  request.mutable_solver_options()->set_method(v1::SHOOTING);
+  const auto ended = [&](double speed) {
+    request.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(speed);
+    v1::Simulation created;
+    EXPECT_TRUE(create(request, &created).ok());
+    EXPECT_TRUE(
+        eventually([&] { return get(created.name()).state() >= v1::Simulation::SUCCEEDED; }));
+    return get(created.name());
+  };
+  const v1::Simulation found = ended(100);
+  ASSERT_EQ(found.state(), v1::Simulation::SUCCEEDED) << found.error().message();
+  EXPECT_EQ(found.result().points(0).result().steady_state_method(), v1::SHOOTING);
+  const v1::Simulation refused = ended(150);  // the response of one mesh cycle repels
+  ASSERT_EQ(refused.state(), v1::Simulation::FAILED);
+  EXPECT_EQ(refused.error().reason(), "NOT_FOUND_BY_SHOOTING");
+  EXPECT_THAT(refused.error().message(), HasSubstr("method = SHOOTING"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("412.088 rad/s"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("AUTOMATIC or MARCH"));
+}
+
+TEST_F(GrpcTest, ACurveByShootingAloneNamesThePointsThatItLacks) {
+  v1::Simulation request = curve_simulation();
+  request.set_lubricant("lubricants/1");
+  request.mutable_solver_options()->set_method(v1::SHOOTING);
+  v1::InefficiencyCurveStudy* curve = request.mutable_inefficiency_curve();
+  curve->Clear();
+  curve->add_speeds_kilometers_per_hour(100);
+  curve->add_speeds_kilometers_per_hour(150);
+  v1::Simulation created;
+  ASSERT_TRUE(create(request, &created).ok());
+  ASSERT_TRUE(eventually([&] { return get(created.name()).state() >= v1::Simulation::SUCCEEDED; }));
+  const v1::Simulation done = get(created.name());
+  ASSERT_EQ(done.result().points_size(), 2) << done.error().message();
+  EXPECT_TRUE(done.result().points(0).has_result());
+  EXPECT_EQ(done.result().points(1).refusal_reason(), "NOT_FOUND_BY_SHOOTING");
+  EXPECT_THAT(done.result().points(1).refusal_message(), HasSubstr("method = SHOOTING"));
+}
+
 TEST_F(GrpcTest, BadSimulationsComeBackWithAllTheirViolations) {
   v1::Simulation request;
   request.set_lubricant("lubricants/4");

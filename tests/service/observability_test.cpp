@@ -19,14 +19,14 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// What comes back for a request, head and body.
-std::string http_get(int port, const std::string& path) {
+std::string http(const std::string& method, int port, const std::string& path) {
   const int connection = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in name{};
   name.sin_family = AF_INET;
   name.sin_port = htons(static_cast<std::uint16_t>(port));
   name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   EXPECT_EQ(connect(connection, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
-  const std::string request = "GET " + path + " HTTP/1.1\r\nHost: x\r\n\r\n";
+  const std::string request = method + " " + path + " HTTP/1.1\r\nHost: x\r\n\r\n";
   EXPECT_EQ(send(connection, request.data(), request.size(), 0),
             static_cast<ssize_t>(request.size()));
   std::string out;
@@ -37,6 +37,8 @@ std::string http_get(int port, const std::string& path) {
   close(connection);
   return out;
 }
+
+std::string http_get(int port, const std::string& path) { return http("GET", port, path); }
 
 class ObservabilityTest : public GrpcTest {
  protected:
@@ -80,6 +82,16 @@ TEST_F(ObservabilityTest, MetricsTellPhasesCountsCacheHitsAndTheBuild) {
   EXPECT_THAT(text, HasSubstr("tribodyn_simulations_waiting 0\n"));
   EXPECT_THAT(text, HasSubstr("tribodyn_build_info{"));
   EXPECT_THAT(http_get(port_, "/other"), HasSubstr("404"));
+}
+
+TEST_F(ObservabilityTest, HeadOfMetricsIsThatOfGetWithoutABody) {
+  const std::string head = http("HEAD", port_, "/metrics"), whole = http_get(port_, "/metrics");
+  EXPECT_THAT(head, testing::StartsWith("HTTP/1.0 200 OK\r\n"));
+  EXPECT_THAT(head, HasSubstr("Content-Length: "));
+  EXPECT_THAT(head, testing::EndsWith("\r\n\r\n"));
+  EXPECT_EQ(head.find("\r\n\r\n"), head.size() - 4) << "no body";
+  EXPECT_GT(whole.size(), head.size());
+  EXPECT_THAT(http("HEAD", port_, "/other"), testing::StartsWith("HTTP/1.0 404"));
 }
 
 TEST_F(ObservabilityTest, OneIdJoinsRequestJobAndResultInTheLog) {

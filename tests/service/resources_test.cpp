@@ -455,6 +455,10 @@ TEST_F(ListTest, UnknownWordsNameTheNearest) {
   EXPECT_THAT(said("colour = red", ""), HasSubstr("legal: base_oil_class, condition"));
   EXPECT_THAT(said("colour = red", ""), Not(HasSubstr("did you mean")));
   EXPECT_THAT(said("condition = USD", ""), HasSubstr("did you mean \"USED\"?"));
+  EXPECT_THAT(said("condition = old", ""), HasSubstr("legal: CONDITION_UNSPECIFIED, FRESH"));
+  v1::ListLubricantsRequest unstated;
+  unstated.set_filter("condition = CONDITION_UNSPECIFIED");
+  EXPECT_TRUE(list_lubricants(app_, unstated).ok()) << "many do not state theirs";
   EXPECT_THAT(said("thermal_conductivity_watts_per_metre_kelvin = warm", ""),
               HasSubstr("a finite number"));
   EXPECT_THAT(said("create_time > yesterday", ""), HasSubstr("2026-01-31T12:00:00Z"));

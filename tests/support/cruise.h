@@ -11,4 +11,13 @@ inline OperatingCondition cruise(double kilometers_per_hour) {
   return condition;
 }
 
+/// T_s [N m] and the pinion's speed [rad/s].
+inline OperatingCondition prescribed(double pinion_torque, double pinion_speed) {
+  OperatingCondition condition;
+  condition.kind = OperatingCondition::Kind::kPrescribedTorque;
+  condition.pinion_torque = pinion_torque;
+  condition.pinion_speed = pinion_speed;
+  return condition;
+}
+
 }  // namespace tribodyn

@@ -92,8 +92,9 @@ std::string jobs_text(const std::vector<v1::Simulation>& simulations, OutputForm
 int run_list(const JobFlags& flags, const CommonOptions& options) {
   const auto list = options.connect().list_simulations(flags.list);
   std::cout << jobs_text(list.resources, options.output_format, false);
-  if (list.has_more && options.output_format == OutputFormat::kTable) {
-    std::cerr << "There are more; --limit raises their number.\n";
+  if (list.has_more) {
+    std::cerr << "There are more; --limit raises their number,\n--page-token "
+              << list.next_page_token << " goes on here.\n";
   }
   return kExitOk;
 }
@@ -239,6 +240,9 @@ Command jobs_list_command() {
                      [flags](const std::string& text) { flags->list.filter = text; });
   command.flags.text("--order-by", "FIELD", "create_time for the oldest first.",
                      [flags](const std::string& text) { flags->list.order_by = text; });
+  command.flags.text("--page-token", "TOKEN",
+                     "Goes on where a list with the same filter and order ended, which names it.",
+                     [flags](const std::string& text) { flags->list.page_token = text; });
   command.check = [flags](Complaints& complaints) {
     if (flags->list.limit < 1 || flags->list.limit > 100000) {
       complaints.emplace_back("--limit must be 1 to 100000");

@@ -43,9 +43,10 @@ int run_list(const ResourceKind& kind, const ListFlags& flags, const CommonOptio
   Connection connection = options.connect();
   const ResourceList list = kind.calls->list(connection, list_options);
   std::cout << resources_text(kind, list.resources, options.output_format, false);
-  if (list.has_more) {
+  if (!list.next_page_token.empty()) {
     std::cerr << "There are more than " << flags.limit
-              << "; --limit raises their number, --limit 0 lists all.\n";
+              << "; --limit raises their number, --limit 0 lists all,\n--page-token "
+              << list.next_page_token << " goes on here.\n";
   }
   return kExitOk;
 }
@@ -71,6 +72,9 @@ Command list_command(const ResourceKind& kind) {
   command.flags.whole_number("--limit,-n", {kind.plural, "0 to 1000000", "100"},
                              "How many at most; 0: all",
                              [flags](int value) { flags->limit = value; });
+  command.flags.text("--page-token", "TOKEN",
+                     "Goes on where a list with the same filter and order ended, which names it.",
+                     [flags](const std::string& text) { flags->options.page_token = text; });
   command.flags.toggle("--show-deleted", "Also those that were deleted.",
                        [flags] { flags->options.show_deleted = true; });
   command.check = [flags](Complaints& complaints) {
@@ -143,7 +147,7 @@ Command revisions_command(const ResourceKind& kind) {
     const ResourceList list =
         kind.calls->revisions(connection, kind.name_of(flags->names.front()), flags->limit);
     std::cout << resources_text(kind, list.resources, options.output_format, true);
-    if (list.has_more) std::cerr << "There are older ones; --limit 0 lists all.\n";
+    if (!list.next_page_token.empty()) std::cerr << "There are older ones; --limit 0 lists all.\n";
     return kExitOk;
   };
   return command;

@@ -12,9 +12,12 @@ namespace {
 void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
   flags.group("Solver");
   flags.choice(
-      "--method", {"automatic", "march"},
-      "How the steady state is found: by shooting where that works, or marched", [&](int index) {
-        simulation.mutable_solver_options()->set_method(index == 1 ? v1::MARCH : v1::AUTOMATIC);
+      "--method", {"automatic", "shooting", "march"},
+      "How the steady state is found: by shooting where that works and marched elsewhere, by "
+      "shooting or not at all, or marched",
+      [&](int index) {
+        constexpr v1::SteadyStateMethod kMethods[] = {v1::AUTOMATIC, v1::SHOOTING, v1::MARCH};
+        simulation.mutable_solver_options()->set_method(kMethods[index]);
       });
   flags.number("--tolerance", {"-", "1e-8 to 0.01", "0.001"},
                "Wanted relative error of what shooting finds",

@@ -71,7 +71,8 @@ Listing<Resource> all_pages(Request request, int limit, const Call& call) {
     request.set_page_token(page.next_page_token());
   } while (!request.page_token().empty() &&
            (limit == 0 || static_cast<int>(all.resources.size()) < limit));
-  all.has_more = !request.page_token().empty();
+  all.next_page_token = request.page_token();
+  all.has_more = !all.next_page_token.empty();
   return all;
 }
 
@@ -99,6 +100,7 @@ Listing<Resource> Connection::list(const ListOptions& options) {
   request.set_filter(options.filter);
   request.set_order_by(options.order_by);
   request.set_show_deleted(options.show_deleted);
+  request.set_page_token(options.page_token);
   if (options.basic) set_basic(request);
   return all_pages<Resource>(request, options.limit, [&](const auto& page_request) {
     return services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kList,

@@ -74,6 +74,7 @@ Listing<v1::Simulation> Connection::list_simulations(const ListOptions& options)
   v1::ListSimulationsRequest request;
   request.set_filter(options.filter);
   request.set_order_by(options.order_by);
+  request.set_page_token(options.page_token);
   const int limit = options.limit;
   do {
     const int missing = limit - static_cast<int>(all.resources.size());
@@ -84,7 +85,8 @@ Listing<v1::Simulation> Connection::list_simulations(const ListOptions& options)
     request.set_page_token(page.next_page_token());
   } while (!request.page_token().empty() &&
            (limit == 0 || static_cast<int>(all.resources.size()) < limit));
-  all.has_more = !request.page_token().empty();
+  all.next_page_token = request.page_token();
+  all.has_more = !all.next_page_token.empty();
   return all;
 }
 

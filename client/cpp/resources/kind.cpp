@@ -69,7 +69,7 @@ class TypedCalls final : public ResourceCalls {
     return out;
   }
   static ResourceList own_all(Listing<Resource>&& listing) {
-    return {own_each(std::move(listing.resources)), listing.has_more};
+    return {own_each(std::move(listing.resources)), std::move(listing.next_page_token)};
   }
 };
 

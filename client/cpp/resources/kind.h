@@ -21,7 +21,7 @@ struct BatchEntry {
 
 struct ResourceList {
   std::vector<ResourcePointer> resources;
-  bool has_more = false;
+  std::string next_page_token;  ///< empty: there are no more
 };
 
 /// The calls of Connection for resources whose kind is known only at run time. Every message given

@@ -148,6 +148,15 @@ TEST_F(Library, PagesAreHidden) {
   ASSERT_EQ(some.resources.size(), 5U);
   EXPECT_TRUE(some.has_more);
   EXPECT_EQ(some.resources.front().name(), "lubricants/page-9");
+  options.page_token = some.next_page_token;
+  options.limit = 0;
+  const auto others = connection.list<v1::Lubricant>(options);
+  EXPECT_EQ(others.resources.size(), 7U);
+  EXPECT_EQ(others.resources.front().name(), "lubricants/page-4");
+  EXPECT_TRUE(others.next_page_token.empty());
+  options.order_by = "name";
+  EXPECT_EQ(refused([&] { connection.list<v1::Lubricant>(options); }).violations()[0].field,
+            "page_token");
 }
 
 TEST_F(Library, EveryKindCanBeCopied) {

@@ -33,14 +33,17 @@ struct ListOptions {
   std::string order_by = {};  ///< "name", or a field of the filter; " desc" turns it round
   bool show_deleted = false;  ///< also those that were deleted
   int limit = 0;              ///< at most so many; 0: all
-  bool basic = false;         ///< gear sets without their tables
+  /// To go on where a list ended: its Listing::next_page_token, with the same filter and order.
+  std::string page_token = {};
+  bool basic = false;  ///< gear sets without their tables
 };
 
 /// Resources, over as many pages as it took.
 template <class Resource>
 struct Listing {
   std::vector<Resource> resources;
-  bool has_more = false;  ///< `limit` ended it
+  bool has_more = false;             ///< `limit` ended it
+  std::string next_page_token = {};  ///< where it did; empty: there are no more
 };
 
 /// A resource of a batch of updates.
