@@ -11,8 +11,6 @@ namespace {
 /// Sweeps until friction and motion belong to each other.
 bool sweep(Shooting& shooting, const OrbitRequest& request, PeriodicOrbit& orbit) {
   constexpr int kMostSweeps = 24;
-  // A grid that changes the figures so much is not the last: it needs no more than that.
-  constexpr double kShareOfChange = 0.3;
   constexpr double kCaution = 3;  // on a response that is nearly the same for all of the friction
   const auto parts_for_sure = [&](double pull) {
     return request.keep_contact && orbit.least_pressing_force < -pull;
@@ -40,7 +38,7 @@ bool sweep(Shooting& shooting, const OrbitRequest& request, PeriodicOrbit& orbit
     }
     ahead = kCaution * orbit.response * orbit.friction_change;
     orbit.unsettled = ahead + orbit.defect;
-    if (sweep == 1 && !first_friction) left = std::max(left, kShareOfChange * change);
+    if (sweep == 1 && !first_friction) left = std::max(left, request.share_of_change * change);
     if (orbit.unsettled <= left || change < 1e-13) return true;
     if (parts_for_sure(kClearPull + change)) return true;
   }

@@ -46,7 +46,10 @@ struct OrbitRequest {
   bool keep_contact = false;    ///< flanks stay together whatever the force: the linear response
   int first_cycles = 0;         ///< periods marched before shooting without friction,
   bool renew_friction = false;  ///< or with, evaluated anew now and then
-  double tolerance = 1e-6;      ///< of the figures, relative: sweeps go on until then
+  double tolerance = 1e-6;      ///< of the figures, relative: sweeps go on until then,
+  /// or until they leave this share of what a change of the grid has changed: a grid that changes
+  /// much is not the last.
+  double share_of_change = 0;
   std::function<bool()> interrupted;  ///< true: throws Cancelled
 };
 

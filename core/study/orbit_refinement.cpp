@@ -76,6 +76,7 @@ class Refinement {
     request_.interrupted = search.interrupted;
     request_.renew_friction = search.renew_friction;
     request_.keep_contact = search.try_contact_first;
+    request_.share_of_change = 0.3;
     origin_.state = search.start;
     origin_.torques = system.torques();
     origin_.period = search.period;
