@@ -14,6 +14,7 @@ constexpr double kWorthAsking = 0.1;
 constexpr double kLeastRetry = 1;         // s
 constexpr double kLongestRetry = 600;     // s
 constexpr double kServiceSeconds = 2e-3;  // of a processor, for what is done around a small job
+constexpr int kThreadsAPlace = 2;         // one computes, one writes down
 
 }  // namespace
 
@@ -31,13 +32,13 @@ bool StopSignal::wait_for(std::chrono::milliseconds time) const {
   return !requested_.wait_for(lock, time, [this] { return requested(); });
 }
 
-JobQueue::JobQueue(int threads, const QueueLimits& limits, Work work)
-    : thread_count_(std::max(1, threads)), limits_(limits), work_(std::move(work)) {}
+JobQueue::JobQueue(int places, const QueueLimits& limits, Work work)
+    : places_(std::max(1, places)), limits_(limits), work_(std::move(work)) {}
 
 JobQueue::~JobQueue() { stop(); }
 
 void JobQueue::start() {
-  for (int i = 0; i < thread_count_; ++i) threads_.emplace_back([this] { run(); });
+  for (int i = 0; i < kThreadsAPlace * places_; ++i) threads_.emplace_back([this] { run(); });
 }
 
 Admission JobQueue::reserve(const QueuedJob& job) {
@@ -56,7 +57,7 @@ Admission JobQueue::reserve(const QueuedJob& job) {
   if (stopping_ || !has_room) {
     if (own.jobs == 0) reserved_of_.erase(job.client);
     // Until a tenth of what waits is done.
-    return {false, turn_away(job, kWorthAsking * all_seconds / thread_count_)};
+    return {false, turn_away(job, kWorthAsking * all_seconds / places_)};
   }
   for (Reserved* each : {&own, &reserved_}) {
     ++each->jobs;
@@ -74,7 +75,7 @@ int JobQueue::turn_away(const QueuedJob& job, double least_seconds) {
   steady_clock::time_point& turn = turns_[job.client];
   const double seconds = std::clamp(std::max(least_seconds, duration<double>(turn - now).count()),
                                     kLeastRetry, kLongestRetry);
-  const double work = std::max(job.cost_seconds, kServiceSeconds) / thread_count_;
+  const double work = std::max(job.cost_seconds, kServiceSeconds) / places_;
   turn = now + std::chrono::duration_cast<steady_clock::duration>(duration<double>(seconds + work));
   return static_cast<int>(std::lround(seconds));
 }
@@ -161,16 +162,23 @@ void JobQueue::stop() {
   threads_.clear();
 }
 
-/// Whether all threads but one are taken by jobs that are not interactive.
-bool JobQueue::only_interactive() const {
-  return thread_count_ > 1 && running_bulk_ >= thread_count_ - 1;
-}
+/// Whether all places but one are taken by jobs that are not interactive.
+bool JobQueue::only_interactive() const { return places_ > 1 && computing_bulk_ >= places_ - 1; }
 
 /// Whether the next of the waiting may run beside those that run.
 bool JobQueue::may_begin() const {
-  if (one_runs_alone_) return false;
+  if (one_runs_alone_ || computing_ == places_) return false;
   const QueuedJob* next = waiting_.peek(only_interactive());
   return next != nullptr && (!next->alone || running_.empty());
+}
+
+void JobQueue::leave_place(bool is_bulk) {
+  {
+    const std::lock_guard lock(mutex_);
+    --computing_;
+    if (is_bulk) --computing_bulk_;
+  }
+  changed_.notify_one();
 }
 
 void JobQueue::run() {
@@ -184,10 +192,12 @@ void JobQueue::run() {
       job = *waiting_.pop(only_interactive());
       running_[job.id] = signal;
       one_runs_alone_ = job.alone;
-      if (!job.is_interactive()) ++running_bulk_;
+      ++computing_;
+      if (!job.is_interactive()) ++computing_bulk_;
     }
     try {
-      work_(job.id, *signal);
+      ComputingPlace place([&] { leave_place(!job.is_interactive()); });
+      work_(job.id, *signal, place);
     } catch (...) {
       spdlog::critical("simulations/{}: its job threw; this is a defect", job.id);
     }
@@ -195,7 +205,6 @@ void JobQueue::run() {
       const std::lock_guard lock(mutex_);
       running_.erase(job.id);
       if (job.alone) one_runs_alone_ = false;
-      if (!job.is_interactive()) --running_bulk_;
     }
     changed_.notify_all();
     ended_.notify_all();

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "server/jobs/fair_queue.h"
@@ -35,6 +36,24 @@ class StopSignal {
   mutable std::condition_variable requested_;
 };
 
+/// The place of a job among those that are computed at a time. Given back as soon as nothing is
+/// left but to write the result down, so that the next job is computed meanwhile.
+class ComputingPlace {
+ public:
+  explicit ComputingPlace(std::function<void()> give_back) : give_back_(std::move(give_back)) {}
+  ~ComputingPlace() { give_back(); }
+  ComputingPlace(const ComputingPlace&) = delete;
+  ComputingPlace& operator=(const ComputingPlace&) = delete;
+
+  /// Without effect from the second time on.
+  void give_back() {
+    if (give_back_) std::exchange(give_back_, nullptr)();
+  }
+
+ private:
+  std::function<void()> give_back_;
+};
+
 /// What may wait; of each at most three quarters for one client, so that others still get in.
 struct QueueLimits {
   std::size_t jobs = 20'000;
@@ -50,15 +69,16 @@ struct Admission {
 };
 
 /// Threads that work through jobs in the order of a FairQueue; a job is a number and what it means
-/// is the caller's. Where there are several threads, one is kept for interactive jobs. Safe for
+/// is the caller's. So many are computed at a time, and as many more may be writing their results
+/// down. Where several are computed at a time, one place is kept for interactive jobs. Safe for
 /// concurrent access without external synchronization; `start`, `drain`, `stop` and the destructor
 /// from one thread.
 class JobQueue {
  public:
   /// Called on a worker's thread; must not throw (what it throws is swallowed).
-  using Work = std::function<void(std::int64_t id, const StopSignal& stop)>;
+  using Work = std::function<void(std::int64_t id, const StopSignal& stop, ComputingPlace& place)>;
 
-  JobQueue(int threads, const QueueLimits& limits, Work work);
+  JobQueue(int places, const QueueLimits& limits, Work work);
   ~JobQueue();
   JobQueue(const JobQueue&) = delete;
   JobQueue& operator=(const JobQueue&) = delete;
@@ -105,8 +125,9 @@ class JobQueue {
   int turn_away(const QueuedJob& job, double least_seconds);
   bool only_interactive() const;
   bool may_begin() const;
+  void leave_place(bool is_bulk);
 
-  const int thread_count_;
+  const int places_;  // of those that are computed at a time
   const QueueLimits limits_;
   const Work work_;
   mutable std::mutex mutex_;
@@ -115,7 +136,8 @@ class JobQueue {
   FairQueue waiting_;                                            // guarded by mutex_
   std::map<std::int64_t, std::shared_ptr<StopSignal>> running_;  // guarded by mutex_
   bool one_runs_alone_ = false;                                  // guarded by mutex_
-  int running_bulk_ = 0;                                         // guarded by mutex_
+  int computing_ = 0;                                            // guarded by mutex_
+  int computing_bulk_ = 0;                                       // guarded by mutex_
   Reserved reserved_;                                            // guarded by mutex_
   std::map<std::string, Reserved> reserved_of_;                  // guarded by mutex_; by client
   std::map<std::string, std::chrono::steady_clock::time_point> turns_;  // guarded by mutex_

@@ -17,6 +17,7 @@ using std::chrono::steady_clock;
 
 constexpr auto kProgressInterval = std::chrono::milliseconds(250);
 constexpr double kLeastFraction = 0.01;  // below it nothing can be said of the time that is left
+constexpr auto kLookAgain = std::chrono::milliseconds(1);
 constexpr auto kFirstPause = std::chrono::milliseconds(100);
 constexpr auto kLongestPause = std::chrono::milliseconds(30'000);
 
@@ -102,10 +103,10 @@ auto SimulationRunner::insist(std::int64_t id, const StopSignal& stop, const Act
   }
 }
 
-void SimulationRunner::run(std::int64_t id, const StopSignal& stop) const {
+void SimulationRunner::run(std::int64_t id, const StopSignal& stop, ComputingPlace& place) const {
   try {
     try {
-      compute_and_save(id, stop);
+      compute_and_save(id, stop, place);
     } catch (const Cancelled&) {
       stopped(id, stop);
     } catch (const Refusal& refusal) {
@@ -150,24 +151,33 @@ SimulationInputs SimulationRunner::inputs_of(const StoredSimulation& simulation,
 }
 
 /// Attempts that end otherwise than with a result are not timed.
-Computed SimulationRunner::compute_timed(const SimulationInputs& inputs, const ResultKey& key,
-                                         const ReportProgress& report) const {
+Solved SimulationRunner::solve_timed(const SimulationInputs& inputs,
+                                     const ReportProgress& report) const {
   const v1::Simulation& asked = inputs.effective;
   const v1::PointModel model = asked.has_operating_point() ? asked.operating_point().model()
                                                            : asked.inefficiency_curve().model();
   const StopWatch watch;
-  Computed computed = compute(inputs, key, studies_, report);
+  Solved solved = solve(inputs, studies_, report);
   metrics_.observe(model == v1::QUASI_STATIC ? Phase::kFriction : Phase::kOrbit, watch.seconds());
-  return computed;
+  return solved;
 }
 
-void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop) const {
+/// Equal inputs are computed once: a result that is being written down is waited for.
+void SimulationRunner::wait_until_written(const ResultKey& key, const StopSignal& stop) const {
+  while (unwritten_.contains(key.input_hash)) {
+    if (!stop.wait_for(kLookAgain)) throw Cancelled();
+  }
+}
+
+void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop,
+                                        ComputingPlace& place) const {
   const StoredSimulation simulation = stored(id, stop);
   const double waited = 1e-6 * static_cast<double>(clock_() - simulation.create_time);
   const StopWatch validation;
   const SimulationInputs inputs = inputs_of(simulation, stop);
   const ResultKey key = result_key(inputs);
   metrics_.observe(Phase::kValidation, validation.seconds());
+  wait_until_written(key, stop);
   const auto started = insist(id, stop, [&] { return store_.mark_running(id, clock_(), key); });
   metrics_.observe(Phase::kQueue, std::max(0.0, waited));
   if (started && started->state == StoredState::kSucceeded) metrics_.count(Ending::kServedByCache);
@@ -177,10 +187,13 @@ void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop)
   Reporter reporter(*channel, stop);
   if (stop.requested()) throw Cancelled();
   const StopWatch computing;
-  Computed computed = compute_timed(inputs, key, std::ref(reporter));
+  Solved solved = solve_timed(inputs, std::ref(reporter));
   const double computed_seconds = computing.seconds();
-  const NewResult result{key, computed.result.SerializeAsString(), std::move(computed.history)};
+  const HeldKeys::Hold hold(unwritten_, key.input_hash);
+  place.give_back();
   const StopWatch storing;
+  Computed computed = to_result(inputs, key, std::move(solved));
+  const NewResult result{key, computed.result.SerializeAsString(), std::move(computed.history)};
   const auto ended = insist(id, stop, [&] { return store_.mark_succeeded(id, clock_(), result); });
   metrics_.observe(Phase::kStore, storing.seconds());
   if (ended) {
