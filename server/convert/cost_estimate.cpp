@@ -103,21 +103,32 @@ void add_history(const v1::HistoryRequest& history, bool is_marched, v1::CostEst
   out.set_processor_seconds(out.processor_seconds() + rows * columns * kValueSeconds);
 }
 
-}  // namespace
-
-v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
-  v1::CostEstimate out;
-  out.set_processor_seconds(kPreparationSeconds);
+void add_study(const v1::Simulation& effective, v1::CostEstimate& out) {
   const v1::SolverOptions& solver = effective.solver_options();
   if (effective.has_inefficiency_curve()) {
-    add_curve(effective.inefficiency_curve(), solver, out);
-    return out;
+    return add_curve(effective.inefficiency_curve(), solver, out);
   }
   const v1::OperatingPointStudy& point = effective.operating_point();
   const double speed = speed_of(point);
   add_point(speed, point.model(), solver, out);
   if (point.probe_coexisting_response()) add_point(speed, point.model(), solver, out);
   if (point.has_history()) add_history(point.history(), solver.method() == v1::MARCH, out);
+}
+
+/// To two digits.
+double rounded(double value) {
+  const double scale = std::pow(10.0, 1 - std::floor(std::log10(value)));
+  return std::round(value * scale) / scale;
+}
+
+}  // namespace
+
+v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
+  v1::CostEstimate out;
+  out.set_processor_seconds(kPreparationSeconds);
+  add_study(effective, out);
+  // What is alike is to come in the order of its arrival, not by a difference that means nothing.
+  out.set_processor_seconds(rounded(out.processor_seconds()));
   return out;
 }
 

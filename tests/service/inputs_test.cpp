@@ -209,6 +209,13 @@ TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
             estimate_cost(inputs_of(slow).effective).processor_seconds());
 }
 
+TEST(CostEstimate, IsTheSameForWhatIsAlike) {
+  v1::Simulation other = point_simulation();
+  other.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(65.01);
+  EXPECT_EQ(estimate_cost(inputs_of(point_simulation()).effective).processor_seconds(),
+            estimate_cost(inputs_of(other).effective).processor_seconds());
+}
+
 TEST(CostEstimate, KnowsThatSlowPointsAndWideCurvesTakeLonger) {
   const auto curve_seconds = [](const std::vector<double>& speeds) {
     v1::Simulation out = curve_simulation();
