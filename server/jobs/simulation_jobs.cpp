@@ -41,8 +41,8 @@ SimulationJobs::SimulationJobs(Store& store, Options options)
       heartbeat_(options.heartbeat),
       runner_(store, board_, metrics_, options.clock, std::move(options.studies)),
       queue_(options.threads, options.limits,
-             [this](std::int64_t id, const StopSignal& stop, ComputingPlace& place) {
-               runner_.run(id, stop, place);
+             [this](std::int64_t id, const StopSignal& stop, JobQueue::Rest& rest) {
+               runner_.run(id, stop, rest);
              }),
       retention_(options.retention),
       janitor_(store, retention_, clock_),

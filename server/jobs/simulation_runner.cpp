@@ -103,10 +103,13 @@ auto SimulationRunner::insist(std::int64_t id, const StopSignal& stop, const Act
   }
 }
 
-void SimulationRunner::run(std::int64_t id, const StopSignal& stop, ComputingPlace& place) const {
+/// Whatever goes wrong ends in the store.
+template <class Action>
+void SimulationRunner::guarded(std::int64_t id, const StopSignal& stop,
+                               const Action& action) const {
   try {
     try {
-      compute_and_save(id, stop, place);
+      action();
     } catch (const Cancelled&) {
       stopped(id, stop);
     } catch (const Refusal& refusal) {
@@ -123,6 +126,14 @@ void SimulationRunner::run(std::int64_t id, const StopSignal& stop, ComputingPla
   } catch (const StoreError& error) {  // the next start finds it unfinished and goes on
     spdlog::error("simulations/{} is left as it is: {}", id, error.what());
   }
+}
+
+void SimulationRunner::run(std::int64_t id, const StopSignal& stop, JobQueue::Rest& rest) const {
+  guarded(id, stop, [&] {
+    const std::shared_ptr<Unwritten> computed = compute(id, stop);
+    if (!computed) return;
+    rest = [this, id, &stop, computed] { guarded(id, stop, [&] { save(*computed, stop); }); };
+  });
 }
 
 StoredSimulation SimulationRunner::stored(std::int64_t id, const StopSignal& stop) const {
@@ -169,12 +180,13 @@ void SimulationRunner::wait_until_written(const ResultKey& key, const StopSignal
   }
 }
 
-void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop,
-                                        ComputingPlace& place) const {
-  const StoredSimulation simulation = stored(id, stop);
+/// Nothing when it has ended otherwise, or its result was there.
+std::shared_ptr<SimulationRunner::Unwritten> SimulationRunner::compute(
+    std::int64_t id, const StopSignal& stop) const {
+  StoredSimulation simulation = stored(id, stop);
   const double waited = 1e-6 * static_cast<double>(clock_() - simulation.create_time);
   const StopWatch validation;
-  const SimulationInputs inputs = inputs_of(simulation, stop);
+  SimulationInputs inputs = inputs_of(simulation, stop);
   const ResultKey key = result_key(inputs);
   metrics_.observe(Phase::kValidation, validation.seconds());
   wait_until_written(key, stop);
@@ -182,18 +194,27 @@ void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop,
   metrics_.observe(Phase::kQueue, std::max(0.0, waited));
   if (started && started->state == StoredState::kSucceeded) metrics_.count(Ending::kServedByCache);
   publish(id, started);
-  if (!started || started->state != StoredState::kRunning) return;  // ended, or served
+  if (!started || started->state != StoredState::kRunning) return nullptr;
   const std::shared_ptr<ProgressChannel> channel = board_.open(id);
   Reporter reporter(*channel, stop);
   if (stop.requested()) throw Cancelled();
   const StopWatch computing;
   Solved solved = solve_timed(inputs, std::ref(reporter));
-  const double computed_seconds = computing.seconds();
-  const HeldKeys::Hold hold(unwritten_, key.input_hash);
-  place.give_back();
+  return std::shared_ptr<Unwritten>(new Unwritten{std::move(simulation),
+                                                  std::move(inputs),
+                                                  key,
+                                                  std::move(solved),
+                                                  waited,
+                                                  computing.seconds(),
+                                                  {unwritten_, key.input_hash}});
+}
+
+void SimulationRunner::save(Unwritten& unwritten, const StopSignal& stop) const {
+  const std::int64_t id = unwritten.simulation.id;
   const StopWatch storing;
-  Computed computed = to_result(inputs, key, std::move(solved));
-  const NewResult result{key, computed.result.SerializeAsString(), std::move(computed.history)};
+  Computed computed = to_result(unwritten.inputs, unwritten.key, std::move(unwritten.solved));
+  const NewResult result{unwritten.key, computed.result.SerializeAsString(),
+                         std::move(computed.history)};
   const auto ended = insist(id, stop, [&] { return store_.mark_succeeded(id, clock_(), result); });
   metrics_.observe(Phase::kStore, storing.seconds());
   if (ended) {
@@ -203,7 +224,8 @@ void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop,
   spdlog::info(
       "event=simulation_computed simulation=simulations/{} request_id={} input_hash={} "
       "waited_seconds={:.6f} computed_seconds={:.6f} stored_seconds={:.6f}",
-      id, simulation.request_id, key.input_hash, waited, computed_seconds, storing.seconds());
+      id, unwritten.simulation.request_id, unwritten.key.input_hash, unwritten.waited_seconds,
+      unwritten.computed_seconds, storing.seconds());
 }
 
 /// Without an event somebody else has ended the simulation, by cancelling it: a channel opened

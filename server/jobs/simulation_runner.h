@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 
 #include "server/convert/resource_names.h"
 #include "server/jobs/compute.h"
@@ -25,17 +26,31 @@ ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation)
 /// Carries one simulation from QUEUED to its end: inputs from the store, the study in the core, the
 /// result back into the store, progress on the board. Whatever goes wrong ends in the store, never
 /// in the thread; a store that cannot be written (disk full) is tried until it can or the server
-/// stops. Gives its place back once the study is solved. Safe for concurrent access without
-/// external synchronization.
+/// stops. Writing the result down is left as the rest of the job. Safe for concurrent access
+/// without external synchronization.
 class SimulationRunner {
  public:
   SimulationRunner(Store& store, ProgressBoard& board, Metrics& metrics, Clock clock,
                    StudyFunctions studies);
 
-  void run(std::int64_t id, const StopSignal& stop, ComputingPlace& place) const;
+  void run(std::int64_t id, const StopSignal& stop, JobQueue::Rest& rest) const;
 
  private:
-  void compute_and_save(std::int64_t id, const StopSignal& stop, ComputingPlace& place) const;
+  /// What is computed, and not yet to be found in the store.
+  struct Unwritten {
+    StoredSimulation simulation;
+    SimulationInputs inputs;
+    ResultKey key;
+    Solved solved;
+    double waited_seconds = 0;
+    double computed_seconds = 0;
+    HeldKeys::Hold hold;
+  };
+
+  template <class Action>
+  void guarded(std::int64_t id, const StopSignal& stop, const Action& action) const;
+  std::shared_ptr<Unwritten> compute(std::int64_t id, const StopSignal& stop) const;
+  void save(Unwritten& unwritten, const StopSignal& stop) const;
   StoredSimulation stored(std::int64_t id, const StopSignal& stop) const;
   SimulationInputs inputs_of(const StoredSimulation& simulation, const StopSignal& stop) const;
   Solved solve_timed(const SimulationInputs& inputs, const ReportProgress& report) const;
@@ -52,7 +67,7 @@ class SimulationRunner {
   Metrics& metrics_;
   Clock clock_;
   StudyFunctions studies_;
-  mutable HeldKeys unwritten_;  // computed, and not yet to be found in the store
+  mutable HeldKeys unwritten_;
 };
 
 }  // namespace tribodyn::server

@@ -26,7 +26,7 @@ StudyFunctions throwing(const Thrown& thrown) {
 TEST(JobQueue, RunsWhatIsPushedInOrder) {
   std::mutex mutex;
   std::vector<std::int64_t> done;
-  JobQueue queue(1, {.jobs = 100}, [&](std::int64_t id, const StopSignal&, ComputingPlace&) {
+  JobQueue queue(1, {.jobs = 100}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
     const std::lock_guard lock(mutex);
     done.push_back(id);
   });
@@ -45,7 +45,7 @@ TEST(JobQueue, RunsWhatIsPushedInOrder) {
 
 TEST(JobQueue, TurnsAwayWhatIsTooMuch) {
   std::atomic<bool> release = false;
-  JobQueue queue(1, {.jobs = 2}, [&](std::int64_t, const StopSignal& stop, ComputingPlace&) {
+  JobQueue queue(1, {.jobs = 2}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest&) {
     while (!release && !stop.requested()) std::this_thread::yield();
   });
   queue.start();
@@ -120,7 +120,7 @@ TEST(FairQueue, KnowsWhatWaits) {
 
 TEST(JobQueue, IsBoundedByCostAndLeavesRoomForOthers) {
   JobQueue queue(2, {.jobs = 100, .cost_seconds = 1000},
-                 [](std::int64_t, const StopSignal&, ComputingPlace&) {});
+                 [](std::int64_t, const StopSignal&, JobQueue::Rest&) {});
   EXPECT_TRUE(queue.reserve({1, "a", 5000}).is_admitted) << "whatever it costs, it must run once";
   const Admission refused = queue.reserve({2, "b", 1});
   EXPECT_FALSE(refused.is_admitted);
@@ -133,7 +133,7 @@ TEST(JobQueue, IsBoundedByCostAndLeavesRoomForOthers) {
 
 TEST(JobQueue, TellsThoseTurnedAwayToComeOneAfterAnother) {
   JobQueue queue(2, {.jobs = 1, .cost_seconds = 1000},
-                 [](std::int64_t, const StopSignal&, ComputingPlace&) {});
+                 [](std::int64_t, const StopSignal&, JobQueue::Rest&) {});
   EXPECT_TRUE(queue.reserve({1, "a", 1}).is_admitted);
   EXPECT_EQ(queue.reserve({2, "b", 20}).retry_seconds, 1);
   EXPECT_EQ(queue.reserve({3, "b", 20}).retry_seconds, 11) << "after that of 20 s on two";
@@ -146,7 +146,7 @@ TEST(JobQueue, TellsThoseTurnedAwayToComeOneAfterAnother) {
 TEST(JobQueue, KeepsAThreadForInteractiveJobs) {
   std::atomic<int> bulk = 0;
   std::atomic<int> small = 0;
-  JobQueue queue(2, {}, [&](std::int64_t id, const StopSignal& stop, ComputingPlace&) {
+  JobQueue queue(2, {}, [&](std::int64_t id, const StopSignal& stop, JobQueue::Rest&) {
     ++(id < 10 ? bulk : small);
     while (id < 10 && !stop.requested()) std::this_thread::yield();
   });
@@ -161,7 +161,7 @@ TEST(JobQueue, KeepsAThreadForInteractiveJobs) {
 
 TEST(JobQueue, ADefectiveJobDoesNotEndTheThread) {
   std::atomic<int> done = 0;
-  JobQueue queue(1, {.jobs = 10}, [&](std::int64_t id, const StopSignal&, ComputingPlace&) {
+  JobQueue queue(1, {.jobs = 10}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
     ++done;
     if (id == 1) throw std::runtime_error("defect");
   });
@@ -175,7 +175,7 @@ TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
   std::atomic<int> started = 0;
   std::atomic<int> shut_down = 0;
   {
-    JobQueue queue(2, {.jobs = 10}, [&](std::int64_t, const StopSignal& stop, ComputingPlace&) {
+    JobQueue queue(2, {.jobs = 10}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest&) {
       ++started;
       while (!stop.requested()) std::this_thread::yield();
       if (stop.reason() == StopReason::kShutdown) ++shut_down;
@@ -191,32 +191,46 @@ TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
 }
 
 TEST(JobQueue, TheNextIsComputedWhileAResultIsWrittenDown) {
-  std::atomic<int> computing = 0;
-  std::atomic<int> writing = 0;
-  std::atomic<int> most_computing = 0;
+  std::atomic<int> computed = 0;
+  std::atomic<int> written = 0;
   std::atomic<bool> release = false;
-  JobQueue queue(1, {}, [&](std::int64_t, const StopSignal&, ComputingPlace& place) {
-    most_computing = std::max<int>(most_computing, ++computing);
-    --computing;
-    place.give_back();
-    place.give_back();
-    ++writing;
-    while (!release) std::this_thread::yield();
+  JobQueue queue(1, {}, [&](std::int64_t, const StopSignal&, JobQueue::Rest& rest) {
+    ++computed;
+    rest = [&] {
+      while (!release) std::this_thread::yield();
+      ++written;
+    };
+  });
+  queue.start();
+  queue.push_resumed({1});
+  EXPECT_TRUE(eventually([&] { return computed == 1; }));
+  for (int id = 2; id <= 5; ++id) queue.push_resumed({id});
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_LE(computed, 2) << "unwritten results do not heap up";
+  EXPECT_EQ(written, 0);
+  release = true;
+  EXPECT_TRUE(eventually([&] { return written == 5; }));
+}
+
+TEST(JobQueue, WhatIsComputedIsWrittenDownBeforeAStopEnds) {
+  std::atomic<int> written = 0;
+  JobQueue queue(2, {}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest& rest) {
+    while (!stop.requested()) std::this_thread::yield();
+    rest = [&] { ++written; };
   });
   queue.start();
   for (int id = 1; id <= 5; ++id) queue.push_resumed({id});
-  EXPECT_TRUE(eventually([&] { return writing == 2; })) << "of one place";
-  EXPECT_EQ(queue.occupancy().waiting, 3U) << "unwritten results do not heap up";
-  release = true;
-  EXPECT_TRUE(eventually([&] { return writing == 5; }));
-  EXPECT_EQ(most_computing, 1);
+  EXPECT_TRUE(eventually([&] { return queue.occupancy().running == 2; }));
+  queue.stop();
+  EXPECT_EQ(written, 2);
+  EXPECT_EQ(queue.occupancy().running, 0U);
 }
 
 TEST(JobQueue, AJobThatMayKillTheServerRunsAlone) {
   std::atomic<int> running = 0;
   std::atomic<int> done = 0;
   std::atomic<int> together = 0;
-  JobQueue queue(4, {.jobs = 100}, [&](std::int64_t id, const StopSignal&, ComputingPlace&) {
+  JobQueue queue(4, {.jobs = 100}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
     const int others = running++;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     if (id % 3 == 0 && (others != 0 || running != 1)) ++together;
