@@ -49,7 +49,7 @@ void add_flags(CLI::App& app, Settings& settings) {
                  "SQLite file; made when missing. Keep it on a local "
                  "disk");
   app.add_option("--threads", settings.threads,
-                 "Simulations at a time; 0: one per processor. Recommended: 0")
+                 "Simulations computed at a time; 0: one per processor. Recommended: 0")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   add_seconds(app, "--call-limit-seconds", settings.call_limit_seconds, 86400,

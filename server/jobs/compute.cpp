@@ -35,23 +35,16 @@ void check_finite(const History& history) {
   }
 }
 
-void compute_point(const PointStudy& study, const Scene& scene, const StudyFunctions& studies,
-                   const ReportProgress& report, Computed& out) {
+PointResult solve_point(const PointStudy& study, const Scene& scene, const StudyFunctions& studies,
+                        const ReportProgress& report) {
   PointOptions options = study.options;
   const StageText stage = [&study] { return stage_of(study.condition); };
   options.progress = [&](double fraction) { return report(fraction, stage); };
-  PointResult result = studies.solve_operating_point(scene, study.condition, options);
-  *out.result.add_points() = to_curve_point(result);
-  check_finite(result.history);
-  for (std::size_t c = 0; c < result.history.names.size(); ++c) {
-    out.result.add_history_columns(result.history.names[c]);
-    out.result.set_history_rows(static_cast<std::int64_t>(result.history.values[c].size()));
-    out.history.push_back({result.history.names[c], std::move(result.history.values[c])});
-  }
+  return studies.solve_operating_point(scene, study.condition, options);
 }
 
-void compute_curve(const CurveStudy& study, const Scene& scene, const StudyFunctions& studies,
-                   const ReportProgress& report, Computed& out) {
+std::vector<SweepPoint> solve_curve(const CurveStudy& study, const Scene& scene,
+                                    const StudyFunctions& studies, const ReportProgress& report) {
   const bool down = study.options.direction == SweepDirection::kDown;
   const std::size_t count = study.vehicle_speeds.size();
   std::size_t done = 0;
@@ -63,24 +56,44 @@ void compute_curve(const CurveStudy& study, const Scene& scene, const StudyFunct
                        count);
   };
   options.point.progress = [&](double fraction) { return report(fraction, stage); };
-  const std::vector<SweepPoint> points =
-      studies.sweep_speed(scene, study.vehicle_speeds, study.ascent_angle, options,
-                          [&done](const SweepPoint&) { ++done; });
+  return studies.sweep_speed(scene, study.vehicle_speeds, study.ascent_angle, options,
+                             [&done](const SweepPoint&) { ++done; });
+}
+
+void add_point(PointResult& result, Computed& out) {
+  *out.result.add_points() = to_curve_point(result);
+  check_finite(result.history);
+  for (std::size_t c = 0; c < result.history.names.size(); ++c) {
+    out.result.add_history_columns(result.history.names[c]);
+    out.result.set_history_rows(static_cast<std::int64_t>(result.history.values[c].size()));
+    out.history.push_back({result.history.names[c], std::move(result.history.values[c])});
+  }
+}
+
+void add_curve(const SimulationInputs& inputs, const std::vector<SweepPoint>& points,
+               Computed& out) {
   for (const SweepPoint& point : points) *out.result.add_points() = to_curve_point(point);
-  out.result.set_direction(down ? v1::DOWN : v1::UP);
+  out.result.set_direction(inputs.effective.inefficiency_curve().direction());
 }
 
 }  // namespace
 
-Computed compute(const SimulationInputs& inputs, const ResultKey& key,
-                 const StudyFunctions& studies, const ReportProgress& report) {
-  Computed out;
+Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
+             const ReportProgress& report) {
   const Scene physical = scene(inputs);
   const Study asked = study(inputs);
   if (const auto* point = std::get_if<PointStudy>(&asked)) {
-    compute_point(*point, physical, studies, report, out);
+    return solve_point(*point, physical, studies, report);
+  }
+  return solve_curve(std::get<CurveStudy>(asked), physical, studies, report);
+}
+
+Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved solved) {
+  Computed out;
+  if (auto* point = std::get_if<PointResult>(&solved)) {
+    add_point(*point, out);
   } else {
-    compute_curve(std::get<CurveStudy>(asked), physical, studies, report, out);
+    add_curve(inputs, std::get<std::vector<SweepPoint>>(solved), out);
   }
   const std::string bad = first_not_finite(out.result);
   if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
@@ -88,6 +101,11 @@ Computed compute(const SimulationInputs& inputs, const ResultKey& key,
   out.result.set_input_hash(key.input_hash);
   out.result.set_platform(key.platform);
   return out;
+}
+
+Computed compute(const SimulationInputs& inputs, const ResultKey& key,
+                 const StudyFunctions& studies, const ReportProgress& report) {
+  return to_result(inputs, key, solve(inputs, studies, report));
 }
 
 }  // namespace tribodyn::server

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "server/convert/simulation_inputs.h"
@@ -33,9 +34,18 @@ using StageText = std::function<std::string()>;
 /// Told the fraction done in [0, 1] and the stage; false asks to stop.
 using ReportProgress = std::function<bool(double fraction, const StageText& stage)>;
 
-/// Runs the study and makes the result: points, hash (`key`: of the inputs), versions, but no
-/// assumptions, which belong to the simulation and not to its numbers. Throws Refusal, Cancelled,
-/// or what the core throws.
+/// What the core answers: a point, or a curve in ascending speed.
+using Solved = std::variant<PointResult, std::vector<SweepPoint>>;
+
+/// Runs the study. Throws Refusal, Cancelled, or what the core throws.
+Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
+             const ReportProgress& report);
+
+/// Makes the result: points, hash (`key`: of the inputs), versions, but no assumptions, which
+/// belong to the simulation and not to its numbers. Throws Refusal where a number is not finite.
+Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved solved);
+
+/// Both in one.
 Computed compute(const SimulationInputs& inputs, const ResultKey& key,
                  const StudyFunctions& studies, const ReportProgress& report);
 

@@ -15,6 +15,15 @@ constexpr double kLeastRetry = 1;         // s
 constexpr double kLongestRetry = 600;     // s
 constexpr double kServiceSeconds = 2e-3;  // of a processor, for what is done around a small job
 
+/// Does it, whatever it throws.
+void shielded(std::int64_t id, const std::function<void()>& action) {
+  try {
+    action();
+  } catch (...) {
+    spdlog::critical("simulations/{}: its job threw; this is a defect", id);
+  }
+}
+
 }  // namespace
 
 void StopSignal::request(StopReason reason) {
@@ -37,7 +46,10 @@ JobQueue::JobQueue(int threads, const QueueLimits& limits, Work work)
 JobQueue::~JobQueue() { stop(); }
 
 void JobQueue::start() {
-  for (int i = 0; i < thread_count_; ++i) threads_.emplace_back([this] { run(); });
+  for (int i = 0; i < thread_count_; ++i) {
+    threads_.emplace_back([this] { compute(); });
+    writers_.emplace_back([this] { write_down(); });
+  }
 }
 
 Admission JobQueue::reserve(const QueuedJob& job) {
@@ -157,48 +169,92 @@ void JobQueue::stop() {
     for (const auto& [id, signal] : running_) signal->request(StopReason::kShutdown);
   }
   changed_.notify_all();
+  join();
+}
+
+/// What was computed is written down before the end.
+void JobQueue::join() {
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
+  {
+    const std::lock_guard lock(mutex_);
+    all_computed_ = true;
+  }
+  computed_.notify_all();
+  for (std::thread& writer : writers_) writer.join();
+  writers_.clear();
 }
 
 /// Whether all threads but one are taken by jobs that are not interactive.
 bool JobQueue::only_interactive() const {
-  return thread_count_ > 1 && running_bulk_ >= thread_count_ - 1;
+  return thread_count_ > 1 && computing_bulk_ >= thread_count_ - 1;
 }
 
-/// Whether the next of the waiting may run beside those that run.
+/// Whether the next of the waiting may run beside those that run. Unwritten results do not heap up.
 bool JobQueue::may_begin() const {
-  if (one_runs_alone_) return false;
+  const std::size_t most = 2 * static_cast<std::size_t>(thread_count_);
+  if (one_runs_alone_ || running_.size() >= most) return false;
   const QueuedJob* next = waiting_.peek(only_interactive());
   return next != nullptr && (!next->alone || running_.empty());
 }
 
-void JobQueue::run() {
-  for (;;) {
-    QueuedJob job;
-    const auto signal = std::make_shared<StopSignal>();
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return stopping_ || may_begin(); });
-      if (stopping_) return;
-      job = *waiting_.pop(only_interactive());
-      running_[job.id] = signal;
-      one_runs_alone_ = job.alone;
-      if (!job.is_interactive()) ++running_bulk_;
-    }
-    try {
-      work_(job.id, *signal);
-    } catch (...) {
-      spdlog::critical("simulations/{}: its job threw; this is a defect", job.id);
-    }
-    {
-      const std::lock_guard lock(mutex_);
-      running_.erase(job.id);
-      if (job.alone) one_runs_alone_ = false;
-      if (!job.is_interactive()) --running_bulk_;
-    }
-    changed_.notify_all();
-    ended_.notify_all();
+/// Nothing when the queue stops.
+std::optional<JobQueue::Running> JobQueue::next() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return stopping_ || may_begin(); });
+  if (stopping_) return std::nullopt;
+  Running out{*waiting_.pop(only_interactive()), std::make_shared<StopSignal>(), {}};
+  running_[out.job.id] = out.signal;
+  one_runs_alone_ = out.job.alone;
+  if (!out.job.is_interactive()) ++computing_bulk_;
+  return out;
+}
+
+/// What it leaves to be done goes to the writers.
+void JobQueue::finish_computing(Running computed) {
+  const QueuedJob job = computed.job;
+  const bool has_rest = static_cast<bool>(computed.rest);
+  {
+    const std::lock_guard lock(mutex_);
+    if (!job.is_interactive()) --computing_bulk_;
+    if (has_rest) unwritten_.push_back(std::move(computed));
+  }
+  if (!has_rest) return end(job);
+  computed_.notify_one();
+}
+
+void JobQueue::end(const QueuedJob& job) {
+  {
+    const std::lock_guard lock(mutex_);
+    running_.erase(job.id);
+    if (job.alone) one_runs_alone_ = false;
+  }
+  changed_.notify_all();
+  ended_.notify_all();
+}
+
+void JobQueue::compute() {
+  while (std::optional<Running> running = next()) {
+    shielded(running->job.id, [&] { work_(running->job.id, *running->signal, running->rest); });
+    finish_computing(*std::move(running));
+  }
+}
+
+/// Nothing when there will be none.
+std::optional<JobQueue::Running> JobQueue::next_unwritten() {
+  std::unique_lock lock(mutex_);
+  computed_.wait(lock, [this] { return all_computed_ || !unwritten_.empty(); });
+  if (unwritten_.empty()) return std::nullopt;
+  Running out = std::move(unwritten_.front());
+  unwritten_.pop_front();
+  return out;
+}
+
+void JobQueue::write_down() {
+  while (std::optional<Running> running = next_unwritten()) {
+    shielded(running->job.id, running->rest);
+    running->rest = nullptr;
+    end(running->job);
   }
 }
 

@@ -5,10 +5,12 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -50,13 +52,16 @@ struct Admission {
 };
 
 /// Threads that work through jobs in the order of a FairQueue; a job is a number and what it means
-/// is the caller's. Where there are several threads, one is kept for interactive jobs. Safe for
-/// concurrent access without external synchronization; `start`, `drain`, `stop` and the destructor
-/// from one thread.
+/// is the caller's. What a job leaves to be done when it is computed, writing its result down, is
+/// done by as many other threads, so that those that compute go on to the next one at once. Where
+/// several compute, one is kept for interactive jobs. Safe for concurrent access without external
+/// synchronization; `start`, `drain`, `stop` and the destructor from one thread.
 class JobQueue {
  public:
-  /// Called on a worker's thread; must not throw (what it throws is swallowed).
-  using Work = std::function<void(std::int64_t id, const StopSignal& stop)>;
+  /// Both are called on threads of the queue and must not throw (what they throw is swallowed). The
+  /// job runs until its rest, if it sets one, is done; `stop` lives as long.
+  using Rest = std::function<void()>;
+  using Work = std::function<void(std::int64_t id, const StopSignal& stop, Rest& rest)>;
 
   JobQueue(int threads, const QueueLimits& limits, Work work);
   ~JobQueue();
@@ -99,7 +104,19 @@ class JobQueue {
     double cost_seconds = 0;
   };
 
-  void run();
+  struct Running {
+    QueuedJob job;
+    std::shared_ptr<StopSignal> signal;
+    Rest rest;
+  };
+
+  void compute();
+  void write_down();
+  std::optional<Running> next();
+  std::optional<Running> next_unwritten();
+  void finish_computing(Running computed);
+  void end(const QueuedJob& job);
+  void join();
   void enqueue(const QueuedJob& job);
   void give_back(const QueuedJob& job);
   int turn_away(const QueuedJob& job, double least_seconds);
@@ -111,16 +128,20 @@ class JobQueue {
   const Work work_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
+  std::condition_variable computed_;
   std::condition_variable ended_;
   FairQueue waiting_;                                            // guarded by mutex_
   std::map<std::int64_t, std::shared_ptr<StopSignal>> running_;  // guarded by mutex_
   bool one_runs_alone_ = false;                                  // guarded by mutex_
-  int running_bulk_ = 0;                                         // guarded by mutex_
+  std::deque<Running> unwritten_;                                // guarded by mutex_
+  bool all_computed_ = false;                                    // guarded by mutex_
+  int computing_bulk_ = 0;                                       // guarded by mutex_
   Reserved reserved_;                                            // guarded by mutex_
   std::map<std::string, Reserved> reserved_of_;                  // guarded by mutex_; by client
   std::map<std::string, std::chrono::steady_clock::time_point> turns_;  // guarded by mutex_
   bool stopping_ = false;                                               // guarded by mutex_
   std::vector<std::thread> threads_;
+  std::vector<std::thread> writers_;
 };
 
 }  // namespace tribodyn::server

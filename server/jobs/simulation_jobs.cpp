@@ -41,7 +41,9 @@ SimulationJobs::SimulationJobs(Store& store, Options options)
       heartbeat_(options.heartbeat),
       runner_(store, board_, metrics_, options.clock, std::move(options.studies)),
       queue_(options.threads, options.limits,
-             [this](std::int64_t id, const StopSignal& stop) { runner_.run(id, stop); }),
+             [this](std::int64_t id, const StopSignal& stop, JobQueue::Rest& rest) {
+               runner_.run(id, stop, rest);
+             }),
       retention_(options.retention),
       janitor_(store, retention_, clock_),
       timekeeper_(tick(heartbeat_), clock_, [this](std::int64_t id) { expire(id); }) {}

@@ -17,6 +17,7 @@ using std::chrono::steady_clock;
 
 constexpr auto kProgressInterval = std::chrono::milliseconds(250);
 constexpr double kLeastFraction = 0.01;  // below it nothing can be said of the time that is left
+constexpr auto kLookAgain = std::chrono::milliseconds(1);
 constexpr auto kFirstPause = std::chrono::milliseconds(100);
 constexpr auto kLongestPause = std::chrono::milliseconds(30'000);
 
@@ -102,10 +103,13 @@ auto SimulationRunner::insist(std::int64_t id, const StopSignal& stop, const Act
   }
 }
 
-void SimulationRunner::run(std::int64_t id, const StopSignal& stop) const {
+/// Whatever goes wrong ends in the store.
+template <class Action>
+void SimulationRunner::guarded(std::int64_t id, const StopSignal& stop,
+                               const Action& action) const {
   try {
     try {
-      compute_and_save(id, stop);
+      action();
     } catch (const Cancelled&) {
       stopped(id, stop);
     } catch (const Refusal& refusal) {
@@ -122,6 +126,14 @@ void SimulationRunner::run(std::int64_t id, const StopSignal& stop) const {
   } catch (const StoreError& error) {  // the next start finds it unfinished and goes on
     spdlog::error("simulations/{} is left as it is: {}", id, error.what());
   }
+}
+
+void SimulationRunner::run(std::int64_t id, const StopSignal& stop, JobQueue::Rest& rest) const {
+  guarded(id, stop, [&] {
+    const std::shared_ptr<Unwritten> computed = compute(id, stop);
+    if (!computed) return;
+    rest = [this, id, &stop, computed] { guarded(id, stop, [&] { save(*computed, stop); }); };
+  });
 }
 
 StoredSimulation SimulationRunner::stored(std::int64_t id, const StopSignal& stop) const {
@@ -150,37 +162,59 @@ SimulationInputs SimulationRunner::inputs_of(const StoredSimulation& simulation,
 }
 
 /// Attempts that end otherwise than with a result are not timed.
-Computed SimulationRunner::compute_timed(const SimulationInputs& inputs, const ResultKey& key,
-                                         const ReportProgress& report) const {
+Solved SimulationRunner::solve_timed(const SimulationInputs& inputs,
+                                     const ReportProgress& report) const {
   const v1::Simulation& asked = inputs.effective;
   const v1::PointModel model = asked.has_operating_point() ? asked.operating_point().model()
                                                            : asked.inefficiency_curve().model();
   const StopWatch watch;
-  Computed computed = compute(inputs, key, studies_, report);
+  Solved solved = solve(inputs, studies_, report);
   metrics_.observe(model == v1::QUASI_STATIC ? Phase::kFriction : Phase::kOrbit, watch.seconds());
-  return computed;
+  return solved;
 }
 
-void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop) const {
-  const StoredSimulation simulation = stored(id, stop);
+/// Equal inputs are computed once: a result that is being written down is waited for.
+void SimulationRunner::wait_until_written(const ResultKey& key, const StopSignal& stop) const {
+  while (unwritten_.contains(key.input_hash)) {
+    if (!stop.wait_for(kLookAgain)) throw Cancelled();
+  }
+}
+
+/// Nothing when it has ended otherwise, or its result was there.
+std::shared_ptr<SimulationRunner::Unwritten> SimulationRunner::compute(
+    std::int64_t id, const StopSignal& stop) const {
+  StoredSimulation simulation = stored(id, stop);
   const double waited = 1e-6 * static_cast<double>(clock_() - simulation.create_time);
   const StopWatch validation;
-  const SimulationInputs inputs = inputs_of(simulation, stop);
+  SimulationInputs inputs = inputs_of(simulation, stop);
   const ResultKey key = result_key(inputs);
   metrics_.observe(Phase::kValidation, validation.seconds());
+  wait_until_written(key, stop);
   const auto started = insist(id, stop, [&] { return store_.mark_running(id, clock_(), key); });
   metrics_.observe(Phase::kQueue, std::max(0.0, waited));
   if (started && started->state == StoredState::kSucceeded) metrics_.count(Ending::kServedByCache);
   publish(id, started);
-  if (!started || started->state != StoredState::kRunning) return;  // ended, or served
+  if (!started || started->state != StoredState::kRunning) return nullptr;
   const std::shared_ptr<ProgressChannel> channel = board_.open(id);
   Reporter reporter(*channel, stop);
   if (stop.requested()) throw Cancelled();
   const StopWatch computing;
-  Computed computed = compute_timed(inputs, key, std::ref(reporter));
-  const double computed_seconds = computing.seconds();
-  const NewResult result{key, computed.result.SerializeAsString(), std::move(computed.history)};
+  Solved solved = solve_timed(inputs, std::ref(reporter));
+  return std::shared_ptr<Unwritten>(new Unwritten{std::move(simulation),
+                                                  std::move(inputs),
+                                                  key,
+                                                  std::move(solved),
+                                                  waited,
+                                                  computing.seconds(),
+                                                  {unwritten_, key.input_hash}});
+}
+
+void SimulationRunner::save(Unwritten& unwritten, const StopSignal& stop) const {
+  const std::int64_t id = unwritten.simulation.id;
   const StopWatch storing;
+  Computed computed = to_result(unwritten.inputs, unwritten.key, std::move(unwritten.solved));
+  const NewResult result{unwritten.key, computed.result.SerializeAsString(),
+                         std::move(computed.history)};
   const auto ended = insist(id, stop, [&] { return store_.mark_succeeded(id, clock_(), result); });
   metrics_.observe(Phase::kStore, storing.seconds());
   if (ended) {
@@ -190,7 +224,8 @@ void SimulationRunner::compute_and_save(std::int64_t id, const StopSignal& stop)
   spdlog::info(
       "event=simulation_computed simulation=simulations/{} request_id={} input_hash={} "
       "waited_seconds={:.6f} computed_seconds={:.6f} stored_seconds={:.6f}",
-      id, simulation.request_id, key.input_hash, waited, computed_seconds, storing.seconds());
+      id, unwritten.simulation.request_id, unwritten.key.input_hash, unwritten.waited_seconds,
+      unwritten.computed_seconds, storing.seconds());
 }
 
 /// Without an event somebody else has ended the simulation, by cancelling it: a channel opened

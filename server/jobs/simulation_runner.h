@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 
 #include "server/convert/resource_names.h"
 #include "server/jobs/compute.h"
+#include "server/jobs/held_keys.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/progress_board.h"
 #include "server/metrics/metrics.h"
@@ -24,20 +26,35 @@ ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation)
 /// Carries one simulation from QUEUED to its end: inputs from the store, the study in the core, the
 /// result back into the store, progress on the board. Whatever goes wrong ends in the store, never
 /// in the thread; a store that cannot be written (disk full) is tried until it can or the server
-/// stops. Safe for concurrent access without external synchronization.
+/// stops. Writing the result down is left as the rest of the job. Safe for concurrent access
+/// without external synchronization.
 class SimulationRunner {
  public:
   SimulationRunner(Store& store, ProgressBoard& board, Metrics& metrics, Clock clock,
                    StudyFunctions studies);
 
-  void run(std::int64_t id, const StopSignal& stop) const;
+  void run(std::int64_t id, const StopSignal& stop, JobQueue::Rest& rest) const;
 
  private:
-  void compute_and_save(std::int64_t id, const StopSignal& stop) const;
+  /// What is computed, and not yet to be found in the store.
+  struct Unwritten {
+    StoredSimulation simulation;
+    SimulationInputs inputs;
+    ResultKey key;
+    Solved solved;
+    double waited_seconds = 0;
+    double computed_seconds = 0;
+    HeldKeys::Hold hold;
+  };
+
+  template <class Action>
+  void guarded(std::int64_t id, const StopSignal& stop, const Action& action) const;
+  std::shared_ptr<Unwritten> compute(std::int64_t id, const StopSignal& stop) const;
+  void save(Unwritten& unwritten, const StopSignal& stop) const;
   StoredSimulation stored(std::int64_t id, const StopSignal& stop) const;
   SimulationInputs inputs_of(const StoredSimulation& simulation, const StopSignal& stop) const;
-  Computed compute_timed(const SimulationInputs& inputs, const ResultKey& key,
-                         const ReportProgress& report) const;
+  Solved solve_timed(const SimulationInputs& inputs, const ReportProgress& report) const;
+  void wait_until_written(const ResultKey& key, const StopSignal& stop) const;
   void publish(std::int64_t id, const std::optional<StoredEvent>& event) const;
   void stopped(std::int64_t id, const StopSignal& stop) const;
   void fail(std::int64_t id, const StopSignal& stop, const std::string& reason,
@@ -50,6 +67,7 @@ class SimulationRunner {
   Metrics& metrics_;
   Clock clock_;
   StudyFunctions studies_;
+  mutable HeldKeys unwritten_;
 };
 
 }  // namespace tribodyn::server

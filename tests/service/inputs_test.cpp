@@ -202,10 +202,32 @@ TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
     EXPECT_GT(seconds, 1.5 * before) << each.ShortDebugString();
     before = seconds;
   }
-  v1::Simulation quasi_static = point_simulation();
+  v1::Simulation slow = point_simulation();
+  slow.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(5);
+  v1::Simulation quasi_static = slow;
   quasi_static.mutable_operating_point()->set_model(v1::QUASI_STATIC);
   EXPECT_LT(estimate_cost(inputs_of(quasi_static).effective).processor_seconds(),
-            estimate_cost(inputs_of(point_simulation()).effective).processor_seconds());
+            estimate_cost(inputs_of(slow).effective).processor_seconds());
+}
+
+TEST(CostEstimate, IsTheSameForWhatIsAlike) {
+  v1::Simulation other = point_simulation();
+  other.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(65.01);
+  EXPECT_EQ(estimate_cost(inputs_of(point_simulation()).effective).processor_seconds(),
+            estimate_cost(inputs_of(other).effective).processor_seconds());
+}
+
+TEST(CostEstimate, KnowsThatSlowPointsAndWideCurvesTakeLonger) {
+  const auto curve_seconds = [](const std::vector<double>& speeds) {
+    v1::Simulation out = curve_simulation();
+    out.mutable_inefficiency_curve()->Clear();
+    *out.mutable_inefficiency_curve()->mutable_speeds_kilometers_per_hour() = {speeds.begin(),
+                                                                               speeds.end()};
+    return estimate_cost(inputs_of(out).effective).processor_seconds();
+  };
+  EXPECT_GT(curve_seconds({10}), 1.5 * curve_seconds({100}));
+  EXPECT_GT(curve_seconds({50, 100}), 2 * curve_seconds({50})) << "what lies between is searched";
+  EXPECT_GT(curve_seconds({25, 100}), 1.5 * curve_seconds({50, 100}));
 }
 
 TEST(Ledger, IsTheSameSerialisedWhateverIsKeptOfIt) {

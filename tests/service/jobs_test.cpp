@@ -26,7 +26,7 @@ StudyFunctions throwing(const Thrown& thrown) {
 TEST(JobQueue, RunsWhatIsPushedInOrder) {
   std::mutex mutex;
   std::vector<std::int64_t> done;
-  JobQueue queue(1, {.jobs = 100}, [&](std::int64_t id, const StopSignal&) {
+  JobQueue queue(1, {.jobs = 100}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
     const std::lock_guard lock(mutex);
     done.push_back(id);
   });
@@ -45,7 +45,7 @@ TEST(JobQueue, RunsWhatIsPushedInOrder) {
 
 TEST(JobQueue, TurnsAwayWhatIsTooMuch) {
   std::atomic<bool> release = false;
-  JobQueue queue(1, {.jobs = 2}, [&](std::int64_t, const StopSignal& stop) {
+  JobQueue queue(1, {.jobs = 2}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest&) {
     while (!release && !stop.requested()) std::this_thread::yield();
   });
   queue.start();
@@ -119,7 +119,8 @@ TEST(FairQueue, KnowsWhatWaits) {
 }
 
 TEST(JobQueue, IsBoundedByCostAndLeavesRoomForOthers) {
-  JobQueue queue(2, {.jobs = 100, .cost_seconds = 1000}, [](std::int64_t, const StopSignal&) {});
+  JobQueue queue(2, {.jobs = 100, .cost_seconds = 1000},
+                 [](std::int64_t, const StopSignal&, JobQueue::Rest&) {});
   EXPECT_TRUE(queue.reserve({1, "a", 5000}).is_admitted) << "whatever it costs, it must run once";
   const Admission refused = queue.reserve({2, "b", 1});
   EXPECT_FALSE(refused.is_admitted);
@@ -131,7 +132,8 @@ TEST(JobQueue, IsBoundedByCostAndLeavesRoomForOthers) {
 }
 
 TEST(JobQueue, TellsThoseTurnedAwayToComeOneAfterAnother) {
-  JobQueue queue(2, {.jobs = 1, .cost_seconds = 1000}, [](std::int64_t, const StopSignal&) {});
+  JobQueue queue(2, {.jobs = 1, .cost_seconds = 1000},
+                 [](std::int64_t, const StopSignal&, JobQueue::Rest&) {});
   EXPECT_TRUE(queue.reserve({1, "a", 1}).is_admitted);
   EXPECT_EQ(queue.reserve({2, "b", 20}).retry_seconds, 1);
   EXPECT_EQ(queue.reserve({3, "b", 20}).retry_seconds, 11) << "after that of 20 s on two";
@@ -144,7 +146,7 @@ TEST(JobQueue, TellsThoseTurnedAwayToComeOneAfterAnother) {
 TEST(JobQueue, KeepsAThreadForInteractiveJobs) {
   std::atomic<int> bulk = 0;
   std::atomic<int> small = 0;
-  JobQueue queue(2, {}, [&](std::int64_t id, const StopSignal& stop) {
+  JobQueue queue(2, {}, [&](std::int64_t id, const StopSignal& stop, JobQueue::Rest&) {
     ++(id < 10 ? bulk : small);
     while (id < 10 && !stop.requested()) std::this_thread::yield();
   });
@@ -159,7 +161,7 @@ TEST(JobQueue, KeepsAThreadForInteractiveJobs) {
 
 TEST(JobQueue, ADefectiveJobDoesNotEndTheThread) {
   std::atomic<int> done = 0;
-  JobQueue queue(1, {.jobs = 10}, [&](std::int64_t id, const StopSignal&) {
+  JobQueue queue(1, {.jobs = 10}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
     ++done;
     if (id == 1) throw std::runtime_error("defect");
   });
@@ -173,7 +175,7 @@ TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
   std::atomic<int> started = 0;
   std::atomic<int> shut_down = 0;
   {
-    JobQueue queue(2, {.jobs = 10}, [&](std::int64_t, const StopSignal& stop) {
+    JobQueue queue(2, {.jobs = 10}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest&) {
       ++started;
       while (!stop.requested()) std::this_thread::yield();
       if (stop.reason() == StopReason::kShutdown) ++shut_down;
@@ -188,11 +190,47 @@ TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
   EXPECT_EQ(shut_down, 2);
 }
 
+TEST(JobQueue, TheNextIsComputedWhileAResultIsWrittenDown) {
+  std::atomic<int> computed = 0;
+  std::atomic<int> written = 0;
+  std::atomic<bool> release = false;
+  JobQueue queue(1, {}, [&](std::int64_t, const StopSignal&, JobQueue::Rest& rest) {
+    ++computed;
+    rest = [&] {
+      while (!release) std::this_thread::yield();
+      ++written;
+    };
+  });
+  queue.start();
+  queue.push_resumed({1});
+  EXPECT_TRUE(eventually([&] { return computed == 1; }));
+  for (int id = 2; id <= 5; ++id) queue.push_resumed({id});
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_LE(computed, 2) << "unwritten results do not heap up";
+  EXPECT_EQ(written, 0);
+  release = true;
+  EXPECT_TRUE(eventually([&] { return written == 5; }));
+}
+
+TEST(JobQueue, WhatIsComputedIsWrittenDownBeforeAStopEnds) {
+  std::atomic<int> written = 0;
+  JobQueue queue(2, {}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest& rest) {
+    while (!stop.requested()) std::this_thread::yield();
+    rest = [&] { ++written; };
+  });
+  queue.start();
+  for (int id = 1; id <= 5; ++id) queue.push_resumed({id});
+  EXPECT_TRUE(eventually([&] { return queue.occupancy().running == 2; }));
+  queue.stop();
+  EXPECT_EQ(written, 2);
+  EXPECT_EQ(queue.occupancy().running, 0U);
+}
+
 TEST(JobQueue, AJobThatMayKillTheServerRunsAlone) {
   std::atomic<int> running = 0;
   std::atomic<int> done = 0;
   std::atomic<int> together = 0;
-  JobQueue queue(4, {.jobs = 100}, [&](std::int64_t id, const StopSignal&) {
+  JobQueue queue(4, {.jobs = 100}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
     const int others = running++;
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     if (id % 3 == 0 && (others != 0 || running != 1)) ++together;
@@ -404,6 +442,22 @@ TEST(GoldenCase, ComesOutAsItShouldAndAWrongOneIsNamed) {
                              testing::HasSubstr("33.15")));
   EXPECT_THAT(check_golden_case(throwing(Refusal("X", "no answer"))),
               testing::HasSubstr("no answer"));
+}
+
+TEST(SimulationJobs, WhatIsBeingWrittenDownIsNotComputedAgain) {
+  auto release = std::make_shared<std::atomic<bool>>(false);
+  Bench bench(patient_studies(release), 1);
+  v1::Simulation slowly_written = point_simulation();
+  v1::HistoryRequest* history = slowly_written.mutable_operating_point()->mutable_history();
+  history->add_columns("mesh_force_newtons");
+  history->set_mesh_cycles(20);
+  history->set_samples_per_mesh_cycle(50'000);
+  const std::string first = bench.create(slowly_written);
+  const std::string second = bench.create(slowly_written);
+  *release = true;
+  ASSERT_TRUE(bench.reaches(second, v1::Simulation::SUCCEEDED));
+  EXPECT_FALSE(bench.get(first).cache_hit());
+  EXPECT_TRUE(bench.get(second).cache_hit());
 }
 
 TEST(SimulationJobs, TooManyWaitingAreTurnedAway) {
