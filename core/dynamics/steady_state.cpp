@@ -311,4 +311,18 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
   return out;
 }
 
+double marched_multiplier(GearPairSystem& system, const MarchState& state, int period,
+                          const SteadyStateRequest& request, MarchStatistics& statistics,
+                          long& mesh_cycles) {
+  SteadyState work;
+  system.regime = system.regime_of(0, state.data());
+  const double multiplier = PeriodMap(system, request, work).largest_multiplier(state, period);
+  statistics.right_hand_sides += work.statistics.right_hand_sides;
+  statistics.accepted_steps += work.statistics.accepted_steps;
+  statistics.rejected_steps += work.statistics.rejected_steps;
+  statistics.events += work.statistics.events;
+  mesh_cycles += work.mesh_cycles;
+  return multiplier;
+}
+
 }  // namespace tribodyn

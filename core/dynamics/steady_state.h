@@ -49,4 +49,12 @@ MarchState static_start(const GearPairSystem& system, double mean_pinion_speed,
 SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
                                const SteadyStateRequest& request);
 
+/// Largest modulus of the Floquet multipliers of a periodic response with friction in the loop,
+/// under the system's torques; to some 3e-4, by marching it eight times (forward differences).
+/// `state`: at mesh phase 0; `period` [mesh cycles]. Adds to `statistics` and `mesh_cycles`. Throws
+/// as the march does.
+double marched_multiplier(GearPairSystem& system, const MarchState& state, int period,
+                          const SteadyStateRequest& request, MarchStatistics& statistics,
+                          long& mesh_cycles);
+
 }  // namespace tribodyn

@@ -249,7 +249,8 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   out.statistics.periodicity_defect = orbit.defect;
   out.statistics.mesh_cycles = cycles;
   out.statistics.contact_solutions = system.contact_solutions();
-  out.statistics.largest_multiplier = orbit.map->largest_multiplier();
+  out.statistics.largest_multiplier =
+      refined->marched_multiplier ? *refined->marched_multiplier : orbit.map->largest_multiplier();
   return out;
 }
 

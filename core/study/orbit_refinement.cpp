@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "core/dynamics/orbit_solver.h"
+#include "core/dynamics/steady_state.h"
+#include "core/refusal.h"
 #include "core/study/step_sequence.h"
 
 namespace tribodyn {
@@ -14,6 +16,7 @@ constexpr double kSafety = 1.7;      // on the error that two step lengths tell
 constexpr double kSweepShare = 0.4;  // of the tolerance: may be left by sweeps
 constexpr int kPatience = 300;       // periods
 constexpr double kNearDoubling = 0.06;
+constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march on a response shot
 constexpr int kMostFailures = 3;
 constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
 constexpr int kFinest = 4000;    // steps per mesh cycle
@@ -64,12 +67,16 @@ class Refinement {
  public:
   /// `cycles_left`: to march in search of a response; charged also where one is known already, so
   /// that answers do not depend on that. Keeps the references.
-  Refinement(GearPairSystem& system, OrbitSolver& solver, MeshGrids& grids,
-             const OrbitSearch& search, int& cycles_left)
+  Refinement(GearPairSystem& system, const FlankContactBatch& contacts, OrbitSolver& solver,
+             MeshGrids& grids, const OrbitSearch& search, MarchStatistics& statistics,
+             long& marched_cycles, int& cycles_left)
       : system_(system),
+        contacts_(contacts),
         solver_(solver),
         grids_(grids),
         search_(search),
+        statistics_(statistics),
+        marched_cycles_(marched_cycles),
         cycles_left_(cycles_left) {
     request_.mean_pinion_speed = search.mean_pinion_speed;
     request_.solve_wheel_torque = search.solve_wheel_torque;
@@ -98,7 +105,7 @@ class Refinement {
       const bool pulls = request_.keep_contact && orbit_.least_pressing_force < 0;
       if (is_compared && error <= search_.tolerance && !pulls) {
         if (!attracts(grid)) return std::nullopt;
-        return RefinedOrbit{std::move(orbit_), steps, error};
+        return RefinedOrbit{std::move(orbit_), steps, marched_multiplier_, error};
       }
       const bool halved = steps == 2 * coarser_.steps;
       coarser_ = {steps, orbit_.figures, error, halved ? change() : 0};
@@ -145,8 +152,7 @@ class Refinement {
     if (is_over_) return false;
     if (found && coarser_.steps > 0) found = sweep_on(grid);
     if (found) return true;
-    is_over_ = system_.take_refusal() != ContactStatus::kOk || !search_.patient ||
-               ++failures_ == kMostFailures;
+    is_over_ = system_.take_refusal() != ContactStatus::kOk || ++failures_ == kMostFailures;
     coarser_ = {};
     return false;
   }
@@ -212,19 +218,45 @@ class Refinement {
     if ((orbit_.contact_loss || doubles) && !solver_.renew_map(grid, request_, orbit_)) {
       return false;
     }
-    const double doubt = margin(system_, search_);
+    double doubt = margin(system_, search_);
     if (orbit_.map->multipliers_are_below(1 - doubt)) return true;
-    const double multiplier = orbit_.map->largest_multiplier();
+    double multiplier = orbit_.map->largest_multiplier();
+    if (std::abs(multiplier - 1) <= doubt) {
+      if (!march_multiplier()) return false;
+      multiplier = *marched_multiplier_;
+      doubt = kMarchedDoubt;
+    }
     if (multiplier < 1 - doubt) return true;
     // In doubt whether the period has doubled, it is looked for.
-    repels_ = multiplier > 1 + doubt || (doubles && multiplier > 1 - doubt);
+    repels_ = multiplier > 1 + doubt || doubles;
     return false;
   }
 
+  bool march_multiplier() {
+    SteadyStateRequest request;
+    request.mean_pinion_speed = search_.mean_pinion_speed;
+    request.solve_wheel_torque = search_.solve_wheel_torque;
+    request.march.relative_tolerance = 1e-8;
+    request.march.interrupted = search_.interrupted;
+    system_.set_torques(orbit_.torques);
+    system_.solve_together(&contacts_);
+    try {
+      marched_multiplier_ = marched_multiplier(system_, orbit_.pieces.front().start, orbit_.period,
+                                               request, statistics_, marched_cycles_);
+    } catch (const Refusal&) {
+      system_.take_refusal();
+    }
+    system_.solve_together(nullptr);
+    return marched_multiplier_.has_value();
+  }
+
   GearPairSystem& system_;
+  const FlankContactBatch& contacts_;
   OrbitSolver& solver_;
   MeshGrids& grids_;
   const OrbitSearch& search_;
+  MarchStatistics& statistics_;
+  long& marched_cycles_;
   int& cycles_left_;
   OrbitRequest request_;
   PeriodicOrbit origin_, orbit_;
@@ -232,6 +264,7 @@ class Refinement {
   int failures_ = 0;
   double doubtful_pull_ = kClearPull;  // of the mean force: as little may be the steps' error
   bool is_over_ = false, repels_ = false;
+  std::optional<double> marched_multiplier_;
 };
 
 }  // namespace
@@ -246,14 +279,18 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
   const Torques torques = system.torques();
   for (bool patient = false;; patient = true) {
     system.set_torques(torques);
-    Refinement refinement(system, solver, grids, next, cycles_left);
+    const auto refinement_now = [&] {
+      return Refinement(system, contacts, solver, grids, next, statistics, marched_cycles,
+                        cycles_left);
+    };
+    Refinement refinement = refinement_now();
     auto found = refinement.run();
     const bool repels = refinement.repels();
-    if (found && next.period > search.period && is_half_as_long(system, search, found->orbit)) {
+    if (found && next.period % 2 == 0 && is_half_as_long(system, search, found->orbit)) {
       next.period /= 2;
       next.start = found->orbit.state;
       next.few_cycles = next.first_cycles = 1;
-      found = Refinement(system, solver, grids, next, cycles_left).run();
+      found = refinement_now().run();
     }
     if (found || (patient && !repels) || 2 * next.period > kLongestPeriod) return found;
     if (!search.patient) return found;

@@ -28,6 +28,8 @@ struct OrbitSearch {
 struct RefinedOrbit {
   PeriodicOrbit orbit;
   int steps_per_mesh_cycle = 0;
+  /// Floquet, modulus, with friction in the loop; absent: by the orbit's map it is clear enough.
+  std::optional<double> marched_multiplier;
   /// Of loss (RMS and energy), torque and extremes of the transmission error, relative: what the
   /// last halving of the steps changed, less what its order took away, and what sweeps left.
   double estimated_error = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/refusal.h"
@@ -35,12 +36,14 @@ bool may_be_branches(const PointResult& a, const PointResult& b) {
 
 constexpr double kNear = 0.1;           // what is on one branch goes on like that
 constexpr double kEnough = 0.04 / 3.6;  // [m/s]
+constexpr double kAnywhere = std::numeric_limits<double>::infinity();
 
 /// Where a branch may end: a response on it, one on another, and between them or at the other one
 /// the nearest speed at which the branch is not found.
 struct Bracket {
   PointResult before, beyond;
-  double gone_at;  // [m/s]
+  double gone_at;    // [m/s]
+  long cycles_left;  // to march, where shooting cannot tell
 };
 
 /// Looks for the branch at a speed. False where it goes on to the response beyond.
@@ -54,6 +57,9 @@ bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOpt
     bracket.gone_at = speed;
     return options.method == SteadyStateMethod::kShooting;  // which finds nothing, or too little
   }
+  if (found.method == SteadyStateMethod::kMarch) {
+    bracket.cycles_left -= found.statistics.mesh_cycles;
+  }
   const double first = distance(bracket.before, found), second = distance(found, bracket.beyond);
   if (found.settled && std::max(first, second) < kNear) return false;
   if (found.settled && first <= second) {
@@ -65,41 +71,81 @@ bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOpt
   return true;
 }
 
-/// The same, halving the speed in between until that is enough.
-bool narrow(PreparedScene& scene, double ascent_angle, const PointOptions& options,
+/// The same, halving the speed in between until that or the march is enough. `stride`: how near
+/// the end is expected [m/s]; farther where it is not.
+bool narrow(PreparedScene& scene, double ascent_angle, const PointOptions& options, double stride,
             Bracket& bracket) {
-  for (;;) {
+  for (;; stride *= 2) {
     const double width = bracket.gone_at - bracket.before.vehicle_speed;
-    if (std::abs(width) <= 1.001 * kEnough) return true;
-    const double step = std::copysign(std::max(0.5 * std::abs(width), kEnough), width);
+    if (std::abs(width) <= 1.001 * kEnough || bracket.cycles_left <= 0) return true;
+    const double step =
+        std::copysign(std::max(std::min(0.5 * std::abs(width), stride), kEnough), width);
     const double speed = bracket.before.vehicle_speed + step;
     if (!narrow_at(scene, ascent_angle, speed, options, bracket)) return false;
   }
 }
 
+/// A response, followed to a speed or as near to it as it goes.
+PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions options,
+                   PointResult from, double to) {
+  double step = to - from.vehicle_speed;
+  while (from.vehicle_speed != to) {
+    const bool arrives = std::abs(to - from.vehicle_speed) <= std::abs(step);
+    options.carried_state = carried_from(from);
+    try {
+      PointResult next = solve_prepared_point(
+          scene, cruise(arrives ? to : from.vehicle_speed + step, ascent_angle), options);
+      if (!may_be_branches(from, next)) {
+        from = std::move(next);
+        continue;
+      }
+    } catch (const Refusal&) {  // it may be nearer
+    }
+    step /= 2;
+    if (std::abs(step) < kEnough) break;
+  }
+  return from;
+}
+
 /// Whether a branch ends between two points of a sweep, and where; of several ends one.
 std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, PointOptions options,
                                     const PointResult& before, const PointResult& after) {
-  constexpr int kPatience = 1000, kLittlePatience = 300;  // [mesh cycles]
+  constexpr int kPatience = 300, kLeastPatience = 150;  // [mesh cycles], at a speed
+  constexpr int kMostMarched = 600;
+  const bool only_marched = options.method == SteadyStateMethod::kMarch;
   options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kPatience);
-  options.tolerance = std::max(options.tolerance, 0.1 * kNear);
+  options.tolerance = std::max(options.tolerance, 0.01 * kNear);
   options.history = {};
   options.probe_coexisting_response = false;
-  Bracket bracket{before, after, after.vehicle_speed};
-  if (options.method != SteadyStateMethod::kMarch) {
+  Bracket bracket{before, after, after.vehicle_speed,
+                  only_marched ? std::numeric_limits<long>::max() : kMostMarched};
+  if (!only_marched) {
     PointOptions quick = options;
     quick.method = SteadyStateMethod::kShooting;  // close to an end marching takes its time
-    if (!narrow(scene, ascent_angle, quick, bracket)) return std::nullopt;
+    if (!narrow(scene, ascent_angle, quick, kAnywhere, bracket)) return std::nullopt;
     if (bracket.gone_at != bracket.beyond.vehicle_speed) {
       if (options.method == SteadyStateMethod::kShooting) return std::nullopt;
+      // Where periods change hardly anything attracts, and a march takes its time: what is there
+      // is told by the other branch.
+      if (before.period_in_mesh_cycles != after.period_in_mesh_cycles) {
+        const PointResult there = follow(scene, ascent_angle, quick, after, bracket.gone_at);
+        if (std::abs(there.vehicle_speed - bracket.gone_at) < 4 * kEnough) {
+          if (distance(bracket.before, there) < kNear) return std::nullopt;
+          return BranchEnd{bracket.before.vehicle_speed, bracket.gone_at};
+        }
+      }
       // It may go on in another way, as with a period that doubles, or attract too weakly for
       // shooting to tell.
       const double speed = std::exchange(bracket.gone_at, bracket.beyond.vehicle_speed);
       if (!narrow_at(scene, ascent_angle, speed, options, bracket)) return std::nullopt;
     }
   }
-  options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kLittlePatience);
-  if (!narrow(scene, ascent_angle, options, bracket)) return std::nullopt;
+  if (!only_marched) {
+    options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kLeastPatience);
+  }
+  if (!narrow(scene, ascent_angle, options, only_marched ? kAnywhere : 2 * kEnough, bracket)) {
+    return std::nullopt;
+  }
   if (distance(bracket.before, bracket.beyond) < kNear) return std::nullopt;
   return BranchEnd{bracket.before.vehicle_speed, bracket.gone_at};
 }

@@ -20,7 +20,9 @@ struct SweepOptions {
 /// direction.
 struct BranchEnd {
   double followed_to = 0;  ///< the last speed on the branch [m/s]
-  double gone_at = 0;      ///< where it is not found any more, 0.04 km/h on [m/s]
+  /// Where it is not found any more [m/s]: 0.04 km/h on, or more where hardly anything attracts and
+  /// some hundred mesh cycles of marching do not tell.
+  double gone_at = 0;
 };
 
 /// One point of a sweep: a result, or the reason why there is none. A refused point does not end

@@ -217,7 +217,8 @@ TEST(SteadyStates, ARepellingOrbitIsLeft) {
   const PointResult r = point(149.5);
   EXPECT_TRUE(r.settled);
   EXPECT_EQ(r.period_in_mesh_cycles, 2);
-  EXPECT_LE(r.statistics.contact_solutions, 30000);  // marching takes some 500,000
+  // Half of them tell the multiplier; marching takes some 500,000.
+  EXPECT_LE(r.statistics.contact_solutions, 35000);
 }
 
 TEST(SteadyStates, WithoutWorkToSettleTheAnswerSaysSo) {
