@@ -16,15 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace tribodyn {
 namespace HWY_NAMESPACE {
-namespace {
-
-HWY_INLINE Pack exponentials(Pack x) {
-  for (int k = 0; k < kWide; ++k) x.v[k] = exponential<Digits::kFull>(x.v[k]);
-  return x;
-}
-
-}  // namespace
-
 void integrate_in_lanes(const RatioRule& rule, const RatioLanes& factor,
                         std::array<RatioLanes, kRatioPoints>& values) {
   for (int lane = 0; lane < static_cast<int>(factor.size()); lane += pack_lanes()) {
@@ -33,9 +24,9 @@ void integrate_in_lanes(const RatioRule& rule, const RatioLanes& factor,
     double growth = 0;
     for (int j = 0; j < kRatioPoints; ++j) {
       const RatioInterval& interval = rule[j];
-      integral = integral * exponentials(l * (growth - interval.growth));
+      integral = integral * exponential(l * (growth - interval.growth));
       for (int n = 0; n < RatioInterval::kNodes; ++n) {
-        integral = fused(interval.weight[n], exponentials(l * interval.less[n]), integral);
+        integral = fused(interval.weight[n], exponential(l * interval.less[n]), integral);
       }
       store_any(interval.per_square * integral, values[j].data() + lane);
       growth = interval.growth;

@@ -71,6 +71,14 @@ bool OrbitSolver::approach_without_friction(const MeshGrid& grid, const OrbitReq
   return good;
 }
 
+bool OrbitSolver::approach_from_near(const MeshGrid& grid, const OrbitRequest& request,
+                                     PeriodicOrbit& orbit) {
+  SingleShooting shooting(system_, friction_, grid, request, orbit);
+  const bool good = shooting.let_run(1);
+  shooting.finish(statistics_, marched_cycles_);
+  return good;
+}
+
 bool OrbitSolver::solve(const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit) {
   const auto solve = [&](Shooting&& shooting) {
     const bool good = sweep(shooting, request, orbit);

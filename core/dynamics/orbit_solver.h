@@ -22,6 +22,11 @@ class OrbitSolver {
   bool approach_without_friction(const MeshGrid& grid, const OrbitRequest& request,
                                  PeriodicOrbit& orbit);
 
+  /// For a start that is near to a response, and may be nearer than the response without friction:
+  /// one period marched without. Leaves its end and its pieces in `orbit`. False where it breaks
+  /// down.
+  bool approach_from_near(const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit);
+
   /// The periodic response of the whole system with the unknown torque, without marching through
   /// transients: Newton's method (SingleShooting, MultipleShooting) under lagged friction, friction
   /// evaluated anew on the response found, and so on until neither moves. Derivatives are kept

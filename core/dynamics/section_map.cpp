@@ -82,10 +82,17 @@ double SectionMap::largest_multiplier() const {
   Eigen::Matrix<std::complex<double>, kUnknowns - 1, 1> multipliers =
       Eigen::EigenSolver<Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>>(monodromy_, false)
           .eigenvalues();
-  Eigen::Index free = 0;
+  Eigen::Index free = 0, largest = 0;
   (multipliers.array() - 1.0).abs().minCoeff(&free);
   multipliers(free) = 0;
-  return largest_multiplier_ = multipliers.cwiseAbs().maxCoeff();
+  largest_multiplier_ = multipliers.cwiseAbs().maxCoeff(&largest);
+  alternates_ = multipliers(largest).real() < 0;
+  return largest_multiplier_;
+}
+
+bool SectionMap::alternates() const {
+  largest_multiplier();
+  return alternates_;
 }
 
 }  // namespace tribodyn

@@ -28,6 +28,8 @@ class SectionMap {
   /// Floquet, modulus; but for the one nearest to 1: the train as a whole runs on at any speed.
   /// Computed once; copies made after that know it.
   double largest_multiplier() const;
+  /// Whether that one is negative: disturbances by it change sides every period.
+  bool alternates() const;
   /// Whether that is surely below a limit, at a fraction of the price. False where it cannot tell,
   /// mostly within a percent. A proof is remembered like that.
   bool multipliers_are_below(double limit) const;
@@ -39,7 +41,8 @@ class SectionMap {
 
   Eigen::PartialPivLU<Eigen::Matrix<double, kUnknowns, kUnknowns>> factors_;
   Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;  // scaled
-  mutable double largest_multiplier_ = -1;                         // not computed yet
+  mutable bool alternates_ = false;
+  mutable double largest_multiplier_ = -1;  // not computed yet
   mutable double multiplier_bound_ = std::numeric_limits<double>::infinity();
 };
 

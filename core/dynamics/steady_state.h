@@ -50,7 +50,8 @@ SteadyState solve_steady_state(GearPairSystem& system, const MarchState& start,
                                const SteadyStateRequest& request);
 
 /// Largest modulus of the Floquet multipliers of a periodic response with friction in the loop,
-/// under the system's torques; to some 3e-4, by marching it eight times (forward differences).
+/// under the system's torques; by marching it once for each state that moves and once more (forward
+/// differences): with a relative tolerance of 1e-8 to some 1e-4.
 /// `state`: at mesh phase 0; `period` [mesh cycles]. Adds to `statistics` and `mesh_cycles`. Throws
 /// as the march does.
 double marched_multiplier(GearPairSystem& system, const MarchState& state, int period,

@@ -30,7 +30,7 @@ std::optional<QuasiStaticAnswer> answer_quasi_statically(GearPairSystem& system,
 bool may_choose(const PointOptions& options, const std::optional<CarriedState>& from);
 
 /// The quasi-static answer where it is within the tolerance; else nothing, and the system as it was
-/// but for the count of contacts. It is tried where the mechanics alone leave hope.
+/// but for the regime and the count of contacts. It is tried where the mechanics alone leave hope.
 std::optional<QuasiStaticAnswer> choose_quasi_static(GearPairSystem& system,
                                                      const FlankContactBatch& contacts,
                                                      PreparedGearSet& gear_set,

@@ -245,6 +245,7 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   out.history = history.take();
   out.statistics.right_hand_sides = statistics.right_hand_sides;
   out.statistics.accepted_steps = statistics.accepted_steps;
+  out.statistics.rejected_steps = statistics.rejected_steps;
   out.statistics.events = statistics.events;
   out.statistics.periodicity_defect = orbit.defect;
   out.statistics.mesh_cycles = cycles;

@@ -116,8 +116,8 @@ struct SolverStatistics {
   double periodicity_defect = 0;  ///< relative change of the section state over the last period
   double largest_multiplier = 0;  ///< Floquet, modulus; below 1: the response is attracting
   /// At which the slowest disturbance dies out: like e^(-rate t); 0: no multiplier is known [1/s].
-  /// -ln(multiplier) over the period, and the multiplier is good to 3e-3: the rate to 3e-3 over the
-  /// period, which is all of it where disturbances hardly die out.
+  /// -ln(multiplier) over the period, and the multiplier is good to 3e-3 (1e-4 where it is nearest
+  /// to 1: it is marched there): the rate to as much over the period.
   double slowest_decay_rate = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/dynamics/orbit_solver.h"
@@ -16,7 +17,8 @@ constexpr double kSafety = 1.7;      // on the error that two step lengths tell
 constexpr double kSweepShare = 0.4;  // of the tolerance: may be left by sweeps
 constexpr int kPatience = 300;       // periods
 constexpr double kNearDoubling = 0.06;
-constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march on a response shot
+constexpr double kLittlePull = 0.2;     // of the mean force
+constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march
 constexpr int kMostFailures = 3;
 constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
 constexpr int kFinest = 4000;    // steps per mesh cycle
@@ -96,12 +98,16 @@ class Refinement {
                  search_.tolerance < kLoose || !search_.try_contact_first ? 24.0 : 12.0);
     if (least > kFinest) return std::nullopt;
     const StepSequence sequence(system_.mesh().intervals(), static_cast<int>(least));
+    constexpr double kUnknown = std::numeric_limits<double>::infinity();
+    double excess = kUnknown;
     for (int steps = sequence.first(); steps <= kFinest && !is_over_;
-         steps = sequence.after(steps, coarser_.error / search_.tolerance)) {
+         steps = sequence.after(steps, excess)) {
       const MeshGrid& grid = grids_.with_steps(steps);
+      excess = kUnknown;
       if (!find(grid)) continue;
       const bool is_compared = coarser_.steps > 0;
       const double error = is_compared ? step_error(grid) + orbit_.unsettled : 0;
+      if (is_compared) excess = error / search_.tolerance;
       const bool pulls = request_.keep_contact && orbit_.least_pressing_force < 0;
       if (is_compared && error <= search_.tolerance && !pulls) {
         if (!attracts(grid)) return std::nullopt;
@@ -113,7 +119,7 @@ class Refinement {
     return std::nullopt;
   }
 
-  /// A response was found that surely repels, or may where periods double.
+  /// A response was found that surely repels, or may, where periods double.
   bool repels() const { return repels_; }
 
  private:
@@ -148,30 +154,38 @@ class Refinement {
                                             : std::max(5 * search_.tolerance, 1e-4);
     bool found = request_.keep_contact && find_in_contact(grid);
     if (is_over_) return false;
-    if (!request_.keep_contact) found = find_anywhere(grid);
+    if (!found) found = find_anywhere(grid);
     if (is_over_) return false;
     if (found && coarser_.steps > 0) found = sweep_on(grid);
     if (found) return true;
-    is_over_ = system_.take_refusal() != ContactStatus::kOk || ++failures_ == kMostFailures;
+    is_over_ = system_.take_refusal() != ContactStatus::kOk || !search_.patient ||
+               ++failures_ == kMostFailures;
     coarser_ = {};
     return false;
   }
 
-  /// Flanks kept together. Where they would have to pull, contact is lost from then on, and the
-  /// start decides how.
+  /// Flanks kept together. Where they would have to pull, contact is lost from then on: where they
+  /// pull a little, by a response near this one if there is any; or else the start decides how.
   bool find_in_contact(const MeshGrid& grid) {
     request_.first_cycles = 0;
-    const bool found = solve(grid) && !(orbit_.least_pressing_force < -doubtful_pull_);
-    doubtful_pull_ /= 4;
-    if (found) return true;
+    const bool solved = solve(grid);
+    if (solved && !(orbit_.least_pressing_force < -doubtful_pull_)) {
+      doubtful_pull_ /= 4;
+      return true;
+    }
     is_over_ = system_.take_refusal() != ContactStatus::kOk;
     request_.keep_contact = false;
     coarser_ = {};
+    if (!solved || is_over_ || orbit_.least_pressing_force < -kLittlePull) return false;
+    if (solver_.solve(grid, request_, orbit_)) return true;
+    is_over_ = system_.take_refusal() != ContactStatus::kOk;
     return false;
   }
 
-  /// Newton's method leads to the response that is near; others are found by patience.
+  /// Newton's method leads to the response that is near, if need be on another grid; others are
+  /// found by patience.
   bool find_anywhere(const MeshGrid& grid) {
+    const bool is_last = failures_ + 1 == kMostFailures;
     for (const int cycles : {search_.few_cycles, search_.first_cycles}) {
       if (coarser_.steps == 0) cycles_left_ -= cycles * search_.period;
       if (cycles_left_ < 0) {
@@ -182,6 +196,7 @@ class Refinement {
       request_.first_cycles = cycles;
       if (solve(grid)) return true;
       if (coarser_.steps > 0 || search_.few_cycles == search_.first_cycles) break;
+      if (search_.few_cycles == 0 && !is_last) break;
     }
     return false;
   }
@@ -189,9 +204,11 @@ class Refinement {
   /// From the coarser grid's response, or without friction from the start.
   bool solve(const MeshGrid& grid) {
     if (coarser_.steps == 0) {
+      const bool is_near = !request_.keep_contact && request_.first_cycles == 0;
       const auto approach = [&] {
         orbit_ = origin_;
-        return solver_.approach_without_friction(grid, request_, orbit_);
+        return is_near ? solver_.approach_from_near(grid, request_, orbit_)
+                       : solver_.approach_without_friction(grid, request_, orbit_);
       };
       const bool good =
           search_.frictionless != nullptr
@@ -206,8 +223,10 @@ class Refinement {
   bool sweep_on(const MeshGrid& grid) {
     const double left = search_.tolerance - step_error(grid);
     if (!(left > 0) || orbit_.unsettled <= left) return true;
-    request_.tolerance = left;
-    return solver_.solve(grid, request_, orbit_);
+    OrbitRequest more = request_;
+    more.tolerance = left;
+    more.share_of_change = 0;
+    return solver_.solve(grid, more, orbit_);
   }
 
   /// Whether the response surely does.
@@ -228,7 +247,8 @@ class Refinement {
     }
     if (multiplier < 1 - doubt) return true;
     // In doubt whether the period has doubled, it is looked for.
-    repels_ = multiplier > 1 + doubt || doubles;
+    repels_ =
+        doubles || (multiplier > 1 + doubt && (orbit_.map->alternates() || orbit_.period > 1));
     return false;
   }
 
@@ -286,11 +306,13 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
     Refinement refinement = refinement_now();
     auto found = refinement.run();
     const bool repels = refinement.repels();
-    if (found && next.period % 2 == 0 && is_half_as_long(system, search, found->orbit)) {
+    while (found && next.period % 2 == 0 && is_half_as_long(system, search, found->orbit)) {
       next.period /= 2;
       next.start = found->orbit.state;
       next.few_cycles = next.first_cycles = 1;
-      found = refinement_now().run();
+      auto shorter = refinement_now().run();
+      if (!shorter) break;
+      found = std::move(shorter);
     }
     if (found || (patient && !repels) || 2 * next.period > kLongestPeriod) return found;
     if (!search.patient) return found;

@@ -376,6 +376,7 @@ bool QuasiStaticChances::may_do(GearPairSystem& system, MeshGrids& grids,
   const std::array<double, 5> where = {request.mean_pinion_speed, system.torques().pinion,
                                        system.torques().wheel, request.tolerance,
                                        static_cast<double>(request.solve_wheel_torque)};
+  system.regime = {side_of(system), true};
   if (const auto known = known_.find(where); known != known_.end()) return known->second;
   if (known_.size() >= kMost) known_.clear();
   return known_[where] = quasi_static_may_do(system, grids, request);

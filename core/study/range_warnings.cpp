@@ -72,7 +72,7 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
                "be within " +
                    number_text(100 * *r.estimated_relative_error, 2) + " % of the full model's"
              : "shafts carry constant torques, and the effect of that cannot be told: flanks part "
-               "or may, or what the shafts change is not small");
+               "or may, what the shafts change is not small, or the response was marched");
   }
   if (scene.options.isothermal) {
     warn("ISOTHERMAL", "contact temperature held at the inlet's: friction at speed is too high");

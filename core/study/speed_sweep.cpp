@@ -55,7 +55,7 @@ bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOpt
     found = solve_prepared_point(scene, cruise(speed, ascent_angle), options);
   } catch (const Refusal&) {
     bracket.gone_at = speed;
-    return options.method == SteadyStateMethod::kShooting;  // which finds nothing, or too little
+    return true;
   }
   if (found.method == SteadyStateMethod::kMarch) {
     bracket.cycles_left -= found.statistics.mesh_cycles;
@@ -88,8 +88,9 @@ bool narrow(PreparedScene& scene, double ascent_angle, const PointOptions& optio
 /// A response, followed to a speed or as near to it as it goes.
 PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions options,
                    PointResult from, double to) {
+  constexpr int kMost = 24;
   double step = to - from.vehicle_speed;
-  while (from.vehicle_speed != to) {
+  for (int i = 0; i < kMost && from.vehicle_speed != to; ++i) {
     const bool arrives = std::abs(to - from.vehicle_speed) <= std::abs(step);
     options.carried_state = carried_from(from);
     try {
@@ -97,6 +98,7 @@ PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions optio
           scene, cruise(arrives ? to : from.vehicle_speed + step, ascent_angle), options);
       if (!may_be_branches(from, next)) {
         from = std::move(next);
+        step *= 2;
         continue;
       }
     } catch (const Refusal&) {  // it may be nearer
@@ -127,8 +129,9 @@ std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, P
       if (options.method == SteadyStateMethod::kShooting) return std::nullopt;
       // Where periods change hardly anything attracts, and a march takes its time: what is there
       // is told by the other branch.
-      if (before.period_in_mesh_cycles != after.period_in_mesh_cycles) {
-        const PointResult there = follow(scene, ascent_angle, quick, after, bracket.gone_at);
+      if (bracket.before.period_in_mesh_cycles != bracket.beyond.period_in_mesh_cycles) {
+        const PointResult there =
+            follow(scene, ascent_angle, quick, bracket.beyond, bracket.gone_at);
         if (std::abs(there.vehicle_speed - bracket.gone_at) < 4 * kEnough) {
           if (distance(bracket.before, there) < kNear) return std::nullopt;
           return BranchEnd{bracket.before.vehicle_speed, bracket.gone_at};

@@ -8,8 +8,8 @@
 
 namespace tribodyn::server {
 
-/// Answers GET /metrics over HTTP/1.0, one connection after the other, each within a second: enough
-/// for a scraper. Its thread runs until the destructor.
+/// Answers GET and HEAD /metrics over HTTP/1.0, one connection after the other, each within a
+/// second: enough for a scraper. Its thread runs until the destructor.
 class MetricsListener {
  public:
   /// Throws ListenError. `text` is called on the thread.

@@ -11,9 +11,9 @@ namespace tribodyn::server {
 enum class Phase {
   kQueue,       ///< from its creation until a worker takes it
   kValidation,  ///< its request and what it rests on are read and checked
-  kOrbit,       ///< steady states of the full model
+  kOrbit,       ///< steady states of the full or one-degree model
   kFriction,    ///< contacts alone: the quasi-static model
-  kStore,       ///< written down, or its result, until it is on disk
+  kStore,       ///< made a message and written down, until it is on disk
 };
 
 /// What became of a request to simulate.
