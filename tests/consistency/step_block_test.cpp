@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -278,7 +279,7 @@ struct Given {
 
 testing::AssertionResult same_bits(const double* a, const double* b, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
-    if (std::memcmp(a + i, b + i, sizeof(double)) == 0) continue;
+    if (std::bit_cast<std::uint64_t>(a[i]) == std::bit_cast<std::uint64_t>(b[i])) continue;
     return testing::AssertionFailure() << "number " << i << ": " << a[i] << " and " << b[i];
   }
   return testing::AssertionSuccess();
