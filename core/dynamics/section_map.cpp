@@ -39,6 +39,16 @@ double SectionMap::distance_from_doubling() const {
   return 1 / Eigen::PartialPivLU<Square>(monodromy_ + Square::Identity()).inverse().norm();
 }
 
+Eigen::Matrix<double, SectionMap::kUnknowns - 1, 1> SectionMap::alternating_disturbance() const {
+  constexpr int kIterations = 3;  // inverse; the others are ten times farther from -1 and more
+  using Square = Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>;
+  const Eigen::PartialPivLU<Square> factors(monodromy_ + Square::Identity());
+  Eigen::Matrix<double, kUnknowns - 1, 1> direction =
+      Eigen::Matrix<double, kUnknowns - 1, 1>::Ones();
+  for (int i = 0; i < kIterations; ++i) direction = factors.solve(direction).normalized();
+  return direction;
+}
+
 /// |lambda|^k is at most the norm of the k-th power, once the multiplier nearest to 1 is taken out.
 /// A bound below `enough` will do.
 double SectionMap::bound_of_multipliers(double enough) const {

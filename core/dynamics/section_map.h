@@ -35,6 +35,9 @@ class SectionMap {
   bool multipliers_are_below(double limit) const;
   /// Not above the distance of any multiplier from -1, where periods double.
   double distance_from_doubling() const;
+  /// The disturbance of the section that comes nearest to changing its side every period and
+  /// nothing else, of length 1; scaled, without the torque.
+  Eigen::Matrix<double, kUnknowns - 1, 1> alternating_disturbance() const;
 
  private:
   double bound_of_multipliers(double enough) const;

@@ -122,6 +122,20 @@ class Refinement {
   /// A response was found that surely repels, or may, where periods double.
   bool repels() const { return repels_; }
 
+  /// Beside the one that repels, off to where it repels to: by half of the mean deflection of the
+  /// mesh. Nearer, hundreds of cycles may lead back to it.
+  MarchState beside_repelling() const {
+    constexpr double kOff = 0.5;
+    const MarchScales scales = march_scales(system_, search_.mean_pinion_speed);
+    const auto direction = orbit_.map->alternating_disturbance();
+    const double share = kOff / std::max(std::abs(direction(kWinding - 1)), kOff);
+    MarchState out = orbit_.pieces.front().start;
+    for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
+      out[i] += share * direction(i - 1) * scales.of(system_.mesh(), i);
+    }
+    return out;
+  }
+
  private:
   /// What the grid before has told.
   struct Coarser {
@@ -318,7 +332,10 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
     if (!search.patient) return found;
     // Periods double where a response begins to repel, and a branch may end between neighbours: to
     // what follows patience leads.
-    if (repels) next.period *= 2;
+    if (repels) {
+      next.period *= 2;
+      next.start = refinement.beside_repelling();
+    }
     if (!repels && search.try_contact_first) return found;
     next.try_contact_first = false;
     next.few_cycles = next.first_cycles = kPatience;

@@ -112,7 +112,7 @@ PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions optio
 /// Whether a branch ends between two points of a sweep, and where; of several ends one.
 std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, PointOptions options,
                                     const PointResult& before, const PointResult& after) {
-  constexpr int kPatience = 300, kLeastPatience = 150;  // [mesh cycles], at a speed
+  constexpr int kPatience = 400;  // [mesh cycles], at a speed: as much as shooting needs to be sure
   constexpr int kMostMarched = 600;
   const bool only_marched = options.method == SteadyStateMethod::kMarch;
   options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kPatience);
@@ -142,9 +142,6 @@ std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, P
       const double speed = std::exchange(bracket.gone_at, bracket.beyond.vehicle_speed);
       if (!narrow_at(scene, ascent_angle, speed, options, bracket)) return std::nullopt;
     }
-  }
-  if (!only_marched) {
-    options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kLeastPatience);
   }
   if (!narrow(scene, ascent_angle, options, only_marched ? kAnywhere : 2 * kEnough, bracket)) {
     return std::nullopt;
