@@ -46,6 +46,8 @@ class PreparedScene {
   /// With a gear set that other scenes use too; it must be that of the scene, of the same solid and
   /// options.
   PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set);
+  PreparedScene(const Scene&&) = delete;
+  PreparedScene(const Scene&&, std::shared_ptr<PreparedGearSet>) = delete;
 
   const Scene& scene() const { return scene_; }
   const FlankContactBatch& contacts() const { return contacts_; }

@@ -145,6 +145,26 @@ std::vector<double> branch_ends(const std::vector<double>& kilometers_per_hour,
 
 // From 71.33 to 71.43 km/h the quiet response parts for some percent of the time: another one,
 // loud, is where the response without friction leads.
+// There the single response hardly repels, and disturbances take thousands of cycles to grow.
+TEST(SteadyStates, RightBeyondADoublingTheLongResponseIsFoundByShooting) {
+  for (const int fluid : {1, 2}) {
+    SCOPED_TRACE(fluid);
+    const Scene fluid_scene = reference_scene(fluid);
+    PreparedScene scene(fluid_scene);
+    PointOptions options;
+    options.carried_state = carried_from(solve_prepared_point(scene, cruise(149), options));
+    const PointResult shot = solve_prepared_point(scene, cruise(149.5), options);
+    EXPECT_EQ(shot.method, SteadyStateMethod::kShooting);
+    EXPECT_EQ(shot.period_in_mesh_cycles, 2);
+    EXPECT_LT(shot.statistics.largest_multiplier, 1);
+    options.carried_state = carried_from(shot);
+    options.method = SteadyStateMethod::kMarch;
+    const PointResult marched = solve_prepared_point(scene, cruise(149.5), options);
+    EXPECT_EQ(marched.period_in_mesh_cycles, 2);
+    EXPECT_LT(true_error(shot, marched), shot.estimated_relative_error.value());
+  }
+}
+
 TEST(SteadyStates, TheQuietBranchIsFollowedWhereItBarelyLosesContact) {
   PointResult shot = point(71.3);
   ASSERT_FALSE(shot.contact_loss);
