@@ -66,9 +66,11 @@ void OrbitFriction::Arrays::resize(std::size_t size) {
   status.resize(size);
 }
 
-OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts)
+OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts,
+                             std::optional<double> coefficient)
     : system_(system),
       contacts_(contacts),
+      coefficient_(coefficient),
       geometries_(contacts.model().reduced_modulus(), contacts.model().options()) {}
 
 void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part,
@@ -152,6 +154,10 @@ void OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& 
 bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int count,
                                    const FlankContactBatchConditions& conditions,
                                    FlankContactBatchResults results) {
+  if (coefficient_) {
+    for (int i = 0; i < count; ++i) arrays_.friction[i] = *coefficient_ * conditions.load[i];
+    return true;
+  }
   results.friction = arrays_.friction.data();
   results.status = arrays_.status.data();
   contacts_.solve(geometries, 0, count, conditions, results);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/contact/flank_contact_batch.h"
@@ -41,8 +42,9 @@ struct OrbitFigures {
 /// The contacts of a whole response, solved together.
 class OrbitFriction {
  public:
-  /// Keeps the references.
-  OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts);
+  /// Keeps the references. With a `coefficient` friction is Coulomb's, and no contact is solved.
+  OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts,
+                std::optional<double> coefficient = std::nullopt);
 
   /// Friction on the pieces of a response, not told per newton below `light` [N], and all of its
   /// figures but the torque. `grid`: what the pieces' nodes are of. False when a contact is
@@ -85,6 +87,7 @@ class OrbitFriction {
 
   GearPairSystem& system_;
   const FlankContactBatch& contacts_;
+  const std::optional<double> coefficient_;
   ContactGeometries geometries_;
   std::vector<Place> places_;  // three of a piece
   Columns seen_;               // SeenRow

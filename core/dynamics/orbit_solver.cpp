@@ -48,9 +48,10 @@ bool sweep(Shooting& shooting, const OrbitRequest& request, PeriodicOrbit& orbit
 }  // namespace
 
 OrbitSolver::OrbitSolver(GearPairSystem& system, const FlankContactBatch& contacts,
-                         MarchStatistics& statistics, long& marched_cycles)
+                         MarchStatistics& statistics, long& marched_cycles,
+                         std::optional<double> coefficient)
     : system_(system),
-      friction_(system, contacts),
+      friction_(system, contacts, coefficient),
       statistics_(statistics),
       marched_cycles_(marched_cycles) {}
 

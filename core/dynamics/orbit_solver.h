@@ -10,9 +10,11 @@ namespace tribodyn {
 /// next.
 class OrbitSolver {
  public:
-  /// Keeps the references; adds to `statistics` and `marched_cycles`.
+  /// Keeps the references; adds to `statistics` and `marched_cycles`. `coefficient`: of Coulomb's
+  /// friction in place of the contacts'.
   OrbitSolver(GearPairSystem& system, const FlankContactBatch& contacts,
-              MarchStatistics& statistics, long& marched_cycles);
+              MarchStatistics& statistics, long& marched_cycles,
+              std::optional<double> coefficient = std::nullopt);
 
   /// The periodic response without friction, to a permille: where every lubricant's response is
   /// near, and the same for all. With request.renew_friction it is this lubricant's: the periods

@@ -446,10 +446,10 @@ PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit
   return out;
 }
 
-}  // namespace
+enum class StepErrors { kByShorterSteps, kByReference };
 
-PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
-                                 const PointOptions& options) {
+PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condition,
+                        const PointOptions& options, StepErrors step_errors) {
   const Scene& scene = prepared.scene();
   const OperatingTarget target = target_of(scene, condition);
   PreparedGearSet& gear_set = prepared.gear_set();
@@ -478,7 +478,9 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
     long cycles = 0;
     std::optional<RefinedOrbit> found;
     if (search) {
-      search->frictionless = &gear_set.frictionless_orbits(system.driveline());
+      if (step_errors == StepErrors::kByReference) {
+        search->references = &gear_set.reference_orbits(system.driveline());
+      }
       found = shoot(system, contacts, gear_set.grids(), *search, statistics, cycles);
     }
     if (found) return figures_of(system, found->orbit, found->estimated_error, target);
@@ -497,6 +499,18 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
           r.estimated_relative_error,
           r.statistics.contact_solutions,
           r.model};
+}
+
+}  // namespace
+
+PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
+                                 const PointOptions& options) {
+  return figures_at(prepared, condition, options, StepErrors::kByShorterSteps);
+}
+
+PointFigures screen_point(PreparedScene& prepared, const OperatingCondition& condition,
+                          const PointOptions& options) {
+  return figures_at(prepared, condition, options, StepErrors::kByReference);
 }
 
 }  // namespace tribodyn

@@ -227,11 +227,18 @@ struct PointFigures {
   PointModel model = PointModel::kFull;  ///< used
 };
 
-/// For screening: as solve_prepared_point from PointOptions::start, to within the tolerance, but
-/// faster, and faster still where the prepared gear set has met the same speed and load before.
-/// That changes no bit. Histories and coexisting responses are not looked for; the start is never
-/// carried. Throws as solve_prepared_point does.
-PointFigures solve_point_figures(PreparedScene& scene, const OperatingCondition& condition,
+/// As solve_prepared_point from PointOptions::start, to within the tolerance, but faster. Histories
+/// and coexisting responses are not looked for; the start is never carried. Throws as
+/// solve_prepared_point does.
+PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
                                  const PointOptions& options);
+
+/// For screening: the same for one of many lubricants on one prepared gear set, all at the same few
+/// speeds and loads. The response under Coulomb's friction is found once for all of them; each
+/// starts from there and is solved for on one grid, on which the error of the steps is known from
+/// that response. An answer is the same bits whichever lubricants came before. Other points than
+/// the first at a speed and load take half the time or less, the first up to twice.
+PointFigures screen_point(PreparedScene& prepared, const OperatingCondition& condition,
+                          const PointOptions& options);
 
 }  // namespace tribodyn

@@ -8,12 +8,12 @@
 #include "core/dynamics/orbit_solver.h"
 #include "core/dynamics/steady_state.h"
 #include "core/refusal.h"
+#include "core/study/grid_comparison.h"
 #include "core/study/step_sequence.h"
 
 namespace tribodyn {
 namespace {
 
-constexpr double kSafety = 1.7;      // on the error that two step lengths tell
 constexpr double kSweepShare = 0.4;  // of the tolerance: may be left by sweeps
 constexpr int kPatience = 300;       // periods
 constexpr double kNearDoubling = 0.06;
@@ -41,12 +41,6 @@ double margin(const GearPairSystem& system, const OrbitSearch& search) {
   constexpr double kDecay = 3.4;  // [1/s]
   const double period = search.period * system.cycle_angle() / search.mean_pinion_speed;
   return std::min(0.006, kDecay * period);
-}
-
-/// What kinks of the tables inside of steps may do where two step lengths agree by accident: by
-/// experience half of it.
-double kink_error(int steps, int intervals) {
-  return steps % intervals == 0 ? 0 : 0.025 / square(steps);
 }
 
 /// Whether the state at half of the period is that at its start.
@@ -79,7 +73,8 @@ class Refinement {
         search_(search),
         statistics_(statistics),
         marched_cycles_(marched_cycles),
-        cycles_left_(cycles_left) {
+        cycles_left_(cycles_left),
+        coarser_(system.mesh().intervals()) {
     request_.mean_pinion_speed = search.mean_pinion_speed;
     request_.solve_wheel_torque = search.solve_wheel_torque;
     request_.interrupted = search.interrupted;
@@ -97,6 +92,12 @@ class Refinement {
         std::max(7 * mesh_oscillations(system_, search_.mean_pinion_speed),
                  search_.tolerance < kLoose || !search_.try_contact_first ? 24.0 : 12.0);
     if (least > kFinest) return std::nullopt;
+    if (search_.references != nullptr && search_.tolerance >= kLoose) {
+      if (auto found = find_by_reference(static_cast<int>(least))) return found;
+      if (is_over_) return std::nullopt;
+      repels_ = false;
+      marched_multiplier_.reset();
+    }
     const StepSequence sequence(system_.mesh().intervals(), static_cast<int>(least));
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
     double excess = kUnknown;
@@ -105,7 +106,7 @@ class Refinement {
       const MeshGrid& grid = grids_.with_steps(steps);
       excess = kUnknown;
       if (!find(grid)) continue;
-      const bool is_compared = coarser_.steps > 0;
+      const bool is_compared = coarser_.is_possible();
       const double error = is_compared ? step_error(grid) + orbit_.unsettled : 0;
       if (is_compared) excess = error / search_.tolerance;
       const bool pulls = request_.keep_contact && orbit_.least_pressing_force < 0;
@@ -113,8 +114,7 @@ class Refinement {
         if (!attracts(grid)) return std::nullopt;
         return RefinedOrbit{std::move(orbit_), steps, marched_multiplier_, error};
       }
-      const bool halved = steps == 2 * coarser_.steps;
-      coarser_ = {steps, orbit_.figures, error, halved ? change() : 0};
+      coarser_.add(steps, orbit_.figures, error);
     }
     return std::nullopt;
   }
@@ -137,44 +137,69 @@ class Refinement {
   }
 
  private:
-  /// What the grid before has told.
-  struct Coarser {
-    int steps = 0;  ///< 0: there is none
-    OrbitFigures figures;
-    double error = 0;
-    double halving_difference =
-        0;  ///< of its figures to those of twice its step length; 0: unknown
-  };
-
-  double change() const { return orbit_.figures.distance(coarser_.figures); }
-
-  /// Of the figures, by what shorter steps have changed.
   double step_error(const MeshGrid& grid) const {
-    const double finer = static_cast<double>(grid.steps()) / coarser_.steps;
-    // Second order at kinks and events; more only where two halvings have shown it.
-    double gain = square(finer);
-    if (finer == 2 && coarser_.halving_difference > 0) {
-      gain = std::clamp(coarser_.halving_difference / std::max(change(), 1e-300), 2.5, 8.0);
+    return coarser_.error(grid.steps(), orbit_.figures);
+  }
+
+  /// On one grid, the steps' error on which is known from the same response under Coulomb's
+  /// friction. Nothing where that cannot tell.
+  std::optional<RefinedOrbit> find_by_reference(int least) {
+    const bool in_contact = request_.keep_contact;
+    if (request_.keep_contact) {
+      const auto& references = references_now(least);
+      if (references.empty()) return std::nullopt;
+      if (references.front().orbit.least_pressing_force >= 0) return settle_from(references);
+      if (references.front().orbit.least_pressing_force > -kLittlePull) return std::nullopt;
+      request_.keep_contact = false;
     }
-    // Two step lengths may agree by accident, three rarely do.
-    return std::max({kSafety * change() / (gain - 1), coarser_.error / (2 * square(finer)),
-                     kink_error(grid.steps(), system_.mesh().intervals())});
+    request_.first_cycles = search_.few_cycles;
+    auto found = settle_from(references_now(least));
+    request_.keep_contact = in_contact;
+    request_.first_cycles = 0;
+    return found;
+  }
+
+  const std::vector<ReferenceOrbit>& references_now(int least) {
+    return search_.references->find(system_, contacts_, grids_, request_, origin_, least);
+  }
+
+  /// From the first of them whose steps are short enough.
+  std::optional<RefinedOrbit> settle_from(const std::vector<ReferenceOrbit>& references) {
+    constexpr double kCaution = 3;       // losses may follow the mesh force more than Coulomb's
+    constexpr double kForSweeps = 0.25;  // of the tolerance
+    const auto fits = std::find_if(references.begin(), references.end(), [&](const auto& each) {
+      return kCaution * each.step_error <= (1 - kForSweeps) * search_.tolerance;
+    });
+    if (fits == references.end()) return std::nullopt;
+    const MeshGrid& grid = grids_.with_steps(fits->steps);
+    orbit_ = fits->orbit;
+    const double step_error = kCaution * fits->step_error;
+    request_.tolerance = search_.tolerance - step_error;
+    if (!solver_.solve(grid, request_, orbit_)) {
+      is_over_ = system_.take_refusal() != ContactStatus::kOk;
+      return std::nullopt;
+    }
+    const bool is_alike = request_.keep_contact ? orbit_.least_pressing_force >= 0
+                                                : orbit_.contact_loss && fits->orbit.contact_loss;
+    if (!is_alike || !attracts(grid)) return std::nullopt;
+    const double error = step_error + orbit_.unsettled;
+    return RefinedOrbit{std::move(orbit_), fits->steps, marched_multiplier_, error};
   }
 
   /// The response on a grid. False where there is none on it; over where none is to be expected.
   bool find(const MeshGrid& grid) {
     // The error is shared between the steps and what sweeps leave.
-    request_.tolerance = coarser_.steps > 0 ? kSweepShare * search_.tolerance
-                                            : std::max(5 * search_.tolerance, 1e-4);
+    request_.tolerance = coarser_.is_possible() ? kSweepShare * search_.tolerance
+                                                : std::max(5 * search_.tolerance, 1e-4);
     bool found = request_.keep_contact && find_in_contact(grid);
     if (is_over_) return false;
     if (!found) found = find_anywhere(grid);
     if (is_over_) return false;
-    if (found && coarser_.steps > 0) found = sweep_on(grid);
+    if (found && coarser_.is_possible()) found = sweep_on(grid);
     if (found) return true;
     is_over_ = system_.take_refusal() != ContactStatus::kOk || !search_.patient ||
                ++failures_ == kMostFailures;
-    coarser_ = {};
+    coarser_.clear();
     return false;
   }
 
@@ -189,7 +214,7 @@ class Refinement {
     }
     is_over_ = system_.take_refusal() != ContactStatus::kOk;
     request_.keep_contact = false;
-    coarser_ = {};
+    coarser_.clear();
     if (!solved || is_over_ || orbit_.least_pressing_force < -kLittlePull) return false;
     if (solver_.solve(grid, request_, orbit_)) return true;
     is_over_ = system_.take_refusal() != ContactStatus::kOk;
@@ -201,7 +226,7 @@ class Refinement {
   bool find_anywhere(const MeshGrid& grid) {
     const bool is_last = failures_ + 1 == kMostFailures;
     for (const int cycles : {search_.few_cycles, search_.first_cycles}) {
-      if (coarser_.steps == 0) cycles_left_ -= cycles * search_.period;
+      if (!coarser_.is_possible()) cycles_left_ -= cycles * search_.period;
       if (cycles_left_ < 0) {
         system_.take_refusal();
         is_over_ = true;
@@ -209,7 +234,7 @@ class Refinement {
       }
       request_.first_cycles = cycles;
       if (solve(grid)) return true;
-      if (coarser_.steps > 0 || search_.few_cycles == search_.first_cycles) break;
+      if (coarser_.is_possible() || search_.few_cycles == search_.first_cycles) break;
       if (search_.few_cycles == 0 && !is_last) break;
     }
     return false;
@@ -217,17 +242,11 @@ class Refinement {
 
   /// From the coarser grid's response, or without friction from the start.
   bool solve(const MeshGrid& grid) {
-    if (coarser_.steps == 0) {
+    if (!coarser_.is_possible()) {
       const bool is_near = !request_.keep_contact && request_.first_cycles == 0;
-      const auto approach = [&] {
-        orbit_ = origin_;
-        return is_near ? solver_.approach_from_near(grid, request_, orbit_)
-                       : solver_.approach_without_friction(grid, request_, orbit_);
-      };
-      const bool good =
-          search_.frictionless != nullptr
-              ? search_.frictionless->find(grid.steps(), request_, origin_, approach, orbit_)
-              : approach();
+      orbit_ = origin_;
+      const bool good = is_near ? solver_.approach_from_near(grid, request_, orbit_)
+                                : solver_.approach_without_friction(grid, request_, orbit_);
       if (!good) return false;
     }
     return solver_.solve(grid, request_, orbit_);
@@ -294,7 +313,7 @@ class Refinement {
   int& cycles_left_;
   OrbitRequest request_;
   PeriodicOrbit origin_, orbit_;
-  Coarser coarser_;
+  GridComparison coarser_;
   int failures_ = 0;
   double doubtful_pull_ = kClearPull;  // of the mean force: as little may be the steps' error
   bool is_over_ = false, repels_ = false;
@@ -340,7 +359,7 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
     next.try_contact_first = false;
     next.few_cycles = next.first_cycles = kPatience;
     next.renew_friction = true;
-    next.frictionless = nullptr;
+    next.references = nullptr;
   }
 }
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <optional>
 
-#include "core/dynamics/frictionless_orbits.h"
 #include "core/dynamics/periodic_orbit.h"
+#include "core/study/reference_orbits.h"
 
 namespace tribodyn {
 
@@ -21,7 +21,7 @@ struct OrbitSearch {
   bool patient = true;              ///< further tries, and hundreds of cycles in the end
   bool renew_friction = false;      ///< on the way: they lead where friction leads
   double tolerance = 1e-5;          ///< wanted, of the figures; see RefinedOrbit::estimated_error
-  FrictionlessOrbits* frictionless = nullptr;  ///< shared by lubricants; null: none
+  ReferenceOrbits* references = nullptr;  ///< shared by lubricants, to start from; null: none
   std::function<bool()> interrupted;
 };
 

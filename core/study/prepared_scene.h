@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "core/contact/flank_contact_batch.h"
-#include "core/dynamics/frictionless_orbits.h"
 #include "core/dynamics/mesh_grid.h"
 #include "core/study/quasi_static.h"
+#include "core/study/reference_orbits.h"
 #include "core/study/scene.h"
 
 namespace tribodyn {
@@ -24,8 +24,8 @@ class PreparedGearSet {
   const MeshData& mesh() const { return mesh_; }
   MeshGrids& grids() { return grids_; }
   /// For studies that meet the same speeds and loads with many lubricants.
-  FrictionlessOrbits& frictionless_orbits(Driveline driveline = Driveline::kElasticShafts) {
-    return frictionless_orbits_[static_cast<std::size_t>(driveline)];
+  ReferenceOrbits& reference_orbits(Driveline driveline = Driveline::kElasticShafts) {
+    return reference_orbits_[static_cast<std::size_t>(driveline)];
   }
   QuasiStaticChances& quasi_static_chances() { return quasi_static_chances_; }
 
@@ -33,7 +33,7 @@ class PreparedGearSet {
   GearSet gear_set_;
   MeshData mesh_;
   MeshGrids grids_;
-  std::array<FrictionlessOrbits, 2> frictionless_orbits_;  // of each driveline
+  std::array<ReferenceOrbits, 2> reference_orbits_;  // of each driveline
   QuasiStaticChances quasi_static_chances_;
 };
 

@@ -35,8 +35,6 @@ struct Run {
 
 Run run_once(PreparedScene& scene, const OperatingCondition& condition,
              const PointOptions& options) {
-  scene.gear_set().frictionless_orbits(Driveline::kElasticShafts) = {};
-  scene.gear_set().frictionless_orbits(Driveline::kConstantTorques) = {};
   const auto start = Clock::now();
   PointFigures figures = solve_point_figures(scene, condition, options);
   return {figures, std::chrono::duration<double, std::micro>(Clock::now() - start).count()};

@@ -73,7 +73,7 @@ Work screen(const std::vector<Scene>& scenes, int threads) {
         for (double speed = 20; speed <= 140; speed += 10) {
           OperatingCondition condition;
           condition.vehicle_speed = speed / 3.6;
-          const PointFigures r = solve_point_figures(prepared, condition, {});
+          const PointFigures r = screen_point(prepared, condition, {});
           ++points;
           contacts += r.contact_solutions;
           marched += !r.estimated_relative_error;

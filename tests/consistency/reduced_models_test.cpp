@@ -426,10 +426,10 @@ TEST(ModelChoice, FiguresForScreeningAreThoseOfTheWholeResultAndTheSameBitsInCom
     SCOPED_TRACE(speed);
     PointOptions options;
     options.tolerance = 2e-3;
-    solve_point_figures(first, cruise(speed), options);
-    const PointFigures company = solve_point_figures(second, cruise(speed), options);
+    screen_point(first, cruise(speed), options);
+    const PointFigures company = screen_point(second, cruise(speed), options);
     PreparedScene lonely(thin);
-    const PointFigures alone = solve_point_figures(lonely, cruise(speed), options);
+    const PointFigures alone = screen_point(lonely, cruise(speed), options);
     const PointResult whole = solve_operating_point(thin, cruise(speed), options);
     EXPECT_EQ(company.model, PointModel::kQuasiStatic);
     EXPECT_EQ(whole.model, PointModel::kQuasiStatic);

@@ -113,8 +113,8 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
   RecordProperty("seed", std::to_string(seed));
   std::mt19937_64 random(seed);
   const int count = full_run() ? 500 : 60;
-  int shot = 0, above = 0, untold = 0;
-  std::vector<double> over;
+  int shot = 0, above = 0, screened_above = 0, untold = 0;
+  std::vector<double> over, screened_over;
   for (int i = 0; i < count; ++i) {
     const double speed = std::uniform_real_distribution<double>(3, 220)(random);
     const RandomPlace place = random_place(random, speed);
@@ -143,20 +143,38 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
         std::cout << "scene " << i << ": error " << error << ", estimate " << estimate << '\n';
       }
       if (i % 2 == 0) over.push_back(estimate / std::max(error, 1e-12));
+      PreparedScene prepared(place.scene);
+      const PointFigures screened = screen_point(prepared, place.condition, options);
+      if (!screened.estimated_relative_error) continue;
+      const double its_error = true_error(screened, exact);
+      const double its_estimate = *screened.estimated_relative_error;
+      EXPECT_LT(its_error, std::max(options.tolerance, 2 * its_estimate)) << "scene " << i;
+      if (its_error > std::max(its_estimate, 1e-8)) {
+        ++screened_above;
+        std::cout << "scene " << i << " screened: error " << its_error << ", estimate "
+                  << its_estimate << '\n';
+      }
+      if (i % 2 == 0) screened_over.push_back(its_estimate / std::max(its_error, 1e-12));
     } catch (const Refusal& refusal) {
       EXPECT_NE(refusal.reason(), "NOT_FINITE");
     }
   }
-  std::sort(over.begin(), over.end());
-  const double median = over[over.size() / 2];
+  const auto median_of = [](std::vector<double>& values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+  };
+  const double median = median_of(over), screened_median = median_of(screened_over);
   std::cout << shot << " of " << count << " by shooting, " << above
             << " err more than estimated, median of estimate over error by default " << median
-            << '\n';
+            << "; screened: " << screened_above << " and " << screened_median << '\n';
   EXPECT_GT(shot, 0.85 * count);
   EXPECT_LE(untold, std::max(1.0, 0.02 * count));
   EXPECT_LE(above, std::max(1.0, 0.01 * count));
   EXPECT_GT(median, 1);
   EXPECT_LT(median, full_run() ? 10 : 20);  // few scenes scatter
+  EXPECT_LE(screened_above, std::max(1.0, 0.01 * count));
+  EXPECT_GT(screened_median, 1);
+  EXPECT_LT(screened_median, full_run() ? 10 : 20);
 }
 
 TEST(ShootingAtPrescribedTorque, FindsTheWheelTorqueOfTheMarch) {
@@ -315,16 +333,16 @@ TEST(ShootingWork, FrictionEvaluationsOfAPointAreFew) {
   }
 }
 
-TEST(PointFigures, AreTheSameBitsAloneAndInCompany) {
+TEST(ScreenedPoints, AreTheSameBitsAloneAndInCompany) {
   const Scene thin = reference_scene(1, 90), thick = reference_scene(2, 20);
   const auto shared = std::make_shared<PreparedGearSet>(thin.gear_set, thin.solid, thin.options);
   PreparedScene first(thick, shared), second(thin, shared);
   for (const double speed : {20.0, 72.5, 80.0, 100.0, 150.0}) {
     SCOPED_TRACE(speed);
-    solve_point_figures(first, cruise(speed), {});
-    const PointFigures company = solve_point_figures(second, cruise(speed), {});
+    screen_point(first, cruise(speed), {});
+    const PointFigures company = screen_point(second, cruise(speed), {});
     PreparedScene lonely(thin);
-    const PointFigures alone = solve_point_figures(lonely, cruise(speed), {});
+    const PointFigures alone = screen_point(lonely, cruise(speed), {});
     EXPECT_EQ(alone.inefficiency_rms, company.inefficiency_rms);
     EXPECT_EQ(alone.inefficiency_energy_mean, company.inefficiency_energy_mean);
     EXPECT_EQ(alone.pinion_torque, company.pinion_torque);
@@ -333,6 +351,40 @@ TEST(PointFigures, AreTheSameBitsAloneAndInCompany) {
     EXPECT_EQ(alone.estimated_relative_error, company.estimated_relative_error);
     EXPECT_EQ(alone.contact_solutions, company.contact_solutions);
   }
+}
+
+// Through the resonance, where contact is lost, on the branch that the point alone finds.
+TEST(ScreenedPoints, AreThoseOfThePointAlone) {
+  long contacts = 0, contacts_alone = 0;
+  for (const double sump : {20.0, 90.0}) {
+    for (const int fluid : {1, 2, 3}) {
+      const Scene scene = reference_scene(fluid, sump);
+      PreparedScene prepared(scene);
+      for (double speed = 15; speed <= 145; speed += full_run() ? 0.5 : 2.5) {
+        SCOPED_TRACE(std::to_string(speed) + " km/h, lubricant " + std::to_string(fluid));
+        const PointFigures screened = screen_point(prepared, cruise(speed), {});
+        const PointFigures alone = solve_point_figures(prepared, cruise(speed), {});
+        EXPECT_EQ(screened.contact_loss, alone.contact_loss);
+        EXPECT_EQ(screened.period_in_mesh_cycles, alone.period_in_mesh_cycles);
+        const double estimate = screened.estimated_relative_error.value();
+        EXPECT_LE(estimate, 1e-3);
+        const double doubt = estimate + alone.estimated_relative_error.value();
+        const auto expect_near = [&](double a, double b) {
+          EXPECT_NEAR(a, b, doubt * std::abs(b));
+        };
+        expect_near(screened.inefficiency_rms.value(), alone.inefficiency_rms.value());
+        expect_near(screened.inefficiency_energy_mean.value(),
+                    alone.inefficiency_energy_mean.value());
+        expect_near(screened.pinion_torque, alone.pinion_torque);
+        const double dte = std::max(std::abs(alone.dte_minimum), std::abs(alone.dte_maximum));
+        EXPECT_NEAR(screened.dte_minimum, alone.dte_minimum, doubt * dte);
+        EXPECT_NEAR(screened.dte_maximum, alone.dte_maximum, doubt * dte);
+        contacts += screened.contact_solutions;
+        contacts_alone += alone.contact_solutions;
+      }
+    }
+  }
+  EXPECT_LT(contacts, 0.65 * contacts_alone);
 }
 
 TEST(PointFigures, AreThoseOfTheWholeResult) {

@@ -1,0 +1,77 @@
+#include "core/study/reference_orbits.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/dynamics/orbit_solver.h"
+#include "core/study/grid_comparison.h"
+#include "core/study/step_sequence.h"
+
+namespace tribodyn {
+namespace {
+
+constexpr double kCoefficient = 0.05;  // of friction; lubricated flanks are between 0.02 and 0.1
+
+}  // namespace
+
+std::vector<ReferenceOrbit> reference_orbits(GearPairSystem& system,
+                                             const FlankContactBatch& contacts, MeshGrids& grids,
+                                             const OrbitRequest& request,
+                                             const PeriodicOrbit& origin, int least) {
+  constexpr std::size_t kMostGrids = 5;
+  constexpr double kSmall = 1e-4, kLeftBySweeps = 1e-5;
+  MarchStatistics statistics;
+  long marched_cycles = 0;
+  OrbitSolver solver(system, contacts, statistics, marched_cycles, kCoefficient);
+  OrbitRequest precise = request;
+  precise.tolerance = kLeftBySweeps;
+  PeriodicOrbit orbit = origin;
+  std::vector<ReferenceOrbit> out;
+  GridComparison comparison(system.mesh().intervals());
+  const StepSequence sequence(system.mesh().intervals(), least);
+  for (int steps = sequence.first(); out.size() < kMostGrids;) {
+    const MeshGrid& grid = grids.with_steps(steps);
+    if (out.empty() && !solver.approach_without_friction(grid, precise, orbit)) break;
+    precise.first_cycles = 0;
+    if (!solver.solve(grid, precise, orbit)) break;
+    const double error = out.empty() ? 0 : comparison.error(steps, orbit.figures) + orbit.unsettled;
+    comparison.add(steps, orbit.figures, error);
+    out.push_back({steps, orbit, error});
+    // A lubricant's friction is yet to come.
+    out.back().orbit.response = 0;
+    const bool parts = request.keep_contact && orbit.least_pressing_force < -kClearPull;
+    if (parts || (out.size() > 1 && error < kSmall)) break;
+    steps = sequence.after(steps, 1);
+  }
+  system.take_refusal();
+  if (out.size() == 1) out.front().step_error = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < out.size(); ++i) {
+    out[i].step_error =
+        out.back().step_error + out[i].orbit.figures.distance(out.back().orbit.figures);
+  }
+  return out;
+}
+
+const std::vector<ReferenceOrbit>& ReferenceOrbits::find(GearPairSystem& system,
+                                                         const FlankContactBatch& contacts,
+                                                         MeshGrids& grids,
+                                                         const OrbitRequest& request,
+                                                         const PeriodicOrbit& origin, int least) {
+  Key key{static_cast<double>(least),
+          static_cast<double>(request.keep_contact),
+          static_cast<double>(request.first_cycles),
+          static_cast<double>(request.solve_wheel_torque),
+          static_cast<double>(origin.period),
+          request.mean_pinion_speed,
+          origin.torques.pinion,
+          origin.torques.wheel};
+  std::copy(origin.state.begin(), origin.state.end(), key.begin() + 8);
+  if (const auto known = found_.find(key); known != found_.end()) return known->second;
+  if (found_.size() >= kMost) found_.clear();
+  const Torques torques = system.torques();
+  auto made = reference_orbits(system, contacts, grids, request, origin, least);
+  system.set_torques(torques);
+  return found_.emplace(key, std::move(made)).first->second;
+}
+
+}  // namespace tribodyn
