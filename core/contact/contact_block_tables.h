@@ -80,7 +80,7 @@ struct ContactBlockTables {
 };
 
 /// Fills the polynomials of R for L in [least_factor, greatest_factor]; Z is `index`. Takes as much
-/// depth as 28 terms allow. False when that is nothing.
+/// depth as 24 terms allow. False when that is nothing.
 bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double greatest_factor,
                     ContactBlockTables& tables);
 

@@ -6,24 +6,27 @@
 
 namespace tribodyn {
 
-inline constexpr int kRatioPoints = 28;
-/// One number for each L, padded to a whole number of vectors.
+inline constexpr int kRatioTerms = 24;
+/// A number for each point in L or power of it, padded to a whole number of vectors.
 using RatioLanes = std::array<double, 32>;
+/// [j][i]: the j-th point in s or power of it, the i-th in L.
+using RatioSquare = std::array<RatioLanes, kRatioTerms>;
 
-/// How R(L, s) of ContactBlockTables follows from its integrand, for every L alike: by quadrature
-/// from each of the rising points s = ln(1 + c p) to the next.
-struct RatioInterval {
+/// What the integrals R(L, s) of ContactBlockTables have in common: from each Chebyshev point in s
+/// to the next there is a Gauss-Legendre rule. Lengths and weights are shares of the greatest s.
+struct RatioRule {
   static constexpr int kNodes = 8;
-  double growth;                      ///< (1 + c p)^Z - 1 at its end
-  double per_square;                  ///< 2/(c p)^2 there
-  std::array<double, kNodes> weight;  ///< c^2 p dp/ds times that of the rule
-  std::array<double, kNodes> less;    ///< growth at the node less that at the end, <= 0
+  RatioLanes end;  ///< the points, rising
+  std::array<double, kRatioTerms * kNodes> node, weight;
+  RatioSquare to_coefficients;  ///< as in Chebyshev
+  RatioSquare transposed;
 };
-using RatioRule = std::array<RatioInterval, kRatioPoints>;
 
-/// `values[j]` has R at the end of interval j for every L. To 1e-13 while L times the growth in an
-/// interval stays below 5.
-void integrate_ratios(InstructionSet instruction_set, const RatioRule& rule,
-                      const RatioLanes& factor, std::array<RatioLanes, kRatioPoints>& values);
+/// Coefficients of T_j in s and T_i in L, from R at the points of s in [0, deepest] and at the
+/// Chebyshev points `factor` of L. R is good to 1e-13 while L times the growth of (1 + c p)^Z from
+/// one point to the next stays below 5.
+void ratio_coefficients(InstructionSet instruction_set, const RatioRule& rule,
+                        const RatioLanes& factor, double deepest, double index,
+                        RatioSquare& coefficients);
 
 }  // namespace tribodyn

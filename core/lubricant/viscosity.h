@@ -26,9 +26,9 @@ double roelands_factor(double log_ambient_viscosity, const AsPublished& as_publi
 double log_viscosity_under_pressure(double log_ambient_viscosity, double factor, double index,
                                     double pressure);
 
-/// alpha* [1/Pa] of eq 33 for a Roelands fluid, by quadrature of
-/// int_0^inf exp(-L((1 + cp)^Z - 1)) dp with v = L((1 + cp)^Z - 1); relative error below 1e-13 for
-/// factor L in [0.5, 60], Z in [0.05, 3].
+/// alpha* [1/Pa] of eq 33 for a Roelands fluid, the inverse of
+/// int_0^inf exp(-L((1 + cp)^Z - 1)) dp = e^L L^(-1/Z) Gamma(1/Z, L)/(Z c); relative error below
+/// 1e-13 for factor L in [0.5, 60], Z in [0.05, 3].
 double reciprocal_asymptotic_coefficient(double factor, double index);
 
 /// Z such that eq 33 gives alpha* back at the factor L (bracketed root, to machine precision).

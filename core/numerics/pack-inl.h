@@ -163,18 +163,20 @@ HWY_INLINE Mask within(Pack x, double low, double high) { return (x >= low) & (x
 // corrected afterwards).
 enum class Digits { kFull, kHalf };
 
-/// e^x for |x| <= 700, anything beyond: 2^n e^r, |r| <= ln 2/2, by Taylor's series. Leaner than the
-/// library's, which also serves results that are subnormal or infinite. (One vector after the
-/// other: interleaved, they would run out of registers.)
+/// x = n ln 2 + r, |r| <= ln 2/2: n in the lowest bits of `shifted`, and e^r - 1 by Taylor's
+/// series.
+struct ReducedExponential {
+  Vector shifted, less_one;
+};
+
 template <Digits kDigits>
-HWY_INLINE Vector exponential(Vector x) {
+HWY_INLINE ReducedExponential reduced_exponential(Vector x) {
   const auto c = [](double value) { return hn::Set(kTag, value); };
   constexpr double kRound = 0x1.8p52;  // its sum with n has n in its lowest bits
   constexpr double kLogTwo = 0x1.62e42fefa38p-1, kLogTwoRest = 0x1.ef35793c7673p-45;
   const Vector shifted = hn::MulAdd(x, c(std::numbers::log2e), c(kRound));
   const Vector n = hn::Sub(shifted, c(kRound));
   Vector r = hn::NegMulAdd(n, c(kLogTwo), x);
-  Vector p;
   if (kDigits == Digits::kFull) {
     r = hn::NegMulAdd(n, c(kLogTwoRest), r);
     const Vector r2 = hn::Mul(r, r);
@@ -188,16 +190,33 @@ HWY_INLINE Vector exponential(Vector x) {
     even = hn::MulAdd(even, r2, c(1.0 / 24));
     odd = hn::MulAdd(odd, r2, c(1.0 / 6));
     even = hn::MulAdd(even, r2, c(0.5));
-    p = hn::Add(hn::MulAdd(hn::MulAdd(odd, r, even), r2, r), c(1));
-  } else {
-    const Vector r2 = hn::Mul(r, r);
-    const Vector odd = hn::MulAdd(c(1.0 / 5040), r2, c(1.0 / 120));
-    const Vector even = hn::MulAdd(c(1.0 / 720), r2, c(1.0 / 24));
-    const Vector high = hn::MulAdd(odd, r, even), low = hn::MulAdd(c(1.0 / 6), r, c(0.5));
-    p = hn::Add(hn::MulAdd(hn::MulAdd(high, r2, low), r2, r), c(1));
+    return {shifted, hn::MulAdd(hn::MulAdd(odd, r, even), r2, r)};
   }
+  const Vector r2 = hn::Mul(r, r);
+  const Vector odd = hn::MulAdd(c(1.0 / 5040), r2, c(1.0 / 120));
+  const Vector even = hn::MulAdd(c(1.0 / 720), r2, c(1.0 / 24));
+  const Vector high = hn::MulAdd(odd, r, even), low = hn::MulAdd(c(1.0 / 6), r, c(0.5));
+  return {shifted, hn::MulAdd(hn::MulAdd(high, r2, low), r2, r)};
+}
+
+/// e^x for |x| <= 700, anything beyond. Leaner than the library's, which also serves results that
+/// are subnormal or infinite. (One vector after the other: interleaved, they would run out of
+/// registers.)
+template <Digits kDigits>
+HWY_INLINE Vector exponential(Vector x) {
+  const ReducedExponential e = reduced_exponential<kDigits>(x);
+  const Vector power = hn::Add(e.less_one, hn::Set(kTag, 1));
   return hn::BitCast(
-      kTag, hn::Add(hn::BitCast(kBits, p), hn::ShiftLeft<52>(hn::BitCast(kBits, shifted))));
+      kTag, hn::Add(hn::BitCast(kBits, power), hn::ShiftLeft<52>(hn::BitCast(kBits, e.shifted))));
+}
+
+/// e^x - 1 for |x| <= 700, with all digits of small ones.
+HWY_INLINE Vector exponential_less_one(Vector x) {
+  const ReducedExponential e = reduced_exponential<Digits::kFull>(x);
+  const Vector one = hn::Set(kTag, 1);
+  const Vector scale = hn::BitCast(
+      kTag, hn::Add(hn::BitCast(kBits, one), hn::ShiftLeft<52>(hn::BitCast(kBits, e.shifted))));
+  return hn::MulAdd(scale, e.less_one, hn::Sub(scale, one));
 }
 
 /// ln x for normal x > 0: x = 2^n m, sqrt(1/2) <= m < sqrt(2), ln m = 2 artanh((m - 1)/(m + 1)).
@@ -238,6 +257,11 @@ template <Digits kDigits>
 HWY_INLINE Pack exponential(Pack x) {
   Pack out;
   for (int k = 0; k < kWide; ++k) out.v[k] = exponential<kDigits>(x.v[k]);
+  return out;
+}
+HWY_INLINE Pack exponential_less_one(Pack x) {
+  Pack out;
+  for (int k = 0; k < kWide; ++k) out.v[k] = exponential_less_one(x.v[k]);
   return out;
 }
 template <Digits kDigits>
