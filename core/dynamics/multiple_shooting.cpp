@@ -113,6 +113,7 @@ void MultipleShooting::take_derivatives() {
   }
   orbit_.map.emplace(sensitivity, scale_, period_time_, states_of(system_.driveline()).still);
   orbit_.cycle_derivatives = std::move(made);
+  orbit_.moved_from_map = std::numeric_limits<double>::infinity();
 }
 
 double MultipleShooting::improve() {

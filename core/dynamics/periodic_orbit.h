@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -21,6 +22,8 @@ struct PeriodicOrbit {
   int period = 1;  ///< [mesh cycles]
   LaggedFriction friction;
   std::optional<SectionMap> map;  ///< from here or near; empty: not known
+  /// How far the state has moved since the map was made, at most, scaled.
+  double moved_from_map = std::numeric_limits<double>::infinity();
   /// Of all steps, where they have been taken side by side.
   std::shared_ptr<const CycleDerivatives> cycle_derivatives;
   std::vector<OrbitPiece> pieces;

@@ -36,11 +36,14 @@ bool SingleShooting::let_run(int cycles) {
 }
 
 bool SingleShooting::renew_map() {
+  constexpr double kHere = 1e-4;
+  if (orbit_.moved_from_map < kHere) return true;
   MarchState y = orbit_.state;
   Sensitivity sensitivity;
   start_regime(y);
   if (!march_.run(orbit_.friction, request_.keep_contact, y, &sensitivity, nullptr)) return false;
   orbit_.map.emplace(sensitivity, scale_, period_time_, states_of(system_.driveline()).still);
+  orbit_.moved_from_map = 0;
   return true;
 }
 
@@ -53,6 +56,7 @@ double SingleShooting::improve() {
     Sensitivity sensitivity;
     if (!march(y, &sensitivity)) return kBrokenDown;
     orbit_.map.emplace(sensitivity, scale_, period_time_, states_of(system_.driveline()).still);
+    orbit_.moved_from_map = 0;
   }
   SectionMap::Vector residual;
   for (int i = 0; i + 1 < kUnknowns; ++i) {
@@ -62,6 +66,7 @@ double SingleShooting::improve() {
   const SectionMap::Vector step = orbit_.map->step(residual);
   for (int i = 0; i + 1 < kUnknowns; ++i) orbit_.state[i + 1] += scale_(i) * step(i);
   add_to_unknown(scale_(kUnknowns - 1) * step(kUnknowns - 1));
+  orbit_.moved_from_map += step.norm();
   return step.norm();
 }
 
