@@ -58,14 +58,6 @@ double OrbitFigures::distance(const OrbitFigures& other) const {
                    relative(torque, other.torque), dte > 0 ? extremes / dte : 0});
 }
 
-void OrbitFriction::Arrays::resize(std::size_t size) {
-  for (auto* array : {&load, &pinion_x, &pinion_y, &gear_x, &gear_y, &friction, &sliding_speed,
-                      &pinion_arm, &gear_arm}) {
-    array->resize(size);
-  }
-  status.resize(size);
-}
-
 OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts)
     : system_(system),
       contacts_(contacts),
@@ -98,14 +90,14 @@ void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, 
     ++place.count;
     FlankMotion& motion = at.motion[k];
     const ContactConditions c = system_.contact_conditions(flank, at.load[k], state, motion);
-    arrays_.load[i] = c.load;
-    arrays_.pinion_x[i] = c.pinion_velocity_x;
-    arrays_.pinion_y[i] = c.pinion_velocity_y;
-    arrays_.gear_x[i] = c.gear_velocity_x;
-    arrays_.gear_y[i] = c.gear_velocity_y;
-    arrays_.sliding_speed[i] = motion.sliding_speed;
-    arrays_.pinion_arm[i] = motion.pinion_friction_arm;
-    arrays_.gear_arm[i] = motion.gear_friction_arm;
+    seen_[kSeenLoad][i] = c.load;
+    seen_[kSeenPinionX][i] = c.pinion_velocity_x;
+    seen_[kSeenPinionY][i] = c.pinion_velocity_y;
+    seen_[kSeenGearX][i] = c.gear_velocity_x;
+    seen_[kSeenGearY][i] = c.gear_velocity_y;
+    seen_[kSeenSlidingSpeed][i] = motion.sliding_speed;
+    seen_[kSeenPinionArm][i] = motion.pinion_friction_arm;
+    seen_[kSeenGearArm][i] = motion.gear_friction_arm;
     if (piece.node >= 0) {
       geometries_.copy(i, grid.contacts().geometries, grid.contact(piece.node + part, k));
     } else {
@@ -114,33 +106,37 @@ void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, 
   }
 }
 
-void OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-                           std::vector<SolvedPiece>* solved) {
-  const std::size_t most = 3 * kFlankPairs * pieces.size();
-  if (geometries_.size() < most) {
-    geometries_.resize(most);
-    arrays_.resize(most);
+void OrbitFriction::number_places(const std::vector<OrbitPiece>& pieces) {
+  first_.resize(pieces.size());
+  int count = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (i > 0 && goes_on(pieces[i - 1], pieces[i])) --count;
+    first_[i] = count;
+    count += 3;
   }
-  places_.resize(3 * pieces.size());
+  places_.resize(count);
+}
+
+void OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
+                           Instant* instants) {
+  const std::size_t most = kFlankPairs * places_.size();
+  if (geometries_.size() < most) geometries_.resize(most);
+  seen_.resize(kSeenRows, most);
   count_ = 0;
   Instant scratch;
+  int n = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const OrbitPiece& p = pieces[i];
     system_.regime = p.regime;
-    for (int part = 0; part < 3; ++part) {
-      Place& place = places_[3 * i + part];
-      Instant& at = solved != nullptr ? (*solved)[i].at[part] : scratch;
-      if (part == 0 && i > 0 && goes_on(pieces[i - 1], p)) {
-        place = places_[3 * i - 1];
-        if (solved != nullptr) at = (*solved)[i - 1].at[2];
-        continue;
-      }
+    for (int part = n - first_[i]; part < 3; ++part, ++n) {
+      Instant& at = instants != nullptr ? instants[n] : scratch;
       const double* state = states(p)[part];
       if (p.node >= 0) {
         system_.mechanics(grid.at(p.node + part), state, at);
       } else {
         system_.mechanics(p.phase + 0.5 * part * p.length, state, at);
       }
+      Place& place = places_[n];
       place.mesh_force = at.mesh_force;
       place.transmission_error = at.transmission_error;
       place.transmission_velocity = at.transmission_velocity;
@@ -150,45 +146,47 @@ void OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& 
 }
 
 bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int count,
-                                   const FlankContactBatchConditions& conditions,
                                    FlankContactBatchResults results) {
-  results.friction = arrays_.friction.data();
-  results.status = arrays_.status.data();
-  contacts_.solve(geometries, 0, count, conditions, results);
+  if (friction_.size() < static_cast<std::size_t>(count)) {
+    friction_.resize(count);
+    status_.resize(count);
+  }
+  results.friction = friction_.data();
+  results.status = status_.data();
+  contacts_.solve(geometries, 0, count,
+                  {seen_[kSeenLoad], seen_[kSeenPinionX], seen_[kSeenPinionY], seen_[kSeenGearX],
+                   seen_[kSeenGearY]},
+                  results);
   system_.count_contacts(count);
   for (int i = 0; i < count; ++i) {
-    if (arrays_.status[i] != ContactStatus::kOk) system_.refuse(arrays_.status[i]);
+    if (status_[i] != ContactStatus::kOk) system_.refuse(status_[i]);
   }
   return system_.refusal() == ContactStatus::kOk;
 }
 
-bool OrbitFriction::solve_gathered(const FlankContactBatchResults& results) {
-  return solve_contacts(geometries_, count_,
-                        {arrays_.load.data(), arrays_.pinion_x.data(), arrays_.pinion_y.data(),
-                         arrays_.gear_x.data(), arrays_.gear_y.data()},
-                        results);
-}
-
 bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
                              double light, LaggedFriction& friction, OrbitFigures& f) {
+  number_places(pieces);
   gather(grid, pieces, nullptr);
-  if (!solve_gathered({})) return false;
+  if (!solve_contacts(geometries_, count_, {})) return false;
   friction.clear(places_.size());
   f = {};
   least_pressing_force_ = 1e300;
   double low = 1e300, high = -1e300, squares = 0, time = 0, loss = 0;
+  int next = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const OrbitPiece& p = pieces[i];
-    const Place* at = &places_[3 * i];
+    const Place* at = &places_[first_[i]];
     for (int part = 0; part < 3; ++part) {
       const Place& place = at[part];
-      if (!(part == 0 && i > 0 && goes_on(pieces[i - 1], p))) {
+      if (first_[i] + part == next) {
+        ++next;
         loss = 0;
         FrictionPerLoad torque;
         for (int n = place.first; n < place.first + place.count; ++n) {
-          torque.pinion += arrays_.pinion_arm[n] * arrays_.friction[n];
-          torque.gear += arrays_.gear_arm[n] * arrays_.friction[n];
-          loss += arrays_.sliding_speed[n] * arrays_.friction[n];
+          torque.pinion += seen_[kSeenPinionArm][n] * friction_[n];
+          torque.gear += seen_[kSeenGearArm][n] * friction_[n];
+          loss += seen_[kSeenSlidingSpeed][n] * friction_[n];
         }
         // Across a gap it goes from the value before to that after: no jump where a flank meets.
         if (place.load > light) {
@@ -224,15 +222,8 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
                              OrbitFigures& f) {
   const auto count = static_cast<int>(contacts.node.size());
   seen_.resize(kSeenRows, contacts.node.size());
-  arrays_.friction.resize(std::max(arrays_.friction.size(), contacts.node.size()));
-  arrays_.status.resize(arrays_.friction.size());
   see_contacts(instruction_set(), block, contacts, response, seen_);
-  if (!solve_contacts(contacts.geometries, count,
-                      {seen_[kSeenLoad], seen_[kSeenPinionX], seen_[kSeenPinionY],
-                       seen_[kSeenGearX], seen_[kSeenGearY]},
-                      {})) {
-    return false;
-  }
+  if (!solve_contacts(contacts.geometries, count, {})) return false;
   friction.clear(contacts.first.size());
   f = {};
   least_pressing_force_ = 1e300;
@@ -244,9 +235,9 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
     double loss = 0;
     FrictionPerLoad torque;
     for (int n = contacts.first[place]; n < contacts.first[place + 1]; ++n) {
-      torque.pinion += seen_[kSeenPinionArm][n] * arrays_.friction[n];
-      torque.gear += seen_[kSeenGearArm][n] * arrays_.friction[n];
-      loss += seen_[kSeenSlidingSpeed][n] * arrays_.friction[n];
+      torque.pinion += seen_[kSeenPinionArm][n] * friction_[n];
+      torque.gear += seen_[kSeenGearArm][n] * friction_[n];
+      loss += seen_[kSeenSlidingSpeed][n] * friction_[n];
     }
     const double load = block.side * at[kMeshForceRow][lane];
     friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load},
@@ -275,54 +266,44 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
 }
 
 bool OrbitFriction::solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-                          std::vector<SolvedPiece>& solved) {
-  solved.resize(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) solved[i].piece = pieces[i];
-  gather(grid, pieces, &solved);
+                          SolvedPieces& solved) {
+  number_places(pieces);
+  solved.first = first_;
+  solved.instants.resize(places_.size());
+  gather(grid, pieces, solved.instants.data());
   using C = ContactSolution;
   using R = FlankContactBatchResults;
-  struct Column {
+  struct Row {
     double* R::*array;
     double C::*member;
   };
-  static constexpr Column kColumns[] = {
-      {&R::viscous_friction, &C::viscous_friction},
-      {&R::boundary_friction, &C::boundary_friction},
-      {&R::contact_temperature, &C::contact_temperature},
-      {&R::central_film_thickness, &C::central_film_thickness},
-      {&R::film_ratio, &C::film_ratio},
-      {&R::maximum_pressure, &C::maximum_pressure},
-      {&R::shear_rate, &C::shear_rate},
-      {&R::limiting_stress_area_share, &C::limiting_stress_area_share}};
-  std::array<std::vector<double>, std::size(kColumns)> columns;
+  static constexpr Row kRows[] = {{&R::viscous_friction, &C::viscous_friction},
+                                  {&R::boundary_friction, &C::boundary_friction},
+                                  {&R::contact_temperature, &C::contact_temperature},
+                                  {&R::central_film_thickness, &C::central_film_thickness},
+                                  {&R::film_ratio, &C::film_ratio},
+                                  {&R::maximum_pressure, &C::maximum_pressure},
+                                  {&R::shear_rate, &C::shear_rate},
+                                  {&R::limiting_stress_area_share, &C::limiting_stress_area_share}};
+  Columns rows(std::size(kRows), count_);
   R results;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    columns[c].resize(count_);
-    results.*kColumns[c].array = columns[c].data();
-  }
+  for (std::size_t r = 0; r < std::size(kRows); ++r) results.*kRows[r].array = rows[r];
   const auto at_centre = std::make_unique<bool[]>(count_);
   results.limiting_stress_at_centre = at_centre.get();
-  if (!solve_gathered(results)) return false;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    for (int part = 0; part < 3; ++part) {
-      Instant& at = solved[i].at[part];
-      int n = places_[3 * i + part].first;
-      at.pinion_friction_torque = at.gear_friction_torque = at.loss_power = 0;
-      for (int k = 0; k < kFlankPairs; ++k) {
-        at.contact[k] = {};
-        if (!(at.load[k] > 0)) continue;
-        ContactSolution& contact = at.contact[k];
-        contact.status = ContactStatus::kOk;
-        contact.friction = arrays_.friction[n];
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-          contact.*kColumns[c].member = columns[c][n];
-        }
-        contact.limiting_stress_at_centre = at_centre[n];
-        at.pinion_friction_torque += at.motion[k].pinion_friction_arm * contact.friction;
-        at.gear_friction_torque += at.motion[k].gear_friction_arm * contact.friction;
-        at.loss_power += at.motion[k].sliding_speed * contact.friction;
-        ++n;
-      }
+  if (!solve_contacts(geometries_, count_, results)) return false;
+  int n = 0;
+  for (Instant& at : solved.instants) {
+    for (int k = 0; k < kFlankPairs; ++k) {
+      if (!(at.load[k] > 0)) continue;
+      ContactSolution& contact = at.contact[k];
+      contact.status = ContactStatus::kOk;
+      contact.friction = friction_[n];
+      for (std::size_t r = 0; r < std::size(kRows); ++r) contact.*kRows[r].member = rows[r][n];
+      contact.limiting_stress_at_centre = at_centre[n];
+      at.pinion_friction_torque += at.motion[k].pinion_friction_arm * contact.friction;
+      at.gear_friction_torque += at.motion[k].gear_friction_arm * contact.friction;
+      at.loss_power += at.motion[k].sliding_speed * contact.friction;
+      ++n;
     }
   }
   return true;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/contact/flank_contact_batch.h"
@@ -21,10 +23,15 @@ struct OrbitPiece {
   MarchState start, middle, end;
 };
 
-/// A piece with everything known at its start, middle and end.
-struct SolvedPiece {
-  OrbitPiece piece;
-  std::array<Instant, 3> at;
+/// Everything at the starts, middles and ends of a response's pieces. What goes on from the piece
+/// before shares its end.
+struct SolvedPieces {
+  std::vector<Instant> instants;
+  std::vector<int> first;  ///< instant of each piece
+  std::span<const Instant, 3> of(std::size_t piece) const {
+    return std::span<const Instant, 3>(instants.data() + first[piece], 3);
+  }
+  bool goes_on(std::size_t piece) const { return piece > 0 && first[piece] < first[piece - 1] + 3; }
 };
 
 /// What a sweep reports of a response: enough to tell how much an answer moved.
@@ -58,8 +65,7 @@ class OrbitFriction {
   double least_pressing_force() const { return least_pressing_force_; }
   InstructionSet instruction_set() const { return contacts_.instruction_set(); }
   /// Everything at the pieces' instants. False as above.
-  bool solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-             std::vector<SolvedPiece>& solved);
+  bool solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, SolvedPieces& solved);
 
  private:
   struct Place {
@@ -67,28 +73,23 @@ class OrbitFriction {
     double load;
     int first, count;  // contacts
   };
-  struct Arrays {
-    std::vector<double> load, pinion_x, pinion_y, gear_x, gear_y, friction;
-    std::vector<double> sliding_speed, pinion_arm, gear_arm;
-    std::vector<ContactStatus> status;
-    void resize(std::size_t size);
-  };
-  void gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-              std::vector<SolvedPiece>* solved);
+  /// `instants`: one for each place; or null.
+  void gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, Instant* instants);
+  void number_places(const std::vector<OrbitPiece>& pieces);
   void add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part, const double* state,
                     Place& place, Instant& at);
-  /// False when one is refused.
+  /// The contacts of `seen_`. False when one is refused.
   bool solve_contacts(const ContactGeometries& geometries, int count,
-                      const FlankContactBatchConditions& conditions,
                       FlankContactBatchResults results);
-  bool solve_gathered(const FlankContactBatchResults& results);
 
   GearPairSystem& system_;
   const FlankContactBatch& contacts_;
   ContactGeometries geometries_;
-  std::vector<Place> places_;  // three of a piece
+  std::vector<int> first_;     // place of each piece, of three
+  std::vector<Place> places_;  // shared as the instants of SolvedPieces
   Columns seen_;               // SeenRow
-  Arrays arrays_;
+  std::vector<double> friction_;
+  std::vector<ContactStatus> status_;
   int count_ = 0;  // contacts
   double least_pressing_force_ = 0;
 };

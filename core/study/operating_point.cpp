@@ -195,27 +195,29 @@ std::optional<RefinedOrbit> shoot(GearPairSystem& system, const FlankContactBatc
   return found;
 }
 
-/// Everything that follows from a response; its pieces with their contacts, none when one is
+/// Everything that follows from a response; its pieces with their contacts, nothing when one is
 /// refused. Counts contacts.
-std::vector<SolvedPiece> fill_from_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
-                                         MeshGrids& grids, const PeriodicOrbit& orbit,
-                                         int steps_per_mesh_cycle, double mean_pinion_speed,
-                                         PointResult& out) {
+std::optional<SolvedPieces> fill_from_orbit(GearPairSystem& system,
+                                            const FlankContactBatch& contacts, MeshGrids& grids,
+                                            const PeriodicOrbit& orbit, int steps_per_mesh_cycle,
+                                            double mean_pinion_speed, PointResult& out) {
   out.settled = true;
   out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
   system.set_torques(orbit.torques);
-  std::vector<SolvedPiece> pieces;
+  SolvedPieces solved;
   OrbitFriction friction(system, contacts);
-  if (!friction.solve(grids.with_steps(steps_per_mesh_cycle), orbit.pieces, pieces)) return {};
+  if (!friction.solve(grids.with_steps(steps_per_mesh_cycle), orbit.pieces, solved)) {
+    return std::nullopt;
+  }
   ResponseRecord record(march_scales(system, mean_pinion_speed).torque /
                         system.mesh().mean_pinion_contact_radius());
-  record_orbit(system, orbit, pieces, record);
+  record_orbit(system, orbit, solved, record);
   record.fill(system.torques(), orbit.period, true, out);
   out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().end.data()) -
                              system.stored_energy(0, orbit.pieces.front().start.data());
   out.section_state = system.to_section(orbit.pieces.front().start.data());
   out.statistics.contact_solutions = system.contact_solutions();
-  return pieces;
+  return solved;
 }
 
 /// By shooting. Nothing where marching must decide.
@@ -237,11 +239,11 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   PointResult out = empty_result(target, dynamic_model(system));
   out.method = SteadyStateMethod::kShooting;
   set_estimate(refined->estimated_error, out);
-  const auto pieces = fill_from_orbit(system, contacts, grids, orbit, refined->steps_per_mesh_cycle,
+  const auto solved = fill_from_orbit(system, contacts, grids, orbit, refined->steps_per_mesh_cycle,
                                       target.mean_pinion_speed, out);
-  if (pieces.empty()) return std::nullopt;
+  if (!solved) return std::nullopt;
   HistorySampler history(history_request);
-  sample_orbit(system, orbit, pieces, history);
+  sample_orbit(system, orbit, *solved, history);
   out.history = history.take();
   out.statistics.right_hand_sides = statistics.right_hand_sides;
   out.statistics.accepted_steps = statistics.accepted_steps;
