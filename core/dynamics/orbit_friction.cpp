@@ -46,7 +46,112 @@ std::array<const double*, 3> states(const OrbitPiece& piece) {
   return {piece.start.data(), piece.middle.data(), piece.end.data()};
 }
 
+/// Fills in the first place of each of the pieces, which have three: one that goes on from the
+/// piece before shares its last. Returns the number of places.
+int number_places(const std::vector<OrbitPiece>& pieces, std::vector<int>& first) {
+  first.resize(pieces.size());
+  int count = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (i > 0 && goes_on(pieces[i - 1], pieces[i])) --count;
+    first[i] = count;
+    count += 3;
+  }
+  return count;
+}
+
+/// Mechanics, loads and motion of the flanks at part 0, 1, 2 of a piece: its start, middle, end.
+/// Tells of each loaded contact: on_contact(flank pair, its kinematics, its conditions).
+template <class OnContact>
+void see_flanks(GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& piece, int part,
+                Instant& at, OnContact&& on_contact) {
+  system.regime = piece.regime;
+  const double* state = states(piece)[part];
+  if (piece.node >= 0) {
+    system.mechanics(grid.at(piece.node + part), state, at);
+  } else {
+    system.mechanics(piece.phase + 0.5 * part * piece.length, state, at);
+  }
+  at.load = {};
+  const double load = piece.regime.load(at.mesh_force);
+  if (!(load > 0)) return;
+  std::array<FlankKinematics, kFlankPairs> off_grid;
+  const std::array<FlankKinematics, kFlankPairs>* flanks = &off_grid;
+  if (piece.node >= 0) {
+    flanks = &grid.flanks(piece.node + part);
+  } else {
+    const MeshData& mesh = system.mesh();
+    const double inside = std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
+    const int interval =
+        std::clamp(static_cast<int>(inside * mesh.intervals()), 0, mesh.intervals() - 1);
+    mesh.flanks(interval, inside, off_grid);
+  }
+  for (int k = 0; k < kFlankPairs; ++k) {
+    const FlankKinematics& flank = (*flanks)[k];
+    at.load[k] = flank.load_share * load;
+    if (!(at.load[k] > 0)) continue;
+    on_contact(k, flank, system.contact_conditions(flank, at.load[k], state, at.motion[k]));
+  }
+}
+
+struct ContactRow {
+  double* FlankContactBatchResults::*array;
+  double ContactSolution::*member;
+};
+constexpr ContactRow kContactRow[] = {
+    {&FlankContactBatchResults::friction, &ContactSolution::friction},
+    {&FlankContactBatchResults::viscous_friction, &ContactSolution::viscous_friction},
+    {&FlankContactBatchResults::boundary_friction, &ContactSolution::boundary_friction},
+    {&FlankContactBatchResults::contact_temperature, &ContactSolution::contact_temperature},
+    {&FlankContactBatchResults::central_film_thickness, &ContactSolution::central_film_thickness},
+    {&FlankContactBatchResults::film_ratio, &ContactSolution::film_ratio},
+    {&FlankContactBatchResults::maximum_pressure, &ContactSolution::maximum_pressure},
+    {&FlankContactBatchResults::shear_rate, &ContactSolution::shear_rate},
+    {&FlankContactBatchResults::limiting_stress_area_share,
+     &ContactSolution::limiting_stress_area_share}};
+
 }  // namespace
+
+void SolvedContacts::resize(std::size_t count) {
+  if (count <= size_) return;
+  rows_.resize(std::size(kContactRow), count);
+  limiting_stress_at_centre_ = std::make_unique<bool[]>(count);
+  size_ = count;
+}
+
+FlankContactBatchResults SolvedContacts::results() {
+  FlankContactBatchResults out;
+  for (std::size_t r = 0; r < std::size(kContactRow); ++r) out.*kContactRow[r].array = rows_[r];
+  out.limiting_stress_at_centre = limiting_stress_at_centre_.get();
+  return out;
+}
+
+void SolvedContacts::copy(std::size_t i, ContactSolution& to) const {
+  to.status = ContactStatus::kOk;
+  for (std::size_t r = 0; r < std::size(kContactRow); ++r) to.*kContactRow[r].member = rows_[r][i];
+  to.limiting_stress_at_centre = limiting_stress_at_centre_[i];
+}
+
+SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
+                           const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts) {
+  SolvedPieces out;
+  out.instants.resize(number_places(pieces, out.first));
+  int n = 0, contact = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (int part = n - out.first[i]; part < 3; ++part, ++n) {
+      Instant& at = out.instants[n];
+      see_flanks(system, grid, pieces[i], part, at,
+                 [&](int k, const FlankKinematics&, const ContactConditions&) {
+                   ContactSolution& solution = at.contact[k];
+                   contacts.copy(contact++, solution);
+                   at.pinion_friction_torque +=
+                       at.motion[k].pinion_friction_arm * solution.friction;
+                   at.gear_friction_torque += at.motion[k].gear_friction_arm * solution.friction;
+                   at.loss_power += at.motion[k].sliding_speed * solution.friction;
+                 });
+    }
+  }
+  return out;
+}
 
 double OrbitFigures::distance(const OrbitFigures& other) const {
   // Where the transmission error passes through zero its extremes are measured by the larger one.
@@ -63,95 +168,51 @@ OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& co
       contacts_(contacts),
       geometries_(contacts.model().reduced_modulus(), contacts.model().options()) {}
 
-void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part,
-                                 const double* state, Place& place, Instant& at) {
-  place.first = count_;
-  place.count = 0;
-  const double load = piece.regime.load(at.mesh_force);
-  place.load = load;
-  at.load = {};
-  if (!(load > 0)) return;
-  std::array<FlankKinematics, kFlankPairs> off_grid;
-  const std::array<FlankKinematics, kFlankPairs>* flanks = &off_grid;
-  if (piece.node >= 0) {
-    flanks = &grid.flanks(piece.node + part);
-  } else {
-    const MeshData& mesh = system_.mesh();
-    const double inside = std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
-    const int interval =
-        std::clamp(static_cast<int>(inside * mesh.intervals()), 0, mesh.intervals() - 1);
-    mesh.flanks(interval, inside, off_grid);
-  }
-  for (int k = 0; k < kFlankPairs; ++k) {
-    const FlankKinematics& flank = (*flanks)[k];
-    at.load[k] = flank.load_share * load;
-    if (!(at.load[k] > 0)) continue;
-    const int i = count_++;
-    ++place.count;
-    FlankMotion& motion = at.motion[k];
-    const ContactConditions c = system_.contact_conditions(flank, at.load[k], state, motion);
-    seen_[kSeenLoad][i] = c.load;
-    seen_[kSeenPinionX][i] = c.pinion_velocity_x;
-    seen_[kSeenPinionY][i] = c.pinion_velocity_y;
-    seen_[kSeenGearX][i] = c.gear_velocity_x;
-    seen_[kSeenGearY][i] = c.gear_velocity_y;
-    seen_[kSeenSlidingSpeed][i] = motion.sliding_speed;
-    seen_[kSeenPinionArm][i] = motion.pinion_friction_arm;
-    seen_[kSeenGearArm][i] = motion.gear_friction_arm;
-    if (piece.node >= 0) {
-      geometries_.copy(i, grid.contacts().geometries, grid.contact(piece.node + part, k));
-    } else {
-      geometries_.set(i, flank.radius_x, flank.radius_y);
-    }
-  }
-}
-
-void OrbitFriction::number_places(const std::vector<OrbitPiece>& pieces) {
-  first_.resize(pieces.size());
-  int count = 0;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (i > 0 && goes_on(pieces[i - 1], pieces[i])) --count;
-    first_[i] = count;
-    count += 3;
-  }
-  places_.resize(count);
-}
-
-void OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-                           Instant* instants) {
+int OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces) {
+  places_.resize(number_places(pieces, first_));
   const std::size_t most = kFlankPairs * places_.size();
   if (geometries_.size() < most) geometries_.resize(most);
   seen_.resize(kSeenRows, most);
-  count_ = 0;
-  Instant scratch;
-  int n = 0;
+  Instant at;
+  int n = 0, count = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const OrbitPiece& p = pieces[i];
-    system_.regime = p.regime;
     for (int part = n - first_[i]; part < 3; ++part, ++n) {
-      Instant& at = instants != nullptr ? instants[n] : scratch;
-      const double* state = states(p)[part];
-      if (p.node >= 0) {
-        system_.mechanics(grid.at(p.node + part), state, at);
-      } else {
-        system_.mechanics(p.phase + 0.5 * part * p.length, state, at);
-      }
       Place& place = places_[n];
+      place.first = count;
+      see_flanks(system_, grid, p, part, at,
+                 [&](int k, const FlankKinematics& flank, const ContactConditions& c) {
+                   const FlankMotion& motion = at.motion[k];
+                   seen_[kSeenLoad][count] = c.load;
+                   seen_[kSeenPinionX][count] = c.pinion_velocity_x;
+                   seen_[kSeenPinionY][count] = c.pinion_velocity_y;
+                   seen_[kSeenGearX][count] = c.gear_velocity_x;
+                   seen_[kSeenGearY][count] = c.gear_velocity_y;
+                   seen_[kSeenSlidingSpeed][count] = motion.sliding_speed;
+                   seen_[kSeenPinionArm][count] = motion.pinion_friction_arm;
+                   seen_[kSeenGearArm][count] = motion.gear_friction_arm;
+                   if (p.node >= 0) {
+                     geometries_.copy(count, grid.contacts().geometries,
+                                      grid.contact(p.node + part, k));
+                   } else {
+                     geometries_.set(count, flank.radius_x, flank.radius_y);
+                   }
+                   ++count;
+                 });
+      place.count = count - place.first;
+      place.load = p.regime.load(at.mesh_force);
       place.mesh_force = at.mesh_force;
       place.transmission_error = at.transmission_error;
       place.transmission_velocity = at.transmission_velocity;
-      add_contacts(grid, p, part, state, place, at);
     }
   }
+  return count;
 }
 
-bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int count,
-                                   FlankContactBatchResults results) {
-  if (friction_.size() < static_cast<std::size_t>(count)) {
-    friction_.resize(count);
-    status_.resize(count);
-  }
-  results.friction = friction_.data();
+bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int count) {
+  solved_->resize(count);
+  if (status_.size() < static_cast<std::size_t>(count)) status_.resize(count);
+  FlankContactBatchResults results = solved_->results();
   results.status = status_.data();
   contacts_.solve(geometries, 0, count,
                   {seen_[kSeenLoad], seen_[kSeenPinionX], seen_[kSeenPinionY], seen_[kSeenGearX],
@@ -166,9 +227,8 @@ bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int coun
 
 bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
                              double light, LaggedFriction& friction, OrbitFigures& f) {
-  number_places(pieces);
-  gather(grid, pieces, nullptr);
-  if (!solve_contacts(geometries_, count_, {})) return false;
+  if (!solve_contacts(geometries_, gather(grid, pieces))) return false;
+  const double* contact_friction = solved_->friction();
   friction.clear(places_.size());
   f = {};
   least_pressing_force_ = 1e300;
@@ -184,9 +244,9 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
         loss = 0;
         FrictionPerLoad torque;
         for (int n = place.first; n < place.first + place.count; ++n) {
-          torque.pinion += seen_[kSeenPinionArm][n] * friction_[n];
-          torque.gear += seen_[kSeenGearArm][n] * friction_[n];
-          loss += seen_[kSeenSlidingSpeed][n] * friction_[n];
+          torque.pinion += seen_[kSeenPinionArm][n] * contact_friction[n];
+          torque.gear += seen_[kSeenGearArm][n] * contact_friction[n];
+          loss += seen_[kSeenSlidingSpeed][n] * contact_friction[n];
         }
         // Across a gap it goes from the value before to that after: no jump where a flank meets.
         if (place.load > light) {
@@ -223,7 +283,8 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
   const auto count = static_cast<int>(contacts.node.size());
   seen_.resize(kSeenRows, contacts.node.size());
   see_contacts(instruction_set(), block, contacts, response, seen_);
-  if (!solve_contacts(contacts.geometries, count, {})) return false;
+  if (!solve_contacts(contacts.geometries, count)) return false;
+  const double* contact_friction = solved_->friction();
   friction.clear(contacts.first.size());
   f = {};
   least_pressing_force_ = 1e300;
@@ -235,9 +296,9 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
     double loss = 0;
     FrictionPerLoad torque;
     for (int n = contacts.first[place]; n < contacts.first[place + 1]; ++n) {
-      torque.pinion += seen_[kSeenPinionArm][n] * friction_[n];
-      torque.gear += seen_[kSeenGearArm][n] * friction_[n];
-      loss += seen_[kSeenSlidingSpeed][n] * friction_[n];
+      torque.pinion += seen_[kSeenPinionArm][n] * contact_friction[n];
+      torque.gear += seen_[kSeenGearArm][n] * contact_friction[n];
+      loss += seen_[kSeenSlidingSpeed][n] * contact_friction[n];
     }
     const double load = block.side * at[kMeshForceRow][lane];
     friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load},
@@ -262,50 +323,6 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
   f.loss_rms = std::sqrt(squares / time);
   f.dte_minimum = low;
   f.dte_maximum = high;
-  return true;
-}
-
-bool OrbitFriction::solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-                          SolvedPieces& solved) {
-  number_places(pieces);
-  solved.first = first_;
-  solved.instants.resize(places_.size());
-  gather(grid, pieces, solved.instants.data());
-  using C = ContactSolution;
-  using R = FlankContactBatchResults;
-  struct Row {
-    double* R::*array;
-    double C::*member;
-  };
-  static constexpr Row kRows[] = {{&R::viscous_friction, &C::viscous_friction},
-                                  {&R::boundary_friction, &C::boundary_friction},
-                                  {&R::contact_temperature, &C::contact_temperature},
-                                  {&R::central_film_thickness, &C::central_film_thickness},
-                                  {&R::film_ratio, &C::film_ratio},
-                                  {&R::maximum_pressure, &C::maximum_pressure},
-                                  {&R::shear_rate, &C::shear_rate},
-                                  {&R::limiting_stress_area_share, &C::limiting_stress_area_share}};
-  Columns rows(std::size(kRows), count_);
-  R results;
-  for (std::size_t r = 0; r < std::size(kRows); ++r) results.*kRows[r].array = rows[r];
-  const auto at_centre = std::make_unique<bool[]>(count_);
-  results.limiting_stress_at_centre = at_centre.get();
-  if (!solve_contacts(geometries_, count_, results)) return false;
-  int n = 0;
-  for (Instant& at : solved.instants) {
-    for (int k = 0; k < kFlankPairs; ++k) {
-      if (!(at.load[k] > 0)) continue;
-      ContactSolution& contact = at.contact[k];
-      contact.status = ContactStatus::kOk;
-      contact.friction = friction_[n];
-      for (std::size_t r = 0; r < std::size(kRows); ++r) contact.*kRows[r].member = rows[r][n];
-      contact.limiting_stress_at_centre = at_centre[n];
-      at.pinion_friction_torque += at.motion[k].pinion_friction_arm * contact.friction;
-      at.gear_friction_torque += at.motion[k].gear_friction_arm * contact.friction;
-      at.loss_power += at.motion[k].sliding_speed * contact.friction;
-      ++n;
-    }
-  }
   return true;
 }
 

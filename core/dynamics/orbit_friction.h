@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/contact/flank_contact_batch.h"
@@ -23,6 +25,22 @@ struct OrbitPiece {
   MarchState start, middle, end;
 };
 
+/// Figures of the contacts of a response, in the order of its instants and of their flank pairs.
+class SolvedContacts {
+ public:
+  /// Nothing is kept.
+  void resize(std::size_t count);
+  /// Where a batch puts them, all but the status.
+  FlankContactBatchResults results();
+  const double* friction() const { return rows_[0]; }
+  void copy(std::size_t i, ContactSolution& to) const;
+
+ private:
+  Columns rows_;
+  std::unique_ptr<bool[]> limiting_stress_at_centre_;
+  std::size_t size_ = 0;
+};
+
 /// Everything at the starts, middles and ends of a response's pieces. What goes on from the piece
 /// before shares its end.
 struct SolvedPieces {
@@ -33,6 +51,10 @@ struct SolvedPieces {
   }
   bool goes_on(std::size_t piece) const { return piece > 0 && first[piece] < first[piece - 1] + 3; }
 };
+
+/// `grid`: what the pieces' nodes are of; `contacts`: all of theirs. Changes the system's regime.
+SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
+                           const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts);
 
 /// What a sweep reports of a response: enough to tell how much an answer moved.
 struct OrbitFigures {
@@ -64,8 +86,10 @@ class OrbitFriction {
   /// negative: they were held together [N].
   double least_pressing_force() const { return least_pressing_force_; }
   InstructionSet instruction_set() const { return contacts_.instruction_set(); }
-  /// Everything at the pieces' instants. False as above.
-  bool solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, SolvedPieces& solved);
+  /// The contacts of the last evaluation, to keep.
+  std::shared_ptr<const SolvedContacts> take_contacts() {
+    return std::exchange(solved_, std::make_shared<SolvedContacts>());
+  }
 
  private:
   struct Place {
@@ -73,24 +97,19 @@ class OrbitFriction {
     double load;
     int first, count;  // contacts
   };
-  /// `instants`: one for each place; or null.
-  void gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces, Instant* instants);
-  void number_places(const std::vector<OrbitPiece>& pieces);
-  void add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part, const double* state,
-                    Place& place, Instant& at);
+  /// Returns the number of contacts.
+  int gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces);
   /// The contacts of `seen_`. False when one is refused.
-  bool solve_contacts(const ContactGeometries& geometries, int count,
-                      FlankContactBatchResults results);
+  bool solve_contacts(const ContactGeometries& geometries, int count);
 
   GearPairSystem& system_;
   const FlankContactBatch& contacts_;
   ContactGeometries geometries_;
-  std::vector<int> first_;     // place of each piece, of three
+  std::vector<int> first_;     // place of each piece
   std::vector<Place> places_;  // shared as the instants of SolvedPieces
   Columns seen_;               // SeenRow
-  std::vector<double> friction_;
+  std::shared_ptr<SolvedContacts> solved_ = std::make_shared<SolvedContacts>();
   std::vector<ContactStatus> status_;
-  int count_ = 0;  // contacts
   double least_pressing_force_ = 0;
 };
 

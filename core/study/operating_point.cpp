@@ -195,20 +195,14 @@ std::optional<RefinedOrbit> shoot(GearPairSystem& system, const FlankContactBatc
   return found;
 }
 
-/// Everything that follows from a response; its pieces with their contacts, nothing when one is
-/// refused. Counts contacts.
-std::optional<SolvedPieces> fill_from_orbit(GearPairSystem& system,
-                                            const FlankContactBatch& contacts, MeshGrids& grids,
-                                            const PeriodicOrbit& orbit, int steps_per_mesh_cycle,
-                                            double mean_pinion_speed, PointResult& out) {
+/// Everything that follows from a response; its pieces with their contacts.
+SolvedPieces fill_from_orbit(GearPairSystem& system, MeshGrids& grids, const PeriodicOrbit& orbit,
+                             int steps_per_mesh_cycle, double mean_pinion_speed, PointResult& out) {
   out.settled = true;
   out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
   system.set_torques(orbit.torques);
-  SolvedPieces solved;
-  OrbitFriction friction(system, contacts);
-  if (!friction.solve(grids.with_steps(steps_per_mesh_cycle), orbit.pieces, solved)) {
-    return std::nullopt;
-  }
+  SolvedPieces solved =
+      solved_pieces(system, grids.with_steps(steps_per_mesh_cycle), orbit.pieces, *orbit.contacts);
   ResponseRecord record(march_scales(system, mean_pinion_speed).torque /
                         system.mesh().mean_pinion_contact_radius());
   record_orbit(system, orbit, solved, record);
@@ -239,11 +233,10 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   PointResult out = empty_result(target, dynamic_model(system));
   out.method = SteadyStateMethod::kShooting;
   set_estimate(refined->estimated_error, out);
-  const auto solved = fill_from_orbit(system, contacts, grids, orbit, refined->steps_per_mesh_cycle,
-                                      target.mean_pinion_speed, out);
-  if (!solved) return std::nullopt;
+  const SolvedPieces solved = fill_from_orbit(system, grids, orbit, refined->steps_per_mesh_cycle,
+                                              target.mean_pinion_speed, out);
   HistorySampler history(history_request);
-  sample_orbit(system, orbit, *solved, history);
+  sample_orbit(system, orbit, solved, history);
   out.history = history.take();
   out.statistics.right_hand_sides = statistics.right_hand_sides;
   out.statistics.accepted_steps = statistics.accepted_steps;
@@ -273,13 +266,13 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
           " N m; AUTOMATIC or MARCH may");
 }
 
-PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch& contacts,
-                                MeshGrids& grids, const OperatingTarget& target,
-                                const PointOptions& options, QuasiStaticAnswer& answer) {
+PointResult quasi_static_result(GearPairSystem& system, MeshGrids& grids,
+                                const OperatingTarget& target, const PointOptions& options,
+                                QuasiStaticAnswer& answer) {
   PointResult out = empty_result(target, PointModel::kQuasiStatic);
   set_estimate(answer.estimated_error, out);
   const QuasiStatic& solution = answer.solution;
-  fill_from_orbit(system, contacts, grids, solution.orbit, solution.steps_per_mesh_cycle,
+  fill_from_orbit(system, grids, solution.orbit, solution.steps_per_mesh_cycle,
                   target.mean_pinion_speed, out);
   throw_if_refused(system);
   // Speeds are taken as they follow each other, and the unknown torque from the mean power: neither
@@ -306,7 +299,7 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactB
     throw Refusal("NO_QUASI_STATIC_EQUILIBRIUM",
                   "load and friction of the quasi-static model do not settle");
   }
-  return quasi_static_result(system, contacts, grids, target, options, *answer);
+  return quasi_static_result(system, grids, target, options, *answer);
 }
 
 }  // namespace
@@ -346,7 +339,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
         result = solve_quasi_static_point(system, contacts, grids, target, options);
       } else if (may_choose(options, from) &&
                  (chosen = choose_quasi_static(system, contacts, gear_set, target, options))) {
-        result = quasi_static_result(system, contacts, grids, target, options, *chosen);
+        result = quasi_static_result(system, grids, target, options, *chosen);
       } else if (std::optional<PointResult> shot;
                  options.method != SteadyStateMethod::kMarch &&
                  (shot = solve_by_shooting(system, contacts, grids, target, options, start, from,
