@@ -95,19 +95,19 @@ void see_flanks(GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& 
 
 struct ContactRow {
   double* FlankContactBatchResults::*array;
-  double ContactSolution::*member;
+  double ContactFigures::*member;
 };
 constexpr ContactRow kContactRow[] = {
-    {&FlankContactBatchResults::friction, &ContactSolution::friction},
-    {&FlankContactBatchResults::viscous_friction, &ContactSolution::viscous_friction},
-    {&FlankContactBatchResults::boundary_friction, &ContactSolution::boundary_friction},
-    {&FlankContactBatchResults::contact_temperature, &ContactSolution::contact_temperature},
-    {&FlankContactBatchResults::central_film_thickness, &ContactSolution::central_film_thickness},
-    {&FlankContactBatchResults::film_ratio, &ContactSolution::film_ratio},
-    {&FlankContactBatchResults::maximum_pressure, &ContactSolution::maximum_pressure},
-    {&FlankContactBatchResults::shear_rate, &ContactSolution::shear_rate},
+    {&FlankContactBatchResults::friction, &ContactFigures::friction},
+    {&FlankContactBatchResults::viscous_friction, &ContactFigures::viscous_friction},
+    {&FlankContactBatchResults::boundary_friction, &ContactFigures::boundary_friction},
+    {&FlankContactBatchResults::contact_temperature, &ContactFigures::contact_temperature},
+    {&FlankContactBatchResults::central_film_thickness, &ContactFigures::central_film_thickness},
+    {&FlankContactBatchResults::film_ratio, &ContactFigures::film_ratio},
+    {&FlankContactBatchResults::maximum_pressure, &ContactFigures::maximum_pressure},
+    {&FlankContactBatchResults::shear_rate, &ContactFigures::shear_rate},
     {&FlankContactBatchResults::limiting_stress_area_share,
-     &ContactSolution::limiting_stress_area_share}};
+     &ContactFigures::limiting_stress_area_share}};
 
 }  // namespace
 
@@ -125,7 +125,7 @@ FlankContactBatchResults SolvedContacts::results() {
   return out;
 }
 
-void SolvedContacts::copy(std::size_t i, ContactSolution& to) const {
+void SolvedContacts::copy(std::size_t i, ContactFigures& to) const {
   to.status = ContactStatus::kOk;
   for (std::size_t r = 0; r < std::size(kContactRow); ++r) to.*kContactRow[r].member = rows_[r][i];
   to.limiting_stress_at_centre = limiting_stress_at_centre_[i];
@@ -141,7 +141,7 @@ SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
       Instant& at = out.instants[n];
       see_flanks(system, grid, pieces[i], part, at,
                  [&](int k, const FlankKinematics&, const ContactConditions&) {
-                   ContactSolution& solution = at.contact[k];
+                   ContactFigures& solution = at.contact[k];
                    contacts.copy(contact++, solution);
                    at.pinion_friction_torque +=
                        at.motion[k].pinion_friction_arm * solution.friction;

@@ -33,7 +33,7 @@ class SolvedContacts {
   /// Where a batch puts them, all but the status.
   FlankContactBatchResults results();
   const double* friction() const { return rows_[0]; }
-  void copy(std::size_t i, ContactSolution& to) const;
+  void copy(std::size_t i, ContactFigures& to) const;
 
  private:
   Columns rows_;

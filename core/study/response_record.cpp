@@ -25,10 +25,15 @@ void ResponseRecord::Range::add(double value) {
 
 template <std::size_t kCount>
 void ResponseRecord::Range::add(const std::array<double, kCount>& v) {
-  const auto lowest = std::min_element(v.begin(), v.end());
-  const auto highest = std::max_element(v.begin(), v.end());
-  low = std::min({low, *lowest, vertex(v, lowest - v.begin())});
-  high = std::max({high, *highest, vertex(v, highest - v.begin())});
+  double lowest = v[0], highest = v[0];
+  for (const double value : v) {
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+  const double beyond = 0.25 * (highest - lowest);  // at most
+  if (lowest - beyond >= low && highest + beyond <= high) return;
+  low = std::min({low, lowest, vertex(v, std::min_element(v.begin(), v.end()) - v.begin())});
+  high = std::max({high, highest, vertex(v, std::max_element(v.begin(), v.end()) - v.begin())});
 }
 
 Extremes ResponseRecord::Range::with_mean(double mean) const {

@@ -47,10 +47,10 @@ class ResponseRecord {
   };
   /// What counts on loaded flanks only.
   enum ContactFigure { kFilm, kFilmRatio, kTemperature, kPressure, kShearRate, kContactFigures };
-  static constexpr double ContactSolution::*kContactMembers[kContactFigures] = {
-      &ContactSolution::central_film_thickness, &ContactSolution::film_ratio,
-      &ContactSolution::contact_temperature, &ContactSolution::maximum_pressure,
-      &ContactSolution::shear_rate};
+  static constexpr double ContactFigures::*kContactMembers[kContactFigures] = {
+      &ContactFigures::central_film_thickness, &ContactFigures::film_ratio,
+      &ContactFigures::contact_temperature, &ContactFigures::maximum_pressure,
+      &ContactFigures::shear_rate};
   template <std::size_t kCount>
   void add(std::span<const Instant, kCount> instants);
   template <std::size_t kCount>
