@@ -93,11 +93,12 @@ void see_flanks(GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& 
   }
 }
 
-struct ContactRow {
+/// What is kept of the contacts of a response; friction first.
+struct SolvedRow {
   double* FlankContactBatchResults::*array;
   double ContactFigures::*member;
 };
-constexpr ContactRow kContactRow[] = {
+constexpr SolvedRow kSolvedRows[] = {
     {&FlankContactBatchResults::friction, &ContactFigures::friction},
     {&FlankContactBatchResults::viscous_friction, &ContactFigures::viscous_friction},
     {&FlankContactBatchResults::boundary_friction, &ContactFigures::boundary_friction},
@@ -113,21 +114,21 @@ constexpr ContactRow kContactRow[] = {
 
 void SolvedContacts::resize(std::size_t count) {
   if (count <= size_) return;
-  rows_.resize(std::size(kContactRow), count);
+  rows_.resize(std::size(kSolvedRows), count);
   limiting_stress_at_centre_ = std::make_unique<bool[]>(count);
   size_ = count;
 }
 
 FlankContactBatchResults SolvedContacts::results() {
   FlankContactBatchResults out;
-  for (std::size_t r = 0; r < std::size(kContactRow); ++r) out.*kContactRow[r].array = rows_[r];
+  for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) out.*kSolvedRows[r].array = rows_[r];
   out.limiting_stress_at_centre = limiting_stress_at_centre_.get();
   return out;
 }
 
 void SolvedContacts::copy(std::size_t i, ContactFigures& to) const {
   to.status = ContactStatus::kOk;
-  for (std::size_t r = 0; r < std::size(kContactRow); ++r) to.*kContactRow[r].member = rows_[r][i];
+  for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) to.*kSolvedRows[r].member = rows_[r][i];
   to.limiting_stress_at_centre = limiting_stress_at_centre_[i];
 }
 

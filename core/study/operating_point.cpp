@@ -274,7 +274,6 @@ PointResult quasi_static_result(GearPairSystem& system, MeshGrids& grids,
   const QuasiStatic& solution = answer.solution;
   fill_from_orbit(system, grids, solution.orbit, solution.steps_per_mesh_cycle,
                   target.mean_pinion_speed, out);
-  throw_if_refused(system);
   // Speeds are taken as they follow each other, and the unknown torque from the mean power: neither
   // dampers nor what eq 2 leaves out take anything.
   PowerBalance& balance = out.power_balance;
