@@ -36,16 +36,31 @@ enum class ContactStatus {
 const char* contact_status_name(ContactStatus status);
 const char* contact_status_sentence(ContactStatus status);
 
-/// Everything about one contact; symbols and equations of the paper beside each. SI units.
-struct ContactSolution {
+/// What records and histories tell of a contact; symbols and equations of the paper beside each. SI
+/// units.
+struct ContactFigures {
   ContactStatus status = ContactStatus::kNoLoad;
+  double maximum_pressure = 0;        ///< p_max, eq 19 at the centre [Pa]
+  double central_film_thickness = 0;  ///< h_cen, eq 12 [m]
+  double film_ratio = 0;              ///< lambda_s = h_cen / sigma_G [-]
+  double shear_rate =
+      0;  ///< gamma_dot, eq 18 [1/s]; infinite where the film vanishes under sliding
+  double contact_temperature = 0;         ///< T_c, eq 38 [K]
+  double viscous_friction = 0;            ///< F_v, eq 27 [N]
+  double boundary_friction = 0;           ///< F_b, eq 40 [N]
+  double friction = 0;                    ///< F_fr, eq 28 [N]
+  double limiting_stress_area_share = 0;  ///< share of A_EHL that sits on tau_L [-]
+  bool limiting_stress_at_centre = false;
+};
+
+/// Everything about one contact.
+struct ContactSolution : ContactFigures {
   double film_load = 0;                             ///< W_EHL [N]
   double asperity_load = 0;                         ///< W_asp, eq 41 [N]
   double contact_area = 0;                          ///< A_EHL = pi a_c b_c [m2]
   double asperity_area = 0;                         ///< A_asp, eq 42 [m2]
   double semi_major_axis = 0;                       ///< a_c, eq 20 [m]
   double semi_minor_axis = 0;                       ///< b_c, eq 20 [m]
-  double maximum_pressure = 0;                      ///< p_max, eq 19 at the centre [Pa]
   double entrainment_angle = 0;                     ///< theta, measured from x [rad]
   double entrainment_radius = 0;                    ///< R_e, eq 15 [m]
   double side_leakage_radius = 0;                   ///< R_s, eq 16 [m]
@@ -55,28 +70,18 @@ struct ContactSolution {
   double inlet_pressure_viscosity_coefficient = 0;  ///< alpha*(T_in), eq 33 [1/Pa]
   double pressure_viscosity_index = 0;              ///< Z [-]
   double reduced_modulus = 0;                       ///< E', eq 13 [Pa]
-  double central_film_thickness = 0;                ///< h_cen, eq 12 [m]
-  double film_ratio = 0;                            ///< lambda_s = h_cen / sigma_G [-]
-  double shear_rate =
-      0;  ///< gamma_dot, eq 18 [1/s]; infinite where the film vanishes under sliding
-  double contact_temperature = 0;         ///< T_c, eq 38 [K]
-  double flash_temperature_rise = 0;      ///< (dT_f)_av, eq 39 [K]
-  double oil_temperature_rise = 0;        ///< (dT_oil)_av, eq 39 [K]
-  double pinion_active_length = 0;        ///< l_p, eq 36 [m]
-  double gear_active_length = 0;          ///< l_g, eq 36 [m]
-  double film_thermal_resistance = 0;     ///< R_cf, eq 35 [K/W]
-  double pinion_thermal_resistance = 0;   ///< R_fp, eq 35 [K/W]; infinite for a surface at rest
-  double gear_thermal_resistance = 0;     ///< R_fg, eq 35 [K/W]; infinite for a surface at rest
-  double heat_partition = 0;              ///< a_h, eq 37 [-]
-  double mean_shear_stress = 0;           ///< tau_bar, area mean of eq 23 under the limit [Pa]
-  double viscous_friction = 0;            ///< F_v, eq 27 [N]
-  double boundary_friction = 0;           ///< F_b, eq 40 [N]
-  double friction = 0;                    ///< F_fr, eq 28 [N]
-  double heat_rate = 0;                   ///< q_dot = F_fr V_s [W]
-  double friction_coefficient = 0;        ///< F_fr / W [-]
-  double limiting_stress_area_share = 0;  ///< share of A_EHL that sits on tau_L [-]
-  int limiting_stress_switches = 0;       ///< radii at which the stress meets tau_L
-  bool limiting_stress_at_centre = false;
+  double flash_temperature_rise = 0;                ///< (dT_f)_av, eq 39 [K]
+  double oil_temperature_rise = 0;                  ///< (dT_oil)_av, eq 39 [K]
+  double pinion_active_length = 0;                  ///< l_p, eq 36 [m]
+  double gear_active_length = 0;                    ///< l_g, eq 36 [m]
+  double film_thermal_resistance = 0;               ///< R_cf, eq 35 [K/W]
+  double pinion_thermal_resistance = 0;  ///< R_fp, eq 35 [K/W]; infinite for a surface at rest
+  double gear_thermal_resistance = 0;    ///< R_fg, eq 35 [K/W]; infinite for a surface at rest
+  double heat_partition = 0;             ///< a_h, eq 37 [-]
+  double mean_shear_stress = 0;          ///< tau_bar, area mean of eq 23 under the limit [Pa]
+  double heat_rate = 0;                  ///< q_dot = F_fr V_s [W]
+  double friction_coefficient = 0;       ///< F_fr / W [-]
+  int limiting_stress_switches = 0;      ///< radii at which the stress meets tau_L
   int thermal_roots = 1;  ///< thermal equilibria found; above 1 the coldest is returned
 };
 

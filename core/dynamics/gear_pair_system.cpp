@@ -132,7 +132,7 @@ void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPa
       {out.load.data(), pinion_x.data(), pinion_y.data(), gear_x.data(), gear_y.data()}, results);
   for (int k = 0; k < kFlankPairs; ++k) {
     if (!(out.load[k] > 0)) continue;
-    ContactSolution& contact = out.contact[k];
+    ContactFigures& contact = out.contact[k];
     contact = {};
     contact.status = status[k];
     contact.friction = friction[k];
@@ -162,14 +162,14 @@ void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
       conditions[k] = contact_conditions(flanks[k], out.load[k], y, out.motion[k]);
     } else {
       out.load[k] = 0;
-      out.contact[k] = ContactSolution{};
+      out.contact[k] = ContactFigures{};
       out.motion[k] = FlankMotion{};
     }
   }
   solve_contacts(conditions, out);
   for (int k = 0; k < kFlankPairs; ++k) {
     if (!(out.load[k] > 0)) continue;
-    const ContactSolution& contact = out.contact[k];
+    const ContactFigures& contact = out.contact[k];
     const FlankMotion& motion = out.motion[k];
     if (contact.status != ContactStatus::kOk) refuse(contact.status);
     out.pinion_friction_torque += motion.pinion_friction_arm * contact.friction;
@@ -192,7 +192,7 @@ void GearPairSystem::derivative(const double* y, const Instant& at, bool record,
     bool limited_centre = false;
     for (int k = 0; k < kFlankPairs; ++k) {
       if (!(at.load[k] > 0)) continue;
-      const ContactSolution& c = at.contact[k];
+      const ContactFigures& c = at.contact[k];
       viscous += c.viscous_friction;
       boundary += c.boundary_friction;
       dy[kFlankViscousWork0 + k] = at.motion[k].sliding_speed * c.viscous_friction;

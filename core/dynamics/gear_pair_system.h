@@ -115,7 +115,7 @@ struct Mechanics {
 struct Instant : Mechanics {
   std::array<double, kFlankPairs> load{};
   std::array<FlankMotion, kFlankPairs> motion{};
-  std::array<ContactSolution, kFlankPairs> contact{};
+  std::array<ContactFigures, kFlankPairs> contact{};
 };
 
 /// Eqs 1-11 with friction (eqs 28, 29) in the loop. One instance per march: it carries the regime.

@@ -46,7 +46,113 @@ std::array<const double*, 3> states(const OrbitPiece& piece) {
   return {piece.start.data(), piece.middle.data(), piece.end.data()};
 }
 
+/// Fills in the first place of each of the pieces, which have three: one that goes on from the
+/// piece before shares its last. Returns the number of places.
+int number_places(const std::vector<OrbitPiece>& pieces, std::vector<int>& first) {
+  first.resize(pieces.size());
+  int count = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    if (i > 0 && goes_on(pieces[i - 1], pieces[i])) --count;
+    first[i] = count;
+    count += 3;
+  }
+  return count;
+}
+
+/// Mechanics, loads and motion of the flanks at part 0, 1, 2 of a piece: its start, middle, end.
+/// Tells of each loaded contact: on_contact(flank pair, its kinematics, its conditions).
+template <class OnContact>
+void see_flanks(GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& piece, int part,
+                Instant& at, OnContact&& on_contact) {
+  system.regime = piece.regime;
+  const double* state = states(piece)[part];
+  if (piece.node >= 0) {
+    system.mechanics(grid.at(piece.node + part), state, at);
+  } else {
+    system.mechanics(piece.phase + 0.5 * part * piece.length, state, at);
+  }
+  at.load = {};
+  const double load = piece.regime.load(at.mesh_force);
+  if (!(load > 0)) return;
+  std::array<FlankKinematics, kFlankPairs> off_grid;
+  const std::array<FlankKinematics, kFlankPairs>* flanks = &off_grid;
+  if (piece.node >= 0) {
+    flanks = &grid.flanks(piece.node + part);
+  } else {
+    const MeshData& mesh = system.mesh();
+    const double inside = std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
+    const int interval =
+        std::clamp(static_cast<int>(inside * mesh.intervals()), 0, mesh.intervals() - 1);
+    mesh.flanks(interval, inside, off_grid);
+  }
+  for (int k = 0; k < kFlankPairs; ++k) {
+    const FlankKinematics& flank = (*flanks)[k];
+    at.load[k] = flank.load_share * load;
+    if (!(at.load[k] > 0)) continue;
+    on_contact(k, flank, system.contact_conditions(flank, at.load[k], state, at.motion[k]));
+  }
+}
+
+/// What is kept of the contacts of a response; friction first.
+struct SolvedRow {
+  double* FlankContactBatchResults::*array;
+  double ContactFigures::*member;
+};
+constexpr SolvedRow kSolvedRows[] = {
+    {&FlankContactBatchResults::friction, &ContactFigures::friction},
+    {&FlankContactBatchResults::viscous_friction, &ContactFigures::viscous_friction},
+    {&FlankContactBatchResults::boundary_friction, &ContactFigures::boundary_friction},
+    {&FlankContactBatchResults::contact_temperature, &ContactFigures::contact_temperature},
+    {&FlankContactBatchResults::central_film_thickness, &ContactFigures::central_film_thickness},
+    {&FlankContactBatchResults::film_ratio, &ContactFigures::film_ratio},
+    {&FlankContactBatchResults::maximum_pressure, &ContactFigures::maximum_pressure},
+    {&FlankContactBatchResults::shear_rate, &ContactFigures::shear_rate},
+    {&FlankContactBatchResults::limiting_stress_area_share,
+     &ContactFigures::limiting_stress_area_share}};
+
 }  // namespace
+
+void SolvedContacts::resize(std::size_t count) {
+  if (count <= size_) return;
+  rows_.resize(std::size(kSolvedRows), count);
+  limiting_stress_at_centre_ = std::make_unique<bool[]>(count);
+  size_ = count;
+}
+
+FlankContactBatchResults SolvedContacts::results() {
+  FlankContactBatchResults out;
+  for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) out.*kSolvedRows[r].array = rows_[r];
+  out.limiting_stress_at_centre = limiting_stress_at_centre_.get();
+  return out;
+}
+
+void SolvedContacts::copy(std::size_t i, ContactFigures& to) const {
+  to.status = ContactStatus::kOk;
+  for (std::size_t r = 0; r < std::size(kSolvedRows); ++r) to.*kSolvedRows[r].member = rows_[r][i];
+  to.limiting_stress_at_centre = limiting_stress_at_centre_[i];
+}
+
+SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
+                           const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts) {
+  SolvedPieces out;
+  out.instants.resize(number_places(pieces, out.first));
+  int n = 0, contact = 0;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (int part = n - out.first[i]; part < 3; ++part, ++n) {
+      Instant& at = out.instants[n];
+      see_flanks(system, grid, pieces[i], part, at,
+                 [&](int k, const FlankKinematics&, const ContactConditions&) {
+                   ContactFigures& solution = at.contact[k];
+                   contacts.copy(contact++, solution);
+                   at.pinion_friction_torque +=
+                       at.motion[k].pinion_friction_arm * solution.friction;
+                   at.gear_friction_torque += at.motion[k].gear_friction_arm * solution.friction;
+                   at.loss_power += at.motion[k].sliding_speed * solution.friction;
+                 });
+    }
+  }
+  return out;
+}
 
 double OrbitFigures::distance(const OrbitFigures& other) const {
   // Where the transmission error passes through zero its extremes are measured by the larger one.
@@ -58,14 +164,6 @@ double OrbitFigures::distance(const OrbitFigures& other) const {
                    relative(torque, other.torque), dte > 0 ? extremes / dte : 0});
 }
 
-void OrbitFriction::Arrays::resize(std::size_t size) {
-  for (auto* array : {&load, &pinion_x, &pinion_y, &gear_x, &gear_y, &friction, &sliding_speed,
-                      &pinion_arm, &gear_arm}) {
-    array->resize(size);
-  }
-  status.resize(size);
-}
-
 OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& contacts,
                              std::optional<double> coefficient)
     : system_(system),
@@ -73,128 +171,89 @@ OrbitFriction::OrbitFriction(GearPairSystem& system, const FlankContactBatch& co
       coefficient_(coefficient),
       geometries_(contacts.model().reduced_modulus(), contacts.model().options()) {}
 
-void OrbitFriction::add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part,
-                                 const double* state, Place& place, Instant& at) {
-  place.first = count_;
-  place.count = 0;
-  const double load = piece.regime.load(at.mesh_force);
-  place.load = load;
-  at.load = {};
-  if (!(load > 0)) return;
-  std::array<FlankKinematics, kFlankPairs> off_grid;
-  const std::array<FlankKinematics, kFlankPairs>* flanks = &off_grid;
-  if (piece.node >= 0) {
-    flanks = &grid.flanks(piece.node + part);
-  } else {
-    const MeshData& mesh = system_.mesh();
-    const double inside = std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
-    const int interval =
-        std::clamp(static_cast<int>(inside * mesh.intervals()), 0, mesh.intervals() - 1);
-    mesh.flanks(interval, inside, off_grid);
-  }
-  for (int k = 0; k < kFlankPairs; ++k) {
-    const FlankKinematics& flank = (*flanks)[k];
-    at.load[k] = flank.load_share * load;
-    if (!(at.load[k] > 0)) continue;
-    const int i = count_++;
-    ++place.count;
-    FlankMotion& motion = at.motion[k];
-    const ContactConditions c = system_.contact_conditions(flank, at.load[k], state, motion);
-    arrays_.load[i] = c.load;
-    arrays_.pinion_x[i] = c.pinion_velocity_x;
-    arrays_.pinion_y[i] = c.pinion_velocity_y;
-    arrays_.gear_x[i] = c.gear_velocity_x;
-    arrays_.gear_y[i] = c.gear_velocity_y;
-    arrays_.sliding_speed[i] = motion.sliding_speed;
-    arrays_.pinion_arm[i] = motion.pinion_friction_arm;
-    arrays_.gear_arm[i] = motion.gear_friction_arm;
-    if (piece.node >= 0) {
-      geometries_.copy(i, grid.contacts().geometries, grid.contact(piece.node + part, k));
-    } else {
-      geometries_.set(i, flank.radius_x, flank.radius_y);
-    }
-  }
-}
-
-void OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-                           std::vector<SolvedPiece>* solved) {
-  const std::size_t most = 3 * kFlankPairs * pieces.size();
-  if (geometries_.size() < most) {
-    geometries_.resize(most);
-    arrays_.resize(most);
-  }
-  places_.resize(3 * pieces.size());
-  count_ = 0;
-  Instant scratch;
+int OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces) {
+  places_.resize(number_places(pieces, first_));
+  const std::size_t most = kFlankPairs * places_.size();
+  if (geometries_.size() < most) geometries_.resize(most);
+  seen_.resize(kSeenRows, most);
+  Instant at;
+  int n = 0, count = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const OrbitPiece& p = pieces[i];
-    system_.regime = p.regime;
-    for (int part = 0; part < 3; ++part) {
-      Place& place = places_[3 * i + part];
-      Instant& at = solved != nullptr ? (*solved)[i].at[part] : scratch;
-      if (part == 0 && i > 0 && goes_on(pieces[i - 1], p)) {
-        place = places_[3 * i - 1];
-        if (solved != nullptr) at = (*solved)[i - 1].at[2];
-        continue;
-      }
-      const double* state = states(p)[part];
-      if (p.node >= 0) {
-        system_.mechanics(grid.at(p.node + part), state, at);
-      } else {
-        system_.mechanics(p.phase + 0.5 * part * p.length, state, at);
-      }
+    for (int part = n - first_[i]; part < 3; ++part, ++n) {
+      Place& place = places_[n];
+      place.first = count;
+      see_flanks(system_, grid, p, part, at,
+                 [&](int k, const FlankKinematics& flank, const ContactConditions& c) {
+                   const FlankMotion& motion = at.motion[k];
+                   seen_[kSeenLoad][count] = c.load;
+                   seen_[kSeenPinionX][count] = c.pinion_velocity_x;
+                   seen_[kSeenPinionY][count] = c.pinion_velocity_y;
+                   seen_[kSeenGearX][count] = c.gear_velocity_x;
+                   seen_[kSeenGearY][count] = c.gear_velocity_y;
+                   seen_[kSeenSlidingSpeed][count] = motion.sliding_speed;
+                   seen_[kSeenPinionArm][count] = motion.pinion_friction_arm;
+                   seen_[kSeenGearArm][count] = motion.gear_friction_arm;
+                   if (p.node >= 0) {
+                     geometries_.copy(count, grid.contacts().geometries,
+                                      grid.contact(p.node + part, k));
+                   } else {
+                     geometries_.set(count, flank.radius_x, flank.radius_y);
+                   }
+                   ++count;
+                 });
+      place.count = count - place.first;
+      place.load = p.regime.load(at.mesh_force);
       place.mesh_force = at.mesh_force;
       place.transmission_error = at.transmission_error;
       place.transmission_velocity = at.transmission_velocity;
-      add_contacts(grid, p, part, state, place, at);
     }
   }
+  return count;
 }
 
-bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int count,
-                                   const FlankContactBatchConditions& conditions,
-                                   FlankContactBatchResults results) {
+bool OrbitFriction::solve_contacts(const ContactGeometries& geometries, int count) {
+  solved_->resize(count);
+  FlankContactBatchResults results = solved_->results();
   if (coefficient_) {
-    for (int i = 0; i < count; ++i) arrays_.friction[i] = *coefficient_ * conditions.load[i];
+    for (int i = 0; i < count; ++i) results.friction[i] = *coefficient_ * seen_[kSeenLoad][i];
     return true;
   }
-  results.friction = arrays_.friction.data();
-  results.status = arrays_.status.data();
-  contacts_.solve(geometries, 0, count, conditions, results);
+  if (status_.size() < static_cast<std::size_t>(count)) status_.resize(count);
+  results.status = status_.data();
+  contacts_.solve(geometries, 0, count,
+                  {seen_[kSeenLoad], seen_[kSeenPinionX], seen_[kSeenPinionY], seen_[kSeenGearX],
+                   seen_[kSeenGearY]},
+                  results);
   system_.count_contacts(count);
   for (int i = 0; i < count; ++i) {
-    if (arrays_.status[i] != ContactStatus::kOk) system_.refuse(arrays_.status[i]);
+    if (status_[i] != ContactStatus::kOk) system_.refuse(status_[i]);
   }
   return system_.refusal() == ContactStatus::kOk;
 }
 
-bool OrbitFriction::solve_gathered(const FlankContactBatchResults& results) {
-  return solve_contacts(geometries_, count_,
-                        {arrays_.load.data(), arrays_.pinion_x.data(), arrays_.pinion_y.data(),
-                         arrays_.gear_x.data(), arrays_.gear_y.data()},
-                        results);
-}
-
 bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
                              double light, LaggedFriction& friction, OrbitFigures& f) {
-  gather(grid, pieces, nullptr);
-  if (!solve_gathered({})) return false;
+  if (!solve_contacts(geometries_, gather(grid, pieces))) return false;
+  const double* contact_friction = solved_->friction();
   friction.clear(places_.size());
   f = {};
   least_pressing_force_ = 1e300;
   double low = 1e300, high = -1e300, squares = 0, time = 0, loss = 0;
+  int next = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const OrbitPiece& p = pieces[i];
-    const Place* at = &places_[3 * i];
+    const Place* at = &places_[first_[i]];
     for (int part = 0; part < 3; ++part) {
       const Place& place = at[part];
-      if (!(part == 0 && i > 0 && goes_on(pieces[i - 1], p))) {
+      if (first_[i] + part == next) {
+        ++next;
         loss = 0;
         FrictionPerLoad torque;
         for (int n = place.first; n < place.first + place.count; ++n) {
-          torque.pinion += arrays_.pinion_arm[n] * arrays_.friction[n];
-          torque.gear += arrays_.gear_arm[n] * arrays_.friction[n];
-          loss += arrays_.sliding_speed[n] * arrays_.friction[n];
+          torque.pinion += seen_[kSeenPinionArm][n] * contact_friction[n];
+          torque.gear += seen_[kSeenGearArm][n] * contact_friction[n];
+          loss += seen_[kSeenSlidingSpeed][n] * contact_friction[n];
         }
         // Across a gap it goes from the value before to that after: no jump where a flank meets.
         if (place.load > light) {
@@ -230,15 +289,9 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
                              OrbitFigures& f) {
   const auto count = static_cast<int>(contacts.node.size());
   seen_.resize(kSeenRows, contacts.node.size());
-  arrays_.friction.resize(std::max(arrays_.friction.size(), contacts.node.size()));
-  arrays_.status.resize(arrays_.friction.size());
   see_contacts(instruction_set(), block, contacts, response, seen_);
-  if (!solve_contacts(contacts.geometries, count,
-                      {seen_[kSeenLoad], seen_[kSeenPinionX], seen_[kSeenPinionY],
-                       seen_[kSeenGearX], seen_[kSeenGearY]},
-                      {})) {
-    return false;
-  }
+  if (!solve_contacts(contacts.geometries, count)) return false;
+  const double* contact_friction = solved_->friction();
   friction.clear(contacts.first.size());
   f = {};
   least_pressing_force_ = 1e300;
@@ -250,9 +303,9 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
     double loss = 0;
     FrictionPerLoad torque;
     for (int n = contacts.first[place]; n < contacts.first[place + 1]; ++n) {
-      torque.pinion += seen_[kSeenPinionArm][n] * arrays_.friction[n];
-      torque.gear += seen_[kSeenGearArm][n] * arrays_.friction[n];
-      loss += seen_[kSeenSlidingSpeed][n] * arrays_.friction[n];
+      torque.pinion += seen_[kSeenPinionArm][n] * contact_friction[n];
+      torque.gear += seen_[kSeenGearArm][n] * contact_friction[n];
+      loss += seen_[kSeenSlidingSpeed][n] * contact_friction[n];
     }
     const double load = block.side * at[kMeshForceRow][lane];
     friction.add(static_cast<double>(node) / last, {torque.pinion / load, torque.gear / load},
@@ -277,60 +330,6 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
   f.loss_rms = std::sqrt(squares / time);
   f.dte_minimum = low;
   f.dte_maximum = high;
-  return true;
-}
-
-bool OrbitFriction::solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-                          std::vector<SolvedPiece>& solved) {
-  solved.resize(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) solved[i].piece = pieces[i];
-  gather(grid, pieces, &solved);
-  using C = ContactSolution;
-  using R = FlankContactBatchResults;
-  struct Column {
-    double* R::*array;
-    double C::*member;
-  };
-  static constexpr Column kColumns[] = {
-      {&R::viscous_friction, &C::viscous_friction},
-      {&R::boundary_friction, &C::boundary_friction},
-      {&R::contact_temperature, &C::contact_temperature},
-      {&R::central_film_thickness, &C::central_film_thickness},
-      {&R::film_ratio, &C::film_ratio},
-      {&R::maximum_pressure, &C::maximum_pressure},
-      {&R::shear_rate, &C::shear_rate},
-      {&R::limiting_stress_area_share, &C::limiting_stress_area_share}};
-  std::array<std::vector<double>, std::size(kColumns)> columns;
-  R results;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    columns[c].resize(count_);
-    results.*kColumns[c].array = columns[c].data();
-  }
-  const auto at_centre = std::make_unique<bool[]>(count_);
-  results.limiting_stress_at_centre = at_centre.get();
-  if (!solve_gathered(results)) return false;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    for (int part = 0; part < 3; ++part) {
-      Instant& at = solved[i].at[part];
-      int n = places_[3 * i + part].first;
-      at.pinion_friction_torque = at.gear_friction_torque = at.loss_power = 0;
-      for (int k = 0; k < kFlankPairs; ++k) {
-        at.contact[k] = {};
-        if (!(at.load[k] > 0)) continue;
-        ContactSolution& contact = at.contact[k];
-        contact.status = ContactStatus::kOk;
-        contact.friction = arrays_.friction[n];
-        for (std::size_t c = 0; c < columns.size(); ++c) {
-          contact.*kColumns[c].member = columns[c][n];
-        }
-        contact.limiting_stress_at_centre = at_centre[n];
-        at.pinion_friction_torque += at.motion[k].pinion_friction_arm * contact.friction;
-        at.gear_friction_torque += at.motion[k].gear_friction_arm * contact.friction;
-        at.loss_power += at.motion[k].sliding_speed * contact.friction;
-        ++n;
-      }
-    }
-  }
   return true;
 }
 

@@ -1,7 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <memory>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "core/contact/flank_contact_batch.h"
@@ -22,11 +26,36 @@ struct OrbitPiece {
   MarchState start, middle, end;
 };
 
-/// A piece with everything known at its start, middle and end.
-struct SolvedPiece {
-  OrbitPiece piece;
-  std::array<Instant, 3> at;
+/// Figures of the contacts of a response, in the order of its instants and of their flank pairs.
+class SolvedContacts {
+ public:
+  /// Nothing is kept.
+  void resize(std::size_t count);
+  /// Where a batch puts them, all but the status.
+  FlankContactBatchResults results();
+  const double* friction() const { return rows_[0]; }
+  void copy(std::size_t i, ContactFigures& to) const;
+
+ private:
+  Columns rows_;
+  std::unique_ptr<bool[]> limiting_stress_at_centre_;
+  std::size_t size_ = 0;
 };
+
+/// Everything at the starts, middles and ends of a response's pieces. What goes on from the piece
+/// before shares its end.
+struct SolvedPieces {
+  std::vector<Instant> instants;
+  std::vector<int> first;  ///< instant of each piece
+  std::span<const Instant, 3> of(std::size_t piece) const {
+    return std::span<const Instant, 3>(instants.data() + first[piece], 3);
+  }
+  bool goes_on(std::size_t piece) const { return piece > 0 && first[piece] < first[piece - 1] + 3; }
+};
+
+/// `grid`: what the pieces' nodes are of; `contacts`: all of theirs. Changes the system's regime.
+SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
+                           const std::vector<OrbitPiece>& pieces, const SolvedContacts& contacts);
 
 /// What a sweep reports of a response: enough to tell how much an answer moved.
 struct OrbitFigures {
@@ -59,9 +88,10 @@ class OrbitFriction {
   /// negative: they were held together [N].
   double least_pressing_force() const { return least_pressing_force_; }
   InstructionSet instruction_set() const { return contacts_.instruction_set(); }
-  /// Everything at the pieces' instants. False as above.
-  bool solve(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-             std::vector<SolvedPiece>& solved);
+  /// The contacts of the last evaluation, to keep.
+  std::shared_ptr<const SolvedContacts> take_contacts() {
+    return std::exchange(solved_, std::make_shared<SolvedContacts>());
+  }
 
  private:
   struct Place {
@@ -69,30 +99,20 @@ class OrbitFriction {
     double load;
     int first, count;  // contacts
   };
-  struct Arrays {
-    std::vector<double> load, pinion_x, pinion_y, gear_x, gear_y, friction;
-    std::vector<double> sliding_speed, pinion_arm, gear_arm;
-    std::vector<ContactStatus> status;
-    void resize(std::size_t size);
-  };
-  void gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces,
-              std::vector<SolvedPiece>* solved);
-  void add_contacts(const MeshGrid& grid, const OrbitPiece& piece, int part, const double* state,
-                    Place& place, Instant& at);
-  /// False when one is refused.
-  bool solve_contacts(const ContactGeometries& geometries, int count,
-                      const FlankContactBatchConditions& conditions,
-                      FlankContactBatchResults results);
-  bool solve_gathered(const FlankContactBatchResults& results);
+  /// Returns the number of contacts.
+  int gather(const MeshGrid& grid, const std::vector<OrbitPiece>& pieces);
+  /// The contacts of `seen_`. False when one is refused.
+  bool solve_contacts(const ContactGeometries& geometries, int count);
 
   GearPairSystem& system_;
   const FlankContactBatch& contacts_;
   const std::optional<double> coefficient_;
   ContactGeometries geometries_;
-  std::vector<Place> places_;  // three of a piece
+  std::vector<int> first_;     // place of each piece
+  std::vector<Place> places_;  // shared as the instants of SolvedPieces
   Columns seen_;               // SeenRow
-  Arrays arrays_;
-  int count_ = 0;  // contacts
+  std::shared_ptr<SolvedContacts> solved_ = std::make_shared<SolvedContacts>();
+  std::vector<ContactStatus> status_;
   double least_pressing_force_ = 0;
 };
 

@@ -84,6 +84,7 @@ bool OrbitSolver::solve(const MeshGrid& grid, const OrbitRequest& request, Perio
   const auto solve = [&](Shooting&& shooting) {
     const bool good = sweep(shooting, request, orbit);
     shooting.finish(statistics_, marched_cycles_);
+    orbit.contacts = friction_.take_contacts();
     return good;
   };
   // On as it began.

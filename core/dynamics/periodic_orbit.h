@@ -27,6 +27,7 @@ struct PeriodicOrbit {
   /// Of all steps, where they have been taken side by side.
   std::shared_ptr<const CycleDerivatives> cycle_derivatives;
   std::vector<OrbitPiece> pieces;
+  std::shared_ptr<const SolvedContacts> contacts;  ///< of the pieces, once a response is found
   OrbitFigures figures;
   double defect = 0;  ///< scaled change of the state in the last step of Newton, or what it left
   /// What the last evaluation changed of the friction, relative (LaggedFriction::distance).

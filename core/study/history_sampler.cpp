@@ -47,7 +47,7 @@ double whole_value(HistoryColumn column, double phase, const double* y, const In
 }
 
 double flank_value(HistoryColumn column, int k, const Instant& at) {
-  const ContactSolution& c = at.contact[k];
+  const ContactFigures& c = at.contact[k];
   if (!(at.load[k] > 0)) return 0;
   switch (column) {
     case HistoryColumn::kFlankLoad:

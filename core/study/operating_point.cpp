@@ -195,27 +195,23 @@ std::optional<RefinedOrbit> shoot(GearPairSystem& system, const FlankContactBatc
   return found;
 }
 
-/// Everything that follows from a response; its pieces with their contacts, none when one is
-/// refused. Counts contacts.
-std::vector<SolvedPiece> fill_from_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
-                                         MeshGrids& grids, const PeriodicOrbit& orbit,
-                                         int steps_per_mesh_cycle, double mean_pinion_speed,
-                                         PointResult& out) {
+/// Everything that follows from a response; its pieces with their contacts.
+SolvedPieces fill_from_orbit(GearPairSystem& system, MeshGrids& grids, const PeriodicOrbit& orbit,
+                             int steps_per_mesh_cycle, double mean_pinion_speed, PointResult& out) {
   out.settled = true;
   out.period_in_mesh_cycles = out.recorded_mesh_cycles = orbit.period;
   system.set_torques(orbit.torques);
-  std::vector<SolvedPiece> pieces;
-  OrbitFriction friction(system, contacts);
-  if (!friction.solve(grids.with_steps(steps_per_mesh_cycle), orbit.pieces, pieces)) return {};
+  SolvedPieces solved =
+      solved_pieces(system, grids.with_steps(steps_per_mesh_cycle), orbit.pieces, *orbit.contacts);
   ResponseRecord record(march_scales(system, mean_pinion_speed).torque /
                         system.mesh().mean_pinion_contact_radius());
-  record_orbit(system, orbit, pieces, record);
+  record_orbit(system, orbit, solved, record);
   record.fill(system.torques(), orbit.period, true, out);
   out.power_balance.stored = system.stored_energy(0, orbit.pieces.back().end.data()) -
                              system.stored_energy(0, orbit.pieces.front().start.data());
   out.section_state = system.to_section(orbit.pieces.front().start.data());
   out.statistics.contact_solutions = system.contact_solutions();
-  return pieces;
+  return solved;
 }
 
 /// By shooting. Nothing where marching must decide.
@@ -237,11 +233,10 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   PointResult out = empty_result(target, dynamic_model(system));
   out.method = SteadyStateMethod::kShooting;
   set_estimate(refined->estimated_error, out);
-  const auto pieces = fill_from_orbit(system, contacts, grids, orbit, refined->steps_per_mesh_cycle,
-                                      target.mean_pinion_speed, out);
-  if (pieces.empty()) return std::nullopt;
+  const SolvedPieces solved = fill_from_orbit(system, grids, orbit, refined->steps_per_mesh_cycle,
+                                              target.mean_pinion_speed, out);
   HistorySampler history(history_request);
-  sample_orbit(system, orbit, pieces, history);
+  sample_orbit(system, orbit, solved, history);
   out.history = history.take();
   out.statistics.right_hand_sides = statistics.right_hand_sides;
   out.statistics.accepted_steps = statistics.accepted_steps;
@@ -271,15 +266,14 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
           " N m; AUTOMATIC or MARCH may");
 }
 
-PointResult quasi_static_result(GearPairSystem& system, const FlankContactBatch& contacts,
-                                MeshGrids& grids, const OperatingTarget& target,
-                                const PointOptions& options, QuasiStaticAnswer& answer) {
+PointResult quasi_static_result(GearPairSystem& system, MeshGrids& grids,
+                                const OperatingTarget& target, const PointOptions& options,
+                                QuasiStaticAnswer& answer) {
   PointResult out = empty_result(target, PointModel::kQuasiStatic);
   set_estimate(answer.estimated_error, out);
   const QuasiStatic& solution = answer.solution;
-  fill_from_orbit(system, contacts, grids, solution.orbit, solution.steps_per_mesh_cycle,
+  fill_from_orbit(system, grids, solution.orbit, solution.steps_per_mesh_cycle,
                   target.mean_pinion_speed, out);
-  throw_if_refused(system);
   // Speeds are taken as they follow each other, and the unknown torque from the mean power: neither
   // dampers nor what eq 2 leaves out take anything.
   PowerBalance& balance = out.power_balance;
@@ -304,7 +298,7 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactB
     throw Refusal("NO_QUASI_STATIC_EQUILIBRIUM",
                   "load and friction of the quasi-static model do not settle");
   }
-  return quasi_static_result(system, contacts, grids, target, options, *answer);
+  return quasi_static_result(system, grids, target, options, *answer);
 }
 
 }  // namespace
@@ -344,7 +338,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
         result = solve_quasi_static_point(system, contacts, grids, target, options);
       } else if (may_choose(options, from) &&
                  (chosen = choose_quasi_static(system, contacts, gear_set, target, options))) {
-        result = quasi_static_result(system, contacts, grids, target, options, *chosen);
+        result = quasi_static_result(system, grids, target, options, *chosen);
       } else if (std::optional<PointResult> shot;
                  options.method != SteadyStateMethod::kMarch &&
                  (shot = solve_by_shooting(system, contacts, grids, target, options, start, from,

@@ -5,47 +5,51 @@
 
 namespace tribodyn {
 
-void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit,
-                  const std::vector<SolvedPiece>& pieces, ResponseRecord& record) {
+void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, const SolvedPieces& solved,
+                  ResponseRecord& record) {
   record.integrals = {};
   std::array<double, kRecordComponents> rate{};
-  const SolvedPiece* before = nullptr;
-  record.starts_in_gap = orbit.pieces.front().regime.side == 0;
-  for (const SolvedPiece& solved : pieces) {
-    const OrbitPiece& p = solved.piece;
+  int side = orbit.pieces.front().regime.side;
+  record.starts_in_gap = side == 0;
+  for (std::size_t piece = 0; piece < orbit.pieces.size(); ++piece) {
+    const OrbitPiece& p = orbit.pieces[piece];
+    const auto at = solved.of(piece);
     system.regime = p.regime;
     const MarchState* states[3] = {&p.start, &p.middle, &p.end};
     for (int n = 0; n < 3; ++n) {
-      system.derivative(states[n]->data(), solved.at[n], true, rate.data());
+      if (n > 0 || !solved.goes_on(piece)) {
+        system.derivative(states[n]->data(), at[n], true, rate.data());
+      }
       const double weight = p.length * (n == 1 ? 4 : 1) / 6;
       for (int i = 0; i < kRecordComponents; ++i) record.integrals[i] += weight * rate[i];
     }
-    record.add_piece(solved.at);
-    if (before != nullptr && (before->piece.regime.side == 0) != (p.regime.side == 0)) {
+    record.add_piece(at);
+    if ((side == 0) != (p.regime.side == 0)) {
       record.gap_events.push_back({p.phase, p.start[kTime], p.regime.side == 0});
     }
-    before = &solved;
+    side = p.regime.side;
   }
   // The first components are the state itself, at the end.
   const MarchState& end = orbit.pieces.back().end;
   for (int i = kTime; i <= kWheelSpeed; ++i) record.integrals[i] = end[i];
-  record.end_regime = before->piece.regime;
+  record.end_regime = orbit.pieces.back().regime;
   record.set_transmission_error_range(orbit.figures.dte_minimum, orbit.figures.dte_maximum);
   system.regime = orbit.regime;
 }
 
-void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit,
-                  const std::vector<SolvedPiece>& pieces, HistorySampler& history) {
+void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, const SolvedPieces& solved,
+                  HistorySampler& history) {
   MarchState slope_start, slope_end, at{};
   Instant instant;
-  auto solved = pieces.begin();
+  std::size_t piece = 0;
   while (history.wanted_in_first_cycles(orbit.period)) {
     const double phase = history.next_phase();
-    while (solved + 1 != pieces.end() && (solved + 1)->piece.phase <= phase) ++solved;
-    const OrbitPiece& p = solved->piece;
+    while (piece + 1 < orbit.pieces.size() && orbit.pieces[piece + 1].phase <= phase) ++piece;
+    const OrbitPiece& p = orbit.pieces[piece];
+    const auto solved_at = solved.of(piece);
     system.regime = p.regime;
-    system.derivative(p.start.data(), solved->at[0], false, slope_start.data());
-    system.derivative(p.end.data(), solved->at[2], false, slope_end.data());
+    system.derivative(p.start.data(), solved_at[0], false, slope_start.data());
+    system.derivative(p.end.data(), solved_at[2], false, slope_end.data());
     const double t = std::clamp((phase - p.phase) / p.length, 0.0, 1.0), u = 1 - t;
     for (int i = kTime; i <= kWheelSpeed; ++i) {
       at[i] = u * u * (1 + 2 * t) * p.start[i] + t * t * (1 + 2 * u) * p.end[i] +

@@ -6,14 +6,14 @@
 
 namespace tribodyn {
 
-/// Gathers what the pieces of a periodic orbit tell: integrals by Simpson's rule over each piece,
-/// extremes, openings of the gap. Leaves the system in the regime at the section.
-void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit,
-                  const std::vector<SolvedPiece>& pieces, ResponseRecord& record);
+/// Gathers what the pieces of a periodic orbit, solved, tell: integrals by Simpson's rule over each
+/// piece, extremes, openings of the gap. Leaves the system in the regime at the section.
+void record_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, const SolvedPieces& solved,
+                  ResponseRecord& record);
 
 /// Samples of the history: states by the cubic through the ends of a piece with their rates,
 /// friction solved at each; then copies of the period.
-void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit,
-                  const std::vector<SolvedPiece>& pieces, HistorySampler& history);
+void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, const SolvedPieces& solved,
+                  HistorySampler& history);
 
 }  // namespace tribodyn

@@ -151,7 +151,9 @@ class Sweeps {
       if (last_change > 0) contraction_ = std::clamp(change / last_change, 0.01, 0.9);
       last_change = change;
       orbit.unsettled = change * contraction_ / (1 - contraction_);
-      if (orbit.unsettled <= enough || change < 1e-13) return true;
+      if (orbit.unsettled > enough && !(change < 1e-13)) continue;
+      orbit.contacts = friction_.take_contacts();
+      return true;
     }
     return false;
   }

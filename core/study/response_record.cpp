@@ -6,96 +6,93 @@
 namespace tribodyn {
 namespace {
 
-/// Extreme of a smooth function sampled at even distances: the largest sample, or the vertex of the
-/// parabola through it and its neighbours where that lies inside the step.
+/// Vertex of the parabola through a sample and its neighbours where it lies less than a step from
+/// the sample; else the sample itself.
 template <std::size_t kCount>
-double refined_maximum(const std::array<double, kCount>& v) {
-  const auto top = std::max_element(v.begin(), v.end());
-  const int middle = std::clamp(static_cast<int>(top - v.begin()), 1, static_cast<int>(kCount) - 2);
-  const double curvature = v[middle - 1] - 2 * v[middle] + v[middle + 1];
-  if (!(curvature < 0)) return *top;
-  const double shift = 0.5 * (v[middle - 1] - v[middle + 1]) / curvature;
-  const bool inside = std::abs(shift) < 1;
-  const double vertex = v[middle] - 0.25 * (v[middle - 1] - v[middle + 1]) * shift;
-  return inside ? std::max(*top, vertex) : *top;
-}
-
-template <std::size_t kCount>
-std::array<double, kCount> negated(std::array<double, kCount> v) {
-  for (double& x : v) x = -x;
-  return v;
+double vertex(const std::array<double, kCount>& v, std::ptrdiff_t at) {
+  const auto middle = std::clamp<std::ptrdiff_t>(at, 1, kCount - 2);
+  const double fall = v[middle - 1] - v[middle + 1];
+  const double shift = 0.5 * fall / (v[middle - 1] - 2 * v[middle] + v[middle + 1]);
+  return std::abs(shift) < 1 ? v[middle] - 0.25 * fall * shift : v[middle];
 }
 
 }  // namespace
 
-void ResponseRecord::Range::add(double low_value, double high_value) {
-  low = seen ? std::min(low, low_value) : low_value;
-  high = seen ? std::max(high, high_value) : high_value;
-  seen = true;
-}
-
-template <std::size_t kCount, class Value>
-void ResponseRecord::add_samples(const std::array<Instant, kCount>& instants, Range& range,
-                                 Value value) {
-  std::array<double, kCount> v;
-  for (std::size_t i = 0; i < kCount; ++i) v[i] = value(instants[i]);
-  range.add(-refined_maximum(negated(v)), refined_maximum(v));
+void ResponseRecord::Range::add(double value) {
+  low = std::min(low, value);
+  high = std::max(high, value);
 }
 
 template <std::size_t kCount>
-void ResponseRecord::add_all(const std::array<Instant, kCount>& instants) {
-  add_samples(instants, transmission_error_, [](const Instant& i) { return i.transmission_error; });
-  add_samples(instants, mesh_force_, [](const Instant& i) { return i.mesh_force; });
-  add_samples(instants, pinion_friction_,
-              [](const Instant& i) { return i.pinion_friction_torque; });
-  add_samples(instants, gear_friction_, [](const Instant& i) { return i.gear_friction_torque; });
-  for (int k = 0; k < kFlankPairs; ++k) {
-    const bool all = std::all_of(instants.begin(), instants.end(),
-                                 [&](const Instant& i) { return counts(i, k); });
-    const auto add = [&](Range& range, double ContactSolution::*member) {
-      if (all) {
-        add_samples(instants, range, [&](const Instant& i) { return i.contact[k].*member; });
-        return;
+void ResponseRecord::Range::add(const std::array<double, kCount>& v) {
+  double lowest = v[0], highest = v[0];
+  for (const double value : v) {
+    lowest = std::min(lowest, value);
+    highest = std::max(highest, value);
+  }
+  const double beyond = 0.25 * (highest - lowest);  // at most
+  if (lowest - beyond >= low && highest + beyond <= high) return;
+  low = std::min({low, lowest, vertex(v, std::min_element(v.begin(), v.end()) - v.begin())});
+  high = std::max({high, highest, vertex(v, std::max_element(v.begin(), v.end()) - v.begin())});
+}
+
+Extremes ResponseRecord::Range::with_mean(double mean) const {
+  return low <= high ? Extremes{low, mean, high} : Extremes{0, mean, 0};
+}
+
+template <std::size_t kCount>
+void ResponseRecord::add(std::span<const Instant, kCount> instants) {
+  const auto add_to = [&](Range& range, double Mechanics::*member) {
+    std::array<double, kCount> v;
+    for (std::size_t n = 0; n < kCount; ++n) v[n] = instants[n].*member;
+    range.add(v);
+  };
+  add_to(transmission_error_, &Mechanics::transmission_error);
+  add_to(mesh_force_, &Mechanics::mesh_force);
+  add_to(pinion_friction_, &Mechanics::pinion_friction_torque);
+  add_to(gear_friction_, &Mechanics::gear_friction_torque);
+  for (int k = 0; k < kFlankPairs; ++k) add_flank(instants, k);
+}
+
+template <std::size_t kCount>
+void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k) {
+  const auto counted = static_cast<std::size_t>(std::count_if(
+      instants.begin(), instants.end(), [&](const Instant& i) { return counts(i, k); }));
+  if (counted == 0) return;
+  if (counted == kCount) {
+    for (int c = 0; c < kContactFigures; ++c) {
+      std::array<double, kCount> v;
+      for (std::size_t n = 0; n < kCount; ++n) v[n] = instants[n].contact[k].*kContactMembers[c];
+      contact_[c].add(v);
+    }
+    return;
+  }
+  for (std::size_t n = 0; n < kCount; ++n) {
+    const Instant& i = instants[n];
+    if (counts(i, k)) {
+      for (int c = 0; c < kContactFigures; ++c) {
+        contact_[c].add(i.contact[k].*kContactMembers[c]);
       }
-      for (std::size_t n = 0; n < kCount; ++n) {
-        const Instant& i = instants[n];
-        if (counts(i, k)) range.add(i.contact[k].*member, i.contact[k].*member);
-        if (n == 0 || counts(i, k) == counts(instants[n - 1], k)) continue;
-        // Where the load that counts is crossed.
-        const Instant& before = instants[n - 1];
-        if (!(i.load[k] > 0 && before.load[k] > 0)) continue;
-        // Film, pressure and temperature go like powers of a small load.
-        const double t =
-            std::log(load_floor_ / before.load[k]) / std::log(i.load[k] / before.load[k]);
-        const double a = before.contact[k].*member, b = i.contact[k].*member;
-        const double value = a > 0 && b > 0 ? a * std::pow(b / a, t) : a + t * (b - a);
-        range.add(value, value);
-      }
-    };
-    add(film_, &ContactSolution::central_film_thickness);
-    add(film_ratio_, &ContactSolution::film_ratio);
-    add(temperature_, &ContactSolution::contact_temperature);
-    add(pressure_, &ContactSolution::maximum_pressure);
-    add(shear_rate_, &ContactSolution::shear_rate);
+    }
+    if (n == 0 || counts(i, k) == counts(instants[n - 1], k)) continue;
+    // Where the load that counts is crossed.
+    const Instant& before = instants[n - 1];
+    if (!(i.load[k] > 0 && before.load[k] > 0)) continue;
+    // Film, pressure and temperature go like powers of a small load.
+    const double t = std::log(load_floor_ / before.load[k]) / std::log(i.load[k] / before.load[k]);
+    for (int c = 0; c < kContactFigures; ++c) {
+      const double a = before.contact[k].*kContactMembers[c];
+      const double b = i.contact[k].*kContactMembers[c];
+      contact_[c].add(a > 0 && b > 0 ? a * std::pow(b / a, t) : a + t * (b - a));
+    }
   }
 }
 
-void ResponseRecord::add_step(const std::array<Instant, kSamples>& instants) { add_all(instants); }
-
-void ResponseRecord::add_piece(const std::array<Instant, 3>& instants) { add_all(instants); }
+template void ResponseRecord::add(std::span<const Instant, kSamples> instants);
+template void ResponseRecord::add(std::span<const Instant, 3> instants);
 
 void ResponseRecord::set_transmission_error_range(double minimum, double maximum) {
-  transmission_error_ = {minimum, maximum, true};
-}
-
-void ResponseRecord::add_instant(const Instant& instant) {
-  std::array<Instant, kSamples> all;
-  all.fill(instant);
-  add_step(all);
-}
-
-Extremes ResponseRecord::extremes(const Range& range, double mean) {
-  return {range.low, mean, range.high};
+  transmission_error_ = {minimum, maximum};
 }
 
 void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
@@ -122,17 +119,17 @@ void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
     out.boundary_to_viscous_friction_ratio =
         std::sqrt(y[kBoundaryForceSquared] / y[kViscousForceSquared]);
   }
-  out.dynamic_transmission_error = extremes(transmission_error_, y[kTransmissionErrorTime] / time);
-  out.mesh_force = extremes(mesh_force_, y[kMeshForceTime] / time);
-  out.pinion_friction_torque = extremes(pinion_friction_, y[kPinionFrictionTorqueTime] / time);
-  out.gear_friction_torque = extremes(gear_friction_, y[kGearFrictionTorqueTime] / time);
+  out.dynamic_transmission_error = transmission_error_.with_mean(y[kTransmissionErrorTime] / time);
+  out.mesh_force = mesh_force_.with_mean(y[kMeshForceTime] / time);
+  out.pinion_friction_torque = pinion_friction_.with_mean(y[kPinionFrictionTorqueTime] / time);
+  out.gear_friction_torque = gear_friction_.with_mean(y[kGearFrictionTorqueTime] / time);
   if (y[kLoadTime] > 0) {
     const double load_time = y[kLoadTime];
-    out.central_film_thickness = extremes(film_, y[kFilmLoadTime] / load_time);
-    out.film_ratio = extremes(film_ratio_, y[kFilmRatioLoadTime] / load_time);
-    out.contact_temperature = extremes(temperature_, y[kTemperatureLoadTime] / load_time);
-    out.maximum_pressure = extremes(pressure_, y[kPressureLoadTime] / load_time);
-    out.shear_rate = extremes(shear_rate_, y[kShearRateLoadTime] / load_time);
+    out.central_film_thickness = contact_[kFilm].with_mean(y[kFilmLoadTime] / load_time);
+    out.film_ratio = contact_[kFilmRatio].with_mean(y[kFilmRatioLoadTime] / load_time);
+    out.contact_temperature = contact_[kTemperature].with_mean(y[kTemperatureLoadTime] / load_time);
+    out.maximum_pressure = contact_[kPressure].with_mean(y[kPressureLoadTime] / load_time);
+    out.shear_rate = contact_[kShearRate].with_mean(y[kShearRateLoadTime] / load_time);
     out.limiting_stress_area_share = y[kLimitedAreaLoadTime] / load_time;
   }
   out.limiting_stress_time_share = y[kLimitedCentreTime] / time;

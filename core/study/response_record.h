@@ -1,6 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "core/dynamics/mesh_cycle_march.h"
@@ -19,10 +22,9 @@ class ResponseRecord {
   /// least 1 % of `reference_force` [N].
   explicit ResponseRecord(double reference_force) : load_floor_(0.01 * reference_force) {}
 
-  void add_step(const std::array<Instant, kSamples>& instants);
-  void add_instant(const Instant& instant);
+  void add_step(std::span<const Instant, kSamples> instants) { add(instants); }
   /// Start, middle and end of a smooth piece.
-  void add_piece(const std::array<Instant, 3>& instants);
+  void add_piece(std::span<const Instant, 3> instants) { add(instants); }
   void set_transmission_error_range(double minimum, double maximum);
 
   Integrals integrals{};
@@ -35,22 +37,31 @@ class ResponseRecord {
 
  private:
   struct Range {
-    double low = 0, high = 0;
-    bool seen = false;
-    void add(double low_value, double high_value);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    void add(double value);
+    /// A smooth function, sampled at even distances.
+    template <std::size_t kCount>
+    void add(const std::array<double, kCount>& samples);
+    /// 0 where nothing was added.
+    Extremes with_mean(double mean) const;
   };
-  static Extremes extremes(const Range& range, double mean);
-  template <std::size_t kCount, class Value>
-  static void add_samples(const std::array<Instant, kCount>& instants, Range& range, Value value);
+  /// What counts on loaded flanks only.
+  enum ContactFigure { kFilm, kFilmRatio, kTemperature, kPressure, kShearRate, kContactFigures };
+  static constexpr double ContactFigures::*kContactMembers[kContactFigures] = {
+      &ContactFigures::central_film_thickness, &ContactFigures::film_ratio,
+      &ContactFigures::contact_temperature, &ContactFigures::maximum_pressure,
+      &ContactFigures::shear_rate};
   template <std::size_t kCount>
-  void add_all(const std::array<Instant, kCount>& instants);
+  void add(std::span<const Instant, kCount> instants);
+  template <std::size_t kCount>
+  void add_flank(std::span<const Instant, kCount> instants, int k);
   bool counts(const Instant& instant, int flank) const {
     return instant.load[flank] > 0 && instant.load[flank] >= load_floor_;
   }
 
   double load_floor_;
   Range transmission_error_, mesh_force_, pinion_friction_, gear_friction_;
-  Range film_, film_ratio_, temperature_, pressure_, shear_rate_;
+  std::array<Range, kContactFigures> contact_;
 };
 
 }  // namespace tribodyn

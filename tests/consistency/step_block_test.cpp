@@ -518,6 +518,52 @@ TEST(MultipleShooting, FindsWhatSingleShootingFindsWhereFlanksPull) {
   }
 }
 
+// By one instant after the other: where flanks press together all the time, where they are kept
+// together though they pull, and where they part.
+TEST(OrbitSolver, HandsOverTheContactsOfTheResponse) {
+  const auto expect_contacts = [](OrbitBench& bench, PeriodicOrbit& orbit) {
+    ASSERT_TRUE(bench.solve(48, orbit));
+    const SolvedPieces solved =
+        solved_pieces(bench.system, bench.grids.with_steps(48), orbit.pieces, *orbit.contacts);
+    const int intervals = bench.mesh.intervals();
+    const auto expect_close = [](double a, double b) {
+      EXPECT_NEAR(a, b, 1e-8 * std::abs(b) + 1e-9);
+    };
+    for (std::size_t i = 0; i < orbit.pieces.size(); ++i) {
+      const OrbitPiece& p = orbit.pieces[i];
+      bench.system.regime = p.regime;
+      const MarchState* states[3] = {&p.start, &p.middle, &p.end};
+      for (int part = 0; part < 3; ++part) {
+        const double phase = std::min(p.phase + 0.5 * part * p.length, 1.0);
+        bench.system.set_interval(std::min(static_cast<int>(phase * intervals), intervals - 1));
+        Instant expected;
+        bench.system.evaluate(phase, states[part]->data(), expected);
+        const Instant& at = solved.of(i)[part];
+        expect_close(at.mesh_force, expected.mesh_force);
+        expect_close(at.pinion_friction_torque, expected.pinion_friction_torque);
+        expect_close(at.gear_friction_torque, expected.gear_friction_torque);
+        expect_close(at.loss_power, expected.loss_power);
+        for (int k = 0; k < kFlankPairs; ++k) {
+          expect_close(at.load[k], expected.load[k]);
+          expect_close(at.contact[k].viscous_friction, expected.contact[k].viscous_friction);
+          expect_close(at.contact[k].contact_temperature, expected.contact[k].contact_temperature);
+          expect_close(at.contact[k].film_ratio, expected.contact[k].film_ratio);
+        }
+      }
+    }
+  };
+  OrbitBench pressed(40, 230), pulled(20.1, 200), parted(20.1, 200);
+  parted.request.keep_contact = false;
+  parted.request.first_cycles = 60;
+  PeriodicOrbit orbit;
+  expect_contacts(pressed, orbit);
+  EXPECT_GT(orbit.least_pressing_force, 0);
+  expect_contacts(pulled, orbit);
+  EXPECT_LT(orbit.least_pressing_force, 0);
+  expect_contacts(parted, orbit);
+  EXPECT_TRUE(orbit.contact_loss);
+}
+
 TEST(MultipleShooting, GoesOnFromPiecesOfAnotherGrid) {
   for (const bool wheel : {false, true}) {
     OrbitBench bench(40, 230, wheel);

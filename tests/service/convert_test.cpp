@@ -126,15 +126,51 @@ TEST(ToCore, GearSetTablesAndSeriesArriveWhole) {
 }
 
 TEST(FromCore, EveryFieldOfAContactComesBackOnce) {
+  using S = ContactSolution;
+  // As the fields are numbered.
+  constexpr double S::*kNumbers[] = {&S::film_load,
+                                     &S::asperity_load,
+                                     &S::contact_area,
+                                     &S::asperity_area,
+                                     &S::semi_major_axis,
+                                     &S::semi_minor_axis,
+                                     &S::maximum_pressure,
+                                     &S::entrainment_angle,
+                                     &S::entrainment_radius,
+                                     &S::side_leakage_radius,
+                                     &S::entrainment_speed,
+                                     &S::sliding_speed,
+                                     &S::inlet_viscosity,
+                                     &S::inlet_pressure_viscosity_coefficient,
+                                     &S::pressure_viscosity_index,
+                                     &S::reduced_modulus,
+                                     &S::central_film_thickness,
+                                     &S::film_ratio,
+                                     &S::shear_rate,
+                                     &S::contact_temperature,
+                                     &S::flash_temperature_rise,
+                                     &S::oil_temperature_rise,
+                                     &S::pinion_active_length,
+                                     &S::gear_active_length,
+                                     &S::film_thermal_resistance,
+                                     &S::pinion_thermal_resistance,
+                                     &S::gear_thermal_resistance,
+                                     &S::heat_partition,
+                                     &S::mean_shear_stress,
+                                     &S::viscous_friction,
+                                     &S::boundary_friction,
+                                     &S::friction,
+                                     &S::heat_rate,
+                                     &S::friction_coefficient,
+                                     &S::limiting_stress_area_share};
   ContactSolution solution;
   solution.status = ContactStatus::kOk;
-  // film_load to limiting_stress_area_share are doubles in a row.
-  double* first = &solution.film_load;
-  for (int i = 0; i < 35; ++i) first[i] = i + 1;
+  int number = 0;
+  for (const auto member : kNumbers) solution.*member = ++number;
+  EXPECT_EQ(number, 35);
   solution.limiting_stress_switches = 36;
   solution.limiting_stress_at_centre = true;
   solution.thermal_roots = 37;
-  ASSERT_EQ(solution.limiting_stress_area_share, 35);
   const v1::EvaluateContactResponse response = to_message(solution);
   const auto& descriptor = *response.GetDescriptor();
   const auto& reflection = *response.GetReflection();
