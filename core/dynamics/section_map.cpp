@@ -35,8 +35,11 @@ bool SectionMap::multipliers_are_below(double limit) const {
 }
 
 double SectionMap::distance_from_doubling() const {
+  if (distance_from_doubling_ >= 0) return distance_from_doubling_;
   using Square = Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>;
-  return 1 / Eigen::PartialPivLU<Square>(monodromy_ + Square::Identity()).inverse().norm();
+  distance_from_doubling_ =
+      1 / Eigen::PartialPivLU<Square>(monodromy_ + Square::Identity()).inverse().norm();
+  return distance_from_doubling_;
 }
 
 Eigen::Matrix<double, SectionMap::kUnknowns - 1, 1> SectionMap::alternating_disturbance() const {

@@ -33,7 +33,8 @@ class SectionMap {
   /// Whether that is surely below a limit, at a fraction of the price. False where it cannot tell,
   /// mostly within a percent. A proof is remembered like that.
   bool multipliers_are_below(double limit) const;
-  /// Not above the distance of any multiplier from -1, where periods double.
+  /// Not above the distance of any multiplier from -1, where periods double. Computed once, as
+  /// largest_multiplier().
   double distance_from_doubling() const;
   /// The disturbance of the section that comes nearest to changing its side every period and
   /// nothing else, of length 1; scaled, without the torque.
@@ -46,6 +47,7 @@ class SectionMap {
   Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1> monodromy_;  // scaled
   mutable bool alternates_ = false;
   mutable double largest_multiplier_ = -1;  // not computed yet
+  mutable double distance_from_doubling_ = -1;
   mutable double multiplier_bound_ = std::numeric_limits<double>::infinity();
 };
 

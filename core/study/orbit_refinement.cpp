@@ -172,6 +172,9 @@ class Refinement {
     });
     if (fits == references.end()) return std::nullopt;
     const MeshGrid& grid = grids_.with_steps(fits->steps);
+    // What is asked of the map here is known to all that start from it.
+    fits->orbit.map->distance_from_doubling();
+    fits->orbit.map->multipliers_are_below(1 - margin(system_, search_));
     orbit_ = fits->orbit;
     const double step_error = kCaution * fits->step_error;
     request_.tolerance = search_.tolerance - step_error;
