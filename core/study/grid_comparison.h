@@ -27,8 +27,8 @@ class GridComparison {
       gain = std::clamp(halving_difference_ / std::max(change, 1e-300), 2.5, 8.0);
     }
     // Two step lengths may agree by accident, three rarely do.
-    return std::max({kSafety * change / (gain - 1), error_ / (2 * finer * finer),
-                     kink_error(steps)});
+    return std::max(
+        {kSafety * change / (gain - 1), error_ / (2 * finer * finer), kink_error(steps)});
   }
 
   /// The grid that the next one is compared with; `error`: of its figures, 0 where not known.
