@@ -39,6 +39,7 @@ std::vector<ReferenceOrbit> reference_orbits(GearPairSystem& system,
     out.push_back({steps, orbit, error});
     // A lubricant's friction is yet to come.
     out.back().orbit.response = 0;
+    out.back().orbit.contacts.reset();
     const bool parts = request.keep_contact && orbit.least_pressing_force < -kClearPull;
     if (parts || (out.size() > 1 && error < kSmall)) break;
     steps = sequence.after(steps, 1);

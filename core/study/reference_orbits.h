@@ -37,7 +37,7 @@ class ReferenceOrbits {
                                           const PeriodicOrbit& origin, int least);
 
  private:
-  static constexpr std::size_t kMost = 500;
+  static constexpr std::size_t kMost = 200;  // of some 200 KB
   using Key = std::array<double, 8 + kMarchComponents>;
 
   std::map<Key, std::vector<ReferenceOrbit>> found_;
