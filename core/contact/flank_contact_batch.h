@@ -107,7 +107,7 @@ struct FlankContactBatchResults {
 /// throws. Batches should be multiples of 32 contacts, in places next to each other.
 class FlankContactBatch {
  public:
-  /// Builds the tables of the model's fluid (some 50 us; a few ms the first time).
+  /// Builds the tables of the model's fluid (some 10 us; a few ms the first time).
   /// `instruction_set` must be supported. Throws nothing but std::bad_alloc.
   explicit FlankContactBatch(const FlankContactModel& model);
   FlankContactBatch(const FlankContactModel& model, InstructionSet instruction_set);

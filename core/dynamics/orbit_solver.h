@@ -39,8 +39,9 @@ class OrbitSolver {
   /// use. Where flanks kept together clearly pull, it may end before it converges.
   bool solve(const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit);
 
-  /// The map at the response itself, in place of one from near: multipliers by it are good to 3e-3
-  /// also where contact is lost or periods double. False where the march breaks down.
+  /// The map at the response itself, within 1e-4 of the scales, in place of one from farther:
+  /// multipliers by it are good to 3e-3 also where contact is lost or periods double. False where
+  /// the march breaks down.
   bool renew_map(const MeshGrid& grid, const OrbitRequest& request, PeriodicOrbit& orbit);
 
  private:

@@ -22,8 +22,10 @@ struct PeriodicOrbit {
   int period = 1;  ///< [mesh cycles]
   LaggedFriction friction;
   std::optional<SectionMap> map;  ///< from here or near; empty: not known
-  /// How far the state has moved since the map was made, at most, scaled.
+  /// How far the state has moved since the map was made from steps one by one, at most, scaled, and
+  /// of how many pieces the response was then.
   double moved_from_map = std::numeric_limits<double>::infinity();
+  std::size_t pieces_of_map = 0;
   /// Of all steps, where they have been taken side by side.
   std::shared_ptr<const CycleDerivatives> cycle_derivatives;
   std::vector<OrbitPiece> pieces;

@@ -47,7 +47,7 @@ Eigen::Matrix<double, SectionMap::kUnknowns - 1, 1> SectionMap::alternating_dist
   using Square = Eigen::Matrix<double, kUnknowns - 1, kUnknowns - 1>;
   const Eigen::PartialPivLU<Square> factors(monodromy_ + Square::Identity());
   Eigen::Matrix<double, kUnknowns - 1, 1> direction =
-      Eigen::Matrix<double, kUnknowns - 1, 1>::Ones();
+      monodromy_ * Eigen::Matrix<double, kUnknowns - 1, 1>::Ones();
   for (int i = 0; i < kIterations; ++i) direction = factors.solve(direction).normalized();
   return direction;
 }

@@ -37,7 +37,8 @@ class SectionMap {
   /// largest_multiplier().
   double distance_from_doubling() const;
   /// The disturbance of the section that comes nearest to changing its side every period and
-  /// nothing else, of length 1; scaled, without the torque.
+  /// nothing else, of length 1; scaled, without the torque. Of use where a multiplier is near -1.
+  /// Zero in what stands still.
   Eigen::Matrix<double, kUnknowns - 1, 1> alternating_disturbance() const;
 
  private:

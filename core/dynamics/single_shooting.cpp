@@ -37,13 +37,14 @@ bool SingleShooting::let_run(int cycles) {
 
 bool SingleShooting::renew_map() {
   constexpr double kHere = 1e-4;
-  if (orbit_.moved_from_map < kHere) return true;
+  if (orbit_.moved_from_map < kHere && orbit_.pieces_of_map == orbit_.pieces.size()) return true;
   MarchState y = orbit_.state;
   Sensitivity sensitivity;
   start_regime(y);
   if (!march_.run(orbit_.friction, request_.keep_contact, y, &sensitivity, nullptr)) return false;
   orbit_.map.emplace(sensitivity, scale_, period_time_, states_of(system_.driveline()).still);
   orbit_.moved_from_map = 0;
+  orbit_.pieces_of_map = orbit_.pieces.size();
   return true;
 }
 
@@ -57,6 +58,7 @@ double SingleShooting::improve() {
     if (!march(y, &sensitivity)) return kBrokenDown;
     orbit_.map.emplace(sensitivity, scale_, period_time_, states_of(system_.driveline()).still);
     orbit_.moved_from_map = 0;
+    orbit_.pieces_of_map = orbit_.pieces.size();
   }
   SectionMap::Vector residual;
   for (int i = 0; i + 1 < kUnknowns; ++i) {

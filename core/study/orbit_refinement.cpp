@@ -20,8 +20,6 @@ constexpr double kNearDoubling = 0.06;
 constexpr double kLittlePull = 0.2;     // of the mean force
 constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march
 constexpr int kMostFailures = 3;
-constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
-constexpr int kFinest = 4000;    // steps per mesh cycle
 
 double square(double x) { return x * x; }
 
@@ -58,7 +56,7 @@ bool is_half_as_long(const GearPairSystem& system, const OrbitSearch& search,
   return difference < 1e-3;
 }
 
-/// The search for one response, on one grid after another.
+/// The search for one response, on one grid after another or on that which references tell.
 class Refinement {
  public:
   /// `cycles_left`: to march in search of a response; charged also where one is known already, so
@@ -90,18 +88,18 @@ class Refinement {
     // Seven steps for an oscillation tell its height to some percent; fewer tell nothing.
     const double least =
         std::max(7 * mesh_oscillations(system_, search_.mean_pinion_speed),
-                 search_.tolerance < kLoose || !search_.try_contact_first ? 24.0 : 12.0);
-    if (least > kFinest) return std::nullopt;
-    if (search_.references != nullptr && search_.tolerance >= kLoose) {
+                 search_.tolerance < kLooseTolerance || !search_.try_contact_first ? 24.0 : 12.0);
+    if (least > kMostSteps) return std::nullopt;
+    if (search_.references != nullptr && search_.tolerance >= kLooseTolerance) {
       if (auto found = find_by_reference(static_cast<int>(least))) return found;
       if (is_over_) return std::nullopt;
-      repels_ = false;
+      repels_ = doubles_ = false;
       marched_multiplier_.reset();
     }
     const StepSequence sequence(system_.mesh().intervals(), static_cast<int>(least));
     constexpr double kUnknown = std::numeric_limits<double>::infinity();
     double excess = kUnknown;
-    for (int steps = sequence.first(); steps <= kFinest && !is_over_;
+    for (int steps = sequence.first(); steps <= kMostSteps && !is_over_;
          steps = sequence.after(steps, excess)) {
       const MeshGrid& grid = grids_.with_steps(steps);
       excess = kUnknown;
@@ -121,6 +119,8 @@ class Refinement {
 
   /// A response was found that surely repels, or may, where periods double.
   bool repels() const { return repels_; }
+  /// To both sides in turn: where a doubled response is near.
+  bool doubles() const { return doubles_; }
 
   /// Beside the one that repels, off to where it repels to: by half of the mean deflection of the
   /// mesh. Nearer, hundreds of cycles may lead back to it.
@@ -152,8 +152,10 @@ class Refinement {
       if (references.front().orbit.least_pressing_force > -kLittlePull) return std::nullopt;
       request_.keep_contact = false;
     }
+    cycles_left_ -= search_.few_cycles * search_.period;
     request_.first_cycles = search_.few_cycles;
-    auto found = settle_from(references_now(least));
+    std::optional<RefinedOrbit> found;
+    if (cycles_left_ >= 0) found = settle_from(references_now(least));
     request_.keep_contact = in_contact;
     request_.first_cycles = 0;
     return found;
@@ -165,10 +167,8 @@ class Refinement {
 
   /// From the first of them whose steps are short enough.
   std::optional<RefinedOrbit> settle_from(const std::vector<ReferenceOrbit>& references) {
-    constexpr double kCaution = 3;       // losses may follow the mesh force more than Coulomb's
-    constexpr double kForSweeps = 0.25;  // of the tolerance
     const auto fits = std::find_if(references.begin(), references.end(), [&](const auto& each) {
-      return kCaution * each.step_error <= (1 - kForSweeps) * search_.tolerance;
+      return each.doubt() <= kShareOfSteps * search_.tolerance;
     });
     if (fits == references.end()) return std::nullopt;
     const MeshGrid& grid = grids_.with_steps(fits->steps);
@@ -176,8 +176,7 @@ class Refinement {
     fits->orbit.map->distance_from_doubling();
     fits->orbit.map->multipliers_are_below(1 - margin(system_, search_));
     orbit_ = fits->orbit;
-    const double step_error = kCaution * fits->step_error;
-    request_.tolerance = search_.tolerance - step_error;
+    request_.tolerance = search_.tolerance - fits->doubt();
     if (!solver_.solve(grid, request_, orbit_)) {
       is_over_ = system_.take_refusal() != ContactStatus::kOk;
       return std::nullopt;
@@ -185,7 +184,7 @@ class Refinement {
     const bool is_alike = request_.keep_contact ? orbit_.least_pressing_force >= 0
                                                 : orbit_.contact_loss && fits->orbit.contact_loss;
     if (!is_alike || !attracts(grid)) return std::nullopt;
-    const double error = step_error + orbit_.unsettled;
+    const double error = fits->doubt() + orbit_.unsettled;
     return RefinedOrbit{std::move(orbit_), fits->steps, marched_multiplier_, error};
   }
 
@@ -217,6 +216,7 @@ class Refinement {
     }
     is_over_ = system_.take_refusal() != ContactStatus::kOk;
     request_.keep_contact = false;
+    orbit_.moved_from_map = std::numeric_limits<double>::infinity();  // it knows no gap
     coarser_.clear();
     if (!solved || is_over_ || orbit_.least_pressing_force < -kLittlePull) return false;
     if (solver_.solve(grid, request_, orbit_)) return true;
@@ -283,8 +283,8 @@ class Refinement {
     }
     if (multiplier < 1 - doubt) return true;
     // In doubt whether the period has doubled, it is looked for.
-    repels_ =
-        doubles || (multiplier > 1 + doubt && (orbit_.map->alternates() || orbit_.period > 1));
+    doubles_ = doubles || (multiplier > 1 + doubt && orbit_.map->alternates());
+    repels_ = doubles_ || (multiplier > 1 + doubt && orbit_.period > 1);
     return false;
   }
 
@@ -319,7 +319,7 @@ class Refinement {
   GridComparison coarser_;
   int failures_ = 0;
   double doubtful_pull_ = kClearPull;  // of the mean force: as little may be the steps' error
-  bool is_over_ = false, repels_ = false;
+  bool is_over_ = false, repels_ = false, doubles_ = false;
   std::optional<double> marched_multiplier_;
 };
 
@@ -356,7 +356,7 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
     // what follows patience leads.
     if (repels) {
       next.period *= 2;
-      next.start = refinement.beside_repelling();
+      if (refinement.doubles()) next.start = refinement.beside_repelling();
     }
     if (!repels && search.try_contact_first) return found;
     next.try_contact_first = false;

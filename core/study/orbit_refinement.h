@@ -31,7 +31,8 @@ struct RefinedOrbit {
   /// Floquet, modulus, with friction in the loop; absent: by the orbit's map it is clear enough.
   std::optional<double> marched_multiplier;
   /// Of loss (RMS and energy), torque and extremes of the transmission error, relative: what the
-  /// last shortening of the steps changed, less what its order took away, and what sweeps left.
+  /// last shortening of the steps changed, less what its order took away, or what a reference tells
+  /// of the steps; and what sweeps left.
   double estimated_error = 0;
 };
 

@@ -12,7 +12,6 @@ namespace tribodyn {
 namespace {
 
 constexpr double kSafety = 1.7;  // on the error that two grids tell
-constexpr int kFinest = 4000;    // steps per mesh cycle
 constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
 
 // Of the model's error. Beyond these limits the correction tells nothing sure.
@@ -277,7 +276,7 @@ std::optional<QuasiStatic> solve_quasi_static(GearPairSystem& system,
     }
     best.steps_per_mesh_cycle = steps;
     const bool enough_steps = !first && best.discretisation_error <= request.tolerance;
-    if (enough_steps || after(steps) > kFinest) break;
+    if (enough_steps || after(steps) > kMostSteps) break;
   }
   best.orbit.regime = system.regime;
   return best;

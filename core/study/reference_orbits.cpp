@@ -19,7 +19,8 @@ std::vector<ReferenceOrbit> reference_orbits(GearPairSystem& system,
                                              const OrbitRequest& request,
                                              const PeriodicOrbit& origin, int least) {
   constexpr std::size_t kMostGrids = 5;
-  constexpr double kSmall = 1e-4, kLeftBySweeps = 1e-5;
+  constexpr double kSmall = kShareOfSteps * kLooseTolerance / ReferenceOrbit::kCaution;
+  constexpr double kLeftBySweeps = 1e-5;
   MarchStatistics statistics;
   long marched_cycles = 0;
   OrbitSolver solver(system, contacts, statistics, marched_cycles, kCoefficient);
@@ -29,7 +30,8 @@ std::vector<ReferenceOrbit> reference_orbits(GearPairSystem& system,
   std::vector<ReferenceOrbit> out;
   GridComparison comparison(system.mesh().intervals());
   const StepSequence sequence(system.mesh().intervals(), least);
-  for (int steps = sequence.first(); out.size() < kMostGrids;) {
+  for (int steps = sequence.first(); out.size() < kMostGrids && steps <= kMostSteps;
+       steps = sequence.after(steps, 1)) {
     const MeshGrid& grid = grids.with_steps(steps);
     if (out.empty() && !solver.approach_without_friction(grid, precise, orbit)) break;
     precise.first_cycles = 0;
@@ -42,7 +44,6 @@ std::vector<ReferenceOrbit> reference_orbits(GearPairSystem& system,
     out.back().orbit.contacts.reset();
     const bool parts = request.keep_contact && orbit.least_pressing_force < -kClearPull;
     if (parts || (out.size() > 1 && error < kSmall)) break;
-    steps = sequence.after(steps, 1);
   }
   system.take_refusal();
   if (out.size() == 1) out.front().step_error = std::numeric_limits<double>::infinity();
@@ -68,10 +69,14 @@ const std::vector<ReferenceOrbit>& ReferenceOrbits::find(GearPairSystem& system,
           origin.torques.wheel};
   std::copy(origin.state.begin(), origin.state.end(), key.begin() + 8);
   if (const auto known = found_.find(key); known != found_.end()) return known->second;
-  if (found_.size() >= kMost) found_.clear();
+  if (steps_kept_ > kMostStepsKept) {
+    found_.clear();
+    steps_kept_ = 0;
+  }
   const Torques torques = system.torques();
   auto made = reference_orbits(system, contacts, grids, request, origin, least);
   system.set_torques(torques);
+  for (const ReferenceOrbit& each : made) steps_kept_ += each.steps;
   return found_.emplace(key, std::move(made)).first->second;
 }
 

@@ -10,17 +10,26 @@
 
 namespace tribodyn {
 
+/// From here on few steps may do.
+inline constexpr double kLooseTolerance = 3e-4;
+/// Of a tolerance, what the doubt about the steps may take; the rest is for sweeps.
+inline constexpr double kShareOfSteps = 0.75;
+
 /// A response under Coulomb's friction in place of a lubricant's. Those of all lubricants are near,
 /// and what the steps do to them is nearly the same.
 struct ReferenceOrbit {
   int steps = 0;  ///< per mesh cycle
   PeriodicOrbit orbit;
   double step_error = 0;  ///< of the figures, relative
+
+  /// What the steps may do to a lubricant's figures: its losses may follow the mesh force more than
+  /// Coulomb's do.
+  double doubt() const { return kCaution * step_error; }
+  static constexpr double kCaution = 3;
 };
 
 /// The response from `origin` on one grid after another, until the error of the steps is small
-/// enough for any tolerance that few steps may do for. Empty where there is none. `least`: steps of
-/// the first grid.
+/// enough for kLooseTolerance. Empty where there is none. `least`: steps of the first grid.
 std::vector<ReferenceOrbit> reference_orbits(GearPairSystem& system,
                                              const FlankContactBatch& contacts, MeshGrids& grids,
                                              const OrbitRequest& request,
@@ -37,10 +46,11 @@ class ReferenceOrbits {
                                           const PeriodicOrbit& origin, int least);
 
  private:
-  static constexpr std::size_t kMost = 200;  // of some 200 KB
+  static constexpr int kMostStepsKept = 20'000;  // of some 2 KB each
   using Key = std::array<double, 8 + kMarchComponents>;
 
   std::map<Key, std::vector<ReferenceOrbit>> found_;
+  int steps_kept_ = 0;
 };
 
 }  // namespace tribodyn

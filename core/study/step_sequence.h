@@ -2,6 +2,9 @@
 
 namespace tribodyn {
 
+/// More steps per mesh cycle are not tried.
+inline constexpr int kMostSteps = 4000;
+
 /// Numbers of steps per mesh cycle. The first end on samples of the tables and the second do not:
 /// else both would see the kinks there in the same way and agree on the same error. In the end no
 /// step has a kink inside.

@@ -339,6 +339,16 @@ TEST(OneDegree, HistoriesHaveConstantTorquesAndSpeedsBehindTheShafts) {
   }
 }
 
+// What stands still must not be disturbed in search of it.
+TEST(OneDegree, BeyondADoublingTheShaftsTurnAtTheMeanSpeed) {
+  const PointResult r = solve_operating_point(reference_scene(), cruise(147.5), one_degree());
+  EXPECT_EQ(r.method, SteadyStateMethod::kShooting);
+  EXPECT_EQ(r.period_in_mesh_cycles, 2);
+  EXPECT_EQ(r.section_state.pinion_shaft_speed, r.mean_pinion_speed);
+  EXPECT_EQ(r.section_state.pinion_shaft_twist,
+            r.pinion_torque / reference_scene().gear_set.dynamics.pinion_shaft_stiffness);
+}
+
 TEST(OneDegree, FiguresAreThoseOfTheWholeResultAndScreenedOnesTheSameBitsInCompany) {
   const Scene thin = reference_scene(1, 90), thick = reference_scene(2, 20);
   const auto shared = std::make_shared<PreparedGearSet>(thin.gear_set, thin.solid, thin.options);

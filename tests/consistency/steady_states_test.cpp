@@ -143,8 +143,6 @@ std::vector<double> branch_ends(const std::vector<double>& kilometers_per_hour,
   return out;
 }
 
-// From 71.33 to 71.43 km/h the quiet response parts for some percent of the time: another one,
-// loud, is where the response without friction leads.
 // There the single response hardly repels, and disturbances take thousands of cycles to grow.
 TEST(SteadyStates, RightBeyondADoublingTheLongResponseIsFoundByShooting) {
   for (const int fluid : {1, 2}) {
@@ -165,6 +163,8 @@ TEST(SteadyStates, RightBeyondADoublingTheLongResponseIsFoundByShooting) {
   }
 }
 
+// From 71.33 to 71.43 km/h the quiet response parts for some percent of the time: another one,
+// loud, is where the response without friction leads.
 TEST(SteadyStates, TheQuietBranchIsFollowedWhereItBarelyLosesContact) {
   PointResult shot = point(71.3);
   ASSERT_FALSE(shot.contact_loss);
