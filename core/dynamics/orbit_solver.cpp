@@ -32,7 +32,7 @@ bool sweep(Shooting& shooting, const OrbitRequest& request, PeriodicOrbit& orbit
     const double change = orbit.figures.distance(previous);
     previous = orbit.figures;
     if (friction_change > 0 && first_friction && sweep == 1) {
-      orbit.response = change / friction_change;
+      orbit.response = std::max(orbit.least_response, change / friction_change);
     } else if (friction_change > 0 && sweep > 1) {
       orbit.response = std::max(orbit.response, (change - defect - orbit.defect) / friction_change);
     }

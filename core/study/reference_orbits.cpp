@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/dynamics/orbit_solver.h"
 #include "core/study/grid_comparison.h"
@@ -11,6 +12,7 @@ namespace tribodyn {
 namespace {
 
 constexpr double kCoefficient = 0.05;  // of friction; lubricated flanks are between 0.02 and 0.1
+constexpr double kShareOfResponse = 2.0 / 3;  // a lubricant's may be less
 
 }  // namespace
 
@@ -40,7 +42,8 @@ std::vector<ReferenceOrbit> reference_orbits(GearPairSystem& system,
     comparison.add(steps, orbit.figures, error);
     out.push_back({steps, orbit, error});
     // A lubricant's friction is yet to come.
-    out.back().orbit.response = 0;
+    out.back().orbit.least_response =
+        kShareOfResponse * std::exchange(out.back().orbit.response, 0);
     out.back().orbit.contacts.reset();
     const bool parts = request.keep_contact && orbit.least_pressing_force < -kClearPull;
     if (parts || (out.size() > 1 && error < kSmall)) break;
@@ -50,6 +53,10 @@ std::vector<ReferenceOrbit> reference_orbits(GearPairSystem& system,
   for (std::size_t i = 0; i + 1 < out.size(); ++i) {
     out[i].step_error =
         out.back().step_error + out[i].orbit.figures.distance(out.back().orbit.figures);
+    if (i == 0) continue;
+    // Less than the second power of the steps tells may be an accident of one friction.
+    const double finer = static_cast<double>(out[i].steps) / out[i - 1].steps;
+    out[i].step_error = std::max(out[i].step_error, out[i - 1].step_error / (2 * finer * finer));
   }
   return out;
 }
