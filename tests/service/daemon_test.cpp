@@ -108,12 +108,12 @@ TEST_F(DaemonTest, ATerminationEndsStreamsAndKeepsWorkForTheNextStart) {
   cancel(running.name());
 }
 
-/// A curve of half a second: of seven points or, as a sanitizer slows the core, of one.
+/// A curve of two seconds: of 25 points or, as a sanitizer slows the core, of one.
 v1::Simulation some_seconds() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr double kStep = 130;
 #else
-  constexpr double kStep = 20;
+  constexpr double kStep = 5;
 #endif
   v1::Simulation simulation = curve_simulation();
   simulation.mutable_inefficiency_curve()->set_speed_step_kilometers_per_hour(kStep);
