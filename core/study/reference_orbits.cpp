@@ -11,7 +11,7 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kCoefficient = 0.05;  // of friction; lubricated flanks are between 0.02 and 0.1
+constexpr double kCoefficient = 0.05;     // of friction; lubricated flanks are between 0.02 and 0.1
 constexpr double kShareOfResponse = 0.6;  // a lubricant's may be less
 
 }  // namespace
