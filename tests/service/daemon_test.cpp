@@ -108,12 +108,12 @@ TEST_F(DaemonTest, ATerminationEndsStreamsAndKeepsWorkForTheNextStart) {
   cancel(running.name());
 }
 
-/// A curve of two seconds: of 25 points or, as a sanitizer slows the core, of one.
+/// A curve of a second or two: of 13 points or, as a sanitizer slows the core, of one.
 v1::Simulation some_seconds() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr double kStep = 130;
 #else
-  constexpr double kStep = 5;
+  constexpr double kStep = 10;
 #endif
   v1::Simulation simulation = curve_simulation();
   simulation.mutable_inefficiency_curve()->set_speed_step_kilometers_per_hour(kStep);
@@ -145,9 +145,12 @@ TEST_F(DrainTest, WhatRunsMayEndWhileNothingNewIsAccepted) {
   std::vector<v1::SimulationEvent> events;
   std::thread watcher([&] { events = watch(running_.name(), &status); });
   process_->signal(SIGTERM);
-  v1::Simulation refused;
+  v1::Simulation next = point_simulation();  // another one each time: one accepted is not refused
   EXPECT_TRUE(eventually([&] {
-    return create(point_simulation(), &refused).error_code() == grpc::StatusCode::UNAVAILABLE;
+    auto* const cruise = next.mutable_operating_point()->mutable_cruise();
+    cruise->set_speed_kilometers_per_hour(cruise->speed_kilometers_per_hour() + 0.25);
+    v1::Simulation refused;
+    return create(next, &refused).error_code() == grpc::StatusCode::UNAVAILABLE;
   }));
   EXPECT_EQ(client.call("/grpc.health.v1.Health/Check", "").second, std::string("\x08\x02"))
       << "NOT_SERVING";
