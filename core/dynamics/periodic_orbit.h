@@ -37,7 +37,7 @@ struct PeriodicOrbit {
   /// Of the figures to all of the friction, relative; 0: not known. They go nearly in proportion.
   double response = 0;
   double least_response = 0;  ///< by what a response nearby has shown
-  double unsettled = 0;  ///< estimate of what further sweeps would still change, relative
+  double unsettled = 0;       ///< estimate of what further sweeps would still change, relative
   bool contact_loss = false;
   /// Smallest force that pressed touching flanks together, over the mean one; negative: they were
   /// held together.
