@@ -112,8 +112,8 @@ PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions optio
 /// Whether a branch ends between two points of a sweep, and where; of several ends one.
 std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, PointOptions options,
                                     const PointResult& before, const PointResult& after) {
-  constexpr int kPatience =
-      400;  // [mesh cycles], at a speed: enough for shooting to be sure of single ones
+  // At a speed: enough for shooting to be sure of responses of one mesh cycle.
+  constexpr int kPatience = 400;  // [mesh cycles]
   constexpr int kMostMarched = 600;
   const bool only_marched = options.method == SteadyStateMethod::kMarch;
   options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kPatience);
