@@ -238,8 +238,8 @@ PointFigures solve_point_figures(PreparedScene& prepared, const OperatingConditi
 /// starts from there and is solved for on one grid, on which the error of the steps is known from
 /// that response. An answer is the same bits whichever lubricants came before. Other points than
 /// the first at a speed and load take half the time where twelve steps a mesh cycle do, and little
-/// less than alone where many are needed; the first takes up to twice. Some hundred speeds and loads
-/// are remembered; more in turn gain nothing.
+/// less than alone where many are needed; the first takes up to twice. Some hundred speeds and
+/// loads are remembered; more in turn gain nothing.
 PointFigures screen_point(PreparedScene& prepared, const OperatingCondition& condition,
                           const PointOptions& options);
 
