@@ -20,12 +20,12 @@ constexpr double kCentreSpacing = 0.25;
 constexpr double kHalfWidth = kCentreSpacing / 2;
 constexpr double kVanishes = 38.75;  // beyond, F_2 is below half the smallest subnormal number
 constexpr int kCentres = 156;        // centres 0, 0.25 ... 38.75
-constexpr int kTerms = 12;
+constexpr int kPolynomialTerms = 12;
 
 struct Piece {
-  std::array<double, kTerms> f2;    // coefficients of P_2 in d
-  std::array<double, kTerms> f5_2;  // coefficients of P_5/2 in d
-  double root_of_gaussian;          // exp(-c^2/4): its square would underflow too early
+  std::array<double, kPolynomialTerms> f2;    // coefficients of P_2 in d
+  std::array<double, kPolynomialTerms> f5_2;  // coefficients of P_5/2 in d
+  double root_of_gaussian;                    // exp(-c^2/4): its square would underflow too early
 };
 
 using Extended = long double;
@@ -48,16 +48,17 @@ ChebyshevTable chebyshev_polynomials() {
   return table;
 }
 
-// Lanczos economisation: takes a series in x, |x| <= 1, to kTerms by subtracting multiples of T_m
-// from the top down, and returns the coefficients in d = kHalfWidth x.
-std::array<double, kTerms> economised(TaylorSeries series, const ChebyshevTable& chebyshev) {
-  for (int m = kTaylorTerms - 1; m >= kTerms; --m) {
+// Lanczos economisation: takes a series in x, |x| <= 1, to kPolynomialTerms by subtracting
+// multiples of T_m from the top down, and returns the coefficients in d = kHalfWidth x.
+std::array<double, kPolynomialTerms> economised(TaylorSeries series,
+                                                const ChebyshevTable& chebyshev) {
+  for (int m = kTaylorTerms - 1; m >= kPolynomialTerms; --m) {
     const Extended multiple = series[m] / chebyshev[m][m];
     for (int j = m; j >= 0; j -= 2) series[j] -= multiple * chebyshev[m][j];
   }
-  std::array<double, kTerms> coefficients;
+  std::array<double, kPolynomialTerms> coefficients;
   Extended power = 1;
-  for (int j = 0; j < kTerms; ++j) {
+  for (int j = 0; j < kPolynomialTerms; ++j) {
     coefficients[j] = static_cast<double>(series[j] / power);
     power *= kHalfWidth;
   }
@@ -129,8 +130,8 @@ const Table& table() {
 }
 
 // Estrin's scheme: four levels deep where Horner's is eleven.
-double polynomial(const std::array<double, kTerms>& a, double d) {
-  static_assert(kTerms == 12);
+double polynomial(const std::array<double, kPolynomialTerms>& a, double d) {
+  static_assert(kPolynomialTerms == 12);
   const double d2 = d * d;
   const double d4 = d2 * d2;
   const double low = (a[0] + a[1] * d) + (a[2] + a[3] * d) * d2;

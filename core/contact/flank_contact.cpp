@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/celsius.h"
 #include "core/contact/film_thickness.h"
 #include "core/contact/hertz.h"
 #include "core/contact/load_sharing.h"
@@ -57,7 +58,9 @@ bool representable(const ContactSolution& s) {
                      s.limiting_stress_area_share});
 }
 
-std::string celsius(double kelvin) { return std::to_string(kelvin - 273.15) + " degrees Celsius"; }
+std::string celsius(double kelvin) {
+  return std::to_string(kelvin - kZeroCelsius) + " degrees Celsius";
+}
 
 }  // namespace
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/numerics/square.h"
+
 namespace tribodyn {
 namespace {
-
-double square(double v) { return v * v; }
 
 constexpr int kAll[] = {kPinionShaftTwist, kWinding,   kGearShaftTwist, kPinionShaftSpeed,
                         kPinionSpeed,      kGearSpeed, kWheelSpeed};

@@ -6,14 +6,14 @@
 #include <complex>
 #include <numbers>
 
+#include "core/numerics/square.h"
+
 namespace tribodyn {
 namespace {
 
 using Complex = std::complex<double>;
 
 constexpr int kMostHarmonics = 96;
-
-double square(double v) { return v * v; }
 
 Complex inverse(const Complex& z) { return std::conj(z) / std::norm(z); }
 

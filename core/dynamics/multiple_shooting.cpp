@@ -8,8 +8,7 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kUnknowns = SectionMap::kUnknowns;
-constexpr int kTorque = kUnknowns - 1;
+constexpr int kTorque = SectionMap::kUnknowns - 1;
 using Vector = SectionMap::Vector;
 
 }  // namespace

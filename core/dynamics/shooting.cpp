@@ -6,8 +6,6 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kUnknowns = SectionMap::kUnknowns;
-
 MarchScales scales_at(const Torques& torques, GearPairSystem& system, double mean_pinion_speed) {
   system.set_torques(torques);
   return march_scales(system, mean_pinion_speed);

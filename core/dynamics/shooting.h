@@ -22,6 +22,8 @@ class Shooting {
   virtual void finish(MarchStatistics& statistics, long& marched_cycles) = 0;
 
  protected:
+  static constexpr int kUnknowns = SectionMap::kUnknowns;
+
   /// Keeps the references. Sets the system's torques to the orbit's: nothing of what was tried
   /// before may show in a response.
   Shooting(GearPairSystem& system, OrbitFriction& friction, const MeshGrid& grid,

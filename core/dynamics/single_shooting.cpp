@@ -7,8 +7,6 @@
 
 namespace tribodyn {
 
-constexpr int kUnknowns = SectionMap::kUnknowns;
-
 SingleShooting::SingleShooting(GearPairSystem& system, OrbitFriction& friction,
                                const MeshGrid& grid, const OrbitRequest& request,
                                PeriodicOrbit& orbit)

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/celsius.h"
 #include "core/number_text.h"
 
 namespace tribodyn {
 namespace {
-
-constexpr double kZeroCelsius = 273.15;
 
 struct Ranged {
   double value;

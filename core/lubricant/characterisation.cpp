@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <iterator>
 
+#include "core/celsius.h"
+#include "core/lubricant/gear_viscosity_grade.h"
 #include "core/lubricant/viscosity.h"
 #include "core/lubricant/viscosity_index.h"
 #include "core/lubricant/walther_vogel.h"
@@ -14,12 +16,9 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kZeroCelsius = 273.15;
-constexpr double kFortyCelsius = 313.15, kHundredCelsius = 373.15;
 constexpr double kKinematicUncertainty = 0.005;        // relative, ASTM D445
 constexpr double kBrookfieldUncertainty = 0.05;        // relative, ASTM D2983
 constexpr double kWaltherTemperatureUncertainty = 15;  // of the T_0 that follows D341 [K]
-constexpr double kColdLimit = 150;                     // Pa s, SAE J306
 constexpr double kMisfit = 3;                          // standard deviations worth a warning
 
 using Stated = LubricantParameters<std::optional<KnownParameter>>;
@@ -398,9 +397,10 @@ class Assembly {
       out_.grade.note +=
           "By the fresh oil: the limits at 100 C hold after the 20 h KRL shear test (CEC L-45).";
     }
-    out_.temperature_of_150_pascal_seconds = kColdLimit > fluid.vogel_viscosity_prefactor
-                                                 ? temperature_of_viscosity(fluid, kColdLimit)
-                                                 : fluid.vogel_reference_temperature;
+    out_.temperature_of_150_pascal_seconds =
+        kColdViscosityLimit > fluid.vogel_viscosity_prefactor
+            ? temperature_of_viscosity(fluid, kColdViscosityLimit)
+            : fluid.vogel_reference_temperature;
     out_.expected_low_temperature_grade = low_temperature_grade_of(
         out_.temperature_of_150_pascal_seconds, for_grade.value_or(out_.kinematic_viscosity_100));
   }

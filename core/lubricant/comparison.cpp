@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/celsius.h"
 #include "core/lubricant/viscosity.h"
 #include "core/lubricant/viscosity_index.h"
 #include "core/lubricant/viscosity_temperature.h"
@@ -10,11 +11,11 @@
 namespace tribodyn {
 
 LubricantFigures lubricant_figures(const Lubricant& lubricant, const ModelOptions& options) {
-  constexpr double kForty = 313.15, kSeventy = 343.15, kHundred = 373.15;
+  constexpr double kSeventyCelsius = kZeroCelsius + 70;
   constexpr double kGigapascal = 1e9;
   LubricantFigures figures;
-  figures.kinematic_viscosity_40 = kinematic_viscosity(lubricant, kForty);
-  figures.kinematic_viscosity_100 = kinematic_viscosity(lubricant, kHundred);
+  figures.kinematic_viscosity_40 = kinematic_viscosity(lubricant, kFortyCelsius);
+  figures.kinematic_viscosity_100 = kinematic_viscosity(lubricant, kHundredCelsius);
   try {
     figures.viscosity_index = viscosity_index(1e6 * figures.kinematic_viscosity_40,
                                               1e6 * figures.kinematic_viscosity_100);
@@ -30,7 +31,7 @@ LubricantFigures lubricant_figures(const Lubricant& lubricant, const ModelOption
       houpert ? index_from_houpert(where_measured, lubricant.pressure_viscosity_coefficient)
               : index_from_reciprocal_asymptotic(where_measured,
                                                  lubricant.pressure_viscosity_coefficient);
-  for (const double temperature : {kForty, kSeventy, kHundred}) {
+  for (const double temperature : {kFortyCelsius, kSeventyCelsius, kHundredCelsius}) {
     if (temperature <= lubricant.vogel_reference_temperature) continue;
     const double log_eta = log_ambient_viscosity(lubricant, temperature);
     const double here = factor(temperature);

@@ -2,13 +2,12 @@
 
 #include <cmath>
 
+#include "core/celsius.h"
 #include "core/number_text.h"
 
 namespace tribodyn {
 namespace {
 
-constexpr double kZeroCelsius = 273.15;
-constexpr double kColdLimit = 150;              // Pa s
 constexpr double kTemperatureTolerance = 0.05;  // K: conversions from Celsius
 constexpr double kRounding = 1e-12;             // relative: conversions from mm2/s
 
@@ -37,10 +36,12 @@ Verdict verdict(std::span<const ViscosityPoint> points, double temperature) {
   Verdict result = Verdict::kUnproven;
   for (const ViscosityPoint& point : points) {
     if (!(point.viscosity > 0) || !std::isfinite(point.temperature)) continue;
-    if (point.viscosity > kColdLimit && point.temperature >= temperature - kTemperatureTolerance) {
+    if (point.viscosity > kColdViscosityLimit &&
+        point.temperature >= temperature - kTemperatureTolerance) {
       return Verdict::kMissed;
     }
-    if (point.viscosity <= kColdLimit && point.temperature <= temperature + kTemperatureTolerance) {
+    if (point.viscosity <= kColdViscosityLimit &&
+        point.temperature <= temperature + kTemperatureTolerance) {
       result = Verdict::kMet;
     }
   }

@@ -8,6 +8,9 @@
 
 namespace tribodyn {
 
+/// The most that a gear oil may have at the temperature of its W grade [Pa s]: SAE J306.
+inline constexpr double kColdViscosityLimit = 150;
+
 /// Grade of a gear oil by SAE J306_201902.
 struct GearViscosityGrade {
   std::string designation;             ///< "75W-90", "90", "75W", or empty

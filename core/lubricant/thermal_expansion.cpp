@@ -4,14 +4,14 @@
 #include <cmath>
 #include <string>
 
+#include "core/celsius.h"
 #include "core/number_text.h"
 #include "core/refusal.h"
 
 namespace tribodyn {
 namespace {
 
-constexpr double kZeroCelsius = 273.15;
-constexpr double kFifteenCelsius = 288.15, kHundredCelsius = 373.15;
+constexpr double kFifteenCelsius = 288.15;
 constexpr double kDensityUncertainty = 0.5;  // of a measured density, ASTM D4052 [kg/m3], assumed
 
 void check_density(double density, const std::string& where) {

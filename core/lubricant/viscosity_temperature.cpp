@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/celsius.h"
 #include "core/lubricant/viscosity.h"
 #include "core/number_text.h"
 #include "core/refusal.h"
@@ -12,7 +13,6 @@ namespace tribodyn {
 namespace {
 
 constexpr double kLowestTemperature = 200, kHighestTemperature = 620;  // K
-constexpr double kZeroCelsius = 273.15;
 
 [[noreturn]] void refuse(const std::string& sentence) {
   throw Refusal("VISCOSITY_TEMPERATURE_LINE", sentence + " (ASTM D341)");

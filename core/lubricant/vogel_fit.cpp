@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/celsius.h"
 #include "core/number_text.h"
 #include "core/numerics/bracketed_root.h"
 #include "core/refusal.h"
@@ -13,7 +14,6 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kZeroCelsius = 273.15;
 constexpr double kLowestReferenceTemperature = 50;  // K
 constexpr double kGap = 20;                         // K, of T_0 below the coldest row
 constexpr double kDistinct = 0.5;                   // K

@@ -5,16 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/celsius.h"
 #include "core/refusal.h"
 
 namespace tribodyn {
-namespace {
-
-constexpr double kZeroCelsius = 273.15;
-constexpr double kFortyCelsius = 313.15, kHundredCelsius = 373.15;
-
-}  // namespace
-
 double walther_reference_temperature(const ViscosityTemperatureLine& line,
                                      const DensityLaw& density) {
   const auto log_eta = [&](double temperature) {

@@ -6,17 +6,17 @@
 #include <vector>
 
 #include "core/dynamics/linear_response.h"
+#include "core/numerics/square.h"
 
 namespace tribodyn {
 namespace {
 
-constexpr double kMargin = 2.5;        // on what shafts are told to change
-constexpr double kNearDoubling = 0.1;  // shafts move where periods double by some 2 % in speed
+constexpr double kMargin = 2.5;  // on what shafts are told to change
+constexpr double kNearDoublingOfOneDegree =
+    0.1;                               // shafts move where periods double by some 2 % in speed
 constexpr double kMostGrowth = 0.5;    // see InertialCorrection
 constexpr double kLeastForce = 0.2;    // smallest over mean mesh force, with shafts
 constexpr double kMostOfForce = 0.25;  // change of the mesh force over its mean
-
-double square(double v) { return v * v; }
 
 /// A motion at one mesh phase, and what follows from it.
 struct Place {
@@ -126,7 +126,7 @@ double one_degree_model_error(GearPairSystem& system, MeshGrids& grids, const Or
   const bool whole_steps = std::all_of(orbit.pieces.begin(), orbit.pieces.end(),
                                        [](const OrbitPiece& piece) { return piece.node >= 0; });
   if (orbit.contact_loss || orbit.period != 1 || !whole_steps) return kUnknown;
-  if (orbit.map->distance_from_doubling() < kNearDoubling) return kUnknown;
+  if (orbit.map->distance_from_doubling() < kNearDoublingOfOneDegree) return kUnknown;
   system.regime = orbit.regime;
   const std::vector<Place> alone = places_of(system, grid, orbit);
   const TwoRotorMotion motion = motion_of(system, alone);

@@ -7,6 +7,7 @@
 
 #include "core/dynamics/orbit_solver.h"
 #include "core/dynamics/steady_state.h"
+#include "core/numerics/square.h"
 #include "core/refusal.h"
 #include "core/study/grid_comparison.h"
 #include "core/study/step_sequence.h"
@@ -20,8 +21,6 @@ constexpr double kNearDoubling = 0.06;
 constexpr double kLittlePull = 0.2;     // of the mean force
 constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march
 constexpr int kMostFailures = 3;
-
-double square(double x) { return x * x; }
 
 /// Oscillations of the mesh on its mean stiffness in a mesh cycle.
 double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/dynamics/linear_response.h"
+#include "core/numerics/square.h"
 #include "core/study/step_sequence.h"
 
 namespace tribodyn {
@@ -18,8 +19,6 @@ constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
 constexpr double kMargin = 1.5;      // on what inertia is told to change
 constexpr double kMostGrowth = 0.5;  // see InertialCorrection
 constexpr double kLeastForce = 0.4;  // smallest over mean mesh force
-
-double square(double v) { return v * v; }
 
 /// Side of the flanks that carry.
 int side_of(const GearPairSystem& system) { return system.torques().pinion >= 0 ? 1 : -1; }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/celsius.h"
 #include "core/number_text.h"
 
 namespace tribodyn {
@@ -11,8 +12,8 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
   const auto warn = [&out](const char* code, const std::string& sentence) {
     out.push_back({code, sentence});
   };
-  const double inlet = scene.sump_temperature + scene.inlet_temperature_rise - 273.15;
-  const double hottest = r.contact_temperature.maximum - 273.15;
+  const double inlet = scene.sump_temperature + scene.inlet_temperature_rise - kZeroCelsius;
+  const double hottest = r.contact_temperature.maximum - kZeroCelsius;
   if (inlet < 10 || hottest > 140) {
     warn("VISCOSITY_TEMPERATURE", "film between " + number_text(inlet) + " and " +
                                       number_text(hottest) +

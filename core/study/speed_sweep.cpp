@@ -113,10 +113,10 @@ PointResult follow(PreparedScene& scene, double ascent_angle, PointOptions optio
 std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, PointOptions options,
                                     const PointResult& before, const PointResult& after) {
   // At a speed: enough for shooting to be sure of responses of one mesh cycle.
-  constexpr int kPatience = 400;  // [mesh cycles]
+  constexpr int kMostCycles = 400;  // [mesh cycles]
   constexpr int kMostMarched = 600;
   const bool only_marched = options.method == SteadyStateMethod::kMarch;
-  options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kPatience);
+  options.maximum_mesh_cycles = std::min(options.maximum_mesh_cycles, kMostCycles);
   options.tolerance = std::max(options.tolerance, 0.01 * kNear);
   options.history = {};
   options.probe_coexisting_response = false;

@@ -11,20 +11,21 @@
 namespace tribodyn::server {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using std::chrono::steady_clock;
 
 constexpr auto kLimit = std::chrono::seconds(1);
 constexpr std::size_t kLongestRequest = 8192;
 
 /// False when the socket is not ready for it in time.
-bool is_ready(int connection, short event, Clock::time_point end) {
-  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
+bool is_ready(int connection, short event, steady_clock::time_point end) {
+  const auto left =
+      std::chrono::duration_cast<std::chrono::milliseconds>(end - steady_clock::now());
   pollfd ready{connection, event, 0};
   return left.count() > 0 && poll(&ready, 1, static_cast<int>(left.count())) == 1;
 }
 
 /// The head of a request; what came until then when the client is late.
-std::string read_head(int connection, Clock::time_point end) {
+std::string read_head(int connection, steady_clock::time_point end) {
   std::string head;
   std::array<char, 1024> part{};
   while (head.find("\r\n\r\n") == std::string::npos && head.size() < kLongestRequest &&
@@ -36,7 +37,7 @@ std::string read_head(int connection, Clock::time_point end) {
   return head;
 }
 
-void write_all(int connection, std::string_view bytes, Clock::time_point end) {
+void write_all(int connection, std::string_view bytes, steady_clock::time_point end) {
   while (!bytes.empty() && is_ready(connection, POLLOUT, end)) {
     const ssize_t count = send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (count <= 0) return;
@@ -55,7 +56,7 @@ MetricsListener::MetricsListener(const ListenAddress& address, std::function<std
 }
 
 void MetricsListener::answer(int connection) const {
-  const Clock::time_point end = Clock::now() + kLimit;
+  const steady_clock::time_point end = steady_clock::now() + kLimit;
   const std::string head = read_head(connection, end);
   const bool is_head = head.starts_with("HEAD ");
   const bool is_known = head.starts_with(is_head ? "HEAD /metrics " : "GET /metrics ");

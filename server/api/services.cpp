@@ -27,8 +27,7 @@ namespace {
 
 using Context = grpc::CallbackServerContext;
 using Unary = grpc::ServerUnaryReactor;
-
-using Clock = std::chrono::system_clock;
+using std::chrono::system_clock;
 
 constexpr char kClientMetadata[] = "tribodyn-client";
 constexpr std::size_t kLongestClient = 100;
@@ -36,8 +35,8 @@ constexpr int kWorkers = 8;  // more only wait for the processors
 
 /// What its client and the server still allow of a call. A limit of nothing leaves nothing,
 /// whatever happens between two looks at the clock.
-Clock::duration time_left(const Context& context, std::chrono::milliseconds limit) {
-  return std::min<Clock::duration>(context.deadline() - Clock::now(), limit);
+system_clock::duration time_left(const Context& context, std::chrono::milliseconds limit) {
+  return std::min<system_clock::duration>(context.deadline() - system_clock::now(), limit);
 }
 
 /// The client that the call names, else its connection.

@@ -166,17 +166,16 @@ void set_result(Application& application, v1::SimulationView view, v1::Simulatio
 
 /// As the store understands them.
 std::vector<Restriction> restrictions(const std::string& filter, Violations& violations) {
-  using Comparison = Restriction::Comparison;
   std::vector<Restriction> out = parse_filter(filter, kSimulations, violations);
   for (Restriction& each : out) {
     const bool has_order = each.key == "create_time";
     const bool is_label = each.key.starts_with("labels.");
-    const bool is_equality =
-        each.comparison == Comparison::kEqual || each.comparison == Comparison::kNotEqual;
+    const bool is_equality = each.comparison == Restriction::Comparison::kEqual ||
+                             each.comparison == Restriction::Comparison::kNotEqual;
     if (each.key == "name") {
       violations.push_back({"filter", "a name is not filtered by; get the simulation"});
     } else if (!has_order && !is_equality &&
-               !(is_label && each.comparison == Comparison::kPresent)) {
+               !(is_label && each.comparison == Restriction::Comparison::kPresent)) {
       violations.push_back({"filter", each.key + ": legal: = or !=, of labels also :*"});
     }
     const std::string* word = std::get_if<std::string>(&each.value);

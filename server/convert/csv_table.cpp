@@ -69,9 +69,9 @@ std::optional<std::vector<std::string>> split(std::string_view line, char separa
 }
 
 /// Limits how much is said about one text.
-class Complaints {
+class CsvComplaints {
  public:
-  explicit Complaints(Violations& violations) : violations_(violations) {}
+  explicit CsvComplaints(Violations& violations) : violations_(violations) {}
   bool full() const { return count_ >= kMaximumCsvViolations; }
   void add(std::string place, std::string text) {
     if (count_++ < kMaximumCsvViolations) {
@@ -115,7 +115,7 @@ class TableReader {
   }
 
   CsvTable& table_;
-  Complaints complaints_;
+  CsvComplaints complaints_;
   char separator_ = '\0';
 };
 
@@ -196,7 +196,7 @@ const CsvColumn* find_column(const std::vector<CsvColumn>& columns, std::string_
 
 std::vector<double> numbers(const CsvTable& table, const CsvColumn& column, EmptyCells empty,
                             Violations& violations) {
-  Complaints complaints(violations);
+  CsvComplaints complaints(violations);
   std::vector<double> out;
   out.reserve(table.rows.size());
   for (const CsvTable::Row& row : table.rows) {

@@ -22,17 +22,17 @@ constexpr double kContinuityTolerance = 1e-6;  // of the value, or of a thousand
 constexpr double kPowerTolerance = 1e-6;       // of the speeds that make it up
 
 /// Adds violations up to a limit and counts the rest.
-class Complaints {
+class TableComplaints {
  public:
-  Complaints(const std::string& path, Violations& violations)
+  TableComplaints(const std::string& path, Violations& violations)
       : path_(path), violations_(violations) {}
-  ~Complaints() {
+  ~TableComplaints() {
     if (count_ <= kMaximumTableViolations) return;
     violations_.push_back(
         {path_, fmt::format("{} more violations", count_ - kMaximumTableViolations)});
   }
-  Complaints(const Complaints&) = delete;
-  Complaints& operator=(const Complaints&) = delete;
+  TableComplaints(const TableComplaints&) = delete;
+  TableComplaints& operator=(const TableComplaints&) = delete;
 
   bool any() const { return count_ > 0; }
   /// `place` and `text` are made only when they are kept.
@@ -80,7 +80,8 @@ bool check_sizes(const v1::GearSet& set, const std::string& path, Violations& vi
   return violations.size() == before;
 }
 
-void check_numbers(const v1::GearSet& set, const LocateSample& locate, Complaints& complaints) {
+void check_numbers(const v1::GearSet& set, const LocateSample& locate,
+                   TableComplaints& complaints) {
   const auto& descriptor = *v1::FlankSlot::descriptor();
   for (int k = 0; k < kFlankPairs; ++k) {
     for (int i = 0; i < descriptor.field_count(); ++i) {
@@ -97,7 +98,7 @@ void check_numbers(const v1::GearSet& set, const LocateSample& locate, Complaint
   }
 }
 
-void check_shares(const v1::GearSet& set, const LocateSample& locate, Complaints& complaints) {
+void check_shares(const v1::GearSet& set, const LocateSample& locate, TableComplaints& complaints) {
   const int samples = set.flank_slots(0).load_share_size();
   for (int j = 0; j < samples; ++j) {
     double sum = 0;
@@ -112,7 +113,8 @@ void check_shares(const v1::GearSet& set, const LocateSample& locate, Complaints
   }
 }
 
-void check_continuity(const v1::GearSet& set, const LocateSample& locate, Complaints& complaints) {
+void check_continuity(const v1::GearSet& set, const LocateSample& locate,
+                      TableComplaints& complaints) {
   const auto& descriptor = *v1::FlankSlot::descriptor();
   for (int k = 0; k + 1 < kFlankPairs; ++k) {
     for (int i = 0; i < descriptor.field_count(); ++i) {
@@ -131,7 +133,7 @@ void check_continuity(const v1::GearSet& set, const LocateSample& locate, Compla
   }
 }
 
-void check_power(const v1::GearSet& set, const LocateSample& locate, Complaints& complaints) {
+void check_power(const v1::GearSet& set, const LocateSample& locate, TableComplaints& complaints) {
   const double ratio = static_cast<double>(set.pinion_teeth()) / set.gear_teeth();
   for (int k = 0; k < kFlankPairs; ++k) {
     const v1::FlankSlot& slot = set.flank_slots(k);
@@ -220,7 +222,7 @@ void check_shares_by_torque(const v1::GearSet& set, const std::string& path,
       continue;
     }
     v1::GearSet shares;  // the slots in the form that the checks want
-    Complaints complaints(here, violations);
+    TableComplaints complaints(here, violations);
     for (const auto& slot : entry.slots()) {
       *shares.add_flank_slots()->mutable_load_share() = slot.load_share();
     }
@@ -241,7 +243,7 @@ void check_shares_by_torque(const v1::GearSet& set, const std::string& path,
 void check_flank_slots(const v1::GearSet& gear_set, const LocateSample& locate,
                        const std::string& path, Violations& violations) {
   if (!check_sizes(gear_set, path, violations)) return;
-  Complaints complaints(path, violations);
+  TableComplaints complaints(path, violations);
   check_numbers(gear_set, locate, complaints);
   if (complaints.any()) return;
   check_shares(gear_set, locate, complaints);

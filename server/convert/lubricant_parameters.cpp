@@ -17,8 +17,6 @@ using google::protobuf::FieldDescriptor;
 using Stated = LubricantParameters<std::optional<KnownParameter>>;
 using Known = LubricantParameters<KnownParameter>;
 
-constexpr double kFortyCelsius = 40 + kZeroCelsius;
-constexpr double kHundredCelsius = 100 + kZeroCelsius;
 constexpr double kFifteenCelsius = 15 + kZeroCelsius;
 constexpr double kSquareMillimetres = 1e-6;
 constexpr double kMillipascals = 1e-3;

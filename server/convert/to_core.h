@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/celsius.h"
 #include "core/contact/flank_contact.h"
 #include "core/gear/gear_set.h"
 #include "core/lubricant/lubricant.h"
@@ -14,8 +15,6 @@
 #include "tribodyn/v1/vehicles.pb.h"
 
 namespace tribodyn::server {
-
-inline constexpr double kZeroCelsius = 273.15;  ///< [K]
 
 // Messages to core values, field by field. Nothing is checked here: see check_message.h.
 Lubricant to_core(const v1::Lubricant& message);

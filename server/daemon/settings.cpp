@@ -31,9 +31,9 @@ void add_commands(CLI::App& app, Settings& settings) {
       false);
 }
 
-void add_seconds(CLI::App& app, const std::string& flag, double& seconds, double most,
+void add_seconds(CLI::App& app, const std::string& flag, double& value, double most,
                  const std::string& description) {
-  app.add_option(flag, seconds, description)->check(CLI::Range(0.0, most))->capture_default_str();
+  app.add_option(flag, value, description)->check(CLI::Range(0.0, most))->capture_default_str();
 }
 
 void add_flags(CLI::App& app, Settings& settings) {

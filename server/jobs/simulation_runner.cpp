@@ -17,7 +17,7 @@ using std::chrono::steady_clock;
 
 constexpr auto kProgressInterval = std::chrono::milliseconds(250);
 constexpr double kLeastFraction = 0.01;  // below it nothing can be said of the time that is left
-constexpr auto kLookAgain = std::chrono::milliseconds(1);
+constexpr auto kBetweenLooks = std::chrono::milliseconds(1);
 constexpr auto kFirstPause = std::chrono::milliseconds(100);
 constexpr auto kLongestPause = std::chrono::milliseconds(30'000);
 
@@ -176,7 +176,7 @@ Solved SimulationRunner::solve_timed(const SimulationInputs& inputs,
 /// Equal inputs are computed once: a result that is being written down is waited for.
 void SimulationRunner::wait_until_written(const ResultKey& key, const StopSignal& stop) const {
   while (unwritten_.contains(key.input_hash)) {
-    if (!stop.wait_for(kLookAgain)) throw Cancelled();
+    if (!stop.wait_for(kBetweenLooks)) throw Cancelled();
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 using Comparison = Restriction::Comparison;
 
-constexpr int kFew = 500;  ///< so many rows are sorted in no time
+constexpr int kFewRows = 500;  ///< so many rows are sorted in no time
 
 /// SQL with the values for its question marks, in their order.
 struct Clause {
@@ -81,11 +81,11 @@ bool has_index(const Restriction& restriction) {
          restriction.comparison != Comparison::kContains;
 }
 
-/// How many rows a restriction selects; kFew stands for more.
+/// How many rows a restriction selects; kFewRows stands for more.
 int count_up_to_few(Connection& db, const std::string& collection, const Restriction& restriction) {
   const Clause rows = selected(collection, restriction);
   SQLite::Statement query(db, "SELECT count(*) FROM (SELECT 1 FROM properties d WHERE" + rows.sql +
-                                  " LIMIT " + std::to_string(kFew) + ")");
+                                  " LIMIT " + std::to_string(kFewRows) + ")");
   bind_all(query, rows.values);
   query.executeStep();
   return query.getColumn(0).getInt();
@@ -94,7 +94,7 @@ int count_up_to_few(Connection& db, const std::string& collection, const Restric
 /// The restriction that selects the fewest rows if those are few, else null.
 const Restriction* most_selective(Connection& db, const ResourceQuery& query) {
   const Restriction* best = nullptr;
-  int fewest = kFew;
+  int fewest = kFewRows;
   for (const Restriction& each : query.restrictions) {
     if (!has_index(each)) continue;
     const int count = count_up_to_few(db, query.collection, each);

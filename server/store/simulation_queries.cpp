@@ -13,7 +13,7 @@ namespace {
 
 using Comparison = Restriction::Comparison;
 
-constexpr int kFew = 1000;
+constexpr int kFewLabels = 1000;
 constexpr std::string_view kLabels = "labels.";
 
 /// A condition of a statement and what its question marks stand for.
@@ -45,9 +45,9 @@ bool is_rare(Connection& db, const std::string& where, const std::vector<Propert
       db, "SELECT count(*) FROM (SELECT 1 FROM simulation_labels WHERE " + where + " LIMIT ?)");
   int index = 0;
   for (const PropertyValue& value : values) bind_value(count, ++index, value);
-  count.bind(++index, kFew);
+  count.bind(++index, kFewLabels);
   count.executeStep();
-  return count.getColumn(0).getInt() < kFew;
+  return count.getColumn(0).getInt() < kFewLabels;
 }
 
 Condition label_condition(Connection& db, const Restriction& restriction) {

@@ -13,7 +13,7 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience(300);
+constexpr std::chrono::milliseconds kCompletionTimeout(300);
 constexpr int kMostNames = 1000;
 constexpr char kFiles[] = "\\file";
 
@@ -67,7 +67,7 @@ std::vector<std::string> names_of(const std::string& collection, const std::stri
                                   const CommonOptions& options) {
   std::vector<std::string> names;
   try {
-    Connection connection(server_address(options.server), kPatience);
+    Connection connection(server_address(options.server), kCompletionTimeout);
     if (collection == "simulations") {
       for (const auto& simulation : connection.list_simulations({.limit = 50}).resources) {
         names.push_back(resource_id(simulation.name()));

@@ -13,7 +13,7 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience(500);
+constexpr std::chrono::milliseconds kSchemaTimeout(500);
 
 /// " Legal: 0.1 to 1000 1/GPa (eq 33, alpha*)." as the server's table has it; empty when unknown.
 std::string legal_range(const Flag& flag, const v1::Schema* schema) {
@@ -114,7 +114,7 @@ std::optional<v1::Schema> schema_for_help(const Command& command, const CommonOp
                                   [](const Flag& flag) { return !flag.constraint_field.empty(); });
   if (!needed) return std::nullopt;
   try {
-    return Connection(server_address(options.server), kPatience).schema();
+    return Connection(server_address(options.server), kSchemaTimeout).schema();
   } catch (const ServiceError&) {
     return std::nullopt;  // help must not depend on a server
   }

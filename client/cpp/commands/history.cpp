@@ -14,8 +14,6 @@ namespace tribodyn::client {
 namespace {
 
 constexpr int kPlottedPoints = 4000;
-constexpr char kTimeColumn[] = "time_seconds";
-
 struct HistoryFlags {
   OperatingPointFlags point;
   Scenario scenario;

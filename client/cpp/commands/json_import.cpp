@@ -15,11 +15,6 @@ namespace {
 
 using google::protobuf::Message;
 
-void set_text(Message& resource, const char* field, const std::string& text) {
-  resource.GetReflection()->SetString(&resource, resource.GetDescriptor()->FindFieldByName(field),
-                                      text);
-}
-
 std::string without_revision(const std::string& name) { return name.substr(0, name.find('@')); }
 
 std::string id_of(const FileResource& from, const std::string& given) {

@@ -23,11 +23,6 @@ struct WriteFlags {
   bool allow_missing = false;
 };
 
-void set_text(Message& resource, const char* field, const std::string& text) {
-  resource.GetReflection()->SetString(&resource, resource.GetDescriptor()->FindFieldByName(field),
-                                      text);
-}
-
 /// The one resource of a file.
 ResourcePointer read_one(const ResourceKind& kind, const std::string& path) {
   auto resources = read_resources(read_file(path), path, &kind);

@@ -8,7 +8,7 @@ namespace tribodyn::client {
 namespace {
 
 constexpr auto kBetweenReads = std::chrono::milliseconds(250);
-constexpr int kRetries = 20;  // about 40 s in all: long enough for a server that restarts
+constexpr int kReadRetries = 20;  // about 40 s in all: long enough for a server that restarts
 
 /// Puts chunks of columns together to rows.
 class RowJoiner {
@@ -41,7 +41,7 @@ void Connection::stream_history(const std::string& name, const HistoryOptions& o
   std::optional<v1::HistorySchema> schema;
   std::int64_t done = 0;  // rows that were handed over
   Backoff backoff;
-  for (int tries_left = kRetries;;) {
+  for (int tries_left = kReadRetries;;) {
     // An overview is cut otherwise from another row on: it begins again, and skips.
     const bool is_overview = schema && schema->rows_per_pair() > 0;
     const std::int64_t skipped = is_overview ? 0 : done;
@@ -65,7 +65,7 @@ void Connection::stream_history(const std::string& name, const HistoryOptions& o
       if (rows == nullptr || rows->first_row < done) continue;
       on_rows(*rows);
       done = rows->first_row + static_cast<std::int64_t>(rows->columns.front().size());
-      tries_left = kRetries;
+      tries_left = kReadRetries;
       backoff.reset();
     }
     const grpc::Status status = reader->Finish();

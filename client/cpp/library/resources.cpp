@@ -5,8 +5,6 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr int kLargestPage = 1000;
-
 /// What the calls of one kind of resource are made of.
 template <class Resource>
 struct Methods;

@@ -21,6 +21,8 @@
 
 namespace tribodyn::client {
 
+inline constexpr int kLargestPage = 1000;  ///< entries that the server lists at once, at most
+
 /// The channel and its stubs.
 struct Connection::Services {
   std::string address;

@@ -12,9 +12,8 @@ using std::chrono::milliseconds;
 
 constexpr auto kOneWatch = std::chrono::seconds(60);
 constexpr milliseconds kBetweenWatches(250);
-constexpr int kRetries =
+constexpr int kWatchRetries =
     20;  // about 40 s in all: long enough for a server that drains and restarts
-constexpr int kLargestPage = 1000;
 
 /// False when `stop` was requested meanwhile.
 bool pause(milliseconds time, const std::stop_token& stop) {
@@ -97,7 +96,7 @@ v1::Simulation Connection::wait_for_end(
   request.set_name(name);
   bool ended = false;
   Backoff backoff;
-  for (int tries_left = kRetries; !ended && !stop.stop_requested();) {
+  for (int tries_left = kWatchRetries; !ended && !stop.stop_requested();) {
     grpc::ClientContext context;
     // A watch that nobody ends is taken up again: so a connection that died silently is found.
     context.set_deadline(std::chrono::system_clock::now() + kOneWatch);
@@ -105,7 +104,7 @@ v1::Simulation Connection::wait_for_end(
     const auto reader = services_->simulations->WatchSimulation(&context, request);
     v1::SimulationEvent event;
     while (reader->Read(&event)) {
-      tries_left = kRetries;
+      tries_left = kWatchRetries;
       backoff.reset();
       ended = has_ended(event.state());
       request.set_after_sequence(event.sequence());

@@ -7,15 +7,15 @@
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
 
-constexpr double kWidth = 960;
+constexpr double kCurveWidth = 960;
 constexpr double kHeight = 860;
-constexpr double kLeft = 70;
-constexpr double kKelvinOfZeroCelsius = 273.15;
-constexpr char kCelsius[] = "\xC2\xB0\x43";
+constexpr double kCurveLeft = 70;
+constexpr char kDegreesCelsius[] = "\xC2\xB0\x43";
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLongestLabel = 22;
 constexpr int kLongestNote = 30;
@@ -66,7 +66,7 @@ std::pair<std::string, std::string> label_and_note(
 Panel inefficiency_panel(const std::vector<v1::Simulation>& simulations,
                          const std::map<std::string, std::string>& titles) {
   Panel panel;
-  panel.corner = {kLeft, 118};
+  panel.corner = {kCurveLeft, 118};
   panel.width = 690;
   panel.height = 350;
   panel.title = "Mesh inefficiency, % of input power";
@@ -112,7 +112,7 @@ Panel small_panel(const std::vector<v1::Simulation>& simulations, Point corner,
 void draw_key(bool has_bands, Svg& svg) {
   const double y = 72;
   const TextStyle style{12.5, "start", "#444", false, 0};
-  double x = kLeft;
+  double x = kCurveLeft;
   const auto word = [&](const char* text) {
     svg.text({x, y + 4}, text, style);
     x += text_width(text, style.size) + 26;
@@ -135,7 +135,7 @@ void draw_key(bool has_bands, Svg& svg) {
 std::string caption(const std::vector<v1::Simulation>& simulations) {
   if (simulations.empty()) return "";
   const v1::Simulation& first = simulations.front();
-  std::string text = inputs_text(first, kCelsius);
+  std::string text = inputs_text(first, kDegreesCelsius);
   text[0] = 'G';
   text += first.inefficiency_curve().direction() == v1::DOWN ? "; down-sweep" : "; up-sweep";
   text += "; model " + model_options_text(first.model_options());
@@ -173,26 +173,27 @@ std::vector<std::pair<double, double>> contact_loss_bands(
 std::string curve_plot(const std::vector<v1::Simulation>& simulations,
                        const std::map<std::string, std::string>& titles) {
   const auto bands = contact_loss_bands(simulations);
-  Svg svg(kWidth, kHeight);
-  svg.text({kLeft, 40}, "What each fluid costs in the gear mesh", {21, "start", "#111", true, 0});
+  Svg svg(kCurveWidth, kHeight);
+  svg.text({kCurveLeft, 40}, "What each fluid costs in the gear mesh",
+           {21, "start", "#111", true, 0});
   draw_key(!bands.empty(), svg);
   Panel panels[] = {
       inefficiency_panel(simulations, titles),
-      small_panel(simulations, {kLeft, 565}, "Mesh loss, W",
+      small_panel(simulations, {kCurveLeft, 565}, "Mesh loss, W",
                   [](const v1::PointResult& result) { return result.mesh_loss_power_watts(); }),
-      small_panel(simulations, {kLeft + 390 + 75, 565},
-                  std::string("Hottest contact over the mesh cycle, ") + kCelsius,
+      small_panel(simulations, {kCurveLeft + 390 + 75, 565},
+                  std::string("Hottest contact over the mesh cycle, ") + kDegreesCelsius,
                   [](const v1::PointResult& result) {
-                    return result.contact_temperature_kelvin().maximum() - kKelvinOfZeroCelsius;
+                    return result.contact_temperature_kelvin().maximum() - kZeroCelsius;
                   })};
   panels[1].starts_at_zero = true;
   for (Panel& panel : panels) {
     panel.bands = bands;
     draw_panel(panel, svg);
   }
-  svg.text({kLeft, kHeight - 30}, caption(simulations), {11.5, "start", "#555", false, 0});
+  svg.text({kCurveLeft, kHeight - 30}, caption(simulations), {11.5, "start", "#555", false, 0});
   svg.text(
-      {kLeft, kHeight - 13},
+      {kCurveLeft, kHeight - 13},
       std::string("Mesh (conjunctional) loss only: bearings, churning and seals are not in it.") +
           (has_branch_end(simulations)
                ? " Lines break where the branch that they follow ends: the response jumps."

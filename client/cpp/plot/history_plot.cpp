@@ -14,8 +14,8 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr double kWidth = 960;
-constexpr double kLeft = 80;
+constexpr double kHistoryWidth = 960;
+constexpr double kHistoryLeft = 80;
 constexpr double kPanelHeight = 130;
 constexpr double kPanelPitch = 180;
 constexpr double kTop = 100;
@@ -40,8 +40,6 @@ constexpr UnitSuffix kUnits[] = {
     {"_pascals", "GPa", 1e-9},
     {"_percent", "%", 1},
 };
-
-constexpr char kTimeColumn[] = "time_seconds";
 
 bool is_abscissa(const std::string& name) {
   return name == kTimeColumn || name.rfind("mesh_phase", 0) == 0;
@@ -117,16 +115,18 @@ std::string history_plot(const v1::Simulation& simulation, const v1::History& hi
   const auto groups = grouped(history);
   const auto [x_title, x] = abscissa(history);
   const double height = kTop + kPanelPitch * static_cast<double>(groups.size()) + 20;
-  Svg svg(kWidth, height);
-  svg.text({kLeft, 38}, "Steady state of " + simulation.lubricant() + ": " + study_text(simulation),
+  Svg svg(kHistoryWidth, height);
+  svg.text({kHistoryLeft, 38},
+           "Steady state of " + simulation.lubricant() + ": " + study_text(simulation),
            {19, "start", "#111", true, 0});
-  svg.text({kLeft, 60}, inputs_text(simulation, "\xC2\xB0\x43"), {12, "start", "#555", false, 0});
+  svg.text({kHistoryLeft, 60}, inputs_text(simulation, "\xC2\xB0\x43"),
+           {12, "start", "#555", false, 0});
   double top = kTop;
   for (const auto& [quantity, columns] : groups) {
     const ColumnTitle title = column_title(quantity);
     Panel panel;
-    panel.corner = {kLeft, top};
-    panel.width = kWidth - kLeft - 90;
+    panel.corner = {kHistoryLeft, top};
+    panel.width = kHistoryWidth - kHistoryLeft - 90;
     panel.height = kPanelHeight;
     panel.title = title.title;
     panel.shows_x_numbers = true;
@@ -146,7 +146,7 @@ std::string history_plot(const v1::Simulation& simulation, const v1::History& hi
   }
   const std::string caption = "Model " + model_options_text(simulation.model_options()) + " (" +
                               simulation.result().model_version() + ").";
-  svg.text({kLeft, height - 14}, caption, {11.5, "start", "#555", false, 0});
+  svg.text({kHistoryLeft, height - 14}, caption, {11.5, "start", "#555", false, 0});
   return svg.finish();
 }
 

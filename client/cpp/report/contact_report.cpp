@@ -7,6 +7,7 @@
 
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
@@ -22,7 +23,6 @@ struct Quantity {
   const char* equation;
 };
 
-constexpr double kCelsius = -273.15;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
 constexpr std::array kQuantities = {
@@ -49,7 +49,8 @@ constexpr std::array kQuantities = {
              "12"},
     Quantity{"film_ratio", "film ratio", "lambda_s", "", 1, 0, ""},
     Quantity{"shear_rate_per_second", "shear rate", "gamma_dot", "1e6/s", 1e-6, 0, "18"},
-    Quantity{"contact_temperature_kelvin", "contact temperature", "T_c", "C", 1, kCelsius, "38"},
+    Quantity{"contact_temperature_kelvin", "contact temperature", "T_c", "C", 1, -kZeroCelsius,
+             "38"},
     Quantity{"flash_temperature_rise_kelvin", "flash temperature rise", "dT_f", "K", 1, 0, "39"},
     Quantity{"oil_temperature_rise_kelvin", "oil temperature rise", "dT_oil", "K", 1, 0, "39"},
     Quantity{"pinion_active_length_metres", "active length, pinion", "l_p", "um", 1e6, 0, "36"},

@@ -10,11 +10,10 @@
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
-
-constexpr double kKelvinOfZeroCelsius = 273.15;
 
 Table curve_table(const v1::Simulation& simulation) {
   Table table({{"speed", "km/h"},
@@ -48,8 +47,8 @@ Table curve_table(const v1::Simulation& simulation) {
          precision.estimated(at.pinion_torque_newton_metres(), 2),
          precision.other(1e6 * at.central_film_thickness_metres().mean(), 3),
          precision.other(at.film_ratio().minimum(), 2), precision.other(at.film_ratio().mean(), 2),
-         precision.other(at.contact_temperature_kelvin().mean() - kKelvinOfZeroCelsius, 1),
-         precision.other(at.contact_temperature_kelvin().maximum() - kKelvinOfZeroCelsius, 1),
+         precision.other(at.contact_temperature_kelvin().mean() - kZeroCelsius, 1),
+         precision.other(at.contact_temperature_kelvin().maximum() - kZeroCelsius, 1),
          at.contact_loss() ? "yes" : "no"});
   }
   return table;

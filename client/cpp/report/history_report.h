@@ -6,6 +6,8 @@
 
 namespace tribodyn::client {
 
+inline constexpr char kTimeColumn[] = "time_seconds";  ///< a history's column
+
 /// Whether a zero of this column only says that the flank carries no load, so that nothing is to be
 /// drawn or averaged: the film, temperature, ... of a flank slot, but not its forces.
 bool zero_means_no_contact(const std::string& column);

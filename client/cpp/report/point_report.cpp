@@ -8,11 +8,10 @@
 #include "client/cpp/report/precision.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
-
-constexpr double kKelvinOfZeroCelsius = 273.15;
 
 void add_heading(const v1::Simulation& simulation, Sheet& sheet) {
   const double seconds = run_seconds(simulation);
@@ -102,7 +101,7 @@ std::string cycle_table(const v1::PointResult& result, const Precision& precisio
   };
   add("central film thickness", "um", result.central_film_thickness_metres(), 1e6, 0, 4);
   add("film ratio lambda", "", result.film_ratio(), 1, 0, 3);
-  add("contact temperature", "C", result.contact_temperature_kelvin(), 1, -kKelvinOfZeroCelsius, 2);
+  add("contact temperature", "C", result.contact_temperature_kelvin(), 1, -kZeroCelsius, 2);
   add("maximum pressure", "GPa", result.maximum_pressure_pascals(), 1e-9, 0, 4);
   add("shear rate", "1e6/s", result.shear_rate_per_second(), 1e-6, 0, 3);
   const v1::Extremes& error = result.dynamic_transmission_error_metres();

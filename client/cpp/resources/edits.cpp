@@ -90,7 +90,7 @@ struct Leaf {
   }
 };
 
-bool is_number(const FieldDescriptor& field) {
+bool is_single_number(const FieldDescriptor& field) {
   return !field.is_repeated() && (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ||
                                   field.cpp_type() == FieldDescriptor::CPPTYPE_INT32);
 }
@@ -234,7 +234,7 @@ std::vector<const FieldDescriptor*> numbers_of(const google::protobuf::Descripto
   std::vector<const FieldDescriptor*> numbers;
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor* field = type.field(i);
-    if (is_number(*field) && !is_output_only(*field)) numbers.push_back(field);
+    if (is_single_number(*field) && !is_output_only(*field)) numbers.push_back(field);
   }
   return numbers;
 }
@@ -344,7 +344,7 @@ void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits&
         resource.GetReflection()->ClearField(&resource, field);
         drop_provenance(resource, field->name());
       });
-      if (is_number(*field)) edits.touch("provenance");
+      if (is_single_number(*field)) edits.touch("provenance");
     }
   };
   Flag& label = flags.raw("--remove-label", "KEY", "Take a label away; repeatable.");

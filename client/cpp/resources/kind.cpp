@@ -149,6 +149,11 @@ std::string text_field(const Message& resource, const std::string& field) {
   return descriptor == nullptr ? "" : resource.GetReflection()->GetString(resource, descriptor);
 }
 
+void set_text(Message& resource, const char* field, const std::string& text) {
+  resource.GetReflection()->SetString(&resource, resource.GetDescriptor()->FindFieldByName(field),
+                                      text);
+}
+
 bool is_deleted(const Message& resource) {
   return resource.GetReflection()->HasField(
       resource, resource.GetDescriptor()->FindFieldByName("delete_time"));

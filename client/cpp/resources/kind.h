@@ -69,6 +69,9 @@ const ResourceKind& kind_of(const google::protobuf::Descriptor& type);
 /// A text field of a resource, e.g. "name"; empty when it has none of that name.
 std::string text_field(const google::protobuf::Message& resource, const std::string& field);
 
+/// Sets a text field that the resource must have.
+void set_text(google::protobuf::Message& resource, const char* field, const std::string& text);
+
 /// Whether it was deleted, and not undeleted.
 bool is_deleted(const google::protobuf::Message& resource);
 

@@ -10,8 +10,6 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr double kKelvinOfZeroCelsius = 273.15;
-
 /// The words that a field's name ends in, and the symbol they stand for.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 37> kUnitWords = {{
     {"per_pascal", "1/Pa"},
@@ -304,9 +302,9 @@ std::optional<double> read_temperature(std::string_view number, std::string_view
     value = (*value - 32) / 1.8;
   } else if (!is_celsius(given)) {
     if (plain_signs(given) != "K") return std::nullopt;
-    return is_celsius(unit) ? *value - kKelvinOfZeroCelsius : *value;
+    return is_celsius(unit) ? *value - kZeroCelsius : *value;
   }
-  return is_celsius(unit) ? *value : *value + kKelvinOfZeroCelsius;
+  return is_celsius(unit) ? *value : *value + kZeroCelsius;
 }
 
 std::pair<std::string_view, std::string_view> split_field(std::string_view field) {
@@ -396,7 +394,7 @@ std::string trade_unit_of_field(std::string_view field) {
 
 double in_trade_unit(std::string_view field, double value) {
   const std::string unit = trade_unit_of_field(field);
-  if (unit == "C" && unit_of_field(field) == "K") return value - kKelvinOfZeroCelsius;
+  if (unit == "C" && unit_of_field(field) == "K") return value - kZeroCelsius;
   return difference_in_trade_unit(field, value);
 }
 

@@ -6,6 +6,8 @@
 
 namespace tribodyn::client {
 
+inline constexpr double kZeroCelsius = 273.15;  ///< 0 degrees Celsius [K]
+
 /// The symbol of the unit that a field's name ends in: "W/(m K)" of
 /// "thermal_conductivity_watts_per_metre_kelvin"; empty for a pure number or a text.
 std::string unit_of_field(std::string_view field);
