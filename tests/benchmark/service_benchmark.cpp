@@ -32,6 +32,7 @@
 #include "tests/service/raw_client.h"
 #include "tests/service/server_process.h"
 #include "tests/service/support.h"
+#include "tests/support/paths.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
 
 namespace tribodyn::server {
@@ -92,8 +93,7 @@ class Server {
 /// Another process that answers with nothing.
 class EmptyServer {
  public:
-  EmptyServer()
-      : pipe_(popen((std::string(EMPTY_SERVER_PATH) + " " + folder_.file("port")).c_str(), "w")) {
+  EmptyServer() : pipe_(popen((empty_server_program() + " " + folder_.file("port")).c_str(), "w")) {
     if (!eventually([&] { return std::filesystem::exists(folder_.file("port")); })) {
       throw std::runtime_error("the empty server does not start");
     }

@@ -1,5 +1,5 @@
 // A server under a steady mix of requests must not grow: resident memory, threads and descriptors.
-// usage: soak_test [SECONDS]      default: TRIBODYN_SOAK_SECONDS, else 180; the full mode is 3600
+// usage: soak_test [SECONDS]      default: TRIBODYN_SOAK_SECONDS, else 90; the full mode is 3600
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::duration;
 
 constexpr double kFullSeconds = 3600;
-constexpr double kLeastRequests = 50'000;
+constexpr double kLeastRequestsPerSecond = 300;
 constexpr auto kBetweenLooks = std::chrono::milliseconds(200);
 
 /// Between the least and the most that was seen.
@@ -126,7 +126,8 @@ int run(double length) {
   }
   const auto begin = Clock::now();
   const bool is_full = length >= kFullSeconds;
-  std::this_thread::sleep_for(duration<double>(is_full ? 600 : std::min(60.0, length / 3)));
+  const double warm_up = is_full ? 600 : std::min(60.0, length / 2), counted = length - warm_up;
+  std::this_thread::sleep_for(duration<double>(warm_up));
   const std::int64_t requests_before = requests;
   const double first = process_figures(id).resident_bytes;
   Range threads;
@@ -144,7 +145,7 @@ int run(double length) {
   const double growth = (last.resident_bytes - first) / 1e6;
   const std::vector<Measurement> figures = {
       {"soak_growth_of_resident_memory", growth, "MB", is_full ? 1.0 : 2.0},
-      {"soak_requests", served, "-", length >= 180 ? kLeastRequests : 1, false},
+      {"soak_requests", served, "-", kLeastRequestsPerSecond * counted, false},
       {"soak_range_of_threads", threads.width(), "-", 0},
       {"soak_range_of_descriptors", descriptors.width(), "-", 0},
       {"soak_length", length, "s", {}}};
@@ -159,5 +160,5 @@ int run(double length) {
 int main(int argc, char** argv) {
   const char* set = std::getenv("TRIBODYN_SOAK_SECONDS");
   const char* text = argc > 1 ? argv[1] : set;
-  return tribodyn::server::run(text == nullptr ? 180 : std::atof(text));
+  return tribodyn::server::run(text == nullptr ? 90 : std::atof(text));
 }

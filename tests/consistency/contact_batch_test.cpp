@@ -17,26 +17,29 @@
 namespace tribodyn {
 namespace {
 
-double difference(double a, double b) {
+double batch_difference(double a, double b) {
   if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
   return std::abs(a - b) / std::max(std::abs(a), std::abs(b));
 }
 
 /// The greatest relative difference of all figures; shares of an area differ absolutely.
-double difference(const ContactSolution& a, const ContactSolution& b) {
+double batch_difference(const ContactSolution& a, const ContactSolution& b) {
   if (a.status != b.status || a.limiting_stress_at_centre != b.limiting_stress_at_centre) {
     return std::numeric_limits<double>::infinity();
   }
-  return std::max(
-      {difference(a.friction, b.friction), difference(a.viscous_friction, b.viscous_friction),
-       difference(a.boundary_friction, b.boundary_friction),
-       difference(a.contact_temperature, b.contact_temperature),
-       difference(a.central_film_thickness, b.central_film_thickness),
-       difference(a.film_ratio, b.film_ratio), difference(a.maximum_pressure, b.maximum_pressure),
-       difference(a.film_load, b.film_load), difference(a.asperity_load, b.asperity_load),
-       difference(a.sliding_speed, b.sliding_speed), difference(a.shear_rate, b.shear_rate),
-       difference(a.mean_shear_stress, b.mean_shear_stress),
-       std::abs(a.limiting_stress_area_share - b.limiting_stress_area_share)});
+  return std::max({batch_difference(a.friction, b.friction),
+                   batch_difference(a.viscous_friction, b.viscous_friction),
+                   batch_difference(a.boundary_friction, b.boundary_friction),
+                   batch_difference(a.contact_temperature, b.contact_temperature),
+                   batch_difference(a.central_film_thickness, b.central_film_thickness),
+                   batch_difference(a.film_ratio, b.film_ratio),
+                   batch_difference(a.maximum_pressure, b.maximum_pressure),
+                   batch_difference(a.film_load, b.film_load),
+                   batch_difference(a.asperity_load, b.asperity_load),
+                   batch_difference(a.sliding_speed, b.sliding_speed),
+                   batch_difference(a.shear_rate, b.shear_rate),
+                   batch_difference(a.mean_shear_stress, b.mean_shear_stress),
+                   std::abs(a.limiting_stress_area_share - b.limiting_stress_area_share)});
 }
 
 constexpr double kTolerance = 1e-10;
@@ -53,7 +56,7 @@ std::size_t expect_agreement(const ContactCase& c, const std::vector<ContactCond
     by_reference = arrays.solve(FlankContactBatch(model, set));
     for (std::size_t i = 0; i < conditions.size(); ++i) {
       const ContactSolution reference = model.solve(conditions[i]);
-      const double off = difference(arrays.solution(i), reference);
+      const double off = batch_difference(arrays.solution(i), reference);
       EXPECT_LE(off, kTolerance) << "contact " << i << ", "
                                  << contact_status_name(arrays.solution(i).status) << ", friction "
                                  << arrays.solution(i).friction << " N for " << reference.friction
@@ -128,7 +131,7 @@ std::vector<ContactConditions> mixed_conditions(Draw& draw, int count) {
 
 bool same_bits(const ContactSolution& a, const ContactSolution& b) {
   return std::bit_cast<std::uint64_t>(a.friction) == std::bit_cast<std::uint64_t>(b.friction) &&
-         a.status == b.status && difference(a, b) == 0;
+         a.status == b.status && batch_difference(a, b) == 0;
 }
 
 TEST(ContactBatch, SameBitsAloneAndInAnyCompany) {
@@ -376,7 +379,7 @@ TEST(ContactBatch, AnyStartLeadsToTheSameAnswer) {
       arrays.start_from_last_temperature(factor);
       arrays.solve(batch);
       for (std::size_t i = 0; i < arrays.size(); ++i) {
-        EXPECT_LE(difference(arrays.solution(i), cold[i]), kTolerance) << factor << " " << i;
+        EXPECT_LE(batch_difference(arrays.solution(i), cold[i]), kTolerance) << factor << " " << i;
       }
     }
   }

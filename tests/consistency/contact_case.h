@@ -8,8 +8,8 @@
 
 #include "core/contact/flank_contact.h"
 #include "core/refusal.h"
-#include "tests/consistency/run_length.h"
 #include "tests/support/reference_scene.h"
+#include "tests/support/run_length.h"
 
 namespace tribodyn {
 

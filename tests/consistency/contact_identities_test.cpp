@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "core/numerics/square.h"
 #include "tests/consistency/plain_contact.h"
 #include "yardstick_friction.h"
 
@@ -22,8 +23,6 @@ constexpr double kResidual = 1e-12;
 
 /// Residual of each equation by name.
 using Residuals = std::map<std::string, double>;
-
-double square(double v) { return v * v; }
 
 double asperity_function(double order, double film_ratio, const AsPublished& as_published) {
   if (!as_published.eq43_44_polynomials) return yardstick::AsperityIntegral(order, film_ratio);

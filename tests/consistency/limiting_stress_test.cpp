@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "tests/consistency/plain_contact.h"
-#include "tests/consistency/run_length.h"
+#include "tests/support/run_length.h"
 
 // Where the limiting stress vanishes, is constant, or meets the stress twice.
 namespace tribodyn {

@@ -20,12 +20,12 @@
 #include "core/study/operating_point.h"
 #include "core/study/quasi_static.h"
 #include "core/study/speed_sweep.h"
-#include "run_length.h"
 #include "tests/support/cruise.h"
 #include "tests/support/figure_error.h"
 #include "tests/support/random_place.h"
 #include "tests/support/realistic_contacts.h"
 #include "tests/support/reference_scene.h"
+#include "tests/support/run_length.h"
 
 namespace tribodyn {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "core/study/operating_point.h"
 #include "core/study/speed_sweep.h"
-#include "run_length.h"
 #include "tests/support/cruise.h"
 #include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"
+#include "tests/support/run_length.h"
 
 namespace tribodyn {
 namespace {
@@ -146,6 +146,7 @@ std::vector<double> branch_ends(const std::vector<double>& kilometers_per_hour,
 // There the single response hardly repels, and disturbances take thousands of cycles to grow.
 TEST(SteadyStates, RightBeyondADoublingTheLongResponseIsFoundByShooting) {
   for (const int fluid : {1, 2}) {
+    if (kShortRun && fluid != 1) continue;
     SCOPED_TRACE(fluid);
     const Scene fluid_scene = reference_scene(fluid);
     PreparedScene scene(fluid_scene);
@@ -173,6 +174,7 @@ TEST(SteadyStates, TheQuietBranchIsFollowedWhereItBarelyLosesContact) {
     PointOptions options;
     options.carried_state = carried_from(shot);
     shot = solve_operating_point(reference_scene(), cruise(speed), options);
+    if (kShortRun && speed != 71.36) continue;
     options.method = SteadyStateMethod::kMarch;
     const PointResult marched = solve_operating_point(reference_scene(), cruise(speed), options);
     for (const PointResult& r : {std::cref(shot), std::cref(marched)}) {
@@ -185,8 +187,9 @@ TEST(SteadyStates, TheQuietBranchIsFollowedWhereItBarelyLosesContact) {
   }
   const std::vector<double> speeds = {70.6, 70.9, 71.2, 71.5};
   const auto ends = branch_ends(speeds, SweepDirection::kUp);
-  const auto marched = branch_ends(speeds, SweepDirection::kUp, SteadyStateMethod::kMarch);
   ASSERT_EQ(ends.size(), 1u);
+  if (kShortRun) return;
+  const auto marched = branch_ends(speeds, SweepDirection::kUp, SteadyStateMethod::kMarch);
   ASSERT_EQ(marched.size(), 1u);
   EXPECT_NEAR(ends[0], marched[0], 0.082) << "each is located to 0.041 km/h";
 }

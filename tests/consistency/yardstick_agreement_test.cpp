@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/study/operating_point.h"
+#include "tests/support/paths.h"
 #include "tests/support/reference_scene.h"
 #include "tests/yardstick/yardstick_data.h"
 #include "tests/yardstick/yardstick_orbit.h"
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double kAgreement = 1e-6;
 
-struct Place {
+struct AgreementPlace {
   const char* name;
   double kilometers_per_hour;
   PointStart start = PointStart::kQuasiStatic;
@@ -19,10 +20,10 @@ struct Place {
   bool newtonian = false;
 };
 
-class YardstickAgreement : public testing::TestWithParam<Place> {};
+class YardstickAgreement : public testing::TestWithParam<AgreementPlace> {};
 
 TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
-  const Place& place = GetParam();
+  const AgreementPlace& place = GetParam();
   const double speed = place.kilometers_per_hour / 3.6;
   Scene scene = reference_scene();
   scene.options.isothermal = place.isothermal;
@@ -37,10 +38,8 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   const PointResult ours = solve_operating_point(scene, condition, options);
   ASSERT_TRUE(ours.settled);
 
-  const auto worked =
-      yardstick::ReadJsonFile(std::string(TRIBODYN_TEST_DATA) + "/worked_points.json");
-  const auto gear =
-      yardstick::ReadJsonFile(std::string(TRIBODYN_TEST_DATA) + "/reference_gear_set.json");
+  const auto worked = yardstick::ReadJsonFile(test_data_file("worked_points.json"));
+  const auto gear = yardstick::ReadJsonFile(test_data_file("reference_gear_set.json"));
   yardstick::FrictionOptions friction;
   friction.isothermal = place.isothermal;
   friction.newtonian = place.newtonian;
@@ -75,11 +74,13 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
 
 INSTANTIATE_TEST_SUITE_P(
     Speeds, YardstickAgreement,
-    testing::Values(Place{"v20", 20}, Place{"v37_5", 37.5}, Place{"v67_5_up", 67.5},
-                    Place{"v67_5_down", 67.5, PointStart::kLargeVibration}, Place{"v72_5", 72.5},
-                    Place{"v80", 80}, Place{"v100", 100}, Place{"v140", 140},
-                    Place{"v100_isothermal", 100, PointStart::kQuasiStatic, true},
-                    Place{"v100_newtonian", 100, PointStart::kQuasiStatic, false, true}),
+    testing::Values(AgreementPlace{"v20", 20}, AgreementPlace{"v37_5", 37.5},
+                    AgreementPlace{"v67_5_up", 67.5},
+                    AgreementPlace{"v67_5_down", 67.5, PointStart::kLargeVibration},
+                    AgreementPlace{"v72_5", 72.5}, AgreementPlace{"v80", 80},
+                    AgreementPlace{"v100", 100}, AgreementPlace{"v140", 140},
+                    AgreementPlace{"v100_isothermal", 100, PointStart::kQuasiStatic, true},
+                    AgreementPlace{"v100_newtonian", 100, PointStart::kQuasiStatic, false, true}),
     [](const auto& place) { return std::string(place.param.name); });
 
 }  // namespace

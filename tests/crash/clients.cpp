@@ -4,6 +4,8 @@
 #include <stop_token>
 #include <thread>
 
+#include "tests/support/run_length.h"
+
 namespace tribodyn::crash {
 namespace {
 
@@ -14,11 +16,7 @@ constexpr int kFavourites = 6;
 constexpr int kScenes = 400;
 // Marched, a point takes a tenth of a second, under sanitizers some: long enough to be met by a
 // crash.
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kMarchedOneIn = 8;
-#else
-constexpr int kMarchedOneIn = 2;
-#endif
+constexpr int kMarchedOneIn = kUnderSanitizer ? 8 : 2;
 constexpr int kFirstSubmissions = 8;  // of each client until the first crash
 
 SeenEvent seen(const v1::SimulationEvent& event) {

@@ -17,6 +17,7 @@
 #include "server/store/store.h"
 #include "tests/crash/faulty_vfs.h"
 #include "tests/service/support.h"
+#include "tests/support/run_length.h"
 #include "tribodyn/v1/results.pb.h"
 
 namespace tribodyn::crash {
@@ -216,13 +217,15 @@ class StorageFault : public testing::Test {
   }
 
   void fail_every(FaultyVfs::Operation operation, const std::string& name) {
+    // A session for each operation: under sanitizers minutes of them.
+    const int stride = kUnderSanitizer ? 4 : 1;
     for (const bool lasting : {false, true}) {
-      int n = 1;
+      int n = lasting ? 1 : stride;
       while (!HasFailure() &&
              survives([&] { vfs_.fail(operation, n, lasting); },
                       [&] { return vfs_.count(operation) >= n; },
                       name + " " + std::to_string(n) + (lasting ? " and all after it" : ""))) {
-        ++n;
+        n += stride;
       }
       RecordProperty(name + (lasting ? "_lasting" : "_once"), n - 1);
       EXPECT_GT(n, 5);

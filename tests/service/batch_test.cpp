@@ -20,19 +20,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// What a refusal says, "path: sentence" each.
-std::vector<std::string> complaints(const google::rpc::Status& status) {
-  std::vector<std::string> out;
-  for (const auto& any : status.details()) {
-    google::rpc::BadRequest bad;
-    if (!any.UnpackTo(&bad)) continue;
-    for (const auto& each : bad.field_violations()) {
-      out.push_back(each.field() + ": " + each.description());
-    }
-  }
-  return out;
-}
-
 v1::Lubricant fluid(const std::string& id) {
   v1::Lubricant out;
   out.set_name("lubricants/" + id);
@@ -104,7 +91,7 @@ TEST_F(BatchTest, AViolationInTheLastLeavesNothing) {
   const auto refused = batch_create_lubricants(app_, batch);
   ASSERT_FALSE(refused.ok());
   expect_nothing_written(refused.error(), google::rpc::INVALID_ARGUMENT);
-  EXPECT_THAT(complaints(refused.error()),
+  EXPECT_THAT(complaint_lines(refused.error()),
               ElementsAre(StartsWith("requests[299].lubricant.relaxation_time_seconds: "
                                      "relaxation_time_seconds = -1 s; legal: 0 to 10 s")));
 }
@@ -123,7 +110,7 @@ TEST_F(BatchTest, AllViolationsOfAllComeAtOnce) {
   const auto refused = batch_create_lubricants(app_, batch);
   ASSERT_FALSE(refused.ok());
   expect_nothing_written(refused.error(), google::rpc::INVALID_ARGUMENT);
-  EXPECT_THAT(complaints(refused.error()),
+  EXPECT_THAT(complaint_lines(refused.error()),
               ElementsAre(HasSubstr("requests[0].lubricant.name: lubricants/1 exists already"),
                           StartsWith("requests[1].lubricant.limiting_shear_stress_coefficient: "),
                           StartsWith("requests[1].lubricant.thermal_conductivity_"),
@@ -146,7 +133,7 @@ TEST_F(BatchTest, ANameThatIsTakenKeepsItsCode) {
   const auto taken = batch_create_lubricants(app_, creation({fluid("new"), gone, fluid("1")}));
   ASSERT_FALSE(taken.ok());
   expect_nothing_written(taken.error(), google::rpc::ALREADY_EXISTS);
-  EXPECT_THAT(complaints(taken.error()),
+  EXPECT_THAT(complaint_lines(taken.error()),
               ElementsAre(StartsWith("requests[1].lubricant.name: lubricants/gone exists and is"),
                           StartsWith("requests[2].lubricant.name: lubricants/1 exists already")));
   const auto deleted = batch_update_lubricants(app_, update({fluid("new"), gone}, true));
@@ -155,7 +142,7 @@ TEST_F(BatchTest, ANameThatIsTakenKeepsItsCode) {
   const auto missing = batch_update_lubricants(app_, update({fluid("1"), fluid("11")}));
   ASSERT_FALSE(missing.ok());
   expect_nothing_written(missing.error(), google::rpc::NOT_FOUND);
-  EXPECT_THAT(complaints(missing.error()), ElementsAre(HasSubstr("did you mean")));
+  EXPECT_THAT(complaint_lines(missing.error()), ElementsAre(HasSubstr("did you mean")));
 }
 
 TEST_F(BatchTest, OneMayDescendFromAnotherWhicheverComesFirst) {
@@ -172,7 +159,7 @@ TEST_F(BatchTest, OneMayDescendFromAnotherWhicheverComesFirst) {
   ring.set_derived_from("lubricants/grandchild");
   const auto refused = batch_update_lubricants(app_, update({parent, ring}, true));
   ASSERT_FALSE(refused.ok());
-  EXPECT_THAT(complaints(refused.error()),
+  EXPECT_THAT(complaint_lines(refused.error()),
               ElementsAre(HasSubstr("requests[0].lubricant.derived_from: lubricants/new itself "
                                     "descends from lubricants/parent"),
                           HasSubstr("requests[1].lubricant.derived_from: lubricants/grandchild "
@@ -199,7 +186,8 @@ TEST_F(BatchTest, AnUpdateRevisesAsASingleOneDoes) {
   const auto stale = batch_update_lubricants(app_, update({third, first, fluid("other")}, true));
   ASSERT_FALSE(stale.ok());
   EXPECT_EQ(stale.error().code(), google::rpc::ABORTED);
-  EXPECT_THAT(complaints(stale.error()), ElementsAre(HasSubstr("requests[1].lubricant.etag: ")));
+  EXPECT_THAT(complaint_lines(stale.error()),
+              ElementsAre(HasSubstr("requests[1].lubricant.etag: ")));
   EXPECT_EQ(get("1").revision(), 2);
   EXPECT_EQ(count(), before_ + 1);
 }
@@ -256,7 +244,7 @@ TEST_F(BatchTest, TheSizeIsLimitedAndAVeryLargeAnswerIsBrief) {
     const auto refused = batch_create_lubricants(app_, batch);
     ASSERT_FALSE(refused.ok());
     expect_nothing_written(refused.error(), google::rpc::INVALID_ARGUMENT);
-    EXPECT_THAT(complaints(refused.error()),
+    EXPECT_THAT(complaint_lines(refused.error()),
                 ElementsAre(StartsWith("requests: requests = " + std::to_string(size) +
                                        "; legal: 1 to 20000")));
   }
@@ -286,11 +274,11 @@ TEST_F(BatchTest, ThousandsOfViolationsEndInTime) {
   const auto orphans = batch_create_lubricants(app_, batch);
   ASSERT_FALSE(orphans.ok());
   EXPECT_EQ(orphans.error().code(), google::rpc::INVALID_ARGUMENT);
-  EXPECT_THAT(complaints(orphans.error()).back(), HasSubstr("more violations"));
+  EXPECT_THAT(complaint_lines(orphans.error()).back(), HasSubstr("more violations"));
   const auto unknown = batch_update_lubricants(app_, updates);
   ASSERT_FALSE(unknown.ok());
   EXPECT_EQ(unknown.error().code(), google::rpc::NOT_FOUND);
-  EXPECT_THAT(complaints(unknown.error()).back(), HasSubstr("more violations"));
+  EXPECT_THAT(complaint_lines(unknown.error()).back(), HasSubstr("more violations"));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
   EXPECT_EQ(count(), before_ + 2000);
 }
@@ -350,7 +338,7 @@ TEST_F(BatchTest, EveryKindGoesTheSameWay) {
   vehicle_updates.add_requests()->mutable_vehicle()->set_name("vehicles/vam");
   const auto unknown = batch_update_vehicles(app_, vehicle_updates);
   ASSERT_FALSE(unknown.ok());
-  EXPECT_THAT(complaints(unknown.error()),
+  EXPECT_THAT(complaint_lines(unknown.error()),
               ElementsAre(HasSubstr("did you mean \"vehicles/van\"?")));
 }
 

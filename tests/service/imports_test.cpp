@@ -22,18 +22,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string complaints(const google::rpc::Status& status) {
-  std::string out;
-  for (const auto& any : status.details()) {
-    google::rpc::BadRequest bad;
-    if (!any.UnpackTo(&bad)) continue;
-    for (const auto& each : bad.field_violations()) {
-      out += each.field() + ": " + each.description() + "\n";
-    }
-  }
-  return out;
-}
-
 TEST(Csv, ReadsWhatSpreadsheetsWrite) {
   Violations violations;
   const auto table = parse_csv("\xef\xbb\xbf# note\r\n\"a b\" ; c\r\n1;\"x;\"\"y\"\r\n\r\n2; z\r\n",

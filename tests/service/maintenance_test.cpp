@@ -12,6 +12,7 @@
 #include "server/store/schema.h"
 #include "server/store/seeds.h"
 #include "tests/service/support.h"
+#include "tests/support/paths.h"
 
 namespace tribodyn::server {
 namespace {
@@ -54,8 +55,7 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   const TemporaryFolder folder;
   const std::string file = folder.file("old.db");
   std::filesystem::copy_file(
-      std::string(TRIBODYN_TEST_DATA) + "/schemas/schema_" + std::to_string(GetParam()) + ".sqlite",
-      file);
+      test_data_file("schemas/schema_" + std::to_string(GetParam()) + ".sqlite"), file);
   std::filesystem::permissions(file, std::filesystem::perms::owner_all);
   EXPECT_THAT(check_database(file), IsEmpty());
   Store store(file);

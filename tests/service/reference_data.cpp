@@ -6,10 +6,12 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "tests/support/paths.h"
+
 namespace tribodyn::server {
 
 JsonValue load_reference(const std::string& name) {
-  std::ifstream file(TRIBODYN_TEST_DATA "/" + name);
+  std::ifstream file(test_data_file(name));
   std::stringstream stream;
   stream << file.rdbuf();
   std::string text = stream.str();

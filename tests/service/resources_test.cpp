@@ -27,19 +27,6 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// All that a BadRequest says.
-std::string complaints(const google::rpc::Status& status) {
-  std::string out;
-  for (const auto& any : status.details()) {
-    google::rpc::BadRequest bad;
-    if (!any.UnpackTo(&bad)) continue;
-    for (const auto& each : bad.field_violations()) {
-      out += each.field() + ": " + each.description() + "\n";
-    }
-  }
-  return out;
-}
-
 v1::Lubricant three_numbers() {
   v1::Lubricant out;
   auto* measured = out.mutable_measurements();

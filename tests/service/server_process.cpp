@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/support/paths.h"
+
 namespace tribodyn::server {
 
 ServerProcess::ServerProcess(const std::vector<std::string>& arguments, std::string log,
@@ -21,7 +23,7 @@ ServerProcess::ServerProcess(const std::vector<std::string>& arguments, std::str
   if (maximum_files > 0) {
     words = {"/bin/sh", "-c", "ulimit -n " + std::to_string(maximum_files) + "; exec \"$@\"", "sh"};
   }
-  words.emplace_back(TRIBODYND_PATH);
+  words.push_back(server_program());
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
@@ -36,7 +38,7 @@ ServerProcess::ServerProcess(const std::vector<std::string>& arguments, std::str
   const int failed =
       posix_spawn(&pid_, pointers.front(), &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw std::runtime_error("cannot start " TRIBODYND_PATH);
+  if (failed != 0) throw std::runtime_error("cannot start " + server_program());
 }
 
 ServerProcess::~ServerProcess() {

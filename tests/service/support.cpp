@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "core/refusal.h"
+#include "google/rpc/error_details.pb.h"
 #include "server/app/simulations.h"
 #include "server/store/seeds.h"
 
@@ -43,6 +44,24 @@ PointResult made_up_point(double vehicle_speed, const HistoryRequest& history) {
 }
 
 }  // namespace
+
+std::vector<std::string> complaint_lines(const google::rpc::Status& refusal) {
+  std::vector<std::string> out;
+  for (const auto& any : refusal.details()) {
+    google::rpc::BadRequest bad;
+    if (!any.UnpackTo(&bad)) continue;
+    for (const auto& each : bad.field_violations()) {
+      out.push_back(each.field() + ": " + each.description());
+    }
+  }
+  return out;
+}
+
+std::string complaints(const google::rpc::Status& refusal) {
+  std::string out;
+  for (const std::string& line : complaint_lines(refusal)) out += line + "\n";
+  return out;
+}
 
 TemporaryFolder::TemporaryFolder(Kind kind) {
   const std::filesystem::path memory = "/dev/shm";

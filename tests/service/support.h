@@ -6,7 +6,9 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "google/rpc/status.pb.h"
 #include "server/app/application.h"
 #include "server/convert/resource_names.h"
 #include "server/jobs/simulation_jobs.h"
@@ -44,6 +46,11 @@ Resource seed(const std::string& name) {
   resource.ParseFromString(seed_lookup().find({name, 0})->body);
   return resource;
 }
+
+/// The violations that a refusal lists, "path: sentence" each.
+std::vector<std::string> complaint_lines(const google::rpc::Status& refusal);
+/// The same as one text, a line each.
+std::string complaints(const google::rpc::Status& refusal);
 
 /// Acceptable requests, to be spoilt by tests.
 v1::EvaluateContactRequest contact_request();

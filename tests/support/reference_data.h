@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/support/paths.h"
+
 namespace tribodyn {
 
 /// Bare Infinity, -Infinity and NaN, which Python writes and JSON forbids, become null.
@@ -31,7 +33,7 @@ inline std::string without_python_numbers(const std::string& text) {
 
 /// A file of tests/data.
 inline nlohmann::json load_reference(const std::string& file) {
-  const std::string path = std::string(TRIBODYN_TEST_DATA) + "/" + file;
+  const std::string path = test_data_file(file);
   std::ifstream stream(path);
   if (!stream) throw std::runtime_error("cannot read " + path);
   std::ostringstream text;

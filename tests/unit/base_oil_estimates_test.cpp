@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "core/celsius.h"
 #include "core/lubricant/viscosity.h"
 #include "core/lubricant/viscosity_temperature.h"
 #include "tests/support/reference_data.h"
@@ -14,8 +15,6 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kForty = 313.15, kHundred = 373.15;
-
 constexpr BaseOilClass kClasses[] = {
     BaseOilClass::kUnspecified,     BaseOilClass::kGroupI,
     BaseOilClass::kGroupII,         BaseOilClass::kGroupIII,
@@ -23,7 +22,8 @@ constexpr BaseOilClass kClasses[] = {
     BaseOilClass::kNaphthenic,      BaseOilClass::kPolyalkyleneGlycol};
 
 double slope(double kv40, double kv100) {
-  return viscosity_temperature_line({kForty, 1e-6 * kv40}, {kHundred, 1e-6 * kv100}).slope;
+  return viscosity_temperature_line({kFortyCelsius, 1e-6 * kv40}, {kHundredCelsius, 1e-6 * kv100})
+      .slope;
 }
 
 // alpha* of an oil at 40 C by its class [1/GPa]
@@ -35,7 +35,7 @@ double alpha(BaseOilClass base_oil, double kv40, double kv100, double density) {
 
 TEST(SoKlaus, StraysFromMeasuredMineralOils) {
   // Table 2.3 of Stachowiak and Batchelor; it prints no densities: 880, 861, 835 kg/m3.
-  const double temperature[] = {303.15, 333.15, kHundred}, density[] = {880, 861, 835};
+  const double temperature[] = {303.15, 333.15, kHundredCelsius}, density[] = {880, 861, 835};
   double sum = 0, squares = 0, gold_sum = 0;
   int count = 0;
   const nlohmann::json checks = load_reference("published_checks.json");
@@ -66,10 +66,10 @@ TEST(SoKlaus, StraysFromMeasuredMineralOils) {
 TEST(PressureViscosityEstimate, StraysFromThePapersFluids) {
   for (const int fluid : {1, 2, 3}) {
     const Lubricant lubricant = reference_lubricant(fluid);
-    const double v40 = kinematic_viscosity(lubricant, kForty);
+    const double v40 = kinematic_viscosity(lubricant, kFortyCelsius);
     const Estimate estimate = estimate_pressure_viscosity_coefficient(
-        BaseOilClass::kPolyalphaolefin, v40, density(lubricant, kForty),
-        slope(1e6 * v40, 1e6 * kinematic_viscosity(lubricant, kHundred)));
+        BaseOilClass::kPolyalphaolefin, v40, density(lubricant, kFortyCelsius),
+        slope(1e6 * v40, 1e6 * kinematic_viscosity(lubricant, kHundredCelsius)));
     EXPECT_NEAR(estimate.value, lubricant.pressure_viscosity_coefficient,
                 estimate.standard_uncertainty);
     EXPECT_NEAR(estimate.value / lubricant.pressure_viscosity_coefficient, 1, 0.135);
@@ -98,9 +98,9 @@ TEST(ThermalConductivityEstimate, StraysFromWhatIsKnown) {
   // Cragoe at 0 C and specific gravity 1: 0.117
   EXPECT_NEAR(estimate_thermal_conductivity(BaseOilClass::kGroupI, 1000, 273.15).value, 0.117,
               1e-15);
-  EXPECT_NEAR(estimate_thermal_conductivity(BaseOilClass::kGroupII, 870, kForty).value, 0.1316,
-              1e-4);
-  EXPECT_EQ(estimate_thermal_conductivity(BaseOilClass::kPolyalphaolefin, 840, kForty).value,
+  EXPECT_NEAR(estimate_thermal_conductivity(BaseOilClass::kGroupII, 870, kFortyCelsius).value,
+              0.1316, 1e-4);
+  EXPECT_EQ(estimate_thermal_conductivity(BaseOilClass::kPolyalphaolefin, 840, kFortyCelsius).value,
             0.154);
 }
 

@@ -7,14 +7,13 @@
 #include <random>
 #include <set>
 
+#include "core/celsius.h"
 #include "core/lubricant/viscosity.h"
 #include "tests/support/reference_scene.h"
 #include "tests/support/refusal_reason.h"
 
 namespace tribodyn {
 namespace {
-
-constexpr double kForty = 313.15, kHundred = 373.15;
 
 FluidMeasurements three_numbers(double kv40 = 100, double kv100 = 14.5, double density = 860) {
   FluidMeasurements fluid;
@@ -67,8 +66,8 @@ TEST(Characterisation, MissesTheThreeNumbersItWasGiven) {
   for (const auto& [kv40, kv100] :
        {std::pair{73.3, 8.86}, {22.83, 5.05}, {100.0, 14.5}, {460.0, 30.0}, {320.0, 55.0}}) {
     const CharacterisedFluid fluid = characterise(three_numbers(kv40, kv100));
-    EXPECT_NEAR(1e6 * kinematic_viscosity(fluid.lubricant, kForty) / kv40, 1, 1e-12);
-    EXPECT_NEAR(1e6 * kinematic_viscosity(fluid.lubricant, kHundred) / kv100, 1, 1e-12);
+    EXPECT_NEAR(1e6 * kinematic_viscosity(fluid.lubricant, kFortyCelsius) / kv40, 1, 1e-12);
+    EXPECT_NEAR(1e6 * kinematic_viscosity(fluid.lubricant, kHundredCelsius) / kv100, 1, 1e-12);
     EXPECT_NEAR(density(fluid.lubricant, 288.15), 860, 1e-9);
     EXPECT_EQ(fluid.walther_comparison.size(), 17);
     for (const ViscosityLawComparison& at : fluid.walther_comparison) {
@@ -123,7 +122,7 @@ TEST(Characterisation, ChangesThePapersFluids) {
     }
     fluid.stated.pressure_viscosity_coefficient =
         measured(lubricant.pressure_viscosity_coefficient);
-    fluid.stated.pressure_viscosity_temperature = measured(kForty);
+    fluid.stated.pressure_viscosity_temperature = measured(kFortyCelsius);
     fluid.stated.limiting_shear_stress_coefficient =
         measured(lubricant.limiting_shear_stress_coefficient);
     const CharacterisedFluid result = characterise(fluid);
@@ -161,7 +160,7 @@ TEST(Characterisation, IgnoresWhatIsStated) {
   EXPECT_EQ(result.lubricant.vogel_viscosity_prefactor, lubricant.vogel_viscosity_prefactor);
   EXPECT_EQ(result.lubricant.density_temperature_slope, lubricant.density_temperature_slope);
   EXPECT_EQ(result.lubricant.relaxation_time, 0);
-  EXPECT_EQ(result.lubricant.pressure_viscosity_temperature, kForty);
+  EXPECT_EQ(result.lubricant.pressure_viscosity_temperature, kFortyCelsius);
   EXPECT_TRUE(warns(result, "TEMPERATURE_ASSUMED", "pressure_viscosity_temperature"));
   EXPECT_TRUE(warns(result, "TEMPERATURE_ASSUMED", "rheology_reference_temperature"));
   EXPECT_FALSE(result.viscosity_fit.has_value());
@@ -179,7 +178,7 @@ TEST(Characterisation, ForgetsColdViscosities) {
   EXPECT_EQ(result.viscosity_fit->degrees_of_freedom, 1);
   EXPECT_EQ(result.fitted_points[2].relative_standard_uncertainty, 0.05);
   EXPECT_NEAR(std::log(ambient_viscosity(result.lubricant, 233.15) / 120), 0, 0.15);
-  EXPECT_NEAR(1e6 * kinematic_viscosity(result.lubricant, kHundred), 14.8, 0.2);
+  EXPECT_NEAR(1e6 * kinematic_viscosity(result.lubricant, kHundredCelsius), 14.8, 0.2);
   // without them the law extrapolates and says what it would earn
   fluid.cold_viscosities.clear();
   const CharacterisedFluid bare = characterise(fluid);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/celsius.h"
 #include "core/lubricant/viscosity.h"
 #include "core/lubricant/walther_vogel.h"
 #include "tests/support/reference_scene.h"
@@ -13,10 +14,8 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kForty = 313.15, kHundred = 373.15;
-
 ViscosityTemperatureLine line_of(double kv40, double kv100) {
-  return viscosity_temperature_line({kForty, 1e-6 * kv40}, {kHundred, 1e-6 * kv100});
+  return viscosity_temperature_line({kFortyCelsius, 1e-6 * kv40}, {kHundredCelsius, 1e-6 * kv100});
 }
 
 TEST(ViscosityTemperatureLine, MissesItsOwnPoints) {
@@ -26,11 +25,11 @@ TEST(ViscosityTemperatureLine, MissesItsOwnPoints) {
     const double kv40 = std::pow(10, lg(random));
     const double kv100 = 0.215 * std::pow(kv40 / 0.215, fraction(random));
     const ViscosityTemperatureLine line = line_of(kv40, kv100);
-    EXPECT_NEAR(1e6 * kinematic_viscosity(line, kForty) / kv40, 1, 2e-13) << kv40;
-    EXPECT_NEAR(1e6 * kinematic_viscosity(line, kHundred) / kv100, 1, 2e-12)
+    EXPECT_NEAR(1e6 * kinematic_viscosity(line, kFortyCelsius) / kv40, 1, 2e-13) << kv40;
+    EXPECT_NEAR(1e6 * kinematic_viscosity(line, kHundredCelsius) / kv100, 1, 2e-12)
         << kv40 << " " << kv100;
     const ViscosityTemperatureLine swapped =
-        viscosity_temperature_line({kHundred, 1e-6 * kv100}, {kForty, 1e-6 * kv40});
+        viscosity_temperature_line({kHundredCelsius, 1e-6 * kv100}, {kFortyCelsius, 1e-6 * kv40});
     EXPECT_NEAR(swapped.slope / line.slope, 1, 1e-12);
   }
 }
@@ -47,11 +46,12 @@ TEST(ViscosityTemperatureLine, DiffersFromPublishedConstants) {
 TEST(ViscosityTemperatureLine, DiffersFromTheSimplifiedFormAboveTwo) {
   for (const auto& [kv40, kv100] : {std::pair{73.3, 8.86}, {22.83, 5.05}, {460.0, 30.0}}) {
     const auto w = [](double v) { return std::log10(std::log10(v + 0.7)); };
-    const double slope = (w(kv40) - w(kv100)) / std::log10(kHundred / kForty);
+    const double slope = (w(kv40) - w(kv100)) / std::log10(kHundredCelsius / kFortyCelsius);
     const ViscosityTemperatureLine line = line_of(kv40, kv100);
     for (double temperature = 253.15; temperature < 430; temperature += 7) {
       const double simple =
-          std::pow(10, std::pow(10, w(kv40) - slope * std::log10(temperature / kForty))) - 0.7;
+          std::pow(10, std::pow(10, w(kv40) - slope * std::log10(temperature / kFortyCelsius))) -
+          0.7;
       if (simple < 2.5) continue;
       EXPECT_NEAR(1e6 * kinematic_viscosity(line, temperature) / simple, 1, 1e-4);
     }
@@ -62,9 +62,10 @@ TEST(ViscosityTemperatureLine, DiffersFromTheStandardsInverse) {
   // v = y - exp(-0.7487 - 3.295 y + 0.6119 y^2 - 0.3193 y^3), y = Z - 0.7: an approximation
   const ViscosityTemperatureLine line = line_of(3, 1);
   for (double temperature = 300; temperature < 460; temperature += 5) {
-    const double y = std::pow(10, std::pow(10, line.reference_ordinate -
-                                                   line.slope * std::log10(temperature / kForty))) -
-                     0.7;
+    const double y =
+        std::pow(10, std::pow(10, line.reference_ordinate -
+                                      line.slope * std::log10(temperature / kFortyCelsius))) -
+        0.7;
     const double printed = y - std::exp(-0.7487 - 3.295 * y + 0.6119 * y * y - 0.3193 * y * y * y);
     EXPECT_NEAR(1e6 * kinematic_viscosity(line, temperature) / printed, 1, 0.002) << temperature;
   }
@@ -85,15 +86,15 @@ TEST(ViscosityTemperatureLine, AnswersWhereTheStandardDoesNot) {
     return refusal_reason([&] { viscosity_temperature_line({t1, 1e-6 * v1}, {t2, 1e-6 * v2}); });
   };
   constexpr const char* kReason = "VISCOSITY_TEMPERATURE_LINE";
-  EXPECT_EQ(reason(kForty, 100, kHundred, 10), "none");
-  EXPECT_EQ(reason(kForty, 10, kHundred, 100), kReason);
-  EXPECT_EQ(reason(kForty, 10, kHundred, 10), kReason);
-  EXPECT_EQ(reason(kForty, 10, kForty + 0.5, 9), kReason);
-  EXPECT_EQ(reason(kForty, 10, kHundred, 0.2), kReason);
-  EXPECT_EQ(reason(kForty, -10, kHundred, 1), kReason);
-  EXPECT_EQ(reason(kForty, 3e7, kHundred, 1), kReason);
-  EXPECT_EQ(reason(kForty, NAN, kHundred, 1), kReason);
-  EXPECT_EQ(reason(kForty, 10, NAN, 1), kReason);
+  EXPECT_EQ(reason(kFortyCelsius, 100, kHundredCelsius, 10), "none");
+  EXPECT_EQ(reason(kFortyCelsius, 10, kHundredCelsius, 100), kReason);
+  EXPECT_EQ(reason(kFortyCelsius, 10, kHundredCelsius, 10), kReason);
+  EXPECT_EQ(reason(kFortyCelsius, 10, kFortyCelsius + 0.5, 9), kReason);
+  EXPECT_EQ(reason(kFortyCelsius, 10, kHundredCelsius, 0.2), kReason);
+  EXPECT_EQ(reason(kFortyCelsius, -10, kHundredCelsius, 1), kReason);
+  EXPECT_EQ(reason(kFortyCelsius, 3e7, kHundredCelsius, 1), kReason);
+  EXPECT_EQ(reason(kFortyCelsius, NAN, kHundredCelsius, 1), kReason);
+  EXPECT_EQ(reason(kFortyCelsius, 10, NAN, 1), kReason);
   EXPECT_EQ(reason(40, 100, 100, 10), kReason);  // Celsius by mistake
   EXPECT_EQ(refusal_reason([] { kinematic_viscosity(line_of(1, 0.4), 500); }), kReason);
   EXPECT_EQ(refusal_reason([] { kinematic_viscosity(line_of(2000, 8), 200); }), kReason);
@@ -121,17 +122,18 @@ TEST(WaltherVogel, StraysFromD341) {
       return std::log(kinematic_viscosity(line, temperature) *
                       (density.density_at_zero_kelvin + density.slope * temperature));
     };
-    const double a1 =
-        (log_eta(kForty) - log_eta(kHundred)) / (1 / (kForty - t0) - 1 / (kHundred - t0));
+    const double a1 = (log_eta(kFortyCelsius) - log_eta(kHundredCelsius)) /
+                      (1 / (kFortyCelsius - t0) - 1 / (kHundredCelsius - t0));
     for (double temperature = 263.15; temperature < 424; temperature += 5) {
-      const double vogel = log_eta(kHundred) + a1 * (1 / (temperature - t0) - 1 / (kHundred - t0));
+      const double vogel =
+          log_eta(kHundredCelsius) + a1 * (1 / (temperature - t0) - 1 / (kHundredCelsius - t0));
       const double residual = std::abs(vogel - log_eta(temperature));
       if (kv100 > 16) {
         heavy = std::max(heavy, residual);
         continue;
       }
       ordinary = std::max(ordinary, residual);
-      if (temperature > kForty && temperature < kHundred) {
+      if (temperature > kFortyCelsius && temperature < kHundredCelsius) {
         ordinary_between = std::max(ordinary_between, residual);
       }
     }

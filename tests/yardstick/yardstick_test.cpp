@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/paths.h"
 #include "yardstick_data.h"
 
 namespace tribodyn::yardstick {
@@ -22,12 +23,12 @@ constexpr double kOrbitTolerance = 1e-7;
 constexpr double kExtremeTolerance = 1e-6;
 
 const json& WorkedPoints() {
-  static const json worked_points = ReadJsonFile(TRIBODYN_TEST_DATA "/worked_points.json");
+  static const json worked_points = ReadJsonFile(test_data_file("worked_points.json"));
   return worked_points;
 }
 
 GearPairSystem MakeSystem(FrictionArms arms) {
-  const json gear_set = ReadJsonFile(TRIBODYN_TEST_DATA "/reference_gear_set.json");
+  const json gear_set = ReadJsonFile(test_data_file("reference_gear_set.json"));
   return GearPairSystem(ReadGearPair(gear_set), ReadVehicle(gear_set),
                         ReadOrbitFriction(WorkedPoints().at("orbit_inputs").at("values")), arms);
 }

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdlib>
+
+namespace tribodyn {
+
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool kUnderAddressSanitizer = true;
+#else
+inline constexpr bool kUnderAddressSanitizer = false;
+#endif
+#ifdef __SANITIZE_THREAD__
+inline constexpr bool kUnderThreadSanitizer = true;
+#else
+inline constexpr bool kUnderThreadSanitizer = false;
+#endif
+inline constexpr bool kUnderSanitizer = kUnderAddressSanitizer || kUnderThreadSanitizer;
+
+/// AddressSanitizer makes the model ten times slower: sweeps take a few of their scenes there. The
+/// release stage runs all of them.
+inline constexpr bool kShortRun = kUnderAddressSanitizer;
+
+/// Whether the environment has TRIBODYN_FULL=1: sweeps take more scenes than CI has time for.
+inline bool full_run() {
+  const char* value = std::getenv("TRIBODYN_FULL");
+  return value != nullptr && value[0] == '1';
+}
+
+}  // namespace tribodyn
