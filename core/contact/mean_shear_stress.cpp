@@ -12,7 +12,7 @@
 namespace tribodyn {
 namespace {
 
-constexpr double c = kRoelandsPressureCoefficient;
+constexpr double kC = kRoelandsPressureCoefficient;  // c of the formulas [1/Pa]
 
 /// ln tau(s) = base + factor (e^{Z s} - 1) at one temperature, with slopes in temperature.
 struct Law {
@@ -22,14 +22,14 @@ struct Law {
   double tau_zero, gamma;  // tau_L = tau_zero + gamma p
 
   double log_stress(double s) const { return base + factor * std::expm1(index * s); }
-  double pressure(double s) const { return std::expm1(s) / c; }
+  double pressure(double s) const { return std::expm1(s) / kC; }
   double limit(double s) const { return tau_zero + gamma * pressure(s); }
   /// ln(tau / tau_L): positive where the stress is limited.
   ValueAndSlope excess(double s) const {
     const double growth = std::exp(index * s), u = std::exp(s);
-    const double limit = tau_zero + gamma * (u - 1) / c;
+    const double limit = tau_zero + gamma * (u - 1) / kC;
     return {base + factor * (growth - 1) - std::log(limit),
-            factor * index * growth - gamma * u / c / limit};
+            factor * index * growth - gamma * u / kC / limit};
   }
 };
 
@@ -75,7 +75,7 @@ void add_panel(const Law& law, double from, double to, Moment& out) {
   const Array growth = (law.index * s).exp() - 1;
   // e^s - 1 loses digits only where p is so small that the stress does not depend on it.
   const Array q = s(N - 1) > 1e-3 ? Array(u - 1) : Array(s * (1 + s * (0.5 + s / 6 * (1 + s / 4))));
-  const Array weighted = (to - from) / (c * c) * rule.weight *
+  const Array weighted = (to - from) / (kC * kC) * rule.weight *
                          (law.base - out.shift + law.factor * growth).exp() * q * u;
   out.value += weighted.sum();
   out.slope += (weighted * (law.base_slope + law.factor_slope * growth)).sum();
@@ -112,14 +112,14 @@ Moment moment(const Law& law, double from, double to) {
 int monotone_pieces(const Law& law, double end, std::array<double, 5>& points) {
   const auto psi = [&](double s) {
     const double power = std::exp((law.index - 1) * s), u = std::exp(s);
-    return law.factor * law.index * power * ((law.tau_zero * c - law.gamma) + law.gamma * u) -
+    return law.factor * law.index * power * ((law.tau_zero * kC - law.gamma) + law.gamma * u) -
            law.gamma;
   };
   int count = 0;
   points[count++] = 0;
   double turn = -1;
   if (law.gamma > 0) {
-    const double u = (1 - law.index) * (law.tau_zero * c - law.gamma) / (law.index * law.gamma);
+    const double u = (1 - law.index) * (law.tau_zero * kC - law.gamma) / (law.index * law.gamma);
     if (u > 1) turn = std::log(u);
   }
   double left = 0, psi_left = psi(0);
@@ -142,7 +142,7 @@ int monotone_pieces(const Law& law, double end, std::array<double, 5>& points) {
 MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
                                   double& switch_guess) {
   const Law law = law_at(film, temperature);
-  const double end = std::log1p(c * film.maximum_pressure);
+  const double end = std::log1p(kC * film.maximum_pressure);
   const double log_scale = std::log(2.0) - 2 * std::log(film.maximum_pressure);
   if (!film.limited) {
     const Moment all = moment(law, 0, end);

@@ -6,6 +6,9 @@
 
 namespace tribodyn {
 
+/// The factor on an error that two grids give: measured against marches over random scenes.
+inline constexpr double kGridSafety = 1.7;
+
 /// The error of a response's figures by what shorter steps have changed of them.
 class GridComparison {
  public:
@@ -18,7 +21,6 @@ class GridComparison {
 
   /// Of the figures on a grid of more steps, relative.
   double error(int steps, const OrbitFigures& figures) const {
-    constexpr double kSafety = 1.7;
     const double finer = static_cast<double>(steps) / steps_;
     const double change = figures.distance(figures_);
     // Second order at kinks and events; more only where two halvings have shown it.
@@ -28,7 +30,7 @@ class GridComparison {
     }
     // Two step lengths may agree by accident, three rarely do.
     return std::max(
-        {kSafety * change / (gain - 1), error_ / (2 * finer * finer), kink_error(steps)});
+        {kGridSafety * change / (gain - 1), error_ / (2 * finer * finer), kink_error(steps)});
   }
 
   /// The grid that the next one is compared with; `error`: of its figures, 0 where not known.

@@ -7,12 +7,12 @@
 
 #include "core/dynamics/linear_response.h"
 #include "core/numerics/square.h"
+#include "core/study/grid_comparison.h"
 #include "core/study/step_sequence.h"
 
 namespace tribodyn {
 namespace {
 
-constexpr double kSafety = 1.7;  // on the error that two grids tell
 constexpr double kLoose = 3e-4;  // tolerance of which few steps may do
 
 // Of the model's error. Beyond these limits the correction tells nothing sure.
@@ -269,7 +269,7 @@ std::optional<QuasiStatic> solve_quasi_static(GearPairSystem& system,
     if (!first) {
       const double finer = static_cast<double>(steps) / best.steps_per_mesh_cycle;
       const double difference = best.orbit.figures.distance(coarser);
-      const double step_error = std::max(kSafety * difference / (square(finer) - 1),
+      const double step_error = std::max(kGridSafety * difference / (square(finer) - 1),
                                          best.discretisation_error / (2 * square(finer)));
       best.discretisation_error = step_error + best.orbit.unsettled;
     }
