@@ -218,7 +218,7 @@ class StorageFault : public testing::Test {
 
   void fail_every(FaultyVfs::Operation operation, const std::string& name) {
     // A session for each operation: under sanitizers minutes of them.
-    const int stride = kUnderSanitizer ? 4 : 1;
+    const int stride = kUnderThreadSanitizer ? 12 : kUnderAddressSanitizer ? 4 : 1;
     for (const bool lasting : {false, true}) {
       int n = lasting ? 1 : stride;
       while (!HasFailure() &&
@@ -288,7 +288,7 @@ TEST_F(StorageFault, EveryWriteMayFail) { fail_every(FaultyVfs::Operation::kWrit
 TEST_F(StorageFault, EverySyncMayFail) { fail_every(FaultyVfs::Operation::kSync, "sync"); }
 
 TEST_F(StorageFault, PowerMayGoAtAnyMoment) {
-  const int losses = number_from("TRIBODYN_POWER_LOSSES", 100);
+  const int losses = number_from("TRIBODYN_POWER_LOSSES", kUnderThreadSanitizer ? 20 : 100);
   RecordProperty("losses", losses);
   EXPECT_THAT(lose_power(losses), IsEmpty());
 }
