@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::duration;
 
 constexpr double kFullSeconds = 3600;
-constexpr double kLeastRequestsPerSecond = 300;
+constexpr double kLeastRequestsPerSecond = 400;
 constexpr auto kBetweenLooks = std::chrono::milliseconds(200);
 
 /// Between the least and the most that was seen.

@@ -37,7 +37,7 @@ int number_from(const char* variable, int otherwise) {
 }
 
 /// How often the server is killed; TRIBODYN_CRASHES=200 is the full mode.
-int crashes() { return number_from("TRIBODYN_CRASHES", kUnderSanitizer ? 8 : 20); }
+int crashes() { return number_from("TRIBODYN_CRASHES", kUnderSanitizer ? 10 : 20); }
 
 class CrashTest : public testing::Test {
  protected:

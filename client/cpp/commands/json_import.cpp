@@ -13,8 +13,6 @@
 namespace tribodyn::client {
 namespace {
 
-using google::protobuf::Message;
-
 std::string without_revision(const std::string& name) { return name.substr(0, name.find('@')); }
 
 std::string id_of(const FileResource& from, const std::string& given) {
