@@ -9,6 +9,7 @@
 #include "core/refusal.h"
 
 namespace tribodyn {
+
 double walther_reference_temperature(const ViscosityTemperatureLine& line,
                                      const DensityLaw& density) {
   const auto log_eta = [&](double temperature) {

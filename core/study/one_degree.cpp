@@ -12,8 +12,8 @@ namespace tribodyn {
 namespace {
 
 constexpr double kMargin = 2.5;  // on what shafts are told to change
-constexpr double kNearDoublingOfOneDegree =
-    0.1;                               // shafts move where periods double by some 2 % in speed
+// Shafts move where periods double by some 2 % in speed.
+constexpr double kNearDoublingOfOneDegree = 0.1;
 constexpr double kMostGrowth = 0.5;    // see InertialCorrection
 constexpr double kLeastForce = 0.2;    // smallest over mean mesh force, with shafts
 constexpr double kMostOfForce = 0.25;  // change of the mesh force over its mean
