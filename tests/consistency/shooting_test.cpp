@@ -42,6 +42,9 @@ class ShotResponse : public testing::TestWithParam<ShootingPlace> {};
 
 TEST_P(ShotResponse, ErrsLessThanItSaysAndAskedAtEveryTolerance) {
   const ShootingPlace place = GetParam();
+  if (kShortRun && place.kilometers_per_hour != 72.5 && place.kilometers_per_hour != 100) {
+    GTEST_SKIP() << "a march of ten seconds each under ASan";
+  }
   const Scene scene = reference_scene();
   const PointResult exact =
       solve_operating_point(scene, cruise(place.kilometers_per_hour), marched(place.start));
