@@ -1,6 +1,7 @@
 #include "tests/crash/clients.h"
 
 #include <chrono>
+#include <iterator>
 #include <stop_token>
 #include <thread>
 
@@ -55,7 +56,7 @@ void Client::run(const std::atomic<bool>& stop, const std::atomic<int>& crashes)
     try {
       // Work in proportion to the crashes, not to the time: where the server is slow to start again
       // it would never come to an end.
-      act(sent_.size() < static_cast<std::size_t>(kFirstSubmissions + crashes));
+      act(std::ssize(sent_) < kFirstSubmissions + crashes);
     } catch (const client::ServiceError& error) {
       // The server is dead at the moment. What it refuses is a mistake of this test.
       if (error.kind() == client::ServiceError::Kind::kRefused && error.reason().empty()) throw;
