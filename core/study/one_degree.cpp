@@ -11,7 +11,7 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kMargin = 2.5;  // on what shafts are told to change
+constexpr double kMargin = 2.5;  // factor on the change that shafts are estimated to make
 // Shafts move where periods double by some 2 % in speed.
 constexpr double kNearDoublingOfOneDegree = 0.1;
 constexpr double kMostGrowth = 0.5;    // see InertialCorrection

@@ -197,7 +197,7 @@ std::map<std::string, std::set<std::string>> successes(const History& history) {
 }
 
 TEST_F(CrashTest, ALostAcknowledgementIsFound) {
-  if (kUnderSanitizer) GTEST_SKIP() << "of the test's own checker, which release runs";
+  if (kUnderSanitizer) GTEST_SKIP() << "tests the checker of this file: the release stage runs it";
   std::string lost;
   play(
       2, [](const History& history) { return !history.submissions.empty(); },
@@ -211,7 +211,7 @@ TEST_F(CrashTest, ALostAcknowledgementIsFound) {
 }
 
 TEST_F(CrashTest, AGapInTheEventsIsFound) {
-  if (kUnderSanitizer) GTEST_SKIP() << "of the test's own checker, which release runs";
+  if (kUnderSanitizer) GTEST_SKIP() << "tests the checker of this file: the release stage runs it";
   play(
       2, [](const History& history) { return !successes(history).empty(); },
       [](const std::string& database) {
@@ -223,7 +223,7 @@ TEST_F(CrashTest, AGapInTheEventsIsFound) {
 }
 
 TEST_F(CrashTest, ADoubleResultIsFound) {
-  if (kUnderSanitizer) GTEST_SKIP() << "of the test's own checker, which release runs";
+  if (kUnderSanitizer) GTEST_SKIP() << "tests the checker of this file: the release stage runs it";
   const auto shared = [](const History& history) {
     const auto by_scene = successes(history);
     return by_scene.size() > 1 &&
