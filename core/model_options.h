@@ -11,6 +11,8 @@ struct AsPublished {
   bool eq31_32_logarithm = false;    ///< ln(eta0 + 9.67) instead of ln eta0 + 9.67; implies eq 32
   bool eq43_44_polynomials = false;  ///< fitted polynomials instead of the exact F_n
   bool eq46_square_root_of_sum = false;  ///< sqrt(m_a + m_r) instead of sqrt(m_a m_r)
+
+  bool operator==(const AsPublished&) const = default;
 };
 
 /// Where the Roelands index Z comes from.
@@ -45,6 +47,8 @@ struct ModelOptions {
   HertzSolution hertz_solution = HertzSolution::kSimplified;
   HertzLoad hertz_load = HertzLoad::kFilmLoad;
   AsPublished as_published;
+
+  bool operator==(const ModelOptions&) const = default;
 };
 
 }  // namespace tribodyn

@@ -23,7 +23,9 @@ int run_command(const Settings& settings) {
   if (settings.command == "backup") {
     backup_database(settings.database, settings.file);
   } else if (settings.command == "restore") {
-    restore_database(settings.file, settings.database);
+    if (const auto kept = restore_database(settings.file, settings.database)) {
+      std::printf("the former database is kept as %s\n", kept->c_str());
+    }
   } else {
     const std::vector<std::string> problems = check_database(settings.database, hash_stored_inputs);
     for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());
@@ -38,7 +40,8 @@ sigset_t block_signals() {
   sigemptyset(&signals);
   for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
+  // A write beyond the limit of file sizes (ulimit -f) fails, as one on a full disk does.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   return signals;
 }
 

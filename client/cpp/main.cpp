@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -13,14 +14,18 @@
 namespace tribodyn::client {
 namespace {
 
-int complain(const Parsed& parsed) {
+/// `of_settings`: how many of the complaints, the first ones, are about the configuration.
+int complain(const Parsed& parsed, std::size_t of_settings) {
   std::string command;
   if (parsed.command != nullptr) command = " " + parsed.command->path;
   if (parsed.command == nullptr && !parsed.group.empty()) command = " " + parsed.group;
   for (const std::string& complaint : parsed.complaints) {
     std::cerr << alarm("tribodyn" + command + ":") << " " << complaint << "\n";
   }
-  std::cerr << "See tribodyn" << command << " --help\n";
+  if (of_settings > 0) std::cerr << "See tribodyn help configuration\n";
+  if (parsed.complaints.size() > of_settings) {
+    std::cerr << "See tribodyn" << command << " --help\n";
+  }
   return kExitUsage;
 }
 
@@ -28,9 +33,21 @@ std::string help_of(const Parsed& parsed, const std::vector<Command>& commands,
                     const FlagList& common_flags, const CommonOptions& options) {
   if (parsed.command != nullptr) {
     const auto schema = schema_for_help(*parsed.command, options);
-    return help_text(*parsed.command, common_flags, schema ? &*schema : nullptr);
+    return help_text(*parsed.command, common_flags, schema ? &*schema : nullptr,
+                     parsed.wants_all_help ? HelpLength::kAll : HelpLength::kShort);
   }
   return parsed.group.empty() ? overview_text(commands) : group_text(parsed.group, commands);
+}
+
+/// The failure with the page of the help that explains what was refused.
+Failure with_topic(const ServiceError& error, const Failure& failure) {
+  const auto& violations = error.violations();
+  const bool is_of_list =
+      std::any_of(violations.begin(), violations.end(), [](const FieldViolation& violation) {
+        return violation.field == "filter" || violation.field == "order_by";
+      });
+  if (!is_of_list) return failure;
+  return {failure.exit_code(), std::string(failure.what()) + "\nSee tribodyn help filters"};
 }
 
 int run(const std::vector<std::string>& arguments) {
@@ -61,12 +78,17 @@ int run(const std::vector<std::string>& arguments) {
   if (!(options.timeout_seconds > 0 && options.timeout_seconds <= 86400)) {
     parsed.complaints.emplace_back("--timeout-seconds must be above 0 and at most 86400");
   }
-  if (!parsed.complaints.empty()) return complain(parsed);
+  if (!parsed.complaints.empty()) return complain(parsed, of_settings.size());
   if (parsed.command == nullptr) {
     std::cerr << help_of(parsed, commands, common_flags, options);
     return kExitUsage;
   }
-  return parsed.command->run(options);
+  options.typed_flags = parsed.typed_flags;
+  try {
+    return parsed.command->run(options);
+  } catch (const ServiceError& error) {
+    throw with_topic(error, Failure(with_flag_names(error, options.typed_flags)));
+  }
 }
 
 int end(const Failure& failure) {

@@ -349,13 +349,12 @@ const char* contact_status_sentence(ContactStatus status) {
     case ContactStatus::kRefusedUnboundedShear:
       return "sliding without a film and without a limiting shear stress has no finite stress";
     case ContactStatus::kRefusedNoLoadSharing:
-      return "no film load balances asperities and film (eq 41): the polynomials of eqs 43, 44 or "
-             "an "
+      return "no film load balances asperities and film (eq 41): eqs 43 and 44 as published pull "
+             "where the film ratio is above 2.2, as under the light loads of impacts, and an "
              "ellipse from the total load can leave no root";
     case ContactStatus::kRefusedNoTemperature:
       return "no contact temperature balances heat and conduction while the density law of eq 26 "
-             "is "
-             "positive";
+             "is positive";
     case ContactStatus::kRefusedOverflow:
       return "a law left the range of double precision";
   }

@@ -10,8 +10,8 @@
 namespace tribodyn {
 namespace {
 
-constexpr int kStates = 8;  // time and the seven of the section
-constexpr int kTorque = 7;  // column of the unknown torque
+constexpr int kStates = 8;        // time and the seven of the section
+constexpr int kTorqueColumn = 7;  // column of the unknown torque
 
 /// Phase in the tables: the end of a period is an end there too.
 double inside_cycle(double phase) { return phase - std::floor(phase); }
@@ -77,6 +77,38 @@ SensitivityStage FixedStepMarch::sensitivity_stage(const MarchState& y, const Me
   return out;
 }
 
+FixedStepMarch::Rates FixedStepMarch::rates(const FrictionPerLoad& friction, const MeshPhase& phase,
+                                            const MarchState& y, Mechanics& at) const {
+  system_.mechanics(phase, y.data(), at);
+  const double load = system_.regime.load(at.mesh_force);
+  at.pinion_friction_torque = friction.pinion * load;
+  at.gear_friction_torque = friction.gear * load;
+  Rates out{};
+  system_.motion(y.data(), at, out.data());
+  return out;
+}
+
+void FixedStepMarch::change_regime(int event, const FrictionPerLoad& friction,
+                                   const MeshPhase& phase, const MarchState& y, Sensitivity* s) {
+  if (s == nullptr) {
+    system_.change_regime(event, phase, y.data());
+    return;
+  }
+  const int side = system_.regime.side;
+  Mechanics at;
+  const Rates before = rates(friction, phase, y, at);
+  system_.change_regime(event, phase, y.data());
+  const double approach = at.transmission_velocity * before[kTime];  // dx/dphase
+  if (system_.regime.side == side || approach == 0) return;
+  const Rates after = rates(friction, phase, y, at);
+  evaluations_ += 2;
+  // dx/dwinding = R_g/R_g0 (eq 6); x depends on no other state.
+  const double per_winding =
+      at.mesh.gear_contact_radius / (system_.mesh().mean_gear_contact_radius() * approach);
+  const Sensitivity::value_type later = -per_winding * (*s)[kWinding];  // the event's phase
+  for (int i = 0; i < kStates; ++i) (*s)[i] -= (after[i] - before[i]) * later;
+}
+
 void FixedStepMarch::step(LaggedFriction& friction, const Span& span, const MarchState& y,
                           MarchState& to) {
   const MeshPhase* const phases[4] = {span.start, span.middle, span.middle, span.end};
@@ -89,11 +121,7 @@ void FixedStepMarch::step(LaggedFriction& friction, const Span& span, const Marc
     for (int j = 0; j < kStates && i > 0; ++j) stage[j] = y[j] + kNode[i] * h * rate[j];
     const FrictionPerLoad here = friction.at(span.phase + kNode[i] * h);
     Mechanics at;
-    system_.mechanics(*phases[i], stage.data(), at);
-    const double load = system_.regime.load(at.mesh_force);
-    at.pinion_friction_torque = here.pinion * load;
-    at.gear_friction_torque = here.gear * load;
-    system_.motion(stage.data(), at, rate.data());
+    rate = rates(here, *phases[i], stage, at);
     for (int j = 0; j < kStates; ++j) to[j] += kWeight[i] * h * rate[j];
     if (keep_stages_) stages_[i] = sensitivity_stage(stage, at, here, rate);
     if (i == 0) first_rate_ = rate;
@@ -216,7 +244,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
   keep_stages_ = s != nullptr;
   if (s != nullptr) {
     for (auto& row : *s) row.setZero();
-    for (int i = 0; i < kTorque; ++i) (*s)[i + 1](i) = 1;
+    for (int i = 0; i < kTorqueColumn; ++i) (*s)[i + 1](i) = 1;
   }
   MarchState to{};
   std::optional<Events> at_end_before;  // of the step before, in the same regime
@@ -290,7 +318,7 @@ bool FixedStepMarch::run(LaggedFriction& friction, bool keep_contact, MarchState
       if (happens) {
         at_start = at_end;
         ++events_;
-        system_.change_regime(index, at_start, y.data());
+        change_regime(index, friction.at(phase), at_start, y, s);
       }
       if (!happens || end - phase < 1e-13) phase = end;
     }

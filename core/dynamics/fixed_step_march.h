@@ -14,8 +14,16 @@
 namespace tribodyn {
 
 /// Classical Runge-Kutta steps of even length over mesh phase, under lagged friction. Steps end on
-/// contact loss, regain and load events, which are located on true steps; derivatives by the start
-/// come along by the variational equations (rates are continuous at events, so nothing jumps).
+/// contact loss, regain and load events, which are located on true steps.
+///
+/// The variational equations give the derivatives of the state by the state at the start and by the
+/// unknown torque. Where flanks part or meet, the rates f of the state jump: by the damper's force
+/// with damping_in_contact_only, and by friction where flanks meet under a load. There the
+/// saltation matrix takes the derivatives S across,
+///   S+ = (I + (f+ - f-) (dx/dy)^T / (dx/dphase)) S-,
+/// with x the transmission error, whose value +-b is the event. At load events f is continuous.
+/// (R. I. Leine and H. Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems,
+/// Springer 2004, section 7.4.)
 class FixedStepMarch {
  public:
   /// The grid's steps in each of `period` mesh cycles. Events are located to `event_tolerance`, of
@@ -44,7 +52,13 @@ class FixedStepMarch {
   };
   SensitivityStage sensitivity_stage(const MarchState& y, const Mechanics& at,
                                      const FrictionPerLoad& friction, const Rates& rate) const;
+  /// d state / d phase at a mesh phase, in the system's regime; `at`: the mechanics there.
+  Rates rates(const FrictionPerLoad& friction, const MeshPhase& phase, const MarchState& y,
+              Mechanics& at) const;
   void step(LaggedFriction& friction, const Span& span, const MarchState& y, MarchState& to);
+  /// Into the regime after event 0 or 1, with the derivatives unless they are null.
+  void change_regime(int event, const FrictionPerLoad& friction, const MeshPhase& phase,
+                     const MarchState& y, Sensitivity* sensitivity);
   template <class Part>
   double locate(LaggedFriction& friction, int index, double first, double last, double high,
                 Part&& part, const MarchState& y, MarchState& to);

@@ -182,7 +182,7 @@ void GearPairSystem::derivative(const double* y, const Instant& at, bool record,
   motion(y, at, dy);
   const DrivelineDynamics& d = dynamics_;
   dy[kLossWork] = at.loss_power;
-  dy[kLossShareSquared] = square(at.loss_power / y[kPinionShaftSpeed]);
+  dy[kLossShareSquared] = square(at.loss_power / input_speed(y[kPinionShaftSpeed], y[kWheelSpeed]));
   int count = kMarchComponents;
 
   if (record) {

@@ -25,8 +25,9 @@ enum MarchComponent {
   kPinionSpeed,
   kGearSpeed,
   kWheelSpeed,
-  kLossWork,          ///< int sum V_s F_fr dt [J]
-  kLossShareSquared,  ///< int (sum V_s F_fr / phidot_s)^2 dt [(N m)^2 s]: eq 30's RMS but for T_s
+  kLossWork,  ///< int sum V_s F_fr dt [J]
+  /// int (sum V_s F_fr / input_speed())^2 dt [(N m)^2 s]: eq 30's RMS but for the torque
+  kLossShareSquared,
   kMarchComponents
 };
 
@@ -75,6 +76,14 @@ struct Torques {
   double pinion = 0;  ///< T_s [N m]
   double wheel = 0;   ///< T_w [N m]
 };
+
+/// The power that comes in, which eq 30 divides by, as a torque at the pinion [N m]. In drive power
+/// comes in at the pinion: T_s. In coast (T_s < 0) it comes in at the wheel: -T_w
+/// phidot_w/phidot_s. Where friction takes all of the power it comes in at both.
+/// `wheel_per_pinion_speed`: phidot_w/phidot_s.
+inline double input_torque(const Torques& torques, double wheel_per_pinion_speed) {
+  return std::max(torques.pinion, 0.0) + std::max(-torques.wheel * wheel_per_pinion_speed, 0.0);
+}
 
 /// What stands between the gears and their torques.
 enum class Driveline {
@@ -136,6 +145,12 @@ class GearPairSystem {
     if (!has_shafts()) constant_ = torques;
   }
   const Torques& torques() const { return torques_; }
+  /// Speed of the shaft at which power comes in (input_torque()), referred to the pinion [rad/s]:
+  /// phidot_s, in coast phidot_w N_g/N_p.
+  double input_speed(double pinion_shaft_speed, double wheel_speed) const {
+    return torques_.pinion < 0 ? wheel_speed * mesh_.gear_teeth() / mesh_.pinion_teeth()
+                               : pinion_shaft_speed;
+  }
   /// Table interval that the mesh phase is in; phases are continued by its straight lines.
   void set_interval(int interval) { interval_ = interval; }
   int interval() const { return interval_; }

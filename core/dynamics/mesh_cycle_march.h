@@ -62,7 +62,8 @@ class PhaseSystem {
     constexpr double kNoRate = std::numeric_limits<double>::quiet_NaN();  // fails the step
     if (std::isfinite(y[kPinionSpeed])) pinion_speed_ = y[kPinionSpeed];
     if (std::isfinite(y[kPinionShaftSpeed])) shaft_speed_ = y[kPinionShaftSpeed];
-    if (y[kPinionSpeed] <= 0) {
+    // A state without numbers comes from a refused contact earlier in the step, whose name is kept.
+    if (y[kPinionSpeed] <= 0 || std::isnan(y[kPinionSpeed])) {
       dy.fill(kNoRate);
       return;
     }
@@ -71,13 +72,8 @@ class PhaseSystem {
     const double slope = piece_.slope(progress);
     for (double& rate : dy) rate *= slope;
     // A refused contact fails the step: the wild stages of one that is too long mean nothing.
-    const ContactStatus status = system_.take_refusal();
-    if (status == ContactStatus::kOk) {
-      refusal_ = status;
-    } else {
-      if (refusal_ == ContactStatus::kOk) refusal_ = status;  // the rest of this step sees NaN
-      dy.fill(kNoRate);
-    }
+    refusal_ = system_.take_refusal();
+    if (refusal_ != ContactStatus::kOk) dy.fill(kNoRate);
   }
   void on_no_step() const {
     // Phase goes like the root of time where the pinion stops: steps end before the speed is zero.
@@ -155,7 +151,7 @@ class PhaseSystem {
   State scale_;
   GradedPiece piece_;
   double pinion_speed_ = 0, shaft_speed_ = 0;   ///< in the last evaluation
-  ContactStatus refusal_ = ContactStatus::kOk;  ///< of the last evaluations
+  ContactStatus refusal_ = ContactStatus::kOk;  ///< of the last evaluation of a state with numbers
   Instant instant_;
 };
 

@@ -100,4 +100,10 @@ const MeshGrid& MeshGrids::with_steps(int steps) {
       .first->second;
 }
 
+long MeshGrids::steps_kept() const {
+  long steps = 0;
+  for (const auto& [of_grid, grid] : grids_) steps += of_grid;
+  return steps;
+}
+
 }  // namespace tribodyn

@@ -98,6 +98,8 @@ class MeshGrids {
         reduced_modulus_(reduced_modulus),
         options_(options) {}
   const MeshGrid& with_steps(int steps);
+  /// Steps of all grids made so far: what they hold in memory grows with it.
+  long steps_kept() const;
 
  private:
   const MeshData& mesh_;

@@ -267,7 +267,7 @@ bool OrbitFriction::evaluate(const MeshGrid& grid, const std::vector<OrbitPiece>
       const double* state = states(p)[part];
       const double duration =
           p.length * (part == 1 ? 4 : 1) / 6 * system_.cycle_angle() / state[kPinionSpeed];
-      const double share = loss / state[kPinionShaftSpeed];
+      const double share = loss / system_.input_speed(state[kPinionShaftSpeed], state[kWheelSpeed]);
       f.loss_energy += duration * loss;
       squares += duration * share * share;
       time += duration;
@@ -315,7 +315,8 @@ bool OrbitFriction::evaluate(const StepBlock& block, const GridContacts& contact
     const double inside = contacts.stride == 2 ? 6 : node % 2 == 0 ? 2 : 4;
     const double weight = node == 0 || node == last ? (contacts.stride == 2 ? 3 : 1) : inside;
     const double duration = weight / (3 * last) * system_.cycle_angle() / at[kPinionSpeed][lane];
-    const double share = loss / at[kPinionShaftSpeed][lane];
+    const double share =
+        loss / system_.input_speed(at[kPinionShaftSpeed][lane], at[kWheelSpeed][lane]);
     f.loss_energy += duration * loss;
     squares += duration * share * share;
     time += duration;

@@ -59,7 +59,8 @@ SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
 
 /// What a sweep reports of a response: enough to tell how much an answer moved.
 struct OrbitFigures {
-  double loss_rms = 0;     ///< of sum V_s F_fr / phidot_s [N m]: eq 30 but for T_s
+  /// Of sum V_s F_fr / GearPairSystem::input_speed() [N m]: eq 30 but for the torque
+  double loss_rms = 0;
   double loss_energy = 0;  ///< sum V_s F_fr over the period [J]
   double dte_minimum = 0;  ///< x [m]
   double dte_maximum = 0;

@@ -28,7 +28,10 @@ Shooting::Shooting(GearPairSystem& system, OrbitFriction& friction, const MeshGr
 }
 
 bool Shooting::converge(double enough) {
-  constexpr int kMostSteps = 20, kMostDerivatives = 6;
+  // Near a doubling, where the roots of one and of two periods are close to each other, each of
+  // Newton's steps leaves two thirds of the error.
+  constexpr int kMostSteps = 20, kMostDerivatives = 6, kMostWhileShrinking = 16;
+  constexpr double kShrinking = 0.8;
   double last = 0;
   int derivatives = 0;
   for (int i = 0; i < kMostSteps; ++i) {
@@ -37,7 +40,9 @@ bool Shooting::converge(double enough) {
     if (!(left < 1e9)) return false;
     if (left < enough) return true;
     if (i > 0 && left > 0.2 * last) {
-      if (derivatives >= kMostDerivatives) return false;
+      if (derivatives >= (left < kShrinking * last ? kMostWhileShrinking : kMostDerivatives)) {
+        return false;
+      }
       orbit_.map.reset();
     }
     last = left;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "core/dynamics/periodic_orbit.h"
 
 namespace tribodyn {
@@ -23,6 +25,8 @@ class Shooting {
 
  protected:
   static constexpr int kUnknowns = SectionMap::kUnknowns;
+  /// The floor of the scales, 0.1 N m, is five times this force [N].
+  static constexpr double kLightForce = 1;
 
   /// Keeps the references. Sets the system's torques to the orbit's: nothing of what was tried
   /// before may show in a response.
@@ -38,8 +42,13 @@ class Shooting {
 
   void throw_if_interrupted() const;
   void add_to_unknown(double change);
-  /// Under less load friction is not told per newton [N].
-  double light_load() const { return 1e-3 * mean_force_; }
+  /// Under less load the friction per newton is held constant [N]. Of the torque itself, not of the
+  /// scales, which have a floor.
+  double light_load() const {
+    const double of_torque =
+        std::abs(orbit_.torques.pinion) / system_.mesh().mean_pinion_contact_radius();
+    return 1e-3 * (of_torque < kLightForce ? of_torque : mean_force_);
+  }
   int side() const { return system_.torques().pinion >= 0 ? 1 : -1; }
 
   GearPairSystem& system_;

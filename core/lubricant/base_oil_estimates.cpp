@@ -134,7 +134,10 @@ Estimate estimate_limiting_shear_stress_coefficient(BaseOilClass base_oil) {
   return relative(0.045, 0.5, "assumed, between PAO (0.029) and naphthenic oil (0.083)");
 }
 
-Estimate estimate_limiting_shear_stress_at_zero_pressure() {
+Estimate estimate_limiting_shear_stress_at_zero_pressure(BaseOilClass base_oil) {
+  if (base_oil == BaseOilClass::kNaphthenic) {
+    return {0, 2e6, "Habchi 2010, the naphthenic oil Shell T9: proportional to pressure"};
+  }
   return relative(4e6, 0.5, "Hoglund and Jacobson 1986, PAO at 40 C");
 }
 

@@ -67,8 +67,9 @@ Estimate estimate_thermal_conductivity(BaseOilClass base_oil, double density_15,
 /// and carry 40 %.
 Estimate estimate_limiting_shear_stress_coefficient(BaseOilClass base_oil);
 
-/// tau_L0 [Pa]: 4 MPa, 50 % (Hoglund and Jacobson 1986, PAO at 40 C, as the paper cites it).
-Estimate estimate_limiting_shear_stress_at_zero_pressure();
+/// tau_L0 [Pa]. Naphthenic: 0, as the law of Shell T9 is proportional to pressure (Habchi 2010).
+/// Others: 4 MPa, 50 % (Hoglund and Jacobson 1986, PAO at 40 C, as the paper cites it).
+Estimate estimate_limiting_shear_stress_at_zero_pressure(BaseOilClass base_oil);
 
 /// Temperature at which the rheology is stated where nobody states another [K].
 inline constexpr double kTypicalRheologyTemperature = 343.15;

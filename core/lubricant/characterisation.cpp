@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <iterator>
 
 #include "core/celsius.h"
-#include "core/lubricant/gear_viscosity_grade.h"
+#include "core/lubricant/gross_errors.h"
+#include "core/lubricant/measured_grade.h"
 #include "core/lubricant/viscosity.h"
 #include "core/lubricant/viscosity_index.h"
 #include "core/lubricant/walther_vogel.h"
@@ -34,11 +34,6 @@ class Assembly {
   CharacterisedFluid result() {
     check_measurements();
     check_stated_parameters(fluid_.stated);
-    if (fluid_.base_oil == BaseOilClass::kUnspecified) {
-      warn("BASE_OIL_UNSPECIFIED", "",
-           "The class of base oil is not stated; estimates are for the middle of all lubricating "
-           "oils.");
-    }
     settle_density();
     settle_viscosity();
     out_.lubricant = values_of(out_.parameters);
@@ -47,13 +42,34 @@ class Assembly {
     settle_rheology();
     settle_rest();
     out_.lubricant = values_of(out_.parameters);
+    warn_of_unspecified_base_oil();
     describe();
+    out_.gross_errors = gross_errors(fluid_, out_);
     return std::move(out_);
   }
 
  private:
   void warn(const char* code, const char* parameter, const std::string& sentence) {
     out_.warnings.push_back({code, parameter, sentence});
+  }
+
+  // Only where an estimate depends on the class.
+  void warn_of_unspecified_base_oil() {
+    if (fluid_.base_oil != BaseOilClass::kUnspecified) return;
+    constexpr const char* kByClass[] = {"pressure_viscosity_coefficient",
+                                        "limiting_shear_stress_coefficient", "thermal_conductivity",
+                                        "density_at_zero_kelvin", "density_temperature_slope"};
+    const bool matters =
+        std::any_of(out_.warnings.begin(), out_.warnings.end(), [&](const auto& warning) {
+          return std::find(std::begin(kByClass), std::end(kByClass), warning.parameter) !=
+                 std::end(kByClass);
+        });
+    if (!matters) return;
+    out_.warnings.insert(
+        out_.warnings.begin(),
+        {"BASE_OIL_UNSPECIFIED", "",
+         "The class of base oil is not stated; estimates are for the middle of all lubricating "
+         "oils."});
   }
 
   void check_kinematic(const std::optional<double>& viscosity, const char* field) const {
@@ -147,14 +163,37 @@ class Assembly {
     return density_.density_at_zero_kelvin + density_.slope * temperature;
   }
 
-  void add_kinematic(const std::optional<double>& viscosity, double temperature) {
-    if (!viscosity) return;
-    out_.fitted_points.push_back(
-        {temperature, *viscosity * density_at(temperature), kKinematicUncertainty});
+  void add_viscosity(Measurement measurement, std::size_t row, ViscosityPoint point,
+                     double typical_uncertainty) {
+    if (point.relative_standard_uncertainty == 0) {
+      point.relative_standard_uncertainty = typical_uncertainty;
+    }
+    out_.measured_viscosities.push_back({measurement, row, point});
+  }
+
+  void gather_viscosities() {
+    const auto add_kinematic = [&](Measurement measurement, const std::optional<double>& viscosity,
+                                   double temperature) {
+      if (!viscosity) return;
+      add_viscosity(measurement, 0, {temperature, *viscosity * density_at(temperature), 0},
+                    kKinematicUncertainty);
+    };
+    add_kinematic(Measurement::kKinematicViscosity40, fluid_.kinematic_viscosity_40, kFortyCelsius);
+    add_kinematic(Measurement::kKinematicViscosity100, fluid_.kinematic_viscosity_100,
+                  kHundredCelsius);
+    for (std::size_t i = 0; i < fluid_.viscosities.size(); ++i) {
+      add_viscosity(Measurement::kViscosity, i, fluid_.viscosities[i],
+                    kTypicalViscosityUncertainty);
+    }
+    for (std::size_t i = 0; i < fluid_.cold_viscosities.size(); ++i) {
+      add_viscosity(Measurement::kColdViscosity, i, fluid_.cold_viscosities[i],
+                    kBrookfieldUncertainty);
+    }
   }
 
   void settle_viscosity() {
     Known& p = out_.parameters;
+    gather_viscosities();
     if (stated_set({&Stated::vogel_viscosity_prefactor, &Stated::vogel_temperature_coefficient,
                     &Stated::vogel_reference_temperature},
                    "The three Vogel parameters")) {
@@ -163,40 +202,29 @@ class Assembly {
       p.vogel_reference_temperature = *fluid_.stated.vogel_reference_temperature;
       return;
     }
-    add_kinematic(fluid_.kinematic_viscosity_40, kFortyCelsius);
-    add_kinematic(fluid_.kinematic_viscosity_100, kHundredCelsius);
-    for (const ViscosityPoint& point : fluid_.viscosities) {
-      out_.fitted_points.push_back(point);
-      double& u = out_.fitted_points.back().relative_standard_uncertainty;
-      if (u == 0) u = kTypicalViscosityUncertainty;
-    }
-    for (const ViscosityPoint& point : fluid_.cold_viscosities) {
-      out_.fitted_points.push_back(point);
-      double& u = out_.fitted_points.back().relative_standard_uncertainty;
-      if (u == 0) u = kBrookfieldUncertainty;
-    }
-    if (out_.fitted_points.size() < 2) {
+    const auto& measured = out_.measured_viscosities;
+    if (measured.size() < 2) {
       throw Refusal("FLUID_UNDERDETERMINED",
-                    "A fluid wants viscosities at two temperatures at least, e.g. kinematic ones "
-                    "at 40 and 100 C; " +
-                        std::to_string(out_.fitted_points.size()) + " given.");
+                    "Give viscosities at two or more temperatures, e.g. kinematic ones at 40 and "
+                    "100 C; " +
+                        std::to_string(measured.size()) + " given.");
     }
+    std::vector<ViscosityPoint> points;
+    for (const MeasuredViscosity& each : measured) points.push_back(each.point);
     std::optional<ViscosityTemperatureLine> line;
     if (fluid_.kinematic_viscosity_40 && fluid_.kinematic_viscosity_100) {
       line = viscosity_temperature_line({kFortyCelsius, *fluid_.kinematic_viscosity_40},
                                         {kHundredCelsius, *fluid_.kinematic_viscosity_100});
     }
-    const bool kinematic_alone = line && out_.fitted_points.size() == 2;
+    const bool kinematic_alone = line && points.size() == 2;
     std::string source;
     if (kinematic_alone) {
-      out_.viscosity_fit =
-          fit_vogel_at(out_.fitted_points, walther_reference_temperature(*line, density_),
-                       kWaltherTemperatureUncertainty);
+      out_.viscosity_fit = fit_vogel_at(points, walther_reference_temperature(*line, density_),
+                                        kWaltherTemperatureUncertainty);
       source = "through the kinematic viscosities at 40 and 100 C, T_0 following ASTM D341";
     } else {
-      out_.viscosity_fit = fit_vogel(out_.fitted_points);
-      source =
-          "least squares through " + std::to_string(out_.fitted_points.size()) + " viscosities";
+      out_.viscosity_fit = fitted(points);
+      source = "least squares through " + std::to_string(points.size()) + " viscosities";
     }
     const VogelFit& fit = *out_.viscosity_fit;
     const auto deviation = [&](int i) { return std::sqrt(fit.covariance(i, i)); };
@@ -230,31 +258,40 @@ class Assembly {
     if (line) compare_with_walther(*line, fit);
   }
 
+  VogelFit fitted(const std::vector<ViscosityPoint>& points) const {
+    try {
+      return fit_vogel(points);
+    } catch (const Refusal& refusal) {
+      throw Refusal(refusal.reason(), refusal.what() + likely_slip(out_.measured_viscosities));
+    }
+  }
+
+  // By how much the law is off the measurement: on the basis of the table of residuals.
   void warn_of_misfits(const VogelFit& fit) {
     for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
-      const ViscosityPoint& point = out_.fitted_points[i];
-      const double residual = std::expm1(fit.residuals[i]);
+      const ViscosityPoint& point = out_.measured_viscosities[i].point;
+      const double off = std::expm1(-fit.residuals[i]);
       if (std::abs(fit.residuals[i]) <= kMisfit * point.relative_standard_uncertainty) continue;
       warn("VISCOSITY_MISFIT", "vogel_viscosity_prefactor",
-           "The viscosity at " + celsius(point.temperature) + " lies " +
-               number_text(100 * std::abs(residual)) + " % " + (residual > 0 ? "above" : "below") +
-               " the fitted law, more than three times its uncertainty.");
+           "The fitted law is " + number_text(100 * std::abs(off), 3) + " % " +
+               (off > 0 ? "above" : "below") + " the viscosity measured at " +
+               celsius(point.temperature) + ", more than three times its uncertainty.");
     }
   }
 
   void warn_of_extrapolation() {
     const auto [coldest, warmest] =
-        std::minmax_element(out_.fitted_points.begin(), out_.fitted_points.end(),
-                            [](const ViscosityPoint& a, const ViscosityPoint& b) {
-                              return a.temperature < b.temperature;
+        std::minmax_element(out_.measured_viscosities.begin(), out_.measured_viscosities.end(),
+                            [](const MeasuredViscosity& a, const MeasuredViscosity& b) {
+                              return a.point.temperature < b.point.temperature;
                             });
-    if (coldest->temperature <= kFortyCelsius + 0.5 &&
-        warmest->temperature >= kHundredCelsius - 0.5) {
+    if (coldest->point.temperature <= kFortyCelsius + 0.5 &&
+        warmest->point.temperature >= kHundredCelsius - 0.5) {
       return;
     }
     warn("VISCOSITY_EXTRAPOLATED", "vogel_viscosity_prefactor",
-         "Viscosity was measured from " + celsius(coldest->temperature) + " to " +
-             celsius(warmest->temperature) +
+         "Viscosity was measured from " + celsius(coldest->point.temperature) + " to " +
+             celsius(warmest->point.temperature) +
              "; axle oil works from below 40 to above 100 C, where the law extrapolates.");
   }
 
@@ -363,7 +400,8 @@ class Assembly {
   void settle_rest() {
     settle(&Stated::limiting_shear_stress_at_zero_pressure,
            &Known::limiting_shear_stress_at_zero_pressure, "limiting_shear_stress_at_zero_pressure",
-           1e-6, " MPa", estimate_limiting_shear_stress_at_zero_pressure);
+           1e-6, " MPa",
+           [&] { return estimate_limiting_shear_stress_at_zero_pressure(fluid_.base_oil); });
     settle(&Stated::limiting_shear_stress_coefficient, &Known::limiting_shear_stress_coefficient,
            "limiting_shear_stress_coefficient", 1, "",
            [&] { return estimate_limiting_shear_stress_coefficient(fluid_.base_oil); });
@@ -388,15 +426,7 @@ class Assembly {
     }
     const std::optional<double>& sheared = fluid_.sheared_kinematic_viscosity_100;
     const std::optional<double> for_grade = sheared ? sheared : fluid_.kinematic_viscosity_100;
-    std::vector<ViscosityPoint> cold = fluid_.cold_viscosities;
-    std::copy_if(fluid_.viscosities.begin(), fluid_.viscosities.end(), std::back_inserter(cold),
-                 [](const ViscosityPoint& point) { return point.temperature < kZeroCelsius; });
-    out_.grade = gear_viscosity_grade(for_grade, cold);
-    if (!sheared && !out_.grade.designation.empty()) {
-      out_.grade.note += (out_.grade.note.empty() ? "" : " ");
-      out_.grade.note +=
-          "By the fresh oil: the limits at 100 C hold after the 20 h KRL shear test (CEC L-45).";
-    }
+    out_.grade = measured_grade(fluid_, out_);
     out_.temperature_of_150_pascal_seconds =
         kColdViscosityLimit > fluid.vogel_viscosity_prefactor
             ? temperature_of_viscosity(fluid, kColdViscosityLimit)

@@ -31,6 +31,30 @@ struct FluidMeasurements {
   LubricantParameters<std::optional<KnownParameter>> stated;
 };
 
+/// Which of a fluid's measurements something is about.
+enum class Measurement {
+  kKinematicViscosity40,
+  kKinematicViscosity100,
+  kShearedKinematicViscosity100,
+  kViscosity,      ///< a row of `viscosities`
+  kColdViscosity,  ///< a row of `cold_viscosities`
+};
+
+/// A measured viscosity as a dynamic one, with a typical uncertainty where none is stated.
+struct MeasuredViscosity {
+  Measurement measurement;
+  std::size_t row;  ///< of its table; 0 for a single number
+  ViscosityPoint point;
+};
+
+/// A measurement that cannot be right (gross_errors.h).
+struct GrossError {
+  std::string code;  ///< stable UPPER_SNAKE_CASE
+  Measurement measurement;
+  std::size_t row;  ///< of its table; 0 for a single number
+  std::string sentence;
+};
+
 struct CharacterisationWarning {
   std::string code;  ///< stable UPPER_SNAKE_CASE, listed at characterise()
   std::string
@@ -50,10 +74,13 @@ struct CharacterisedFluid {
   LubricantParameters<KnownParameter> parameters;  ///< the same, with where each comes from
   std::vector<CharacterisationWarning> warnings;   ///< every assumption, none silent
 
-  /// The fit; empty when the Vogel parameters were stated. Rows of the residuals: kinematic
-  /// viscosities at 40 C and at 100 C where given, then viscosities, then cold_viscosities.
+  /// Kinematic viscosities at 40 C and at 100 C where given, then viscosities, then
+  /// cold_viscosities.
+  std::vector<MeasuredViscosity> measured_viscosities;
+  /// The fit to them, a residual each; empty when the Vogel parameters were stated.
   std::optional<VogelFit> viscosity_fit;
-  std::vector<ViscosityPoint> fitted_points;  ///< the rows themselves, as dynamic viscosities
+  /// Measurements that cannot be right. A fluid that has any is not to be stored.
+  std::vector<GrossError> gross_errors;
 
   /// -10 to 150 C in steps of 10 K where both laws exist, for a fluid with kinematic viscosities at
   /// 40 and 100 C.
@@ -78,11 +105,14 @@ struct CharacterisedFluid {
 /// (kinematic ones times density; 0.5 % for D445, 1 % for dynamic viscosities, 5 % for Brookfield
 /// where no uncertainty is stated; assumed).
 ///
-/// Warnings: BASE_OIL_UNSPECIFIED, PARAMETER_ESTIMATED (one per parameter), ESTIMATE_OUT_OF_RANGE,
-/// DENSITY_ESTIMATED, EXPANSION_ESTIMATED, VOGEL_REFERENCE_TEMPERATURE_ASSUMED,
-/// VISCOSITY_EXTRAPOLATED (nothing measured at or below 40 C, or at or above 100 C),
-/// VISCOSITY_MISFIT (naming the row), VISCOSITY_INDEX_UNDEFINED, TEMPERATURE_ASSUMED (of a stated
-/// alpha* or lambda).
+/// Warnings: BASE_OIL_UNSPECIFIED (and an estimate depends on it), PARAMETER_ESTIMATED (one per
+/// parameter), ESTIMATE_OUT_OF_RANGE, DENSITY_ESTIMATED, EXPANSION_ESTIMATED,
+/// VOGEL_REFERENCE_TEMPERATURE_ASSUMED, VISCOSITY_EXTRAPOLATED (nothing measured at or below 40 C,
+/// or at or above 100 C), VISCOSITY_MISFIT (naming the row), VISCOSITY_INDEX_UNDEFINED,
+/// TEMPERATURE_ASSUMED (of a stated alpha* or lambda).
+///
+/// A measured viscosity beyond the limit of VISCOSITY_CONTRADICTED (gross_errors.h) earns no W
+/// grade.
 ///
 /// Throws Refusal FLUID_UNDERDETERMINED (not two viscosities, nor a stated Vogel law),
 /// PARAMETER_INCOMPLETE (part of a set stated), PARAMETER_OUT_OF_RANGE (stated and not finite or of

@@ -22,7 +22,7 @@ enum class HistoryColumn {
   kPinionFrictionTorque,              ///< [N m]
   kGearFrictionTorque,                ///< [N m]
   kMeshLossPower,                     ///< sum V_s F_fr [W]
-  kInefficiency,                      ///< eq 30, instantaneous [%]
+  kInefficiency,                      ///< eq 30, instantaneous, of the power that comes in [%]
   kFlankLoad,                         ///< from here on: one column per slot [N]
   kFlankFriction,                     ///< [N]
   kFlankViscousFriction,              ///< [N]

@@ -6,8 +6,15 @@
 namespace tribodyn {
 namespace {
 
+/// 0 without a torque at the pinion, as then no inefficiency is told.
+double inefficiency(const Torques& torques, const double* y, double loss_power) {
+  const double speed = y[kPinionShaftSpeed];
+  const double power = input_torque(torques, y[kWheelSpeed] / speed) * speed;
+  return torques.pinion != 0 && power > 0 ? 100 * loss_power / power : 0;
+}
+
 double whole_value(HistoryColumn column, double phase, const double* y, const Instant& at,
-                   double pinion_torque) {
+                   const Torques& torques) {
   switch (column) {
     case HistoryColumn::kTime:
       return y[kTime];
@@ -38,9 +45,7 @@ double whole_value(HistoryColumn column, double phase, const double* y, const In
     case HistoryColumn::kMeshLossPower:
       return at.loss_power;
     case HistoryColumn::kInefficiency:
-      return pinion_torque == 0
-                 ? 0
-                 : 100 * at.loss_power / std::abs(pinion_torque * y[kPinionShaftSpeed]);
+      return inefficiency(torques, y, at.loss_power);
     default:
       return 0;
   }
@@ -95,7 +100,7 @@ HistorySampler::HistorySampler(const HistoryRequest& request) : request_(request
 }
 
 void HistorySampler::add(double phase, const double* state, const Instant& at,
-                         double pinion_torque) {
+                         const Torques& torques) {
   std::size_t slot = 0;
   for (const HistoryColumn column : request_.columns) {
     if (is_per_flank(column)) {
@@ -103,7 +108,7 @@ void HistorySampler::add(double phase, const double* state, const Instant& at,
         history_.values[slot++].push_back(flank_value(column, k, at));
       }
     } else {
-      history_.values[slot++].push_back(whole_value(column, phase, state, at, pinion_torque));
+      history_.values[slot++].push_back(whole_value(column, phase, state, at, torques));
     }
   }
   ++next_;

@@ -13,7 +13,7 @@ class HistorySampler {
   bool wanted() const { return !request_.columns.empty() && next_ < total_; }
   /// Mesh phase of the next sample, cycles since the start of the record.
   double next_phase() const { return static_cast<double>(next_) / request_.samples_per_mesh_cycle; }
-  void add(double phase, const double* state, const Instant& at, double pinion_torque);
+  void add(double phase, const double* state, const Instant& at, const Torques& torques);
   /// Fills what is still wanted with copies of the first `cycles` mesh cycles, `period` [s] later
   /// each time.
   void repeat_first_cycles(int cycles, double period);

@@ -11,12 +11,12 @@
 namespace tribodyn {
 namespace {
 
-constexpr double kMargin = 2.5;  // factor on the change that shafts are estimated to make
+constexpr double kShaftMargin = 2.5;  // factor on the change that shafts are estimated to make
 // Shafts move where periods double by some 2 % in speed.
 constexpr double kNearDoublingOfOneDegree = 0.1;
-constexpr double kMostGrowth = 0.5;    // see InertialCorrection
-constexpr double kLeastForce = 0.2;    // smallest over mean mesh force, with shafts
-constexpr double kMostOfForce = 0.25;  // change of the mesh force over its mean
+constexpr double kMostShaftGrowth = 0.5;     // see InertialCorrection
+constexpr double kLeastForceOnShafts = 0.2;  // smallest over mean mesh force, with shafts
+constexpr double kMostOfForce = 0.25;        // change of the mesh force over its mean
 
 /// A motion at one mesh phase, and what follows from it.
 struct Place {
@@ -88,7 +88,8 @@ std::vector<Place> corrected(const GearPairSystem& system, std::vector<Place> pl
   return places;
 }
 
-/// Of a mesh cycle; as torque the mean of all that is lost, over the speed.
+/// Of a mesh cycle; as torque the mean of all that is lost, over the speed. The loss is per speed
+/// of the pinion's shaft, in coast too: what shafts change is compared, and the wheel hardly moves.
 OrbitFigures figures_of(const GearPairSystem& system, const std::vector<Place>& places,
                         double shaft_damping_power, double mean_pinion_speed) {
   OrbitFigures out;
@@ -131,7 +132,7 @@ double one_degree_model_error(GearPairSystem& system, MeshGrids& grids, const Or
   const std::vector<Place> alone = places_of(system, grid, orbit);
   const TwoRotorMotion motion = motion_of(system, alone);
   const ShaftCorrection change = shaft_correction(system, speed, motion);
-  if (!(change.growth < kMostGrowth)) return kUnknown;
+  if (!(change.growth < kMostShaftGrowth)) return kUnknown;
   const std::vector<Place> with_shafts = corrected(system, alone, change);
 
   double mean = 0, least = 1e300, largest_change = 0;
@@ -142,7 +143,8 @@ double one_degree_model_error(GearPairSystem& system, MeshGrids& grids, const Or
     least = std::min({least, before, after});
     largest_change = std::max(largest_change, std::abs(after - before));
   }
-  if (!(least > kLeastForce * mean) || !(largest_change < kMostOfForce * mean)) return kUnknown;
+  if (!(least > kLeastForceOnShafts * mean) || !(largest_change < kMostOfForce * mean))
+    return kUnknown;
 
   OrbitFigures before = figures_of(system, alone, 0, speed);
   OrbitFigures after = figures_of(system, with_shafts, change.shaft_damping_power, speed);
@@ -152,7 +154,7 @@ double one_degree_model_error(GearPairSystem& system, MeshGrids& grids, const Or
                                                  : 1;
   after.torque = torque + ratio * (after.torque - before.torque);
   before.torque = torque;
-  return kMargin * after.distance(before);
+  return kShaftMargin * after.distance(before);
 }
 
 }  // namespace tribodyn

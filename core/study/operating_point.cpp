@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -9,6 +10,7 @@
 #include "core/number_text.h"
 #include "core/refusal.h"
 #include "core/study/history_sampler.h"
+#include "core/study/march_plan.h"
 #include "core/study/model_choice.h"
 #include "core/study/one_degree.h"
 #include "core/study/operating_target.h"
@@ -18,54 +20,10 @@
 #include "core/study/range_warnings.h"
 #include "core/study/recorded_march.h"
 #include "core/study/response_record.h"
+#include "core/study/unused_tolerance.h"
 
 namespace tribodyn {
 namespace {
-
-constexpr double kLargeVibrationDeflection = 60e-6;  // [m]
-
-/// The quasi-static response at mesh phase 0: its torques leave little for the march to settle.
-MarchState point_start(GearPairSystem& system, const FlankContactBatch& contacts, MeshGrids& grids,
-                       const OperatingTarget& target, const PointOptions& options, double offset) {
-  QuasiStaticRequest request = quasi_static_request(target, options);
-  request.tolerance = 1e-3;
-  FrictionPerLoad friction;
-  if (auto start = solve_quasi_static(system, contacts, grids, request)) {
-    friction = start->orbit.friction.at(0);
-  } else {
-    throw_if_refused(system);
-    system.set_torques(target.torques);
-  }
-  const double load =
-      std::abs(system.torques().pinion) / system.mesh().functions(0, 0).pinion_contact_radius;
-  // Under hardly any load friction may be anything: a start needs none.
-  if (!(std::abs(friction.pinion) * load < 0.5 * std::abs(system.torques().pinion))) friction = {};
-  return static_start(system, target.mean_pinion_speed, friction.pinion * load,
-                      friction.gear * load, offset);
-}
-
-/// The neighbour's steady state, its wind-up and speeds moved to this point.
-MarchState carried_start(const GearPairSystem& system, const CarriedState& from,
-                         double mean_pinion_speed) {
-  const MeshData& mesh = system.mesh();
-  const DrivelineDynamics& d = system.dynamics();
-  const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
-  SectionState section = from.section_state;
-  const double pinion = system.torques().pinion - from.pinion_torque;
-  const double wheel = system.torques().wheel - from.wheel_torque;
-  section.pinion_shaft_twist += pinion / d.pinion_shaft_stiffness;
-  section.gear_shaft_twist += wheel / d.gear_shaft_stiffness;
-  section.mesh_deflection +=
-      pinion / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
-  const double speed = mean_pinion_speed - from.mean_pinion_speed;
-  section.pinion_shaft_speed += speed;
-  section.pinion_speed += speed;
-  section.gear_speed += ratio * speed;
-  section.wheel_speed += ratio * speed;
-  MarchState state{};
-  system.to_march(section, state.data());
-  return state;
-}
 
 SolverStatistics statistics_of(const SteadyState& s) {
   SolverStatistics out;
@@ -78,11 +36,6 @@ SolverStatistics statistics_of(const SteadyState& s) {
   out.periodicity_defect = s.defect;
   out.largest_multiplier = s.largest_multiplier;
   return out;
-}
-
-/// Of the march's steps; no looser than the figures' tolerance allows.
-double march_tolerance(const PointOptions& options) {
-  return std::clamp(1e-3 * options.tolerance, 1e-11, options.relative_tolerance);
 }
 
 PointResult empty_result(const OperatingTarget& target, PointModel model) {
@@ -108,15 +61,15 @@ PointModel dynamic_model(const GearPairSystem& system) {
 }
 
 PointResult solve_by_marching(GearPairSystem& system, const OperatingTarget& target,
-                              const PointOptions& options, const MarchState& start,
-                              int first_period, const HistoryRequest& history_request) {
+                              const PointOptions& options, const MarchPlan& plan,
+                              const HistoryRequest& history_request) {
   SteadyStateRequest request;
-  request.first_period = first_period;
+  request.first_period = plan.first_period;
   request.mean_pinion_speed = target.mean_pinion_speed;
   request.solve_wheel_torque = target.solve_wheel_torque;
   request.march.relative_tolerance = march_tolerance(options);
   request.tolerance = std::min(0.1 * options.tolerance, options.settling_tolerance);
-  request.maximum_mesh_cycles = options.maximum_mesh_cycles;
+  request.maximum_mesh_cycles = plan.maximum_mesh_cycles;
   request.progress = options.progress;
   double reported = 0;
   if (options.progress) {
@@ -126,7 +79,7 @@ PointResult solve_by_marching(GearPairSystem& system, const OperatingTarget& tar
     };
     request.march.interrupted = [&] { return !options.progress(reported); };
   }
-  const SteadyState steady = solve_steady_state(system, start, request);
+  const SteadyState steady = solve_steady_state(system, plan.start, request);
 
   PointResult out = empty_result(target, dynamic_model(system));
   out.settled = steady.settled;
@@ -153,6 +106,7 @@ PointResult solve_by_marching(GearPairSystem& system, const OperatingTarget& tar
   out.power_balance.stored = end_energy - system.stored_energy(0, steady.state.data());
   out.section_state = system.to_section(steady.state.data());
   out.history = history.take();
+  if (plan.why_so_short && !steady.settled) out.warnings.push_back(*plan.why_so_short);
   return out;
 }
 
@@ -187,8 +141,9 @@ std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Opera
 /// As refine_orbit(), the estimate with that of the model's own error.
 std::optional<RefinedOrbit> shoot(GearPairSystem& system, const FlankContactBatch& contacts,
                                   MeshGrids& grids, const OrbitSearch& search,
-                                  MarchStatistics& statistics, long& marched_cycles) {
-  auto found = refine_orbit(system, contacts, grids, search, statistics, marched_cycles);
+                                  MarchStatistics& statistics, long& marched_cycles,
+                                  std::optional<Rattle>& rattle) {
+  auto found = refine_orbit(system, contacts, grids, search, statistics, marched_cycles, rattle);
   if (found && !system.has_shafts()) {
     found->estimated_error += one_degree_model_error(system, grids, search, *found);
   }
@@ -220,13 +175,14 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
                                              const OperatingTarget& target,
                                              const PointOptions& options, PointStart start,
                                              const std::optional<CarriedState>& from,
-                                             const HistoryRequest& history_request) {
+                                             const HistoryRequest& history_request,
+                                             std::optional<Rattle>& rattle) {
   const std::optional<OrbitSearch> search = search_from(system, target, options, start, from);
   if (!search) return std::nullopt;
   MarchStatistics statistics;
   long cycles = 0;
   const std::optional<RefinedOrbit> refined =
-      shoot(system, contacts, grids, *search, statistics, cycles);
+      shoot(system, contacts, grids, *search, statistics, cycles, rattle);
   if (!refined) return std::nullopt;
   const PeriodicOrbit& orbit = refined->orbit;
 
@@ -255,7 +211,7 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
                                   MeshGrids& grids, const OperatingTarget& target,
                                   const PointOptions& options) {
   system.set_torques(target.torques);
-  point_start(system, contacts, grids, target, options, 0);
+  point_start(system, contacts, grids, target, options, PointStart::kQuasiStatic);
   throw Refusal(
       "NOT_FOUND_BY_SHOOTING",
       "method = SHOOTING finds no response, or none that surely attracts, at a mean "
@@ -304,8 +260,9 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactB
 }  // namespace
 
 PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,
-                                  const PointOptions& options) {
-  PreparedScene prepared(scene);
+                                  const PointOptions& options,
+                                  std::shared_ptr<PreparedGearSet> gear_set) {
+  PreparedScene prepared(scene, std::move(gear_set));
   return solve_prepared_point(prepared, condition, options);
 }
 
@@ -334,6 +291,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       PointResult result;
       MeshGrids& grids = gear_set.grids();
       std::optional<QuasiStaticAnswer> chosen;
+      std::optional<Rattle> rattle;
       if (options.model == PointModel::kQuasiStatic) {
         result = solve_quasi_static_point(system, contacts, grids, target, options);
       } else if (may_choose(options, from) &&
@@ -342,21 +300,16 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       } else if (std::optional<PointResult> shot;
                  options.method != SteadyStateMethod::kMarch &&
                  (shot = solve_by_shooting(system, contacts, grids, target, options, start, from,
-                                           history))) {
+                                           history, rattle))) {
         result = *std::move(shot);
       } else if (options.method == SteadyStateMethod::kShooting) {
         refuse_shooting(system, contacts, grids, target, options);
       } else {
-        system.set_torques(target.torques);
         // Together they are solved to 1e-10.
         if (march_tolerance(options) >= 1e-9) system.solve_together(&contacts);
-        const MarchState state =
-            from
-                ? carried_start(system, *from, target.mean_pinion_speed)
-                : point_start(system, contacts, grids, target, options,
-                              start == PointStart::kLargeVibration ? kLargeVibrationDeflection : 0);
-        const int first_period = from ? std::max(1, from->period) : 1;
-        result = solve_by_marching(system, target, options, state, first_period, history);
+        const MarchPlan plan =
+            plan_march(system, contacts, grids, target, options, start, from, rattle);
+        result = solve_by_marching(system, target, options, plan, history);
       }
       result.statistics.mesh_cycles += spent.mesh_cycles;
       result.statistics.right_hand_sides += spent.right_hand_sides;
@@ -399,7 +352,12 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
                           (scene.gear_set.pinion_teeth * result.mean_pinion_speed);
     result.statistics.slowest_decay_rate = -std::log(multiplier) / period;
   }
+  std::vector<RangeWarning> of_the_march = std::move(result.warnings);
   result.warnings = range_warnings(scene, result);
+  std::move(of_the_march.begin(), of_the_march.end(), std::back_inserter(result.warnings));
+  if (auto unused = unused_march_tolerance(options, result)) {
+    result.warnings.push_back(*std::move(unused));
+  }
   return result;
 }
 
@@ -423,7 +381,9 @@ PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit
   PointFigures out;
   const OrbitFigures& f = orbit.figures;
   const double turned = orbit.period * system.cycle_angle();
-  const double torque = std::abs(orbit.torques.pinion);
+  const double torque =
+      input_torque(orbit.torques, static_cast<double>(system.mesh().pinion_teeth()) /
+                                      static_cast<double>(system.mesh().gear_teeth()));
   out.pinion_torque = orbit.torques.pinion;
   out.wheel_torque = orbit.torques.wheel;
   out.inefficiency_rms = 100 * f.loss_rms / torque;
@@ -475,7 +435,8 @@ PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condi
       if (step_errors == StepErrors::kByReference) {
         search->references = &gear_set.reference_orbits(system.driveline());
       }
-      found = shoot(system, contacts, gear_set.grids(), *search, statistics, cycles);
+      std::optional<Rattle> rattle;
+      found = shoot(system, contacts, gear_set.grids(), *search, statistics, cycles, rattle);
     }
     if (found) return figures_of(system, found->orbit, found->estimated_error, target);
   }

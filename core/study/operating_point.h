@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -77,8 +78,10 @@ struct PointOptions {
   bool probe_coexisting_response = false;     ///< also settle from the other start and compare
   SteadyStateMethod method = SteadyStateMethod::kAutomatic;
   /// Wanted relative error of both inefficiencies, the torque and the extremes of the transmission
-  /// error [1e-8, 1e-2]. The march below never settles for more than it allows.
+  /// error [1e-8, 1e-2]: whichever model and method answers.
   double tolerance = 1e-3;
+  /// Only a march reads the next two, and takes less where `tolerance` asks for it. A point that
+  /// was not marched warns of one that is not the default (MARCH_TOLERANCE_UNUSED).
   double relative_tolerance = 1e-7;  ///< of the march, per step [1e-11, 1e-3]
   double settling_tolerance =
       1e-6;  ///< relative change of the response per period that counts as settled
@@ -123,8 +126,8 @@ struct SolverStatistics {
 
 /// Work over the recorded steady state [J]; input = output + losses + stored + parametric.
 struct PowerBalance {
-  double input = 0;          ///< T_s dphi_s
-  double output = 0;         ///< T_w dphi_w
+  double input = 0;          ///< T_s dphi_s; in coast negative: what comes out
+  double output = 0;         ///< T_w dphi_w; in coast negative: what comes in
   double friction = 0;       ///< flank friction
   double shaft_damping = 0;  ///< c_t1, c_t2
   double mesh_damping = 0;   ///< c xdot^2
@@ -146,7 +149,8 @@ struct CoexistingResponse {
   bool contact_loss = false;
 };
 
-/// A point of the inefficiency curve. SI units; inefficiencies in percent of the input power.
+/// A point of the inefficiency curve. SI units; inefficiencies in percent of the power that comes
+/// in: at the pinion in drive, at the wheel in coast (T_s < 0).
 /// What is lost here is mesh (conjunctional) power: bearings, churning and seals are not in it.
 struct PointResult {
   double vehicle_speed = 0;      ///< [m/s]
@@ -154,10 +158,13 @@ struct PointResult {
   double mesh_frequency = 0;     ///< [Hz]
   double pinion_torque = 0;      ///< T_s [N m]
   double wheel_torque = 0;       ///< T_w [N m]
-  double input_power = 0;        ///< mean T_s phidot_s [W]
+  /// Mean power that comes in [W], >= 0: T_s phidot_s, in coast -T_w phidot_w. Where neither gives
+  /// power out, friction takes all of it and power comes in at both.
+  double input_power = 0;
 
-  std::optional<double> inefficiency_rms;  ///< eq 30, RMS over time [%]; absent at no input power
-  std::optional<double> inefficiency_energy_mean;  ///< loss energy / input energy [%]
+  /// Eq 30 over the power that comes in, RMS over time [%]; absent where T_s = 0.
+  std::optional<double> inefficiency_rms;
+  std::optional<double> inefficiency_energy_mean;  ///< loss energy / energy that comes in [%]
   double mesh_loss_power = 0;                      ///< mean [W]
   double mesh_loss_torque = 0;                     ///< mesh_loss_power / mean pinion speed [N m]
   double viscous_loss_power = 0;                   ///< [W]
@@ -205,8 +212,11 @@ inline CarriedState carried_from(const PointResult& r) {
 
 /// Solves one operating point. Throws Refusal (reasons: contact_status_name, NO_FORWARD_ROTATION,
 /// WORK_LIMIT, ...) or Cancelled.
+/// `gear_set`: that of the scene where it is prepared already, as PreparedScene takes it; null: it
+/// is prepared here. The result is the same bits either way.
 PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,
-                                  const PointOptions& options);
+                                  const PointOptions& options,
+                                  std::shared_ptr<PreparedGearSet> gear_set = nullptr);
 /// The same bits, for many points of one scene.
 PointResult solve_prepared_point(PreparedScene& scene, const OperatingCondition& condition,
                                  const PointOptions& options);

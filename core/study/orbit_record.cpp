@@ -59,7 +59,7 @@ void sample_orbit(GearPairSystem& system, const PeriodicOrbit& orbit, const Solv
     const int intervals = system.mesh().intervals();
     system.set_interval(std::clamp(static_cast<int>(inside * intervals), 0, intervals - 1));
     system.evaluate(inside, at.data(), instant);
-    history.add(phase, at.data(), instant, system.torques().pinion);
+    history.add(phase, at.data(), instant, system.torques());
   }
   history.repeat_first_cycles(orbit.period, orbit.pieces.back().end[kTime]);
   system.regime = orbit.regime;

@@ -7,6 +7,7 @@
 
 #include "core/dynamics/orbit_solver.h"
 #include "core/dynamics/steady_state.h"
+#include "core/dynamics/tapping_start.h"
 #include "core/numerics/square.h"
 #include "core/refusal.h"
 #include "core/study/grid_comparison.h"
@@ -21,16 +22,8 @@ constexpr double kNearDoubling = 0.06;
 constexpr double kLittlePull = 0.2;     // of the mean force
 constexpr double kMarchedDoubt = 1e-4;  // about multipliers by the march
 constexpr int kMostFailures = 3;
-
-/// Oscillations of the mesh on its mean stiffness in a mesh cycle.
-double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed) {
-  const MeshData& mesh = system.mesh();
-  const DrivelineDynamics& d = system.dynamics();
-  const double compliance = square(mesh.mean_pinion_contact_radius()) / d.pinion_inertia +
-                            square(mesh.mean_gear_contact_radius()) / d.gear_inertia;
-  return std::sqrt(mesh.mean_mesh_stiffness() * compliance) /
-         (mean_pinion_speed * mesh.pinion_teeth());
-}
+constexpr int kTapSteps = 40;            // of a mesh cycle: a tap lasts for some percent of it
+constexpr int kStepsPerOscillation = 7;  // show its height to some percent; fewer show nothing
 
 /// Multipliers under lagged friction are good to 3e-3, and better where a period is short: what
 /// comes nearer to 1 may repel.
@@ -84,9 +77,8 @@ class Refinement {
   }
 
   std::optional<RefinedOrbit> run() {
-    // Seven steps for an oscillation tell its height to some percent; fewer tell nothing.
     const double least =
-        std::max(7 * mesh_oscillations(system_, search_.mean_pinion_speed),
+        std::max(kStepsPerOscillation * mesh_oscillations(system_, search_.mean_pinion_speed),
                  search_.tolerance < kLooseTolerance || !search_.try_contact_first ? 24.0 : 12.0);
     if (least > kMostSteps) return std::nullopt;
     if (search_.references != nullptr && search_.tolerance >= kLooseTolerance) {
@@ -121,13 +113,16 @@ class Refinement {
   /// To both sides in turn: where a doubled response is near.
   bool doubles() const { return doubles_; }
 
+  const Torques& torques() const { return orbit_.torques; }
+
   /// Beside the one that repels, off to where it repels to: by half of the mean deflection of the
-  /// mesh. Nearer, hundreds of cycles may lead back to it.
+  /// mesh; nearer, hundreds of cycles may lead back to it. Where flanks stay together, by enough to
+  /// part them: until then the motion is linear, and leaves no faster than the multiplier says.
   MarchState beside_repelling() const {
-    constexpr double kOff = 0.5;
+    const double off = orbit_.contact_loss ? 0.5 : 1.2;
     const MarchScales scales = march_scales(system_, search_.mean_pinion_speed);
     const auto direction = orbit_.map->alternating_disturbance();
-    const double share = kOff / std::max(std::abs(direction(kWinding - 1)), kOff);
+    const double share = off / std::max(std::abs(direction(kWinding - 1)), 0.5);
     MarchState out = orbit_.pieces.front().start;
     for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
       out[i] += share * direction(i - 1) * scales.of(system_.mesh(), i);
@@ -194,6 +189,10 @@ class Refinement {
                                                 : std::max(5 * search_.tolerance, 1e-4);
     bool found = request_.keep_contact && find_in_contact(grid);
     if (is_over_) return false;
+    if (is_tapping_ && !coarser_.is_possible()) {
+      if (grid.steps() < kTapSteps) return false;
+      start_tapping(grid);
+    }
     if (!found) found = find_anywhere(grid);
     if (is_over_) return false;
     if (found && coarser_.is_possible()) found = sweep_on(grid);
@@ -217,17 +216,32 @@ class Refinement {
     request_.keep_contact = false;
     orbit_.moved_from_map = std::numeric_limits<double>::infinity();  // it knows no gap
     coarser_.clear();
-    if (!solved || is_over_ || orbit_.least_pressing_force < -kLittlePull) return false;
-    if (solver_.solve(grid, request_, orbit_)) return true;
-    is_over_ = system_.take_refusal() != ContactStatus::kOk;
+    if (is_over_) return false;
+    if (solved && orbit_.least_pressing_force >= -kLittlePull) {
+      if (solver_.solve(grid, request_, orbit_)) return true;
+      is_over_ = system_.take_refusal() != ContactStatus::kOk;
+      if (is_over_) return false;
+    }
+    start_tapping(grid);
     return false;
+  }
+
+  /// From where flanks tap each other, if the load is so light that they must: from the static
+  /// equilibrium they are thrown far into the backlash, and so light a load takes hundreds of mesh
+  /// cycles to bring them back.
+  void start_tapping(const MeshGrid& grid) {
+    system_.set_torques(origin_.torques);
+    const auto start = tapping_start(system_, grid, search_.mean_pinion_speed);
+    if (!start) return;
+    origin_.state = *start;
+    is_tapping_ = true;
   }
 
   /// Newton's method leads to the response that is near, if need be on another grid; others are
   /// found by patience.
   bool find_anywhere(const MeshGrid& grid) {
     const bool is_last = failures_ + 1 == kMostFailures;
-    for (const int cycles : {search_.few_cycles, search_.first_cycles}) {
+    for (const int cycles : {is_tapping_ ? 0 : search_.few_cycles, search_.first_cycles}) {
       if (!coarser_.is_possible()) cycles_left_ -= cycles * search_.period;
       if (cycles_left_ < 0) {
         system_.take_refusal();
@@ -318,20 +332,36 @@ class Refinement {
   GridComparison coarser_;
   int failures_ = 0;
   double doubtful_pull_ = kClearPull;  // of the mean force: as little may be the steps' error
+  bool is_tapping_ = false;            // at the start
   bool is_over_ = false, repels_ = false, doubles_ = false;
   std::optional<double> marched_multiplier_;
 };
 
 }  // namespace
 
+double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed) {
+  const MeshData& mesh = system.mesh();
+  const DrivelineDynamics& d = system.dynamics();
+  const double compliance = square(mesh.mean_pinion_contact_radius()) / d.pinion_inertia +
+                            square(mesh.mean_gear_contact_radius()) / d.gear_inertia;
+  return std::sqrt(mesh.mean_mesh_stiffness() * compliance) /
+         (mean_pinion_speed * mesh.pinion_teeth());
+}
+
+bool oscillates_too_often(double mesh_oscillations) {
+  return kStepsPerOscillation * mesh_oscillations > kMostSteps;
+}
+
 std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
                                          MeshGrids& grids, const OrbitSearch& search,
-                                         MarchStatistics& statistics, long& marched_cycles) {
+                                         MarchStatistics& statistics, long& marched_cycles,
+                                         std::optional<Rattle>& rattle) {
   constexpr int kLongestPeriod = 4;
   OrbitSearch next = search;
   int cycles_left = search.maximum_mesh_cycles;
   OrbitSolver solver(system, contacts, statistics, marched_cycles);
   const Torques torques = system.torques();
+  std::optional<Rattle> beside;
   for (bool patient = false;; patient = true) {
     system.set_torques(torques);
     const auto refinement_now = [&] {
@@ -349,13 +379,20 @@ std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankCont
       if (!shorter) break;
       found = std::move(shorter);
     }
-    if (found || (patient && !repels) || 2 * next.period > kLongestPeriod) return found;
+    if (found) return found;
+    // A doubled response that repels too, and a longer one that does as well or is not there after
+    // hundreds of cycles: none repeats.
+    if (repels && next.period > 1) rattle = beside;
+    if ((patient && !repels) || 2 * next.period > kLongestPeriod) return found;
     if (!search.patient) return found;
     // Periods double where a response begins to repel, and a branch may end between neighbours: to
     // what follows patience leads.
     if (repels) {
       next.period *= 2;
-      if (refinement.doubles()) next.start = refinement.beside_repelling();
+      if (refinement.doubles()) {
+        next.start = refinement.beside_repelling();
+        beside = {next.start, refinement.torques()};
+      }
     }
     if (!repels && search.try_contact_first) return found;
     next.try_contact_first = false;

@@ -25,6 +25,13 @@ struct OrbitSearch {
   std::function<bool()> interrupted;
 };
 
+/// What is known of a motion that repeats in no period looked for: the responses that were found
+/// surely repel, at the longest period too.
+struct Rattle {
+  MarchState start{};  ///< at mesh phase 0, beside a response that repels
+  Torques torques;     ///< of that response
+};
+
 struct RefinedOrbit {
   PeriodicOrbit orbit;
   int steps_per_mesh_cycle = 0;
@@ -36,12 +43,20 @@ struct RefinedOrbit {
   double estimated_error = 0;
 };
 
+/// Oscillations of the mesh on its mean stiffness in a mesh cycle.
+double mesh_oscillations(const GearPairSystem& system, double mean_pinion_speed);
+
+/// More of them than refine_orbit() has steps for.
+bool oscillates_too_often(double mesh_oscillations);
+
 /// An attracting periodic response on a sequence of step lengths, each shorter than the one before,
 /// until the estimated error is below the tolerance. None where shooting does not converge, the
 /// response repels or nearly so, or the tolerance asks for more than the shortest steps: marching
-/// decides then. Adds to `statistics`.
+/// decides then: `rattle` says where from if the march will not settle either. Adds to
+/// `statistics`.
 std::optional<RefinedOrbit> refine_orbit(GearPairSystem& system, const FlankContactBatch& contacts,
                                          MeshGrids& grids, const OrbitSearch& search,
-                                         MarchStatistics& statistics, long& marched_cycles);
+                                         MarchStatistics& statistics, long& marched_cycles,
+                                         std::optional<Rattle>& rattle);
 
 }  // namespace tribodyn

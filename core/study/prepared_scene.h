@@ -41,13 +41,11 @@ class PreparedGearSet {
 /// reference.
 class PreparedScene {
  public:
-  /// Throws Refusal as FlankContactModel and PreparedGearSet do.
-  explicit PreparedScene(const Scene& scene);
-  /// With a gear set that other scenes use too; it must be that of the scene, of the same solid and
-  /// options.
-  PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set);
-  PreparedScene(const Scene&&) = delete;
-  PreparedScene(const Scene&&, std::shared_ptr<PreparedGearSet>) = delete;
+  /// `gear_set`: one that other scenes use too; it must be that of the scene, of the same solid and
+  /// options. Null: it is prepared here. Throws Refusal as FlankContactModel and PreparedGearSet
+  /// do.
+  explicit PreparedScene(const Scene& scene, std::shared_ptr<PreparedGearSet> gear_set = nullptr);
+  explicit PreparedScene(const Scene&&, std::shared_ptr<PreparedGearSet> = nullptr) = delete;
 
   const Scene& scene() const { return scene_; }
   const FlankContactBatch& contacts() const { return contacts_; }

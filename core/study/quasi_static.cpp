@@ -299,7 +299,7 @@ void sample_quasi_static(GearPairSystem& system, QuasiStatic& solution, double m
       if (!(load > 0)) break;
       friction = {at.pinion_friction_torque / load, at.gear_friction_torque / load};
     }
-    history.add(phase, y.data(), at, system.torques().pinion);
+    history.add(phase, y.data(), at, system.torques());
   }
   history.repeat_first_cycles(1, system.cycle_angle() / mean_pinion_speed);
 }

@@ -44,7 +44,7 @@ void record_response(GearPairSystem& system, const SteadyState& steady, int cycl
       const double theta = (place->progress(inside) - step.start) / step.length;
       const auto at = step.at(std::clamp(theta, 0.0, 1.0));
       probe.evaluate(inside, at.data(), samples[0]);
-      history.add(cycle + inside, at.data(), samples[0], system.torques().pinion);
+      history.add(cycle + inside, at.data(), samples[0], system.torques());
     }
   };
   for (; cycle < cycles || history.wanted(); ++cycle) {

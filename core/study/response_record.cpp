@@ -101,7 +101,8 @@ void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
   const double time = y[kTime];
   out.pinion_torque = torques.pinion;
   out.wheel_torque = torques.wheel;
-  out.input_power = torques.pinion * y[kPinionShaftAngle] / time;
+  const double input = input_torque(torques, y[kWheelAngle] / y[kPinionShaftAngle]);
+  out.input_power = input * y[kPinionShaftAngle] / time;
   out.mesh_frequency = cycles / time;
   out.mesh_loss_power = y[kLossWork] / time;
   for (int k = 0; k < kFlankPairs; ++k) {
@@ -110,10 +111,10 @@ void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
     out.boundary_loss_power += out.flank_losses[k].boundary;
   }
   out.mesh_loss_torque = out.mesh_loss_power / out.mean_pinion_speed;
-  if (std::abs(out.input_power) > 1e-9 * (std::abs(out.input_power) + out.mesh_loss_power) &&
-      out.input_power != 0) {
-    out.inefficiency_rms = 100 / std::abs(torques.pinion) * std::sqrt(y[kLossShareSquared] / time);
-    out.inefficiency_energy_mean = 100 * out.mesh_loss_power / std::abs(out.input_power);
+  // Without a pinion torque the flanks float, and what turns them is not known.
+  if (torques.pinion != 0 && out.input_power > 1e-9 * out.mesh_loss_power) {
+    out.inefficiency_rms = 100 / input * std::sqrt(y[kLossShareSquared] / time);
+    out.inefficiency_energy_mean = 100 * out.mesh_loss_power / out.input_power;
   }
   if (y[kViscousForceSquared] > 0) {
     out.boundary_to_viscous_friction_ratio =

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/gear/gear_set.h"
+#include "core/lubricant/fluid_grounds.h"
 #include "core/lubricant/lubricant.h"
 #include "core/model_options.h"
 #include "core/surface/surface.h"
@@ -19,6 +20,7 @@ struct Scene {
   double sump_temperature;        ///< T_b [K]
   double inlet_temperature_rise;  ///< eq 14 [K]
   ModelOptions options;
+  FluidGrounds fluid_grounds = {};
 };
 
 }  // namespace tribodyn

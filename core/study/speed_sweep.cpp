@@ -27,11 +27,15 @@ double distance(const PointResult& a, const PointResult& b) {
   return larger > 0 ? std::abs(swing(a) - swing(b)) / larger : 0;
 }
 
+/// Whether flanks part in both or in neither, and both repeat after as many mesh cycles. Responses
+/// of two kinds are on two branches, or their branch changes its kind in between without a jump.
+bool of_one_kind(const PointResult& a, const PointResult& b) {
+  return a.contact_loss == b.contact_loss && a.period_in_mesh_cycles == b.period_in_mesh_cycles;
+}
+
 bool may_be_branches(const PointResult& a, const PointResult& b) {
   constexpr double kFar = 0.3;
-  return a.settled && b.settled &&
-         (a.contact_loss != b.contact_loss || a.period_in_mesh_cycles != b.period_in_mesh_cycles ||
-          distance(a, b) > kFar);
+  return a.settled && b.settled && (!of_one_kind(a, b) || distance(a, b) > kFar);
 }
 
 constexpr double kNear = 0.1;           // what is on one branch goes on like that
@@ -45,6 +49,13 @@ struct Bracket {
   double gone_at;    // [m/s]
   long cycles_left;  // to march, where shooting cannot tell
 };
+
+/// Whether a response found in between is on the branch rather than with the response beyond. Over
+/// a wide step swings of one branch may differ more than those of two: the kind tells first.
+bool is_on_branch(const Bracket& bracket, const PointResult& found) {
+  if (of_one_kind(found, bracket.before) && !of_one_kind(found, bracket.beyond)) return true;
+  return distance(bracket.before, found) <= distance(found, bracket.beyond);
+}
 
 /// Looks for the branch at a speed. False where it goes on to the response beyond.
 bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOptions options,
@@ -61,8 +72,11 @@ bool narrow_at(PreparedScene& scene, double ascent_angle, double speed, PointOpt
     bracket.cycles_left -= found.statistics.mesh_cycles;
   }
   const double first = distance(bracket.before, found), second = distance(found, bracket.beyond);
-  if (found.settled && std::max(first, second) < kNear) return false;
-  if (found.settled && first <= second) {
+  if (found.settled && of_one_kind(bracket.before, bracket.beyond) &&
+      std::max(first, second) < kNear) {
+    return false;
+  }
+  if (found.settled && is_on_branch(bracket, found)) {
     bracket.before = std::move(found);
     return true;
   }
@@ -155,7 +169,8 @@ std::optional<BranchEnd> branch_end(PreparedScene& scene, double ascent_angle, P
 
 std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehicle_speeds,
                                     double ascent_angle, const SweepOptions& options,
-                                    const std::function<void(const SweepPoint&)>& on_point) {
+                                    const std::function<void(const SweepPoint&)>& on_point,
+                                    const std::shared_ptr<PreparedGearSet>& gear_set) {
   std::sort(vehicle_speeds.begin(), vehicle_speeds.end());
   vehicle_speeds.erase(std::unique(vehicle_speeds.begin(), vehicle_speeds.end()),
                        vehicle_speeds.end());
@@ -165,8 +180,9 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
   std::optional<PreparedScene> prepared;
   std::vector<SweepPoint> out;
   PointOptions point = options.point;
-  // A branch is followed from point to point.
-  if (point.model == PointModel::kAutomatic) point.model = PointModel::kFull;
+  const bool follows = !options.independent_points;
+  // Only the full model has branches to follow.
+  if (follows && point.model == PointModel::kAutomatic) point.model = PointModel::kFull;
   const double count = static_cast<double>(vehicle_speeds.size());
   for (const double speed : vehicle_speeds) {
     const double done = static_cast<double>(out.size());
@@ -178,10 +194,11 @@ std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehi
     SweepPoint next;
     next.vehicle_speed = speed;
     try {
-      if (!prepared) prepared.emplace(scene);
+      if (!prepared) prepared.emplace(scene, gear_set);
       next.result = solve_prepared_point(*prepared, cruise(speed, ascent_angle), point);
-      point.carried_state = carried_from(*next.result);
-      if (!out.empty() && out.back().result && may_be_branches(*out.back().result, *next.result)) {
+      if (follows) point.carried_state = carried_from(*next.result);
+      if (follows && !out.empty() && out.back().result &&
+          may_be_branches(*out.back().result, *next.result)) {
         next.branch_end =
             branch_end(*prepared, ascent_angle, point, *out.back().result, *next.result);
       }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,7 +14,13 @@ enum class SweepDirection { kUp, kDown };
 
 struct SweepOptions {
   SweepDirection direction = SweepDirection::kUp;
-  PointOptions point;  ///< start and progress apply to the first point and to the whole sweep
+  /// Start and model apply to the first point, or to every point of independent ones; progress to
+  /// the whole sweep.
+  PointOptions point;
+  /// Each point is solved alone, from its own start: the same bits as solve_operating_point gives.
+  /// No branch is followed and no end of a branch is looked for, which takes most of a sweep's
+  /// time.
+  bool independent_points = false;
 };
 
 /// Where the branch that a sweep follows ends, as at a fold: the response jumps. In the sweep's
@@ -36,13 +43,17 @@ struct SweepPoint {
 };
 
 /// Cruise points over `vehicle_speeds` [m/s], visited in the order of the direction, each started
-/// from the steady state before it. Where neighbours differ like two branches, the speed is halved
-/// in between until a jump is located or there is none, by the points' method: by shooting first
-/// and then, where that cannot tell, by some hundred mesh cycles of marching at a speed; by either
-/// alone where it is asked for. By kShooting alone no end is told that it does not see beyond.
-/// Returned in ascending speed. `on_point` is called after each.
+/// from the steady state before it (but see SweepOptions::independent_points). Where two neighbours
+/// may be on different branches, the speed is halved in between until a jump is located or there is
+/// none. That is so where flanks part at one of the neighbours only, where the period differs, or
+/// where the swing of the transmission error differs by 30 %; a branch that is left and found again
+/// between two neighbours is not noticed. The points' method is used: by kAutomatic shooting first,
+/// and where shooting cannot tell some hundred mesh cycles of marching at a speed. By kShooting
+/// alone no end is told that shooting does not see beyond. Returned in ascending speed. `on_point`
+/// is called after each. `gear_set`: as of solve_operating_point.
 std::vector<SweepPoint> sweep_speed(const Scene& scene, std::vector<double> vehicle_speeds,
                                     double ascent_angle, const SweepOptions& options,
-                                    const std::function<void(const SweepPoint&)>& on_point = {});
+                                    const std::function<void(const SweepPoint&)>& on_point = {},
+                                    const std::shared_ptr<PreparedGearSet>& gear_set = nullptr);
 
 }  // namespace tribodyn

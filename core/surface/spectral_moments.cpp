@@ -35,7 +35,9 @@ void refuse_unusable_profile(std::span<const double> heights, double spacing) {
   if (!wrong.empty()) throw Refusal("PROFILE_UNUSABLE", "The profile cannot be used." + wrong);
 }
 
-std::vector<double> levelled(std::span<const double> heights, Levelling levelling) {
+}  // namespace
+
+std::vector<double> levelled_profile(std::span<const double> heights, Levelling levelling) {
   const double count = static_cast<double>(heights.size());
   double mean = 0;
   for (const double z : heights) mean += z / count;
@@ -54,12 +56,10 @@ std::vector<double> levelled(std::span<const double> heights, Levelling levellin
   return result;
 }
 
-}  // namespace
-
 SpectralMoments spectral_moments(std::span<const double> heights, double spacing,
                                  Levelling levelling) {
   refuse_unusable_profile(heights, spacing);
-  const std::vector<double> z = levelled(heights, levelling);
+  const std::vector<double> z = levelled_profile(heights, levelling);
   double squared_heights = 0;
   for (const double height : z) squared_heights += height * height;
   double squared_slopes = 0;
@@ -79,6 +79,11 @@ SpectralMoments spectral_moments(std::span<const double> heights, double spacing
                   "that a spectral moment is not finite.");
   }
   return moments;
+}
+
+double wave_length_in_spacings(const SpectralMoments& moments, double spacing) {
+  const double half_angle = std::atan(0.5 * spacing * std::sqrt(moments.m4 / moments.m2));
+  return std::numbers::pi / half_angle;
 }
 
 SpectralMoments equivalent_isotropic_moments(const SpectralMoments& axial,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/model_options.h"
 #include "core/surface/surface.h"
@@ -20,6 +21,9 @@ enum class Levelling {
   kLeastSquaresLine,  ///< the least-squares line: also removes the tilt of the specimen
 };
 
+/// The profile without its mean height or its least-squares line.
+std::vector<double> levelled_profile(std::span<const double> heights, Levelling levelling);
+
 /// Eq 45 from a profile sampled at equal spacing:
 ///
 ///   m0 = mean z^2,   m2 = mean (dz/dx)^2,   m4 = mean (d2z/dx2)^2.
@@ -35,6 +39,16 @@ enum class Levelling {
 /// Source: J. I. McCool, Wear 107 (1986) 37-60.
 SpectralMoments spectral_moments(std::span<const double> heights, double spacing,
                                  Levelling levelling = Levelling::kMean);
+
+/// Length of the waves that make up slopes and curvatures of a profile sampled at `spacing` [m], in
+/// spacings: 2 pi/q of the wave whose m2 and m4, as spectral_moments() forms them, are in the
+/// profile's ratio, tan(q/2) = dx sqrt(m4/m2)/2. White noise has 3.
+double wave_length_in_spacings(const SpectralMoments& moments, double spacing);
+
+/// A profile of shorter waves is noise of the instrument, or was not filtered: its asperities are
+/// those of the sampling. ISO 3274 samples five times or more in the cut-off wave length lambda_s;
+/// even white noise has waves of 5.3 spacings after that filter, and 3 without one.
+inline constexpr double kLeastSpacingsPerWave = 4;
 
 /// Eq 46, the isotropic surface equivalent to an anisotropic one measured along the axial and the
 /// radial direction: m0 is the arithmetic mean, m2 and m4 are the geometric means sqrt(m_a m_r).

@@ -82,17 +82,19 @@ int port_of(int listener) {
   return ntohs(reinterpret_cast<const sockaddr_in*>(&name.storage)->sin_port);
 }
 
-/// Descriptors are handed out lowest first, so a high one says that few are left.
-int highest_descriptor() {
+/// The system hands out descriptors lowest first, so that a high one means that many are open.
+int highest_descriptor(int maximum_connections) {
   rlimit limit{};
   getrlimit(RLIMIT_NOFILE, &limit);
   const auto most = static_cast<int>(std::min<rlim_t>(limit.rlim_cur, 1 << 30));
-  return std::max(most - kReservedDescriptors, most / 2);
+  return std::min(std::max(most - kReservedDescriptors, most / 2),
+                  maximum_connections + kReservedDescriptors);
 }
 
 }  // namespace
 
-Acceptor::Acceptor(const ListenAddress& address) : address_(address) {
+Acceptor::Acceptor(const ListenAddress& address, int maximum_connections)
+    : address_(address), maximum_connections_(maximum_connections) {
   SocketName name = socket_name(address_);
   if (address_.is_unix()) clear_socket_path(address_.socket_path, name);
   listener_ = open_socket(name);
@@ -129,7 +131,7 @@ void Acceptor::stop() {
 }
 
 void Acceptor::run(const Take& take) const {
-  const int highest = highest_descriptor();
+  const int highest = highest_descriptor(maximum_connections_);
   bool scarce = false;
   for (;;) {
     pollfd events[] = {{listener_, POLLIN, 0}, {wake_, POLLIN, 0}};
@@ -141,7 +143,7 @@ void Acceptor::run(const Take& take) const {
       scarce = false;
       take(listener_, connection);
     } else if (connection >= 0 || none_left) {
-      if (!scarce) spdlog::warn("file descriptors are scarce: connections are turned away");
+      if (!scarce) spdlog::warn("too many connections are open: further ones are turned away");
       scarce = true;
       if (connection >= 0) close(connection);
       if (none_left) std::this_thread::sleep_for(kPause);

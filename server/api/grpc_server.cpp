@@ -7,18 +7,25 @@
 
 #include <chrono>
 
+#include "server/api/protobuf_log.h"
+#include "server/convert/request_limits.h"
+
 namespace tribodyn::server {
 namespace {
 
 using ExternalConnections = grpc::experimental::ExternalConnectionAcceptor;
 
-constexpr int kMaximumRequestBytes = 64 << 20;  // a batch of 10,000 lubricants with provenance
-constexpr int kMaximumResponseBytes = 16 << 20;
+/// What gRPC may hold for all connections: two of the largest requests, and open streams. Beyond it
+/// gRPC ends calls with RESOURCE_EXHAUSTED.
+constexpr std::size_t kGrpcBytes = 2 * kMaximumRequestBytes + (32 << 20);
 constexpr int kMaximumStreamsPerConnection = 1000;
 constexpr std::size_t kMaximumOpenStreams = 10'000;
 constexpr int kMaximumReflectionThreads = 16;   // reflection is gRPC's only blocking service here
 constexpr int kHandshakeMilliseconds = 10'000;  // who connects and stays silent goes
 constexpr int kIdleMilliseconds = 600'000;      // without any call; clients connect again unseen
+/// An older connection takes no new call, and clients connect again unseen; it is closed once a
+/// stream could have ended. So no request that never arrives whole is kept for good.
+constexpr int kConnectionAgeMilliseconds = 3'600'000;
 constexpr auto kShutdownGrace = std::chrono::seconds(1);
 
 }  // namespace
@@ -28,6 +35,7 @@ GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
     : acceptor_(address),
       live_(kMaximumOpenStreams),
       services_(grpc_services(application, live_, limits)) {
+  log_protobuf_reports();
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
@@ -38,10 +46,14 @@ GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaximumStreamsPerConnection);
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMilliseconds);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleMilliseconds);
-  builder.SetMaxReceiveMessageSize(kMaximumRequestBytes);
-  builder.SetMaxSendMessageSize(kMaximumResponseBytes);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, kConnectionAgeMilliseconds);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS,
+                             static_cast<int>((limits.stream + limits.call).count()));
+  builder.SetMaxReceiveMessageSize(static_cast<int>(kMaximumRequestBytes));
+  builder.SetMaxSendMessageSize(static_cast<int>(kMaximumResponseBytes));
   grpc::ResourceQuota quota("tribodynd");
   quota.SetMaxThreads(kMaximumReflectionThreads);
+  quota.Resize(kGrpcBytes);
   builder.SetResourceQuota(quota);
   builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);  // else one a processor
   for (const auto& each : services_) builder.RegisterService(each.get());

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <string_view>
@@ -14,6 +15,9 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr auto kLimit = std::chrono::seconds(1);
+/// For the first byte of a request, which a scraper sends at once: connections are answered one
+/// after the other, and one that stays silent keeps all others waiting for so long.
+constexpr auto kSilenceLimit = std::chrono::milliseconds(100);
 constexpr std::size_t kLongestRequest = 8192;
 
 /// False when the socket is not ready for it in time.
@@ -28,6 +32,8 @@ bool is_ready(int connection, short event, steady_clock::time_point end) {
 std::string read_head(int connection, steady_clock::time_point end) {
   std::string head;
   std::array<char, 1024> part{};
+  if (!is_ready(connection, POLLIN, std::min(end, steady_clock::now() + kSilenceLimit)))
+    return head;
   while (head.find("\r\n\r\n") == std::string::npos && head.size() < kLongestRequest &&
          is_ready(connection, POLLIN, end)) {
     const ssize_t count = recv(connection, part.data(), part.size(), 0);
@@ -58,6 +64,7 @@ MetricsListener::MetricsListener(const ListenAddress& address, std::function<std
 void MetricsListener::answer(int connection) const {
   const steady_clock::time_point end = steady_clock::now() + kLimit;
   const std::string head = read_head(connection, end);
+  if (head.empty()) return;
   const bool is_head = head.starts_with("HEAD ");
   const bool is_known = head.starts_with(is_head ? "HEAD /metrics " : "GET /metrics ");
   const std::string body = is_known ? text_() : "GET /metrics\n";

@@ -9,7 +9,8 @@
 namespace tribodyn::server {
 
 /// Answers GET and HEAD /metrics over HTTP/1.0, one connection after the other, each within a
-/// second: enough for a scraper. Its thread runs until the destructor.
+/// second, and closes one that sends nothing within 100 ms: enough for a scraper. Its thread runs
+/// until the destructor.
 class MetricsListener {
  public:
   /// Throws ListenError. `text` is called on the thread.

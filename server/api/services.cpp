@@ -1,37 +1,62 @@
 #include "server/api/services.h"
 
+#include <grpcpp/impl/codegen/proto_utils.h>
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+
 #include <algorithm>
 #include <chrono>
+#include <functional>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
+#include "server/api/byte_budget.h"
+#include "server/api/contract_service.h"
 #include "server/api/grpc_status.h"
+#include "server/api/read_request.h"
 #include "server/api/stream_reactor.h"
 #include "server/api/workers.h"
 #include "server/app/contacts.h"
+#include "server/app/guard.h"
 #include "server/app/imports.h"
+#include "server/app/log_text.h"
 #include "server/app/resources.h"
 #include "server/app/schemas.h"
 #include "server/app/simulations.h"
 #include "server/app/streams.h"
+#include "server/convert/request_limits.h"
 #include "server/store/deadline.h"
-#include "tribodyn/v1/contacts.grpc.pb.h"
-#include "tribodyn/v1/gear_sets.grpc.pb.h"
-#include "tribodyn/v1/lubricants.grpc.pb.h"
-#include "tribodyn/v1/schemas.grpc.pb.h"
-#include "tribodyn/v1/simulations.grpc.pb.h"
-#include "tribodyn/v1/surfaces.grpc.pb.h"
-#include "tribodyn/v1/vehicles.grpc.pb.h"
 
 namespace tribodyn::server {
 namespace {
 
+using Bytes = grpc::ByteBuffer;
 using Context = grpc::CallbackServerContext;
 using Unary = grpc::ServerUnaryReactor;
+using google::protobuf::MethodDescriptor;
+using google::protobuf::ServiceDescriptor;
 using std::chrono::system_clock;
 
 constexpr char kClientMetadata[] = "tribodyn-client";
 constexpr std::size_t kLongestClient = 100;
 constexpr int kWorkers = 8;  // more only wait for the processors
+/// Bytes of requests, of those above kUsualRequestBytes, that are worked on at a time: two of the
+/// largest.
+constexpr std::size_t kRequestBytesAtATime = 2 * kMaximumRequestBytes;
+constexpr int kBusySeconds = 2;  // most batches end sooner
+
+/// What all calls share.
+struct Serving {
+  Serving(Application& its_application, const TimeLimits& its_limits, LiveStreams& its_live)
+      : application(its_application), limits(its_limits), live(its_live) {}
+
+  Application& application;
+  const TimeLimits limits;
+  LiveStreams& live;
+  ByteBudget budget{kRequestBytesAtATime, kUsualRequestBytes};
+  Workers workers{kWorkers};
+};
 
 /// What its client and the server still allow of a call. A limit of nothing leaves nothing,
 /// whatever happens between two looks at the clock.
@@ -42,338 +67,250 @@ system_clock::duration time_left(const Context& context, std::chrono::millisecon
 /// The client that the call names, else its connection.
 Caller caller(const Context& context) {
   const auto named = context.client_metadata().find(kClientMetadata);
-  if (named == context.client_metadata().end()) return {context.peer()};
-  std::string name(named->second.data(), std::min(named->second.size(), kLongestClient));
-  // It goes into the log, where a line is made of words.
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c <= ' ' || c > '~' || c == '='; }, '_');
-  return {name};
+  if (named == context.client_metadata().end()) {
+    // Of a Unix socket the peer is a path that the client chose.
+    return {log_word(context.peer(), kLongestClient)};
+  }
+  return {log_word({named->second.data(), named->second.size()}, kLongestClient)};
 }
 
-/// Bodies of unary methods, each under its deadline.
-class UnaryService {
+/// Which thread answers.
+enum class Thread {
+  kOfGrpc,
+  kOfAWorker,  ///< what waits for the disk
+};
+
+struct UnaryMethod {
+  const MethodDescriptor& descriptor;
+  Thread thread;
+  std::function<Outcome<Bytes>(Bytes& request, const Context& context)> answer;
+};
+
+/// Answers a call under its deadline and within the budget for large requests.
+void finish(const UnaryMethod& method, Serving& serving, const Context& context, Unary& reactor,
+            Bytes& request, Bytes& response) {
+  const DeadlineScope deadline(DeadlineScope::Clock::now() +
+                               time_left(context, serving.limits.call));
+  Outcome<Bytes> outcome = guarded<Bytes>([&]() -> Outcome<Bytes> {
+    if (DeadlineScope::has_passed()) return deadline_exceeded();
+    const auto lease = serving.budget.take(request.Length());
+    if (!lease) {
+      return exhausted("other large requests are being worked on; try again in 2 s", kBusySeconds);
+    }
+    return method.answer(request, context);
+  });
+  request.Clear();
+  if (!outcome.ok()) return reactor.Finish(to_grpc(outcome.error()));
+  response = outcome.message();
+  reactor.Finish(grpc::Status::OK);
+}
+
+template <class Request, class Response, class Body>
+Outcome<Bytes> answer_bytes(const MethodDescriptor& method, Bytes& bytes, const Body& body) {
+  Request request;
+  if (auto refused = read_request(method, bytes, request)) return *std::move(refused);
+  Outcome<Response> outcome = body(request);
+  if (!outcome.ok()) return outcome.error();
+  Bytes out;
+  bool is_own = false;
+  const grpc::Status status =
+      grpc::SerializationTraits<Response>::Serialize(outcome.message(), &out, &is_own);
+  if (status.ok()) return out;
+  return internal_error("an answer cannot be serialised: " + status.error_message());
+}
+
+/// Binds the methods of a service to their bodies.
+class Binder {
  public:
-  UnaryService(Application& application, const TimeLimits& limits)
-      : application_(application), limit_(limits.call) {}
+  Binder(std::shared_ptr<Serving> serving, const google::protobuf::Descriptor& message,
+         const char* service)
+      : serving_(std::move(serving)),
+        descriptor_(*message.file()->FindServiceByName(service)),
+        service_(std::make_unique<ContractService>()) {}
 
- protected:
-  template <class Message, class Body>
-  Unary* answer(Context* context, Message* response, const Body& body) const {
-    Unary* reactor = context->DefaultReactor();
-    finish(context, reactor, response, body);
-    return reactor;
+  template <class Request, class Response>
+  void unary(const char* name, Outcome<Response> (*body)(Application&, const Request&),
+             Thread thread = Thread::kOfGrpc) {
+    const MethodDescriptor& method = checked<Request, Response>(name);
+    add({method, thread, [serving = serving_.get(), &method, body](Bytes& bytes, const Context&) {
+           return answer_bytes<Request, Response>(method, bytes, [&](const Request& request) {
+             return body(serving->application, request);
+           });
+         }});
   }
 
-  /// The same by a worker, of what waits for the disk.
-  template <class Message, class Body>
-  Unary* answer_later(Workers& workers, Context* context, Message* response,
-                      const Body& body) const {
-    Unary* reactor = context->DefaultReactor();
-    workers.run([=, this] { finish(context, reactor, response, body); });
-    return reactor;
+  template <class Request, class Response>
+  void unary(const char* name,
+             Outcome<Response> (*body)(Application&, const Request&, const Caller&),
+             Thread thread) {
+    const MethodDescriptor& method = checked<Request, Response>(name);
+    add({method, thread,
+         [serving = serving_.get(), &method, body](Bytes& bytes, const Context& context) {
+           return answer_bytes<Request, Response>(method, bytes, [&](const Request& request) {
+             return body(serving->application, request, caller(context));
+           });
+         }});
   }
 
-  Application& application_;
+  template <class Message, class Request>
+  void stream(const char* name, StreamOutcome<Message> (*open)(Application&, const Request&)) {
+    const MethodDescriptor& method = checked<Request, Message>(name);
+    const auto open_bytes = [serving = serving_.get(), &method,
+                             open](Bytes& bytes) -> StreamOutcome<Message> {
+      Request request;
+      if (auto refused = read_request(method, bytes, request)) return *std::move(refused);
+      return open(serving->application, request);
+    };
+    service_->add_stream(
+        method, [serving = serving_, open_bytes](Context* context, const Bytes* request) {
+          const auto open_request = [&] {
+            return guarded<typename StreamReactor<Message>::Source>(
+                [&] { return open_bytes(const_cast<Bytes&>(*request)); });
+          };
+          return StreamReactor<Message>::start(serving->live, *context,
+                                               time_left(*context, serving->limits.stream),
+                                               serving->limits.unread, open_request);
+        });
+  }
+
+  /// Throws std::logic_error if a method has no body.
+  std::unique_ptr<grpc::Service> service() {
+    if (service_->size() != descriptor_.method_count()) {
+      throw std::logic_error("methods without a body in " + descriptor_.full_name());
+    }
+    return std::move(service_);
+  }
 
  private:
-  template <class Message, class Body>
-  void finish(Context* context, Unary* reactor, Message* response, const Body& body) const {
-    const DeadlineScope deadline(DeadlineScope::Clock::now() + time_left(*context, limit_));
-    Outcome<Message> outcome =
-        DeadlineScope::has_passed() ? Outcome<Message>(deadline_exceeded()) : body();
-    if (outcome.ok()) {
-      *response = std::move(outcome.message());
-      reactor->Finish(grpc::Status::OK);
-    } else {
-      reactor->Finish(to_grpc(outcome.error()));
+  template <class Request, class Response>
+  const MethodDescriptor& checked(const char* name) const {
+    const MethodDescriptor* method = descriptor_.FindMethodByName(name);
+    if (method == nullptr || method->input_type() != Request::descriptor() ||
+        method->output_type() != Response::descriptor()) {
+      throw std::logic_error(std::string("the contract has no such method: ") + name);
     }
+    return *method;
   }
 
-  const std::chrono::milliseconds limit_;
-};
-
-class LubricantsService final : public v1::Lubricants::CallbackService, UnaryService {
- public:
-  using UnaryService::UnaryService;
-  Unary* CreateLubricant(Context* context, const v1::CreateLubricantRequest* request,
-                         v1::Lubricant* response) override {
-    return answer(context, response, [&] { return create_lubricant(application_, *request); });
-  }
-  Unary* BatchCreateLubricants(Context* context, const v1::BatchCreateLubricantsRequest* request,
-                               v1::BatchCreateLubricantsResponse* response) override {
-    return answer(context, response,
-                  [&] { return batch_create_lubricants(application_, *request); });
-  }
-  Unary* ImportLubricant(Context* context, const v1::ImportLubricantRequest* request,
-                         v1::Lubricant* response) override {
-    return answer(context, response, [&] { return import_lubricant(application_, *request); });
-  }
-  Unary* GetLubricant(Context* context, const v1::GetLubricantRequest* request,
-                      v1::Lubricant* response) override {
-    return answer(context, response, [&] { return get_lubricant(application_, *request); });
-  }
-  Unary* ListLubricants(Context* context, const v1::ListLubricantsRequest* request,
-                        v1::ListLubricantsResponse* response) override {
-    return answer(context, response, [&] { return list_lubricants(application_, *request); });
-  }
-  Unary* UpdateLubricant(Context* context, const v1::UpdateLubricantRequest* request,
-                         v1::Lubricant* response) override {
-    return answer(context, response, [&] { return update_lubricant(application_, *request); });
-  }
-  Unary* BatchUpdateLubricants(Context* context, const v1::BatchUpdateLubricantsRequest* request,
-                               v1::BatchUpdateLubricantsResponse* response) override {
-    return answer(context, response,
-                  [&] { return batch_update_lubricants(application_, *request); });
-  }
-  Unary* ListLubricantRevisions(Context* context, const v1::ListLubricantRevisionsRequest* request,
-                                v1::ListLubricantRevisionsResponse* response) override {
-    return answer(context, response,
-                  [&] { return list_lubricant_revisions(application_, *request); });
-  }
-  Unary* DeleteLubricant(Context* context, const v1::DeleteLubricantRequest* request,
-                         v1::Lubricant* response) override {
-    return answer(context, response, [&] { return delete_lubricant(application_, *request); });
-  }
-  Unary* UndeleteLubricant(Context* context, const v1::UndeleteLubricantRequest* request,
-                           v1::Lubricant* response) override {
-    return answer(context, response, [&] { return undelete_lubricant(application_, *request); });
-  }
-};
-
-class GearSetsService final : public v1::GearSets::CallbackService, UnaryService {
- public:
-  using UnaryService::UnaryService;
-  Unary* CreateGearSet(Context* context, const v1::CreateGearSetRequest* request,
-                       v1::GearSet* response) override {
-    return answer(context, response, [&] { return create_gear_set(application_, *request); });
-  }
-  Unary* BatchCreateGearSets(Context* context, const v1::BatchCreateGearSetsRequest* request,
-                             v1::BatchCreateGearSetsResponse* response) override {
-    return answer(context, response,
-                  [&] { return batch_create_gear_sets(application_, *request); });
-  }
-  Unary* ImportGearSet(Context* context, const v1::ImportGearSetRequest* request,
-                       v1::GearSet* response) override {
-    return answer(context, response, [&] { return import_gear_set(application_, *request); });
-  }
-  Unary* GetGearSet(Context* context, const v1::GetGearSetRequest* request,
-                    v1::GearSet* response) override {
-    return answer(context, response, [&] { return get_gear_set(application_, *request); });
-  }
-  Unary* ListGearSets(Context* context, const v1::ListGearSetsRequest* request,
-                      v1::ListGearSetsResponse* response) override {
-    return answer(context, response, [&] { return list_gear_sets(application_, *request); });
-  }
-  Unary* UpdateGearSet(Context* context, const v1::UpdateGearSetRequest* request,
-                       v1::GearSet* response) override {
-    return answer(context, response, [&] { return update_gear_set(application_, *request); });
-  }
-  Unary* BatchUpdateGearSets(Context* context, const v1::BatchUpdateGearSetsRequest* request,
-                             v1::BatchUpdateGearSetsResponse* response) override {
-    return answer(context, response,
-                  [&] { return batch_update_gear_sets(application_, *request); });
-  }
-  Unary* ListGearSetRevisions(Context* context, const v1::ListGearSetRevisionsRequest* request,
-                              v1::ListGearSetRevisionsResponse* response) override {
-    return answer(context, response,
-                  [&] { return list_gear_set_revisions(application_, *request); });
-  }
-  Unary* DeleteGearSet(Context* context, const v1::DeleteGearSetRequest* request,
-                       v1::GearSet* response) override {
-    return answer(context, response, [&] { return delete_gear_set(application_, *request); });
-  }
-  Unary* UndeleteGearSet(Context* context, const v1::UndeleteGearSetRequest* request,
-                         v1::GearSet* response) override {
-    return answer(context, response, [&] { return undelete_gear_set(application_, *request); });
-  }
-};
-
-class SurfacesService final : public v1::Surfaces::CallbackService, UnaryService {
- public:
-  using UnaryService::UnaryService;
-  Unary* CreateSurface(Context* context, const v1::CreateSurfaceRequest* request,
-                       v1::Surface* response) override {
-    return answer(context, response, [&] { return create_surface(application_, *request); });
-  }
-  Unary* BatchCreateSurfaces(Context* context, const v1::BatchCreateSurfacesRequest* request,
-                             v1::BatchCreateSurfacesResponse* response) override {
-    return answer(context, response, [&] { return batch_create_surfaces(application_, *request); });
-  }
-  Unary* ImportSurfaceProfiles(Context* context, const v1::ImportSurfaceProfilesRequest* request,
-                               v1::Surface* response) override {
-    return answer(context, response,
-                  [&] { return import_surface_profiles(application_, *request); });
-  }
-  Unary* GetSurface(Context* context, const v1::GetSurfaceRequest* request,
-                    v1::Surface* response) override {
-    return answer(context, response, [&] { return get_surface(application_, *request); });
-  }
-  Unary* ListSurfaces(Context* context, const v1::ListSurfacesRequest* request,
-                      v1::ListSurfacesResponse* response) override {
-    return answer(context, response, [&] { return list_surfaces(application_, *request); });
-  }
-  Unary* UpdateSurface(Context* context, const v1::UpdateSurfaceRequest* request,
-                       v1::Surface* response) override {
-    return answer(context, response, [&] { return update_surface(application_, *request); });
-  }
-  Unary* BatchUpdateSurfaces(Context* context, const v1::BatchUpdateSurfacesRequest* request,
-                             v1::BatchUpdateSurfacesResponse* response) override {
-    return answer(context, response, [&] { return batch_update_surfaces(application_, *request); });
-  }
-  Unary* ListSurfaceRevisions(Context* context, const v1::ListSurfaceRevisionsRequest* request,
-                              v1::ListSurfaceRevisionsResponse* response) override {
-    return answer(context, response,
-                  [&] { return list_surface_revisions(application_, *request); });
-  }
-  Unary* DeleteSurface(Context* context, const v1::DeleteSurfaceRequest* request,
-                       v1::Surface* response) override {
-    return answer(context, response, [&] { return delete_surface(application_, *request); });
-  }
-  Unary* UndeleteSurface(Context* context, const v1::UndeleteSurfaceRequest* request,
-                         v1::Surface* response) override {
-    return answer(context, response, [&] { return undelete_surface(application_, *request); });
-  }
-};
-
-class VehiclesService final : public v1::Vehicles::CallbackService, UnaryService {
- public:
-  using UnaryService::UnaryService;
-  Unary* CreateVehicle(Context* context, const v1::CreateVehicleRequest* request,
-                       v1::Vehicle* response) override {
-    return answer(context, response, [&] { return create_vehicle(application_, *request); });
-  }
-  Unary* BatchCreateVehicles(Context* context, const v1::BatchCreateVehiclesRequest* request,
-                             v1::BatchCreateVehiclesResponse* response) override {
-    return answer(context, response, [&] { return batch_create_vehicles(application_, *request); });
-  }
-  Unary* GetVehicle(Context* context, const v1::GetVehicleRequest* request,
-                    v1::Vehicle* response) override {
-    return answer(context, response, [&] { return get_vehicle(application_, *request); });
-  }
-  Unary* ListVehicles(Context* context, const v1::ListVehiclesRequest* request,
-                      v1::ListVehiclesResponse* response) override {
-    return answer(context, response, [&] { return list_vehicles(application_, *request); });
-  }
-  Unary* UpdateVehicle(Context* context, const v1::UpdateVehicleRequest* request,
-                       v1::Vehicle* response) override {
-    return answer(context, response, [&] { return update_vehicle(application_, *request); });
-  }
-  Unary* BatchUpdateVehicles(Context* context, const v1::BatchUpdateVehiclesRequest* request,
-                             v1::BatchUpdateVehiclesResponse* response) override {
-    return answer(context, response, [&] { return batch_update_vehicles(application_, *request); });
-  }
-  Unary* ListVehicleRevisions(Context* context, const v1::ListVehicleRevisionsRequest* request,
-                              v1::ListVehicleRevisionsResponse* response) override {
-    return answer(context, response,
-                  [&] { return list_vehicle_revisions(application_, *request); });
-  }
-  Unary* DeleteVehicle(Context* context, const v1::DeleteVehicleRequest* request,
-                       v1::Vehicle* response) override {
-    return answer(context, response, [&] { return delete_vehicle(application_, *request); });
-  }
-  Unary* UndeleteVehicle(Context* context, const v1::UndeleteVehicleRequest* request,
-                         v1::Vehicle* response) override {
-    return answer(context, response, [&] { return undelete_vehicle(application_, *request); });
-  }
-};
-
-class SchemasService final : public v1::Schemas::CallbackService, UnaryService {
- public:
-  using UnaryService::UnaryService;
-  Unary* GetSchema(Context* context, const v1::GetSchemaRequest* request,
-                   v1::Schema* response) override {
-    return answer(context, response, [&] { return get_schema(application_, *request); });
-  }
-};
-
-class ContactsService final : public v1::Contacts::CallbackService, UnaryService {
- public:
-  using UnaryService::UnaryService;
-  Unary* EvaluateContact(Context* context, const v1::EvaluateContactRequest* request,
-                         v1::EvaluateContactResponse* response) override {
-    return answer(context, response, [&] { return evaluate_contact(application_, *request); });
-  }
-};
-
-/// The streams of bytes, see StreamReactor.
-using SimulationStreams = v1::Simulations::WithRawCallbackMethod_WatchSimulation<
-    v1::Simulations::WithRawCallbackMethod_ReadHistory<v1::Simulations::CallbackService>>;
-
-class SimulationsService final : public SimulationStreams, UnaryService {
- public:
-  SimulationsService(Application& application, const TimeLimits& limits, LiveStreams& live)
-      : UnaryService(application, limits), limits_(limits), live_(live), workers_(kWorkers) {}
-  Unary* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
-                          v1::Simulation* response) override {
-    return answer_later(workers_, context, response, [this, context, request] {
-      return create_simulation(application_, *request, caller(*context));
+  void add(UnaryMethod method) {
+    const MethodDescriptor& descriptor = method.descriptor;
+    service_->add_unary(descriptor, [serving = serving_, method = std::move(method)](
+                                        Context* context, const Bytes* request, Bytes* response) {
+      Unary* reactor = context->DefaultReactor();
+      // The bytes are this call's alone, and are let go as soon as they are parsed.
+      auto* bytes = const_cast<Bytes*>(request);
+      const auto answer = [&serving = *serving, &method, context, reactor, bytes, response] {
+        finish(method, serving, *context, *reactor, *bytes, *response);
+      };
+      if (method.thread == Thread::kOfGrpc) {
+        answer();
+      } else {
+        serving->workers.run(answer);
+      }
+      return reactor;
     });
   }
-  Unary* GetSimulation(Context* context, const v1::GetSimulationRequest* request,
-                       v1::Simulation* response) override {
-    return answer(context, response, [&] { return get_simulation(application_, *request); });
-  }
-  Unary* ListSimulations(Context* context, const v1::ListSimulationsRequest* request,
-                         v1::ListSimulationsResponse* response) override {
-    return answer(context, response, [&] { return list_simulations(application_, *request); });
-  }
-  Unary* CancelSimulation(Context* context, const v1::CancelSimulationRequest* request,
-                          v1::Simulation* response) override {
-    return answer_later(workers_, context, response,
-                        [this, request] { return cancel_simulation(application_, *request); });
-  }
-  Unary* PinSimulation(Context* context, const v1::PinSimulationRequest* request,
-                       v1::Simulation* response) override {
-    return answer(context, response, [&] { return pin_simulation(application_, *request); });
-  }
-  Unary* UnpinSimulation(Context* context, const v1::UnpinSimulationRequest* request,
-                         v1::Simulation* response) override {
-    return answer(context, response, [&] { return unpin_simulation(application_, *request); });
-  }
-  grpc::ServerWriteReactor<grpc::ByteBuffer>* WatchSimulation(
-      Context* context, const grpc::ByteBuffer* bytes) override {
-    return stream<v1::SimulationEvent>(context, bytes, watch_simulation);
-  }
-  grpc::ServerWriteReactor<grpc::ByteBuffer>* ReadHistory(Context* context,
-                                                          const grpc::ByteBuffer* bytes) override {
-    return stream<v1::ReadHistoryResponse>(context, bytes, read_history);
-  }
 
- private:
-  template <class Message, class Request>
-  grpc::ServerWriteReactor<grpc::ByteBuffer>* stream(
-      Context* context, const grpc::ByteBuffer* bytes,
-      StreamOutcome<Message> (*open)(Application&, const Request&)) {
-    const auto opened = [&]() -> StreamOutcome<Message> {
-      grpc::ByteBuffer copy = *bytes;  // of the references only
-      Request request;
-      if (!grpc::SerializationTraits<Request>::Deserialize(&copy, &request).ok()) {
-        return invalid({{"", "the request cannot be read"}});
-      }
-      return open(application_, request);
-    };
-    return StreamReactor<Message>::start(live_, *context, time_left(*context, limits_.stream),
-                                         limits_.unread, opened);
-  }
-
-  const TimeLimits limits_;
-  LiveStreams& live_;
-  Workers workers_;
+  const std::shared_ptr<Serving> serving_;
+  const ServiceDescriptor& descriptor_;
+  std::unique_ptr<ContractService> service_;
 };
+
+std::unique_ptr<grpc::Service> lubricants(const std::shared_ptr<Serving>& serving) {
+  Binder bind(serving, *v1::Lubricant::descriptor(), "Lubricants");
+  bind.unary("CreateLubricant", create_lubricant);
+  bind.unary("BatchCreateLubricants", batch_create_lubricants);
+  bind.unary("ImportLubricant", import_lubricant);
+  bind.unary("GetLubricant", get_lubricant);
+  bind.unary("ListLubricants", list_lubricants);
+  bind.unary("UpdateLubricant", update_lubricant);
+  bind.unary("BatchUpdateLubricants", batch_update_lubricants);
+  bind.unary("ListLubricantRevisions", list_lubricant_revisions);
+  bind.unary("DeleteLubricant", delete_lubricant);
+  bind.unary("UndeleteLubricant", undelete_lubricant);
+  return bind.service();
+}
+
+std::unique_ptr<grpc::Service> gear_sets(const std::shared_ptr<Serving>& serving) {
+  Binder bind(serving, *v1::GearSet::descriptor(), "GearSets");
+  bind.unary("CreateGearSet", create_gear_set);
+  bind.unary("BatchCreateGearSets", batch_create_gear_sets);
+  bind.unary("ImportGearSet", import_gear_set);
+  bind.unary("GetGearSet", get_gear_set);
+  bind.unary("ListGearSets", list_gear_sets);
+  bind.unary("UpdateGearSet", update_gear_set);
+  bind.unary("BatchUpdateGearSets", batch_update_gear_sets);
+  bind.unary("ListGearSetRevisions", list_gear_set_revisions);
+  bind.unary("DeleteGearSet", delete_gear_set);
+  bind.unary("UndeleteGearSet", undelete_gear_set);
+  return bind.service();
+}
+
+std::unique_ptr<grpc::Service> surfaces(const std::shared_ptr<Serving>& serving) {
+  Binder bind(serving, *v1::Surface::descriptor(), "Surfaces");
+  bind.unary("CreateSurface", create_surface);
+  bind.unary("BatchCreateSurfaces", batch_create_surfaces);
+  bind.unary("ImportSurfaceProfiles", import_surface_profiles);
+  bind.unary("GetSurface", get_surface);
+  bind.unary("ListSurfaces", list_surfaces);
+  bind.unary("UpdateSurface", update_surface);
+  bind.unary("BatchUpdateSurfaces", batch_update_surfaces);
+  bind.unary("ListSurfaceRevisions", list_surface_revisions);
+  bind.unary("DeleteSurface", delete_surface);
+  bind.unary("UndeleteSurface", undelete_surface);
+  return bind.service();
+}
+
+std::unique_ptr<grpc::Service> vehicles(const std::shared_ptr<Serving>& serving) {
+  Binder bind(serving, *v1::Vehicle::descriptor(), "Vehicles");
+  bind.unary("CreateVehicle", create_vehicle);
+  bind.unary("BatchCreateVehicles", batch_create_vehicles);
+  bind.unary("GetVehicle", get_vehicle);
+  bind.unary("ListVehicles", list_vehicles);
+  bind.unary("UpdateVehicle", update_vehicle);
+  bind.unary("BatchUpdateVehicles", batch_update_vehicles);
+  bind.unary("ListVehicleRevisions", list_vehicle_revisions);
+  bind.unary("DeleteVehicle", delete_vehicle);
+  bind.unary("UndeleteVehicle", undelete_vehicle);
+  return bind.service();
+}
+
+std::unique_ptr<grpc::Service> schemas(const std::shared_ptr<Serving>& serving) {
+  Binder bind(serving, *v1::Schema::descriptor(), "Schemas");
+  bind.unary("GetSchema", get_schema);
+  return bind.service();
+}
+
+std::unique_ptr<grpc::Service> contacts(const std::shared_ptr<Serving>& serving) {
+  Binder bind(serving, *v1::EvaluateContactRequest::descriptor(), "Contacts");
+  bind.unary("EvaluateContact", evaluate_contact);
+  return bind.service();
+}
+
+std::unique_ptr<grpc::Service> simulations(const std::shared_ptr<Serving>& serving) {
+  Binder bind(serving, *v1::Simulation::descriptor(), "Simulations");
+  bind.unary("CreateSimulation", create_simulation, Thread::kOfAWorker);
+  bind.unary("GetSimulation", get_simulation);
+  bind.unary("ListSimulations", list_simulations);
+  bind.unary("CancelSimulation", cancel_simulation, Thread::kOfAWorker);
+  bind.unary("PinSimulation", pin_simulation);
+  bind.unary("UnpinSimulation", unpin_simulation);
+  bind.stream("WatchSimulation", watch_simulation);
+  bind.stream("ReadHistory", read_history);
+  return bind.service();
+}
 
 }  // namespace
 
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(Application& application,
                                                           LiveStreams& live,
                                                           const TimeLimits& limits) {
+  const auto serving = std::make_shared<Serving>(application, limits, live);
   std::vector<std::unique_ptr<grpc::Service>> out;
-  out.push_back(std::make_unique<LubricantsService>(application, limits));
-  out.push_back(std::make_unique<GearSetsService>(application, limits));
-  out.push_back(std::make_unique<SurfacesService>(application, limits));
-  out.push_back(std::make_unique<VehiclesService>(application, limits));
-  out.push_back(std::make_unique<SchemasService>(application, limits));
-  out.push_back(std::make_unique<ContactsService>(application, limits));
-  out.push_back(std::make_unique<SimulationsService>(application, limits, live));
+  for (const auto& service :
+       {lubricants, gear_sets, surfaces, vehicles, schemas, contacts, simulations}) {
+    out.push_back(service(serving));
+  }
   return out;
 }
 

@@ -22,8 +22,9 @@ struct TimeLimits {
 };
 
 /// The gRPC services of tribodyn.v1: a thin shell, one line a method, over server/app. Unary
-/// methods run where gRPC calls them, but for the changes of simulations, of which thousands may
-/// wait for the disk at a time. `application` and `live` must outlive them.
+/// methods run on gRPC's threads, except the changes of simulations, of which thousands may wait
+/// for the disk at a time. `application` and `live` must outlive them. Throws std::logic_error if a
+/// method of the contract has no body.
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(Application& application,
                                                           LiveStreams& live,
                                                           const TimeLimits& limits);

@@ -128,7 +128,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
     alarm_.Set(end, [weak, end](bool rings) {
       const auto self = rings ? weak.lock() : nullptr;
       if (!self) return;
-      self->close(deadline_exceeded());
+      self->close(stream_deadline_exceeded());
       self->cut_off_at(std::max(end, Clock::now()) + kLastWrite);
     });
   }
@@ -200,21 +200,15 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   /// The next message, if there is one, in `bytes_`.
   Step ask_source() {
     bytes_.Clear();
-    try {
-      Message message;
-      const Step step = source_->next(message);
-      if (step == Step::kEnd) end_ = source_->error();
-      if (step != Step::kMessage) return step;
-      bool own = false;
-      const grpc::Status status =
-          grpc::SerializationTraits<Message>::Serialize(message, &bytes_, &own);
-      if (status.ok()) return step;
-      end_ = error(google::rpc::INTERNAL, "INTERNAL", "the stream broke off");
-      return Step::kEnd;
-    } catch (const std::exception&) {
-      end_ = error(google::rpc::INTERNAL, "INTERNAL", "the stream broke off");
-      return Step::kEnd;
-    }
+    Message message;
+    const Step step = next_step(*source_, message, end_);
+    if (step != Step::kMessage) return step;
+    bool own = false;
+    const grpc::Status status =
+        grpc::SerializationTraits<Message>::Serialize(message, &bytes_, &own);
+    if (status.ok()) return step;
+    end_ = internal_error("a message of a stream cannot be serialised: " + status.error_message());
+    return Step::kEnd;
   }
 
   void finish(const google::rpc::Status& status) {

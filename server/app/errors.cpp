@@ -1,8 +1,13 @@
 #include "server/app/errors.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdint>
+#include <random>
 
 #include "google/rpc/error_details.pb.h"
+#include "server/app/log_text.h"
 
 namespace tribodyn::server {
 namespace {
@@ -43,6 +48,8 @@ void add_retry(int seconds, google::rpc::Status& status) {
 constexpr int kRestartSeconds = 5;  // of a server that another one takes the place of
 constexpr int kStoreSeconds = 5;
 constexpr int kContentionSeconds = 1;
+constexpr int kMemorySeconds = 5;
+constexpr std::size_t kLongestCause = 500;  // bytes in the log
 
 }  // namespace
 
@@ -60,7 +67,8 @@ google::rpc::Status error(google::rpc::Code code, const std::string& reason,
 
 google::rpc::Status invalid(const Violations& violations) {
   const Violation& first = violations.front();
-  std::string message = fmt::format("{}: {}", first.field, first.description);
+  std::string message = first.field.empty() ? first.description
+                                            : fmt::format("{}: {}", first.field, first.description);
   if (violations.size() > 1) message += fmt::format(" (and {} more)", violations.size() - 1);
   return with_violations(error(google::rpc::INVALID_ARGUMENT, "INVALID_FIELDS", message),
                          violations);
@@ -102,9 +110,22 @@ google::rpc::Status aborted(const std::string& reason, const std::string& type,
   return status;
 }
 
-google::rpc::Status store_failed() {
+google::rpc::Status store_failed(const StoreError& failure) {
+  if (failure.kind() == StoreError::Kind::kDeadline) return deadline_exceeded();
+  if (failure.kind() == StoreError::Kind::kDataLoss ||
+      failure.kind() == StoreError::Kind::kCorrupt) {
+    return error(google::rpc::DATA_LOSS, "STORED_DATA_DAMAGED",
+                 "what the database holds is not what was written: `tribodynd check` names the "
+                 "damage; a forced run computes a result again, and a backup restores the rest");
+  }
+  const bool is_misplaced = failure.kind() == StoreError::Kind::kMisplaced;
   google::rpc::Status status =
-      error(google::rpc::UNAVAILABLE, "STORE_FAILED", "the database could not be read or written");
+      is_misplaced
+          ? error(google::rpc::UNAVAILABLE, "DATABASE_MISPLACED",
+                  "the database's file was deleted, renamed or replaced on the server; nothing is "
+                  "written until it is back")
+          : error(google::rpc::UNAVAILABLE, "STORE_FAILED",
+                  "the database could not be read or written");
   add_retry(kStoreSeconds, status);
   return status;
 }
@@ -117,13 +138,34 @@ google::rpc::Status exhausted(const std::string& message, int retry_seconds) {
 
 google::rpc::Status deadline_exceeded() {
   return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
-               "it took longer than the call may take; nothing has changed");
+               "the deadline passed before the request was applied; nothing has changed");
+}
+
+google::rpc::Status stream_deadline_exceeded() {
+  return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
+               "the stream has been open for as long as it may be; call again to continue");
 }
 
 google::rpc::Status shutting_down() {
   google::rpc::Status status =
       error(google::rpc::UNAVAILABLE, "SHUTTING_DOWN", "the server is shutting down");
   add_retry(kRestartSeconds, status);
+  return status;
+}
+
+google::rpc::Status internal_error(std::string_view cause) {
+  std::random_device random;
+  const std::string id = fmt::format("{:016x}", (std::uint64_t{random()} << 32) | random());
+  spdlog::error("event=internal_error id={} cause=\"{}\"", id, log_text(cause, kLongestCause));
+  return error(google::rpc::INTERNAL, "INTERNAL",
+               fmt::format("internal error {}; the server's log states its cause", id));
+}
+
+google::rpc::Status out_of_memory() {
+  spdlog::error("event=out_of_memory");
+  google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, "OUT_OF_MEMORY",
+                                     "the server has no memory left for this request");
+  add_retry(kMemorySeconds, status);
   return status;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/convert/violations.h"
+#include "server/store/store_error.h"
 
 namespace tribodyn::server {
 
@@ -39,17 +41,26 @@ google::rpc::Status not_possible(const std::string& reason, const std::string& t
 google::rpc::Status aborted(const std::string& reason, const std::string& type,
                             const std::string& name, const std::string& message, bool may_retry);
 
-/// UNAVAILABLE with RetryInfo: the database cannot be used at the moment.
-google::rpc::Status store_failed();
+/// What a client is told of a failure of the database: DEADLINE_EXCEEDED, DATA_LOSS, or UNAVAILABLE
+/// with RetryInfo. It names no file of the server.
+google::rpc::Status store_failed(const StoreError& failure);
 
 /// RESOURCE_EXHAUSTED with RetryInfo.
 google::rpc::Status exhausted(const std::string& message, int retry_seconds);
 
-/// DEADLINE_EXCEEDED, by the server's own limit or the client's.
+/// DEADLINE_EXCEEDED, by the server's own limit or the client's. Only before anything is committed.
 google::rpc::Status deadline_exceeded();
+/// DEADLINE_EXCEEDED for a stream that was open for as long as it may be.
+google::rpc::Status stream_deadline_exceeded();
 
 /// UNAVAILABLE, SHUTTING_DOWN, with RetryInfo.
 google::rpc::Status shutting_down();
+
+/// INTERNAL: a defect of the server. Logs `cause` under an id; the client gets the id and no cause.
+google::rpc::Status internal_error(std::string_view cause);
+
+/// RESOURCE_EXHAUSTED, OUT_OF_MEMORY, with RetryInfo: an allocation failed. Logs it.
+google::rpc::Status out_of_memory();
 
 /// Serialised size of BadRequest that surely reaches a client.
 inline constexpr std::size_t kMaximumBadRequestBytes = 5500;

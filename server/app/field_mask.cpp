@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <memory>
+#include <set>
 #include <vector>
 
+#include "server/convert/element_limits.h"
 #include "server/convert/output_only.h"
 #include "server/convert/resource_names.h"
 #include "tribodyn/v1/provenance.pb.h"
@@ -16,14 +18,6 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
 constexpr char kProvenance[] = "provenance";
-
-/// Swaps in the one field, set or not.
-void take_over(const Message& source, const FieldDescriptor& field, Message& target) {
-  Message* copy = source.New();
-  copy->CopyFrom(source);
-  target.GetReflection()->SwapFields(&target, copy, {&field});
-  delete copy;
-}
 
 void forget_provenance(const std::string& field, Message& target) {
   const auto* descriptor = target.GetDescriptor()->FindFieldByName(kProvenance);
@@ -53,42 +47,57 @@ std::vector<std::string> settable_fields(const google::protobuf::Descriptor& des
   return out;
 }
 
-/// Takes over the field of a message, or of one that it holds: "measurements.densities".
-void take_over_path(const Message& source, const std::string& path, bool with_provenance,
-                    Message& target, Violations& violations) {
-  const Message* from = &source;
-  Message* to = &target;
+/// Where a path of a mask leads to.
+struct Target {
+  const FieldDescriptor* block = nullptr;  ///< the message that holds the field; null: the top
+  const FieldDescriptor* field = nullptr;  ///< null: nothing is to be done
+};
+
+/// The place of "display_name" or "measurements.densities". Nothing to be done for what only the
+/// server sets; a violation for a field that is unknown.
+Target target_of(const std::string& path, const google::protobuf::Descriptor& resource,
+                 Violations& violations) {
+  Target out;
+  const google::protobuf::Descriptor* holder = &resource;
   std::string name = path;
-  const FieldDescriptor* block = nullptr;
   if (const std::size_t dot = path.find('.'); dot != std::string::npos) {
-    block = source.GetDescriptor()->FindFieldByName(path.substr(0, dot));
+    const FieldDescriptor* block = resource.FindFieldByName(path.substr(0, dot));
     const bool holds_fields = block != nullptr && !block->is_repeated() &&
                               block->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
     if (holds_fields && !is_output_only(*block)) {
-      const bool is_nowhere = !source.GetReflection()->HasField(source, block) &&
-                              !target.GetReflection()->HasField(target, block);
-      if (is_nowhere && block->message_type()->FindFieldByName(path.substr(dot + 1))) return;
-      from = &source.GetReflection()->GetMessage(source, block);
-      to = target.GetReflection()->MutableMessage(&target, block);
+      out.block = block;
+      holder = block->message_type();
       name = path.substr(dot + 1);
     }
   }
-  const auto& descriptor = *from->GetDescriptor();
-  const FieldDescriptor* field = descriptor.FindFieldByName(name);
+  const FieldDescriptor* field = holder->FindFieldByName(name);
   if (field == nullptr) {
     violations.push_back(
-        {"update_mask",
-         fmt::format("\"{}\" is no field of {}{}", plain_excerpt(name), descriptor.name(),
-                     meant_text(name, settable_fields(descriptor)))});
-    return;
+        {"update_mask", fmt::format("\"{}\" is no field of {}{}", plain_excerpt(name),
+                                    holder->name(), meant_text(name, settable_fields(*holder)))});
+  } else if (!is_output_only(*field)) {
+    out.field = field;
   }
-  if (is_output_only(*field)) return;
-  const bool changed = is_other_number(*from, *to, *field);
-  take_over(*from, *field, *to);
-  if (block != nullptr && to != &target && to->ByteSizeLong() == 0) {
-    target.GetReflection()->ClearField(&target, block);
+  return out;
+}
+
+/// Swaps one field of `target` with that of `source`, set or not. True when it was a number and
+/// changes.
+bool take_over(const Target& place, Message& source, Message& target) {
+  const auto& reflection = *target.GetReflection();
+  if (place.block == nullptr) {
+    const bool changed = is_other_number(source, target, *place.field);
+    reflection.SwapFields(&target, &source, {place.field});
+    return changed;
   }
-  if (changed && !with_provenance) forget_provenance(path, target);
+  if (!reflection.HasField(source, place.block) && !reflection.HasField(target, place.block)) {
+    return false;
+  }
+  Message* to = reflection.MutableMessage(&target, place.block);
+  const bool changed =
+      take_over({nullptr, place.field}, *reflection.MutableMessage(&source, place.block), *to);
+  if (to->ByteSizeLong() == 0) reflection.ClearField(&target, place.block);
+  return changed;
 }
 
 }  // namespace
@@ -100,9 +109,19 @@ void merge(const Message& source, const google::protobuf::FieldMask& mask, Messa
     target.CopyFrom(source);
     return;
   }
-  const bool with_provenance = std::find(paths.begin(), paths.end(), kProvenance) != paths.end();
-  for (const std::string& path : paths) {
-    take_over_path(source, path, with_provenance, target, violations);
+  if (paths.size() > kMaximumMaskPaths) {
+    violations.push_back({"update_mask", too_many_text(paths.size(), kMaximumMaskPaths)});
+    return;
+  }
+  const std::set<std::string> distinct(paths.begin(), paths.end());
+  const bool with_provenance = distinct.contains(kProvenance);
+  const std::unique_ptr<Message> copy(source.New());  // what is taken over is swapped out of it
+  copy->CopyFrom(source);
+  for (const std::string& path : distinct) {
+    const Target place = target_of(path, *source.GetDescriptor(), violations);
+    if (place.field == nullptr) continue;
+    if (place.block != nullptr && distinct.contains(place.block->name())) continue;  // goes whole
+    if (take_over(place, *copy, target) && !with_provenance) forget_provenance(path, target);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <exception>
+#include <new>
 
 #include "core/refusal.h"
 #include "server/app/errors.h"
@@ -11,7 +12,8 @@
 
 namespace tribodyn::server {
 
-/// Runs the body of an RPC; no exception leaves it. What a client sent is never logged.
+/// Runs the body of an RPC and turns every exception into an error. Of an unexpected exception only
+/// what() is logged.
 template <class Message, class Body>
 Outcome<Message> guarded(const Body& body) {
   try {
@@ -19,14 +21,14 @@ Outcome<Message> guarded(const Body& body) {
   } catch (const Refusal& refusal) {
     return error(google::rpc::INVALID_ARGUMENT, refusal.reason(), refusal.what());
   } catch (const StoreError& failure) {
-    if (failure.kind() == StoreError::Kind::kDeadline) {
-      return deadline_exceeded();
-    }
-    spdlog::error("{}", failure.what());
-    return store_failed();
+    if (failure.kind() != StoreError::Kind::kDeadline) spdlog::error("{}", failure.what());
+    return store_failed(failure);
+  } catch (const std::bad_alloc&) {
+    return out_of_memory();
   } catch (const std::exception& defect) {
-    spdlog::error("an RPC failed on a defect");
-    return error(google::rpc::INTERNAL, "INTERNAL", defect.what());
+    return internal_error(defect.what());
+  } catch (...) {
+    return internal_error("an exception of unknown type");
   }
 }
 

@@ -22,6 +22,7 @@ namespace tribodyn::server {
 namespace {
 
 constexpr int kLargestMaximumPoints = 1'000'000;
+static_assert(kMaximumHistoryRows >= kMaximumHistoryValues);
 
 /// Columns by their place in the shape, and rows of them.
 struct Window {
@@ -54,11 +55,13 @@ class OpenHistory {
 /// The schema, then chunks: each column as far as the others before any goes on.
 class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
  public:
-  HistorySource(Application& application, HistoryShape shape, Window window)
+  HistorySource(Application& application, HistoryShape shape, Window window,
+                const v1::SimulationResult& result)
       : store_(application.store),
         open_(application.open_histories),
         shape_(std::move(shape)),
         window_(std::move(window)),
+        input_warnings_(result.input_warnings()),
         rows_(window_.end_row - window_.start_row) {
     if (window_.maximum_points == 0 || rows_ <= window_.maximum_points) return;
     overview_ = overview(window_.start_row, window_.end_row, shape_.rows, window_.maximum_points);
@@ -82,7 +85,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
       chunk.set_values(values.data(), values.size() * sizeof(double));
     } catch (const StoreError& failure) {
       spdlog::error("{}", failure.what());
-      error_ = store_failed();
+      error_ = store_failed(failure);
       return Step::kEnd;
     }
     if (error_.code() != 0) return Step::kEnd;
@@ -106,6 +109,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
     out.set_row_count(rows_);
     out.set_total_rows(shape_.rows);
     if (overview_) out.set_rows_per_pair(overview_->rows_per_pair);
+    *out.mutable_input_warnings() = input_warnings_;
   }
 
   /// The present run of a column.
@@ -125,6 +129,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
   const OpenHistory open_;
   const HistoryShape shape_;
   const Window window_;
+  const google::protobuf::RepeatedPtrField<v1::RangeWarning> input_warnings_;
   std::int64_t rows_;  // to come in all
   std::optional<Overview> overview_;
   bool told_schema_ = false;
@@ -214,7 +219,10 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
     Violations violations;
     auto rows = window(request, shape, violations);
     if (!rows) return invalid(violations);
-    return Source(std::make_shared<HistorySource>(application, std::move(shape), std::move(*rows)));
+    v1::SimulationResult result;
+    result.ParseFromString(application.store.result(stored.id).value_or(""));
+    return Source(
+        std::make_shared<HistorySource>(application, std::move(shape), std::move(*rows), result));
   });
 }
 

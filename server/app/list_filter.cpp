@@ -8,8 +8,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
+#include "server/app/computed_fields.h"
 #include "server/convert/output_only.h"
 #include "server/convert/resource_names.h"
 #include "server/store/resource_types.h"
@@ -107,7 +109,28 @@ std::optional<PropertyKind> kind_of(const std::string& key, const std::string& c
   for (const PropertyField& field : property_fields(collection)) {
     if (field.key == key) return field.kind;
   }
-  return std::nullopt;
+  const ComputedField* computed = find_computed_field(collection, key);
+  return computed == nullptr ? std::nullopt : std::optional(computed->kind);
+}
+
+/// The key of a field that is named by its short name, "kv40"; other keys as they are.
+std::string full_key(const std::string& key, const std::string& collection) {
+  const ComputedField* computed = find_computed_field(collection, key);
+  return computed == nullptr ? key : computed->key;
+}
+
+/// The collection of the resources that a field names; empty: it names none.
+std::string named_collection(const std::string& key, const std::string& collection) {
+  if (key == "name" || key == "derived_from") return collection;
+  return key == "lubricant" ? kLubricants : "";
+}
+
+/// "SUCCEEDED" of "succeeded", "GROUP_III" of "group-iii": as tables and flags write an enum.
+std::string enum_name_of(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) {
+    return c == '-' || c == ' ' ? '_' : static_cast<char>(std::toupper(c));
+  });
+  return word;
 }
 
 std::string unknown_field_text(const std::string& key, const std::string& collection) {
@@ -122,6 +145,12 @@ std::optional<PropertyValue> number_value(const std::string& text) {
     return std::nullopt;
   }
   return value;
+}
+
+std::optional<PropertyValue> flag_value(const std::string& text) {
+  const std::string word = enum_name_of(text);
+  if (word != "TRUE" && word != "FALSE") return std::nullopt;
+  return std::int64_t{word == "TRUE" ? 1 : 0};
 }
 
 std::optional<PropertyValue> time_value(const std::string& text) {
@@ -189,6 +218,7 @@ class FilterReader {
     }
     out.comparison = comparison_of(comparison);
     read_value(*value, out);
+    out.key = full_key(out.key, collection_);
     return out;
   }
 
@@ -204,10 +234,11 @@ class FilterReader {
     }
     switch (*kind) {
       case PropertyKind::kText:
-        out.value = value.text;
-        return;
+        return read_text(value, out);
       case PropertyKind::kNumber:
         return set(number_value(value.text), value, "a finite number", out);
+      case PropertyKind::kFlag:
+        return set(flag_value(value.text), value, "true or false", out);
       case PropertyKind::kTime:
         return set(time_value(value.text), value, "a time such as 2026-01-31T12:00:00Z", out);
       case PropertyKind::kEnum:
@@ -224,13 +255,26 @@ class FilterReader {
     }
   }
 
+  /// The name of a resource may be given without its collection.
+  void read_text(const Token& value, Restriction& out) const {
+    out.value = value.text;
+    const std::string named = named_collection(out.key, collection_);
+    const bool is_whole_name =
+        out.comparison == Comparison::kEqual || out.comparison == Comparison::kNotEqual;
+    if (is_whole_name && !named.empty() && !value.text.empty() &&
+        value.text.find('/') == std::string::npos) {
+      out.value = named + "/" + value.text;
+    }
+  }
+
   void read_enum(const Token& value, Restriction& out) {
     const std::vector<std::string> names = enum_names(out.key, collection_);
-    if (std::find(names.begin(), names.end(), value.text) == names.end()) {
+    const std::string name = enum_name_of(value.text);
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
       return complain(fmt::format("{} = \"{}\" is unknown{}", out.key, plain_excerpt(value.text),
-                                  meant_text(value.text, names)));
+                                  meant_text(name, names)));
     }
-    out.value = value.text;
+    out.value = name;
   }
 
   Scanner scanner_;
@@ -270,13 +314,17 @@ Order parse_order(std::string_view order_by, const std::string& collection,
     violations.push_back({"order_by", "legal: one field, then nothing, asc or desc"});
   }
   out.descending = direction == "desc";
-  if (out.key == "name") out.key.clear();
+  out.key = out.key == "name" ? "" : full_key(out.key, collection);
   return out;
 }
 
 std::vector<std::string> filter_fields(const std::string& collection) {
   std::vector<std::string> out = {"labels.KEY", "name"};
   for (const PropertyField& field : property_fields(collection)) out.push_back(field.key);
+  for (const ComputedField& field : computed_fields(collection)) {
+    out.push_back(field.key);
+    out.insert(out.end(), field.short_names.begin(), field.short_names.end());
+  }
   std::sort(out.begin(), out.end());
   return out;
 }

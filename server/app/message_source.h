@@ -1,8 +1,11 @@
 #pragma once
 
+#include <exception>
 #include <memory>
+#include <new>
 
 #include "google/rpc/status.pb.h"
+#include "server/app/errors.h"
 #include "server/jobs/progress_board.h"
 
 namespace tribodyn::server {
@@ -24,5 +27,22 @@ class MessageSource {
   /// OK (code 0) or why the stream broke off.
   virtual google::rpc::Status error() const { return {}; }
 };
+
+/// The next step of a source. A failure ends the stream: `end` says how it ended.
+template <class Message>
+typename MessageSource<Message>::Step next_step(MessageSource<Message>& source, Message& out,
+                                                google::rpc::Status& end) {
+  using Step = typename MessageSource<Message>::Step;
+  try {
+    const Step step = source.next(out);
+    if (step == Step::kEnd) end = source.error();
+    return step;
+  } catch (const std::bad_alloc&) {
+    end = out_of_memory();
+  } catch (const std::exception& defect) {
+    end = internal_error(defect.what());
+  }
+  return Step::kEnd;
+}
 
 }  // namespace tribodyn::server

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "server/app/application.h"
+#include "server/app/computed_fields.h"
 #include "server/app/guard.h"
 #include "server/app/list_filter.h"
 #include "server/app/outcome.h"
@@ -87,15 +88,18 @@ std::string name_problem(Application& application, const std::string& name,
   return plain_excerpt(name) + " is a revision; legal: the name without it";
 }
 
-/// The stored revision that a name without problems means, or NOT_FOUND.
+/// The stored revision that a name without problems means; nullopt if there is none.
 template <class Resource>
-Outcome<StoredResource> find_named(Application& application, const std::string& name) {
+std::optional<StoredResource> find_named(Application& application, const std::string& name) {
+  const RevisionName parsed = *parse_revision_name(name, Kind<Resource>::kCollection);
+  return parsed.revision == 0 ? application.store.resource(parsed.name)
+                              : application.store.revision(parsed.name, parsed.revision);
+}
+
+/// NOT_FOUND with the name that may be meant. Compares the name with all of its collection.
+template <class Resource>
+google::rpc::Status unknown_name(Application& application, const std::string& name) {
   const std::string collection = Kind<Resource>::kCollection;
-  const RevisionName parsed = *parse_revision_name(name, collection);
-  const auto stored = parsed.revision == 0
-                          ? application.store.resource(parsed.name)
-                          : application.store.revision(parsed.name, parsed.revision);
-  if (stored) return *stored;
   return not_found(
       Resource::descriptor()->full_name(), name,
       unknown_name_text(name, collection, application.store.resource_names(collection)));
@@ -107,7 +111,8 @@ Outcome<StoredResource> find_stored(Application& application, const std::string&
                                     bool revisions_allowed) {
   const std::string problem = name_problem<Resource>(application, name, revisions_allowed);
   if (!problem.empty()) return invalid({{"name", problem}});
-  return find_named<Resource>(application, name);
+  if (auto found = find_named<Resource>(application, name)) return *std::move(found);
+  return unknown_name<Resource>(application, name);
 }
 
 template <class Resource>
@@ -150,16 +155,6 @@ google::rpc::Status append(const Page<StoredResource>& page, Response& response)
   return {};
 }
 
-/// The value that a page was ordered by, of its last row.
-inline PropertyValue order_value(const StoredResource& row, const std::string& key) {
-  if (key.empty()) return std::string();
-  for (Property& each : properties_of(row.name.substr(0, row.name.find('/')), row.body,
-                                      row.create_time, row.revision_create_time)) {
-    if (each.key == key) return std::move(each.value);
-  }
-  return std::string();
-}
-
 template <class Resource, class Response, class Request>
 Outcome<Response> list_resources(Application& application, const Request& request) {
   Violations violations;
@@ -179,7 +174,11 @@ Outcome<Response> list_resources(Application& application, const Request& reques
     if (!query.after) add_bad_page_token(violations);
   }
   if (!violations.empty()) return invalid(violations);
-  const Page<StoredResource> page = application.store.resources(query);
+  const auto read_page = [&](const ResourceQuery& stored) {
+    return application.store.resources(stored);
+  };
+  const Page<StoredResource> page =
+      needs_computed_fields(query) ? query_by_computed_fields(query, read_page) : read_page(query);
   Response response;
   if (const auto failed = append<Resource>(page, response); failed.code() != 0) return failed;
   if (page.more) {

@@ -108,12 +108,14 @@ void draft_update(Application& application, const Request& request, Draft<Resour
   }
   draft.name = stated.name();
   const auto found = find_named<Resource>(application, stated.name());
-  if (!found.ok()) {
-    if (!request.allow_missing()) return draft.refuse(found.error(), "name");
+  if (!found) {
+    if (!request.allow_missing()) {
+      return draft.refuse(unknown_name<Resource>(application, stated.name()), "name");
+    }
     draft.stated = stated;
     return;
   }
-  const StoredResource& present = found.message();
+  const StoredResource& present = *found;
   if (present.delete_time) {
     return draft.refuse(not_possible("DELETED", Resource::descriptor()->full_name(), present.name,
                                      deleted_name_text(present.name)),
@@ -233,7 +235,8 @@ ResourceLookup lookup_with(const std::vector<Draft<Resource>>& drafts,
             for (const auto& [name, place] : places) names.push_back(name);
             std::sort(names.begin(), names.end());
             return names;
-          }};
+          },
+          std::make_shared<KnownChains>()};
 }
 
 /// Everything that is wrong with a batch, or nothing. A refusal that no violation goes with keeps
@@ -282,31 +285,25 @@ std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& ba
   return drafts;
 }
 
-/// Resources in the order of a batch; of very many only what tells them apart. `resource_at` gives
-/// one after the other.
+/// The response to a batch: what was written of each resource, and the resources themselves unless
+/// they take more than kMaximumPageBytes. `resource_at` gives one after the other.
 template <class Resource, class Response, class ResourceAt>
 Outcome<Response> answer_all(std::size_t count, const ResourceAt& resource_at) {
-  const auto shorten = [](Resource& resource) {
-    Resource brief;
-    brief.set_name(resource.name());
-    brief.set_etag(resource.etag());
-    brief.set_revision(resource.revision());
-    resource = std::move(brief);
-  };
   Response response;
   std::size_t bytes = 0;
   for (std::size_t i = 0; i < count; ++i) {
     Outcome<Resource> found = resource_at(i);
     if (!found.ok()) return found.error();
-    const bool was_long = bytes > kMaximumPageBytes;
+    v1::WrittenResource* written = response.add_written();
+    written->set_name(found.message().name());
+    written->set_etag(found.message().etag());
+    written->set_revision(found.message().revision());
+    if (response.is_abridged()) continue;
     bytes += found.message().ByteSizeLong();
-    Resource& added = *Kind<Resource>::add(response);
-    added = std::move(found.message());
-    if (was_long) {
-      shorten(added);
-    } else if (bytes > kMaximumPageBytes) {
-      for (Resource& each : *Kind<Resource>::all(response)) shorten(each);
-    }
+    *Kind<Resource>::add(response) = std::move(found.message());
+    if (bytes <= kMaximumPageBytes) continue;
+    Kind<Resource>::all(response)->Clear();
+    response.set_is_abridged(true);
   }
   return response;
 }

@@ -13,8 +13,12 @@ Outcome<StoredSimulation> find_simulation(Application& application, const std::s
     return invalid({{"name", "not a name of the form \"simulations/{id}\", id a number"}});
   }
   std::optional<StoredSimulation> stored = application.store.simulation(*id);
-  if (!stored) return not_found("tribodyn.v1.Simulation", name, name + " does not exist");
+  if (!stored) return does_not_exist(name);
   return std::move(*stored);
+}
+
+google::rpc::Status does_not_exist(const std::string& name) {
+  return not_found("tribodyn.v1.Simulation", name, name + " does not exist");
 }
 
 }  // namespace tribodyn::server

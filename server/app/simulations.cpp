@@ -13,6 +13,7 @@
 #include "server/app/result_summary.h"
 #include "server/app/simulation_lookup.h"
 #include "server/convert/cost_estimate.h"
+#include "server/convert/element_limits.h"
 #include "server/convert/input_hash.h"
 #include "server/convert/ledger.h"
 #include "server/convert/request_text.h"
@@ -232,6 +233,7 @@ Outcome<v1::Simulation> create_simulation(Application& application,
     Violations violations;
     check_request_id(request.request_id(), violations);
     if (!request.has_simulation()) violations.push_back({"simulation", "not set"});
+    check_counts(request.simulation(), "simulation", violations);  // before work that they multiply
     if (!violations.empty()) return invalid(violations);
     const std::string text = request_text(client_part(request.simulation()), request.force());
     // Before anything else, as what it rests on may have changed since.
@@ -250,10 +252,10 @@ Outcome<v1::Simulation> create_simulation(Application& application,
     const auto [added, retry_seconds] = application.jobs.submit(simulation);
     log_submission(simulation, added);
     if (added.kind == Added::Kind::kNoPlace) return no_place(application, retry_seconds);
-    const auto stored = application.store.simulation(added.id);
-    if (!stored) return error(google::rpc::INTERNAL, "INTERNAL", "the simulation is gone");
-    if (added.kind == Added::Kind::kRequestIdTaken) return request_id_taken(*stored, request, text);
-    return to_message(application, *stored);
+    if (added.kind == Added::Kind::kRequestIdTaken) {
+      return request_id_taken(added.stored, request, text);
+    }
+    return to_message(application, added.stored);
   });
 }
 
@@ -311,10 +313,15 @@ Outcome<v1::Simulation> set_pinned(Application& application, const std::string& 
   return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
     const auto found = find_simulation(application, name);
     if (!found.ok()) return found.error();
-    application.store.set_pinned(found.message().id, is_pinned);
-    v1::GetSimulationRequest now;
-    now.set_name(name);
-    return get_simulation(application, now);
+    // All reads come before the write: once the write is committed, nothing may fail any more.
+    v1::Simulation before;
+    set_result(application, v1::SIMULATION_VIEW_SUMMARY, v1::SIMULATION_VIEW_SUMMARY,
+               found.message().id, before);
+    const auto pinned = application.store.set_pinned(found.message().id, is_pinned);
+    if (!pinned) return does_not_exist(name);
+    v1::Simulation out = to_message(application, *pinned);
+    if (before.has_result()) *out.mutable_result() = std::move(*before.mutable_result());
+    return out;
   });
 }
 
@@ -333,12 +340,23 @@ Outcome<v1::Simulation> unpin_simulation(Application& application,
 Outcome<v1::Simulation> cancel_simulation(Application& application,
                                           const v1::CancelSimulationRequest& request) {
   return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    const auto found = find_simulation(application, request.name());
+    auto found = find_simulation(application, request.name());
     if (!found.ok()) return found.error();
-    application.jobs.cancel(found.message().id);
-    v1::GetSimulationRequest now;
-    now.set_name(request.name());
-    return get_simulation(application, now);
+    StoredSimulation& stored = found.message();
+    const auto event = application.jobs.cancel(stored.id);
+    if (!event) {
+      v1::GetSimulationRequest now;
+      now.set_name(request.name());
+      return get_simulation(application, now);
+    }
+    // The answer is not read back: a read after the deadline would report a failure of a committed
+    // call.
+    stored.state = event->state;
+    stored.attempt = event->attempt;
+    stored.sequence = event->sequence;
+    stored.start_time = event->start_time;
+    stored.end_time = event->time;
+    return to_message(application, stored);
   });
 }
 

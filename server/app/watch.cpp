@@ -46,7 +46,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
         }
       } catch (const StoreError& failure) {
         spdlog::error("{}", failure.what());
-        error_ = store_failed();
+        error_ = store_failed(failure);
         return Step::kEnd;
       }
     }
@@ -116,7 +116,7 @@ StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
     const auto found = find_simulation(application, request.name());
     if (!found.ok()) return found.error();
     auto watched = application.jobs.watch(found.message().id);
-    if (!watched) return error(google::rpc::INTERNAL, "INTERNAL", request.name() + " is gone");
+    if (!watched) return does_not_exist(request.name());
     const std::int64_t after = request.after_sequence();
     if (after < 0 || after > watched->simulation.sequence) {
       return invalid({{"after_sequence", fmt::format("after_sequence = {}; legal: 0 to {}", after,

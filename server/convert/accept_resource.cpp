@@ -4,7 +4,10 @@
 #include <google/protobuf/util/message_differencer.h>
 
 #include <algorithm>
-#include <set>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "server/convert/check_message.h"
 #include "server/convert/constraints.h"
@@ -31,18 +34,34 @@ const char* collection_of(const v1::GearSet&) { return kGearSets; }
 const char* collection_of(const v1::Surface&) { return kSurfaces; }
 const char* collection_of(const v1::Vehicle&) { return kVehicles; }
 
-/// Whether what is stored under `name` descends from `ancestor`. Rings cannot be stored; names seen
-/// before end the search all the same.
+/// Whether what is stored under `name` descends from `ancestor`, which is derived from it. Stops at
+/// a name whose chain is known, so that a batch takes each step of a chain once.
 template <class Resource>
 bool descends(std::string name, const std::string& ancestor, const ResourceLookup& lookup) {
-  std::set<std::string> seen;
-  while (!name.empty() && seen.insert(name).second) {
-    if (name == ancestor) return true;
+  KnownChains& known = *lookup.chains;
+  if (known.in_ring.contains(ancestor)) return true;
+  std::vector<std::string> chain;
+  std::map<std::string, std::size_t> places;  // in the chain
+  while (!name.empty() && !known.in_no_ring.contains(name) && !known.in_ring.contains(name)) {
+    if (name == ancestor) {
+      known.in_ring.insert(chain.begin(), chain.end());
+      known.in_ring.insert(ancestor);
+      return true;
+    }
+    const auto [first, is_new] = places.emplace(name, chain.size());
+    if (!is_new) {  // a ring without the ancestor
+      const auto ring = chain.begin() + static_cast<std::ptrdiff_t>(first->second);
+      known.in_ring.insert(ring, chain.end());
+      chain.erase(ring, chain.end());
+      break;
+    }
+    chain.push_back(name);
     const auto found = lookup.find({name, 0});
     Resource resource;
-    if (!found || !resource.ParseFromString(found->body)) return false;
+    if (!found || !resource.ParseFromString(found->body)) break;
     name = resource.derived_from().substr(0, resource.derived_from().find('@'));
   }
+  known.in_no_ring.insert(chain.begin(), chain.end());
   return false;
 }
 
@@ -142,6 +161,50 @@ void take_over_changed(v1::Lubricant& lubricant, const v1::Lubricant& present) {
   }
 }
 
+bool says_the_same(const v1::ParameterProvenance& a, const v1::ParameterProvenance& b) {
+  return a.standard_uncertainty() == b.standard_uncertainty() && a.provenance() == b.provenance() &&
+         a.source() == b.source();
+}
+
+/// Says nothing that the server would not say of a number without provenance.
+bool says_nothing(const v1::ParameterProvenance& entry) {
+  return entry.standard_uncertainty() == 0 && entry.source().empty() &&
+         (entry.provenance() == v1::PROVENANCE_UNSPECIFIED ||
+          entry.provenance() == v1::PROVENANCE_USER);
+}
+
+/// How a parameter is known cannot be stated without its value: the server computes the value, and
+/// with it how it is known.
+void check_provenance_of_computed(const v1::Lubricant& lubricant, const v1::Lubricant* present,
+                                  const std::string& path, Violations& violations) {
+  const auto& reflection = *lubricant.GetReflection();
+  for (int i = 0; i < lubricant.provenance_size(); ++i) {
+    const v1::ParameterProvenance& entry = lubricant.provenance(i);
+    const auto* field = v1::Lubricant::descriptor()->FindFieldByName(entry.field());
+    if (field == nullptr || !field->has_presence()) continue;
+    const v1::ParameterProvenance* before = nullptr;
+    if (present != nullptr) {
+      for (const v1::ParameterProvenance& each : present->provenance()) {
+        if (each.field() == entry.field()) before = &each;
+      }
+    }
+    if (before != nullptr && says_the_same(entry, *before)) continue;
+    const bool is_stated = reflection.HasField(lubricant, field);
+    const bool is_changed =
+        is_stated && present != nullptr &&
+        reflection.GetDouble(lubricant, field) != reflection.GetDouble(*present, field);
+    const bool is_computed = entry.computed() && before != nullptr && !is_changed;
+    if (is_computed || (!is_stated && !entry.computed() && !says_nothing(entry))) {
+      violations.push_back(
+          {fmt::format("{}[{}].{}", path, i,
+                       entry.standard_uncertainty() != 0 ? "standard_uncertainty" : "provenance"),
+           fmt::format("{} is computed, not stated, and its uncertainty and provenance with it; "
+                       "legal: both together with the value",
+                       entry.field())});
+    }
+  }
+}
+
 }  // namespace
 
 std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubricant* present,
@@ -150,11 +213,11 @@ std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubri
   const std::size_t before = violations.size();
   v1::Lubricant out = begin(stated, lookup, path, Missing::kAllowed, violations);
   check_measurements(out.measurements(), join_path(path, "measurements"), violations);
+  check_provenance_of_computed(out, present, join_path(path, "provenance"), violations);
   if (violations.size() > before) return std::nullopt;
-  if (present != nullptr) {
-    take_over_changed(out, *present);
-    if (has_other_grounds(out, *present)) forget_computed(out);
-  }
+  if (present != nullptr) take_over_changed(out, *present);
+  // A copy of another lubricant may have other measurements than those it was computed from.
+  if (present == nullptr || has_other_grounds(out, *present)) forget_computed(out);
   complete_parameters(out, path, violations);
   if (violations.size() > before) return std::nullopt;
   check_message(out, path, violations);

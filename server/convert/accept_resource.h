@@ -19,7 +19,8 @@ namespace tribodyn::server {
 // acceptable; paths start with `path`.
 
 /// `present` is the revision that an update starts from, null for a new lubricant. Parameters that
-/// are not stated are fitted or estimated (lubricant_parameters.h).
+/// are not stated are fitted or estimated (lubricant_parameters.h); those marked as computed are so
+/// again for a new lubricant, and for one whose measurements, class or other parameters changed.
 std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubricant* present,
                                     const ResourceLookup& lookup, const std::string& path,
                                     Violations& violations);

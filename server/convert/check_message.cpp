@@ -123,8 +123,7 @@ void check_repeated(const Message& message, const Reflection& reflection, const 
   }
   const std::size_t reported =
       std::min(found.size(), static_cast<std::size_t>(kMaximumReportedElements));
-  violations.insert(violations.end(), found.begin(),
-                    found.begin() + static_cast<std::ptrdiff_t>(reported));
+  for (std::size_t i = 0; i < reported; ++i) violations.push_back(found[i]);
   if (found.size() > reported) {
     violations.push_back(
         {path, fmt::format("{} more of its elements are not acceptable", found.size() - reported)});

@@ -60,6 +60,14 @@ constexpr Constraint kConstraints[] = {
     {"Surface", "asperity_friction_coefficient", "", 0, 10, "eq 40, zeta", ""},
     {"SurfaceMeasurement", "samples", "", 5, 1000000, "eq 45", ""},
     {"SurfaceMeasurement", "spacing_metres", "m", 1e-10, 1e-2, "eq 45", ""},
+    {"SurfaceMeasurement", "short_wave_cut_off_metres", "m", 1e-9, 1e-2, "eq 45, lambda_s",
+     "ISO 16610-21", Zero::kUnset},
+    {"SurfaceMeasurement", "long_wave_cut_off_metres", "m", 1e-9, 1, "eq 45, lambda_c",
+     "ISO 16610-21", Zero::kUnset},
+    {"ImportSurfaceProfilesRequest", "short_wave_cut_off_metres", "m", 1e-9, 1e-2,
+     "eq 45, lambda_s", "ISO 16610-21", Zero::kUnset},
+    {"ImportSurfaceProfilesRequest", "long_wave_cut_off_metres", "m", 1e-9, 1, "eq 45, lambda_c",
+     "ISO 16610-21", Zero::kUnset},
     {"SurfaceMeasurement", "mean_square_height_square_metres", "m2", 1e-24, 1e-4, "eq 45, m0", ""},
     {"SurfaceMeasurement", "mean_square_slope", "", 1e-16, 1e4, "eq 45, m2", ""},
     {"SurfaceMeasurement", "mean_square_curvature_per_square_metre", "1/m2", 1e-8, 1e20,
@@ -197,6 +205,48 @@ constexpr Constraint kConstraints[] = {
      "requests of one transaction"},
 };
 
+/// A unit that people write in place of the contract's, and the range of the usual: a number that
+/// is not legal but is usual in that unit was probably written in it.
+struct UnitSlip {
+  std::string_view message;  ///< whose fields it concerns; empty: all
+  std::string_view unit;     ///< of the contract
+  std::string_view written;
+  double factor;
+  double offset;
+  double least_usual, most_usual;  ///< in the contract's unit
+};
+
+constexpr UnitSlip kUnitSlips[] = {
+    // Lubricants have 780 to 1150 kg/m3 at 15 C.
+    {"", "kg/m3", "g/cm3", 1e3, 0, 700, 1300},
+    {"", "kg/m3", "g/cm3 with its decimal point one place off", 1e2, 0, 700, 1300},
+    // Gear oils have 3 to 50 mm2/s at 100 C and 15 to 1000 mm2/s at 40 C.
+    {"", "mm2/s", "m2/s", 1e6, 0, 2, 5000},
+    {"", "mm2/s", "St", 1e2, 0, 2, 5000},
+    // Brookfield viscosities are 3000 to 300 000 mPa s.
+    {"", "mPa s", "Pa s", 1e3, 0, 1, 1e6},
+    {"", "mPa s", "uPa s", 1e-3, 0, 1, 1e6},
+    // alpha* of oils is 8 to 40 1/GPa.
+    {"", "1/Pa", "1/GPa", 1e-9, 0, 4e-9, 1e-7},
+    {"", "1/Pa", "mm2/N", 1e-6, 0, 4e-9, 1e-7},
+    {"Lubricant", "K", "C", 1, 273.15, 200, 420},
+    // Asperities are 1 to 1000 um in radius, the height of flanks is 0.05 to 5 um.
+    {"Surface", "m", "um", 1e-6, 0, 1e-8, 1e-3},
+    {"Surface", "Pa", "MPa", 1e6, 0, 1e4, 1e9}};
+
+/// "; 0.895 looks like g/cm3: did you mean 895 kg/m3?", or nothing.
+std::string slip_text(const Constraint& row, double value) {
+  for (const UnitSlip& slip : kUnitSlips) {
+    if (slip.unit != row.unit || !(slip.message.empty() || slip.message == row.message)) continue;
+    const double meant = value * slip.factor + slip.offset;
+    if (!(meant >= slip.least_usual && meant <= slip.most_usual)) continue;
+    if (!(meant >= row.minimum && meant <= row.maximum)) continue;
+    return fmt::format("; {} looks like {}: did you mean {:.6g} {}?", value, slip.written, meant,
+                       row.unit);
+  }
+  return "";
+}
+
 /// "legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".
 std::string legal_text(const Constraint& row) {
   return fmt::format("legal: {} to {} ({}{}{})", number_text(row.minimum),
@@ -227,7 +277,8 @@ std::string quantity_text(double value, std::string_view unit) {
 }
 
 std::string out_of_range_text(const Constraint& row, double value) {
-  return fmt::format("{} = {}; {}", row.field, quantity_text(value, row.unit), legal_text(row));
+  return fmt::format("{} = {}; {}{}", row.field, quantity_text(value, row.unit), legal_text(row),
+                     slip_text(row, value));
 }
 
 std::string not_set_text(const Constraint& row) {

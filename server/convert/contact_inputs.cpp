@@ -1,8 +1,13 @@
 #include "server/convert/contact_inputs.h"
 
+#include <fmt/format.h>
+
+#include <utility>
+
 #include "core/refusal.h"
 #include "server/convert/check_message.h"
 #include "server/convert/from_core.h"
+#include "server/convert/lubricant_parameters.h"
 #include "server/convert/study_checks.h"
 #include "server/convert/to_core.h"
 
@@ -12,6 +17,7 @@ std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& requ
                                           const ResourceLookup& lookup, Violations& violations) {
   const std::size_t before = violations.size();
   check_message(request, "", violations);
+  check_model_options(request.model_options(), "model_options", violations);
   std::optional<v1::Lubricant> lubricant;
   std::string path = "lubricant_parameters";
   if (request.has_lubricant_parameters()) {
@@ -42,7 +48,17 @@ v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& r
   if (solution.status != ContactStatus::kOk && solution.status != ContactStatus::kNoLoad) {
     throw Refusal(contact_status_name(solution.status), contact_status_sentence(solution.status));
   }
+  if (solution.contact_temperature > kHottestContact) {
+    throw Refusal("CONTACT_TOO_HOT",
+                  fmt::format("the contact would be at {:.4g} K, and the model means nothing above "
+                              "{} K, where steel melts; check the units of the fluid's parameters "
+                              "(eq 23, eq 34), of the velocities and of the load",
+                              solution.contact_temperature, kHottestContact));
+  }
   v1::EvaluateContactResponse response = to_message(solution);
+  for (v1::RangeWarning& each : fluid_warnings(lubricant)) {
+    *response.add_input_warnings() = std::move(each);
+  }
   const std::string bad = first_not_finite(response);
   if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
   return response;

@@ -22,7 +22,8 @@ constexpr double kShotOrder = 0.48;
 constexpr double kShotSolutionsAtOneKilometerPerHour = 12'800;
 constexpr double kShotSecondsEach = 0.21e-6;
 constexpr double kPinionSpeedAtOneKilometerPerHour = 3.2;  // of the paper's axle [rad/s]
-// A curve over speeds up to e times the least: what its points take far from one another, and the
+// A curve that follows a branch, over speeds up to e times the least: what its points take far from
+// one another, and the
 // halvings on the way to a branch's end, the likelier the wider the curve.
 constexpr double kSpreadSeconds = 0.7e-3;
 constexpr double kHalvingSeconds = 0.13e-3;
@@ -75,7 +76,7 @@ void add_curve(const v1::InefficiencyCurveStudy& curve, const v1::SolverOptions&
                v1::CostEstimate& out) {
   const auto& speeds = curve.speeds_kilometers_per_hour();
   for (const double speed : speeds) add_point(speed, curve.model(), solver, out);
-  if (curve.model() == v1::QUASI_STATIC) return;
+  if (curve.model() == v1::QUASI_STATIC || curve.independent_points()) return;
   out.set_processor_seconds(out.processor_seconds() + following_seconds(speeds));
 }
 

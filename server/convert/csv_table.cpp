@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "server/convert/resource_names.h"
 
@@ -94,7 +95,7 @@ class TableReader {
   void read(std::string_view line, int number) {
     const std::string_view text = trimmed(line);
     if (text.empty() || text.front() == '#') return;
-    if (separator_ == '\0') separator_ = separator_of(text);
+    if (separator_ == '\0') table_.separator = separator_ = separator_of(text);
     auto cells = split(separator_ == '\t' ? line : text, separator_);
     const std::string place = fmt::format("{} row {}", table_.name, number);
     if (!cells) return complaints_.add(place, "a cell in quotes does not end properly");
@@ -119,6 +120,61 @@ class TableReader {
   char separator_ = '\0';
 };
 
+/// In lower case, blanks and dashes as underscores.
+std::string plain_header(std::string_view header) {
+  std::string out;
+  for (const char c : header) {
+    const bool is_gap = c == ' ' || c == '-' || c == '_';
+    if (!is_gap) {
+      out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    } else if (!out.empty() && out.back() != '_') {
+      out += '_';
+    }
+  }
+  while (!out.empty() && out.back() == '_') out.pop_back();
+  return out;
+}
+
+/// Whether a list with bars between its parts holds the word.
+bool holds(std::string_view list, std::string_view word) {
+  while (!list.empty()) {
+    const std::size_t end = std::min(list.find('|'), list.size());
+    if (list.substr(0, end) == word) return true;
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+  return false;
+}
+
+/// "X (mm)" or "Z [\u00b5m]" is one of the names with one of the units.
+bool has_form(const std::string& header, const CsvColumnForm& form) {
+  if (plain_header(header) == form.header) return true;
+  const char close = header.empty() ? '\0' : header.back();
+  if (close != ')' && close != ']') return false;
+  const std::size_t open = header.rfind(close == ')' ? '(' : '[');
+  if (open == std::string::npos) return false;
+  std::string unit = header.substr(open + 1, header.size() - open - 2);
+  for (const std::string_view micro : {"\u00b5", "\u03bc", "\xb5"}) {  // the last in Latin-1
+    if (unit.starts_with(micro)) unit.replace(0, micro.size(), "u");
+  }
+  for (const std::string_view square : {"\u00b2", "\u00b3"}) {
+    if (const std::size_t at = unit.find(square); at != std::string::npos) {
+      unit.replace(at, square.size(), square == "\u00b2" ? "2" : "3");
+    }
+  }
+  if (unit.starts_with("\u00b0")) unit.erase(0, 2);
+  return holds(form.names, plain_header(header.substr(0, open))) && holds(form.units, unit);
+}
+
+bool has_decimal_comma(std::string_view cell) {
+  const std::size_t comma = cell.find(',');
+  const auto is_digit = [&](std::size_t at) {
+    return at < cell.size() && cell[at] >= '0' && cell[at] <= '9';
+  };
+  return comma != std::string_view::npos && comma > 0 && is_digit(comma - 1) &&
+         is_digit(comma + 1) && cell.find(',', comma + 1) == std::string_view::npos &&
+         cell.find('.') == std::string_view::npos;
+}
+
 std::optional<double> number_of(std::string_view cell) {
   if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
   double value = 0;
@@ -139,8 +195,15 @@ std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name
     return std::nullopt;
   }
   const std::size_t before = violations.size();
+  if (text.starts_with("PK\x03\x04") || text.starts_with("\xd0\xcf\x11\xe0")) {
+    violations.push_back({name, "is an Excel workbook; legal: text, saved as \"CSV UTF-8\""});
+    return std::nullopt;
+  }
   if (text.find('\0') != std::string_view::npos) {
-    violations.push_back({name, "is no text: it holds zero bytes"});
+    const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") ||
+                          (text.size() > 1 && (text[0] == '\0') != (text[1] == '\0'));
+    violations.push_back({name, is_utf16 ? "is UTF-16; legal: UTF-8, saved as \"CSV UTF-8\""
+                                         : "is no text: it holds zero bytes"});
     return std::nullopt;
   }
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
@@ -171,7 +234,7 @@ std::vector<CsvColumn> match_columns(const CsvTable& table, std::span<const CsvC
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string& header = table.columns[i];
     const auto form = std::find_if(forms.begin(), forms.end(), [&](const CsvColumnForm& each) {
-      return each.header == header;
+      return has_form(header, each);
     });
     if (form == forms.end()) {
       violations.push_back({fmt::format("{} column {}", table.name, i + 1),
@@ -194,21 +257,66 @@ const CsvColumn* find_column(const std::vector<CsvColumn>& columns, std::string_
   return nullptr;
 }
 
+void check_units_row(CsvTable& table, const std::vector<CsvColumn>& columns,
+                     Violations& violations) {
+  if (table.rows.empty() || columns.empty()) return;
+  const CsvTable::Row& row = table.rows.front();
+  const bool holds_units =
+      std::all_of(columns.begin(), columns.end(), [&](const CsvColumn& column) {
+        const std::string& cell = row.cells[column.index];
+        return !cell.empty() && cell.find_first_of("0123456789") != 0 && !number_of(cell) &&
+               cell.size() < 12 && !has_decimal_comma(cell) && cell.front() != '-';
+      });
+  if (!holds_units) return;
+  violations.push_back(
+      {fmt::format("{} row {}", table.name, row.line),
+       fmt::format("looks like units (\"{}\"); legal: numbers. Delete the row, or begin it with #",
+                   plain_excerpt(row.cells[columns.front().index]))});
+  table.rows.erase(table.rows.begin());
+}
+
 std::vector<double> numbers(const CsvTable& table, const CsvColumn& column, EmptyCells empty,
                             Violations& violations) {
-  CsvComplaints complaints(violations);
+  /// A cell that is no number, and how many rows have it.
+  struct Wrong {
+    int first_line = 0, last_line = 0;
+    std::size_t count = 0;
+    std::string text;
+  };
+  constexpr char kComma[] = ",";
+  std::vector<Wrong> wrong;
+  std::map<std::string, std::size_t> index;
+  const auto complain = [&](const std::string& key, int line, std::string text) {
+    const auto [at, is_new] = index.emplace(key, wrong.size());
+    if (is_new) wrong.push_back({line, line, 0, std::move(text)});
+    wrong[at->second].last_line = line;
+    ++wrong[at->second].count;
+  };
   std::vector<double> out;
   out.reserve(table.rows.size());
   for (const CsvTable::Row& row : table.rows) {
-    const std::string& cell = row.cells[column.index];
+    std::string cell = row.cells[column.index];
+    const bool comma = has_decimal_comma(cell);
+    if (comma && table.separator != ',') cell.replace(cell.find(','), 1, ".");
     const std::optional<double> value = number_of(cell);
     out.push_back(value ? column.form.factor * *value + column.form.offset
                         : std::numeric_limits<double>::quiet_NaN());
     if (value || (cell.empty() && empty == EmptyCells::kAreNaN)) continue;
-    complaints.add(csv_place(table, row.line, column.form.header),
-                   cell.empty() ? std::string("is empty; legal: a finite number")
-                                : fmt::format("\"{}\"; legal: a finite number with a decimal point",
-                                              plain_excerpt(cell)));
+    if (cell.empty()) {
+      complain(cell, row.line, "is empty; legal: a finite number");
+    } else {
+      complain(comma ? kComma : cell, row.line,
+               fmt::format("\"{}\"; legal: a finite number with a decimal point{}",
+                           plain_excerpt(cell), comma ? ", or semicolons between the cells" : ""));
+    }
+  }
+  CsvComplaints complaints(violations);
+  for (Wrong& each : wrong) {
+    if (each.count > 1) {
+      each.text +=
+          fmt::format(" (and in {} more rows, the last row {})", each.count - 1, each.last_line);
+    }
+    complaints.add(csv_place(table, each.first_line, column.form.header), std::move(each.text));
   }
   return out;
 }

@@ -15,6 +15,7 @@ namespace tribodyn::server {
 /// one. Empty lines and lines that begin with '#' are skipped; a byte order mark and CRLF are fine.
 struct CsvTable {
   std::string name;  ///< of the field it came in, for messages
+  char separator = ',';
   std::vector<std::string> columns;
   struct Row {
     int line = 0;  ///< in the text, counted from 1 as editors and spreadsheets do
@@ -29,7 +30,7 @@ inline constexpr std::size_t kMaximumCsvColumns = 64;
 inline constexpr std::size_t kMaximumCsvViolations = 100;
 
 /// Reads a table; violations name the rows that are left out of it because they cannot be read.
-/// Nothing when none can.
+/// Nothing when none can; an Excel workbook and UTF-16 are told in one sentence.
 std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name,
                                   std::size_t maximum_bytes, Violations& violations);
 
@@ -42,6 +43,10 @@ struct CsvColumnForm {
   std::string_view quantity;
   double factor = 1;
   double offset = 0;
+  /// Other headers, a list with a bar between two: "x|position", each with a unit behind it in
+  /// brackets out of `units`: "X (mm)".
+  std::string_view names = {};
+  std::string_view units = {};
 };
 
 /// Which column of a table holds a quantity, and how.
@@ -50,8 +55,8 @@ struct CsvColumn {
   CsvColumnForm form;
 };
 
-/// The columns of a table among the forms it may have. A header that is none of them is a violation
-/// that names the nearest; so is a quantity given twice.
+/// The columns of a table among the forms it may have, in any case. A header that is none of them
+/// is a violation that names the nearest; so is a quantity given twice.
 std::vector<CsvColumn> match_columns(const CsvTable& table, std::span<const CsvColumnForm> forms,
                                      Violations& violations);
 
@@ -63,7 +68,12 @@ enum class EmptyCells {
   kAreNaN,
 };
 
-/// The cells of a column in SI units, NaN for what is no number (and a violation).
+/// Takes a first row out that holds units and not numbers, with a violation that says so.
+void check_units_row(CsvTable& table, const std::vector<CsvColumn>& columns,
+                     Violations& violations);
+
+/// The cells of a column in SI units, NaN for what is no number (and a violation; one for all rows
+/// with the same cell). A decimal comma is a point where commas do not separate the cells.
 std::vector<double> numbers(const CsvTable& table, const CsvColumn& column, EmptyCells empty,
                             Violations& violations);
 

@@ -20,7 +20,7 @@ using google::protobuf::FieldDescriptor;
 
 constexpr double kMillimetre = 1e-3;
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kSpacingTolerance = 1e-6;  // of a pitch
+constexpr double kPitchSpacingTolerance = 1e-6;  // of a pitch
 constexpr double kSnapTolerance = 1e-6;
 
 constexpr char kRoll[] = "roll_pitches";
@@ -180,7 +180,7 @@ class ToothContactReader {
     const CsvColumn& header = *find_column(columns_, by_angle ? kRollAngle : kRoll);
     for (std::size_t i = 0; i < rows; ++i) {
       const double expected = -1.5 + step * static_cast<double>(i);
-      if (std::isnan(roll[i]) || near(roll[i], expected, kSpacingTolerance)) continue;
+      if (std::isnan(roll[i]) || near(roll[i], expected, kPitchSpacingTolerance)) continue;
       violations_.push_back({csv_place(table_, table_.rows[i].line, header.form.header),
                              fmt::format("roll {} pitches; legal: {}, evenly spaced from -1.5 to "
                                          "1.5",
@@ -224,7 +224,8 @@ class ToothContactReader {
       for (std::size_t j = 0; j < samples; ++j) {
         const double expected = static_cast<double>(j) / static_cast<double>(samples - 1);
         layout_.row.push_back(of_slot[j]);
-        if (std::isnan(phase[of_slot[j]]) || near(phase[of_slot[j]], expected, kSpacingTolerance)) {
+        if (std::isnan(phase[of_slot[j]]) ||
+            near(phase[of_slot[j]], expected, kPitchSpacingTolerance)) {
           continue;
         }
         violations_.push_back(

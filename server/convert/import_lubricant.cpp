@@ -1,6 +1,7 @@
 #include "server/convert/import_lubricant.h"
 
 #include <cmath>
+#include <cstdlib>
 
 #include "server/convert/accept_resource.h"
 #include "server/convert/check_message.h"
@@ -16,15 +17,21 @@ constexpr char kDynamic[] = "dynamic_viscosity_millipascal_seconds";
 constexpr char kUncertainty[] = "relative_standard_uncertainty";
 constexpr char kDensity[] = "density_kilograms_per_cubic_metre";
 
+constexpr char kTemperatureNames[] = "temperature|temp|t";
+constexpr char kDynamicNames[] = "dynamic_viscosity|viscosity";
+constexpr char kDensityNames[] = "density|rho";
+
 // In the units of the contract's measurements.
-constexpr CsvColumnForm kForms[] = {
-    {"temperature_celsius", kTemperature},
-    {"temperature_kelvin", kTemperature, 1, -kZeroCelsius},
-    {"kinematic_viscosity_square_millimetres_per_second", kKinematic},
-    {"dynamic_viscosity_millipascal_seconds", kDynamic},
-    {"dynamic_viscosity_pascal_seconds", kDynamic, 1e3},
+constexpr CsvColumnForm kViscosityForms[] = {
+    {"temperature_celsius", kTemperature, 1, 0, kTemperatureNames, "C"},
+    {"temperature_kelvin", kTemperature, 1, -kZeroCelsius, kTemperatureNames, "K"},
+    {"kinematic_viscosity_square_millimetres_per_second", kKinematic, 1, 0,
+     "kinematic_viscosity|kv|viscosity", "mm2/s|cSt"},
+    {"dynamic_viscosity_millipascal_seconds", kDynamic, 1, 0, kDynamicNames, "mPa s|mPas|mPa*s|cP"},
+    {"dynamic_viscosity_pascal_seconds", kDynamic, 1e3, 0, kDynamicNames, "Pa s|Pas|Pa*s"},
     {"relative_standard_uncertainty", kUncertainty},
-    {"density_kilograms_per_cubic_metre", kDensity}};
+    {"density_kilograms_per_cubic_metre", kDensity, 1, 0, kDensityNames, "kg/m3"},
+    {"density_grams_per_cubic_centimetre", kDensity, 1e3, 0, kDensityNames, "g/cm3|g/ml|kg/l"}};
 
 /// The cells of a quantity, NaN where there is none.
 std::vector<double> cells(const CsvTable& table, const std::vector<CsvColumn>& columns,
@@ -48,13 +55,18 @@ void check_row(const google::protobuf::Message& row, const CsvTable& table, int 
   }
 }
 
-void read_table(const CsvTable& table, v1::LubricantMeasurements& out, Violations& violations) {
+/// The place in the table of each viscosity that was read from it, in their order.
+using Places = std::vector<std::string>;
+
+void read_table(CsvTable& table, v1::LubricantMeasurements& out, Places& places,
+                Violations& violations) {
   const std::size_t before = violations.size();
-  const std::vector<CsvColumn> columns = match_columns(table, kForms, violations);
+  const std::vector<CsvColumn> columns = match_columns(table, kViscosityForms, violations);
   if (find_column(columns, kTemperature) == nullptr) {
     violations.push_back({table.name, "has no column temperature_celsius or temperature_kelvin"});
   }
   if (violations.size() > before) return;
+  check_units_row(table, columns, violations);
   const auto temperature = cells(table, columns, kTemperature, violations);
   const auto kinematic = cells(table, columns, kKinematic, violations);
   const auto dynamic = cells(table, columns, kDynamic, violations);
@@ -74,6 +86,8 @@ void read_table(const CsvTable& table, v1::LubricantMeasurements& out, Violation
     }
     if (!std::isnan(uncertainty[i])) row->set_relative_standard_uncertainty(uncertainty[i]);
     check_row(*row, table, table.rows[i].line, columns, violations);
+    const CsvColumn* column = find_column(columns, is_kinematic ? kKinematic : kDynamic);
+    places.push_back(csv_place(table, table.rows[i].line, column->form.header));
   };
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (!std::isnan(kinematic[i])) add_viscosity(i, true);
@@ -86,11 +100,27 @@ void read_table(const CsvTable& table, v1::LubricantMeasurements& out, Violation
   }
 }
 
+/// Violations of viscosities of the table are named by their place in it; `stated` ones stood
+/// before them.
+void name_places(const Places& places, int stated, std::size_t begin, Violations& violations) {
+  constexpr std::string_view kPath = "lubricant.measurements.viscosities[";
+  std::size_t i = 0;
+  for (Violation& each : violations) {
+    if (i++ < begin) continue;
+    std::string& field = each.field;
+    if (!field.starts_with(kPath)) continue;
+    const int index = std::atoi(field.c_str() + kPath.size()) - stated;
+    if (index >= 0 && index < static_cast<int>(places.size())) {
+      field = places[static_cast<std::size_t>(index)];
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> viscosity_headers() {
   std::vector<std::string> out;
-  for (const CsvColumnForm& form : kForms) out.emplace_back(form.header);
+  for (const CsvColumnForm& form : kViscosityForms) out.emplace_back(form.header);
   return out;
 }
 
@@ -100,15 +130,19 @@ std::optional<v1::Lubricant> import_lubricant(const v1::ImportLubricantRequest& 
   const std::size_t before = violations.size();
   v1::Lubricant lubricant = request.lubricant();
   lubricant.set_name(name);
-  const auto table =
+  auto table =
       parse_csv(request.viscosity_table_csv(), "viscosity_table_csv", kMaximumCsvBytes, violations);
-  if (table) read_table(*table, *lubricant.mutable_measurements(), violations);
+  Places places;
+  const int stated = lubricant.measurements().viscosities_size();
+  if (table) read_table(*table, *lubricant.mutable_measurements(), places, violations);
   if (violations.size() > before) {
     check_stated(request.lubricant(), lookup, "lubricant", violations);
     return std::nullopt;
   }
-  return accept(lubricant, static_cast<const v1::Lubricant*>(nullptr), lookup, "lubricant",
-                violations);
+  auto accepted = accept(lubricant, static_cast<const v1::Lubricant*>(nullptr), lookup, "lubricant",
+                         violations);
+  name_places(places, stated, before, violations);
+  return accepted;
 }
 
 }  // namespace tribodyn::server

@@ -4,32 +4,42 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <vector>
 
+#include "core/model_options.h"
 #include "core/refusal.h"
+#include "core/surface/gaussian_filter.h"
+#include "core/surface/roughness_product.h"
 #include "core/surface/spectral_moments.h"
 #include "server/convert/accept_resource.h"
 #include "server/convert/check_message.h"
 #include "server/convert/constraints.h"
 #include "server/convert/csv_table.h"
+#include "server/convert/provenance.h"
 #include "server/hash/sha256.h"
 
 namespace tribodyn::server {
 namespace {
 
-constexpr double kSpacingTolerance = 1e-3;  // of the spacing
+constexpr double kProfileSpacingTolerance = 1e-3;  // of the spacing
 
 constexpr char kPosition[] = "position";
 constexpr char kHeight[] = "height";
 
-constexpr CsvColumnForm kForms[] = {{"position_metres", kPosition},
-                                    {"position_millimetres", kPosition, 1e-3},
-                                    {"position_micrometres", kPosition, 1e-6},
-                                    {"height_metres", kHeight},
-                                    {"height_millimetres", kHeight, 1e-3},
-                                    {"height_micrometres", kHeight, 1e-6},
-                                    {"height_nanometres", kHeight, 1e-9}};
+// As instruments head their columns: "X (mm)", "Profile [um]".
+constexpr char kPositionNames[] = "x|position|distance|length";
+constexpr char kHeightNames[] = "z|height|profile";
+
+constexpr CsvColumnForm kProfileForms[] = {
+    {"position_metres", kPosition, 1, 0, kPositionNames, "m"},
+    {"position_millimetres", kPosition, 1e-3, 0, kPositionNames, "mm"},
+    {"position_micrometres", kPosition, 1e-6, 0, kPositionNames, "um"},
+    {"height_metres", kHeight, 1, 0, kHeightNames, "m"},
+    {"height_millimetres", kHeight, 1e-3, 0, kHeightNames, "mm"},
+    {"height_micrometres", kHeight, 1e-6, 0, kHeightNames, "um"},
+    {"height_nanometres", kHeight, 1e-9, 0, kHeightNames, "nm"}};
 
 constexpr const char* kFromProfiles[] = {"asperity_density_per_square_metre",
                                          "asperity_radius_metres", "composite_rms_height_metres"};
@@ -77,7 +87,7 @@ void check_spacing(const CsvTable& table, const CsvColumn& column, const std::ve
   for (const Step& each : steps) {
     const bool rises = each.per_sample > 0;
     const bool even =
-        spacing <= 0 || std::abs(each.per_sample - spacing) <= kSpacingTolerance * spacing;
+        spacing <= 0 || std::abs(each.per_sample - spacing) <= kProfileSpacingTolerance * spacing;
     if (rises && even) continue;
     if (++wrong > kMaximumCsvViolations) return;
     violations.push_back(
@@ -85,7 +95,7 @@ void check_spacing(const CsvTable& table, const CsvColumn& column, const std::ve
          spacing > 0
              ? fmt::format("a step of {:.6g} m; legal: {:.6g} m within {} of it, positions evenly "
                            "spaced and rising (eq 45)",
-                           each.per_sample, spacing, kSpacingTolerance)
+                           each.per_sample, spacing, kProfileSpacingTolerance)
              : fmt::format("a step of {:.6g} m; legal: above 0, positions evenly spaced and "
                            "rising (eq 45)",
                            each.per_sample)});
@@ -98,18 +108,19 @@ void check_spacing(const CsvTable& table, const CsvColumn& column, const std::ve
 
 /// What a profile measures; nothing, and everything that is wrong with it, when it is not usable.
 std::optional<v1::SurfaceMeasurement> measure(const v1::SurfaceProfile& profile,
-                                              v1::Levelling levelling, const std::string& name,
-                                              Violations& violations) {
+                                              v1::Levelling levelling, const ProfileBand& band,
+                                              const std::string& name, Violations& violations) {
   const std::size_t before = violations.size();
-  const auto table = parse_csv(profile.csv(), name, kMaximumProfileBytes, violations);
+  auto table = parse_csv(profile.csv(), name, kMaximumProfileBytes, violations);
   if (!table) return std::nullopt;
   const bool rows_are_missing = violations.size() > before;
-  const std::vector<CsvColumn> columns = match_columns(*table, kForms, violations);
+  const std::vector<CsvColumn> columns = match_columns(*table, kProfileForms, violations);
   const CsvColumn* position = find_column(columns, kPosition);
   const CsvColumn* height = find_column(columns, kHeight);
   if (position == nullptr || height == nullptr) {
     violations.push_back({name, "legal: a column position_... and a column height_..."});
   }
+  check_units_row(*table, columns, violations);
   const Constraint& samples = *find_constraint("SurfaceMeasurement", "samples");
   const auto count = static_cast<double>(table->rows.size());
   if (count < samples.minimum || count > samples.maximum) {
@@ -126,8 +137,9 @@ std::optional<v1::SurfaceMeasurement> measure(const v1::SurfaceProfile& profile,
   const double spacing =
       (positions.back() - positions.front()) / static_cast<double>(positions.size() - 1);
   try {
+    const Levelling level = levelling == v1::MEAN ? Levelling::kMean : Levelling::kLeastSquaresLine;
     const SpectralMoments moments = spectral_moments(
-        heights, spacing, levelling == v1::MEAN ? Levelling::kMean : Levelling::kLeastSquaresLine);
+        filtered_profile(levelled_profile(heights, level), spacing, band), spacing, level);
     v1::SurfaceMeasurement out;
     out.set_member(profile.member());
     out.set_direction(profile.direction());
@@ -138,6 +150,8 @@ std::optional<v1::SurfaceMeasurement> measure(const v1::SurfaceProfile& profile,
     out.set_mean_square_slope(moments.m2);
     out.set_mean_square_curvature_per_square_metre(moments.m4);
     out.set_profile_sha256(sha256(profile.csv()));
+    out.set_short_wave_cut_off_metres(band.shortest);
+    out.set_long_wave_cut_off_metres(band.longest);
     check_message(out, name, violations);
     return out;
   } catch (const Refusal& refusal) {
@@ -151,39 +165,105 @@ SpectralMoments moments_of(const v1::SurfaceMeasurement& measurement) {
           measurement.mean_square_curvature_per_square_metre()};
 }
 
-/// The isotropic surface of one member; nothing when it was not measured.
-std::optional<SpectralMoments> member_moments(const v1::Surface& surface, v1::FlankMember member) {
-  std::vector<SpectralMoments> found;
+SpectralMoments mean_of(const std::vector<SpectralMoments>& repeats) {
+  SpectralMoments out{};
+  const auto count = static_cast<double>(repeats.size());
+  for (const SpectralMoments& each : repeats) {
+    out.m0 += each.m0 / count;
+    out.m2 += each.m2 / count;
+    out.m4 += each.m4 / count;
+  }
+  return out;
+}
+
+/// The isotropic surface of one member: repeats of a direction averaged, two directions joined by
+/// eq 46. Nothing when the member was not measured.
+std::optional<SpectralMoments> member_moments(const v1::Surface& surface, v1::FlankMember member,
+                                              const AsPublished& as_published) {
+  std::map<v1::ProfileDirection, std::vector<SpectralMoments>> found;
   for (const v1::SurfaceMeasurement& each : surface.measurements()) {
-    if (each.member() == member) found.push_back(moments_of(each));
+    if (each.member() == member) found[each.direction()].push_back(moments_of(each));
   }
   if (found.empty()) return std::nullopt;
-  if (found.size() == 1) return found.front();
-  return equivalent_isotropic_moments(found[0], found[1], AsPublished{});
+  if (found.size() == 1) return mean_of(found.begin()->second);
+  return equivalent_isotropic_moments(mean_of(found[v1::AXIAL]), mean_of(found[v1::RADIAL]),
+                                      as_published);
 }
 
 std::string join(const std::string& a, const std::string& b) {
   return a.empty() ? b : a + "; " + b;
 }
 
-void set_parameters(v1::Surface& surface) {
-  const auto both = member_moments(surface, v1::FLANK_MEMBER_UNSPECIFIED);
-  const auto pinion = member_moments(surface, v1::PINION);
-  const auto gear = member_moments(surface, v1::GEAR);
-  std::string warning;
-  if (!pinion || !gear) {
-    warning = both ? "both flanks taken to be as the measured profile"
-                   : "only one flank measured, the other taken to be like it";
+/// "the pinion's axial profile" of a measurement.
+std::string profile_text(const v1::SurfaceMeasurement& measurement) {
+  std::string text = measurement.member() == v1::PINION ? "the pinion's "
+                     : measurement.member() == v1::GEAR ? "the gear's "
+                                                        : "the ";
+  if (measurement.direction() == v1::AXIAL) text += "axial ";
+  if (measurement.direction() == v1::RADIAL) text += "radial ";
+  return text + "profile";
+}
+
+/// What is wrong with the sampling of the profiles that a surface was made of.
+std::string unresolved_text(const v1::Surface& surface) {
+  std::string out;
+  for (const v1::SurfaceMeasurement& each : surface.measurements()) {
+    const double waves = wave_length_in_spacings(moments_of(each), each.spacing_metres());
+    if (!(waves < kLeastSpacingsPerWave)) continue;
+    out = join(out, fmt::format("{} has waves of {:.2g} sample spacings, white noise 3: it holds "
+                                "the instrument's noise or was not filtered (ISO 3274 wants a "
+                                "cut-off lambda_s of 5 spacings or more)",
+                                profile_text(each), waves));
   }
+  return out;
+}
+
+/// Of a product of Greenwood and Tripp's parameters that no steel surface has.
+std::string product_text(const Roughness& roughness) {
+  const double product = roughness_product(roughness);
+  if (product >= kLeastRoughnessProduct && product <= kMostRoughnessProduct) return "";
+  return fmt::format(
+      "eta_G beta_G sigma_G is {:.3g}; Greenwood and Tripp expect {} to {} for steel "
+      "on steel{}",
+      product, kLeastRoughnessProduct, kMostRoughnessProduct,
+      product > kMostRoughnessProduct
+          ? ": the profiles reach over too wide a band of wave lengths; "
+            "filter them"
+          : "");
+}
+
+/// Which flanks and directions no profile tells of.
+std::string unmeasured_text(const v1::Surface& surface) {
+  std::string text;
+  std::set<v1::FlankMember> members;
+  std::set<std::pair<v1::FlankMember, v1::ProfileDirection>> directions;
+  for (const v1::SurfaceMeasurement& each : surface.measurements()) {
+    members.insert(each.member());
+    directions.emplace(each.member(), each.direction());
+  }
+  const bool both = members.contains(v1::FLANK_MEMBER_UNSPECIFIED);
+  if (!members.contains(v1::PINION) || !members.contains(v1::GEAR)) {
+    text = both ? "both flanks taken to be as the measured profile"
+                : "only one flank measured, the other taken to be like it";
+  }
+  if (members.size() == directions.size()) {
+    text = join(text, "taken to be isotropic: one direction measured");
+  } else if (directions.size() == 3) {
+    text = join(text, "one flank taken to be isotropic: one direction measured");
+  }
+  return text;
+}
+
+void set_parameters(v1::Surface& surface, const AsPublished& as_published) {
+  const auto both = member_moments(surface, v1::FLANK_MEMBER_UNSPECIFIED, as_published);
+  const auto pinion = member_moments(surface, v1::PINION, as_published);
+  const auto gear = member_moments(surface, v1::GEAR, as_published);
   const SpectralMoments one = both ? *both : pinion ? *pinion : *gear;
   const Roughness roughness =
       greenwood_tripp_roughness(composite_moments(pinion.value_or(one), gear.value_or(one)));
-  std::set<v1::FlankMember> members;
-  for (const v1::SurfaceMeasurement& each : surface.measurements()) members.insert(each.member());
-  if (members.size() == static_cast<std::size_t>(surface.measurements_size())) {
-    warning = join(warning, "taken to be isotropic: one direction measured");
-  } else if (surface.measurements_size() == 3) {
-    warning = join(warning, "one flank taken to be isotropic: one direction measured");
+  std::string warning = unmeasured_text(surface);
+  for (const std::string& each : {unresolved_text(surface), product_text(roughness)}) {
+    if (!each.empty()) warning = join(warning, each);
   }
   surface.set_asperity_density_per_square_metre(roughness.asperity_density);
   surface.set_asperity_radius_metres(roughness.asperity_radius);
@@ -192,7 +272,9 @@ void set_parameters(v1::Surface& surface) {
     v1::ParameterProvenance* entry = surface.add_provenance();
     entry->set_field(field);
     entry->set_provenance(v1::PROVENANCE_FITTED);
-    entry->set_source("measured profiles, eqs 45 to 48");
+    entry->set_source(as_published.eq46_square_root_of_sum
+                          ? "measured profiles, eqs 45 to 48, eq 46 as published"
+                          : "measured profiles, eqs 45 to 48");
     entry->set_warning(warning);
     entry->set_computed(true);
   }
@@ -224,6 +306,13 @@ void check_rest(const v1::Surface& stated, const std::string& name, const Resour
 }
 
 void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations& violations) {
+  for (const auto& [field, value] :
+       {std::pair("short_wave_cut_off_metres", request.short_wave_cut_off_metres()),
+        std::pair("long_wave_cut_off_metres", request.long_wave_cut_off_metres())}) {
+    const Constraint& row = *find_constraint("ImportSurfaceProfilesRequest", field);
+    if (value == 0 || (value >= row.minimum && value <= row.maximum)) continue;
+    violations.push_back({field, out_of_range_text(row, value)});
+  }
   if (request.profiles().empty() || request.profiles_size() > kMaximumProfiles) {
     violations.push_back({"profiles", fmt::format("{} profiles; legal: 1 to {}",
                                                   request.profiles_size(), kMaximumProfiles)});
@@ -236,10 +325,11 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
     bytes += profile.csv().size();
     (profile.member() == v1::FLANK_MEMBER_UNSPECIFIED ? both : single) = true;
     if (seen.emplace(profile.member(), profile.direction()).second) continue;
+    if (profile.direction() != v1::PROFILE_DIRECTION_UNSPECIFIED) continue;  // repeats
     violations.push_back(
         {"profiles",
-         "two of one member and direction; legal: one (name the direction, AXIAL or "
-         "RADIAL, of each)"});
+         "two of one member without a direction; legal: one, or the direction, AXIAL or RADIAL, of "
+         "each (repeats of a direction are averaged)"});
   }
   if (both && single) {
     violations.push_back({"profiles", "the member is stated for some; legal: for all or none"});
@@ -267,6 +357,15 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
           {fmt::format("profiles[{}].direction", i), "legal: AXIAL, RADIAL or unset"});
     }
   }
+  const bool has_two_directions =
+      std::any_of(seen.begin(), seen.end(), [&seen](const std::pair<int, int>& each) {
+        return each.second == v1::AXIAL && seen.count({each.first, v1::RADIAL}) > 0;
+      });
+  if (request.eq46_square_root_of_sum() && !has_two_directions) {
+    violations.push_back({"eq46_square_root_of_sum",
+                          "true; legal: false, as eq 46 joins an AXIAL and a RADIAL profile of one "
+                          "member, and no member has both"});
+  }
   if (!v1::Levelling_IsValid(request.levelling())) {
     violations.push_back({"levelling", "legal: MEAN, LEAST_SQUARES_LINE or unset"});
   }
@@ -274,9 +373,24 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
 
 }  // namespace
 
+std::vector<v1::RangeWarning> surface_warnings(const v1::Surface& surface) {
+  std::vector<v1::RangeWarning> out;
+  const auto add = [&out](const char* code, const std::string& sentence) {
+    if (sentence.empty()) return;
+    v1::RangeWarning& warning = out.emplace_back();
+    warning.set_code(code);
+    warning.set_message(sentence);
+  };
+  const v1::ParameterProvenance* known = find_provenance(surface.provenance(), kFromProfiles[0]);
+  if (known == nullptr || !known->computed()) return out;
+  add("PROFILE_NOT_RESOLVED", unresolved_text(surface));
+  add("SURFACE_PARTLY_MEASURED", unmeasured_text(surface));
+  return out;
+}
+
 std::vector<std::string> profile_headers() {
   std::vector<std::string> out;
-  for (const CsvColumnForm& form : kForms) out.emplace_back(form.header);
+  for (const CsvColumnForm& form : kProfileForms) out.emplace_back(form.header);
   return out;
 }
 
@@ -291,9 +405,10 @@ std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest
   const v1::Levelling levelling = request.levelling() == v1::LEVELLING_UNSPECIFIED
                                       ? v1::LEAST_SQUARES_LINE
                                       : request.levelling();
+  const ProfileBand band{request.short_wave_cut_off_metres(), request.long_wave_cut_off_metres()};
   for (int i = 0; i < std::min(request.profiles_size(), kMaximumProfiles); ++i) {
-    auto measured =
-        measure(request.profiles(i), levelling, fmt::format("profiles[{}].csv", i), violations);
+    auto measured = measure(request.profiles(i), levelling, band,
+                            fmt::format("profiles[{}].csv", i), violations);
     if (measured) *surface.add_measurements() = std::move(*measured);
   }
   if (violations.size() > before) {
@@ -301,7 +416,9 @@ std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest
     return std::nullopt;
   }
   try {
-    set_parameters(surface);
+    AsPublished as_published;
+    as_published.eq46_square_root_of_sum = request.eq46_square_root_of_sum();
+    set_parameters(surface, as_published);
   } catch (const Refusal& refusal) {
     violations.push_back({"profiles", refusal.what()});
     return std::nullopt;

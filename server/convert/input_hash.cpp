@@ -1,55 +1,33 @@
 #include "server/convert/input_hash.h"
 
-#include <set>
-
 #include "core/version.h"
 #include "server/convert/canonical_text.h"
+#include "server/convert/fluid_grounds.h"
+#include "server/convert/input_fields.h"
 #include "server/convert/latest_few.h"
-#include "server/convert/output_only.h"
 #include "server/hash/sha256.h"
 
 namespace tribodyn::server {
 namespace {
 
-using google::protobuf::FieldDescriptor;
-
-/// Fields that say what a thing is called, where it comes from or what only the server sets; never
-/// what the model computes with.
-bool is_label(const FieldDescriptor& field) {
-  static const std::set<std::string> kLabels = {"name",
-                                                "display_name",
-                                                "description",
-                                                "provenance",
-                                                "lubricant",
-                                                "gear_set",
-                                                "surface",
-                                                "vehicle",
-                                                "labels",
-                                                "derived_from",
-                                                "condition",
-                                                "base_oil_class",
-                                                "measurements",
-                                                "lims_id",
-                                                "external_sample_id",
-                                                "deadline_seconds"};
-  // Constant lines in the text of every simulation; without them stored hashes would be others.
-  static const std::set<std::string> kConstant = {"state", "progress_fraction"};
-  return kLabels.contains(field.name()) ||
-         (is_output_only(field) && !kConstant.contains(field.name()));
+bool is_left_out(const google::protobuf::FieldDescriptor& field) {
+  const InputRole role = input_role(field);
+  return role == InputRole::kLabel || role == InputRole::kOutput;
 }
 
 std::string resources_text(const SimulationInputs& inputs) {
   std::string text = std::string("model_version=") + kModelVersion + "\n";
-  add_canonical_text(*inputs.lubricant, "lubricant", is_label, text);
-  add_canonical_text(*inputs.gear_set, "gear_set", is_label, text);
-  add_canonical_text(*inputs.surface, "surface", is_label, text);
-  add_canonical_text(*inputs.vehicle, "vehicle", is_label, text);
+  add_canonical_text(*inputs.lubricant, "lubricant", is_left_out, text);
+  text += text_of(fluid_grounds(*inputs.lubricant));
+  add_canonical_text(*inputs.gear_set, "gear_set", is_left_out, text);
+  add_canonical_text(*inputs.surface, "surface", is_left_out, text);
+  add_canonical_text(*inputs.vehicle, "vehicle", is_left_out, text);
   return text;
 }
 
 std::string simulation_text(const SimulationInputs& inputs) {
   std::string text;
-  add_canonical_text(inputs.effective, "simulation", is_label, text);
+  add_canonical_text(inputs.effective, "simulation", is_left_out, text);
   return text;
 }
 

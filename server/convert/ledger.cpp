@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "server/convert/constraints.h"
+#include "server/convert/import_surface.h"
 #include "server/convert/latest_few.h"
+#include "server/convert/lubricant_parameters.h"
 #include "server/convert/output_only.h"
 #include "server/convert/provenance.h"
 #include "server/convert/solver_defaults.h"
@@ -114,9 +116,10 @@ void add_resources(Ledger& ledger, const SimulationInputs& inputs) {
   add_all(*inputs.vehicle);
 }
 
-std::string serialised(Ledger ledger) {
+std::string serialised(Ledger ledger, std::vector<v1::RangeWarning> warnings) {
   v1::SimulationResult out;
   for (v1::Assumption& each : ledger) *out.add_assumptions() = std::move(each);
+  for (v1::RangeWarning& each : warnings) *out.add_input_warnings() = std::move(each);
   return out.SerializeAsString();
 }
 
@@ -129,17 +132,23 @@ std::vector<v1::Assumption> assumptions(const SimulationInputs& inputs) {
   return ledger;
 }
 
+std::vector<v1::RangeWarning> input_warnings(const SimulationInputs& inputs) {
+  std::vector<v1::RangeWarning> out = fluid_warnings(*inputs.lubricant);
+  for (v1::RangeWarning& each : surface_warnings(*inputs.surface)) out.push_back(std::move(each));
+  return out;
+}
+
 std::string ledger(const SimulationInputs& inputs) {
   static LatestFew<std::pair<Resources, bool>, std::string> kept;
   const bool load_dependent = inputs.effective.model_options().load_dependent_mesh_data();
   Ledger of_request;
   add_request(of_request, inputs);
   // The bytes of two messages in a row are those of both merged.
-  return serialised(std::move(of_request)) +
+  return serialised(std::move(of_request), {}) +
          kept.get({resources(inputs), load_dependent}, [&inputs] {
            Ledger of_resources;
            add_resources(of_resources, inputs);
-           return serialised(std::move(of_resources));
+           return serialised(std::move(of_resources), input_warnings(inputs));
          });
 }
 

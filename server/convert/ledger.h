@@ -13,7 +13,10 @@ namespace tribodyn::server {
 /// to defaults.
 std::vector<v1::Assumption> assumptions(const SimulationInputs& inputs);
 
-/// The same as a serialised v1::SimulationResult that holds nothing else.
+/// How lubricant and surface are known: what to know before relying on any result of these inputs.
+std::vector<v1::RangeWarning> input_warnings(const SimulationInputs& inputs);
+
+/// Both as a serialised v1::SimulationResult that holds nothing else.
 std::string ledger(const SimulationInputs& inputs);
 
 }  // namespace tribodyn::server

@@ -1,5 +1,8 @@
 #include "server/convert/lubricant_parameters.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -7,6 +10,7 @@
 #include "core/lubricant/viscosity.h"
 #include "core/lubricant/viscosity_index.h"
 #include "core/refusal.h"
+#include "server/convert/latest_few.h"
 #include "server/convert/provenance.h"
 #include "server/convert/to_core.h"
 
@@ -16,6 +20,11 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using Stated = LubricantParameters<std::optional<KnownParameter>>;
 using Known = LubricantParameters<KnownParameter>;
+
+constexpr char kKinematic40[] = "kinematic_viscosity_40_celsius_square_millimetres_per_second";
+constexpr char kKinematic100[] = "kinematic_viscosity_100_celsius_square_millimetres_per_second";
+constexpr char kSheared100[] =
+    "sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second";
 
 constexpr double kFifteenCelsius = 15 + kZeroCelsius;
 constexpr double kSquareMillimetres = 1e-6;
@@ -140,26 +149,60 @@ ViscosityPoint to_core(const v1::ViscosityMeasurement& row, const DensityLaw* la
   return {temperature, viscosity, row.relative_standard_uncertainty()};
 }
 
-/// Where a row of a table is the kinematic viscosity that fluids are known by, KV40 or KV100, and
-/// that is not stated beside it; else null.
-std::optional<double>* trade_viscosity(const v1::ViscosityMeasurement& row,
-                                       FluidMeasurements& fluid) {
+/// What was entered, and the field of LubricantMeasurements that each viscosity comes from.
+struct Entered {
+  FluidMeasurements fluid;
+  std::string kinematic_viscosity_40_field = kKinematic40;
+  std::string kinematic_viscosity_100_field = kKinematic100;
+  std::vector<std::string> viscosity_fields;  ///< one a row of fluid.viscosities
+
+  std::string field(const GrossError& error) const {
+    switch (error.measurement) {
+      case Measurement::kKinematicViscosity40:
+        return kinematic_viscosity_40_field;
+      case Measurement::kKinematicViscosity100:
+        return kinematic_viscosity_100_field;
+      case Measurement::kShearedKinematicViscosity100:
+        return kSheared100;
+      case Measurement::kViscosity:
+        return viscosity_fields[error.row];
+      case Measurement::kColdViscosity:
+        return fmt::format("brookfield_viscosities[{}].dynamic_viscosity_millipascal_seconds",
+                           error.row);
+    }
+    return "";
+  }
+};
+
+std::string field_of(const v1::ViscosityMeasurement& row, int index) {
+  return fmt::format("viscosities[{}].{}", index,
+                     row.has_kinematic_viscosity_square_millimetres_per_second()
+                         ? "kinematic_viscosity_square_millimetres_per_second"
+                         : "dynamic_viscosity_millipascal_seconds");
+}
+
+/// A row of the table that is KV40 or KV100, which no single number states, is taken for it. False
+/// for every other row.
+bool take_trade_viscosity(const v1::ViscosityMeasurement& row, int index, Entered& out) {
   constexpr double kBathTolerance = 0.01;  // K, that of ASTM D445
-  if (!row.has_kinematic_viscosity_square_millimetres_per_second()) return nullptr;
-  if (row.relative_standard_uncertainty() != 0) return nullptr;
-  const auto is_at = [&](double celsius) {
-    return std::abs(row.temperature_celsius() - celsius) <= kBathTolerance;
+  if (!row.has_kinematic_viscosity_square_millimetres_per_second()) return false;
+  if (row.relative_standard_uncertainty() != 0) return false;
+  const auto take = [&](double celsius, std::optional<double>& viscosity, std::string& field) {
+    if (std::abs(row.temperature_celsius() - celsius) > kBathTolerance || viscosity) return false;
+    viscosity = row.kinematic_viscosity_square_millimetres_per_second() * kSquareMillimetres;
+    field = field_of(row, index);
+    return true;
   };
-  if (is_at(40) && !fluid.kinematic_viscosity_40) return &fluid.kinematic_viscosity_40;
-  if (is_at(100) && !fluid.kinematic_viscosity_100) return &fluid.kinematic_viscosity_100;
-  return nullptr;
+  return take(40, out.fluid.kinematic_viscosity_40, out.kinematic_viscosity_40_field) ||
+         take(100, out.fluid.kinematic_viscosity_100, out.kinematic_viscosity_100_field);
 }
 
 /// Everything that was entered, in the core's terms; what the server computed before is left out.
 /// Throws Refusal.
-FluidMeasurements entered(const v1::Lubricant& lubricant) {
+Entered entered(const v1::Lubricant& lubricant) {
   const v1::LubricantMeasurements& measured = lubricant.measurements();
-  FluidMeasurements out;
+  Entered result;
+  FluidMeasurements& out = result.fluid;
   out.base_oil = to_core(lubricant.base_oil_class());
   out.kinematic_viscosity_40 = stated_number(
       measured.kinematic_viscosity_40_celsius_square_millimetres_per_second(), kSquareMillimetres);
@@ -192,21 +235,20 @@ FluidMeasurements entered(const v1::Lubricant& lubricant) {
     out.stated.*member.stated = known;
   }
   std::optional<DensityLaw> law;
-  for (const v1::ViscosityMeasurement& row : measured.viscosities()) {
-    if (std::optional<double>* trade = trade_viscosity(row, out)) {
-      *trade = row.kinematic_viscosity_square_millimetres_per_second() * kSquareMillimetres;
-      continue;
-    }
+  for (int i = 0; i < measured.viscosities_size(); ++i) {
+    const v1::ViscosityMeasurement& row = measured.viscosities(i);
+    if (take_trade_viscosity(row, i, result)) continue;
     if (row.has_kinematic_viscosity_square_millimetres_per_second() && !law) {
       law = density_law_of(out);
     }
     out.viscosities.push_back(to_core(row, law ? &*law : nullptr));
+    result.viscosity_fields.push_back(field_of(row, i));
   }
-  return out;
+  return result;
 }
 
 /// "lubricant.field", or nothing for what is no parameter.
-std::string field_of(const std::string& name) {
+std::string field_of_parameter(const std::string& name) {
   for (const Member& member : kMembers) {
     if (name == member.name) return member.field;
   }
@@ -292,9 +334,48 @@ void add_figures(const CharacterisedFluid& fluid, v1::LubricantCharacterisation&
   for (const CharacterisationWarning& each : fluid.warnings) {
     v1::CharacterisationWarning* row = out.add_warnings();
     row->set_code(each.code);
-    row->set_field(field_of(each.parameter));
+    row->set_field(field_of_parameter(each.parameter));
     row->set_sentence(each.sentence);
   }
+  for (const GrossError& each : fluid.gross_errors) {  // stored before they were refused
+    v1::CharacterisationWarning* row = out.add_warnings();
+    row->set_code(each.code);
+    row->set_sentence(each.sentence);
+  }
+}
+
+v1::RangeWarning range_warning(const std::string& code, const std::string& sentence) {
+  v1::RangeWarning out;
+  out.set_code(code);
+  out.set_message(sentence);
+  return out;
+}
+
+std::vector<v1::RangeWarning> make_fluid_warnings(const v1::Lubricant& lubricant) {
+  constexpr char kEstimated[] = "PARAMETER_ESTIMATED";
+  std::vector<v1::RangeWarning> out;
+  std::string estimated;
+  try {
+    const CharacterisedFluid fluid = characterise(entered(lubricant).fluid);
+    for (const CharacterisationWarning& each : fluid.warnings) {
+      if (each.code != kEstimated) {
+        out.push_back(range_warning(each.code, each.sentence));
+        continue;
+      }
+      std::string name = each.parameter;
+      std::replace(name.begin(), name.end(), '_', ' ');
+      estimated += (estimated.empty() ? "" : ", ") + name;
+    }
+    for (const GrossError& each : fluid.gross_errors) {
+      out.push_back(range_warning(each.code, each.sentence));
+    }
+  } catch (const Refusal& refusal) {  // e.g. laws that do not reach 40 C
+    out.push_back(range_warning(refusal.reason(), refusal.what()));
+  }
+  if (!estimated.empty()) {
+    out.push_back(range_warning(kEstimated, "Not measured but estimated: " + estimated + "."));
+  }
+  return out;
 }
 
 }  // namespace
@@ -303,14 +384,20 @@ void complete_parameters(v1::Lubricant& lubricant, const std::string& path,
                          Violations& violations) {
   bool complete = true;
   for (const Member& member : kMembers) complete = complete && is_set(lubricant, member);
-  if (complete) return;
+  if (complete && !lubricant.has_measurements()) return;
   try {
-    const CharacterisedFluid fluid = characterise(entered(lubricant));
+    const Entered stated = entered(lubricant);
+    const CharacterisedFluid fluid = characterise(stated.fluid);
+    for (const GrossError& error : fluid.gross_errors) {
+      violations.push_back(
+          {join_path(path, "measurements." + stated.field(error)), error.sentence});
+    }
+    if (!fluid.gross_errors.empty()) return;
     for (const Member& member : kMembers) {
       if (!is_set(lubricant, member)) set_computed(lubricant, member, fluid);
     }
-  } catch (const Refusal& refusal) {
-    violations.push_back({path, refusal.what()});
+  } catch (const Refusal& refusal) {  // of a fluid that is complete, the measurements alone
+    if (!complete) violations.push_back({path, refusal.what()});
   }
 }
 
@@ -332,7 +419,7 @@ v1::LubricantCharacterisation characterisation(const v1::Lubricant& lubricant) {
   out.set_density_15_celsius_kilograms_per_cubic_metre(
       measured == 0 ? density(laws, kFifteenCelsius) : measured);
   try {
-    const FluidMeasurements fluid = entered(lubricant);
+    const FluidMeasurements fluid = entered(lubricant).fluid;
     add_residuals(fluid, laws, out);
     add_figures(characterise(fluid), out);
   } catch (const Refusal& refusal) {  // e.g. laws that do not reach 40 C
@@ -341,6 +428,11 @@ v1::LubricantCharacterisation characterisation(const v1::Lubricant& lubricant) {
     warning->set_sentence(refusal.what());
   }
   return out;
+}
+
+std::vector<v1::RangeWarning> fluid_warnings(const v1::Lubricant& lubricant) {
+  static LatestFew<std::string, std::vector<v1::RangeWarning>> kept;
+  return kept.get(lubricant.SerializeAsString(), [&] { return make_fluid_warnings(lubricant); });
 }
 
 v1::LubricantCharacterisation brief_characterisation(const v1::Lubricant& lubricant) {

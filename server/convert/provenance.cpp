@@ -138,6 +138,12 @@ void complete_provenance(const google::protobuf::Message& resource, Provenances&
     entry->set_provenance(v1::PROVENANCE_USER);
     entry->set_source(kUnstated);
   }
+  if (!paths.blocks.empty()) return;
+  const auto place = [&](const v1::ParameterProvenance& entry) {
+    return std::find(paths.numbers.begin(), paths.numbers.end(), entry.field());
+  };
+  std::stable_sort(all.pointer_begin(), all.pointer_end(),
+                   [&](const auto* a, const auto* b) { return place(*a) < place(*b); });
 }
 
 }  // namespace tribodyn::server

@@ -33,7 +33,9 @@ void check_provenance(const google::protobuf::Descriptor& resource, const Proven
 void clear_units(Provenances& all);
 void fill_units(const google::protobuf::Descriptor& resource, Provenances& all);
 
-/// An entry PROVENANCE_USER for every number, and every block that is there, that has none.
+/// An entry PROVENANCE_USER for every number, and every block that is there, that has none. Those
+/// of a resource without blocks are sorted in the order of its fields: the same resource has the
+/// same entries, whichever way it came in.
 void complete_provenance(const google::protobuf::Message& resource, Provenances& all);
 
 }  // namespace tribodyn::server

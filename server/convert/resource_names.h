@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,11 +37,19 @@ struct FoundResource {
   std::string body;  ///< serialised message
 };
 
+/// What is known of chains of derived_from while one request looks at the store.
+struct KnownChains {
+  std::set<std::string> in_no_ring;  ///< names that are known not to descend from themselves
+  std::set<std::string> in_ring;     ///< names that do
+};
+
 /// Where named resources come from: the store, or a map in a test.
 struct ResourceLookup {
   std::function<std::optional<FoundResource>(const RevisionName& name)> find;
   /// All names of a collection that are not deleted, sorted.
   std::function<std::vector<std::string>(const std::string& collection)> names;
+  /// Shared by the resources of a batch, whose chains would else be followed from each of them.
+  std::shared_ptr<KnownChains> chains = std::make_shared<KnownChains>();
 };
 
 /// True for "collection/id" with a non-empty id of letters, digits, '-', '_' and '.'.

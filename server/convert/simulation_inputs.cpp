@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "server/convert/check_message.h"
+#include "server/convert/fluid_grounds.h"
 #include "server/convert/history_columns.h"
 #include "server/convert/labels.h"
 #include "server/convert/output_only.h"
@@ -65,7 +66,9 @@ void fill_operating_point(v1::OperatingPointStudy* study) {
 
 void fill_curve(v1::InefficiencyCurveStudy* study) {
   fill_model_and_start(study);
-  if (study->direction() == v1::SWEEP_DIRECTION_UNSPECIFIED) study->set_direction(v1::UP);
+  if (study->direction() == v1::SWEEP_DIRECTION_UNSPECIFIED && !study->independent_points()) {
+    study->set_direction(v1::UP);
+  }
   const std::vector<double> speeds = curve_speeds(*study);
   *study->mutable_speeds_kilometers_per_hour() = {speeds.begin(), speeds.end()};
   study->clear_first_speed_kilometers_per_hour();
@@ -189,6 +192,7 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
   const v1::Simulation& asked = inputs.requested;
   check_message(asked, path, violations);
   check_study(asked, path, violations);
+  check_model_options(asked.model_options(), join_path(path, "model_options"), violations);
   if (asked.labels_size() > kMaximumSimulationLabels) {
     violations.push_back({join_path(path, "labels"), "more than 64 entries"});
   } else {
@@ -242,7 +246,8 @@ Scene scene(const SimulationInputs& inputs) {
           .vehicle = to_core(*inputs.vehicle),
           .sump_temperature = inputs.effective.sump_temperature_celsius() + kZeroCelsius,
           .inlet_temperature_rise = inputs.effective.inlet_temperature_rise_kelvin(),
-          .options = to_core(inputs.effective.model_options())};
+          .options = to_core(inputs.effective.model_options()),
+          .fluid_grounds = fluid_grounds(*inputs.lubricant)};
 }
 
 Study study(const SimulationInputs& inputs) {
@@ -263,6 +268,7 @@ Study study(const SimulationInputs& inputs) {
   out.options.direction =
       message.direction() == v1::DOWN ? SweepDirection::kDown : SweepDirection::kUp;
   out.options.point = point_options(solver, message.model(), message.start());
+  out.options.independent_points = message.independent_points();
   return out;
 }
 

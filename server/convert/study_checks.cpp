@@ -132,6 +132,13 @@ void check_operating_point(const v1::OperatingPointStudy& study, const std::stri
 
 void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOptions& options,
                  const std::string& path, Violations& violations) {
+  if (study.independent_points() && study.direction() != v1::SWEEP_DIRECTION_UNSPECIFIED) {
+    violations.push_back(
+        {join_path(path, "direction"),
+         fmt::format("direction = {} together with independent_points; legal: unset, as a "
+                     "direction is that in which a branch is followed from point to point",
+                     v1::SweepDirection_Name(study.direction()))});
+  }
   const bool explicit_speeds = !study.speeds_kilometers_per_hour().empty();
   const std::string speeds = join_path(path, "speeds_kilometers_per_hour");
   if (explicit_speeds && has_range(study)) {
@@ -169,6 +176,15 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
                            "(work limit)",
                            points, cycles, kMaximumCurveMeshCycles)});
   }
+}
+
+void check_model_options(const v1::ModelOptions& options, const std::string& path,
+                         Violations& violations) {
+  if (!options.as_published().eq46_square_root_of_sum()) return;
+  violations.push_back(
+      {join_path(path, "as_published.eq46_square_root_of_sum"),
+       "true; legal: false, as eq 46 acts where measured profiles become a surface: set "
+       "eq46_square_root_of_sum of ImportSurfaceProfilesRequest and use that surface here"});
 }
 
 void check_mesh_data(const v1::GearSet& gear_set, const v1::ModelOptions& options,

@@ -23,9 +23,14 @@ void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperatur
 void check_operating_point(const v1::OperatingPointStudy& study, const std::string& path,
                            Violations& violations);
 
-/// Speeds stated in exactly one way, distinct, not too many; work within the limit.
+/// Speeds stated in exactly one way, distinct, not too many; work within the limit; no direction of
+/// independent points.
 void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOptions& options,
                  const std::string& path, Violations& violations);
+
+/// No switch that acts elsewhere than in a contact.
+void check_model_options(const v1::ModelOptions& options, const std::string& path,
+                         Violations& violations);
 
 /// Data by torque are there when the option asks for them.
 void check_mesh_data(const v1::GearSet& gear_set, const v1::ModelOptions& options,

@@ -127,8 +127,7 @@ ModelOptions to_core(const v1::ModelOptions& message) {
                        .eq20_semi_major = published.eq20_semi_major(),
                        .eq22_inverted_ratio = published.eq22_inverted_ratio(),
                        .eq31_32_logarithm = published.eq31_32_logarithm(),
-                       .eq43_44_polynomials = published.eq43_44_polynomials(),
-                       .eq46_square_root_of_sum = published.eq46_square_root_of_sum()}};
+                       .eq43_44_polynomials = published.eq43_44_polynomials()}};
 }
 
 GearSet to_core(const v1::GearSet& message) {

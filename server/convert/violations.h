@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tribodyn::server {
@@ -12,7 +15,47 @@ struct Violation {
   std::string description;
 };
 
-using Violations = std::vector<Violation>;
+/// What is wrong with a request. Keeps the first kMostKept violations and counts the rest, so that
+/// no request can fill the memory with sentences about itself: size() counts all of them, begin()
+/// to end() are those that are kept.
+class Violations {
+ public:
+  using value_type = Violation;
+  using iterator = std::vector<Violation>::iterator;
+  using const_iterator = std::vector<Violation>::const_iterator;
+
+  /// Five times as many as the 5.5 kB of an answer have room for.
+  static constexpr std::size_t kMostKept = 200;
+
+  Violations() = default;
+  Violations(std::initializer_list<Violation> all) {
+    for (const Violation& each : all) push_back(each);
+  }
+
+  void push_back(Violation violation) {
+    if (kept_.size() < kMostKept) kept_.push_back(std::move(violation));
+    ++size_;
+  }
+  /// The kept ones of `others` and, where it has more, their number.
+  void append(const Violations& others) {
+    for (const Violation& each : others) push_back(each);
+    size_ += others.size_ - others.kept_.size();
+  }
+  void clear() { *this = {}; }
+
+  bool empty() const { return size_ == 0; }
+  std::size_t size() const { return size_; }
+  iterator begin() { return kept_.begin(); }
+  iterator end() { return kept_.end(); }
+  const_iterator begin() const { return kept_.begin(); }
+  const_iterator end() const { return kept_.end(); }
+  const Violation& front() const { return kept_.front(); }
+  const Violation& operator[](std::size_t index) const { return kept_[index]; }
+
+ private:
+  std::vector<Violation> kept_;
+  std::size_t size_ = 0;
+};
 
 /// "prefix.field", or "field" when the prefix is empty.
 inline std::string join_path(const std::string& prefix, const std::string& field) {

@@ -21,6 +21,8 @@
 #include "server/daemon/service_manager.h"
 #include "server/jobs/golden_case.h"
 #include "server/jobs/platform.h"
+#include "server/store/database_files.h"
+#include "server/store/durable_files.h"
 #include "server/store/maintenance.h"
 #include "server/store/seeds.h"
 #include "server/store/store.h"
@@ -51,14 +53,40 @@ int wait_for_signal(const sigset_t& signals, seconds limit) {
   return sigtimedwait(&signals, nullptr, &time);
 }
 
-/// Heaps keep what a busy moment needed, in places between what lives on: given back now and then,
-/// or they grow by some 2 MB an hour.
-int wait_for_stop(const sigset_t& signals) {
-  constexpr seconds kBetweenTrims(10);
-  for (;;) {
-    const int signal = wait_for_signal(signals, kBetweenTrims);
+/// Compares the database's files with those at its path. Tells the log and the health checks when a
+/// file has gone from its place, and when it is back.
+class PlaceWatch {
+ public:
+  PlaceWatch(const Store& store, GrpcServer& server) : store_(store), server_(server) {}
+
+  void look() {
+    const std::string misplaced = store_.misplaced();
+    if (misplaced.empty() == is_in_place_) return;
+    is_in_place_ = misplaced.empty();
+    server_.set_serving(is_in_place_);
+    if (is_in_place_) {
+      spdlog::warn("the database is back in its place; changes are accepted again");
+    } else {
+      spdlog::critical("{}", misplaced);
+    }
+  }
+
+ private:
+  const Store& store_;
+  GrpcServer& server_;
+  bool is_in_place_ = true;
+};
+
+/// The signal that came. Until then the freed memory of the heaps is given back to the system every
+/// ten seconds: left alone, heaps that a busy moment has filled grow by some 2 MB an hour.
+int wait_for_stop(const sigset_t& signals, PlaceWatch& place) {
+  constexpr seconds kBetweenLooks(1);
+  constexpr int kLooksBetweenTrims = 10;
+  for (int looks = 1;; ++looks) {
+    const int signal = wait_for_signal(signals, kBetweenLooks);
     if (signal > 0) return signal;
-    malloc_trim(0);
+    place.look();
+    if (looks % kLooksBetweenTrims == 0) malloc_trim(0);
   }
 }
 
@@ -147,7 +175,8 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
   if (!settings.port_file.empty()) write_port_file(settings.port_file, server.address());
   notify_service_manager("READY=1");
 
-  const int signal = wait_for_stop(signals);
+  PlaceWatch place(store, server);
+  const int signal = wait_for_stop(signals, place);
   spdlog::info("signal {}: stopping", signal);
   shut_down(settings, signals, server, jobs);
   spdlog::info("stopped");
@@ -161,6 +190,7 @@ int check(const Settings& settings) {
     for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());
     if (!problems.empty()) return kExitBadDatabase;
   } else {
+    require_usable_path(canonical_path(settings.database));
     const std::filesystem::path folder = std::filesystem::absolute(settings.database).parent_path();
     if (access(folder.c_str(), W_OK) != 0) {
       return complain(kExitBadDatabase, "database " + settings.database + " cannot be made there");

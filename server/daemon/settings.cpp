@@ -1,16 +1,20 @@
 #include "server/daemon/settings.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <filesystem>
 
 #include "core/version.h"
 
 namespace tribodyn::server {
 namespace {
 
-constexpr double kLongestDrainSeconds = 25;  // of the 30 s that a shutdown may take
+constexpr double kLongestDrainSeconds = 25;              // of the 30 s that a shutdown may take
+constexpr std::uintmax_t kLargestConfigBytes = 1 << 20;  // a line for each flag takes 1 KiB
 
 /// Subcommands take the place of serving; each needs --database.
 void add_commands(CLI::App& app, Settings& settings) {
@@ -20,10 +24,14 @@ void add_commands(CLI::App& app, Settings& settings) {
     command->add_option("--database", settings.database, "SQLite file")->required();
     if (with_file) command->add_option("FILE", settings.file, "The backup")->required();
   };
-  add("backup", "Copies a database to FILE, also while a server runs on it", true);
+  add("backup",
+      "Copies a database to FILE, also while a server runs on it; refuses a FILE that exists",
+      true);
   add("restore",
-      "Puts the backup FILE in the place of a database, kept as DATABASE.replaced; refuses while a "
-      "server runs on it, and a damaged FILE",
+      "Puts the backup FILE in the place of a database and prints the name under which it keeps "
+      "the "
+      "former one (DATABASE.replaced); refuses a database on which a server runs, and a damaged "
+      "FILE",
       true);
   add("check",
       "Says what is wrong with a database: damage, broken references, gaps in revisions and "
@@ -31,9 +39,36 @@ void add_commands(CLI::App& app, Settings& settings) {
       false);
 }
 
+/// The legal range of a number with a decimal point. CLI::Range lets NaN pass.
+CLI::Validator between(double least, double most) {
+  const std::string range = fmt::format("{} to {}", least, most);
+  return {[=](std::string& text) {
+            double value = 0;
+            const bool is_legal =
+                CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
+            return is_legal ? std::string() : text + " is no number from " + range;
+          },
+          range};
+}
+
+/// Refuses what would be read without end, such as a device, and what is surely another file.
+CLI::Validator settings_file() {
+  return {[](std::string& path) {
+            std::error_code missing;
+            const auto status = std::filesystem::status(path, missing);
+            if (!std::filesystem::exists(status)) return path + " does not exist";
+            if (!std::filesystem::is_regular_file(status)) return path + " is no regular file";
+            if (std::filesystem::file_size(path, missing) > kLargestConfigBytes) {
+              return path + " is larger than 1 MiB, so it is no file of settings";
+            }
+            return std::string();
+          },
+          ""};
+}
+
 void add_seconds(CLI::App& app, const std::string& flag, double& value, double most,
                  const std::string& description) {
-  app.add_option(flag, value, description)->check(CLI::Range(0.0, most))->capture_default_str();
+  app.add_option(flag, value, description)->check(between(0, most))->capture_default_str();
 }
 
 void add_flags(CLI::App& app, Settings& settings) {
@@ -58,7 +93,7 @@ void add_flags(CLI::App& app, Settings& settings) {
               "So does a watch or the reading of a history; clients watch on. Recommended: 3600");
   app.add_option("--unread-limit-seconds", settings.unread_limit_seconds,
                  "A stream whose client takes nothing for this long is cut off. Recommended: 60")
-      ->check(CLI::Range(0.01, 86400.0))
+      ->check(between(0.01, 86400))
       ->capture_default_str();
   add_seconds(app, "--heartbeat-seconds", settings.heartbeat_seconds, 3600,
               "A watch that has nothing to tell sends a sign of life so often. Recommended: 15");
@@ -72,18 +107,20 @@ void add_flags(CLI::App& app, Settings& settings) {
       ->capture_default_str();
   app.add_option("--waiting-processor-hours", settings.waiting_processor_hours,
                  "The same for the sum of their estimates. Recommended: 100")
-      ->check(CLI::Range(0.001, 1e6))
+      ->check(between(0.001, 1e6))
       ->capture_default_str();
   app.add_option("--keep-days", settings.keep_days,
                  "Simulations that have ended are removed after so long, unless pinned; 0: never. "
                  "Recommended: 0")
-      ->check(CLI::Range(0.0, 36500.0))
+      ->check(between(0, 36500))
       ->capture_default_str();
-  app.add_option(
-         "--disk-budget-megabytes", settings.disk_budget_megabytes,
-         "Beyond it, what ended first is removed, unless pinned; 0: no budget. Recommended: "
-         "half of the disk")
-      ->check(CLI::Range(0.0, 1e9))
+  app.add_option("--disk-budget-megabytes", settings.disk_budget_megabytes,
+                 "Space for simulations that have ended and their results; beyond it those that "
+                 "ended first "
+                 "are removed. Pinned ones, lubricants and other resources are kept and do not "
+                 "count. 0: no "
+                 "budget. Recommended: half of the disk")
+      ->check(between(0, 1e9))
       ->capture_default_str();
   app.add_option("--port-file", settings.port_file,
                  "Write the address here once the server answers; removed at the end");
@@ -93,7 +130,8 @@ void add_flags(CLI::App& app, Settings& settings) {
   app.add_option("--log-level", settings.log_level, "Recommended: info")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
       ->capture_default_str();
-  app.set_config("--config", "", "File with lines such as `threads = 4`, named as the flags are");
+  app.set_config("--config", "", "File with lines such as `threads = 4`, named as the flags are")
+      ->check(settings_file());
   app.allow_config_extras(false);
   app.footer(
       "Each flag may also stand in the environment, --listen as TRIBODYND_LISTEN, and in the file "

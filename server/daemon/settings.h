@@ -32,7 +32,7 @@ struct Settings {
   double heartbeat_seconds = 15;
   double drain_seconds = 20;
   double keep_days = 0;              ///< 0: for good
-  double disk_budget_megabytes = 0;  ///< 0: none
+  double disk_budget_megabytes = 0;  ///< of what may be removed; 0: none
   double waiting_processor_hours = 100;
   int waiting_simulations = 20'000;
 };

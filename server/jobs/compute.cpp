@@ -35,15 +35,17 @@ void check_finite(const History& history) {
   }
 }
 
-PointResult solve_point(const PointStudy& study, const Scene& scene, const StudyFunctions& studies,
-                        const ReportProgress& report) {
+PointResult solve_point(const PointStudy& study, const Scene& scene,
+                        const std::shared_ptr<PreparedGearSet>& gear_set,
+                        const StudyFunctions& studies, const ReportProgress& report) {
   PointOptions options = study.options;
   const StageText stage = [&study] { return stage_of(study.condition); };
   options.progress = [&](double fraction) { return report(fraction, stage); };
-  return studies.solve_operating_point(scene, study.condition, options);
+  return studies.solve_operating_point(scene, study.condition, options, gear_set);
 }
 
 std::vector<SweepPoint> solve_curve(const CurveStudy& study, const Scene& scene,
+                                    const std::shared_ptr<PreparedGearSet>& gear_set,
                                     const StudyFunctions& studies, const ReportProgress& report) {
   const bool down = study.options.direction == SweepDirection::kDown;
   const std::size_t count = study.vehicle_speeds.size();
@@ -56,8 +58,9 @@ std::vector<SweepPoint> solve_curve(const CurveStudy& study, const Scene& scene,
                        count);
   };
   options.point.progress = [&](double fraction) { return report(fraction, stage); };
-  return studies.sweep_speed(scene, study.vehicle_speeds, study.ascent_angle, options,
-                             [&done](const SweepPoint&) { ++done; });
+  const auto on_point = [&done](const SweepPoint&) { ++done; };
+  return studies.sweep_speed(scene, study.vehicle_speeds, study.ascent_angle, options, on_point,
+                             gear_set);
 }
 
 void add_point(PointResult& result, Computed& out) {
@@ -73,19 +76,28 @@ void add_point(PointResult& result, Computed& out) {
 void add_curve(const SimulationInputs& inputs, const std::vector<SweepPoint>& points,
                Computed& out) {
   for (const SweepPoint& point : points) *out.result.add_points() = to_curve_point(point);
-  out.result.set_direction(inputs.effective.inefficiency_curve().direction());
+  const v1::InefficiencyCurveStudy& curve = inputs.effective.inefficiency_curve();
+  out.result.set_independent_points(curve.independent_points());
+  if (!curve.independent_points()) out.result.set_direction(curve.direction());
 }
 
 }  // namespace
 
 Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
-             const ReportProgress& report) {
+             PreparedGearSets& gear_sets, const ReportProgress& report) {
   const Scene physical = scene(inputs);
   const Study asked = study(inputs);
+  const std::string& revision = inputs.effective.gear_set_revision();
+  const std::shared_ptr<PreparedGearSet> gear_set = gear_sets.take(revision, physical);
+  Solved out;
   if (const auto* point = std::get_if<PointStudy>(&asked)) {
-    return solve_point(*point, physical, studies, report);
+    out = solve_point(*point, physical, gear_set, studies, report);
+  } else {
+    out = solve_curve(std::get<CurveStudy>(asked), physical, gear_set, studies, report);
   }
-  return solve_curve(std::get<CurveStudy>(asked), physical, studies, report);
+  // Not after an exception, which may have left something half made.
+  gear_sets.give_back(revision, physical.options, gear_set);
+  return out;
 }
 
 Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved solved) {
@@ -105,7 +117,8 @@ Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved 
 
 Computed compute(const SimulationInputs& inputs, const ResultKey& key,
                  const StudyFunctions& studies, const ReportProgress& report) {
-  return to_result(inputs, key, solve(inputs, studies, report));
+  PreparedGearSets gear_sets;
+  return to_result(inputs, key, solve(inputs, studies, gear_sets, report));
 }
 
 }  // namespace tribodyn::server

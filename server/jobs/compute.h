@@ -1,11 +1,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "server/convert/simulation_inputs.h"
+#include "server/jobs/prepared_gear_sets.h"
 #include "server/store/store.h"
 #include "tribodyn/v1/results.pb.h"
 
@@ -13,11 +15,12 @@ namespace tribodyn::server {
 
 /// The core's studies; tests put their own in place.
 struct StudyFunctions {
-  std::function<PointResult(const Scene&, const OperatingCondition&, const PointOptions&)>
+  std::function<PointResult(const Scene&, const OperatingCondition&, const PointOptions&,
+                            std::shared_ptr<PreparedGearSet>)>
       solve_operating_point = tribodyn::solve_operating_point;
-  std::function<std::vector<SweepPoint>(const Scene&, std::vector<double>, double,
-                                        const SweepOptions&,
-                                        const std::function<void(const SweepPoint&)>&)>
+  std::function<std::vector<SweepPoint>(
+      const Scene&, std::vector<double>, double, const SweepOptions&,
+      const std::function<void(const SweepPoint&)>&, const std::shared_ptr<PreparedGearSet>&)>
       sweep_speed = tribodyn::sweep_speed;
 };
 
@@ -37,15 +40,16 @@ using ReportProgress = std::function<bool(double fraction, const StageText& stag
 /// What the core answers: a point, or a curve in ascending speed.
 using Solved = std::variant<PointResult, std::vector<SweepPoint>>;
 
-/// Runs the study. Throws Refusal, Cancelled, or what the core throws.
+/// Runs the study with a gear set of `gear_sets`. Throws Refusal, Cancelled, or what the core
+/// throws.
 Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
-             const ReportProgress& report);
+             PreparedGearSets& gear_sets, const ReportProgress& report);
 
 /// Makes the result: points, hash (`key`: of the inputs), versions, but no assumptions, which
 /// belong to the simulation and not to its numbers. Throws Refusal where a number is not finite.
 Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved solved);
 
-/// Both in one.
+/// Both in one, with a gear set that is prepared for it.
 Computed compute(const SimulationInputs& inputs, const ResultKey& key,
                  const StudyFunctions& studies, const ReportProgress& report);
 

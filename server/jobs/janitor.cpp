@@ -35,20 +35,33 @@ bool Janitor::is_stopping() {
   return stopping_;
 }
 
+int Janitor::remove_expired() {
+  int count = 0;
+  while (retention_.keep && !is_stopping()) {
+    const Removed removed = store_.remove_oldest(clock_() - *retention_.keep, kAtATime);
+    if (removed.simulations == 0) break;
+    count += removed.simulations;
+  }
+  return count;
+}
+
+int Janitor::remove_beyond_budget() {
+  const std::int64_t budget = retention_.disk_budget_bytes;
+  // The size of the database costs less to find, and bounds what can be removed.
+  if (budget == 0 || store_.used_bytes() <= budget) return 0;
+  int count = 0;
+  std::int64_t left = store_.removable_bytes();
+  while (left > budget && !is_stopping()) {
+    const Removed removed = store_.remove_oldest(clock_() - kLeastAge, kAtATime);
+    if (removed.simulations == 0) break;
+    count += removed.simulations;
+    left -= removed.bytes;
+  }
+  return count;
+}
+
 void Janitor::clean() {
-  int removed = 0;
-  const auto remove = [&](Microseconds ended_by) {
-    const int now = store_.remove_oldest(ended_by, kAtATime);
-    removed += now;
-    return now > 0;
-  };
-  if (retention_.keep) {
-    while (!is_stopping() && remove(clock_() - *retention_.keep)) {
-    }
-  }
-  while (retention_.disk_budget_bytes > 0 && !is_stopping() &&
-         store_.used_bytes() > retention_.disk_budget_bytes && remove(clock_() - kLeastAge)) {
-  }
+  const int removed = remove_expired() + remove_beyond_budget();
   if (removed > 0) spdlog::info("event=simulations_removed count={}", removed);
 }
 

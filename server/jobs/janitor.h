@@ -15,12 +15,15 @@ namespace tribodyn::server {
 /// How long simulations stay once they have ended. Pinned ones stay for good.
 struct Retention {
   std::optional<Microseconds> keep = {};  ///< none: for good
-  std::int64_t disk_budget_bytes = 0;     ///< of the database; beyond it the oldest go. 0: none
+  /// Of simulations and results that may be removed; beyond it the oldest go. 0: no budget.
+  /// Revisions and pinned results do not count: no removal could make room for them.
+  std::int64_t disk_budget_bytes = 0;
 };
 
-/// A thread that removes what has expired and, beyond the disk budget, what ended first, a few at a
-/// time so that nobody waits long. What has just ended stays for a minute, so that whoever waits
-/// for it can read it. Safe for concurrent access; `start` and `stop` from one thread.
+/// A thread that removes the simulations that have expired and, beyond the disk budget, those that
+/// ended first, a few in a transaction so that other writers wait briefly. A simulation stays for a
+/// minute after its end, so that a client that waits for it can read its result. Safe for
+/// concurrent access; `start` and `stop` from one thread.
 class Janitor {
  public:
   /// The store must outlive the object.
@@ -36,6 +39,9 @@ class Janitor {
 
  private:
   void run();
+  /// How many simulations went.
+  int remove_expired();
+  int remove_beyond_budget();
   bool is_stopping();
 
   Store& store_;

@@ -96,10 +96,11 @@ void SimulationJobs::ensure_queued(const StoredSimulation& simulation) {
   }
 }
 
-void SimulationJobs::cancel(std::int64_t id) {
-  const auto event = store_.mark_cancelled(id, clock_());
+std::optional<StoredEvent> SimulationJobs::cancel(std::int64_t id) {
+  auto event = store_.mark_cancelled(id, clock_());
   if (event) metrics_.count(Ending::kCancelled);
   end(id, event);
+  return event;
 }
 
 void SimulationJobs::expire(std::int64_t id) {
@@ -114,7 +115,8 @@ void SimulationJobs::expire(std::int64_t id) {
   }
 }
 
-/// Of a simulation that had ended before too: whoever ended it may not have come as far as this.
+/// Removes the job from the queue and closes its progress channel. Also called when the simulation
+/// had ended before: the thread that ended it may have stopped before this step.
 void SimulationJobs::end(std::int64_t id, const std::optional<StoredEvent>& event) {
   std::optional<std::int64_t> sequence;
   if (event) {

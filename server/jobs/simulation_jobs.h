@@ -55,9 +55,9 @@ class SimulationJobs {
   /// answered with an error, before it came into the queue.
   void ensure_queued(const StoredSimulation& simulation);
 
-  /// At once CANCELLED in the store; a worker on it stops at its next step. No effect on what has
-  /// ended.
-  void cancel(std::int64_t id);
+  /// At once CANCELLED in the store; a worker on it stops at its next step. Returns the change of
+  /// state; nullopt, and changes nothing, if the simulation has ended before.
+  std::optional<StoredEvent> cancel(std::int64_t id);
 
   /// Latest progress of a simulation that runs.
   std::optional<Progress> progress(std::int64_t id) const;

@@ -119,9 +119,9 @@ void SimulationRunner::guarded(std::int64_t id, const StopSignal& stop,
     } catch (const StoreError&) {
       throw;
     } catch (const std::exception& error) {
-      fail(id, stop, "INTERNAL", error.what());
+      fail_on_defect(id, stop, error.what());
     } catch (...) {
-      fail(id, stop, "INTERNAL", "unknown error");
+      fail_on_defect(id, stop, "an exception of unknown type");
     }
   } catch (const StoreError& error) {  // the next start finds it unfinished and goes on
     spdlog::error("simulations/{} is left as it is: {}", id, error.what());
@@ -168,7 +168,7 @@ Solved SimulationRunner::solve_timed(const SimulationInputs& inputs,
   const v1::PointModel model = asked.has_operating_point() ? asked.operating_point().model()
                                                            : asked.inefficiency_curve().model();
   const StopWatch watch;
-  Solved solved = solve(inputs, studies_, report);
+  Solved solved = solve(inputs, studies_, gear_sets_, report);
   metrics_.observe(model == v1::QUASI_STATIC ? Phase::kFriction : Phase::kOrbit, watch.seconds());
   return solved;
 }
@@ -250,13 +250,19 @@ void SimulationRunner::publish(std::int64_t id, const std::optional<StoredEvent>
 void SimulationRunner::stopped(std::int64_t id, const StopSignal& stop) const {
   switch (stop.reason()) {
     case StopReason::kNone:
-      return fail(id, stop, "INTERNAL", "the study stopped without being asked to");
+      return fail_on_defect(id, stop, "the study stopped without being asked to");
     case StopReason::kEnded:
       return publish(id, std::nullopt);
     case StopReason::kShutdown:
       publish(id, store_.mark_queued(id, clock_(), "SERVER_STOPPED"));
       spdlog::info("simulations/{} goes back to the queue", id);
   }
+}
+
+void SimulationRunner::fail_on_defect(std::int64_t id, const StopSignal& stop,
+                                      const char* cause) const {
+  spdlog::error("event=internal_error simulation=simulations/{} cause=\"{}\"", id, cause);
+  fail(id, stop, "INTERNAL", "internal error; the server's log states its cause");
 }
 
 void SimulationRunner::fail(std::int64_t id, const StopSignal& stop, const std::string& reason,

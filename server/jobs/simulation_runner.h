@@ -8,6 +8,7 @@
 #include "server/jobs/compute.h"
 #include "server/jobs/held_keys.h"
 #include "server/jobs/job_queue.h"
+#include "server/jobs/prepared_gear_sets.h"
 #include "server/jobs/progress_board.h"
 #include "server/metrics/metrics.h"
 #include "server/store/store.h"
@@ -59,6 +60,8 @@ class SimulationRunner {
   void stopped(std::int64_t id, const StopSignal& stop) const;
   void fail(std::int64_t id, const StopSignal& stop, const std::string& reason,
             const std::string& message) const;
+  /// FAILED with INTERNAL. Logs the cause; clients are only referred to the log.
+  void fail_on_defect(std::int64_t id, const StopSignal& stop, const char* cause) const;
   template <class Action>
   auto insist(std::int64_t id, const StopSignal& stop, const Action& action) const;
 
@@ -68,6 +71,7 @@ class SimulationRunner {
   Clock clock_;
   StudyFunctions studies_;
   mutable HeldKeys unwritten_;
+  mutable PreparedGearSets gear_sets_;
 };
 
 }  // namespace tribodyn::server

@@ -7,6 +7,8 @@
 
 #include "server/history/column_codec.h"
 #include "server/history/pyramid.h"
+#include "server/store/checksum.h"
+#include "server/store/store_error.h"
 
 namespace tribodyn::server {
 namespace {
@@ -20,14 +22,17 @@ std::vector<std::string> compressed_blocks(std::span<const double> values) {
   return out;
 }
 
-std::string_view bytes_of(const SQLite::Column& column) {
-  return {static_cast<const char*>(column.getBlob()), static_cast<std::size_t>(column.getBytes())};
-}
-
-void decompress(std::string_view bytes, std::span<double> values) try {
-  decompress_column(bytes, values);
-} catch (const std::runtime_error& error) {
-  throw SQLite::Exception(error.what());
+/// Requires a row of data and checksum. Throws StoreError kDataLoss unless it holds as many values
+/// as were written.
+void decompress(SQLite::Statement& block, std::span<double> values) {
+  const std::string_view bytes = bytes_of(block.getColumn(0));
+  const StoreError damaged(StoreError::Kind::kDataLoss, "a block of a stored history is damaged");
+  if (checksum(bytes) != block.getColumn(1).getInt64()) throw damaged;
+  try {
+    decompress_column(bytes, values);
+  } catch (const std::runtime_error&) {
+    throw damaged;
+  }
 }
 
 bool is_equal(std::span<const double> one, std::span<const double> other) {
@@ -39,6 +44,13 @@ std::int64_t rows_of(Connection& db, std::int64_t column) {
   Prepared query(db, "SELECT rows FROM history_columns WHERE id = ?");
   query.bind(1, column);
   return query.executeStep() ? query.getColumn(0).getInt64() : -1;
+}
+
+std::int64_t blocks_of(Connection& db, std::int64_t column) {
+  Prepared query(db, "SELECT count(*) FROM history_blocks WHERE history_column = ? AND level = 0");
+  query.bind(1, column);
+  query.executeStep();
+  return query.getColumn(0).getInt64();
 }
 
 }  // namespace
@@ -62,7 +74,7 @@ void insert_history_column(Connection& db, std::int64_t result, std::int64_t pos
   insert.bind(4, column.rows);
   insert.exec();
   const std::int64_t row = db.getLastInsertRowid();
-  Prepared block(db, "INSERT INTO history_blocks VALUES (?, ?, ?, ?)");
+  Prepared block(db, "INSERT INTO history_blocks VALUES (?, ?, ?, ?, ?)");
   for (std::size_t level = 0; level < column.levels.size(); ++level) {
     for (std::size_t number = 0; number < column.levels[level].size(); ++number) {
       const std::string& data = column.levels[level][number];
@@ -70,6 +82,7 @@ void insert_history_column(Connection& db, std::int64_t result, std::int64_t pos
       block.bind(2, static_cast<std::int64_t>(level));
       block.bind(3, static_cast<std::int64_t>(number));
       block.bindNoCopy(4, data.data(), static_cast<int>(data.size()));
+      block.bind(5, checksum(data));
       block.exec();
       block.reset();
     }
@@ -96,7 +109,7 @@ bool query_history(Connection& db, std::int64_t column, int level, std::int64_t 
   const std::int64_t size = level_size(level, rows_of(db, column));
   if (start + count > size) return false;
   Prepared query(db,
-                 "SELECT data FROM history_blocks WHERE history_column = ? AND level = ? "
+                 "SELECT data, checksum FROM history_blocks WHERE history_column = ? AND level = ? "
                  "AND number BETWEEN ? AND ? ORDER BY number");
   query.bind(1, column);
   query.bind(2, level);
@@ -108,13 +121,12 @@ bool query_history(Connection& db, std::int64_t column, int level, std::int64_t 
     const std::int64_t length = std::min(kHistoryBlock, size - here);
     const std::int64_t first = std::max(start, here);
     const std::int64_t last = std::min(start + count, here + length);
-    const std::string_view bytes = bytes_of(query.getColumn(0));
     if (last - first == length) {
-      decompress(bytes, values.subspan(first - start, length));
+      decompress(query, values.subspan(first - start, length));
       continue;
     }
     part.resize(static_cast<std::size_t>(length));
-    decompress(bytes, part);
+    decompress(query, part);
     std::copy(part.begin() + (first - here), part.begin() + (last - here),
               values.begin() + (first - start));
   }
@@ -129,7 +141,9 @@ bool holds_column(Connection& db, std::int64_t column, const std::vector<double>
 
 bool is_whole_column(Connection& db, std::int64_t column) try {
   const std::int64_t rows = rows_of(db, column);
-  std::vector<double> values(static_cast<std::size_t>(std::max<std::int64_t>(0, rows)));
+  if (rows < 0 || rows > kMaximumHistoryRows) return false;
+  if (blocks_of(db, column) != (rows + kHistoryBlock - 1) / kHistoryBlock) return false;
+  std::vector<double> values(static_cast<std::size_t>(rows));
   if (!query_history(db, column, 0, 0, values)) return false;
   const std::vector<std::vector<double>> levels = build_pyramid(values);
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -140,7 +154,7 @@ bool is_whole_column(Connection& db, std::int64_t column) try {
     }
   }
   return true;
-} catch (const SQLite::Exception&) {
+} catch (const StoreError&) {
   return false;
 }
 

@@ -13,6 +13,10 @@ namespace tribodyn::server {
 /// Doubles of a block: 64 KiB.
 inline constexpr std::int64_t kHistoryBlock = 8192;
 
+/// Rows of the longest history that a request may ask for (kMaximumHistoryValues of constraints.h,
+/// in one column). A database that states more is damaged.
+inline constexpr std::int64_t kMaximumHistoryRows = 20'000'000;
+
 /// What a stored history consists of.
 struct HistoryShape {
   std::vector<std::string> names;
@@ -23,7 +27,8 @@ struct HistoryShape {
 /// With its pyramid. Needs no database.
 CompressedColumn compress(const StoredColumn& column);
 
-// On an open connection, inside the caller's transaction. All throw SQLite::Exception.
+// On an open connection, inside the caller's transaction. All throw SQLite::Exception; those that
+// read values throw StoreError kDataLoss if a block is not what was written.
 
 void insert_history_column(Connection& db, std::int64_t result, std::int64_t position,
                            const CompressedColumn& column);
@@ -37,7 +42,7 @@ bool query_history(Connection& db, std::int64_t column, int level, std::int64_t 
 /// Whether a column holds these values, bit for bit.
 bool holds_column(Connection& db, std::int64_t column, const std::vector<double>& values);
 
-/// Whether every block of a column is there and can be read, and its pyramid is its own.
+/// Whether every block of a column is there and is what was written, and its pyramid is its own.
 bool is_whole_column(Connection& db, std::int64_t column);
 
 }  // namespace tribodyn::server

@@ -10,15 +10,20 @@
 
 namespace tribodyn::server {
 
-/// Copies a database, also while a server runs on it, as it is at one moment. The copy is whole
-/// when its file appears. Throws StoreError and leaves nothing behind when that cannot be; refuses
-/// to write over a file, and to back up a damaged database as if it were whole.
+/// Copies a database as it is at one moment; a server may run on it and write meanwhile. The copy
+/// is complete and on disk when its file appears. Throws StoreError, and leaves no file, if `copy`
+/// exists, the database is damaged, or the copy cannot be written.
 void backup_database(const std::filesystem::path& database, const std::filesystem::path& copy);
 
-/// Puts a backup in the place of a database, which is kept beside it as "<database>.replaced" (an
-/// older one of that name goes). Throws StoreError and changes nothing when a server runs on the
-/// database, or the backup is damaged, inconsistent, newer than this program or another program's.
-void restore_database(const std::filesystem::path& copy, const std::filesystem::path& database);
+/// Puts a backup in the place of a database and returns the path under which the former one is
+/// kept:
+/// "<database>.replaced", or ".replaced.2" and so on where that name is taken. Returns nullopt if
+/// there was no database. Whenever the process or the power goes, the path holds the former or the
+/// new database, complete; only if the former one is damaged may its log be found at the kept name
+/// already. Throws StoreError, and leaves the database as it is, if a server runs on it, or if the
+/// backup is damaged, inconsistent, newer than this program or another program's.
+std::optional<std::filesystem::path> restore_database(const std::filesystem::path& copy,
+                                                      const std::filesystem::path& database);
 
 /// The body of a revision, "lubricants/1" and 2; nothing when there is none.
 using FindRevision =
@@ -29,12 +34,13 @@ using FindRevision =
 using HashInputs = std::function<std::optional<std::string>(
     const v1::Simulation& request, const std::string& model_version, const FindRevision& find)>;
 
-/// What is wrong with a database, one sentence each; empty when all is well: SQLite's integrity and
-/// foreign keys, revisions numbered without gaps with the last one present, content hashes and
-/// properties computed again, input hashes too when `hash_inputs` is there, every body a message
-/// that bears its resource's name, states of simulations that agree with their results, histories
-/// of equal columns and whole blocks. Also while a server runs. Throws StoreError when it cannot be
-/// opened or read.
+/// The faults of a database, a sentence each: those that keep a server from serving it; damage that
+/// SQLite finds, and rows that point at none; gaps in revisions and events; stored bytes that are
+/// not what was written, by their checksums; properties, and with `hash_inputs` input hashes, that
+/// are not those of the contents; bodies that are no message of their resource; states that
+/// disagree with results; histories of unequal columns or missing blocks. Empty for a sound
+/// database, and for a file in which a server would make a new one. A server may run on the
+/// database. Throws StoreError if it cannot be opened or read.
 std::vector<std::string> check_database(const std::filesystem::path& database,
                                         const HashInputs& hash_inputs = nullptr);
 

@@ -73,6 +73,7 @@ const std::vector<PropertyField>& property_fields(std::string_view collection) {
     }
     out["simulations"] = {{kCreateTime, PropertyKind::kTime},
                           {"lubricant", PropertyKind::kText},
+                          {"pinned", PropertyKind::kFlag},
                           {"state", PropertyKind::kEnum}};
     return out;
   }();
@@ -98,6 +99,8 @@ std::vector<Property> properties_of(std::string_view collection, const std::stri
         break;
       case PropertyKind::kText:
         out.push_back({property.key, reflection.GetString(*message, field)});
+        break;
+      case PropertyKind::kFlag:  // only simulations have one, and these have no properties
         break;
       case PropertyKind::kEnum: {
         const auto* value =

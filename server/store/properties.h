@@ -20,7 +20,13 @@ struct Property {
   friend bool operator==(const Property&, const Property&) = default;
 };
 
-enum class PropertyKind { kText, kNumber, kEnum, kTime };
+enum class PropertyKind {
+  kText,
+  kNumber,
+  kEnum,
+  kTime,
+  kFlag,  ///< stored as the whole numbers 0 and 1
+};
 
 /// What a collection can be filtered and ordered by, besides "name" and "labels.KEY".
 struct PropertyField {

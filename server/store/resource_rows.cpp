@@ -1,5 +1,7 @@
 #include "server/store/resource_rows.h"
 
+#include <algorithm>
+
 #include "server/hash/sha256.h"
 #include "server/store/resource_types.h"
 
@@ -89,7 +91,8 @@ StoredResource insert_revision(Connection& db, const StoredResource& present,
                                const std::string& body, Microseconds now) {
   StoredResource added = present;
   added.revision = present.revision + 1;
-  added.revision_create_time = now;
+  // The wall clock may have been set back since the former revision.
+  added.revision_create_time = std::max(now, present.revision_create_time);
   added.content_hash = sha256(body);
   added.body = body;
   add_revision(db, added);

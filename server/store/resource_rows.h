@@ -25,7 +25,8 @@ bool is_unchanged(Connection& db, const StoredResource& present);
 /// A new resource with its first revision, as it is stored then.
 StoredResource insert_resource(Connection& db, const NewResource& resource, Microseconds now);
 
-/// A further revision, which becomes the present one, as it is stored then.
+/// A further revision, which becomes the present one, as it is stored then: at `now`, or at the
+/// time of the former revision if that is later.
 StoredResource insert_revision(Connection& db, const StoredResource& present,
                                const std::string& body, Microseconds now);
 

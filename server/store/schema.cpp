@@ -4,259 +4,21 @@
 #include <SQLiteCpp/Transaction.h>
 
 #include <cstring>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 
+#include "server/store/checksum.h"
 #include "server/store/history_rows.h"
 #include "server/store/resource_rows.h"
 #include "server/store/resource_types.h"
+#include "server/store/schema_texts.h"
 #include "server/store/simulation_rows.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::server {
 namespace {
-
-constexpr char kSchema1[] = R"sql(
-CREATE TABLE resources (
-  name TEXT PRIMARY KEY,
-  body BLOB NOT NULL
-) STRICT;
-
-CREATE TABLE simulations (
-  id INTEGER PRIMARY KEY AUTOINCREMENT,
-  state INTEGER NOT NULL CHECK (state BETWEEN 1 AND 5),
-  create_time INTEGER NOT NULL,
-  start_time INTEGER,
-  end_time INTEGER,
-  request BLOB NOT NULL,
-  input_hash TEXT NOT NULL CHECK (length(input_hash) = 64),
-  error_reason TEXT,
-  error_message TEXT,
-  CHECK ((state = 4) = (error_reason IS NOT NULL)),
-  CHECK ((state >= 3) = (end_time IS NOT NULL))
-) STRICT;
-CREATE INDEX unfinished_simulations ON simulations (id) WHERE state IN (1, 2);
-CREATE INDEX simulations_by_input ON simulations (input_hash);
-
-CREATE TABLE results (
-  simulation INTEGER PRIMARY KEY REFERENCES simulations (id) ON DELETE CASCADE,
-  body BLOB NOT NULL
-) STRICT;
-
-CREATE TABLE history (
-  id INTEGER PRIMARY KEY,
-  simulation INTEGER NOT NULL REFERENCES simulations (id) ON DELETE CASCADE,
-  position INTEGER NOT NULL,
-  name TEXT NOT NULL,
-  data BLOB NOT NULL,
-  UNIQUE (simulation, position)
-) STRICT;
-)sql";
-
-// A column that ALTER TABLE adds with a reference may be empty: so it is for a simulation of schema
-// 1 whose request names what is not there.
-constexpr char kSchema2[] = R"sql(
-ALTER TABLE resources RENAME TO resources_of_schema_1;
-
-CREATE TABLE resources (
-  id INTEGER PRIMARY KEY,
-  name TEXT NOT NULL UNIQUE,
-  collection TEXT NOT NULL,
-  present INTEGER NOT NULL REFERENCES revisions (id) DEFERRABLE INITIALLY DEFERRED,
-  create_time INTEGER NOT NULL,
-  delete_time INTEGER,
-  CHECK (name GLOB collection || '/?*')
-) STRICT;
-CREATE UNIQUE INDEX resources_by_collection ON resources (collection, name);
-
-CREATE TABLE revisions (
-  id INTEGER PRIMARY KEY,
-  resource INTEGER NOT NULL REFERENCES resources (id),
-  revision INTEGER NOT NULL CHECK (revision >= 1),
-  create_time INTEGER NOT NULL,
-  content_hash TEXT NOT NULL CHECK (length(content_hash) = 64),
-  body BLOB NOT NULL,
-  UNIQUE (resource, revision)
-) STRICT;
-CREATE TRIGGER revisions_never_change BEFORE UPDATE ON revisions
-BEGIN SELECT RAISE(ABORT, 'a revision never changes'); END;
-CREATE TRIGGER revisions_stay BEFORE DELETE ON revisions
-BEGIN SELECT RAISE(ABORT, 'a revision is never removed'); END;
-CREATE TRIGGER revisions_follow_one_another BEFORE INSERT ON revisions
-WHEN NEW.revision <> 1 + (SELECT count(*) FROM revisions WHERE resource = NEW.resource)
-BEGIN SELECT RAISE(ABORT, 'a revision follows the last one'); END;
-
-CREATE VIEW revision_names AS
-SELECT v.id AS revision_id, r.name AS name, v.revision AS revision
-FROM revisions v JOIN resources r ON r.id = v.resource;
-
-CREATE TABLE properties (
-  resource INTEGER NOT NULL REFERENCES resources (id),
-  key TEXT NOT NULL,
-  value ANY NOT NULL,
-  collection TEXT NOT NULL,
-  name TEXT NOT NULL,
-  PRIMARY KEY (resource, key)
-) STRICT, WITHOUT ROWID;
-CREATE INDEX properties_by_value ON properties (collection, key, value, name);
-
-ALTER TABLE simulations ADD COLUMN lubricant INTEGER REFERENCES revisions (id);
-ALTER TABLE simulations ADD COLUMN gear_set INTEGER REFERENCES revisions (id);
-ALTER TABLE simulations ADD COLUMN surface INTEGER REFERENCES revisions (id);
-ALTER TABLE simulations ADD COLUMN vehicle INTEGER REFERENCES revisions (id);
-)sql";
-
-constexpr char kSchema3[] = R"sql(
-DROP INDEX unfinished_simulations;
-DROP INDEX simulations_by_input;
-ALTER TABLE simulations RENAME TO simulations_of_schema_2;
-ALTER TABLE results RENAME TO results_of_schema_2;
-ALTER TABLE history RENAME TO history_of_schema_2;
-
-CREATE TABLE ledgers (
-  id INTEGER PRIMARY KEY,
-  content_hash TEXT NOT NULL UNIQUE CHECK (length(content_hash) = 64),
-  body BLOB NOT NULL
-) STRICT;
-
-CREATE TABLE results (
-  id INTEGER PRIMARY KEY,
-  input_hash TEXT NOT NULL CHECK (length(input_hash) = 64),
-  model_version TEXT NOT NULL,
-  platform TEXT NOT NULL,
-  create_time INTEGER NOT NULL,
-  body BLOB NOT NULL
-) STRICT;
-CREATE UNIQUE INDEX one_result_per_input ON results (input_hash, model_version, platform)
-WHERE platform <> '';
-
-CREATE TABLE history (
-  id INTEGER PRIMARY KEY,
-  result INTEGER NOT NULL REFERENCES results (id) ON DELETE CASCADE,
-  position INTEGER NOT NULL,
-  name TEXT NOT NULL,
-  data BLOB NOT NULL,
-  UNIQUE (result, position)
-) STRICT;
-
-CREATE TABLE simulations (
-  id INTEGER PRIMARY KEY AUTOINCREMENT,
-  state INTEGER NOT NULL CHECK (state BETWEEN 1 AND 5),
-  attempt INTEGER NOT NULL DEFAULT 1 CHECK (attempt >= 1),
-  lost_attempts INTEGER NOT NULL DEFAULT 0 CHECK (lost_attempts < attempt OR state = 4),
-  sequence INTEGER NOT NULL DEFAULT 0,
-  create_time INTEGER NOT NULL,
-  start_time INTEGER,
-  end_time INTEGER,
-  deadline_time INTEGER,
-  request BLOB NOT NULL,
-  request_id TEXT CHECK (length(request_id) > 0),
-  request_hash TEXT NOT NULL DEFAULT '',
-  is_forced INTEGER NOT NULL DEFAULT 0 CHECK (is_forced IN (0, 1)),
-  cache_hit INTEGER NOT NULL DEFAULT 0 CHECK (cache_hit IN (0, 1)),
-  input_hash TEXT NOT NULL CHECK (length(input_hash) = 64),
-  result INTEGER REFERENCES results (id),
-  ledger INTEGER REFERENCES ledgers (id),
-  error_reason TEXT,
-  error_message TEXT,
-  lubricant INTEGER REFERENCES revisions (id),
-  gear_set INTEGER REFERENCES revisions (id),
-  surface INTEGER REFERENCES revisions (id),
-  vehicle INTEGER REFERENCES revisions (id),
-  CHECK ((state = 3) = (result IS NOT NULL)),
-  CHECK ((state = 4) = (error_reason IS NOT NULL)),
-  CHECK ((state >= 3) = (end_time IS NOT NULL))
-) STRICT;
-
-CREATE TABLE events (
-  simulation INTEGER NOT NULL REFERENCES simulations (id) ON DELETE CASCADE,
-  sequence INTEGER NOT NULL CHECK (sequence >= 1),
-  time INTEGER NOT NULL,
-  state INTEGER NOT NULL CHECK (state BETWEEN 1 AND 5),
-  attempt INTEGER NOT NULL CHECK (attempt >= 1),
-  reason TEXT NOT NULL,
-  PRIMARY KEY (simulation, sequence)
-) STRICT, WITHOUT ROWID;
-
-INSERT INTO results SELECT simulation, input_hash, '', '', end_time, body
-FROM results_of_schema_2 JOIN simulations_of_schema_2 ON id = simulation;
-INSERT INTO history SELECT id, simulation, position, name, data FROM history_of_schema_2;
-INSERT INTO simulations (id, state, create_time, start_time, end_time, request, input_hash, result,
-                         error_reason, error_message, lubricant, gear_set, surface, vehicle)
-SELECT id, state, create_time, start_time, end_time, request, input_hash,
-       CASE state WHEN 3 THEN id END,
-       error_reason, error_message, lubricant, gear_set, surface, vehicle
-FROM simulations_of_schema_2;
-INSERT INTO events SELECT id, 1, create_time, 1, 1, '' FROM simulations;
-INSERT INTO events SELECT id, 2, start_time, 2, 1, '' FROM simulations
-WHERE start_time IS NOT NULL;
-INSERT INTO events SELECT s.id, 1 + count(*), end_time, s.state, 1, ''
-FROM simulations s JOIN events e ON e.simulation = s.id
-WHERE end_time IS NOT NULL GROUP BY s.id;
-UPDATE simulations SET sequence = (SELECT count(*) FROM events WHERE simulation = id);
-DROP TABLE history_of_schema_2;
-DROP TABLE results_of_schema_2;
-DROP TABLE simulations_of_schema_2;
-
-CREATE INDEX unfinished_simulations ON simulations (id) WHERE state IN (1, 2);
-CREATE INDEX simulations_by_input ON simulations (input_hash);
-CREATE UNIQUE INDEX one_simulation_per_request ON simulations (request_id);
-
-CREATE TRIGGER states_move_forward BEFORE UPDATE OF state ON simulations
-WHEN NOT (OLD.state = 1 AND NEW.state IN (2, 3, 4, 5) AND NEW.attempt = OLD.attempt OR
-          OLD.state = 2 AND NEW.state IN (3, 4, 5) AND NEW.attempt = OLD.attempt OR
-          OLD.state = 2 AND NEW.state = 1 AND NEW.attempt = OLD.attempt + 1)
-BEGIN SELECT RAISE(ABORT, 'no such change of state'); END;
-CREATE TRIGGER states_change_with_an_event BEFORE UPDATE OF state ON simulations
-WHEN NEW.sequence <> OLD.sequence + 1
-BEGIN SELECT RAISE(ABORT, 'a change of state is an event'); END;
-CREATE TRIGGER events_follow_one_another BEFORE INSERT ON events
-WHEN NEW.sequence <> 1 + (SELECT coalesce(max(sequence), 0) FROM events
-                          WHERE simulation = NEW.simulation)
-BEGIN SELECT RAISE(ABORT, 'an event follows the last one'); END;
-CREATE TRIGGER events_never_change BEFORE UPDATE ON events
-BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
-)sql";
-
-constexpr char kSchema4[] = R"sql(
-ALTER TABLE history RENAME TO history_of_schema_3;
-
-CREATE TABLE history_columns (
-  id INTEGER PRIMARY KEY AUTOINCREMENT,
-  result INTEGER NOT NULL REFERENCES results (id) ON DELETE CASCADE,
-  position INTEGER NOT NULL,
-  name TEXT NOT NULL,
-  rows INTEGER NOT NULL CHECK (rows >= 0),
-  UNIQUE (result, position)
-) STRICT;
-
-CREATE TABLE history_blocks (
-  history_column INTEGER NOT NULL REFERENCES history_columns (id) ON DELETE CASCADE,
-  level INTEGER NOT NULL CHECK (level >= 0),
-  number INTEGER NOT NULL CHECK (number >= 0),
-  data BLOB NOT NULL,
-  UNIQUE (history_column, level, number)
-) STRICT;
-
-ALTER TABLE simulations ADD COLUMN pinned INTEGER NOT NULL DEFAULT 0 CHECK (pinned IN (0, 1));
-ALTER TABLE simulations ADD COLUMN client TEXT NOT NULL DEFAULT '';
-ALTER TABLE simulations ADD COLUMN cost_seconds REAL NOT NULL DEFAULT 0;
-
-CREATE TABLE simulation_labels (
-  key TEXT NOT NULL,
-  value TEXT NOT NULL,
-  simulation INTEGER NOT NULL REFERENCES simulations (id) ON DELETE CASCADE,
-  PRIMARY KEY (key, value, simulation)
-) STRICT, WITHOUT ROWID;
-CREATE INDEX labels_of_simulation ON simulation_labels (simulation);
-
-CREATE INDEX simulations_by_time ON simulations (create_time);
-CREATE INDEX simulations_by_state ON simulations (state, create_time);
-CREATE INDEX simulations_by_lubricant ON simulations (lubricant, create_time);
-CREATE INDEX simulations_by_result ON simulations (result);
-CREATE INDEX simulations_by_ledger ON simulations (ledger);
-CREATE INDEX ended_simulations ON simulations (end_time) WHERE state >= 3 AND pinned = 0;
-)sql";
 
 /// Schema 1 left out zeros; since then what is left out is not known.
 std::string with_explicit_zeros(const std::string& name, const std::string& body) {
@@ -339,27 +101,95 @@ void compress_histories(Connection& db) {
   db.exec("DROP TABLE history_of_schema_3");
 }
 
-}  // namespace
+/// Of what was written without checksums; whatever has changed since then goes unnoticed.
+void add_checksums(Connection& db) {
+  db.exec("UPDATE history_blocks SET checksum = checksum(data)");
+  db.exec(
+      "UPDATE results SET checksum = checksum(body), stored_bytes = length(body) + "
+      "(SELECT coalesce(sum(length(b.data)), 0) FROM history_columns c "
+      "JOIN history_blocks b ON b.history_column = c.id WHERE c.result = results.id)");
+}
 
-void migrate(Connection& database, int from, Microseconds now) {
-  SQLite::Transaction transaction(database);
-  if (from < 1) database.exec(kSchema1);
-  if (from < 2) {
+void bring_from(Connection& database, int from, int to, Microseconds now) {
+  const auto passes = [from, to](int version) { return from < version && version <= to; };
+  if (passes(1)) database.exec(kSchema1);
+  if (passes(2)) {
     database.exec(kSchema2);
     move_resources(database, now);
     pin_simulations(database);
   }
-  if (from < 3) {
+  if (passes(3)) {
     database.exec(kSchema3);
     split_ledgers(database);
   }
-  if (from < 4) {
-    database.exec(kSchema4);
-    compress_histories(database);
+  if (passes(4)) database.exec(kSchema4);
+  if (passes(5)) database.exec(kSchema5);
+  if (passes(4)) compress_histories(database);  // writes blocks as schema 5 has them
+  if (passes(5)) {
+    add_checksum_function(database);
+    add_checksums(database);
   }
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
-  database.exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
+  database.exec("PRAGMA user_version = " + std::to_string(to));
+}
+
+/// The SQL text of each table, index, trigger and view, by kind and name.
+using SchemaText = std::map<std::string, std::string>;
+
+SchemaText schema_text(Connection& db) {
+  SQLite::Statement query(db,
+                          "SELECT type || ' ' || name, sql FROM sqlite_master "
+                          "WHERE name NOT LIKE 'sqlite!_%' ESCAPE '!'");
+  SchemaText out;
+  while (query.executeStep()) out[query.getColumn(0).getString()] = query.getColumn(1).getString();
+  return out;
+}
+
+SchemaText text_of_schema(int version) {
+  Connection made(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  bring_from(made, 0, version, 0);
+  return schema_text(made);
+}
+
+/// As text_of_schema, made once a process. Safe for concurrent access.
+const SchemaText& expected_schema(int version) {
+  static std::mutex mutex;
+  static std::map<int, SchemaText> made;  // guarded by mutex; entries never change
+  const std::lock_guard lock(mutex);
+  auto found = made.find(version);
+  if (found == made.end()) found = made.emplace(version, text_of_schema(version)).first;
+  return found->second;
+}
+
+}  // namespace
+
+void migrate(Connection& database, int from, Microseconds now) {
+  SQLite::Transaction transaction(database);
+  bring_from(database, from, kSchemaVersion, now);
   transaction.commit();
+}
+
+std::vector<std::string> schema_differences(Connection& database) {
+  const int version = database.execAndGet("PRAGMA user_version").getInt();
+  if (version < 1 || version > kSchemaVersion) {
+    return {"its schema is numbered " + std::to_string(version) + ", this program knows 1 to " +
+            std::to_string(kSchemaVersion)};
+  }
+  const SchemaText& expected = expected_schema(version);
+  const SchemaText found = schema_text(database);
+  std::vector<std::string> out;
+  for (const auto& [name, text] : expected) {
+    const auto match = found.find(name);
+    if (match == found.end()) {
+      out.push_back("its " + name + " is missing");
+    } else if (match->second != text) {
+      out.push_back("its " + name + " is not the one that this program makes");
+    }
+  }
+  for (const auto& [name, text] : found) {
+    if (!expected.contains(name)) out.push_back("its " + name + " is not of this program");
+  }
+  return out;
 }
 
 }  // namespace tribodyn::server

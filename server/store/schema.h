@@ -1,11 +1,14 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "server/store/connection.h"
 #include "server/store/times.h"
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 4. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 5. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   resources    lubricants, gear sets, surfaces, vehicles: one row a name, with the revision that
@@ -32,16 +35,26 @@ namespace tribodyn::server {
 ///   results      one SimulationResult without assumptions for equal inputs (input_hash), model
 ///                version and platform, written with the change of state of the first job that
 ///                has it. platform is empty, and the result serves no other job, where it comes
-///                from an older schema
+///                from an older schema. checksum: of body (checksum.h); stored_bytes: of body and
+///                of the blocks of its history, which go together
 ///   history_columns  of time histories, in the order of position; ids are never used again
 ///   history_blocks   a column cut into runs of kHistoryBlock doubles, numbered 0, 1, ..., and each
 ///                compressed (column_codec.h): level 0 as it is, levels above it the least and
-///                largest values of runs of its rows (pyramid.h), written once with it
-inline constexpr int kSchemaVersion = 4;
+///                largest values of runs of its rows (pyramid.h), written once with it. checksum:
+///                of data
+///
+/// The text of a schema that a release has written never changes: the tables of a database are
+/// compared with it (schema_differences).
+inline constexpr int kSchemaVersion = 5;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A
 /// new database goes the same way as an old one, so that there is one description of the tables.
 void migrate(Connection& database, int from, Microseconds now);
+
+/// How the tables, indexes, triggers and views of a database differ from those that this program
+/// makes for its schema, a sentence each. Whoever adds a trigger changes what every write does.
+/// Throws SQLite::Exception.
+std::vector<std::string> schema_differences(Connection& database);
 
 }  // namespace tribodyn::server

@@ -2,6 +2,7 @@
 
 #include <SQLiteCpp/Statement.h>
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,14 @@ Condition label_condition(Connection& db, const Restriction& restriction) {
           values};
 }
 
+/// The column of a key. A key comes from a client's filter: nothing else of it enters a statement.
+std::string column_of(const std::string& key) {
+  for (const char* column : {"state", "create_time", "pinned"}) {
+    if (key == column) return column;
+  }
+  throw std::logic_error("no column of simulations for the key " + key);
+}
+
 Condition condition(Connection& db, const Restriction& restriction) {
   if (restriction.key.starts_with(kLabels)) return label_condition(db, restriction);
   if (restriction.key == "lubricant") {
@@ -79,7 +88,8 @@ Condition condition(Connection& db, const Restriction& restriction) {
                 "WHERE name = ? OR name || '@' || revision = ?)",
             {restriction.value, restriction.value}};
   }
-  return {restriction.key + " " + operator_of(restriction.comparison) + " ?", {restriction.value}};
+  return {column_of(restriction.key) + " " + operator_of(restriction.comparison) + " ?",
+          {restriction.value}};
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 #include "server/store/simulation_rows.h"
 
+#include <algorithm>
+
 #include "server/hash/sha256.h"
+#include "server/store/checksum.h"
 #include "server/store/history_rows.h"
 #include "server/store/resource_rows.h"
+#include "server/store/store_error.h"
 
 namespace tribodyn::server {
 
@@ -120,29 +124,87 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
   return id;
 }
 
+/// Bytes that go when a result goes.
+std::int64_t size_of(const NewResult& result, const std::vector<CompressedColumn>& history) {
+  std::size_t bytes = result.body.size();
+  for (const CompressedColumn& column : history) {
+    for (const std::vector<std::string>& level : column.levels) {
+      for (const std::string& block : level) bytes += block.size();
+    }
+  }
+  return static_cast<std::int64_t>(bytes);
+}
+
+void insert_history(Connection& db, std::int64_t result,
+                    const std::vector<CompressedColumn>& history) {
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    insert_history_column(db, result, static_cast<std::int64_t>(i), history[i]);
+  }
+}
+
 std::int64_t insert_result(Connection& db, const NewResult& result,
                            const std::vector<CompressedColumn>& history, Microseconds now) {
   Prepared insert(db,
-                  "INSERT INTO results (input_hash, model_version, platform, create_time, body) "
-                  "VALUES (?, ?, ?, ?, ?)");
+                  "INSERT INTO results (input_hash, model_version, platform, create_time, body, "
+                  "checksum, stored_bytes) VALUES (?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, result.key.input_hash);
   insert.bind(2, result.key.model_version);
   insert.bind(3, result.key.platform);
   insert.bind(4, now);
   bind_blob(insert, 5, result.body);
+  insert.bind(6, checksum(result.body));
+  insert.bind(7, size_of(result, history));
   insert.exec();
   const std::int64_t row = db.getLastInsertRowid();
-  for (std::size_t i = 0; i < history.size(); ++i) {
-    insert_history_column(db, row, static_cast<std::int64_t>(i), history[i]);
-  }
+  insert_history(db, row, history);
   return row;
 }
 
+/// Whether a stored result and its history are what was written.
+bool is_whole_result(Connection& db, std::int64_t row) {
+  Prepared body(db, "SELECT body, checksum FROM results WHERE id = ?");
+  body.bind(1, row);
+  if (!body.executeStep()) return false;
+  if (checksum(bytes_of(body.getColumn(0))) != body.getColumn(1).getInt64()) return false;
+  const std::vector<std::int64_t> columns = query_history_shape(db, row).columns;
+  return std::all_of(columns.begin(), columns.end(),
+                     [&](std::int64_t column) { return is_whole_column(db, column); });
+}
+
+/// Writes a result in the place of one that is damaged, for all simulations that have it.
+void repair_result(Connection& db, std::int64_t row, const NewResult& result,
+                   const std::vector<CompressedColumn>& history) {
+  Prepared update(db,
+                  "UPDATE results SET body = ?2, checksum = ?3, stored_bytes = ?4 WHERE id = ?1");
+  update.bind(1, row);
+  bind_blob(update, 2, result.body);
+  update.bind(3, checksum(result.body));
+  update.bind(4, size_of(result, history));
+  update.exec();
+  Prepared clear(db, "DELETE FROM history_columns WHERE result = ?");
+  clear.bind(1, row);
+  clear.exec();
+  insert_history(db, row, history);
+}
+
+/// Of a simulation that came to another result than equal inputs have.
+std::optional<StoredEvent> not_reproduced(Connection& db, std::int64_t id, Microseconds now,
+                                          const ResultKey& key) {
+  return change_state(db, {.id = id,
+                           .to = StoredState::kFailed,
+                           .time = now,
+                           .from = StoredState::kRunning,
+                           .error_reason = "RESULT_NOT_REPRODUCED",
+                           .error_message = "equal inputs have another result, of model " +
+                                            key.model_version + " on " + key.platform});
+}
+
 /// Bit for bit, histories too.
-bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) {
-  Prepared body(db, "SELECT 1 FROM results WHERE id = ? AND body = ?");
+bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) try {
+  Prepared body(db, "SELECT 1 FROM results WHERE id = ? AND body = ? AND checksum = ?");
   body.bind(1, row);
   bind_blob(body, 2, result.body);
+  body.bind(3, checksum(result.body));
   if (!body.executeStep()) return false;
   const HistoryShape shape = query_history_shape(db, row);
   if (shape.names.size() != result.history.size()) return false;
@@ -153,20 +215,32 @@ bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) {
     }
   }
   return true;
+} catch (const StoreError& damage) {
+  if (damage.kind() != StoreError::Kind::kDataLoss) throw;
+  return false;
 }
 
 }  // namespace
 
 std::int64_t ledger_row(Connection& db, const std::string& body) {
   const std::string hash = sha256(body);
-  Prepared find(db, "SELECT id FROM ledgers WHERE content_hash = ?");
+  Prepared find(db, "SELECT id, body FROM ledgers WHERE content_hash = ?");
   find.bind(1, hash);
-  if (find.executeStep()) return find.getColumn(0).getInt64();
-  Prepared insert(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)");
-  insert.bind(1, hash);
-  bind_blob(insert, 2, body);
-  insert.exec();
-  return db.getLastInsertRowid();
+  if (!find.executeStep()) {
+    Prepared insert(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)");
+    insert.bind(1, hash);
+    bind_blob(insert, 2, body);
+    insert.exec();
+    return db.getLastInsertRowid();
+  }
+  const std::int64_t row = find.getColumn(0).getInt64();
+  if (bytes_of(find.getColumn(1)) != body) {  // damaged
+    Prepared repair(db, "UPDATE ledgers SET body = ? WHERE id = ?");
+    bind_blob(repair, 1, body);
+    repair.bind(2, row);
+    repair.exec();
+  }
+  return row;
 }
 
 StoredSimulation stored_simulation(const SQLite::Statement& query) {
@@ -197,8 +271,17 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   return out;
 }
 
-Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
-                        bool may_wait) {
+std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id) {
+  Prepared query(db, std::string(kSimulationColumns) + "WHERE id = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) return std::nullopt;
+  return stored_simulation(query);
+}
+
+namespace {
+
+Added insert_or_find(Connection& db, const NewSimulation& simulation, Microseconds now,
+                     bool may_wait) {
   if (const auto repeated = repeated_request(db, simulation)) return *repeated;
   std::optional<std::int64_t> result;
   if (!simulation.is_forced) result = result_row(db, simulation.key);
@@ -211,6 +294,17 @@ Added insert_simulation(Connection& db, const NewSimulation& simulation, Microse
   return {Added::Kind::kServed, id};
 }
 
+}  // namespace
+
+Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
+                        bool may_wait) {
+  Added added = insert_or_find(db, simulation, now, may_wait);
+  // Read inside the transaction: a read after the commit could fail or come too late, and the
+  // client would be told that nothing has changed.
+  if (added.kind != Added::Kind::kNoPlace) added.stored = *query_simulation(db, added.id);
+  return added;
+}
+
 std::optional<StoredEvent> change_state(Connection& db, const StateChange& change) {
   Prepared update(
       db,
@@ -220,7 +314,7 @@ std::optional<StoredEvent> change_state(Connection& db, const StateChange& chang
       "end_time = CASE WHEN ?2 >= 3 THEN ?3 END, "
       "error_reason = ?5, error_message = ?6, result = ?7, cache_hit = ?8 "
       "WHERE id = ?1 AND state = coalesce(?4, state) AND state <= 2 AND state <> ?2 "
-      "RETURNING sequence, attempt");
+      "RETURNING sequence, attempt, start_time");
   update.bind(1, change.id);
   update.bind(2, static_cast<int>(change.to));
   update.bind(3, change.time);
@@ -235,8 +329,9 @@ std::optional<StoredEvent> change_state(Connection& db, const StateChange& chang
   update.bind(8, change.cache_hit ? 1 : 0);
   update.bind(9, change.attempt_is_lost ? 1 : 0);
   if (!update.executeStep()) return std::nullopt;
-  const StoredEvent event{update.getColumn(0).getInt64(), change.time, change.to,
-                          update.getColumn(1).getInt(), change.reason};
+  StoredEvent event{update.getColumn(0).getInt64(), change.time, change.to,
+                    update.getColumn(1).getInt(), change.reason};
+  event.start_time = time_of(update.getColumn(2));
   update.executeStep();  // to its end: only then is it done
   insert_event(db, change.id, event);
   return event;
@@ -274,19 +369,32 @@ std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Mic
                            .cache_hit = result.has_value()});
 }
 
+std::optional<std::string> query_result(Connection& db, std::int64_t id) {
+  Prepared query(db,
+                 "SELECT r.body, r.checksum, l.body, l.content_hash FROM simulations s "
+                 "JOIN results r ON r.id = s.result "
+                 "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) return std::nullopt;
+  const std::string_view result = bytes_of(query.getColumn(0));
+  const std::string_view ledger = bytes_of(query.getColumn(2));
+  const bool has_ledger = !query.getColumn(3).isNull();
+  if (checksum(result) != query.getColumn(1).getInt64() ||
+      (has_ledger && sha256(ledger) != query.getColumn(3).getString())) {
+    throw StoreError(StoreError::Kind::kDataLoss,
+                     "the stored result of simulations/" + std::to_string(id) + " is damaged");
+  }
+  // The bytes of two messages in a row are those of both merged.
+  return std::string(result).append(ledger);
+}
+
 std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
                                              const NewResult& result,
                                              const std::vector<CompressedColumn>& history) {
   std::optional<std::int64_t> row = result_row(db, result.key);
   if (row && !is_same_result(db, *row, result)) {
-    return change_state(db,
-                        {.id = id,
-                         .to = StoredState::kFailed,
-                         .time = now,
-                         .from = StoredState::kRunning,
-                         .error_reason = "RESULT_NOT_REPRODUCED",
-                         .error_message = "equal inputs have another result, of model " +
-                                          result.key.model_version + " on " + result.key.platform});
+    if (is_whole_result(db, *row)) return not_reproduced(db, id, now, result.key);
+    repair_result(db, *row, result, history);
   }
   if (!row) row = insert_result(db, result, history, now);
   return change_state(db, {.id = id,

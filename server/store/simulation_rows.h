@@ -14,13 +14,16 @@ namespace tribodyn::server {
 // Rows of simulations, events, results and ledgers on an open connection, inside the caller's
 // transaction. All throw SQLite::Exception.
 
-/// The row of a serialised list of assumptions, added when it is not there.
+/// The row of a serialised list of assumptions, added if it is not there and repaired if it is
+/// damaged.
 std::int64_t ledger_row(Connection& db, const std::string& body);
 
 /// Columns of stored_simulation, to be followed by the rest of a SELECT over simulations.
 extern const char kSimulationColumns[];
 inline constexpr int kRequestColumn = 8;
 StoredSimulation stored_simulation(const SQLite::Statement& query);
+
+std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id);
 
 /// As Store::add_simulation.
 Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
@@ -45,6 +48,9 @@ std::optional<StoredEvent> change_state(Connection& db, const StateChange& chang
 
 std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
                                             std::int64_t after_sequence);
+
+/// As Store::result. Throws StoreError kDataLoss too.
+std::optional<std::string> query_result(Connection& db, std::int64_t id);
 
 // As Store::mark_running, mark_succeeded and requeue_unfinished.
 std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,

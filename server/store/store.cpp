@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "server/store/database_check.h"
+#include "server/store/database_files.h"
 #include "server/store/deadline.h"
+#include "server/store/durable_files.h"
 #include "server/store/resource_queries.h"
 #include "server/store/resource_rows.h"
-#include "server/store/retention.h"
 #include "server/store/schema.h"
 #include "server/store/simulation_queries.h"
 #include "server/store/simulation_rows.h"
@@ -20,11 +22,10 @@ namespace {
 
 constexpr int kReaderConnections = 8;
 
-/// One path for one file, so that two spellings of it meet in one lock.
-std::filesystem::path one_path(const std::filesystem::path& path) {
-  std::error_code ignored;
-  std::filesystem::path found = std::filesystem::weakly_canonical(path, ignored);
-  return found.empty() ? path : found;
+std::filesystem::path usable_path(const std::filesystem::path& database) {
+  std::filesystem::path path = canonical_path(database);
+  require_usable_path(path);
+  return path;
 }
 
 void check_deadline(const std::filesystem::path& path) {
@@ -46,12 +47,22 @@ struct Undone {};
 
 }  // namespace
 
+void Store::require_place() const {
+  const std::string misplaced = this->misplaced();
+  if (!misplaced.empty()) throw StoreError(StoreError::Kind::kMisplaced, misplaced);
+}
+
+/// The files are looked for before the action, so that nothing is written in vain, and after it, so
+/// that nothing is acknowledged that went into a file which lost its name meanwhile.
 template <class Action>
 auto Store::write(const Action& action) {
   const std::lock_guard lock(writer_mutex_);
   check_deadline(path_);
+  require_place();
   try {
-    return action(writer_);
+    auto out = action(writer_);
+    require_place();
+    return out;
   } catch (const SQLite::Exception& error) {
     throw translate_error(error, path_);
   }
@@ -59,8 +70,10 @@ auto Store::write(const Action& action) {
 
 void Store::write_together(const GroupCommit::Action& action) {
   check_deadline(path_);
+  require_place();
   try {
     group_commit_.run(action);
+    require_place();
   } catch (const Undone&) {
     return;
   } catch (const SQLite::Exception& error) {
@@ -80,7 +93,7 @@ auto Store::read(const Action& action) {
 }
 
 Store::Store(const std::filesystem::path& database)
-    : path_(one_path(database)),
+    : path_(usable_path(database)),
       lock_(path_),
       writer_(open_writer(path_)),
       group_commit_(writer_, writer_mutex_) {
@@ -91,6 +104,8 @@ Store::Store(const std::filesystem::path& database)
     // so that no file is opened now and then.
     writer_.exec("PRAGMA temp_store = MEMORY");
     readers_.open(path_, kReaderConnections);
+    lock_.lock_new_file();
+    files_.emplace(path_);
   } catch (const SQLite::Exception& error) {
     throw translate_error(error, path_);
   }
@@ -98,30 +113,21 @@ Store::Store(const std::filesystem::path& database)
 
 void Store::open_schema() {
   write([this](Connection& db) {
-    const auto pragma = [&db](const char* name) {
-      return db.execAndGet(std::string("PRAGMA ") + name).getInt();
-    };
-    const int version = pragma("user_version");
-    const bool ours = pragma("application_id") == kApplicationId;
-    const bool empty = db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
-    if (!empty && !ours) {
-      throw StoreError(StoreError::Kind::kForeign,
-                       "database " + path_.string() + " belongs to another program");
-    }
-    if (version > kSchemaVersion) {
-      throw StoreError(StoreError::Kind::kNewerSchema,
-                       "database " + path_.string() + " has schema " + std::to_string(version) +
-                           ", written by a newer tribodynd; this one knows schemas up to " +
-                           std::to_string(kSchemaVersion));
-    }
+    require_servable(db, path_);
+    const int version = db.execAndGet("PRAGMA user_version").getInt();
     if (sqlite3_db_readonly(db.getHandle(), "main") == 1) {
       throw StoreError(StoreError::Kind::kReadOnly,
                        "database " + path_.string() + " cannot be written: it is read-only");
     }
-    db.execAndGet("PRAGMA journal_mode = WAL");
+    // SQLite reports some failures only as another mode.
+    if (db.execAndGet("PRAGMA journal_mode = WAL").getString() != "wal") {
+      throw StoreError(StoreError::Kind::kFailed,
+                       "database " + path_.string() + ": cannot make its write-ahead log");
+    }
     db.exec("PRAGMA synchronous = FULL");
     db.exec("PRAGMA foreign_keys = ON");
     if (version < kSchemaVersion) migrate(db, version, system_time());
+    return true;
   });
 }
 
@@ -132,6 +138,7 @@ void Store::add_resources(const std::vector<NewResource>& resources, Microsecond
       if (!is_taken(db, each.name)) insert_resource(db, each, now);
     }
     transaction.commit();
+    return true;
   });
 }
 
@@ -239,12 +246,7 @@ Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, b
 }
 
 std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
-  return read([&](Connection& db) -> std::optional<StoredSimulation> {
-    Prepared query(db, std::string(kSimulationColumns) + "WHERE id = ?");
-    query.bind(1, id);
-    if (!query.executeStep()) return std::nullopt;
-    return stored_simulation(query);
-  });
+  return read([&](Connection& db) { return query_simulation(db, id); });
 }
 
 std::optional<std::int64_t> Store::simulation_of_request(const std::string& request_id) {
@@ -260,19 +262,22 @@ Page<StoredSimulation> Store::simulations(const SimulationQuery& query) {
   return read([&](Connection& db) { return query_simulations(db, query); });
 }
 
-bool Store::set_pinned(std::int64_t id, bool is_pinned) {
-  return write([&](Connection& db) {
+std::optional<StoredSimulation> Store::set_pinned(std::int64_t id, bool is_pinned) {
+  std::optional<StoredSimulation> out;
+  write_together([&](Connection& db) {
     Prepared update(db, "UPDATE simulations SET pinned = ? WHERE id = ?");
     update.bind(1, is_pinned ? 1 : 0);
     update.bind(2, id);
-    return update.exec() > 0;
+    update.exec();
+    out = query_simulation(db, id);
   });
+  return out;
 }
 
-int Store::remove_oldest(Microseconds ended_by, int limit) {
+Removed Store::remove_oldest(Microseconds ended_by, int limit) {
   return write([&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    const int removed = server::remove_oldest(db, ended_by, limit);
+    const Removed removed = server::remove_oldest(db, ended_by, limit);
     transaction.commit();
     return removed;
   });
@@ -280,6 +285,10 @@ int Store::remove_oldest(Microseconds ended_by, int limit) {
 
 std::int64_t Store::used_bytes() {
   return read([](Connection& db) { return server::used_bytes(db); });
+}
+
+std::int64_t Store::removable_bytes() {
+  return read([](Connection& db) { return server::removable_bytes(db); });
 }
 
 std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after_sequence) {
@@ -345,16 +354,7 @@ std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
 }
 
 std::optional<std::string> Store::result(std::int64_t id) {
-  return read([&](Connection& db) -> std::optional<std::string> {
-    Prepared query(db,
-                   "SELECT r.body, l.body FROM simulations s "
-                   "JOIN results r ON r.id = s.result "
-                   "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
-    query.bind(1, id);
-    if (!query.executeStep()) return std::nullopt;
-    // The bytes of two messages in a row are those of both merged.
-    return query.getColumn(0).getString() + query.getColumn(1).getString();
-  });
+  return read([&](Connection& db) { return query_result(db, id); });
 }
 
 HistoryShape Store::history_shape(std::int64_t id) {

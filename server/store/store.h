@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "server/store/connections.h"
+#include "server/store/database_files.h"
 #include "server/store/database_lock.h"
 #include "server/store/group_commit.h"
 #include "server/store/history_rows.h"
+#include "server/store/retention.h"
 #include "server/store/store_error.h"
 #include "server/store/stored_resource.h"
 #include "server/store/stored_simulation.h"
@@ -20,11 +22,16 @@ namespace tribodyn::server {
 
 /// Safe for concurrent access without external synchronization: one writer at a time, readers
 /// beside it. The only truth about resources, simulations and results (schema.h). A call that
-/// changes something returns when the change is on disk. Throws StoreError.
+/// changes something returns when the change is on disk, in the file at the path. Throws
+/// StoreError.
 class Store {
  public:
   /// Opens or creates the database and keeps other servers away from it.
   explicit Store(const std::filesystem::path& database);
+
+  /// As DatabaseFiles::misplaced. While it tells something, calls that would change something throw
+  /// StoreError kMisplaced.
+  std::string misplaced() const { return files_ ? files_->misplaced() : std::string(); }
 
   /// Adds what is missing in one transaction; what exists, deleted or not, stays as it is.
   void add_resources(const std::vector<NewResource>& resources, Microseconds now);
@@ -55,13 +62,13 @@ class Store {
   std::optional<StoredSimulation> simulation(std::int64_t id);
   std::optional<std::int64_t> simulation_of_request(const std::string& request_id);
   Page<StoredSimulation> simulations(const SimulationQuery& query);
-  /// Keeps a simulation from being removed, or gives it up again; false when there is none.
-  bool set_pinned(std::int64_t id, bool is_pinned);
-  /// Removes the oldest simulations, at most `limit`, that had ended by then and are not pinned,
-  /// with results that no other one has; how many.
-  int remove_oldest(Microseconds ended_by, int limit);
-  /// Bytes that the database holds, free ones left out.
+  /// Keeps a simulation from being removed, or lets it be removed again. Returns the simulation as
+  /// it is then; nullopt if there is none.
+  std::optional<StoredSimulation> set_pinned(std::int64_t id, bool is_pinned);
+  // As the functions of retention.h.
+  Removed remove_oldest(Microseconds ended_by, int limit);
   std::int64_t used_bytes();
+  std::int64_t removable_bytes();
   /// The change of state that follows the one of that number (0: the first).
   std::optional<StoredEvent> next_event(std::int64_t id, std::int64_t after_sequence);
 
@@ -78,13 +85,16 @@ class Store {
   std::optional<StoredEvent> mark_failed(std::int64_t id, Microseconds now,
                                          const std::string& reason, const std::string& message);
   /// From RUNNING. Equal inputs may have a result by now; if it is another one, then this
-  /// simulation is FAILED.
+  /// simulation is FAILED, unless that one is damaged: then this one takes its place.
   std::optional<StoredEvent> mark_succeeded(std::int64_t id, Microseconds now,
                                             const NewResult& result);
 
   /// After a crash: RUNNING becomes QUEUED, or FAILED after kMaximumLostAttempts of them. All that
   /// are QUEUED then, oldest first.
   std::vector<Waiting> requeue_unfinished(Microseconds now);
+
+  // Results and histories are compared with their checksums: the calls that read them throw
+  // StoreError kDataLoss if stored bytes are not what was written.
 
   /// Serialised SimulationResult with the assumptions of this simulation.
   std::optional<std::string> result(std::int64_t id);
@@ -98,6 +108,7 @@ class Store {
 
  private:
   void open_schema();
+  void require_place() const;
   /// Changes the row of resources only if `present` is what is there.
   template <class Change>
   bool change(const StoredResource& present, const Change& change);
@@ -117,6 +128,7 @@ class Store {
   Connection writer_;  // guarded by writer_mutex_
   GroupCommit group_commit_;
   ReaderPool readers_;
+  std::optional<DatabaseFiles> files_;  // set by the constructor, once the files exist
 };
 
 }  // namespace tribodyn::server

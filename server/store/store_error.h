@@ -16,8 +16,10 @@ class StoreError : public std::runtime_error {
     kForeign,      ///< a database of another program
     kCorrupt,
     kReadOnly,
-    kDeadline,  ///< took longer than the caller had (deadline.h); nothing has changed
-    kFailed,    ///< a statement failed: disk full, I/O error
+    kDataLoss,   ///< stored bytes are not what was written
+    kMisplaced,  ///< its file was deleted, renamed or replaced while the server has it open
+    kDeadline,   ///< took longer than the caller had (deadline.h); nothing has changed
+    kFailed,     ///< a statement failed: disk full, I/O error
   };
   StoreError(Kind kind, const std::string& sentence) : std::runtime_error(sentence), kind_(kind) {}
   Kind kind() const { return kind_; }

@@ -23,7 +23,7 @@ struct ResultKey {
 struct NewSimulation {
   std::string request;  ///< serialised Simulation
   ResultKey key;
-  std::string ledger = {};        ///< serialised SimulationResult, assumptions only
+  std::string ledger = {};  ///< serialised SimulationResult, assumptions and input warnings only
   std::string request_id = {};    ///< empty: none
   std::string request_hash = {};  ///< of all that the client stated
   bool is_forced = false;
@@ -86,6 +86,8 @@ struct StoredEvent {
   StoredState state = StoredState::kQueued;
   int attempt = 1;
   std::string reason;  ///< why an attempt did not end; empty otherwise
+  /// When the attempt began. Only in what a change of state returns; it is not kept with the event.
+  std::optional<Microseconds> start_time = {};
 };
 
 struct StoredColumn {
@@ -120,6 +122,8 @@ struct Added {
   };
   Kind kind = Kind::kQueued;
   std::int64_t id = 0;
+  /// The simulation `id` as it is in the store once this is committed; empty with kNoPlace.
+  StoredSimulation stored = {};
 };
 
 /// What a study came to.

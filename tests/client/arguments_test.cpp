@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "client/cpp/commands/flag_errors.h"
 #include "client/cpp/commands/help.h"
 #include "client/cpp/commands/scenario.h"
 
@@ -18,6 +22,7 @@ struct Outcome {
   std::string path;
   Complaints complaints;
   bool wants_help;
+  bool wants_all_help;
   CommonOptions options;
 
   explicit Outcome(const std::vector<std::string>& arguments) {
@@ -28,6 +33,7 @@ struct Outcome {
     if (parsed.command != nullptr) path = parsed.command->path;
     complaints = parsed.complaints;
     wants_help = parsed.wants_help;
+    wants_all_help = parsed.wants_all_help;
   }
 
   bool complains_of(const std::string& part) const {
@@ -57,13 +63,23 @@ TEST(Arguments, ComplainOfEverythingAtOnce) {
   }
 }
 
+TEST(Arguments, SayThatEq46ActsWhereProfilesBecomeASurface) {
+  for (const char* command : {"point", "curve", "history", "contact"}) {
+    const Outcome outcome({command, "--as-published", "eq17,eq46"});
+    EXPECT_TRUE(outcome.complains_of("'eq46' is not one of eq17|eq20|eq22|eq31|eq43")) << command;
+    EXPECT_TRUE(outcome.complains_of("eq46 acts where measured profiles become a surface"));
+  }
+  const Outcome import({"surfaces", "import", "profile.csv", "--as-published", "eq46"});
+  EXPECT_TRUE(import.complaints.empty());
+}
+
 TEST(Arguments, RefuseContradictions) {
   EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed", "3", "--torque", "3", "--pinion-speed", "3"})
                   .complains_of("not both"));
   EXPECT_TRUE(Outcome({"point", "-l", "1,2", "--speed", "3"}).complains_of("one only"));
   EXPECT_TRUE(
       Outcome({"point", "-l", "1", "--speed", "3", "--speed", "4"}).complains_of("2 times"));
-  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed"}).complains_of("--speed-kilometers-per-hour"));
+  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed"}).complains_of("--speed: "));
   EXPECT_TRUE(Outcome({"jobs", "cancel"}).complains_of("NAME is missing"));
   EXPECT_TRUE(Outcome({"lubricants", "lst"}).complains_of("is lubricants list meant?"));
   EXPECT_TRUE(Outcome({"lubricants", "list", "more"}).complains_of("unknown argument more"));
@@ -85,7 +101,7 @@ TEST(Help, EveryNumberHasARangeAndEveryCommandAnExample) {
   for (const Command& command : all_commands()) {
     ASSERT_FALSE(command.examples.empty()) << command.path;
     EXPECT_EQ(command.examples.front().rfind("tribodyn " + command.path, 0), 0U);
-    const std::string help = help_text(command, {}, nullptr);
+    const std::string help = help_text(command, {}, nullptr, HelpLength::kAll);
     EXPECT_NE(help.find(command.examples.front()), std::string::npos);
     for (const Flag& flag : command.flags.flags()) {
       EXPECT_FALSE(flag.description.empty()) << flag.names;
@@ -121,13 +137,15 @@ TEST(ModelFlags, CoverEveryFieldOfModelOptions) {
     if (flag.is_switch) flag.read({"true"}, complaints);
     if (flag.names == "--pressure-viscosity-index") flag.read({"houpert"}, complaints);
     if (flag.names == "--as-published") {
-      flag.read({"eq17,eq20,eq22", "eq31", "eq43,eq46"}, complaints);
+      flag.read({"eq17,eq20,eq22", "eq31", "eq43"}, complaints);
     }
   }
   EXPECT_TRUE(complaints.empty());
   const auto every_field_set = [](const google::protobuf::Message& message) {
     const auto* descriptor = message.GetDescriptor();
     for (int i = 0; i < descriptor->field_count(); ++i) {
+      // A flag of `surfaces import`, where it acts.
+      if (descriptor->field(i)->name() == "eq46_square_root_of_sum") continue;
       EXPECT_TRUE(message.GetReflection()->HasField(message, descriptor->field(i)))
           << descriptor->field(i)->full_name();
     }
@@ -136,11 +154,161 @@ TEST(ModelFlags, CoverEveryFieldOfModelOptions) {
   every_field_set(options.as_published());
 }
 
+/// The value that a flag hands on; NaN when it complains.
+double read_as(const std::string& unit, const std::string& text) {
+  FlagList list;
+  double value = std::numeric_limits<double>::quiet_NaN();
+  list.number("--quantity", {unit, "0 to 1", ""}, "A quantity", [&](double got) { value = got; });
+  Complaints complaints;
+  list.flags().front().read({text}, complaints);
+  EXPECT_EQ(complaints.empty(), !std::isnan(value)) << text;
+  return value;
+}
+
+TEST(Numbers, TakeTheirOwnUnitOrAnyOtherOfItsKind) {
+  EXPECT_EQ(read_as("km/h", "-1.5e-3"), -1.5e-3);
+  EXPECT_EQ(read_as("km/h", "+4"), 4);
+  EXPECT_EQ(read_as("km/h", "20m/s"), 72);
+  EXPECT_EQ(read_as("C", "90C"), 90);
+  EXPECT_EQ(read_as("C", "363.15 K"), 90);
+  EXPECT_EQ(read_as("s", "2min"), 120);
+  EXPECT_EQ(read_as("-", "0.1%"), 0.001);
+  EXPECT_EQ(read_as("degrees", "100%"), 45);
+}
+
 TEST(Numbers, AreReadWholeOrNotAtAll) {
-  EXPECT_EQ(parse_number("-1.5e-3"), -1.5e-3);
-  EXPECT_EQ(parse_number("+4"), 4);
-  for (const char* text : {"", "1,5", "1 ", "nan", "inf", "0x10", "+-3", "1e999"}) {
-    EXPECT_FALSE(parse_number(text)) << text;
+  for (const char* text : {"", "1,5", "nan", "inf", "0x10", "+-3", "1e999", "3 V", "3 kg"}) {
+    EXPECT_TRUE(std::isnan(read_as("km/h", text))) << text;
+  }
+}
+
+TEST(Arguments, SpeedAndSumpMeanTheSameInEveryCommandThatHasOne) {
+  for (const char* command : {"point", "curve", "history"}) {
+    const Outcome outcome({command, "-l", "1", "--speed", "20m/s", "--sump", "90C"});
+    EXPECT_TRUE(outcome.complaints.empty()) << command << ": " << outcome.complaints.front();
+  }
+  EXPECT_TRUE(Outcome({"contact", "--sump", "90"}).complaints.empty());
+  EXPECT_TRUE(
+      Outcome({"curve", "-l", "1", "--speed", "20,40", "--speed", "100"}).complaints.empty());
+  EXPECT_TRUE(Outcome({"curve", "-l", "1", "--speed", "20", "--last-speed", "90"})
+                  .complains_of("either --speed with all speeds, or --first-speed"));
+}
+
+TEST(Arguments, QuantitiesOfALubricantNeedNoUnit) {
+  const Outcome outcome({"lubricants", "create", "x", "--kv40", "103", "--kv100", "15.1cSt",
+                         "--pressure-viscosity", "20", "--pressure-viscosity-temperature", "40",
+                         "--uncertainty", "pressure-viscosity=0.5", "--relaxation-time", "0.45"});
+  EXPECT_TRUE(outcome.complaints.empty()) << outcome.complaints.front();
+}
+
+TEST(Arguments, NameTheFlagThatWasTyped) {
+  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed", "fast"}).complains_of("--speed: 'fast'"));
+  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed-kilometers-per-hour", "fast"})
+                  .complains_of("--speed-kilometers-per-hour: 'fast'"));
+  const Outcome wrong({"lubricants", "create", "x", "--kv40", "73,3", "--density", "868"});
+  EXPECT_TRUE(
+      wrong.complains_of("--kv40: '73,3' has a decimal comma; decimal point, please: 73.3"));
+  EXPECT_TRUE(
+      wrong.complains_of("--density: '868' is not TEMPERATURE=VALUE; did you mean "
+                         "--density15?"));
+  EXPECT_EQ(wrong.complaints.size(), 2U) << "what was meant to be said counts as said";
+}
+
+/// What the server's refusal of a field becomes for who typed these arguments.
+std::string told(const std::vector<std::string>& arguments, const FieldViolation& violation) {
+  CommonOptions options;
+  FlagList common_flags;
+  add_common_flags(common_flags, options);
+  const std::vector<Command> commands = all_commands();
+  const Parsed parsed = parse_arguments(arguments, commands, common_flags);
+  EXPECT_TRUE(parsed.complaints.empty()) << parsed.complaints.front();
+  const ServiceError error("1 illegal field [INVALID_FIELDS]\n  " + violation.description, 3,
+                           "INVALID_FIELDS", {violation}, std::nullopt);
+  const std::string text = with_flag_names(error, parsed.typed_flags).what();
+  return text.substr(text.find('\n') + 3);
+}
+
+TEST(Refusals, NameTheFlagThatWasTypedAndTheCure) {
+  const FieldViolation density = {
+      "lubricant.measurements.density_15_celsius_kilograms_per_cubic_metre",
+      "density_15_celsius_kilograms_per_cubic_metre = 0.895 kg/m3; legal: 500 to 2000 kg/m3 (eq "
+      "26)"};
+  EXPECT_EQ(told({"lubricants", "create", "x", "--density15", "0.895"}, density),
+            "--density15 = 0.895 kg/m3; legal: 500 to 2000 kg/m3 (eq 26); 0.895 looks like g/cm3: "
+            "write 0.895g/cm3 or 895");
+  EXPECT_EQ(told({"lubricants", "create", "x", "--kv40", "100"}, density), density.description);
+  EXPECT_EQ(told({"point", "-l", "1", "--speed=-5"},
+                 {"simulation.operating_point.cruise.speed_kilometers_per_hour",
+                  "speed_kilometers_per_hour = -5 km/h; legal: 0.1 to 400 km/h (eq 7)"}),
+            "--speed = -5 km/h; legal: 0.1 to 400 km/h (eq 7)");
+  EXPECT_EQ(told({"curve", "-l", "1", "--speed", "20,900"},
+                 {"simulation.inefficiency_curve.speeds_kilometers_per_hour[1]",
+                  "speeds_kilometers_per_hour = 900 km/h; legal: 0.1 to 400 km/h (eq 7)"}),
+            "--speed = 900 km/h; legal: 0.1 to 400 km/h (eq 7)");
+  EXPECT_EQ(told({"lubricants", "create", "x", "--kv40", "1", "--brookfield", "-40=9",
+                  "--brookfield", "-400=9"},
+                 {"lubricant.measurements.brookfield_viscosities[1].temperature_celsius",
+                  "temperature_celsius = -400 C; legal: -70 to 200 C (eq 34)"}),
+            "--brookfield -400=9: temperature_celsius = -400 C; legal: -70 to 200 C (eq 34)");
+}
+
+TEST(ResultFiles, AreRefusedBeforeAnythingIsComputed) {
+  EXPECT_TRUE(Outcome({"curve", "-l", "1", "--plot", "out.png"})
+                  .complains_of("--plot: 'out.png': pictures are SVG only. Write --plot out.svg"));
+  EXPECT_TRUE(Outcome({"history", "-l", "1", "--speed", "3", "--plot", "a.b/out.PDF"})
+                  .complains_of("rsvg-convert a.b/out.svg"));
+  EXPECT_TRUE(Outcome({"curve", "-l", "1", "--plot", "/dev/null"}).complaints.empty());
+  for (const char* flag : {"--plot", "--csv", "--npy"}) {
+    EXPECT_TRUE(Outcome({"history", "-l", "1", "--speed", "3", flag, "/nonexistent/x.svg"})
+                    .complains_of(std::string(flag) +
+                                  ": cannot write /nonexistent/x.svg: No such file or directory"))
+        << flag;
+  }
+  EXPECT_TRUE(Outcome({"curve", "-l", "1", "--csv", "/tmp"}).complains_of("is a folder"));
+  std::vector<std::string> many = {"curve", "--plot", "x.svg"};
+  for (int i = 0; i < 25; ++i) many.insert(many.end(), {"-l", std::to_string(i)});
+  EXPECT_TRUE(Outcome(many).complains_of("25 lubricants; legal: at most 24"));
+}
+
+TEST(Help, IsShortUnlessAllIsAskedFor) {
+  constexpr std::size_t kMostOptions = 15;
+  FlagList common_flags;
+  CommonOptions options;
+  add_common_flags(common_flags, options);
+  const auto lines_with = [](const std::string& text, const std::string& start) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find("\n" + start, at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  for (const Command& command : all_commands()) {
+    const std::string brief = help_text(command, common_flags, nullptr, HelpLength::kShort);
+    const std::string whole = help_text(command, common_flags, nullptr, HelpLength::kAll);
+    EXPECT_LE(lines_with(brief, "  -"), kMostOptions) << command.path;
+    EXPECT_LT(brief.find("\n  tribodyn " + command.path), brief.find("usage:")) << "examples first";
+    for (const Flag& flag : command.flags.flags()) {
+      if (flag.is_hidden || flag.is_positional()) continue;
+      EXPECT_NE(whole.find("\n  " + flag.first_name()), std::string::npos)
+          << command.path << " " << flag.names;
+    }
+    EXPECT_NE(whole.find("\n  --server"), std::string::npos) << command.path;
+    EXPECT_EQ(brief.find("--as-published"), std::string::npos) << "of interest for the paper only";
+  }
+  EXPECT_TRUE(Outcome({"curve", "--help-all"}).wants_all_help);
+  EXPECT_FALSE(Outcome({"curve", "--help"}).wants_all_help);
+}
+
+TEST(Help, EveryMainFlagIsAFlagOfItsCommand) {
+  for (const Command& command : all_commands()) {
+    for (const std::string& name : command.main_flags) {
+      if (command.path.ends_with(" import")) continue;  // one list for all kinds
+      const auto& flags = command.flags.flags();
+      EXPECT_TRUE(std::any_of(flags.begin(), flags.end(),
+                              [&](const Flag& flag) {
+                                return ("," + flag.names + ",").find("," + name + ",") !=
+                                       std::string::npos;
+                              }))
+          << command.path << " " << name;
+    }
   }
 }
 

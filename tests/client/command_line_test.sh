@@ -17,7 +17,12 @@ for command in point curve history contact diff validate schema completion help 
   # shellcheck disable=SC2086  # the words of a command
   expect 0 $command --help
   out_has '^Examples$'
+  # shellcheck disable=SC2086
+  expect 0 $command --help-all
+  out_has '^  --server <HOST:PORT>$'
 done
+expect 0 curve --help
+out_has '[0-9]+ more options: tribodyn curve --help-all'
 expect 0 --version
 expect 2
 expect 2 pointt --speed 3
@@ -35,21 +40,21 @@ done
 echo "--- refusals: every violation at once"
 expect 1 point --lubricant 7 --speed -5 --sump-temperature-celsius 900 \
   --relative-tolerance 1 --gear-set Z
-for part in 'speed_kilometers_per_hour = -5 km/h; legal: 0\.1 to 400' \
-  'sump_temperature_celsius = 900 C; legal: -70 to 200' 'relative_tolerance = 1; legal' \
+for part in '--speed = -5 km/h; legal: 0\.1 to 400' \
+  '--sump-temperature-celsius = 900 C; legal: -70 to 200' '--relative-tolerance = 1; legal' \
   'lubricants/7' 'gearSets/Z'; do
   err_has "$part"
 done
 expect 1 contact --load-newtons -1 --radius-x-metres 0 --poissons-ratio 0.7
-for part in 'load_newtons = -1 N' 'radius_x_metres = 0 m' 'poissons_ratio = 0.7'; do
+for part in '--load-newtons = -1 N' '--radius-x-metres = 0 m' '--poissons-ratio = 0.7'; do
   err_has "$part"
 done
 expect 1 history --lubricant 1 --speed 50 --columns mesh_force_newton,nothing --samples-per-mesh-cycle 1
-for part in 'mesh_force_newtons' 'columns\[[12]\]' 'samples_per_mesh_cycle = 1'; do
+for part in 'mesh_force_newtons' '--columns' '--samples-per-mesh-cycle = 1'; do
   err_has "$part"
 done
 expect 1 curve --lubricant 1,8 --first-speed 90 --last-speed 20
-for part in 'lubricants/8' 'last_speed_kilometers_per_hour = 20'; do
+for part in 'lubricants/8' '--last-speed = 20'; do
   err_has "$part"
 done
 expect 1 lubricants get none
@@ -59,10 +64,14 @@ expect 1 jobs watch none
 
 echo "--- legal ranges in the help are those of the server"
 # Each number flag with a range: a value above it is refused, by name, with the same range.
-ranges() {
-  "$client" "$1" --help | awk '
-    /^  --/ { flag = $1; sub(/,$/, "", flag) }
-    /Legal:/ { sub(/.*Legal: /, ""); if ($2 == "to") print flag, $1, $3 }' | sed 's/\.$//'
+ranges() {  # the help wraps its lines anywhere: the text of a flag is joined first
+  "$client" "$1" --help-all | awk '
+    function show() { if (match(text, /Legal: [^ ]+ to [^ ]+/)) {
+      split(substr(text, RSTART, RLENGTH), word); print flag, word[2], word[4] } text = "" }
+    /^  --/ { show(); flag = $1; sub(/,$/, "", flag); next }
+    /^ / { sub(/^ +/, ""); text = text " " $0; next }
+    { show() }
+    END { show() }' | sed 's/\.$//'
 }
 same_numbers() { awk 'BEGIN { exit !(ARGV[1] + 0 == ARGV[3] + 0 && ARGV[2] + 0 == ARGV[4] + 0) }' "$@"; }
 checked=0
@@ -72,7 +81,7 @@ for command in point contact history curve; do
     case "$command $flag" in
       *" --timeout-seconds") continue ;;  # the client's own
       contact\ *) given=() ;;
-      curve\ * | *" --speed-kilometers-per-hour") given=(--lubricant 1) ;;
+      curve\ * | *" --speed-kilometers-per-hour" | *" --speeds-kilometers-per-hour") given=(--lubricant 1) ;;
       *" --pinion-torque-newton-metres") given=(--lubricant 1 --pinion-speed 1) ;;
       *" --pinion-speed-radians-per-second") given=(--lubricant 1 --torque 1) ;;
     esac
@@ -81,9 +90,8 @@ for command in point contact history curve; do
       *) value=$(awk -v v="$highest" 'BEGIN { printf("%.9g", v * 1.001) }') ;;
     esac
     expect 1 "$command" "${given[@]}" "$flag" "$value"
-    field=$(sed 's/^--//; s/-/_/g' <<<"$flag")
     read -r server_lowest server_highest < <(
-      sed -n "s/^ *$field = .*; legal: \\([^ ]*\\) to \\([^ ]*\\).*/\\1 \\2/p" "$folder/err")
+      sed -n "s/^ *$flag = .*; legal: \\([^ ]*\\) to \\([^ ]*\\).*/\\1 \\2/p" "$folder/err")
     same_numbers "$lowest" "$highest" "${server_lowest:-none}" "${server_highest:-none}" ||
       fail "$command $flag: help says $lowest to $highest"
     checked=$((checked + 1))
@@ -124,13 +132,13 @@ echo "--- point"
 expect 0 point --lubricant 1 --speed-kilometers-per-hour 72.5 --progress lines
 for part in 'inefficiency, energy mean +[0-9.]+ %' 'inefficiency, RMS' 'mesh loss +[0-9.]+ W' \
   'film ratio lambda' 'contact loss' 'model version' 'input hash +[0-9a-f]{64}' \
-  'estimated error +0\.[0-9]+ +%' 'right-hand sides' 'assumed'; do
+  'relative solver error +0\.[0-9]+ +%' 'right-hand sides' 'assumed'; do
   out_has "$part"
 done
 err_has 'lubricants/1: succeeded'
 expect 0 point --lubricant 1 --speed 50 --model quasi-static --isothermal --assumptions
 out_has 'model used +quasi-static +as asked'
-out_has 'estimated error +[0-9.]+ +%'
+out_has 'relative solver error +[0-9.]+ +%'
 out_has 'model: isothermal'
 out_has 'asperity_radius_metres'
 expect 0 point --lubricant 1 --speed 50 --model quasi-static --output csv
@@ -140,15 +148,15 @@ expect 0 point --lubricant 1 --speed 50 --model quasi-static --output json
 out_is_json
 out_has '"inefficiencyEnergyMeanPercent": [0-9]'
 expect 0 point --lubricant 1 --speed 72.5 --model quasi-static
-out_has 'estimated error +not estimated'
+out_has 'relative solver error +not estimated'
 expect 0 point --lubricant 1 --speed 50 --model one-degree
 out_has 'model used +one degree of freedom +as asked'
 out_has 'steady state by +shooting'
-out_has 'estimated error +[0-9.]+ +%'
+out_has 'relative solver error +[0-9.]+ +%'
 expect 0 point --lubricant 1 --speed 50 --model one-degree --output json
 out_has '"model": "ONE_DEGREE"'
 expect 0 point --lubricant 1 --speed 72.5 --model one-degree
-out_has 'estimated error +not estimated'
+out_has 'relative solver error +not estimated'
 expect 0 point --lubricant 1 --speed 1
 out_has 'model used +quasi-static +its estimated error is within the tolerance'
 expect 0 point --lubricant 1 --speed 50 --model automatic
@@ -175,13 +183,33 @@ expect 0 curve --lubricant 1 --first-speed 40 --last-speed 60 --speed-step 10 \
   --model quasi-static --direction down --output csv
 out_lines 4
 out_has ',DOWN,'
+expect 0 curve --lubricant 1 --first-speed 60 --last-speed 80 --speed-step 20 --independent-points
+out_has 'from 60 to 80 km/h by 20, independent points'
+out_has 'no branch of steady states was followed'
+expect 2 curve --lubricant 1 --independent-points --direction up
+err_has '--direction and --independent-points: one of them'
 expect 0 curve --lubricant 1 --first-speed 40 --last-speed 50 --speed-step 10 \
   --model quasi-static --output json
 out_is_json
 out_has '"simulations": \['
-expect 1 curve --lubricant 1 --first-speed 40 --last-speed 50 --speed-step 10 \
+expect 2 curve --lubricant 1 --first-speed 40 --last-speed 50 --speed-step 10 \
   --model quasi-static --plot /nonexistent/folder/curve.svg
 err_has 'cannot write /nonexistent/folder/curve.svg'
+expect 2 curve --lubricant 1 --plot "$folder/curve.png"
+err_has "Write --plot $folder/curve.svg"
+expect 0 curve --lubricant 1 --speed 40,20m/s --sump -5C --model quasi-static \
+  --plot "$folder/cold.svg"
+out_has 'Cold inlet, do not rank oils here, at all'
+out_has '^ +72 '
+for part in 'do not rank oils here' 'COLD_INLET' 'tribodyn-model' 'hash of inputs [0-9a-f]{12}'; do
+  grep -qE "$part" "$folder/cold.svg" || fail "cold.svg without '$part'"
+done
+
+echo "--- a torque far beyond the data of the gear set"
+expect 0 point --lubricant 1 --model quasi-static --torque 765 --pinion-speed 200rad/s
+head -1 "$folder/out" | grep -q '^! This pinion torque, 765 N m, is 7.[67] times what' ||
+  fail "no word of the torque at the top"
+out_has 'mesh loss +[0-9.]+ +kW'
 
 echo "--- history"
 expect 0 history --lubricant 1 --speed 50 --model quasi-static --mesh-cycles 2 \
@@ -199,7 +227,7 @@ out_is_json
 out_has '"totalRows": "16"'
 
 echo "--- jobs"
-long=(--lubricant 1 --first-speed 20 --last-speed 140 --speed-step 0.2 --method march \
+long=(--lubricant 1 --label project=axle --first-speed 20 --last-speed 140 --speed-step 0.2 --method march \
   --relative-tolerance 1e-11 --settling-tolerance 1e-12)
 expect 0 curve "${long[@]}" --detach
 job=$(sed -n 's,^simulations/\([^ ]*\) .*,\1,p' "$folder/out")
@@ -210,6 +238,8 @@ expect 0 jobs get "$job" --output json
 out_is_json
 expect 0 jobs list
 out_has "^$job"
+expect 0 jobs list --label project=axle --output csv
+out_lines 2
 expect 0 jobs list --limit 2 --output csv
 out_lines 3
 expect 0 jobs list --limit 2 --output json
@@ -235,6 +265,18 @@ expect 0 jobs cancel "$job"
 expect 1 jobs watch "$job"
 err_has 'cancelled'
 expect 0 jobs cancel "$job"
+err_has "simulations/$job had already ended \(cancelled\); nothing was stopped"
+expect 0 jobs list --filter 'state = cancelled AND lubricant = 1'
+out_has "^$job .*cancelled"
+expect 0 jobs pin "$job"
+out_has "^$job .* yes "
+expect 0 jobs list --filter 'pinned = true' --output csv
+out_lines 2
+expect 0 jobs unpin "$job"
+expect 0 jobs list --filter 'pinned = true' --output csv
+out_lines 0
+expect 1 jobs list --filter 'stat = cancelled'
+err_has 'See tribodyn help filters'
 expect 1 jobs wait "$job"
 expect 1 jobs rerun none
 

@@ -52,6 +52,18 @@ TEST(Errors, SayWhenToTryAgain) {
   EXPECT_EQ(readable_error(status), "queue full [RESOURCE_EXHAUSTED]\n  try again in 2.0 s");
 }
 
+TEST(Errors, GiveTheCauseOfALostConnectionWithoutTheWordsOfTheTransport) {
+  const auto said = [](const char* message) {
+    return readable_error({grpc::StatusCode::UNAVAILABLE, message});
+  };
+  EXPECT_EQ(
+      said("failed to connect to all addresses; last error: UNKNOWN: ipv4:127.0.0.1:9: Failed "
+           "to connect to remote host: Connection refused"),
+      "cannot connect to the server at x: connection refused");
+  EXPECT_EQ(said("Socket closed"), "cannot connect to the server at x: socket closed");
+  EXPECT_EQ(said(""), "cannot connect to the server at x: no connection");
+}
+
 TEST(Errors, NoServerIsToldFromAServerThatRefuses) {
   const grpc::Status absent(grpc::StatusCode::UNAVAILABLE, "connection refused");
   EXPECT_EQ(to_failure(absent, "127.0.0.1:1").exit_code(), kExitCannotConnect);

@@ -44,6 +44,8 @@ class ScriptedServer final : public v1::Simulations::Service {
   bool hanging() const { return hanging_; }
   /// The n-th watch follows the n-th script, the last one for all that come after.
   std::vector<Watch> scripts;
+  int ends_at_get = 1;                  ///< the call of GetSimulation from which on it has ended
+  std::atomic<bool> is_frozen = false;  ///< GetSimulation does not answer
 
   grpc::Status WatchSimulation(grpc::ServerContext* context, const v1::WatchSimulationRequest*,
                                grpc::ServerWriter<v1::SimulationEvent>* writer) override {
@@ -61,10 +63,14 @@ class ScriptedServer final : public v1::Simulations::Service {
     return script.end;
   }
 
-  grpc::Status GetSimulation(grpc::ServerContext*, const v1::GetSimulationRequest* request,
+  grpc::Status GetSimulation(grpc::ServerContext* context, const v1::GetSimulationRequest* request,
                              v1::Simulation* simulation) override {
+    while (is_frozen && !context->IsCancelled()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     simulation->set_name(request->name());
-    simulation->set_state(v1::Simulation::SUCCEEDED);
+    simulation->set_state(++gets_ < ends_at_get ? v1::Simulation::RUNNING
+                                                : v1::Simulation::SUCCEEDED);
     return grpc::Status::OK;
   }
 
@@ -72,6 +78,7 @@ class ScriptedServer final : public v1::Simulations::Service {
   std::unique_ptr<grpc::Server> server_;
   std::string address_;
   std::atomic<int> watches_ = 0;
+  std::atomic<int> gets_ = 0;
   std::atomic<bool> hanging_ = false;
 };
 
@@ -101,6 +108,34 @@ TEST(Follow, TakesABrokenStreamUpAgain) {
   Connection connection(server.address(), std::chrono::seconds(10));
   EXPECT_EQ(follow(connection, queued({"a"}), {"a"}, ProgressForm::kNone).size(), 1U);
   EXPECT_EQ(server.watches(), 3);
+}
+
+TEST(Follow, PausesBetweenWatchesThatTheServerEndsAtOnce) {
+  ScriptedServer server;
+  server.scripts = {{{}, {grpc::StatusCode::DEADLINE_EXCEEDED, "no stream may stay open"}}};
+  server.ends_at_get = 3;
+  Connection connection(server.address(), std::chrono::seconds(10));
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(follow(connection, queued({"a"}), {"a"}, ProgressForm::kNone).size(), 1U);
+  EXPECT_EQ(server.watches(), 3) << "each silent watch is followed by one question";
+  // Two pauses of 250 ms or more.
+  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(490));
+}
+
+TEST(Follow, GivesUpAServerThatIsFrozen) {
+  ScriptedServer server;
+  server.scripts = {{{v1::Simulation::RUNNING}, grpc::Status::CANCELLED, true},
+                    {{}, grpc::Status::CANCELLED, true}};
+  server.is_frozen = true;
+  Connection connection(server.address(), std::chrono::milliseconds(200));
+  try {
+    follow(connection, queued({"a"}), {"a"}, ProgressForm::kNone);
+    FAIL() << "a frozen server was waited for";
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.exit_code(), kExitCannotConnect);
+    EXPECT_NE(std::string(failure.what()).find("no answer in time"), std::string::npos);
+    EXPECT_NE(std::string(failure.what()).find("tribodyn jobs watch a"), std::string::npos);
+  }
 }
 
 TEST(Follow, EndsOnARefusal) {

@@ -1,10 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <stack>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "client/cpp/plot/curve_plot.h"
 #include "client/cpp/plot/history_plot.h"
@@ -113,9 +118,145 @@ TEST(CurvePlot, BreaksTheLineWhereABranchEnds) {
   end->set_gone_at_kilometers_per_hour(69.14);
   const int broken_below = lines_of(curve);
   EXPECT_GT(broken_below, whole);
-  EXPECT_NE(curve_plot({curve}, {}).find("the response jumps"), std::string::npos);
+  EXPECT_NE(curve_plot({curve}, {}).find("Lines break where the branch"), std::string::npos);
   curve.mutable_result()->set_direction(v1::DOWN);
   EXPECT_EQ(lines_of(curve), broken_below);
+}
+
+/// The curve with a warning from one speed to another.
+v1::Simulation with_warning(v1::Simulation curve, const std::string& code, double from, double to) {
+  for (auto& point : *curve.mutable_result()->mutable_points()) {
+    const double speed = point.speed_kilometers_per_hour();
+    if (speed < from || speed > to) continue;
+    auto& warning = *point.mutable_result()->add_warnings();
+    warning.set_code(code);
+    warning.set_message("told in full by the table");
+  }
+  return curve;
+}
+
+TEST(CurvePlot, HatchesWhereALawIsOutsideItsRangeAndNamesItInTheFooter) {
+  const std::string plain = curve_plot({sample_curve("1", 1), sample_curve("2", 1.1)}, {});
+  EXPECT_EQ(plain.find("hatch"), std::string::npos);
+  const std::string svg = curve_plot(
+      {with_warning(sample_curve("1", 1), "PRESSURE", 100, 120), sample_curve("2", 1.1)}, {});
+  keep("hatched.svg", svg);
+  EXPECT_TRUE(is_well_formed(svg));
+  // 690 pixels hold 120 km/h; the range reaches half way to 95 and to 125 km/h.
+  EXPECT_NE(svg.find("width=\"143.75\" height=\"8\" fill=\"url(#hatch0)\""), std::string::npos);
+  EXPECT_NE(svg.find("Strip a: pressure outside the range in which friction was measured, at 100 "
+                     "to 120 km/h (1) [PRESSURE]."),
+            std::string::npos);
+  EXPECT_EQ(svg.find("do not rank"), std::string::npos);
+}
+
+TEST(CurvePlot, SaysNotToRankOilsWhereTheInletIsCold) {
+  const std::string svg =
+      curve_plot({with_warning(sample_curve("1", 1), "COLD_INLET", 20, 140)}, {});
+  keep("cold.svg", svg);
+  EXPECT_NE(svg.find(">do not rank oils here</text>"), std::string::npos);
+  EXPECT_NE(svg.find("Hatched: cold inlet, do not rank oils here, at all speeds [COLD_INLET]."),
+            std::string::npos);
+  EXPECT_NE(svg.find("width=\"690\" height=\"350\" fill=\"url(#hatch0)\""), std::string::npos);
+}
+
+TEST(CurvePlot, NamesARemarkOnTheMethodWithoutHatching) {
+  const std::string svg = curve_plot({with_warning(sample_curve("1", 1), "PERIOD", 60, 60)}, {});
+  EXPECT_NE(svg.find("Response with a period of several mesh cycles, at 60 km/h [PERIOD]."),
+            std::string::npos);
+  EXPECT_EQ(svg.find("hatch"), std::string::npos);
+}
+
+TEST(CurvePlot, NamesModelVersionAndInputHashes) {
+  v1::Simulation other = sample_curve("2", 1.1);
+  other.mutable_result()->set_input_hash("fedcba9876543210");
+  const std::string svg = curve_plot({sample_curve("1", 1), other}, {});
+  EXPECT_NE(svg.find("Model version tribodyn-model-2; hash of inputs 1: abc123, 2: fedcba987654."),
+            std::string::npos);
+}
+
+TEST(CurvePlot, CutsALongTitleWithAnEllipsis) {
+  const std::string svg = curve_plot({sample_curve("1", 1)},
+                                     {{"lubricants/1", "An oil with quite a long name 75W-90"}});
+  EXPECT_NE(svg.find(">An oil with quite a\xE2\x80\xA6</text>"), std::string::npos);
+  EXPECT_EQ(svg.find("lubricant 1"), std::string::npos);
+  // Without a title the id is the label, whole where there is room for it.
+  const std::string untitled = curve_plot(
+      {sample_curve("mineral-80w90", 1), sample_curve("a-very-long-name-of-an-oil", 1)}, {});
+  EXPECT_NE(untitled.find(">mineral-80w90</text>"), std::string::npos);
+  EXPECT_NE(untitled.find(">a-very-long-name-of\xE2\x80\xA6</text>"), std::string::npos);
+}
+
+TEST(Looks, DifferInColourOrDashesAndNoMainLineLooksLikeASideLine) {
+  std::set<std::pair<std::string, std::string>> looks;
+  std::set<std::string> main_dashes;
+  std::set<std::string> side_dashes;
+  for (std::size_t i = 0; i < kDistinctLooks; ++i) {
+    const Look look = look_of(i);
+    looks.emplace(look.colour, look.dashes);
+    main_dashes.insert(look.dashes);
+    side_dashes.insert(look.side_dashes);
+  }
+  EXPECT_EQ(looks.size(), kDistinctLooks);
+  for (const std::string& dashes : main_dashes) EXPECT_EQ(side_dashes.count(dashes), 0U) << dashes;
+  EXPECT_THROW(look_of(kDistinctLooks), std::out_of_range);
+}
+
+TEST(CurvePlot, DrawsTwelveFluidsWithTwelveLooks) {
+  std::vector<v1::Simulation> curves;
+  for (int i = 0; i < 12; ++i) {
+    curves.push_back(sample_curve("oil-" + std::to_string(i), 1 + 0.05 * i));
+  }
+  const std::string svg = curve_plot(curves, {});
+  keep("twelve.svg", svg);
+  EXPECT_TRUE(is_well_formed(svg));
+  // Main lines are 2.4 wide; samples in front of the labels are lines, not polylines.
+  std::set<std::string> strokes;
+  const std::string width = "stroke-width=\"2.4\"";
+  for (std::size_t at = 0; (at = svg.find("<polyline", at)) != std::string::npos; ++at) {
+    const std::string tag = svg.substr(at, svg.find("/>", at) - at);
+    if (tag.find(width) == std::string::npos) continue;
+    strokes.insert(tag.substr(tag.find("stroke=")));
+  }
+  EXPECT_EQ(strokes.size(), 12U);
+}
+
+TEST(Labels, HaveTheContrastOfSmallTextOnWhite) {
+  EXPECT_EQ(legible_on_white("#000000"), "#000000");
+  EXPECT_EQ(legible_on_white("#0072b2"), "#0072b2");  // 5.2 to 1 as it is
+  EXPECT_NE(legible_on_white("#e69f00"), "#e69f00");  // 2.3 to 1
+  const std::string svg =
+      curve_plot({sample_curve("1", 1), sample_curve("2", 1), sample_curve("3", 1),
+                  sample_curve("4", 1), sample_curve("5", 1), sample_curve("6", 1)},
+                 {});
+  EXPECT_EQ(svg.find("fill=\"#e69f00\" font-weight"), std::string::npos);
+  EXPECT_EQ(svg.find("fill=\"#56b4e9\" font-weight"), std::string::npos);
+  EXPECT_NE(svg.find("fill=\"" + legible_on_white("#e69f00") + "\" font-weight"),
+            std::string::npos);
+}
+
+TEST(Panels, MarkTheBreakOfAnAxisThatLeavesZeroOut) {
+  const auto points_of_axis = [](double low, double high, bool arbitrary_zero) {
+    Panel panel;
+    panel.corner = {100, 50};
+    panel.width = 300;
+    panel.height = 200;
+    panel.has_arbitrary_zero = arbitrary_zero;
+    panel.series.push_back({});
+    panel.series.back().x = {0, 1};
+    panel.series.back().y = {low, high};
+    Svg svg(500, 300);
+    draw_panel(panel, svg);
+    const std::string text = svg.finish();
+    const std::size_t start = text.find("<polyline points=\"100,250");
+    const std::string points = text.substr(start, text.find('"', start + 18) - start);
+    return std::count(points.begin(), points.end(), ',');
+  };
+  EXPECT_EQ(points_of_axis(0, 1, false), 2);
+  EXPECT_EQ(points_of_axis(-1, 1, false), 2);
+  EXPECT_EQ(points_of_axis(5, 6, false), 6);
+  EXPECT_EQ(points_of_axis(-6, -5, false), 6);
+  EXPECT_EQ(points_of_axis(5, 6, true), 2);
 }
 
 TEST(CurvePlot, SurvivesOnePointAndNone) {
@@ -139,13 +280,51 @@ TEST(ContactLossBands, ReachHalfWayToTheNeighboursAndMerge) {
 }
 
 TEST(HistoryPlot, PutsTheFlanksOfOneQuantityTogether) {
-  const std::string svg = history_plot(sample_point(), sample_history());
+  const std::string svg = history_plot(sample_point(), sample_history(), "Axle oil 75W-90: PAO");
   keep("history.svg", svg);
   EXPECT_TRUE(is_well_formed(svg));
-  for (const char* text : {"Mesh force, N", "Flank load, N", "flank 2", "Time, ms"}) {
+  for (const char* text : {"Mesh force, N", "Flank load, N", "flank 2", "Time, ms",
+                           "Steady state with Axle oil 75W-90: cruise", "PAO; gear set A"}) {
     EXPECT_NE(svg.find(text), std::string::npos) << text;
   }
-  EXPECT_TRUE(is_well_formed(history_plot(sample_point(), {})));
+  EXPECT_TRUE(is_well_formed(history_plot(sample_point(), {}, "")));
+}
+
+TEST(HistoryPlot, DrawsTemperaturesInDegreesCelsius) {
+  v1::History history;
+  for (const char* name : {"time_seconds", "flank_contact_temperature_kelvin_flank_0"}) {
+    auto& column = *history.add_columns();
+    column.set_name(name);
+    for (const double value : {373.15, 393.15}) {
+      column.add_values(history.columns_size() == 1 ? value - 373.15 : value);
+    }
+  }
+  const std::string svg = history_plot(sample_point(), history, "");
+  EXPECT_NE(svg.find("Flank contact temperature, \xC2\xB0\x43"), std::string::npos);
+  EXPECT_NE(svg.find(">100</text>"), std::string::npos);
+  EXPECT_EQ(svg.find(">380</text>"), std::string::npos);
+}
+
+TEST(HistoryPlot, LeadsALabelToALineThatEndsBeforeTheFrame) {
+  v1::History history = sample_history();
+  const auto leaders = [](const std::string& svg) {
+    int count = 0;
+    for (std::size_t at = 0; (at = svg.find("1.5 2.5", at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  history.mutable_columns(4)->set_name("flank_film_ratio_flank_2");
+  history.mutable_columns(3)->set_name("flank_film_ratio_flank_1");
+  const int before = leaders(history_plot(sample_point(), history, ""));
+  auto& values = *history.mutable_columns(4)->mutable_values();
+  for (int row = values.size() / 2; row < values.size(); ++row) values[row] = 0;  // no contact
+  EXPECT_EQ(leaders(history_plot(sample_point(), history, "")), before + 1);
+}
+
+TEST(HistoryPlot, NamesModelVersionInputHashAndWarnings) {
+  const std::string svg = history_plot(sample_point(), sample_history(), "");
+  for (const char* text : {"tribodyn-model-2", "abc123", "[FILM_RATIO_LOW]"}) {
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  }
 }
 
 TEST(ColumnTitle, ScalesUnits) {

@@ -81,6 +81,24 @@ TEST(Edits, AFluidAsFormulatorsKnowIt) {
   EXPECT_DOUBLE_EQ(fluid.vogel_reference_temperature_kelvin(), 159);
 }
 
+TEST(Edits, ANumberWithoutAUnitIsInTheUnitOfTheTrade) {
+  const v1::Lubricant fluid = edited({{"--pressure-viscosity", "20"},
+                                      {"--pressure-viscosity-temperature", "40"},
+                                      {"--relaxation-time", "0.45"},
+                                      {"--vogel-reference-temperature", "159"},
+                                      {"--uncertainty", "pressure-viscosity=0.5"},
+                                      {"--uncertainty", "pressure-viscosity-temperature=2"}});
+  EXPECT_EQ(fluid.pressure_viscosity_coefficient_per_pascal(), 2e-8);
+  EXPECT_EQ(fluid.pressure_viscosity_temperature_kelvin(), 313.15);
+  EXPECT_EQ(fluid.relaxation_time_seconds(), 4.5e-7);
+  EXPECT_EQ(fluid.vogel_reference_temperature_kelvin(), 159);
+  EXPECT_EQ(
+      provenance_of(fluid, "pressure_viscosity_coefficient_per_pascal")->standard_uncertainty(),
+      5e-10);
+  EXPECT_EQ(provenance_of(fluid, "pressure_viscosity_temperature_kelvin")->standard_uncertainty(),
+            2);
+}
+
 TEST(Edits, ANewValueVoidsWhatWasKnownOfTheOld) {
   v1::Lubricant fluid;
   auto& entry = *fluid.add_provenance();
@@ -120,9 +138,9 @@ TEST(Edits, UnsetMakesRoomForWhatIsSet) {
 TEST(Edits, ComplainOfEachMistake) {
   Complaints complaints;
   edited({{"--kv40", "thick"},
-          {"--pressure-viscosity", "20"},
+          {"--pressure-viscosity", "20 s"},
           {"--pressure-viscosity-coefficient-per-pascal", "2e-8"},
-          {"--alpha", "20/GPa"},
+          {"--alpha", "20"},
           {"--brookfield", "150000"},
           {"--viscosity", "20C=7"},
           {"--label", "axle"},
@@ -131,7 +149,7 @@ TEST(Edits, ComplainOfEachMistake) {
           {"--unset", "condiction"}},
          {}, &complaints);
   ASSERT_EQ(complaints.size(), 9U);
-  EXPECT_NE(complaints[1].find("e.g. 20/GPa"), std::string::npos);
+  EXPECT_NE(complaints[1].find("'20 s' is not in 1/Pa"), std::string::npos);
   EXPECT_NE(complaints[2].find("more than once"), std::string::npos);
   EXPECT_NE(complaints[6].find("is thermal-conductivity meant?"), std::string::npos);
   EXPECT_NE(complaints[8].find("is condition meant?"), std::string::npos);

@@ -17,6 +17,7 @@
 #include "client/cpp/report/history_report.h"
 #include "client/cpp/report/point_report.h"
 #include "client/cpp/report/precision.h"
+#include "client/cpp/report/results.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/output.h"
 #include "client/cpp/text/progress.h"
@@ -96,9 +97,38 @@ TEST(Table, AlignsByDisplayWidth) {
             " 10.5\n");
 }
 
+TEST(Table, AlignsDecimalPoints) {
+  Table table({{"loss", "W", Table::Align::kDecimal}, {"x", ""}});
+  table.add_row({"1.26", "a"});
+  table.add_row({"12", "b"});
+  table.add_row({"0.1234", "c"});
+  table.add_row({"+/- 0.5", "d"});
+  table.add_row({"-", "e"});
+  EXPECT_EQ(table.text(),
+            "      loss  x\n"
+            "         W\n"
+            "----------  -\n"
+            "    1.26    a\n"
+            "   12       b\n"
+            "    0.1234  c\n"
+            "+/- 0.5     d\n"
+            "         -  e\n");
+}
+
 TEST(Csv, QuotesWhatNeedsIt) {
   EXPECT_EQ(csv_line({"a", "b,c", "say \"x\"", "two\nlines", ""}),
             "a,\"b,c\",\"say \"\"x\"\"\",\"two\nlines\",\n");
+}
+
+TEST(Csv, IsReadBackAsItWasWritten) {
+  const std::vector<std::vector<std::string>> rows = {
+      {"# no note"}, {"sep=", "", ""},        {""}, {" blanks ", "\ttab", "semi;colon"},
+      {"", "", ""},  {"ends\r", "\"", "\"\""}};
+  std::string text = "name\n";
+  for (const auto& row : rows) text += csv_line(row);
+  const std::vector<CsvLine> lines = read_csv(text);
+  ASSERT_EQ(lines.size(), rows.size() + 1);
+  for (std::size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(lines[i + 1].cells, rows[i]) << i;
 }
 
 TEST(Csv, HeadersHaveUnitsAndDoNotDependOnValues) {
@@ -141,8 +171,8 @@ TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
   const std::string text = squeezed(point_report(sample_point(), false));
   for (const char* part :
        {"Mesh loss (conjunctional", "inefficiency, energy mean", "eq 30", "72.5 km/h", "T_s",
-        "film ratio lambda", "contact loss yes", "0.600 ms", "estimated error 0.00012 %", "abc123",
-        "tribodyn-model-2", "isothermal, as published eq17_atan", "FILM_RATIO_LOW",
+        "film ratio lambda", "contact loss yes", "0.600 ms", "relative solver error 0.00012 %",
+        "abc123", "tribodyn-model-2", "isothermal, as published eq17_atan", "FILM_RATIO_LOW",
         "Another steady state", "1 assumed (all: --assumptions)"}) {
     EXPECT_TRUE(holds(text, part));
   }
@@ -151,12 +181,26 @@ TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
       holds(point_report(sample_point(), true), "asperity_radius_metres = 4e-05 m (inside"));
 }
 
+TEST(PointReport, SaysWherePowerComesIn) {
+  v1::Simulation simulation = sample_point();
+  EXPECT_TRUE(holds(squeezed(point_report(simulation, false)), "kW that come in at the pinion"));
+  v1::PointResult& coast = *simulation.mutable_result()->mutable_points(0)->mutable_result();
+  coast.set_pinion_torque_newton_metres(-30);
+  coast.set_input_power_watts(6086);
+  coast.mutable_power_balance()->set_input_joules(-8);
+  coast.mutable_power_balance()->set_output_joules(-9);
+  coast.mutable_power_balance()->set_friction_joules(1);
+  const std::string text = squeezed(point_report(simulation, false));
+  EXPECT_TRUE(holds(text, "of 6.0860 kW that come in at the wheel: coast"));
+  EXPECT_TRUE(holds(text, "9.0000 J in = 8.0000 out + 1.0000 friction"));
+}
+
 TEST(PointReport, SaysWhatWasNotEstimated) {
   v1::Simulation simulation = sample_point();
   auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
   result.clear_estimated_relative_error();
   const std::string text = squeezed(point_report(simulation, false));
-  EXPECT_TRUE(holds(text, "estimated error not estimated"));
+  EXPECT_TRUE(holds(text, "relative solver error not estimated"));
   EXPECT_TRUE(holds(text, "three digits are given"));
   EXPECT_TRUE(holds(text, "inefficiency, energy mean 1.33 %"));
 }
@@ -173,8 +217,9 @@ TEST(PointReport, GivesNoMoreDigitsThanTheErrorBears) {
     return squeezed(point_report(simulation, false));
   };
   const std::map<double, std::vector<const char*>> expected = {
-      {5e-3, {"estimated error 0.5 %", "energy mean 1.3 %", "T_s 33 N m", "1 80 90"}},
-      {2e-4, {"estimated error 0.02 %", "energy mean 1.325 %", "T_s 33.2 N m", "1.2 80.0 90.0"}},
+      {5e-3, {"relative solver error 0.5 %", "energy mean 1.3 %", "T_s 33 N m", "1 80 90"}},
+      {2e-4,
+       {"relative solver error 0.02 %", "energy mean 1.325 %", "T_s 33.2 N m", "1.2 80.0 90.0"}},
       {1e-6, {"energy mean 1.3252 %", "T_s 33.154 N m", "1.235 80.000 90.000"}}};
   for (const auto& [error, parts] : expected) {
     const std::string text = report(error);
@@ -201,27 +246,114 @@ TEST(CurveReport, HasOneLineASpeedAndSaysWhyOneIsMissing) {
   }
 }
 
+TEST(CurveReport, SaysWhereEachSpeedWasSolvedAlone) {
+  v1::Simulation curve = sample_curve("2", 1);
+  EXPECT_FALSE(holds(curve_report(curve, false), "solved alone"));
+  curve.mutable_inefficiency_curve()->clear_direction();
+  curve.mutable_inefficiency_curve()->set_independent_points(true);
+  curve.mutable_result()->set_independent_points(true);
+  const std::string text = squeezed(curve_report(curve, false));
+  EXPECT_TRUE(holds(text, "25 speeds, independent points"));
+  EXPECT_TRUE(holds(text, "no branch of steady states was followed"));
+  EXPECT_FALSE(holds(text, "sweep"));
+  EXPECT_TRUE(holds(points_csv({curve}), ",INDEPENDENT_POINTS,"));
+}
+
 TEST(CurveReport, EstimatesStandBesideTheFigures) {
   v1::Simulation curve = sample_curve("2", 1);
   auto& points = *curve.mutable_result()->mutable_points();
   points[0].mutable_result()->set_estimated_relative_error(3e-4);
   const std::string text = squeezed(curve_report(curve, false));
-  EXPECT_TRUE(holds(text, "estimated %"));
-  EXPECT_TRUE(holds(text, " 20 1.350 1.391 0.03 5.8 "));
-  EXPECT_TRUE(holds(text, " 25 1.34 1.38 - 7.5 "));
+  EXPECT_TRUE(holds(text, "solver error"));
+  EXPECT_TRUE(holds(text, " 20 1.350 +/- 0.0004 1.391 5.8 ")) << "in the unit of the figure";
+  EXPECT_TRUE(holds(text, " 25 1.34 - 1.38 7.5 "));
   EXPECT_TRUE(holds(text, "error of 24 of the speeds is not estimated"));
   EXPECT_TRUE(holds(points_csv({curve}), ",estimated_relative_error,"));
   EXPECT_TRUE(holds(points_csv({curve}), ",3e-04,"));
 }
 
-/// Half a unit of the last digit of a number in fixed notation or with an exponent.
-double half_unit(const std::string& text) {
-  const std::size_t exponent = text.find('e');
-  const std::string digits = text.substr(0, exponent);
-  const std::size_t point = digits.find('.');
-  const auto places = point == std::string::npos ? 0 : static_cast<int>(digits.size() - point) - 1;
-  const int power = exponent == std::string::npos ? 0 : std::stoi(text.substr(exponent + 1));
-  return 0.5 * std::pow(10, power - places);
+/// The text with every run of blanks and line feeds as one blank.
+std::string one_line(const std::string& text) {
+  std::istringstream words(text);
+  std::string line;
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+TEST(CurveReport, GivesLargeLossesInKilowatts) {
+  v1::Simulation curve = sample_curve("2", 1);
+  curve.mutable_result()->mutable_points(3)->mutable_result()->set_mesh_loss_power_watts(1553);
+  const std::string text = squeezed(curve_report(curve, false));
+  EXPECT_TRUE(holds(text, " kW "));
+  EXPECT_TRUE(holds(text, " 1.55 "));
+  EXPECT_EQ(text.find("e+"), std::string::npos);
+}
+
+TEST(PointReport, GivesLargeLossesInKilowatts) {
+  v1::Simulation simulation = sample_point();
+  auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
+  result.set_estimated_relative_error(3e-3);
+  result.set_mesh_loss_power_watts(1553.2);
+  result.set_boundary_loss_power_watts(53);
+  const std::string text = squeezed(point_report(simulation, false));
+  EXPECT_TRUE(holds(text, "mesh loss 1.55 kW"));
+  EXPECT_TRUE(holds(text, "boundary 0.05 kW"));
+  EXPECT_EQ(text.find("e+"), std::string::npos);
+  result.set_inefficiency_energy_mean_percent(1.1783);
+  EXPECT_TRUE(holds(squeezed(point_report(simulation, false)), "+/- 0.004 (solver)"));
+}
+
+TEST(Reports, BeginWithATorqueFarBeyondTheDataOfTheGearSet) {
+  v1::GearSet gear_set;
+  gear_set.add_series_by_torque()->set_pinion_torque_newton_metres(80);
+  gear_set.add_load_share_by_torque()->set_pinion_torque_newton_metres(100);
+  v1::Simulation simulation = sample_point();
+  simulation.set_gear_set_revision("gearSets/A@1");
+  auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
+  const auto report = [&](double torque) {
+    result.set_pinion_torque_newton_metres(torque);
+    return one_line(results_text({simulation}, OutputFormat::kTable, true, false,
+                                 {{"gearSets/A@1", largest_torque(gear_set)}}));
+  };
+  const std::string sentence =
+      "! This pinion torque, 765 N m, is 7.7 times what the data of gear set A@1 reach (100 N m).";
+  EXPECT_EQ(report(765).find(sentence), 0U) << report(765);
+  EXPECT_EQ(report(-765).find(sentence), 0U);
+  EXPECT_EQ(report(120).find("! "), std::string::npos);
+  EXPECT_EQ(largest_torque({}), 0);
+}
+
+TEST(Reports, NameAWarningInPlainWordsBeforeItsCode) {
+  v1::Simulation curve = sample_curve("2", 1);
+  for (auto& point : *curve.mutable_result()->mutable_points()) {
+    if (point.speed_kilometers_per_hour() > 30) continue;
+    auto& warning = *point.mutable_result()->add_warnings();
+    warning.set_code("COLD_INLET");
+    warning.set_message("inlet at 0 C");
+  }
+  auto& period = *curve.mutable_result()->mutable_points(9)->mutable_result()->add_warnings();
+  period.set_code("PERIOD");
+  period.set_message("repeats after 2");
+  curve.mutable_result()->mutable_points(10)->mutable_branch_end();
+  const std::string text = one_line(curve_report(curve, false));
+  EXPECT_TRUE(holds(text,
+                    "Outside the validated range Cold inlet, do not rank oils here, at 20 to 30 "
+                    "km/h. At 20 km/h: inlet at 0 C. [COLD_INLET]"));
+  EXPECT_TRUE(holds(text,
+                    "How it was computed Response with a period of several mesh cycles, at 65 "
+                    "km/h. At 65 km/h: repeats after 2. [PERIOD]"));
+  EXPECT_TRUE(holds(text, "Jumps of the response The branch"));
+}
+
+/// Half a unit of the last digit of a number. Zeros at the end of a whole number may be digits or
+/// fill it up: `least` takes them for digits, otherwise they are taken to fill it up.
+double half_unit(const std::string& text, bool least) {
+  const std::size_t point = text.find('.');
+  if (point != std::string::npos) {
+    return 0.5 * std::pow(10, -static_cast<int>(text.size() - point - 1));
+  }
+  const auto zeros = static_cast<int>(text.size() - text.find_last_not_of('0') - 1);
+  return least ? 0.5 : 0.5 * std::pow(10, zeros);
 }
 
 TEST(Precision, HalfAUnitOfTheLastDigitIsNotBelowTheError) {
@@ -233,13 +365,15 @@ TEST(Precision, HalfAUnitOfTheLastDigitIsNotBelowTheError) {
       for (const double signed_value : {value, -value}) {
         const std::string text = precision.estimated(signed_value, 4);
         const double shown = std::stod(text);
-        const double unit = half_unit(text);
+        const double unit = half_unit(text, false);
+        const double least_unit = half_unit(text, true);
         EXPECT_LE(std::abs(shown - signed_value), unit * (1 + 1e-9)) << text;
         const bool has_two_digits = unit > 0.5 * 0.0099 * value;
         EXPECT_TRUE(unit * (1 + 1e-6) >= error * value || has_two_digits)
             << text << " of " << value;
         // And no more is taken away than need be.
-        EXPECT_TRUE(unit <= 0.50001e-4 || unit / 10 < error * value) << text << " of " << value;
+        EXPECT_TRUE(least_unit <= 0.50001e-4 || least_unit / 10 < error * value)
+            << text << " of " << value;
       }
     }
   }
@@ -252,7 +386,8 @@ TEST(Precision, WhatIsNotEstimatedHasThreeDigits) {
   EXPECT_EQ(precision.estimated(1.38456, 4), "1.38");
   EXPECT_EQ(precision.estimated(9.9996, 4), "10.0");
   EXPECT_EQ(precision.estimated(0, 2), "0.00");
-  EXPECT_EQ(precision.estimated(5321, 1), "5.32e+03");
+  EXPECT_EQ(precision.estimated(5321, 1), "5320") << "no exponent";
+  EXPECT_EQ(precision.error_of(1.4), "-");
   EXPECT_EQ(precision.other(0.00456, 3), "0.005");
   EXPECT_EQ(precision.other(std::nan(""), 3), "-");
   EXPECT_EQ(precision.part(0.0123, 91.4, 2), "0.0");
@@ -318,6 +453,15 @@ TEST(ProgressBar, FitsTheTerminal) {
   EXPECT_EQ(line, "lubricants/1 [##########..........]  50 %  10.0 s left  settling at 65 km/h");
   EXPECT_EQ(progress_bar_line(job, 12, 10, 30).size(), 30U);
   EXPECT_TRUE(holds(progress_bar_line({"a", "running", "", 1, false}, 1, 0, 99), " 99 %"));
+}
+
+TEST(ProgressBar, MovesWithTheFirstPointsOfALongCurve) {
+  EXPECT_TRUE(holds(progress_bar_line({"a", "running", "", 4.0 / 961, false}, 1, 0, 99), "0.4 %"));
+  EXPECT_EQ(percent_text(0), "0");
+  EXPECT_EQ(percent_text(0.0199), "1.9") << "what is not done is not shown as done";
+  EXPECT_EQ(percent_text(0.57), "57");
+  EXPECT_EQ(percent_text(0.999), "99");
+  EXPECT_EQ(percent_text(1), "100");
 }
 
 TEST(ProgressDisplay, IsSparseOffTerminals) {

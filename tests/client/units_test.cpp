@@ -69,11 +69,44 @@ TEST(Units, RefuseWhatTheyCannotMean) {
            std::tuple("3 (", "K", "is not in K or a multiple of it"),
            std::tuple("3 ()()", "K", "is not in K or a multiple of it"),
            std::tuple("3 m99999999999", "m", "is not in m or a multiple of it"),
-           std::tuple("1,5 K", "K", "is not in K or a multiple of it"),
+           std::tuple("3 km2147483647", "m", "is not in m or a multiple of it"),
+           std::tuple("3 m-2147483648", "m", "is not in m or a multiple of it"),
+           std::tuple("1e308 h", "s", "is too large"),
+           std::tuple("73,3", "K", "has a decimal comma; decimal point, please: 73.3"),
+           std::tuple("1,5 K", "K", "has a decimal comma; decimal point, please: 1.5 K"),
+           std::tuple("1,2,3", "K", "is not in K or a multiple of it"),
        }) {
     EXPECT_FALSE(read_quantity(text, unit, "", false, wrong)) << text;
     EXPECT_EQ(wrong, reason) << text;
   }
+}
+
+TEST(Units, ASlopeInPercentIsAnAngle) {
+  EXPECT_DOUBLE_EQ(read("100%", "degrees"), 45);
+  EXPECT_NEAR(read("-6 %", "degrees"), -3.4336, 1e-4);
+  EXPECT_EQ(read("1e-323%", "degrees"), 0) << "a hundredth of it is no double";
+  EXPECT_EQ(read("3.4degrees", "degrees"), 3.4);
+  EXPECT_NEAR(read("1000rpm", "rad/s"), 104.7198, 1e-4);
+}
+
+TEST(Units, ASlipOfTheUnitGetsItsCure) {
+  EXPECT_EQ(unit_slip("0.895", "kg/m3", "kg/m3", 500, 2000),
+            "0.895 looks like g/cm3: write 0.895g/cm3 or 895");
+  EXPECT_EQ(unit_slip("103e-6", "mm2/s", "mm2/s", 1, 1e5),
+            "103e-6 looks like m2/s: write 103e-6m2/s or 103");
+  EXPECT_EQ(unit_slip("103e-6 mm2/s", "mm2/s", "mm2/s", 1, 1e5),
+            "103e-6 looks like m2/s: write 103e-6m2/s or 103");
+  EXPECT_EQ(unit_slip("2e-8", "1/Pa", "1/GPa", 1e-10, 1e-6),
+            "2e-8 looks like 1/Pa: write 2e-8/Pa or 20");
+  EXPECT_EQ(unit_slip("363", "C", "C", -70, 200), "363 looks like K: write 363K or 89.85");
+  EXPECT_EQ(unit_slip("1.5", "kg", "kg", 100, 1e5), "1.5 looks like t: write 1.5t or 1500");
+  EXPECT_EQ(unit_slip("8.7", "kg/m3", "kg/m3", 500, 2000), "") << "8700 kg/m3 is no oil either";
+  EXPECT_EQ(unit_slip("3", "m", "m", 1e-9, 1e-2), "") << "um and mm would both do";
+  EXPECT_EQ(unit_slip("3", "", "", 0, 1), "");
+}
+
+TEST(Units, AreNoUnitsWithAMillionBrackets) {
+  EXPECT_FALSE(unit_ratio(std::string(1'000'000, '('), "m"));
 }
 
 TEST(Units, FieldsSayTheirUnit) {

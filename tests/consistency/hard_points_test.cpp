@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "core/dynamics/gear_pair_system.h"
 #include "core/gear/mesh_data.h"
 #include "core/refusal.h"
 #include "core/study/operating_point.h"
@@ -257,13 +258,37 @@ TEST(HardPoints, CoastRunsOnTheOtherFlanks) {
       EXPECT_TRUE(r.settled);
       EXPECT_TRUE(r.coast_side_contact);
       EXPECT_LT(r.dynamic_transmission_error.minimum, -75e-6);
-      EXPECT_LT(r.input_power, 0);
-      EXPECT_GT(r.inefficiency_energy_mean.value(), 0);
+      // The wheel drives: what it brings is the input.
+      const double wheel_speed = r.mean_pinion_speed * 13 / 36;
+      EXPECT_NEAR(r.input_power / (-r.wheel_torque * wheel_speed), 1, 1e-6);
+      EXPECT_NEAR(r.inefficiency_energy_mean.value(), 100 * r.mesh_loss_power / r.input_power,
+                  1e-12);
       // Friction brakes the train: less comes out at the pinion than goes in at the wheel.
       EXPECT_LT(r.pinion_torque - r.wheel_torque * 13 / 36, 0.05 * std::abs(torque));
       EXPECT_GT(r.pinion_torque - r.wheel_torque * 13 / 36, 0);
     }
   }
+}
+
+TEST(HardPoints, TheInefficiencyOverTimeInCoastHasTheReportedRootMeanSquare) {
+  PointOptions options;
+  options.history = {{HistoryColumn::kInefficiency, HistoryColumn::kPinionSpeed}, 1, 768};
+  const PointResult r = solve_operating_point(reference_scene(), prescribed_at(-30, 72.5), options);
+  double squares = 0, time = 0;
+  for (std::size_t i = 0; i < r.history.values[0].size(); ++i) {
+    const double duration = 1 / r.history.values[1][i];
+    squares += duration * r.history.values[0][i] * r.history.values[0][i];
+    time += duration;
+  }
+  EXPECT_NEAR(std::sqrt(squares / time) / r.inefficiency_rms.value(), 1, 1e-3);
+}
+
+TEST(InputTorque, IsThatOfTheShaftAtWhichPowerComesIn) {
+  constexpr double kRatio = 13.0 / 36;
+  EXPECT_EQ(input_torque({30, 80}, kRatio), 30) << "drive";
+  EXPECT_EQ(input_torque({-30, -85}, kRatio), 85 * kRatio) << "coast";
+  EXPECT_EQ(input_torque({0.01, -0.1}, kRatio), 0.01 + 0.1 * kRatio) << "friction takes all";
+  EXPECT_EQ(input_torque({-1, 2}, kRatio), 0) << "nothing comes in";
 }
 
 TEST(HardPoints, AlmostNoTorqueRattlesOrSettles) {
@@ -286,21 +311,178 @@ TEST(HardPoints, NoTorqueFloatsAndSaysThatItHasNotSettled) {
   EXPECT_FALSE(r.inefficiency_energy_mean.has_value());
 }
 
+/// Whether a warning of that code is there.
+bool warns(const PointResult& r, const std::string& code) {
+  return std::any_of(r.warnings.begin(), r.warnings.end(),
+                     [&](const RangeWarning& warning) { return warning.code == code; });
+}
+
+// Thrown off the static equilibrium, flanks under so light a load come back after hundreds of mesh
+// cycles: the search starts where they tap each other.
+TEST(HardPoints, LightLoadsTapOncePerMeshCycle) {
+  for (const auto& [torque, speed] :
+       {std::pair{1e-4, 200.0}, {1e-3, 200.0}, {1e-3, 1000.0}, {-1e-3, 500.0}}) {
+    SCOPED_TRACE(testing::Message() << torque << " N m at " << speed << " rad/s");
+    const OperatingCondition condition = prescribed(torque, speed);
+    const PointResult r = solve_operating_point(reference_scene(), condition, {});
+    expect_sound(reference_scene(), r, {});
+    EXPECT_EQ(r.method, SteadyStateMethod::kShooting);
+    EXPECT_EQ(r.period_in_mesh_cycles, 1);
+    EXPECT_GT(r.contact_loss_time_share, 0.5);
+    EXPECT_LT(r.statistics.right_hand_sides, 100'000);
+    if (kShortRun) continue;
+    PointOptions march;
+    march.method = SteadyStateMethod::kMarch;
+    march.tolerance = 1e-5;
+    march.carried_state = carried_from(r);
+    const PointResult exact = solve_operating_point(reference_scene(), condition, march);
+    ASSERT_TRUE(exact.settled);
+    EXPECT_LT(true_error(r, exact), PointOptions{}.tolerance);
+    EXPECT_LT(true_error(r, exact), 3 * r.estimated_relative_error.value());
+  }
+}
+
+// Responses of one and of two mesh cycles exist and repel: a march of 4,000 cycles settles on
+// neither.
+TEST(HardPoints, FlanksThatRattleWithoutAPeriodAreToldSoon) {
+  for (const double torque : {1e-2, -0.3, -1.0}) {
+    if (kShortRun && torque != -1) continue;
+    SCOPED_TRACE(torque);
+    const PointResult r = solve_operating_point(reference_scene(), prescribed(torque, 200), {});
+    expect_sound(reference_scene(), r, {});
+    EXPECT_FALSE(r.settled);
+    EXPECT_TRUE(warns(r, "RATTLES"));
+    EXPECT_GT(r.mesh_loss_power, 0);
+    EXPECT_LT(r.statistics.right_hand_sides, 400'000);
+  }
+}
+
+TEST(HardPoints, NoTorqueFloatsWhereverTheFlanksAre) {
+  for (const double speed : {200.0, 1000.0}) {
+    const PointResult r = solve_operating_point(reference_scene(), prescribed(0, speed), {});
+    expect_sound(reference_scene(), r, {});
+    EXPECT_FALSE(r.settled);
+    EXPECT_TRUE(warns(r, "FLANKS_FLOAT"));
+    EXPECT_EQ(r.mesh_loss_power, 0);
+    EXPECT_EQ(r.contact_loss_time_share, 1);
+    EXPECT_LT(r.statistics.right_hand_sides, 100'000);
+  }
+}
+
+// Near the speed at which the response of one mesh cycle becomes unstable, its multiplier is close
+// to 1, and the doubled response is far from it: it loses contact.
+TEST(HardPoints, TheDoubledResponseIsFoundUpToWhereTheSingleOneAttracts) {
+  for (const double speed : {155.75, 155.8}) {
+    SCOPED_TRACE(speed);
+    const PointResult r = solve_operating_point(reference_scene(), cruise(speed), {});
+    EXPECT_EQ(r.method, SteadyStateMethod::kShooting);
+    EXPECT_EQ(r.period_in_mesh_cycles, 2);
+    EXPECT_TRUE(r.contact_loss);
+    EXPECT_LT(r.statistics.right_hand_sides, 200'000);
+    expect_right(reference_scene(), cruise(speed), r);
+  }
+  const PointResult single = solve_operating_point(reference_scene(), cruise(155.9), {});
+  EXPECT_EQ(single.period_in_mesh_cycles, 1);
+  EXPECT_FALSE(single.contact_loss);
+}
+
+TEST(HardPoints, SpeedsTooLowToFollowTheMeshAreRefusedWithTheWayOut) {
+  PointOptions sharp;
+  sharp.tolerance = 1e-8;
+  for (const auto& asked :
+       {std::pair{prescribed(50, 0.01), PointOptions{}}, {cruise(0.1), sharp}}) {
+    const auto& condition = asked.first;
+    const PointOptions& options = asked.second;
+    const std::string refusal =
+        refusal_of([&] { solve_operating_point(reference_scene(), condition, options); });
+    EXPECT_TRUE(refusal.starts_with("TOO_SLOW_TO_MARCH: ")) << refusal;
+    EXPECT_NE(refusal.find("QUASI_STATIC"), std::string::npos) << refusal;
+    PointOptions quasi_static;
+    quasi_static.model = PointModel::kQuasiStatic;
+    EXPECT_TRUE(solve_operating_point(reference_scene(), condition, quasi_static).settled);
+  }
+}
+
 TEST(HardPoints, HeavyTorqueKnocksAcrossTheBacklash) {
   EXPECT_TRUE(expect_an_answer(reference_scene(), prescribed_at(300, 72.5)));
 }
 
-TEST(HardPoints, LooseAndTightTolerances) {
-  const PointResult reference = solve_operating_point(reference_scene(), cruise(72.5), {});
-  for (const double tolerance : {1e-3, 1e-5, 1e-10}) {
+TEST(HardPoints, SharperTolerancesErrLessAndTakeMoreWork) {
+  PointOptions exact_march;
+  exact_march.method = SteadyStateMethod::kMarch;
+  exact_march.relative_tolerance = 1e-9;
+  exact_march.settling_tolerance = 1e-8;
+  const PointResult exact = solve_operating_point(reference_scene(), cruise(72.5), exact_march);
+  long work = 0;
+  for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
     SCOPED_TRACE(tolerance);
     PointOptions options;
-    options.relative_tolerance = tolerance;
+    options.tolerance = tolerance;
     const PointResult r = solve_operating_point(reference_scene(), cruise(72.5), options);
     EXPECT_TRUE(r.settled);
-    EXPECT_NEAR(r.inefficiency_rms.value() / reference.inefficiency_rms.value(), 1,
-                std::max(tolerance, 1e-6));
+    EXPECT_EQ(r.method, SteadyStateMethod::kShooting);
+    EXPECT_LT(true_error(r, exact), tolerance);
+    EXPECT_GT(r.statistics.contact_solutions, work);
+    work = r.statistics.contact_solutions;
   }
+}
+
+TEST(HardPoints, SharperTolerancesOfTheMarchErrLessAndTakeMoreWork) {
+  const auto marched = [](double relative_tolerance, double settling_tolerance) {
+    PointOptions options;
+    options.method = SteadyStateMethod::kMarch;
+    options.tolerance = 1e-2;
+    options.relative_tolerance = relative_tolerance;
+    options.settling_tolerance = settling_tolerance;
+    return solve_operating_point(reference_scene(), cruise(72.5), options);
+  };
+  const PointResult exact = marched(1e-9, 1e-8);
+  long work = 0;
+  for (const double tolerance : {1e-5, 1e-7}) {
+    SCOPED_TRACE(tolerance);
+    const PointResult r = marched(tolerance, 10 * tolerance);
+    EXPECT_TRUE(r.settled);
+    EXPECT_LT(true_error(r, exact), 100 * tolerance);
+    EXPECT_GT(r.statistics.right_hand_sides, work);
+    work = r.statistics.right_hand_sides;
+  }
+  EXPECT_GT(exact.statistics.right_hand_sides, work);
+}
+
+// A tolerance that nothing reads would look like precision.
+TEST(HardPoints, TolerancesOfTheMarchThatNothingReadAreTold) {
+  const auto told = [](const PointOptions& options) {
+    const PointResult r = solve_operating_point(reference_scene(), cruise(72.5), options);
+    std::string sentence;
+    for (const RangeWarning& warning : r.warnings) {
+      if (warning.code == "MARCH_TOLERANCE_UNUSED") sentence += warning.sentence;
+    }
+    return sentence;
+  };
+  EXPECT_EQ(told({}), "");
+  PointOptions sharp;
+  sharp.relative_tolerance = 1e-10;
+  EXPECT_EQ(told(sharp),
+            "relative_tolerance = 1e-10 was not read: only a march reads it, and this point was "
+            "found by shooting, to tolerance = 0.001");
+  sharp.settling_tolerance = 1e-8;
+  EXPECT_NE(told(sharp).find("settling_tolerance = 1e-08"), std::string::npos) << told(sharp);
+  PointOptions quasi_static = sharp;
+  quasi_static.model = PointModel::kQuasiStatic;
+  EXPECT_NE(told(quasi_static).find("quasi-static"), std::string::npos) << told(quasi_static);
+  sharp.method = SteadyStateMethod::kMarch;
+  sharp.relative_tolerance = 1e-6;
+  EXPECT_EQ(told(sharp), "");
+}
+
+// Every impact begins and ends under hardly any load, where the printed polynomials of the
+// asperities pull.
+TEST(HardPoints, ImpactsWithThePolynomialsAsPublishedAreRefusedWithTheCause) {
+  Scene scene = reference_scene();
+  scene.options.as_published.eq43_44_polynomials = true;
+  const std::string refusal = refusal_of([&] { solve_operating_point(scene, cruise(80), {}); });
+  EXPECT_TRUE(refusal.starts_with("NO_LOAD_SHARING: ")) << refusal;
+  EXPECT_NE(refusal.find("eqs 43 and 44 as published"), std::string::npos) << refusal;
 }
 
 /// Gear sets and fluids that no one has made, within the ranges that the server takes.

@@ -208,6 +208,26 @@ TEST(SteadyStates, BranchEndsAreLocatedAlikeFromAnySpacing) {
   EXPECT_NEAR(down[0], 65.25, 0.3);
 }
 
+TEST(SteadyStates, AJumpIsFoundWhateverTheSpeedStep) {
+  for (const SweepDirection direction : {SweepDirection::kUp, SweepDirection::kDown}) {
+    const std::vector<double> fine = branch_ends({60, 65, 70, 75, 80}, direction);
+    ASSERT_EQ(fine.size(), 1u);
+    for (const auto& speeds : {std::vector<double>{60, 70, 80}, {60, 80}, {40, 80}, {20, 80}}) {
+      SCOPED_TRACE(std::to_string(speeds.front()) + ", " + std::to_string(speeds.size()));
+      const std::vector<double> found = branch_ends(speeds, direction);
+      ASSERT_EQ(found.size(), 1u);
+      EXPECT_NEAR(found[0], fine[0], 0.082) << "each is located to 0.041 km/h";
+    }
+  }
+}
+
+TEST(SteadyStates, ContactThatIsRegainedLittleByLittleIsNoJump) {
+  for (const SweepDirection direction : {SweepDirection::kUp, SweepDirection::kDown}) {
+    EXPECT_TRUE(branch_ends({75, 95}, direction).empty());
+    EXPECT_TRUE(branch_ends({78, 90}, direction).empty());
+  }
+}
+
 // The orbit of one mesh cycle repels from 149.4 km/h (the reference's numerics) to 155.8, where it
 // attracts so weakly that shooting alone cannot tell; that of two cycles lives beyond both.
 TEST(SteadyStates, TheSpeedWhereThePeriodDoublesOnTheWayUpIsThatOfTheMarch) {

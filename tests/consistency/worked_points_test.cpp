@@ -18,16 +18,18 @@ void expect_close(const nlohmann::json& expected, const char* name, double value
   EXPECT_NEAR(value, wanted, tolerance * std::abs(wanted)) << name;
 }
 
-TEST(WorkedPoints, OrbitsAreFoundFromAStartOfOurOwnTo1e5) {
+/// `block`: the list of worked orbits.
+void expect_worked_orbits(const char* block) {
   const nlohmann::json file = load_reference("worked_points.json");
   const double tolerance = file.at("suggested_tolerance").at("orbits_relative");
-  for (const nlohmann::json& orbit : file.at("orbits")) {
+  for (const nlohmann::json& orbit : file.at(block)) {
     SCOPED_TRACE(orbit.at("name").get<std::string>());
     Scene scene = reference_scene();
     // The worked orbits keep the arms of the tables while speeds fluctuate; see model_options.h.
     scene.options.tabulated_friction_arms = true;
     OperatingCondition condition;
     condition.vehicle_speed = orbit.at("speed_kilometers_per_hour").get<double>() / 3.6;
+    condition.ascent_angle = orbit.value("ascent_angle_radians", 0.0);
     PointOptions options;
     options.tolerance = 1e-7;
     if (orbit.at("branch") == "down-sweep") options.start = PointStart::kLargeVibration;
@@ -56,6 +58,12 @@ TEST(WorkedPoints, OrbitsAreFoundFromAStartOfOurOwnTo1e5) {
     expect_close(s, "w_w", r.section_state.wheel_speed, tolerance);
     expect_close(s, "y", r.section_state.mesh_deflection, tolerance);
   }
+}
+
+TEST(WorkedPoints, OrbitsAreFoundFromAStartOfOurOwnTo1e5) { expect_worked_orbits("orbits"); }
+
+TEST(WorkedPoints, CoastOrbitsAreFoundFromAStartOfOurOwnTo1e5) {
+  expect_worked_orbits("coast_orbits");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ struct AgreementPlace {
   PointStart start = PointStart::kQuasiStatic;
   bool isothermal = false;
   bool newtonian = false;
+  double ascent_angle = 0;  // [rad]; downhill the wheel drives: coast
 };
 
 class YardstickAgreement : public testing::TestWithParam<AgreementPlace> {};
@@ -30,6 +31,7 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   scene.options.newtonian = place.newtonian;
   OperatingCondition condition;
   condition.vehicle_speed = speed;
+  condition.ascent_angle = place.ascent_angle;
   PointOptions options;
   options.tolerance = 1e-6;
   options.start = place.start;
@@ -37,14 +39,17 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   options.settling_tolerance = 1e-7;
   const PointResult ours = solve_operating_point(scene, condition, options);
   ASSERT_TRUE(ours.settled);
+  ASSERT_EQ(ours.pinion_torque < 0, place.ascent_angle < 0);
 
   const auto worked = yardstick::ReadJsonFile(test_data_file("worked_points.json"));
   const auto gear = yardstick::ReadJsonFile(test_data_file("reference_gear_set.json"));
   yardstick::FrictionOptions friction;
   friction.isothermal = place.isothermal;
   friction.newtonian = place.newtonian;
+  yardstick::VehicleParameters vehicle = yardstick::ReadVehicle(gear);
+  vehicle.ascent_angle = place.ascent_angle;
   const yardstick::GearPairSystem system(
-      yardstick::ReadGearPair(gear), yardstick::ReadVehicle(gear),
+      yardstick::ReadGearPair(gear), vehicle,
       yardstick::ReadOrbitFriction(worked.at("orbit_inputs").at("values"), friction),
       yardstick::FrictionArms::kFromVelocities);
   // Our section, 0.1 % off, is only where its own shooting starts: it must find its own orbit.
@@ -70,17 +75,20 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   expect_near(ours.dynamic_transmission_error.minimum, cycle.transmission_error.minimum, "DTE min");
   expect_near(ours.dynamic_transmission_error.mean, cycle.transmission_error.mean, "DTE mean");
   expect_near(ours.dynamic_transmission_error.maximum, cycle.transmission_error.maximum, "DTE max");
+  expect_near(ours.pinion_friction_torque.mean, cycle.pinion_friction_torque.mean, "T_fr,p mean");
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Speeds, YardstickAgreement,
-    testing::Values(AgreementPlace{"v20", 20}, AgreementPlace{"v37_5", 37.5},
-                    AgreementPlace{"v67_5_up", 67.5},
-                    AgreementPlace{"v67_5_down", 67.5, PointStart::kLargeVibration},
-                    AgreementPlace{"v72_5", 72.5}, AgreementPlace{"v80", 80},
-                    AgreementPlace{"v100", 100}, AgreementPlace{"v140", 140},
-                    AgreementPlace{"v100_isothermal", 100, PointStart::kQuasiStatic, true},
-                    AgreementPlace{"v100_newtonian", 100, PointStart::kQuasiStatic, false, true}),
+    testing::Values(
+        AgreementPlace{"v20", 20}, AgreementPlace{"v37_5", 37.5}, AgreementPlace{"v67_5_up", 67.5},
+        AgreementPlace{"v67_5_down", 67.5, PointStart::kLargeVibration},
+        AgreementPlace{"v72_5", 72.5}, AgreementPlace{"v80", 80}, AgreementPlace{"v100", 100},
+        AgreementPlace{"v140", 140},
+        AgreementPlace{"v100_isothermal", 100, PointStart::kQuasiStatic, true},
+        AgreementPlace{"v100_newtonian", 100, PointStart::kQuasiStatic, false, true},
+        AgreementPlace{"v72_5_coast", 72.5, PointStart::kQuasiStatic, false, false, -0.05},
+        AgreementPlace{"v100_coast", 100, PointStart::kQuasiStatic, false, false, -0.08}),
     [](const auto& place) { return std::string(place.param.name); });
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "tests/crash/clients.h"
 
-#include <chrono>
+#include <grpcpp/support/status_code_enum.h>
+
 #include <iterator>
 #include <stop_token>
 #include <thread>
@@ -11,38 +12,107 @@ namespace tribodyn::crash {
 namespace {
 
 using std::chrono::milliseconds;
+using std::chrono::steady_clock;
 
 constexpr auto kCallLimit = std::chrono::seconds(3);
-constexpr int kFavourites = 6;
-constexpr int kScenes = 400;
-// Marched, a point takes a tenth of a second, under sanitizers some: long enough to be met by a
-// crash.
+constexpr int kFavourites = 6;  // scenes that are asked for again and again
+constexpr int kScenes = 800;
+// Marched, a point takes a tenth of a second, under sanitizers some: long enough for a crash to
+// interrupt it.
 constexpr int kMarchedOneIn = kUnderSanitizer ? 8 : 2;
 constexpr int kFirstSubmissions = 8;  // of each client until the first crash
+constexpr double kUrgentSeconds = 1;
+constexpr int kBatchSize = 3;
 
 SeenEvent seen(const v1::SimulationEvent& event) {
   return {event.sequence(), event.state(), event.attempt()};
 }
 
-}  // namespace
+/// Whether the server refuses the request itself. Returns false if the server is dead, slow or
+/// busy: the same request may succeed later.
+bool is_refusal(const client::ServiceError& error) {
+  switch (error.status_code()) {
+    case grpc::StatusCode::DEADLINE_EXCEEDED:
+    case grpc::StatusCode::RESOURCE_EXHAUSTED:
+    case grpc::StatusCode::ABORTED:
+    case grpc::StatusCode::UNAVAILABLE:
+      return false;
+    default:
+      return error.kind() == client::ServiceError::Kind::kRefused;
+  }
+}
 
-v1::Simulation simulation_of(const std::string& scene) {
-  const int number = std::stoi(scene);
-  v1::Simulation out;
-  out.set_lubricant("lubricants/" + std::to_string(1 + number % 3));
-  out.set_sump_temperature_celsius(30 + 0.1 * number);
+void set_study(int number, v1::Simulation& out) {
   if (number % 5 == 4) {
     auto* curve = out.mutable_inefficiency_curve();
     for (int speed = 40; speed <= 90; speed += 10) curve->add_speeds_kilometers_per_hour(speed);
-  } else {
-    auto* point = out.mutable_operating_point();
-    point->mutable_cruise()->set_speed_kilometers_per_hour(20 + number % 90);
-    if (number % 5 == 3) point->set_model(v1::QUASI_STATIC);
+    return;
   }
-  if (number % kMarchedOneIn == 0 && out.has_operating_point()) {
-    out.mutable_solver_options()->set_method(v1::MARCH);
+  auto* point = out.mutable_operating_point();
+  point->mutable_cruise()->set_speed_kilometers_per_hour(20 + number % 90);
+  if (number % 5 == 3) point->set_model(v1::QUASI_STATIC);
+  if (number % 2 == 1) point->mutable_history()->add_columns("mesh_force_newtons");
+  if (number % kMarchedOneIn == 0) out.mutable_solver_options()->set_method(v1::MARCH);
+}
+
+/// Changes one input.
+void vary(int number, v1::Simulation& out) {
+  switch (number % 3) {
+    case 0:
+      out.set_sump_temperature_celsius(out.sump_temperature_celsius() + 5);
+      break;
+    case 1:
+      out.set_lubricant("lubricants/" + std::to_string(1 + (number + 1) % 3));
+      break;
+    default:
+      out.set_inlet_temperature_rise_kelvin(15);
   }
+}
+
+v1::Lubricant lubricant_of(const std::string& name, int content) {
+  v1::Lubricant out;
+  out.set_name(name);
+  out.set_display_name(std::to_string(content));
+  out.set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
+  auto* measured = out.mutable_measurements();
+  measured->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73.3);
+  measured->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(14.2);
   return out;
+}
+
+}  // namespace
+
+v1::Simulation simulation_of(const std::string& scene) {
+  const int number = std::stoi(scene) / 2;
+  v1::Simulation out;
+  out.set_lubricant("lubricants/" + std::to_string(1 + number % 3));
+  out.set_sump_temperature_celsius(30 + 0.1 * number);
+  set_study(number, out);
+  if (std::stoi(scene) % 2 == 1) vary(number, out);
+  return out;
+}
+
+std::string history_bytes(client::Connection& connection, const v1::Simulation& simulation) {
+  if (simulation.result().history_columns().empty()) return {};
+  return connection.read_history(simulation.name()).SerializeAsString();
+}
+
+v1::Simulation follow(client::Connection& connection, const std::string& name,
+                      milliseconds patience, std::vector<SeenEvent>& events) {
+  std::stop_source stop;
+  const std::jthread clock([&stop, patience](const std::stop_token& over) {
+    const auto end = steady_clock::now() + patience;
+    while (!over.stop_requested() && steady_clock::now() < end) {
+      std::this_thread::sleep_for(milliseconds(5));
+    }
+    stop.request_stop();
+  });
+  return connection.wait_for_end(
+      name,
+      [&events](const v1::SimulationEvent& event) {
+        if (event.kind() == v1::SimulationEvent::STATE_CHANGE) events.push_back(seen(event));
+      },
+      stop.get_token());
 }
 
 Client::Client(std::string address, int number, std::uint64_t seed, Recorder& recorder)
@@ -54,12 +124,13 @@ Client::Client(std::string address, int number, std::uint64_t seed, Recorder& re
 void Client::run(const std::atomic<bool>& stop, const std::atomic<int>& crashes) {
   while (!stop) {
     try {
-      // Work in proportion to the crashes, not to the time: where the server is slow to start again
-      // it would never come to an end.
+      // The number of submissions follows the crashes, not the time: a server that starts slowly
+      // would otherwise have ever more work left at the end.
       act(std::ssize(sent_) < kFirstSubmissions + crashes);
     } catch (const client::ServiceError& error) {
-      // The server is dead at the moment. What it refuses is a mistake of this test.
-      if (error.kind() == client::ServiceError::Kind::kRefused && error.reason().empty()) throw;
+      if (is_refusal(error)) {
+        recorder_.write([&](History& history) { history.refusals.emplace_back(error.what()); });
+      }
     }
     std::this_thread::sleep_for(milliseconds(draw(60)));
   }
@@ -70,27 +141,33 @@ std::string Client::draw_scene() {
 }
 
 void Client::act(bool may_submit) {
-  const int kind = draw(10);
+  const int kind = draw(12);
   if (sent_.empty() || (kind < 4 && may_submit)) {
     const std::string id = std::to_string(number_) + "-" + std::to_string(sent_.size());
-    sent_.push_back({id, draw_scene(), draw(8) == 0, ""});
+    sent_.push_back({id, draw_scene(), draw(8) == 0, draw(6) == 0, ""});
     recorder_.write([](History& history) { ++history.requests; });
     submit(sent_.back());
-    if (draw(4) == 0) cancel(sent_.back().name);
+    const int next = draw(4);
+    if (next == 0) note_end(connection_.cancel_simulation(sent_.back().name));
+    if (next > 1) watch(sent_.back().name);  // most crashes meet somebody who watches what runs
     return;
   }
+  if (kind == 9 || kind == 10) return update_lubricant();
+  if (kind == 11 && may_submit) return create_batch();
   Sent& chosen = sent_[static_cast<std::size_t>(draw(static_cast<int>(sent_.size())))];
   if (kind == 4 || chosen.name.empty()) return submit(chosen);
-  if (kind < 8) return watch(chosen.name);
-  if (kind == 8) return cancel(chosen.name);
-  read(chosen.name);
+  if (kind < 7) return watch(chosen.name);
+  if (kind == 7) return note_end(connection_.cancel_simulation(chosen.name));
+  note_end(connection_.get_simulation(chosen.name));
 }
 
 void Client::submit(Sent& sent) {
   client::CreateOptions options;
   options.request_id = sent.request_id;
   options.force = sent.force;
-  const v1::Simulation made = connection_.create_simulation(simulation_of(sent.scene), options);
+  v1::Simulation simulation = simulation_of(sent.scene);
+  if (sent.is_urgent) simulation.set_deadline_seconds(kUrgentSeconds);
+  const v1::Simulation made = connection_.create_simulation(simulation, options);
   sent.name = made.name();
   recorder_.write([&](History& history) {
     history.submissions.push_back({sent.request_id, sent.name, sent.scene});
@@ -99,27 +176,12 @@ void Client::submit(Sent& sent) {
 }
 
 void Client::watch(const std::string& name) {
-  SeenWatch told{name, 0, {}};
-  std::stop_source stop;
-  const milliseconds patience(draw(800));
-  std::jthread clock([&stop, patience](const std::stop_token& over) {
-    const auto end = std::chrono::steady_clock::now() + patience;
-    while (!over.stop_requested() && std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(milliseconds(5));
-    }
-    stop.request_stop();
-  });
+  SeenWatch watched{name, 0, {}};
   const auto keep = [&] {
-    recorder_.write([&](History& history) { history.watches.push_back(told); });
+    recorder_.write([&](History& history) { history.watches.push_back(watched); });
   };
   try {
-    const v1::Simulation simulation = connection_.wait_for_end(
-        name,
-        [&told](const v1::SimulationEvent& event) {
-          if (event.kind() == v1::SimulationEvent::STATE_CHANGE) told.events.push_back(seen(event));
-        },
-        stop.get_token());
-    note_end(simulation);
+    note_end(follow(connection_, name, milliseconds(draw(800)), watched.events));
   } catch (const client::ServiceError&) {
     keep();
     throw;
@@ -127,9 +189,35 @@ void Client::watch(const std::string& name) {
   keep();
 }
 
-void Client::cancel(const std::string& name) { note_end(connection_.cancel_simulation(name)); }
+void Client::update_lubricant() {
+  client::UpdateOptions options;
+  options.allow_missing = true;
+  const std::string name = "lubricants/of-client-" + std::to_string(number_);
+  const v1::Lubricant sent = lubricant_of(name, updates_++);
+  const v1::Lubricant made = connection_.update(sent, options);
+  recorder_.write([&](History& history) {
+    history.revisions.push_back(
+        {made.name() + "@" + std::to_string(made.revision()), sent.display_name()});
+  });
+}
 
-void Client::read(const std::string& name) { note_end(connection_.get_simulation(name)); }
+void Client::create_batch() {
+  std::vector<v1::Lubricant> lubricants;
+  History::Batch batch;
+  for (int i = 0; i < kBatchSize; ++i) {
+    batch.names.push_back("lubricants/batch-" + std::to_string(number_) + "-" +
+                          std::to_string(batches_) + "-" + std::to_string(i));
+    lubricants.push_back(lubricant_of(batch.names.back(), i));
+  }
+  ++batches_;
+  std::size_t place = 0;
+  recorder_.write([&](History& history) {
+    place = history.batches.size();
+    history.batches.push_back(batch);
+  });
+  connection_.create_all(lubricants);
+  recorder_.write([&](History& history) { history.batches[place].is_acknowledged = true; });
+}
 
 void Client::note_end(const v1::Simulation& simulation) {
   if (!client::has_ended(simulation.state())) return;

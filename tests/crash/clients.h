@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <random>
 #include <string>
@@ -12,16 +13,25 @@
 
 namespace tribodyn::crash {
 
-/// A scene by its name: points and short curves, some of them asked for again and again.
+/// The inputs of a scene, which is named by its number: a point or a short curve. Scenes 2 k and
+/// 2 k + 1 differ in a single input, so that a result key that leaves an input out is noticed.
 v1::Simulation simulation_of(const std::string& scene);
 
-/// One client that submits, repeats itself, watches, cancels and reads, and records what it is
-/// told.
+/// The bytes of a simulation's history; empty if it has none. Throws client::ServiceError.
+std::string history_bytes(client::Connection& connection, const v1::Simulation& simulation);
+
+/// Watches a simulation until it ends, or for `patience`, and returns it. Appends the changes of
+/// state to `events` as they arrive. Throws client::ServiceError.
+v1::Simulation follow(client::Connection& connection, const std::string& name,
+                      std::chrono::milliseconds patience, std::vector<SeenEvent>& events);
+
+/// One client: submits, submits again under the same request_id, watches, cancels, reads, updates a
+/// lubricant and creates batches of lubricants, at random, and records what the server answers.
 class Client {
  public:
   Client(std::string address, int number, std::uint64_t seed, Recorder& recorder);
 
-  /// Until `stop`; submits some simulations, and one more for each of `crashes`.
+  /// Works until `stop`. Submits a few simulations, and one more for each of `crashes`.
   void run(const std::atomic<bool>& stop, const std::atomic<int>& crashes);
 
  private:
@@ -29,7 +39,8 @@ class Client {
     std::string request_id;
     std::string scene;
     bool force = false;
-    std::string name;  ///< empty: not acknowledged
+    bool is_urgent = false;  ///< has a deadline, which it may miss
+    std::string name;        ///< empty until the server acknowledges it
   };
 
   int draw(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
@@ -37,8 +48,8 @@ class Client {
   void act(bool may_submit);
   void submit(Sent& sent);
   void watch(const std::string& name);
-  void cancel(const std::string& name);
-  void read(const std::string& name);
+  void update_lubricant();
+  void create_batch();
   void note_end(const v1::Simulation& simulation);
 
   client::Connection connection_;
@@ -46,6 +57,8 @@ class Client {
   std::mt19937_64 random_;
   Recorder& recorder_;
   std::vector<Sent> sent_;
+  int updates_ = 0;
+  int batches_ = 0;
 };
 
 }  // namespace tribodyn::crash

@@ -45,7 +45,9 @@ struct FaultyFile {
     const int due = self.vfs->attempt(FaultyVfs::Operation::kSync, SQLITE_IOERR_FSYNC);
     if (due != SQLITE_OK) return due;
     self.vfs->note_sync(*self.path);
-    return self.base()->pMethods->xSync(self.base(), flags);
+    const int done = self.base()->pMethods->xSync(self.base(), flags);
+    if (const auto action = self.vfs->sync_action()) action();
+    return done;
   }
   static int size(sqlite3_file* file, sqlite3_int64* out) {
     return of(file).base()->pMethods->xFileSize(of(file).base(), out);
@@ -169,6 +171,7 @@ void FaultyVfs::begin_plan() {
   written_ = 0;
   power_off_at_ = 0;
   lasting_ = false;
+  after_sync_ = nullptr;
   space_ = std::numeric_limits<std::int64_t>::max();
 }
 
@@ -194,6 +197,17 @@ void FaultyVfs::limit_space(std::int64_t bytes) {
 void FaultyVfs::ignore_syncs() {
   const std::lock_guard lock(mutex_);
   ignores_syncs_ = true;
+}
+
+void FaultyVfs::after_sync(std::function<void()> action) {
+  const std::lock_guard lock(mutex_);
+  begin_plan();
+  after_sync_ = std::move(action);
+}
+
+std::function<void()> FaultyVfs::sync_action() const {
+  const std::lock_guard lock(mutex_);
+  return after_sync_;
 }
 
 void FaultyVfs::recover() {

@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -34,6 +35,8 @@ class FaultyVfs {
   void limit_space(std::int64_t bytes);
   /// Until the end a sync says that it is done and does nothing.
   void ignore_syncs();
+  /// Calls `action` after each sync that succeeds, until recover().
+  void after_sync(std::function<void()> action);
   /// No more faults.
   void recover();
 
@@ -65,6 +68,7 @@ class FaultyVfs {
 
   /// SQLITE_OK, or the error that is due.
   int attempt(Operation operation, int error, std::int64_t bytes = 0);
+  std::function<void()> sync_action() const;
   void begin_plan();
   void note_open(const std::string& path);
   void note_change(const std::string& path, Change change);
@@ -81,6 +85,7 @@ class FaultyVfs {
   bool ignores_syncs_ = false;                                     // guarded by mutex_
   bool lasting_ = false;                                           // guarded by mutex_
   int power_off_at_ = 0;                                           // guarded by mutex_; 0: never
+  std::function<void()> after_sync_;                               // guarded by mutex_
   std::int64_t space_ = std::numeric_limits<std::int64_t>::max();  // guarded by mutex_
 };
 

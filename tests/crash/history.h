@@ -12,7 +12,7 @@ namespace tribodyn::crash {
 
 using State = v1::Simulation::State;
 
-/// A change of state as a client was told of it.
+/// A change of state, as a client read it from a watch.
 struct SeenEvent {
   std::int64_t sequence = 0;
   State state = v1::Simulation::STATE_UNSPECIFIED;
@@ -20,35 +20,52 @@ struct SeenEvent {
   bool operator==(const SeenEvent&) const = default;
 };
 
-/// What one watch told, beginning behind an event; it may have been taken up again many times.
+/// All events that one watch delivered. The client may have resumed the watch many times.
 struct SeenWatch {
   std::string name;
-  std::int64_t after_sequence = 0;
+  std::int64_t after_sequence = 0;  ///< the watch was asked for events after this one
   std::vector<SeenEvent> events;
 };
 
-/// All that clients were told while the server was killed again and again, and what is there in the
-/// end. Only what was acknowledged is in it: a call that failed may or may not have had its effect.
+/// Everything that clients read while the server was killed again and again, and everything that
+/// the server holds in the end. A call that failed is not in it: it may or may not have had an
+/// effect.
 struct History {
+  /// A request that the server acknowledged.
   struct Submission {
     std::string request_id;
-    std::string name;
-    std::string scene;  ///< its inputs, by the test's own name for them
+    std::string name;   ///< of the simulation, in the acknowledgement
+    std::string scene;  ///< the test's own name for the inputs
   };
   struct Ended {
     std::string name;
     State state = v1::Simulation::STATE_UNSPECIFIED;
   };
+  /// A revision of a resource that the server acknowledged.
+  struct Revision {
+    std::string name;     ///< "lubricants/{id}@{revision}"
+    std::string content;  ///< its display name; no two updates of a resource send the same
+  };
+  /// Resources that a client sent in one batch.
+  struct Batch {
+    std::vector<std::string> names;
+    bool is_acknowledged = false;
+  };
   std::vector<Submission> submissions;
-  std::vector<Ended> ended;  ///< seen to have ended so
+  std::vector<Ended> ended;  ///< simulations that a client saw in a final state
   std::vector<SeenWatch> watches;
+  std::vector<std::string> refusals;  ///< sentences; clients send nothing that is to be refused
+  std::vector<Revision> revisions;
+  std::vector<Batch> batches;  ///< acknowledged or not
+  int requests = 0;            ///< distinct request_ids that clients sent, acknowledged or not
 
-  /// In the end, each simulation as the server has it, by name, and all events of it.
+  /// What the server holds in the end, by the simulation's name.
   std::map<std::string, v1::Simulation> simulations;
   std::map<std::string, std::vector<SeenEvent>> events;
-  /// What a server that nobody killed computes, by scene: the points, serialised.
+  std::map<std::string, std::string> histories;       ///< bytes of all columns, where there are any
+  std::map<std::string, std::string> kept_revisions;  ///< contents by the revision's name
+  /// result_bits() of each scene from a server that nobody killed, with the bytes of its history.
   std::map<std::string, std::string> undisturbed;
-  int requests = 0;  ///< distinct request_ids that were ever sent
 };
 
 /// A history that several clients write. Safe for concurrent access.
@@ -59,19 +76,31 @@ class Recorder {
     const std::lock_guard lock(mutex_);
     action(history_);
   }
-  History& finished() { return history_; }  ///< once nobody writes any more
+  /// Requires that no other thread writes any more.
+  History& finished() { return history_; }
 
  private:
   std::mutex mutex_;
   History history_;
 };
 
-/// The points of a result: what must be the same bits whoever computed it when.
+/// The part of a result that equal inputs determine bit for bit: all but the assumptions, which
+/// belong to the request, the platform, and the input hash, which violations() compares by itself.
 std::string result_bits(const v1::Simulation& simulation);
 
-/// What must not be, one sentence each: an acknowledged simulation that is gone, two of one
-/// request, two results of equal inputs, other bits than an undisturbed server's, an end that did
-/// not last, events with gaps, that moved backwards, or that were told otherwise than they are.
+/// Returns one sentence for each promise of the server that the history breaks:
+/// - an acknowledged simulation exists, belongs to the request that the acknowledgement answered,
+///   and is the only one of that request; no request makes two simulations;
+/// - every simulation ends, stays as it ended, and fails only because the server died repeatedly or
+///   its deadline was over;
+/// - equal inputs have equal results, a result belongs to the simulation's own inputs, and it has
+///   the same bits as on a server that nobody killed;
+/// - events are numbered without gaps, only move forward, end in the simulation's state, and no
+///   client was sent an event that the server does not hold;
+/// - no client is refused anything;
+/// - an acknowledged revision of a resource exists as it was sent, no update makes two revisions,
+/// and
+///   of a batch all resources exist or none; of an acknowledged one all.
 std::vector<std::string> violations(const History& history);
 
 }  // namespace tribodyn::crash

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -12,6 +14,8 @@
 #include <random>
 #include <thread>
 
+#include "server/app/simulations.h"
+#include "server/store/deadline.h"
 #include "server/store/maintenance.h"
 #include "server/store/seeds.h"
 #include "server/store/store.h"
@@ -19,6 +23,7 @@
 #include "tests/service/support.h"
 #include "tests/support/run_length.h"
 #include "tribodyn/v1/results.pb.h"
+#include "tribodyn/v1/surfaces.pb.h"
 
 namespace tribodyn::crash {
 namespace {
@@ -44,12 +49,17 @@ std::string body(char input) {
 
 std::vector<double> rows(char input) { return std::vector<double>(700, input); }
 
+/// Resources that one batch writes.
+constexpr std::array<const char*, 3> kBatch = {"surfaces/1", "surfaces/2", "surfaces/3"};
+
 /// What a client was told.
 struct Acknowledged {
   std::map<std::string, std::int64_t> simulations;          ///< by request_id
   std::map<std::int64_t, std::vector<StoredEvent>> events;  ///< changes of state, in order
   std::map<std::int64_t, char> results;                     ///< inputs of what has succeeded
   std::map<std::string, int> revisions;                     ///< of resources
+  std::map<std::int64_t, bool>
+      pins;  ///< pinned or not; left out where the last answer was an error
 };
 
 /// A session with a store: each step is acknowledged, or fails with a sentence.
@@ -63,6 +73,7 @@ class Session {
       const auto seed = lubricant("first");
       if (store_->write_resources({{seed, std::nullopt}}, 1)) told_.revisions[seed.name] = 1;
     });
+    write_batch();
     submit("r1", 'a');
     submit("r2", 'b');
     submit("r3", 'a');
@@ -70,6 +81,9 @@ class Session {
     start("r1", 'a');
     succeed("r1", 'a');
     submit("r5", 'a');
+    pin("r1", true);
+    pin("r5", true);
+    pin("r5", false);
     change("r2", [&](std::int64_t id) { return store_->mark_failed(id, 5, "X", "y"); });
     change("r3", [&](std::int64_t id) { return store_->mark_cancelled(id, 6); });
     start("r4", 'c');
@@ -115,6 +129,28 @@ class Session {
   bool open() {
     step([&] { store_ = std::make_unique<Store>(path_); });
     return store_ != nullptr;
+  }
+
+  void write_batch() {
+    step([&] {
+      std::vector<server::ResourceWrite> writes;
+      for (const char* name : kBatch) {
+        v1::Surface surface = server::seed<v1::Surface>("surfaces/run-in");
+        surface.set_name(name);
+        writes.push_back({{name, surface.SerializeAsString()}, std::nullopt});
+      }
+      if (!store_->write_resources(writes, 2)) return;
+      for (const char* name : kBatch) told_.revisions[name] = 1;
+    });
+  }
+
+  void pin(const std::string& request_id, bool is_pinned) {
+    const auto found = told_.simulations.find(request_id);
+    if (found == told_.simulations.end()) return;
+    told_.pins.erase(found->second);
+    step([&] {
+      if (store_->set_pinned(found->second, is_pinned)) told_.pins[found->second] = is_pinned;
+    });
   }
 
   void submit(const std::string& request_id, char input) {
@@ -185,6 +221,13 @@ std::vector<std::string> lost(const std::string& path, const Acknowledged& told)
   for (const auto& [name, revision] : told.revisions) {
     if (!store.revision(name, revision)) out.push_back(name + "@" + std::to_string(revision));
   }
+  for (const auto& [id, is_pinned] : told.pins) {
+    if (store.simulation(id)->is_pinned != is_pinned) out.push_back("pin of " + std::to_string(id));
+  }
+  const auto written = std::count_if(kBatch.begin(), kBatch.end(), [&](const char* name) {
+    return store.resource(name).has_value();
+  });
+  if (written != 0 && written != std::ssize(kBatch)) out.emplace_back("part of a batch");
   for (const std::string& problem : server::check_database(path)) out.push_back(problem);
   return out;
 } catch (const StoreError& error) {
@@ -280,6 +323,8 @@ TEST_F(StorageFault, WithoutFaultsEverythingIsAcknowledged) {
   EXPECT_THAT(session.errors(), IsEmpty());
   EXPECT_EQ(session.told().simulations.size(), 6U);
   EXPECT_EQ(session.told().results.size(), 3U);
+  EXPECT_EQ(session.told().revisions.size(), 1 + kBatch.size());
+  EXPECT_EQ(session.told().pins.size(), 2U);
   EXPECT_THAT(lost(folder.file("db"), session.told()), IsEmpty());
 }
 
@@ -324,6 +369,67 @@ TEST_F(StorageFault, AResultWaitsForADiskThatIsFull) {
   vfs_.recover();
   EXPECT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED)) << "without a restart";
   EXPECT_TRUE(bench.reaches(bench.create(server::curve_simulation()), v1::Simulation::SUCCEEDED));
+}
+
+/// A disk on which each commit takes until the deadline of the call has passed.
+class SlowCommits : public StorageFault {
+ protected:
+  /// What the call answers; its deadline passes while its change is being committed.
+  template <class Body>
+  auto answer(const Body& body) {
+    using Clock = server::DeadlineScope::Clock;
+    const Clock::time_point end = Clock::now() + std::chrono::milliseconds(300);
+    vfs_.after_sync([end] { std::this_thread::sleep_until(end); });
+    auto outcome = [&] {
+      const server::DeadlineScope deadline(end);
+      auto out = body();
+      EXPECT_TRUE(server::DeadlineScope::has_passed()) << "the commit was not slow";
+      return out;
+    }();
+    vfs_.recover();
+    return outcome;
+  }
+  static v1::GetSimulationRequest named(const std::string& name) {
+    v1::GetSimulationRequest out;
+    out.set_name(name);
+    return out;
+  }
+
+  server::Bench bench_{server::patient_studies(std::make_shared<std::atomic<bool>>(false)), 1};
+  server::Application app_ = bench_.application();
+};
+
+TEST_F(SlowCommits, ACreationThatIsCommittedIsAnsweredAfterTheDeadline) {
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = server::point_simulation();
+  const auto created = answer([&] { return create_simulation(app_, request); });
+  ASSERT_TRUE(created.ok()) << created.error().message();
+  EXPECT_EQ(created.message().state(), v1::Simulation::QUEUED);
+  EXPECT_EQ(created.message().event_sequence(), 1);
+  EXPECT_EQ(created.message().create_time().DebugString(),
+            bench_.get(created.message().name()).create_time().DebugString());
+}
+
+TEST_F(SlowCommits, ACancellationThatIsCommittedIsAnsweredAfterTheDeadline) {
+  const std::string name = bench_.create(server::point_simulation());
+  ASSERT_TRUE(bench_.reaches(name, v1::Simulation::RUNNING));
+  v1::CancelSimulationRequest request;
+  request.set_name(name);
+  const auto cancelled = answer([&] { return cancel_simulation(app_, request); });
+  ASSERT_TRUE(cancelled.ok()) << cancelled.error().message();
+  EXPECT_EQ(cancelled.message().state(), v1::Simulation::CANCELLED);
+  EXPECT_EQ(cancelled.message().DebugString(), bench_.get(name).DebugString());
+}
+
+TEST_F(SlowCommits, APinThatIsCommittedIsAnsweredAfterTheDeadline) {
+  const std::string name = bench_.create(server::point_simulation());
+  ASSERT_TRUE(bench_.reaches(name, v1::Simulation::RUNNING));
+  v1::PinSimulationRequest request;
+  request.set_name(name);
+  const auto pinned = answer([&] { return pin_simulation(app_, request); });
+  ASSERT_TRUE(pinned.ok()) << pinned.error().message();
+  EXPECT_TRUE(pinned.message().pinned());
+  EXPECT_TRUE(bench_.get(name).pinned());
 }
 
 }  // namespace

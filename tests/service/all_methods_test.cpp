@@ -10,52 +10,19 @@
 
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
+#include "tests/service/contract_methods.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
-#include "tribodyn/v1/contacts.pb.h"
-#include "tribodyn/v1/gear_sets.pb.h"
-#include "tribodyn/v1/lubricants.pb.h"
-#include "tribodyn/v1/schemas.pb.h"
-#include "tribodyn/v1/surfaces.pb.h"
-#include "tribodyn/v1/vehicles.pb.h"
 
 namespace tribodyn::server {
 namespace {
 
-using google::protobuf::FileDescriptor;
 using google::protobuf::Message;
 using google::protobuf::MethodDescriptor;
 using testing::HasSubstr;
 
-/// Every file of the contract that has services.
-std::vector<const FileDescriptor*> contract() {
-  return {v1::Lubricant::descriptor()->file(),
-          v1::GearSet::descriptor()->file(),
-          v1::Surface::descriptor()->file(),
-          v1::Vehicle::descriptor()->file(),
-          v1::Simulation::descriptor()->file(),
-          v1::Schema::descriptor()->file(),
-          v1::EvaluateContactRequest::descriptor()->file()};
-}
-
-std::vector<const MethodDescriptor*> all_methods() {
-  std::vector<const MethodDescriptor*> out;
-  for (const FileDescriptor* file : contract()) {
-    for (int i = 0; i < file->service_count(); ++i) {
-      for (int k = 0; k < file->service(i)->method_count(); ++k) {
-        out.push_back(file->service(i)->method(k));
-      }
-    }
-  }
-  return out;
-}
-
 std::string method_name(const testing::TestParamInfo<const MethodDescriptor*>& info) {
   return info.param->name();
-}
-
-std::string path_of(const MethodDescriptor& method) {
-  return "/" + method.service()->full_name() + "/" + method.name();
 }
 
 class EveryMethod : public testing::TestWithParam<const MethodDescriptor*> {

@@ -196,10 +196,18 @@ TEST_F(AppTest, SimulationsAreFoundByStateLubricantTimeAndLabel) {
   EXPECT_THAT(names("lubricant = \"lubricants/1@1\" AND state = SUCCEEDED"),
               ElementsAre(other, axle));
   EXPECT_THAT(names("state = FAILED"), ElementsAre());
+  EXPECT_THAT(names("state = succeeded AND lubricant = 2"), ElementsAre(curve));
+  EXPECT_THAT(names("lubricant != 2"), ElementsAre(other, axle));
+  v1::PinSimulationRequest pin;
+  pin.set_name(other);
+  ASSERT_TRUE(pin_simulation(app_, pin).ok());
+  EXPECT_THAT(names("pinned = true"), ElementsAre(other));
+  EXPECT_THAT(names("pinned = false"), ElementsAre(curve, axle));
   EXPECT_EQ(names("create_time > 2020-01-01T00:00:00Z AND state != QUEUED").size(), 3U);
   EXPECT_THAT(names("create_time > 2199-01-01T00:00:00Z"), ElementsAre());
   v1::ListSimulationsRequest bad;
-  for (const char* filter : {"state > FAILED", "stat = FAILED", "state = FAILD", "name = x"}) {
+  for (const char* filter : {"state > FAILED", "stat = FAILED", "state = FAILD", "name = x",
+                             "pinned = maybe", "pinned > false"}) {
     bad.set_filter(filter);
     EXPECT_EQ(list_simulations(app_, bad).error().code(), google::rpc::INVALID_ARGUMENT) << filter;
   }
@@ -364,13 +372,19 @@ TEST_F(AppTest, TheSummaryOfTheLongestCurveIsSmall) {
   const auto summary = get_simulation(app_, request).message();
   EXPECT_EQ(summary.result().points_size(), 1000);
   EXPECT_TRUE(summary.result().is_abridged());
-  EXPECT_EQ(summary.result().points(999).result().inefficiency_rms_percent(), 1.5);
+  for (const v1::CurvePoint& point : summary.result().points()) {
+    ASSERT_FALSE(point.has_result()) << "its figures would read as zeros";
+    ASSERT_EQ(point.summary().inefficiency_rms_percent(), 1.5);
+    ASSERT_TRUE(point.summary().has_pinion_torque_newton_metres());
+  }
   EXPECT_LT(summary.result().ByteSizeLong(), 65'536U);
   request.set_view(v1::SIMULATION_VIEW_BASIC);
   EXPECT_FALSE(get_simulation(app_, request).message().has_result());
   request.set_view(v1::SIMULATION_VIEW_FULL);
   const auto full = get_simulation(app_, request).message().result();
   EXPECT_FALSE(full.is_abridged());
+  EXPECT_TRUE(full.points(999).has_result());
+  EXPECT_FALSE(full.points(999).has_summary());
   EXPECT_GT(full.ByteSizeLong(), 65'536U);
 }
 

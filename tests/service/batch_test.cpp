@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <thread>
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
 #include "server/app/resources.h"
+#include "server/convert/accept_resource.h"
 #include "server/convert/constraints.h"
 #include "server/store/deadline.h"
 #include "server/store/maintenance.h"
@@ -250,14 +252,15 @@ TEST_F(BatchTest, TheSizeIsLimitedAndAVeryLargeAnswerIsBrief) {
   }
   const auto made = batch_create_lubricants(app_, many(2000));
   ASSERT_TRUE(made.ok()) << made.error().message();
-  ASSERT_EQ(made.message().lubricants_size(), 2000);
+  EXPECT_TRUE(made.message().is_abridged());
+  EXPECT_EQ(made.message().lubricants_size(), 0) << "none with fields that read as unset";
+  ASSERT_EQ(made.message().written_size(), 2000);
   EXPECT_LT(made.message().ByteSizeLong(), 1'000'000U) << "clients accept 4 MB by default";
-  v1::Lubricant brief;
   const v1::Lubricant whole = get(numbered(1999));
-  brief.set_name(whole.name());
-  brief.set_etag(whole.etag());
-  brief.set_revision(1);
-  EXPECT_EQ(made.message().lubricants(1999).SerializeAsString(), brief.SerializeAsString());
+  EXPECT_EQ(made.message().written(1999).name(), whole.name());
+  EXPECT_EQ(made.message().written(1999).etag(), whole.etag());
+  EXPECT_EQ(made.message().written(1999).revision(), 1);
+  EXPECT_FALSE(batch_create_lubricants(app_, creation({fluid("x")})).message().is_abridged());
 }
 
 TEST_F(BatchTest, ThousandsOfViolationsEndInTime) {
@@ -340,6 +343,56 @@ TEST_F(BatchTest, EveryKindGoesTheSameWay) {
   ASSERT_FALSE(unknown.ok());
   EXPECT_THAT(complaint_lines(unknown.error()),
               ElementsAre(HasSubstr("did you mean \"vehicles/van\"?")));
+}
+
+/// Vehicles that are derived from one another, and how often they are looked up.
+class DescentTest : public testing::Test {
+ protected:
+  void add(const std::string& id, const std::string& parent) {
+    v1::Vehicle vehicle = seed<v1::Vehicle>("vehicles/passenger-car");
+    vehicle.set_name("vehicles/" + id);
+    if (!parent.empty()) vehicle.set_derived_from("vehicles/" + parent);
+    all_[vehicle.name()] = vehicle;
+  }
+  bool is_accepted(const std::string& id) {
+    Violations violations;
+    const bool accepted = accept(all_.at("vehicles/" + id), static_cast<v1::Vehicle*>(nullptr),
+                                 lookup_, "vehicle", violations)
+                              .has_value();
+    EXPECT_EQ(accepted, violations.empty());
+    return accepted;
+  }
+
+  std::map<std::string, v1::Vehicle> all_;
+  int looks_ = 0;
+  const ResourceLookup lookup_{[this](const RevisionName& name) -> std::optional<FoundResource> {
+                                 ++looks_;
+                                 const auto found = all_.find(name.name);
+                                 if (found == all_.end()) return std::nullopt;
+                                 return FoundResource{1, false, found->second.SerializeAsString()};
+                               },
+                               [](const std::string&) { return std::vector<std::string>(); }};
+};
+
+TEST_F(DescentTest, AChainIsFollowedOnceForAWholeBatch) {
+  constexpr int kLength = 300;
+  for (int i = 0; i < kLength; ++i) {
+    add(std::to_string(i), i == 0 ? "" : std::to_string(i - 1));
+  }
+  for (int i = kLength; i-- > 0;) EXPECT_TRUE(is_accepted(std::to_string(i)));
+  EXPECT_LE(looks_, 3 * kLength) << "and not half the square of it";
+}
+
+TEST_F(DescentTest, ARingIsFoundFromEachOfItsMembersAndFromNoOther) {
+  add("a", "b");
+  add("b", "c");
+  add("c", "a");
+  add("hangs", "a");
+  add("apart", "");
+  for (const auto& [id, expected] : std::vector<std::pair<std::string, bool>>{
+           {"hangs", true}, {"apart", true}, {"b", false}, {"a", false}, {"c", false}}) {
+    EXPECT_EQ(is_accepted(id), expected) << id;
+  }
 }
 
 }  // namespace

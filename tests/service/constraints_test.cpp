@@ -14,6 +14,7 @@
 #include "server/convert/check_message.h"
 #include "server/convert/contact_inputs.h"
 #include "server/convert/gear_set_checks.h"
+#include "server/convert/import_surface.h"
 #include "server/convert/output_only.h"
 #include "server/convert/simulation_inputs.h"
 #include "tests/service/support.h"
@@ -56,6 +57,7 @@ struct Subject {
   v1::EvaluateContactRequest contact = contact_request();
   v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
   v1::Surface surface = seed<v1::Surface>("surfaces/run-in");
+  v1::ImportSurfaceProfilesRequest profiles;
   v1::Vehicle vehicle = seed<v1::Vehicle>("vehicles/passenger-car");
   v1::GearSet gear_set = seed<v1::GearSet>("gearSets/A");
   std::unique_ptr<Message> batch;
@@ -80,6 +82,8 @@ struct Subject {
       use(lubricant.mutable_measurements()->add_densities(), "measurements.densities[0].");
     } else if (name == "SurfaceMeasurement") {
       use(surface.add_measurements(), "measurements[0].");
+    } else if (name == "ImportSurfaceProfilesRequest") {
+      use(&profiles, "");
     } else if (name == "EvaluateContactRequest") {
       use(&contact, "");
     } else if (name == "Simulation") {
@@ -138,6 +142,10 @@ struct Subject {
     if (path.starts_with("simulation.")) return server::check(simulation);
     if (path == "lubricant_parameters." || message == &contact) return server::check(contact);
     Violations violations;
+    if (message == &profiles) {
+      import_surface(profiles, "surfaces/x", seed_lookup(), violations);
+      return violations;
+    }
     if (batch) {
       check_size(*batch, "requests", violations);
       return violations;

@@ -98,7 +98,6 @@ TEST(ToCore, EveryModelOptionArrives) {
   EXPECT_TRUE(with_flag("eq22_inverted_ratio").as_published.eq22_inverted_ratio);
   EXPECT_TRUE(with_flag("eq31_32_logarithm").as_published.eq31_32_logarithm);
   EXPECT_TRUE(with_flag("eq43_44_polynomials").as_published.eq43_44_polynomials);
-  EXPECT_TRUE(with_flag("eq46_square_root_of_sum").as_published.eq46_square_root_of_sum);
   EXPECT_FALSE(with_flag("newtonian").isothermal);
   v1::ModelOptions houpert;
   houpert.set_pressure_viscosity_index(v1::ModelOptions::HOUPERT);

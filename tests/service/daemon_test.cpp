@@ -1,6 +1,7 @@
 // The life of the process: kill, termination, a second server, flags and addresses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -193,7 +194,8 @@ TEST_F(DaemonTest, ABackupIsTakenWhileItRunsAndRestoredOnceItHasStopped) {
               HasSubstr("in use by another tribodynd"));
   process_->signal(SIGTERM);
   process_->wait();
-  EXPECT_EQ(run({"restore", "--database", database, folder_.file("copy")}), "0 ");
+  EXPECT_EQ(run({"restore", "--database", database, folder_.file("copy")}),
+            "0 the former database is kept as " + database + ".replaced\n");
   start();
   v1::ListSimulationsResponse list;
   grpc::ClientContext context;
@@ -202,6 +204,63 @@ TEST_F(DaemonTest, ABackupIsTakenWhileItRunsAndRestoredOnceItHasStopped) {
   EXPECT_THAT(run({"check", "--database", folder_.file("nothing")}), HasSubstr("3 "));
   EXPECT_THAT(run({"backup", "--database", database}), HasSubstr("FILE is required"));
   EXPECT_THAT(run({}), HasSubstr("--database is required"));
+}
+
+TEST_F(DaemonTest, NothingIsAcknowledgedWhileTheDatabaseIsNotInItsPlace) {
+  const std::string database = folder_.file("tribodyn.db");
+  RawClient client(channel_);
+  const auto health = [&] {
+    return client.call("/grpc.health.v1.Health/Check", "").second.substr(1, 1);
+  };
+  const std::string serving("\x01"), not_serving("\x02");
+  v1::Simulation before, during, after;
+  ASSERT_TRUE(create(point_simulation(), &before).ok());
+  for (const char* suffix : {"", "-wal"}) {
+    const std::string file = database + suffix;
+    std::filesystem::rename(file, file + ".elsewhere");
+    for (int i = 0; i < 2; ++i) {
+      if (i == 1) std::ofstream(file) << "another file";
+      const grpc::Status status = create(point_simulation(), &during);
+      EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << file;
+      EXPECT_THAT(status.error_message(), HasSubstr("deleted, renamed or replaced"));
+    }
+    if (file == database) {
+      EXPECT_TRUE(eventually([&] { return health() == not_serving; }));
+    }
+    EXPECT_EQ(get(before.name()).name(), before.name()) << "reads are answered";
+    std::filesystem::rename(file + ".elsewhere", file);
+    EXPECT_TRUE(create(point_simulation(), &after).ok()) << file;
+    if (file == database) {
+      EXPECT_TRUE(eventually([&] { return health() == serving; }));
+    }
+  }
+  EXPECT_THAT(process_->log(), HasSubstr(database + " was deleted or renamed while"));
+  EXPECT_THAT(process_->log(), HasSubstr("the database is back in its place"));
+  process_->signal(SIGKILL);
+  process_->wait();
+  start();
+  EXPECT_EQ(get(after.name()).name(), after.name());
+}
+
+TEST_F(DaemonTest, ADatabaseInUseIsRefusedByAnyName) {
+  const std::string database = folder_.file("tribodyn.db");
+  const std::string linked = folder_.file("linked.db");
+  std::filesystem::create_hard_link(database, linked);
+  const auto refusal_of = [&](const std::vector<std::string>& arguments) {
+    std::filesystem::remove(folder_.file("second.log"));
+    ServerProcess second(arguments, folder_.file("second.log"));
+    const int code = second.wait();
+    return std::to_string(code) + " " + second.log();
+  };
+  const testing::Matcher<std::string> is_refused =
+      testing::AllOf(testing::StartsWith("3 "), HasSubstr("in use by another tribodynd"));
+  EXPECT_THAT(refusal_of({"--listen", "127.0.0.1:0", "--database", linked}), is_refused);
+  EXPECT_EQ(refusal_of({"backup", "--database", database, folder_.file("copy")}), "0 ");
+  std::filesystem::remove(database + ".lock");
+  EXPECT_THAT(refusal_of({"--listen", "127.0.0.1:0", "--database", database}), is_refused);
+  EXPECT_THAT(refusal_of({"restore", "--database", database, folder_.file("copy")}), is_refused);
+  v1::Simulation created;
+  EXPECT_TRUE(create(point_simulation(), &created).ok()) << "the first one is not disturbed";
 }
 
 TEST_F(DaemonTest, ASecondServerOnTheSameDatabaseOrPortSaysSo) {
@@ -214,6 +273,51 @@ TEST_F(DaemonTest, ASecondServerOnTheSameDatabaseOrPortSaysSo) {
                           folder_.file("third.log"));
   EXPECT_EQ(same_port.wait(), 4);
   EXPECT_THAT(same_port.log(), HasSubstr("cannot listen on " + address_));
+}
+
+/// The largest file that this process, and one that it starts meanwhile, may write; a larger one
+/// kills a process that leaves the signal at its default.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_DFL);
+    getrlimit(RLIMIT_FSIZE, &former_);
+    const rlimit limit{bytes, former_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &former_); }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit former_{};
+};
+
+class FileSizeLimitTest : public DaemonTest {
+ protected:
+  void SetUp() override {
+    const FileSizeLimit limit(2'000'000);
+    start();
+  }
+};
+
+TEST_F(FileSizeLimitTest, AFileThatMayNotGrowIsAFullDisk) {
+  v1::BatchCreateLubricantsRequest batch;
+  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
+  fluid.set_description(std::string(4000, 'x'));
+  for (int i = 0; i < 600; ++i) {
+    fluid.set_name("lubricants/batch-" + std::to_string(i));
+    *batch.add_requests()->mutable_lubricant() = fluid;
+  }
+  grpc::ClientContext context;
+  v1::BatchCreateLubricantsResponse response;
+  const grpc::Status status =
+      v1::Lubricants::NewStub(channel_)->BatchCreateLubricants(&context, batch, &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
+  EXPECT_TRUE(process_->running()) << process_->log();
+  EXPECT_EQ(count_of_lubricants("name:batch-"), 0);
+  v1::Simulation created;
+  EXPECT_TRUE(create(point_simulation(), &created).ok()) << "what is small has room";
 }
 
 class UnixSocketTest : public GrpcTest {
@@ -311,6 +415,9 @@ TEST(Flags, ACheckFindsWhatIsWrongAndMakesNothing) {
   EXPECT_EQ(run_briefly({"--database", folder.file("db"), "--check"}, &log), 0) << log;
   EXPECT_FALSE(std::filesystem::exists(folder.file("db")));
   EXPECT_EQ(run_briefly({"--database", folder.file("no/db"), "--check"}, &log), 3);
+  std::ofstream(folder.file("db.replaced")) << "a database";
+  EXPECT_EQ(run_briefly({"--database", folder.file("db"), "--check"}, &log), 3);
+  EXPECT_THAT(log, HasSubstr("db.replaced"));
   std::ofstream(folder.file("text")) << std::string(9000, 'x');
   EXPECT_EQ(run_briefly({"--database", folder.file("text"), "--check"}, &log), 3);
   std::ofstream(folder.file("conf")) << "thread = 2\n";
@@ -345,6 +452,11 @@ TEST(Flags, MistakesAreExplained) {
   EXPECT_EQ(run_briefly({}, &log), 2);
   EXPECT_THAT(log, HasSubstr("--database"));
   EXPECT_EQ(run_briefly({"--database", "x", "--threads", "many"}, &log), 2);
+  EXPECT_EQ(run_briefly({"--database", "x", "--call-limit-seconds", "nan"}, &log), 2);
+  EXPECT_THAT(log, HasSubstr("nan is no number from 0 to 86400"));
+  EXPECT_EQ(run_briefly({"--database", "x", "--disk-budget-megabytes", "-1"}, &log), 2);
+  EXPECT_EQ(run_briefly({"--config", "/dev/zero"}, &log), 2);
+  EXPECT_THAT(log, HasSubstr("/dev/zero is no regular file"));
   EXPECT_EQ(run_briefly({"--database", "/no/such/folder/x.db"}, &log), 3);
   EXPECT_THAT(log, HasSubstr("/no/such/folder/x.db"));
   EXPECT_EQ(run_briefly({"--version"}, &log), 0);

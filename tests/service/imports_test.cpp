@@ -59,6 +59,84 @@ TEST(Csv, NamesTheRowsThatAreWrong) {
   EXPECT_LE(violations.size(), kMaximumCsvViolations);
 }
 
+std::vector<double> column_of(CsvTable table, const char* header, Violations& violations) {
+  const CsvColumnForm forms[] = {{header, "x"}};
+  const auto columns = match_columns(table, forms, violations);
+  check_units_row(table, columns, violations);
+  if (columns.empty()) return {};
+  return numbers(table, columns.front(), EmptyCells::kAreNaN, violations);
+}
+
+TEST(Csv, ReadsDecimalCommasWhereCommasDoNotSeparate) {
+  for (const char* text : {"x;y\n0,5;1\n-1,25e1;2\n", "x\ty\n0,5\t1\n-1,25e1\t2\n"}) {
+    Violations violations;
+    const auto table = parse_csv(text, "t", 1000, violations);
+    ASSERT_TRUE(table);
+    const CsvColumnForm forms[] = {{"x", "x"}, {"y", "y"}};
+    const auto columns = match_columns(*table, forms, violations);
+    EXPECT_THAT(numbers(*table, columns[0], EmptyCells::kAreNaN, violations),
+                ElementsAre(0.5, -12.5));
+    EXPECT_TRUE(violations.empty());
+  }
+  Violations violations;
+  const auto table = parse_csv("x\n\"0,5\"\n\"1,5\"\n\"2,5\"\n", "t", 1000, violations);
+  column_of(*table, "x", violations);
+  ASSERT_EQ(violations.size(), 1U) << "one for all rows";
+  EXPECT_EQ(violations[0].field, "t row 2 column x");
+  EXPECT_THAT(violations[0].description,
+              testing::AllOf(HasSubstr("decimal point, or semicolons between the cells"),
+                             HasSubstr("(and in 2 more rows, the last row 4)")));
+  for (const char* cell : {"1,234,5", "1.234,5", ",5", "5,"}) {
+    violations.clear();
+    const auto wrong = parse_csv(fmt::format("x;y\n{};1\n", cell), "t", 1000, violations);
+    const CsvTable& x = *wrong;
+    const CsvColumnForm forms[] = {{"x", "x"}, {"y", "y"}};
+    numbers(x, match_columns(x, forms, violations)[0], EmptyCells::kAreNaN, violations);
+    EXPECT_EQ(violations.size(), 1U) << cell;
+  }
+}
+
+TEST(Csv, TellsOfARowOfUnitsInOneSentence) {
+  Violations violations;
+  const auto table = parse_csv("x;y\nmm;um\n1;2\n", "t", 1000, violations);
+  CsvTable read = *table;
+  const CsvColumnForm forms[] = {{"x", "x"}, {"y", "y"}};
+  const auto columns = match_columns(read, forms, violations);
+  check_units_row(read, columns, violations);
+  ASSERT_EQ(violations.size(), 1U);
+  EXPECT_EQ(violations[0].field, "t row 2");
+  EXPECT_THAT(violations[0].description,
+              testing::AllOf(HasSubstr("looks like units (\"mm\")"), HasSubstr("begin it with #")));
+  EXPECT_THAT(numbers(read, columns[1], EmptyCells::kViolation, violations), ElementsAre(2));
+  EXPECT_EQ(violations.size(), 1U) << "and not of its cells";
+}
+
+TEST(Csv, NamesWorkbooksAndUtf16) {
+  const auto said = [](const std::string& bytes) {
+    Violations violations;
+    EXPECT_FALSE(parse_csv(bytes, "t", 1000, violations));
+    return violations.size() == 1 ? violations[0].description : "";
+  };
+  EXPECT_THAT(said(std::string("PK\x03\x04\0\0", 6)), HasSubstr("is an Excel workbook"));
+  EXPECT_THAT(said(std::string("\xff\xfex\0\n\0", 6)), HasSubstr("is UTF-16"));
+  EXPECT_THAT(said(std::string("x\0\n\0", 4)), HasSubstr("is UTF-16"));
+}
+
+TEST(Csv, TakesHeadersInAnyCaseAndAsInstrumentsWriteThem) {
+  Violations violations;
+  const auto table = parse_csv("X (mm);Z [\u00b5m];Some Name\n1;2;3\n", "t", 1000, violations);
+  const CsvColumnForm forms[] = {{"position_metres", "p", 1, 0, "x|position", "m"},
+                                 {"position_millimetres", "p", 1e-3, 0, "x|position", "mm"},
+                                 {"height_micrometres", "h", 1e-6, 0, "z", "um"},
+                                 {"some_name", "n"}};
+  const auto columns = match_columns(*table, forms, violations);
+  EXPECT_TRUE(violations.empty());
+  ASSERT_EQ(columns.size(), 3U);
+  EXPECT_EQ(columns[0].form.header, "position_millimetres");
+  EXPECT_EQ(columns[1].form.header, "height_micrometres");
+  EXPECT_EQ(columns[2].form.header, "some_name");
+}
+
 class ImportTest : public testing::Test {
  protected:
   Bench bench_;
@@ -294,6 +372,20 @@ TEST_F(ImportTest, AllThatIsWrongWithAViscosityTableIsSaidAtOnce) {
   EXPECT_FALSE(bench_.store().resource("lubricants/oil")) << "nothing half-written";
 }
 
+TEST_F(ImportTest, AViscosityThatContradictsTheOthersIsNamedByItsRow) {
+  v1::ImportLubricantRequest asked;
+  asked.set_lubricant_id("oil");
+  asked.mutable_lubricant()
+      ->mutable_measurements()
+      ->set_density_15_celsius_kilograms_per_cubic_metre(868);
+  asked.set_viscosity_table_csv(
+      "T (C);KV (mm2/s);Viscosity (mPa s)\n100;15;\n40;103;\n20;283;\n0;;1000\n-40;;1200\n");
+  EXPECT_THAT(complaints(import_lubricant(app_, asked).error()),
+              testing::AllOf(HasSubstr("viscosity_table_csv row 6 column dynamic_viscosity_"
+                                       "millipascal_seconds: 1200 mPa s at -40 C"),
+                             HasSubstr("Did you mean 1200 P (120000 mPa s) at -40 C?")));
+}
+
 std::string waves(double amplitude, double wave_length, int samples,
                   const std::string& header = "position_micrometres,height_nanometres") {
   std::string out = header + "\n";
@@ -336,6 +428,163 @@ TEST_F(ImportTest, AProfileBecomesASurfaceOfItsMoments) {
   EXPECT_NEAR(both.message().composite_rms_height_metres(), std::sqrt(0.5) * 500e-9, 5e-9);
 }
 
+TEST_F(ImportTest, AnUnfilteredProfileIsToldAtOnceAndWithEveryResult) {
+  v1::ImportSurfaceProfilesRequest request;
+  request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
+  request.mutable_surface()->set_asperity_friction_coefficient(0.17);
+  std::string noise = "X (um);Z (nm)\n";
+  std::uint32_t state = 1;  // a linear congruential generator: white noise, the same everywhere
+  for (int i = 0; i < 4000; ++i) {
+    state = 1664525U * state + 1013904223U;
+    noise += fmt::format("{};{}\n", 0.5 * i, 400 * (state / 4294967296.0 - 0.5));
+  }
+  const auto warning_of = [](const v1::Surface& surface) {
+    std::string out;
+    for (const auto& entry : surface.provenance()) {
+      if (entry.field() == "asperity_radius_metres") out = entry.warning();
+    }
+    return out;
+  };
+  request.set_surface_id("noise");
+  request.add_profiles()->set_csv(noise);
+  const auto made = import_surface_profiles(app_, request);
+  ASSERT_TRUE(made.ok()) << complaints(made.error());
+  EXPECT_THAT(warning_of(made.message()),
+              testing::AllOf(HasSubstr("the profile has waves of 3 sample spacings"),
+                             HasSubstr("was not filtered"), HasSubstr("eta_G beta_G sigma_G is 0."),
+                             HasSubstr("filter them")));
+  v1::Simulation simulation = point_simulation();
+  simulation.set_surface("surfaces/noise");
+  const std::string name = bench_.create(simulation);
+  ASSERT_TRUE(bench_.reaches(name, v1::Simulation::SUCCEEDED));
+  std::vector<std::string> codes;
+  const v1::Simulation simulated = bench_.get(name);
+  for (const auto& each : simulated.result().input_warnings()) codes.push_back(each.code());
+  EXPECT_THAT(codes, ElementsAre("PROFILE_NOT_RESOLVED", "SURFACE_PARTLY_MEASURED"));
+
+  request.set_surface_id("filtered");
+  request.set_short_wave_cut_off_metres(5e-6);
+  request.set_long_wave_cut_off_metres(80e-6);
+  const auto filtered = import_surface_profiles(app_, request);
+  ASSERT_TRUE(filtered.ok()) << complaints(filtered.error());
+  EXPECT_THAT(warning_of(filtered.message()), Not(HasSubstr("spacings")));
+  EXPECT_EQ(filtered.message().measurements(0).short_wave_cut_off_metres(), 5e-6);
+  EXPECT_LT(filtered.message().composite_rms_height_metres(),
+            0.5 * made.message().composite_rms_height_metres());
+  request.set_surface_id("wrong");
+  request.set_short_wave_cut_off_metres(-1);
+  EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
+              HasSubstr("short_wave_cut_off_metres = -1 m; legal: 1e-09 to 0.01 m"));
+  request.set_short_wave_cut_off_metres(0.6e-6);
+  EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
+              HasSubstr("must be two sample spacings or more, 1e-06 m"));
+  request.clear_short_wave_cut_off_metres();
+  request.clear_long_wave_cut_off_metres();
+
+  request.set_surface_id("smooth");
+  request.mutable_profiles(0)->set_csv(waves(300, 50, 4001));
+  const auto smooth = import_surface_profiles(app_, request);
+  ASSERT_TRUE(smooth.ok()) << complaints(smooth.error());
+  EXPECT_THAT(warning_of(smooth.message()), Not(HasSubstr("spacings")));
+}
+
+TEST_F(ImportTest, Eq46AsPublishedJoinsTwoDirectionsByTheRootOfTheirSum) {
+  v1::ImportSurfaceProfilesRequest request;
+  request.set_surface_id("corrected");
+  request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
+  request.mutable_surface()->set_asperity_friction_coefficient(0.17);
+  const auto add = [&request](v1::ProfileDirection direction, double wave_length) {
+    v1::SurfaceProfile* profile = request.add_profiles();
+    profile->set_direction(direction);
+    profile->set_csv(waves(300, wave_length, 4001));
+  };
+  add(v1::AXIAL, 50);
+  add(v1::RADIAL, 80);
+  const auto corrected = import_surface_profiles(app_, request);
+  ASSERT_TRUE(corrected.ok()) << complaints(corrected.error());
+  request.set_surface_id("printed");
+  request.set_eq46_square_root_of_sum(true);
+  const auto printed = import_surface_profiles(app_, request);
+  ASSERT_TRUE(printed.ok()) << complaints(printed.error());
+
+  const v1::SurfaceMeasurement& axial = printed.message().measurements(0);
+  const v1::SurfaceMeasurement& radial = printed.message().measurements(1);
+  // Eq 48 of two flanks alike, whose moments add up (eq 47).
+  const auto expect = [](const v1::Surface& surface, double slope, double curvature) {
+    EXPECT_NEAR(surface.asperity_density_per_square_metre() * 6 * std::numbers::pi *
+                    std::sqrt(3.0) * slope / curvature,
+                1, 1e-12);
+    EXPECT_NEAR(
+        surface.asperity_radius_metres() / (0.375 * std::sqrt(std::numbers::pi / (2 * curvature))),
+        1, 1e-12);
+  };
+  const double m2[] = {axial.mean_square_slope(), radial.mean_square_slope()};
+  const double m4[] = {axial.mean_square_curvature_per_square_metre(),
+                       radial.mean_square_curvature_per_square_metre()};
+  expect(corrected.message(), std::sqrt(m2[0] * m2[1]), std::sqrt(m4[0] * m4[1]));
+  expect(printed.message(), std::sqrt(m2[0] + m2[1]), std::sqrt(m4[0] + m4[1]));
+  EXPECT_EQ(printed.message().composite_rms_height_metres(),
+            corrected.message().composite_rms_height_metres());
+  for (const auto& [made, says_so] : {std::pair{&corrected, false}, std::pair{&printed, true}}) {
+    for (const auto& entry : made->message().provenance()) {
+      if (entry.field() != "asperity_radius_metres") continue;
+      EXPECT_EQ(entry.source().find("eq 46 as published") != std::string::npos, says_so);
+    }
+  }
+}
+
+TEST_F(ImportTest, RepeatsOfADirectionAreAveraged) {
+  v1::ImportSurfaceProfilesRequest request;
+  request.set_surface_id("repeated");
+  request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
+  request.mutable_surface()->set_asperity_friction_coefficient(0.17);
+  for (const double amplitude : {200.0, 300.0, 500.0}) {
+    v1::SurfaceProfile* profile = request.add_profiles();
+    profile->set_direction(v1::AXIAL);
+    profile->set_csv(waves(amplitude, 50, 4001));
+  }
+  const auto axial = import_surface_profiles(app_, request);
+  ASSERT_TRUE(axial.ok()) << complaints(axial.error());
+  ASSERT_EQ(axial.message().measurements_size(), 3);
+  double m0 = 0, m4 = 0;
+  for (const v1::SurfaceMeasurement& each : axial.message().measurements()) {
+    m0 += each.mean_square_height_square_metres() / 3;
+    m4 += each.mean_square_curvature_per_square_metre() / 3;
+  }
+  // Two flanks alike.
+  EXPECT_NEAR(axial.message().composite_rms_height_metres() / std::sqrt(2 * m0), 1, 1e-12);
+  EXPECT_NEAR(
+      axial.message().asperity_radius_metres() / (0.375 * std::sqrt(std::numbers::pi / (2 * m4))),
+      1, 1e-12);
+  request.set_surface_id("joined");
+  v1::SurfaceProfile* radial = request.add_profiles();
+  radial->set_direction(v1::RADIAL);
+  radial->set_csv(waves(300, 80, 4001));
+  const auto joined = import_surface_profiles(app_, request);
+  ASSERT_TRUE(joined.ok()) << complaints(joined.error());
+  const double across = joined.message().measurements(3).mean_square_curvature_per_square_metre();
+  EXPECT_NEAR(joined.message().asperity_radius_metres() /
+                  (0.375 * std::sqrt(std::numbers::pi / (2 * std::sqrt(m4 * across)))),
+              1, 1e-12);
+}
+
+TEST_F(ImportTest, Eq46AsPublishedNeedsTwoDirectionsOfAMember) {
+  v1::ImportSurfaceProfilesRequest request;
+  request.set_surface_id("one");
+  request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
+  request.mutable_surface()->set_asperity_friction_coefficient(0.17);
+  request.set_eq46_square_root_of_sum(true);
+  for (const v1::FlankMember member : {v1::PINION, v1::GEAR}) {
+    v1::SurfaceProfile* profile = request.add_profiles();
+    profile->set_member(member);
+    profile->set_direction(member == v1::PINION ? v1::AXIAL : v1::RADIAL);
+    profile->set_csv(waves(300, 50, 4001));
+  }
+  EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
+              HasSubstr("eq46_square_root_of_sum: true; legal: false, as eq 46 joins an AXIAL and "
+                        "a RADIAL profile of one member"));
+}
+
 TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
   v1::ImportSurfaceProfilesRequest request;
   request.set_surface_id("measured");
@@ -374,7 +623,8 @@ TEST_F(ImportTest, EverythingWrongWithProfilesComesAtOnce) {
   const std::string said = complaints(import_surface_profiles(app_, request).error());
   for (const char* each :
        {"surface.composite_rms_height_metres: composite_rms_height_metres follows",
-        "profiles: two of one member and direction", "profiles[0].csv row 6: 3 cells; legal: 2",
+        "profiles: two of one member without a direction",
+        "profiles[0].csv row 6: 3 cells; legal: 2",
         "profiles[0].csv row 4 column position_micrometres: \"x\"",
         "profiles[0].csv row 8 column height_nanometres: is empty",
         "profiles[0].csv row 10 column position_micrometres: a step of -5e-07 m",

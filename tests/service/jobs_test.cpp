@@ -18,8 +18,8 @@ namespace {
 template <class Thrown>
 StudyFunctions throwing(const Thrown& thrown) {
   StudyFunctions out = quick_studies();
-  out.solve_operating_point = [thrown](const Scene&, const OperatingCondition&,
-                                       const PointOptions&) -> PointResult { throw thrown; };
+  out.solve_operating_point = [thrown](const Scene&, const OperatingCondition&, const PointOptions&,
+                                       const auto&) -> PointResult { throw thrown; };
   return out;
 }
 
@@ -283,7 +283,7 @@ TEST(SimulationJobs, ProgressIsPublishedFourTimesASecondHoweverOftenItIsReported
   StudyFunctions studies = quick_studies();
   studies.solve_operating_point = [&, inner = studies.solve_operating_point](
                                       const Scene& scene, const OperatingCondition& condition,
-                                      const PointOptions& options) {
+                                      const PointOptions& options, const auto& gear_set) {
     while (!watched) std::this_thread::yield();
     const auto begin = steady_clock::now();
     while (steady_clock::now() - begin < milliseconds(600)) {
@@ -291,7 +291,7 @@ TEST(SimulationJobs, ProgressIsPublishedFourTimesASecondHoweverOftenItIsReported
       ++reports;
     }
     quarters = (steady_clock::now() - begin) / milliseconds(250);
-    return inner(scene, condition, options);
+    return inner(scene, condition, options, gear_set);
   };
   Bench bench(studies);
   const std::string name = bench.create(point_simulation());
@@ -325,10 +325,14 @@ TEST(SimulationJobs, ARefusalBecomesAFailureWithItsReason) {
 }
 
 TEST(SimulationJobs, ADefectBecomesAFailureAndTheNextOneRuns) {
-  Bench bench(throwing(std::logic_error("defect")), 1);
+  const LogCapture log;
+  Bench bench(throwing(std::logic_error("the defect itself")), 1);
   const std::string name = bench.create(point_simulation());
   ASSERT_TRUE(bench.reaches(name, v1::Simulation::FAILED));
   EXPECT_EQ(bench.get(name).error().reason(), "INTERNAL");
+  EXPECT_THAT(bench.get(name).error().message(), testing::Not(testing::HasSubstr("defect")));
+  EXPECT_THAT(log.text(),
+              testing::HasSubstr("simulation=" + name + " cause=\"the defect itself\""));
   const std::string next = bench.create(curve_simulation());
   EXPECT_TRUE(bench.reaches(next, v1::Simulation::SUCCEEDED));
 }
@@ -347,7 +351,8 @@ TEST(SimulationJobs, MemoryThatRunsOutBecomesAFailure) {
 
 TEST(SimulationJobs, NumbersThatAreNotFiniteNeverBecomeAResult) {
   StudyFunctions studies = quick_studies();
-  studies.solve_operating_point = [](const Scene&, const OperatingCondition&, const PointOptions&) {
+  studies.solve_operating_point = [](const Scene&, const OperatingCondition&, const PointOptions&,
+                                     const auto&) {
     PointResult out;
     out.film_ratio.mean = std::numeric_limits<double>::quiet_NaN();
     return out;

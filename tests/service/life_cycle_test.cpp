@@ -1,5 +1,6 @@
 // A simulation from its request to its end: sent twice, served from the cache, watched, cancelled,
 // too late, interrupted.
+#include <SQLiteCpp/Statement.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +12,8 @@
 #include "google/rpc/error_details.pb.h"
 #include "server/app/simulations.h"
 #include "server/app/streams.h"
+#include "server/jobs/janitor.h"
+#include "server/store/maintenance.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -101,6 +104,21 @@ TEST_F(LifeCycle, ARequestIsTheSameByItsValuesAndNotByWhatHasChangedSince) {
   EXPECT_EQ(bench.create(with_output), name) << "what only the server sets does not count";
 }
 
+TEST_F(LifeCycle, ARequestOfTooManyElementsIsRefusedBeforeAnythingElseIsDoneWithIt) {
+  Bench bench;
+  bench.create(request_of(point_simulation(), "taken"));
+  auto large = request_of(point_simulation(), "taken");
+  for (int i = 0; i < 100'000; ++i) large.mutable_simulation()->add_labels();
+  auto* history = large.mutable_simulation()->mutable_operating_point()->mutable_history();
+  for (int i = 0; i < 101; ++i) history->add_columns("x");
+  const google::rpc::Status status = create(bench, large).error();
+  EXPECT_EQ(status.code(), google::rpc::INVALID_ARGUMENT) << "not that the request_id is taken";
+  EXPECT_THAT(complaint_lines(status),
+              testing::ElementsAre(
+                  "simulation.operating_point.history.columns: 101 entries; legal: at most 100",
+                  "simulation.labels: 100000 entries; legal: at most 64"));
+}
+
 TEST_F(LifeCycle, AnotherRequestUnderTheSameIdIsRefusedAndSaysWhatDiffers) {
   Bench bench;
   const std::string name = bench.create(request_of(point_simulation(), "taken"));
@@ -189,7 +207,8 @@ TEST_F(LifeCycle, ARunThatDoesNotReproduceAResultFails) {
   Bench bench;
   finished(bench, request_of(point_simulation()));
   StudyFunctions others = quick_studies();
-  others.solve_operating_point = [](const Scene&, const OperatingCondition&, const PointOptions&) {
+  others.solve_operating_point = [](const Scene&, const OperatingCondition&, const PointOptions&,
+                                    const auto&) {
     PointResult out;
     out.inefficiency_rms = 1.25;
     return out;
@@ -200,6 +219,80 @@ TEST_F(LifeCycle, ARunThatDoesNotReproduceAResultFails) {
   const std::string name = bench.create(forced);
   ASSERT_TRUE(bench.reaches(name, State::FAILED));
   EXPECT_EQ(bench.get(name).error().reason(), "RESULT_NOT_REPRODUCED");
+}
+
+/// Flips a bit of the first row of a table, behind the server's back.
+void flip_a_bit(const Bench& bench, const std::string& table, const std::string& column) {
+  SQLite::Database raw(bench.database(), SQLite::OPEN_READWRITE);
+  SQLite::Statement query(raw, "SELECT rowid, " + column + " FROM " + table + " LIMIT 1");
+  ASSERT_TRUE(query.executeStep());
+  const std::int64_t row = query.getColumn(0).getInt64();
+  std::string bytes = query.getColumn(1).getString();
+  query.reset();
+  bytes[bytes.size() / 2] ^= 4;
+  SQLite::Statement update(raw, "UPDATE " + table + " SET " + column + " = ? WHERE rowid = ?");
+  update.bind(1, bytes.data(), static_cast<int>(bytes.size()));
+  update.bind(2, row);
+  update.exec();
+}
+
+TEST_F(LifeCycle, ADamagedResultIsDataLossUntilAForcedRunWritesItAgain) {
+  Bench bench;
+  v1::Simulation simulation = point_simulation();
+  v1::HistoryRequest& history = *simulation.mutable_operating_point()->mutable_history();
+  history.add_columns("mesh_force_newtons");
+  history.set_mesh_cycles(2);
+  history.set_samples_per_mesh_cycle(50);
+  auto request = request_of(simulation);
+  const std::string name = finished(bench, request);
+  request.set_force(true);
+  const auto code_of_result = [&] {
+    Application app = bench.application();
+    v1::GetSimulationRequest get;
+    get.set_name(name);
+    const auto outcome = get_simulation(app, get);
+    return outcome.ok() ? 0 : outcome.error().code();
+  };
+  const auto code_of_history = [&] {
+    Application app = bench.application();
+    v1::ReadHistoryRequest read;
+    read.set_name(name);
+    const auto outcome = read_history(app, read);
+    if (!outcome.ok()) return outcome.error().code();
+    v1::ReadHistoryResponse chunk;
+    while (outcome.message()->next(chunk) ==
+           MessageSource<v1::ReadHistoryResponse>::Step::kMessage) {
+    }
+    return outcome.message()->error().code();
+  };
+  for (const auto& [table, column] : {std::pair("results", "body"), std::pair("ledgers", "body"),
+                                      std::pair("history_blocks", "data")}) {
+    ASSERT_EQ(code_of_result(), 0);
+    ASSERT_EQ(code_of_history(), 0);
+    flip_a_bit(bench, table, column);
+    const bool is_history = std::string(table) == "history_blocks";
+    EXPECT_EQ(code_of_result(), is_history ? 0 : google::rpc::DATA_LOSS) << table;
+    // A history comes with the warnings that the result holds.
+    EXPECT_EQ(code_of_history(), google::rpc::DATA_LOSS) << table;
+    finished(bench, request);
+  }
+  EXPECT_EQ(code_of_result(), 0);
+  EXPECT_EQ(code_of_history(), 0);
+  EXPECT_THAT(check_database(bench.database()), testing::IsEmpty());
+}
+
+TEST_F(LifeCycle, ALargeImportDoesNotEvictResults) {
+  Bench bench;
+  const std::string name = finished(bench, request_of(point_simulation()));
+  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+  lubricant.set_name("lubricants/large");
+  lubricant.set_description(std::string(1'000'000, 'x'));
+  bench.store().add_resources({{lubricant.name(), lubricant.SerializeAsString()}}, 1);
+  const auto clock = [later = system_time() + 120'000'000] { return later; };
+  Janitor(bench.store(), {.disk_budget_bytes = 500'000}, clock).clean();
+  EXPECT_TRUE(bench.get(name).has_result());
+  Janitor(bench.store(), {.disk_budget_bytes = 500}, clock).clean();
+  EXPECT_FALSE(bench.store().simulation(1)) << "a result and its simulation take more";
 }
 
 TEST_F(LifeCycle, AResultOfAnotherModelOrPlatformServesNobody) {

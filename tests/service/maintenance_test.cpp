@@ -5,8 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <thread>
 
 #include "server/app/stored_inputs.h"
 #include "server/store/schema.h"
@@ -32,6 +35,7 @@ class MaintenanceTest : public testing::Test {
     const auto id = store
                         .add_simulation({.request = point_simulation().SerializeAsString(),
                                          .key = key,
+                                         .ledger = "assumptions",
                                          .lubricant_revision = "lubricants/1@1"},
                                         5)
                         .id;
@@ -40,13 +44,39 @@ class MaintenanceTest : public testing::Test {
     result.set_input_hash(std::string(64, 'a'));
     store.mark_succeeded(id, 7, {key, result.SerializeAsString(), {{"a", {1, 2}}}});
   }
+  /// Changes the database behind the back of its triggers, which are there again afterwards.
   void damage(const std::string& sql) const {
     SQLite::Database raw(path(), SQLite::OPEN_READWRITE);
-    raw.exec("DROP TRIGGER revisions_never_change; DROP TRIGGER revisions_stay;");
+    std::vector<std::string> triggers;
+    SQLite::Statement query(raw, "SELECT name, sql FROM sqlite_master WHERE type = 'trigger'");
+    std::string drop;
+    while (query.executeStep()) {
+      drop += "DROP TRIGGER " + query.getColumn(0).getString() + ";";
+      triggers.push_back(query.getColumn(1).getString());
+    }
+    query.reset();
+    raw.exec(drop);
     raw.exec(sql);
+    for (const std::string& trigger : triggers) raw.exec(trigger);
   }
   TemporaryFolder folder_;
 };
+
+/// Revision and body of all resources, by name, as a database of any schema holds them.
+std::map<std::string, std::pair<int, std::string>> stored_resources(const std::string& file,
+                                                                    int schema) {
+  SQLite::Database raw(file, SQLite::OPEN_READONLY);
+  SQLite::Statement query(
+      raw, schema == 1 ? "SELECT name, 1, body FROM resources"
+                       : "SELECT r.name, v.revision, v.body FROM resources r JOIN revisions v "
+                         "ON v.id = r.present");
+  std::map<std::string, std::pair<int, std::string>> out;
+  while (query.executeStep()) {
+    out[query.getColumn(0).getString()] = {query.getColumn(1).getInt(),
+                                           query.getColumn(2).getString()};
+  }
+  return out;
+}
 
 /// One stored file of every schema before the present one.
 class OldSchema : public testing::TestWithParam<int> {};
@@ -58,13 +88,15 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
       test_data_file("schemas/schema_" + std::to_string(GetParam()) + ".sqlite"), file);
   std::filesystem::permissions(file, std::filesystem::perms::owner_all);
   EXPECT_THAT(check_database(file), IsEmpty());
+  const auto before = stored_resources(file, GetParam());
   Store store(file);
   EXPECT_THAT(check_database(file), IsEmpty());
-  for (const NewResource& seed : seed_resources()) {
-    const auto stored = store.resource(seed.name);
-    ASSERT_TRUE(stored) << seed.name;
-    EXPECT_EQ(stored->revision, 1);
-    EXPECT_EQ(stored->body, seed.body) << seed.name;
+  for (const NewResource& seed : seed_resources()) EXPECT_EQ(before.count(seed.name), 1U);
+  for (const auto& [name, resource] : before) {
+    const auto stored = store.resource(name);
+    ASSERT_TRUE(stored) << name;
+    EXPECT_EQ(stored->revision, resource.first) << name;
+    EXPECT_EQ(stored->body, resource.second) << name;
   }
   EXPECT_EQ(store.simulations({.limit = 100, .byte_limit = 1 << 30}).rows.size(), 7U);
   EXPECT_EQ(store.simulation(1)->lubricant_revision, "lubricants/2@1");
@@ -83,8 +115,13 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   }
   EXPECT_THAT(store.requeue_unfinished(9), SizeIs(2));
   EXPECT_THAT(check_database(file, hash_stored_inputs), IsEmpty());
-  SQLite::Database raw(file, SQLite::OPEN_READONLY);
+  SQLite::Database raw(file, SQLite::OPEN_READWRITE);
   EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), kSchemaVersion);
+  raw.exec("UPDATE results SET body = substr(body, 2)");
+  raw.exec("UPDATE history_blocks SET data = substr(data, 2)");
+  for (const char* damaged : {"result 1: its content", "result 2: its history"}) {
+    EXPECT_THAT(check_database(file), Contains(HasSubstr(damaged)));
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemas, OldSchema, testing::Range(1, kSchemaVersion));
@@ -118,6 +155,37 @@ TEST_F(MaintenanceTest, ABackupOfARunningServerIsWholeAndComesBack) {
   EXPECT_EQ(store.history_rows(1, "a", 0, 2), (std::vector<double>{1, 2}));
 }
 
+TEST_F(MaintenanceTest, ABackupEndsWhileAnotherConnectionCommitsAllTheTime) {
+  const TemporaryFolder memory(TemporaryFolder::Kind::kMemory);
+  Store store(memory.file("db"));
+  store.add_resources(seed_resources(), 1);
+  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+  lubricant.set_description(std::string(1'000'000, 'x'));
+  for (int i = 0; i < 12; ++i) {  // thousands of pages
+    lubricant.set_name("lubricants/large-" + std::to_string(i));
+    store.add_resources({{lubricant.name(), lubricant.SerializeAsString()}}, 2);
+  }
+  const ResultKey key{std::string(64, 'a'), "model", "platform"};
+  const std::int64_t id = store.add_simulation({.request = "", .key = key}, 3).id;
+  std::atomic<bool> is_over = false;
+  std::thread writer([&] {
+    for (bool is_pinned = true; !is_over; is_pinned = !is_pinned) store.set_pinned(id, is_pinned);
+  });
+  EXPECT_NO_THROW(backup_database(memory.file("db"), memory.file("copy")));
+  is_over = true;
+  writer.join();
+  EXPECT_THAT(check_database(memory.file("copy")), IsEmpty());
+}
+
+TEST_F(MaintenanceTest, ABackupLeavesFilesOfSimilarNamesAlone) {
+  make();
+  std::ofstream(folder_.file("copy.new")) << "mine";
+  backup_database(path(), folder_.file("copy"));
+  std::string text;
+  std::getline(std::ifstream(folder_.file("copy.new")), text);
+  EXPECT_EQ(text, "mine");
+}
+
 TEST_F(MaintenanceTest, ADamagedDatabaseIsNotBackedUpAsIfItWereWhole) {
   make();
   damage("UPDATE revisions SET body = x'00' WHERE id = 1");
@@ -125,6 +193,22 @@ TEST_F(MaintenanceTest, ADamagedDatabaseIsNotBackedUpAsIfItWereWhole) {
   EXPECT_THROW(backup_database(path(), copy), StoreError);
   EXPECT_FALSE(std::filesystem::exists(copy));
   EXPECT_FALSE(std::filesystem::exists(copy + ".new"));
+}
+
+TEST_F(MaintenanceTest, ADatabaseWrittenWhileTheClockWentBackIsBackedUp) {
+  make();
+  {
+    Store store(path());
+    const StoredResource present = *store.resource("gearSets/A");
+    ASSERT_TRUE(store.write_resources({{{present.name, present.body}, present}}, 100));
+  }
+  damage(
+      "UPDATE revisions SET create_time = 40 WHERE revision = 2;"
+      "UPDATE revisions SET create_time = 50 WHERE resource = "
+      "(SELECT resource FROM revisions WHERE revision = 2) AND revision = 1;"
+      "UPDATE properties SET value = 40 WHERE name = 'gearSets/A' AND key = 'update_time'");
+  EXPECT_THAT(check_database(path()), IsEmpty());
+  EXPECT_NO_THROW(backup_database(path(), folder_.file("copy")));
 }
 
 TEST_F(MaintenanceTest, ADamagedBackupIsNotRestored) {
@@ -160,6 +244,65 @@ TEST(Inputs, OfAStoredSimulationStillHaveTheirHash) {
               Contains(HasSubstr("its inputs have another hash")));
 }
 
+TEST_F(MaintenanceTest, ServerCheckAndRestoreRefuseTheSameDatabases) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"PRAGMA user_version = 0", "its schema is numbered 0"},
+      {"PRAGMA user_version = -1", "its schema is numbered -1"},
+      {"PRAGMA user_version = 2", "its table history is missing"},
+      {"PRAGMA user_version = 99", "newer tribodynd"},
+      {"PRAGMA application_id = 7", "another program"},
+      {"CREATE TABLE notes (text TEXT)", "its table notes is not of this program"},
+      {"CREATE TRIGGER planted AFTER INSERT ON simulations BEGIN DELETE FROM results; END",
+       "its trigger planted is not of this program"},
+      {"DROP INDEX one_result_per_input", "its index one_result_per_input is missing"},
+      {"DROP TABLE events", "its table events is missing"},
+      {"DROP VIEW revision_names; CREATE VIEW revision_names AS SELECT 1", "view revision_names"},
+  };
+  make();
+  std::filesystem::copy_file(path(), folder_.file("sound"));
+  for (const auto& [sql, reason] : cases) {
+    std::filesystem::copy_file(folder_.file("sound"), path(),
+                               std::filesystem::copy_options::overwrite_existing);
+    { SQLite::Database(path(), SQLite::OPEN_READWRITE).exec(sql); }
+    const auto sentence_of = [](const auto& action) -> std::string {
+      try {
+        action();
+      } catch (const StoreError& error) {
+        return error.what();
+      }
+      return "nothing";
+    };
+    EXPECT_THAT(sentence_of([&] { Store store(path()); }), HasSubstr(reason)) << sql;
+    EXPECT_THAT(sentence_of([&] { backup_database(path(), folder_.file("copy")); }),
+                HasSubstr(reason));
+    EXPECT_THAT(sentence_of([&] { restore_database(path(), folder_.file("other")); }),
+                HasSubstr(reason));
+    std::vector<std::string> problems;
+    problems.push_back(sentence_of([&] { problems = check_database(path()); }));
+    EXPECT_THAT(problems, Contains(HasSubstr(reason))) << sql;
+  }
+}
+
+TEST_F(MaintenanceTest, AnEmptyFileIsANewDatabaseButNoBackup) {
+  std::ofstream(folder_.file("empty")).flush();
+  EXPECT_THAT(check_database(folder_.file("empty")), IsEmpty());
+  EXPECT_THROW(restore_database(folder_.file("empty"), path()), StoreError);
+  EXPECT_FALSE(std::filesystem::exists(path()));
+  EXPECT_NO_THROW(Store(folder_.file("empty")));
+  EXPECT_THROW(Store("/dev/null"), StoreError);
+  EXPECT_THROW(check_database("/dev/null"), StoreError);
+}
+
+TEST_F(MaintenanceTest, ANumberOfRowsThatNoHistoryHasIsDamageAndTakesNoMemory) {
+  make();
+  damage("UPDATE history_columns SET rows = 1000000000000");
+  EXPECT_THAT(check_database(path()), Contains(HasSubstr("its history is damaged")));
+  damage("UPDATE history_columns SET rows = 20000000");
+  EXPECT_THAT(check_database(path()), Contains(HasSubstr("its history is damaged")));
+  damage("UPDATE history_columns SET rows = 9223372036854775807");
+  EXPECT_THAT(check_database(path()), Contains(HasSubstr("its history is damaged")));
+}
+
 TEST_F(MaintenanceTest, CheckFindsWhatIsWrong) {
   const std::pair<const char*, const char*> cases[] = {
       {"UPDATE revisions SET body = x'00' WHERE id = 1", "not what was written"},
@@ -170,15 +313,14 @@ TEST_F(MaintenanceTest, CheckFindsWhatIsWrong) {
       {"PRAGMA foreign_keys = OFF; DELETE FROM results", "points at"},
       {"DELETE FROM events WHERE sequence = 2", "gaps"},
       {"DELETE FROM events WHERE sequence = 3", "gaps"},
-      {"DROP TRIGGER events_never_change; UPDATE events SET state = 2 WHERE sequence = 3",
-       "another state"},
-      {"DROP TRIGGER events_never_change; UPDATE events SET state = 4 WHERE sequence = 1",
-       "backwards"},
-      {"DROP INDEX one_result_per_input; INSERT INTO results "
-       "SELECT 9, input_hash, model_version, platform, 1, body FROM results",
-       "more than one result"},
+      {"UPDATE events SET state = 2 WHERE sequence = 3", "another state"},
+      {"UPDATE events SET state = 4 WHERE sequence = 1", "backwards"},
+      {"UPDATE results SET body = x'0a00'", "result 1: its content is not what was written"},
+      {"UPDATE results SET checksum = checksum + 1", "result 1: its content is not what was"},
+      {"UPDATE ledgers SET body = x'0a00'", "ledger 1: its content is not what was written"},
       {"UPDATE simulations SET input_hash = printf('%064d', 0)", "of other inputs"},
       {"UPDATE history_blocks SET data = x'0000'", "history"},
+      {"UPDATE history_blocks SET checksum = checksum + 1", "history"},
       {"DELETE FROM history_blocks", "history"},
       {"UPDATE history_columns SET rows = 3", "history"},
   };

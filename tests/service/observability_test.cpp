@@ -7,9 +7,11 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <string>
 
 #include "tests/service/grpc_fixture.h"
+#include "tests/service/raw_client.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
 
 namespace tribodyn::server {
@@ -64,6 +66,14 @@ class ObservabilityTest : public GrpcTest {
 
   int port_ = 0;
 };
+
+TEST_F(ObservabilityTest, SilentConnectionsDoNotStarveAScraper) {
+  const SilentConnections silent(port_, 10);
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_THAT(http_get(port_, "/metrics"), HasSubstr("tribodyn"));
+  // Ten seconds if each could stay silent for as long as a request may take.
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(8));
+}
 
 TEST_F(ObservabilityTest, MetricsTellPhasesCountsCacheHitsAndTheBuild) {
   v1::CreateSimulationRequest request;

@@ -9,7 +9,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 
 namespace tribodyn::server {
 namespace {
@@ -111,6 +113,103 @@ SilentConnections::SilentConnections(int port, int count) {
 SilentConnections::~SilentConnections() {
   for (const int descriptor : descriptors_) close(descriptor);
 }
+
+namespace {
+
+/// A frame of HTTP/2 on stream 0 or 1.
+std::string frame(char type, char flags, char stream, const std::string& body) {
+  const auto byte = [&](int shift) { return static_cast<char>(body.size() >> shift); };
+  return std::string{byte(16), byte(8), byte(0), type, flags, 0, 0, 0, stream} + body;
+}
+
+/// A header field without compression.
+std::string header(const std::string& name, const std::string& value) {
+  return std::string(1, '\0') + static_cast<char>(name.size()) + name +
+         static_cast<char>(value.size()) + value;
+}
+
+/// A whole frame from the server; false when there is none within the time limit of the socket.
+bool receive_frame(int descriptor, std::string& head, std::string& body) {
+  const auto receive = [&](std::string& out, std::size_t count) {
+    out.resize(count);
+    return count == 0 ||
+           recv(descriptor, out.data(), count, MSG_WAITALL) == static_cast<ssize_t>(count);
+  };
+  if (!receive(head, 9)) return false;
+  std::size_t size = 0;
+  for (int i = 0; i < 3; ++i) size = size << 8 | static_cast<unsigned char>(head[i]);
+  return receive(body, size);
+}
+
+std::int64_t number_at(const std::string& bytes, std::size_t offset) {
+  std::int64_t out = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    out = out << 8 | static_cast<unsigned char>(bytes[offset + i]);
+  }
+  return out;
+}
+
+}  // namespace
+
+HalfSentCall::HalfSentCall(int port, const std::string& method, std::size_t size)
+    : descriptor_(open_connection(port)) {
+  constexpr char kData = 0;
+  constexpr char kHeaders = 1;
+  constexpr char kSettings = 4;
+  constexpr char kPing = 6;
+  constexpr char kWindowUpdate = 8;
+  constexpr char kEndOfHeaders = 4;
+  constexpr char kAcknowledged = 1;
+  constexpr std::int64_t kInitialWindow = 65'535;
+  constexpr std::int64_t kLargestFrame = 16'384;
+  const timeval limit{.tv_sec = 1, .tv_usec = 0};
+  setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
+  const auto put = [this](const std::string& bytes) {
+    return send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
+           static_cast<ssize_t>(bytes.size());
+  };
+  std::string message(5 + size - 1, '\x3a');  // not compressed, and its length
+  message[0] = 0;
+  for (int i = 0; i < 4; ++i) message[1 + i] = static_cast<char>(size >> (24 - 8 * i));
+  put("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + frame(kSettings, 0, 0, "") +
+      frame(kHeaders, kEndOfHeaders, 1,
+            header(":method", "POST") + header(":scheme", "http") + header(":path", method) +
+                header(":authority", "x") + header("te", "trailers") +
+                header("content-type", "application/grpc")));
+  std::int64_t of_connection = kInitialWindow;
+  std::int64_t of_stream = kInitialWindow;
+  std::int64_t initial = kInitialWindow;
+  std::size_t sent = 0;
+  std::string head;
+  std::string body;
+  while (sent < message.size()) {
+    const std::int64_t room = std::min({of_connection, of_stream, kLargestFrame,
+                                        static_cast<std::int64_t>(message.size() - sent)});
+    if (room > 0) {
+      if (!put(frame(kData, 0, 1, message.substr(sent, static_cast<std::size_t>(room))))) return;
+      sent += static_cast<std::size_t>(room);
+      of_connection -= room;
+      of_stream -= room;
+      continue;
+    }
+    if (!receive_frame(descriptor_, head, body)) return;  // the server takes no more
+    const bool is_answer = (head[4] & kAcknowledged) != 0;
+    if (head[3] == kWindowUpdate) {
+      (head[8] == 1 ? of_stream : of_connection) += number_at(body, 0);
+    } else if (head[3] == kPing && !is_answer) {
+      put(frame(kPing, kAcknowledged, 0, body));
+    } else if (head[3] == kSettings && !is_answer) {
+      for (std::size_t i = 0; i + 6 <= body.size(); i += 6) {
+        if (body[i] != 0 || body[i + 1] != 4) continue;  // SETTINGS_INITIAL_WINDOW_SIZE
+        of_stream += number_at(body, i + 2) - initial;
+        initial = number_at(body, i + 2);
+      }
+      put(frame(kSettings, kAcknowledged, 0, ""));
+    }
+  }
+}
+
+HalfSentCall::~HalfSentCall() { close(descriptor_); }
 
 void send_raw_bytes(int port, const std::string& bytes) {
   const int descriptor = open_connection(port);

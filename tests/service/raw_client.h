@@ -41,6 +41,19 @@ class SilentConnections {
   std::vector<int> descriptors_;
 };
 
+/// A call on a connection of its own whose request of `size` bytes lacks its last byte. Sends as
+/// much as the server takes; open as long as the object.
+class HalfSentCall {
+ public:
+  HalfSentCall(int port, const std::string& method, std::size_t size);
+  ~HalfSentCall();
+  HalfSentCall(const HalfSentCall&) = delete;
+  HalfSentCall& operator=(const HalfSentCall&) = delete;
+
+ private:
+  int descriptor_;
+};
+
 /// Connects to a local port, sends bytes that are no HTTP/2, and hangs up.
 void send_raw_bytes(int port, const std::string& bytes);
 

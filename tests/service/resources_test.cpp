@@ -13,6 +13,7 @@
 #include "server/app/schemas.h"
 #include "server/app/simulations.h"
 #include "server/convert/constraints.h"
+#include "server/convert/element_limits.h"
 #include "server/convert/output_only.h"
 #include "server/convert/provenance.h"
 #include "server/store/deadline.h"
@@ -374,6 +375,45 @@ TEST_F(ListTest, OrdersHoldOverPages) {
   EXPECT_THAT(ids("", "update_time", 3).size(), 8U);
 }
 
+TEST_F(ListTest, ComputedFiguresFilterAndOrderOverPages) {
+  for (const double kv40 : {70.0, 100.0, 150.0, 85.0}) {
+    v1::Lubricant fluid = three_numbers();
+    fluid.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
+        kv40);
+    fluid.set_condition(kv40 < 100 ? v1::Lubricant::FRESH : v1::Lubricant::USED);
+    ASSERT_TRUE(create(fluid, "k" + std::to_string(static_cast<int>(kv40))).ok());
+  }
+  for (const int size : {1, 3, 100}) {
+    EXPECT_THAT(ids("name:k AND kv40 > 80 AND kv40 <= 100", "", size), ElementsAre("k100", "k85"));
+    EXPECT_THAT(ids("name:k", "kv40", size), ElementsAre("k70", "k85", "k100", "k150"));
+    EXPECT_THAT(ids("name:k", "kv40 desc", size), ElementsAre("k150", "k100", "k85", "k70"));
+    // The higher KV40 at the same KV100, the lower the index.
+    EXPECT_THAT(ids("name:k AND vi < 160", "viscosity_index desc", size),
+                ElementsAre("k100", "k150"));
+    EXPECT_THAT(ids("name:k AND condition = USED", "vi", size), ElementsAre("k150", "k100"));
+    EXPECT_THAT(ids("name:k AND sae_grade = 90 AND kv100 = 14.2 AND density > 860", "", size),
+                ElementsAre("k100", "k150", "k70", "k85"));
+    EXPECT_THAT(ids("name:k AND kv40 != 100", "condition desc", size),
+                ElementsAre("k150", "k85", "k70"));
+  }
+  // All oils that the fixture made have the same figures: their names decide.
+  EXPECT_THAT(ids("name:o", "kv40 desc", 3),
+              ElementsAre("o7", "o6", "o5", "o4", "o3", "o2", "o1", "o0"));
+  EXPECT_THAT(ids("kv40:*").size(), 12U);
+}
+
+TEST_F(ListTest, NamesNeedNoCollectionAndEnumsNoCapitals) {
+  EXPECT_THAT(ids("name = o3"), ElementsAre("o3"));
+  EXPECT_THAT(ids("name = lubricants/o3"), ElementsAre("o3"));
+  EXPECT_THAT(ids("condition = fresh"), ElementsAre("o0", "o1", "o2"));
+  v1::Lubricant child = three_numbers();
+  child.set_derived_from("lubricants/o1");
+  child.set_base_oil_class(v1::Lubricant::GROUP_III);
+  ASSERT_TRUE(create(child, "child").ok());
+  EXPECT_THAT(ids("derived_from = o1"), ElementsAre("child"));
+  EXPECT_THAT(ids("base_oil_class = group-iii"), ElementsAre("child"));
+}
+
 TEST_F(ListTest, EveryFluidShowsItsFigures) {
   const auto page = list_lubricants(app_, {});
   ASSERT_TRUE(page.ok());
@@ -457,6 +497,20 @@ TEST_F(ListTest, UnknownWordsNameTheNearest) {
   EXPECT_THAT(said(std::string(3000, 'x'), ""), HasSubstr("at most 2000"));
 }
 
+TEST_F(ResourcesTest, RefusesAMaskOfTooManyPaths) {
+  v1::Lubricant fluid;
+  fluid.set_name("lubricants/1");
+  fluid.set_display_name("x");
+  const std::vector<std::string> paths(kMaximumMaskPaths, "display_name");
+  EXPECT_TRUE(update(fluid, paths).ok());
+  std::vector<std::string> more(5000, "no_such_field");
+  const auto refused = update(fluid, more);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code(), google::rpc::INVALID_ARGUMENT);
+  EXPECT_THAT(complaint_lines(refused.error()),
+              testing::ElementsAre("update_mask: 5000 entries; legal: at most 200"));
+}
+
 TEST_F(ListTest, ACallEndsAtItsDeadlineAndHasChangedNothing) {
   const DeadlineScope over(DeadlineScope::Clock::now());
   std::vector<NewResource> many;
@@ -521,6 +575,15 @@ TEST_F(ResourcesTest, AMaskMayNameAFieldOfAMessage) {
   for (const char* none : {"labels.key", "display_name.x", "measurments.densities"}) {
     EXPECT_THAT(complaints(update(row, {none}).error()), HasSubstr("update_mask"));
   }
+
+  v1::Lubricant sharper = changed.message();
+  sharper.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
+      76);
+  const auto whole = update(sharper, {kv40, "measurements", kv40});
+  ASSERT_TRUE(whole.ok()) << complaints(whole.error());
+  EXPECT_EQ(whole.message().measurements().SerializeAsString(),
+            sharper.measurements().SerializeAsString())
+      << "a path that stands there twice, or inside another one, changes nothing";
 
   v1::UpdateGearSetRequest gear_set;
   gear_set.mutable_gear_set()->set_name("gearSets/A");

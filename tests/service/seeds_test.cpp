@@ -7,6 +7,7 @@
 #include "core/gear/gear_set.h"
 #include "server/convert/accept_resource.h"
 #include "server/convert/check_message.h"
+#include "server/convert/provenance.h"
 #include "server/convert/to_core.h"
 #include "tests/service/reference_data.h"
 #include "tests/service/support.h"
@@ -188,6 +189,11 @@ TEST(Seeds, LubricantsHoldThePublishedViscosities) {
     EXPECT_EQ(fluid.vogel_temperature_coefficient_kelvin(), row.coefficient);
     EXPECT_EQ(fluid.vogel_reference_temperature_kelvin(), row.reference);
     EXPECT_EQ(fluid.pressure_viscosity_coefficient_per_pascal(), row.alpha);
+    EXPECT_EQ(fluid.base_oil_class(), v1::Lubricant::POLYALPHAOLEFIN) << "as the paper says";
+    EXPECT_EQ(
+        find_provenance(fluid.provenance(), "rheology_reference_temperature_kelvin")->provenance(),
+        v1::PROVENANCE_PUBLISHED)
+        << "70 C is printed below eq 24";
     expect_shared_fluid_values(fluid);
   }
 }
@@ -226,6 +232,7 @@ void expect_provenance(const std::string& name) {
   reflection->ListFields(resource, &fields);
   for (const auto* field : fields) {
     const bool label = field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_STRING ||
+                       field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_ENUM ||
                        field->name() == "provenance";
     if (label) continue;
     EXPECT_THAT(stated, testing::Contains(field->name())) << name;

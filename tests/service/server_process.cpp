@@ -12,18 +12,16 @@
 #include <stdexcept>
 #include <thread>
 
-#include "tests/support/paths.h"
-
 namespace tribodyn::server {
 
 ServerProcess::ServerProcess(const std::vector<std::string>& arguments, std::string log,
-                             int maximum_files)
+                             int maximum_files, const std::string& program)
     : log_(std::move(log)) {
   std::vector<std::string> words;
   if (maximum_files > 0) {
     words = {"/bin/sh", "-c", "ulimit -n " + std::to_string(maximum_files) + "; exec \"$@\"", "sh"};
   }
-  words.push_back(server_program());
+  words.push_back(program);
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   pointers.reserve(words.size() + 1);
@@ -38,7 +36,7 @@ ServerProcess::ServerProcess(const std::vector<std::string>& arguments, std::str
   const int failed =
       posix_spawn(&pid_, pointers.front(), &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw std::runtime_error("cannot start " + server_program());
+  if (failed != 0) throw std::runtime_error("cannot start " + program);
 }
 
 ServerProcess::~ServerProcess() {
@@ -65,6 +63,15 @@ int ServerProcess::wait(std::chrono::seconds limit) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return exit_code_;
+}
+
+long ServerProcess::peak_memory_kibibytes() const {
+  std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+  for (std::string word; status >> word;) {
+    long value = 0;
+    if (word == "VmHWM:" && status >> value) return value;
+  }
+  return -1;
 }
 
 std::string ServerProcess::log() const {

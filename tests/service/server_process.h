@@ -8,14 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/paths.h"
+
 namespace tribodyn::server {
 
 /// A tribodynd of its own, killed when the object goes.
 class ServerProcess {
  public:
-  /// Starts the binary with these arguments; its output goes to `log`. With `maximum_files` it may
-  /// open no more files than that.
-  ServerProcess(const std::vector<std::string>& arguments, std::string log, int maximum_files = 0);
+  /// Starts `program` with these arguments and appends its output to the file `log`. With
+  /// `maximum_files` the server may open no more files than that.
+  ServerProcess(const std::vector<std::string>& arguments, std::string log, int maximum_files = 0,
+                const std::string& program = server_program());
   ~ServerProcess();
   ServerProcess(const ServerProcess&) = delete;
   ServerProcess& operator=(const ServerProcess&) = delete;
@@ -25,6 +28,8 @@ class ServerProcess {
   int wait(std::chrono::seconds limit = std::chrono::seconds(20));
   bool running();
   std::string log() const;
+  /// Most memory that it has held so far, in KiB.
+  long peak_memory_kibibytes() const;
 
  private:
   pid_t pid_ = -1;

@@ -2,8 +2,10 @@
 
 #include <SQLiteCpp/Statement.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <stdexcept>
 
 #include "server/store/schema.h"
 #include "server/store/seeds.h"
@@ -91,6 +93,16 @@ TEST_F(StoreTest, AnUpdateMakesARevisionAndLosesNone) {
   EXPECT_EQ(store.revisions("lubricants/x", 2, 10, 1000).rows.front().body, "first");
 }
 
+TEST_F(StoreTest, RevisionTimesDoNotGoBackWhenTheClockDoes) {
+  Store store(path());
+  ASSERT_TRUE(store.write_resources({{{"lubricants/x", "first"}, {}}}, 100));
+  const auto written =
+      store.write_resources({{{"lubricants/x", "second"}, store.resource("lubricants/x")}}, 40);
+  ASSERT_TRUE(written);
+  EXPECT_EQ(written->front().revision_create_time, 100);
+  EXPECT_EQ(store.resource("lubricants/x")->revision_create_time, 100);
+}
+
 TEST_F(StoreTest, ADeletedResourceIsOutOfListsAndComesBackWhole) {
   Store store(path());
   store.add_resources({{"b/1", "body"}}, 1);
@@ -135,6 +147,30 @@ TEST_F(StoreTest, ACancelledSimulationTakesNoResult) {
   EXPECT_FALSE(store.mark_succeeded(id, 4, {kKey, "result", {{"a", {1}}}}));
   EXPECT_EQ(store.result(id), std::nullopt);
   EXPECT_TRUE(store.history_shape(id).names.empty());
+}
+
+TEST_F(StoreTest, TheBytesThatCanBeRemovedAreThoseThatRemovalFrees) {
+  Store store(path());
+  const auto finish = [&](char input) {
+    const ResultKey key{std::string(64, input), "model", "platform"};
+    const auto id = store.add_simulation({.request = "", .key = key}, 1).id;
+    store.mark_running(id, 2, key);
+    store.mark_succeeded(id, 3, {key, std::string(500, input), {{"a", {1, 2, 3}}}});
+    return id;
+  };
+  finish('a');
+  const std::int64_t pinned = finish('b');
+  finish('b');  // has the result of the pinned one
+  ASSERT_TRUE(store.set_pinned(pinned, true));
+  const std::int64_t removable = store.removable_bytes();
+  EXPECT_GT(removable, 500);
+  const Removed removed = store.remove_oldest(3, 10);
+  EXPECT_EQ(removed.simulations, 2);
+  EXPECT_EQ(removed.bytes, removable);
+  EXPECT_EQ(store.removable_bytes(), 0);
+  ASSERT_TRUE(store.set_pinned(pinned, false));
+  const std::int64_t unpinned = store.removable_bytes();
+  EXPECT_EQ(store.remove_oldest(3, 10).bytes, unpinned);
 }
 
 TEST_F(StoreTest, WhatACrashInterruptedIsQueuedAgainAndResultsStay) {
@@ -246,11 +282,55 @@ TEST_F(StoreTest, RefusesAFolderThatIsNotThere) {
   EXPECT_EQ(kind_of_opening(folder_.file("no/such/folder.db")), StoreError::Kind::kCannotOpen);
 }
 
+TEST_F(StoreTest, RefusesToMakeAnEmptyDatabaseInPlaceOfOneThatIsLost) {
+  for (const char* suffix : {".replaced", ".replaced.2", ".new-Ab3xYz", "-wal"}) {
+    const TemporaryFolder folder;
+    std::ofstream(folder.file(std::string("db") + suffix)) << "something";
+    EXPECT_EQ(kind_of_opening(folder.file("db")), StoreError::Kind::kCannotOpen) << suffix;
+    EXPECT_NE(message_.find("there is no database"), std::string::npos) << message_;
+    EXPECT_NE(message_.find(folder.file(std::string("db") + suffix)), std::string::npos)
+        << message_;
+    EXPECT_FALSE(std::filesystem::exists(folder.file("db"))) << suffix;
+    std::ofstream(folder.file("db")).flush();
+    EXPECT_EQ(kind_of_opening(folder.file("db")), StoreError::Kind::kCannotOpen)
+        << "an empty file is none either";
+    std::filesystem::remove(folder.file(std::string("db") + suffix));
+    std::ofstream(folder.file("database.replaced")) << "of another database";
+    EXPECT_NO_THROW(Store(folder.file("db")));
+  }
+}
+
+/// While it lives, this process has the rights of another user than root, who may write everything.
+/// The files of the folder are given to that user.
+class WithoutRoot {
+ public:
+  explicit WithoutRoot(const TemporaryFolder& folder) {
+    if (geteuid() != 0) return;
+    EXPECT_EQ(chown(folder.path().c_str(), kNobody, kNobody), 0);
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+      EXPECT_EQ(chown(entry.path().c_str(), kNobody, kNobody), 0);
+    }
+    EXPECT_EQ(seteuid(kNobody), 0);
+  }
+  ~WithoutRoot() {
+    if (getuid() == 0) {
+      EXPECT_EQ(seteuid(0), 0);
+    }
+  }
+  WithoutRoot(const WithoutRoot&) = delete;
+  WithoutRoot& operator=(const WithoutRoot&) = delete;
+
+ private:
+  static constexpr uid_t kNobody = 65534;
+};
+
 TEST_F(StoreTest, RefusesAReadOnlyFile) {
-  if (geteuid() == 0) GTEST_SKIP() << "root may write everything";
-  { const Store store(path()); }
-  std::filesystem::permissions(path(), std::filesystem::perms::owner_read);
-  EXPECT_EQ(kind_of_opening(path()), StoreError::Kind::kReadOnly);
+  const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);  // where every user may go
+  const std::string file = folder.file("tribodyn.db");
+  { const Store store(file); }
+  std::filesystem::permissions(file, std::filesystem::perms::owner_read);
+  const WithoutRoot without_root(folder);
+  EXPECT_EQ(kind_of_opening(file), StoreError::Kind::kReadOnly);
 }
 
 TEST_F(StoreTest, EverySeedParsesAndHasItsOwnName) {
@@ -259,6 +339,16 @@ TEST_F(StoreTest, EverySeedParsesAndHasItsOwnName) {
   EXPECT_EQ(names, (std::set<std::string>{"lubricants/1", "lubricants/2", "lubricants/3",
                                           "gearSets/A", "gearSets/B", "gearSets/A-conformal",
                                           "surfaces/run-in", "vehicles/passenger-car"}));
+}
+
+TEST(SimulationQueries, NoKeyOfAFilterEntersAStatement) {
+  const TemporaryFolder folder;
+  Store store(folder.file("db"));
+  SimulationQuery query{.limit = 1, .byte_limit = 1000};
+  query.restrictions = {{"state", Restriction::Comparison::kEqual, std::int64_t{1}}};
+  EXPECT_NO_THROW(store.simulations(query));
+  query.restrictions.front().key = "1 OR state";
+  EXPECT_THROW(store.simulations(query), std::logic_error);
 }
 
 }  // namespace

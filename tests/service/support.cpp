@@ -1,5 +1,6 @@
 #include "tests/service/support.h"
 
+#include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
@@ -43,7 +44,23 @@ PointResult made_up_point(double vehicle_speed, const HistoryRequest& history) {
   return out;
 }
 
+/// spdlog's own logger, which writes to the terminal.
+std::shared_ptr<spdlog::logger>& usual_logger() {
+  static std::shared_ptr<spdlog::logger> logger = spdlog::default_logger();
+  return logger;
+}
+
 }  // namespace
+
+LogCapture::LogCapture() {
+  usual_logger();
+  auto logger = std::make_shared<spdlog::logger>(
+      "capture", std::make_shared<spdlog::sinks::ostream_sink_mt>(text_, true));
+  logger->set_level(spdlog::level::debug);
+  spdlog::set_default_logger(std::move(logger));
+}
+
+LogCapture::~LogCapture() { spdlog::set_default_logger(usual_logger()); }
 
 std::vector<std::string> complaint_lines(const google::rpc::Status& refusal) {
   std::vector<std::string> out;
@@ -156,11 +173,11 @@ v1::Simulation long_simulation(v1::SteadyStateMethod method) {
 StudyFunctions quick_studies() {
   StudyFunctions out;
   out.solve_operating_point = [](const Scene&, const OperatingCondition& condition,
-                                 const PointOptions& options) {
+                                 const PointOptions& options, const auto&) {
     return made_up_point(condition.vehicle_speed, options.history);
   };
   out.sweep_speed = [](const Scene&, const std::vector<double>& speeds, double, const SweepOptions&,
-                       const std::function<void(const SweepPoint&)>& on_point) {
+                       const std::function<void(const SweepPoint&)>& on_point, const auto&) {
     std::vector<SweepPoint> points;
     for (const double speed : speeds) {
       points.push_back({.vehicle_speed = speed,
@@ -185,16 +202,17 @@ StudyFunctions patient_studies(const std::shared_ptr<std::atomic<bool>>& release
   StudyFunctions out = quick_studies();
   out.solve_operating_point = [wait, inner = out.solve_operating_point](
                                   const Scene& scene, const OperatingCondition& condition,
-                                  const PointOptions& options) {
+                                  const PointOptions& options, const auto& gear_set) {
     wait(options.progress);
-    return inner(scene, condition, options);
+    return inner(scene, condition, options, gear_set);
   };
   out.sweep_speed = [wait, inner = out.sweep_speed](
                         const Scene& scene, const std::vector<double>& speeds, double angle,
                         const SweepOptions& options,
-                        const std::function<void(const SweepPoint&)>& on_point) {
+                        const std::function<void(const SweepPoint&)>& on_point,
+                        const auto& gear_set) {
     wait(options.point.progress);
-    return inner(scene, speeds, angle, options, on_point);
+    return inner(scene, speeds, angle, options, on_point, gear_set);
   };
   return out;
 }

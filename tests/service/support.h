@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,20 @@ v1::Simulation curve_simulation();
 /// Minutes of work on any machine, for tests that need a simulation which runs: a curve of a
 /// thousand points, each settled far sharper than anybody needs.
 v1::Simulation long_simulation(v1::SteadyStateMethod method = v1::MARCH);
+
+/// What is logged while it lives, of every level. Made before any other thread logs, and destroyed
+/// after the last one has.
+class LogCapture {
+ public:
+  LogCapture();
+  ~LogCapture();
+  LogCapture(const LogCapture&) = delete;
+  LogCapture& operator=(const LogCapture&) = delete;
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostringstream text_;
+};
 
 /// Studies that answer at once with made-up numbers: speed in, speed out, 1.5 % inefficiency.
 StudyFunctions quick_studies();

@@ -134,6 +134,20 @@ TEST(Simulation, MeshDataByTorqueMustBeThere) {
                                            "gearSets/B holds no data by torque"));
 }
 
+TEST(AsPublished, Eq46IsRefusedWhereNoProfileBecomesASurface) {
+  const std::string why = "acts where measured profiles become a surface";
+  const std::string field = "model_options.as_published.eq46_square_root_of_sum";
+  v1::EvaluateContactRequest contact = contact_request();
+  contact.mutable_model_options()->mutable_as_published()->set_eq46_square_root_of_sum(true);
+  EXPECT_THAT(check(contact), violation(field, why));
+  v1::Simulation history = point_simulation();
+  history.mutable_operating_point()->mutable_history()->add_columns("mesh_force_newtons");
+  for (v1::Simulation each : {point_simulation(), curve_simulation(), history}) {
+    each.mutable_model_options()->mutable_as_published()->set_eq46_square_root_of_sum(true);
+    EXPECT_THAT(check(each), violation("simulation." + field, why));
+  }
+}
+
 TEST(Curve, SpeedsAreStatedInExactlyOneWay) {
   const std::string speeds = "simulation.inefficiency_curve.speeds_kilometers_per_hour";
   v1::Simulation simulation = curve_simulation();

@@ -64,7 +64,7 @@ long double quadrature(long double order, long double film_ratio) {
          std::sqrt(2 * std::numbers::pi_v<long double>);
 }
 
-TEST(AsperityFunctions, DifferFromPublishedValues) {
+TEST(AsperityFunctions, MatchPublishedValues) {
   const nlohmann::json checks =
       load_reference("published_checks.json").at("asperity_functions_exact");
   const double tolerance = checks.at("relative_tolerance");
@@ -77,7 +77,7 @@ TEST(AsperityFunctions, DifferFromPublishedValues) {
   }
 }
 
-TEST(AsperityFunctions, DifferFromIndependentQuadrature) {
+TEST(AsperityFunctions, MatchIndependentQuadrature) {
   std::mt19937_64 random(20240229);
   std::uniform_real_distribution<double> everywhere(0, kLastNormal);
   std::uniform_real_distribution<double> mixed_lubrication(0, 4);
@@ -88,14 +88,14 @@ TEST(AsperityFunctions, DifferFromIndependentQuadrature) {
   }
 }
 
-TEST(AsperityFunctions, MissClosedFormsAtZeroFilm) {
+TEST(AsperityFunctions, MatchClosedFormsAtZeroFilm) {
   // F_n(0) = 2^((n-1)/2) Gamma((n+1)/2)/sqrt(2 pi)
   EXPECT_NEAR(asperity_function_2(0), 0.5, 1e-15);
   EXPECT_NEAR(asperity_function_5_2(0),
               std::pow(2, 0.75) * std::tgamma(1.75) / std::sqrt(2 * std::numbers::pi), 2e-15);
 }
 
-TEST(AsperityFunctions, MissClosedFormOfF2WhereItDoesNotCancel) {
+TEST(AsperityFunctions, MatchTheClosedFormOfF2WhereItDoesNotCancel) {
   for (double film_ratio = 0; film_ratio <= 3; film_ratio += 0.01) {
     const long double l = film_ratio;
     const long double tail = 0.5L * std::erfc(l / std::numbers::sqrt2_v<long double>);
@@ -106,7 +106,7 @@ TEST(AsperityFunctions, MissClosedFormOfF2WhereItDoesNotCancel) {
   }
 }
 
-TEST(AsperityFunctions, MissAsymptoticSeriesAtThickFilms) {
+TEST(AsperityFunctions, MatchTheAsymptoticSeriesAtThickFilms) {
   // F_n(l) ~ exp(-l^2/2)/sqrt(2 pi) sum_j (-1/2)^j Gamma(n+2j+1)/(j! l^(n+2j+1))
   for (double l = 15; l < kLastNormal; l += 0.37) {
     for (const double n : {2.0, 2.5}) {
@@ -125,7 +125,7 @@ TEST(AsperityFunctions, MissAsymptoticSeriesAtThickFilms) {
 }
 
 // F_n' = -n F_(n-1) and F_(n+1) + l F_n = n F_(n-1) together: F_n'' + l F_n' - n F_n = 0.
-TEST(AsperityFunctions, ViolateTheirDifferentialEquation) {
+TEST(AsperityFunctions, SatisfyTheirDifferentialEquation) {
   constexpr double kStep = 1.0 / 32;
   const auto residual = [](auto function, double n, double l) {
     // central differences of eighth order
@@ -147,7 +147,7 @@ TEST(AsperityFunctions, ViolateTheirDifferentialEquation) {
   }
 }
 
-TEST(AsperityFunctions, DisagreeWithTheGaussianTailTheyIntegrateTo) {
+TEST(AsperityFunctions, HaveTheGaussianTailAsCurvatureOfF2) {
   // F_2'' = 2 F_0 = erfc(l/sqrt 2)
   constexpr double kStep = 1e-3;
   for (double l = 0.05; l < 5; l += 0.05) {
@@ -159,7 +159,7 @@ TEST(AsperityFunctions, DisagreeWithTheGaussianTailTheyIntegrateTo) {
   }
 }
 
-TEST(AsperityFunctions, JumpWhereTwoPiecesJoin) {
+TEST(AsperityFunctions, AreContinuousWherePiecesJoin) {
   for (int k = 0; k < 148; ++k) {
     const double join = (k + 0.5) / 4;
     const AsperityFunctions left = asperity_functions(std::nextafter(join, 0.0));
@@ -171,7 +171,7 @@ TEST(AsperityFunctions, JumpWhereTwoPiecesJoin) {
   }
 }
 
-TEST(AsperityFunctions, DoNotVanishSmoothlyAtThickFilms) {
+TEST(AsperityFunctions, FallMonotonicallyToZeroAtThickFilms) {
   double last_2 = kInfinity;
   double last_5_2 = kInfinity;
   for (double l = 0; l < 39.5; l += 1.0 / 64) {
@@ -191,7 +191,7 @@ TEST(AsperityFunctions, DoNotVanishSmoothlyAtThickFilms) {
   }
 }
 
-TEST(AsperityFunctions, AnswerOutsideTheirDomain) {
+TEST(AsperityFunctions, AreNotANumberOutsideTheirDomain) {
   for (const double l : {-1e-300, -1.0, -kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_TRUE(std::isnan(asperity_function_2(l))) << l;
     EXPECT_TRUE(std::isnan(asperity_function_5_2(l))) << l;
@@ -201,7 +201,7 @@ TEST(AsperityFunctions, AnswerOutsideTheirDomain) {
   EXPECT_EQ(asperity_function_2(-0.0), asperity_function_2(0.0));
 }
 
-TEST(AsperityFunctions, DifferBetweenTheCombinedAndTheSingleFunction) {
+TEST(AsperityFunctions, AreTheSameBitsCombinedAndSingle) {
   for (double l = 0; l < 40; l += 0.0123) {
     const AsperityFunctions both = asperity_functions(l);
     EXPECT_EQ(both.f2, asperity_function_2(l)) << l;
@@ -209,7 +209,7 @@ TEST(AsperityFunctions, DifferBetweenTheCombinedAndTheSingleFunction) {
   }
 }
 
-TEST(AsperityFunctionsAsPublished, DifferFromThePrintedPolynomials) {
+TEST(AsperityFunctionsAsPublished, AreThePrintedPolynomials) {
   const AsperityFunctions zero = asperity_functions_as_published(0);
   EXPECT_EQ(zero.f5_2, 0.6167);
   EXPECT_EQ(zero.f2, 0.5003);
@@ -221,7 +221,7 @@ TEST(AsperityFunctionsAsPublished, DifferFromThePrintedPolynomials) {
   EXPECT_NEAR(ten.f2, -180 + 281 - 172.8 + 52.58 - 8.043 + 0.5003, 1e-10);
 }
 
-TEST(AsperityFunctionsAsPublished, LoseTheMisprintTheyAreKeptToShow) {
+TEST(AsperityFunctionsAsPublished, AreCloseForThinFilmsAndNegativeForThickOnes) {
   for (double l = 0; l < 1.4; l += 0.01) {
     EXPECT_NEAR(asperity_functions_as_published(l).f2 / asperity_function_2(l), 1, 0.02) << l;
     EXPECT_NEAR(asperity_functions_as_published(l).f5_2 / asperity_function_5_2(l), 1, 0.02) << l;

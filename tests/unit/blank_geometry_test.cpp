@@ -35,7 +35,7 @@ HypoidBlank reference_blank() {
   return {member(blank, "_p"), member(blank, "_g"), blank.at("offset")};
 }
 
-TEST(HypoidGeometry, DiffersFromTheReferenceGearSet) {
+TEST(HypoidGeometry, MatchesTheReferenceGearSet) {
   const nlohmann::json expected = load_reference("reference_gear_set.json").at("derived_geometry");
   const HypoidGeometry g = hypoid_geometry(reference_blank());
   const auto compare = [&](const std::string& name, double value) {
@@ -54,7 +54,7 @@ TEST(HypoidGeometry, DiffersFromTheReferenceGearSet) {
   compare("limit_curvature_radius", g.limit_curvature_radius);
 }
 
-TEST(HypoidGeometry, DoesNotCloseOnTheBlankThatItCameFrom) {
+TEST(HypoidGeometry, ClosesOnTheBlankThatItCameFrom) {
   const HypoidBlank blank = reference_blank();
   const HypoidGeometry g = hypoid_geometry(blank);
   EXPECT_NEAR(g.shaft_angle / kDegree, 90, 0.0015);
@@ -83,7 +83,7 @@ struct PairInSpace {
   }
 };
 
-TEST(HypoidGeometry, DiffersFromThePairSetUpInSpace) {
+TEST(HypoidGeometry, MatchesThePairSetUpInSpace) {
   HypoidBlank blank = reference_blank();
   for (const double shaft_shift : {0.0, 4.0, -9.0}) {  // also shaft angles away from 90 degrees
     blank.gear.pitch_angle = (59.653 + shaft_shift) * kDegree;
@@ -109,7 +109,7 @@ TEST(HypoidGeometry, DiffersFromThePairSetUpInSpace) {
   }
 }
 
-TEST(HypoidGeometry, MissesTheFaceConeInTheAxialPlane) {
+TEST(HypoidGeometry, PutsTheTipOnTheFaceCone) {
   // A face cone that is not parallel to the pitch cone: the tip must lie on it.
   HypoidBlank blank = reference_blank();
   blank.pinion.face_angle += 3 * kDegree;
@@ -122,7 +122,7 @@ TEST(HypoidGeometry, MissesTheFaceConeInTheAxialPlane) {
   EXPECT_NEAR(std::atan2(radial, from_face_apex), blank.pinion.face_angle, 1e-15);
 }
 
-TEST(HypoidGeometry, DoesNotScaleWithTheOffset) {
+TEST(HypoidGeometry, ScalesWithTheOffset) {
   HypoidBlank blank = reference_blank();
   const HypoidGeometry one = hypoid_geometry(blank);
   constexpr double kScale = 3.7;
@@ -140,7 +140,7 @@ TEST(HypoidGeometry, DoesNotScaleWithTheOffset) {
   EXPECT_NEAR(scaled.shaft_angle, one.shaft_angle, 1e-15);
 }
 
-TEST(ShaftPlacement, DiffersFromIso23509Samples) {
+TEST(ShaftPlacement, MatchesIso23509Samples) {
   const nlohmann::json cases =
       load_reference("published_checks.json").at("hypoid_geometry").at("cases");
   ASSERT_EQ(cases.size(), 3u);
@@ -162,13 +162,13 @@ TEST(ShaftPlacement, DiffersFromIso23509Samples) {
   }
 }
 
-TEST(ShaftPlacement, IsNotABevelPairWithoutOffsetAngle) {
+TEST(ShaftPlacement, IsABevelPairWithoutOffsetAngle) {
   const ShaftPlacement placement = shaft_placement(0.08, 0.08, 0.4, 0.9, 0);
   EXPECT_NEAR(placement.shaft_angle, 1.3, 1e-15);
   EXPECT_EQ(placement.offset, 0);
 }
 
-TEST(ShaftPlacement, DoesNotReturnToTheBlank) {
+TEST(ShaftPlacement, ReturnsToTheBlank) {
   const HypoidBlank blank = reference_blank();
   const HypoidGeometry g = hypoid_geometry(blank);
   const ShaftPlacement placement =
@@ -188,7 +188,7 @@ std::string sentence(const HypoidBlank& blank) {
   return "";
 }
 
-TEST(HypoidGeometry, AcceptsAnImpossibleBlank) {
+TEST(HypoidGeometry, RefusesAnImpossibleBlank) {
   const auto with = [](auto change) {
     HypoidBlank blank = reference_blank();
     change(blank);
@@ -207,7 +207,7 @@ TEST(HypoidGeometry, AcceptsAnImpossibleBlank) {
   EXPECT_NE(with([](HypoidBlank& b) { b.pinion.face_apex = -0.1; }), "");
 }
 
-TEST(HypoidGeometry, NamesOnlyTheFirstFault) {
+TEST(HypoidGeometry, NamesEveryFault) {
   HypoidBlank blank = reference_blank();
   blank.pinion.teeth = -3;
   blank.gear.spiral_angle = 95 * kDegree;

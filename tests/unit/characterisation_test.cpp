@@ -62,7 +62,7 @@ void for_each(const CharacterisedFluid& fluid, F&& f) {
   f(p.density_temperature_slope, l.density_temperature_slope);
 }
 
-TEST(Characterisation, MissesTheThreeNumbersItWasGiven) {
+TEST(Characterisation, GivesBackTheThreeNumbersItWasGiven) {
   for (const auto& [kv40, kv100] :
        {std::pair{73.3, 8.86}, {22.83, 5.05}, {100.0, 14.5}, {460.0, 30.0}, {320.0, 55.0}}) {
     const CharacterisedFluid fluid = characterise(three_numbers(kv40, kv100));
@@ -78,7 +78,7 @@ TEST(Characterisation, MissesTheThreeNumbersItWasGiven) {
   EXPECT_NEAR(*characterise(three_numbers(22.83, 5.05)).viscosity_index, 156, 0.5);
 }
 
-TEST(Characterisation, IsSilentAboutAnAssumption) {
+TEST(Characterisation, StatesEveryAssumption) {
   const CharacterisedFluid fluid = characterise(three_numbers());
   EXPECT_EQ(codes(fluid).count("PARAMETER_ESTIMATED"), 7);
   EXPECT_TRUE(warns(fluid, "EXPANSION_ESTIMATED", "density_temperature_slope"));
@@ -110,7 +110,19 @@ TEST(Characterisation, IsSilentAboutAnAssumption) {
             0.05);
 }
 
-TEST(Characterisation, ChangesThePapersFluids) {
+TEST(Characterisation, AsksForTheClassOfBaseOilOnlyWhereAnEstimateDependsOnIt) {
+  FluidMeasurements fluid = three_numbers();
+  fluid.base_oil = BaseOilClass::kUnspecified;
+  EXPECT_TRUE(warns(characterise(fluid), "BASE_OIL_UNSPECIFIED"));
+  fluid.densities = {{373.15, 805}};
+  fluid.stated.pressure_viscosity_coefficient = measured(2e-8);
+  fluid.stated.limiting_shear_stress_coefficient = measured(0.03);
+  EXPECT_TRUE(warns(characterise(fluid), "BASE_OIL_UNSPECIFIED"));
+  fluid.stated.thermal_conductivity = measured(0.14);
+  EXPECT_FALSE(warns(characterise(fluid), "BASE_OIL_UNSPECIFIED"));
+}
+
+TEST(Characterisation, ReproducesThePapersFluids) {
   for (const int number : {1, 2, 3}) {
     const Lubricant lubricant = reference_lubricant(number);
     FluidMeasurements fluid;
@@ -145,7 +157,7 @@ TEST(Characterisation, ChangesThePapersFluids) {
   }
 }
 
-TEST(Characterisation, IgnoresWhatIsStated) {
+TEST(Characterisation, TakesOverWhatIsStated) {
   const Lubricant lubricant = reference_lubricant(2);
   FluidMeasurements fluid;
   auto& stated = fluid.stated;
@@ -166,17 +178,20 @@ TEST(Characterisation, IgnoresWhatIsStated) {
   EXPECT_FALSE(result.viscosity_fit.has_value());
   EXPECT_EQ(codes(result).count("PARAMETER_ESTIMATED"), 5);
   EXPECT_EQ(result.grade.designation, "");  // nothing measured at 100 C
+  EXPECT_EQ(result.grade.note,
+            "SAE J306 grades measured viscosities, and KV100 was not measured; that of the law "
+            "would make grade 90.");
 }
 
-TEST(Characterisation, ForgetsColdViscosities) {
+TEST(Characterisation, UsesColdViscosities) {
   FluidMeasurements fluid = three_numbers(98, 14.8, 865);
   fluid.sheared_kinematic_viscosity_100 = 13.9e-6;
   fluid.cold_viscosities = {{233.15, 120, 0}, {247.15, 17, 0}};
   const CharacterisedFluid result = characterise(fluid);
   EXPECT_EQ(result.grade.designation, "75W-90");
-  EXPECT_EQ(result.fitted_points.size(), 4);
+  EXPECT_EQ(result.measured_viscosities.size(), 4);
   EXPECT_EQ(result.viscosity_fit->degrees_of_freedom, 1);
-  EXPECT_EQ(result.fitted_points[2].relative_standard_uncertainty, 0.05);
+  EXPECT_EQ(result.measured_viscosities[2].point.relative_standard_uncertainty, 0.05);
   EXPECT_NEAR(std::log(ambient_viscosity(result.lubricant, 233.15) / 120), 0, 0.15);
   EXPECT_NEAR(1e6 * kinematic_viscosity(result.lubricant, kHundredCelsius), 14.8, 0.2);
   // without them the law extrapolates and says what it would earn
@@ -187,7 +202,7 @@ TEST(Characterisation, ForgetsColdViscosities) {
   EXPECT_NEAR(ambient_viscosity(bare.lubricant, bare.temperature_of_150_pascal_seconds), 150, 1e-9);
 }
 
-TEST(Characterisation, HidesAMisfit) {
+TEST(Characterisation, WarnsOfAMisfitAndOfExtrapolation) {
   FluidMeasurements fluid = three_numbers();
   fluid.viscosities = {{343.15, 0.05, 0.01}, {293.15, 0.25, 0.01}};  // 40 % off at 70 C
   const CharacterisedFluid result = characterise(fluid);
@@ -200,7 +215,7 @@ TEST(Characterisation, HidesAMisfit) {
   EXPECT_EQ(two.parameters.vogel_reference_temperature.provenance, Provenance::kAssumed);
 }
 
-TEST(Characterisation, AnswersNonsense) {
+TEST(Characterisation, RefusesNonsense) {
   const auto reason = [](auto&& change) {
     FluidMeasurements fluid = three_numbers();
     change(fluid);
@@ -240,7 +255,7 @@ TEST(Characterisation, AnswersNonsense) {
             "VISCOSITY_TABLE_OUT_OF_RANGE");
 }
 
-TEST(Characterisation, NeitherAnswersNorRefuses) {
+TEST(Characterisation, AnswersInFiniteNumbersOrRefuses) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
   const auto lg = [&](double lower, double upper) {

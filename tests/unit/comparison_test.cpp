@@ -10,7 +10,7 @@
 namespace tribodyn {
 namespace {
 
-TEST(LubricantFigures, DifferFromTheLawsTheyRestOn) {
+TEST(LubricantFigures, FollowTheLawsTheyRestOn) {
   for (const int fluid : {1, 2, 3}) {
     const Lubricant lubricant = reference_lubricant(fluid);
     const LubricantFigures figures = lubricant_figures(lubricant, {});
@@ -36,7 +36,7 @@ TEST(LubricantFigures, DifferFromTheLawsTheyRestOn) {
   }
 }
 
-TEST(LubricantFigures, IgnoreTheIndexChosen) {
+TEST(LubricantFigures, FollowTheIndexChosen) {
   const Lubricant lubricant = reference_lubricant();
   ModelOptions options;
   options.pressure_viscosity_index = PressureViscosityIndex::kHoupert;
@@ -48,7 +48,7 @@ TEST(LubricantFigures, IgnoreTheIndexChosen) {
             lubricant_figures(lubricant, {}).at[0].viscosity_at_gigapascal);
 }
 
-TEST(LubricantFigures, InventAnIndex) {
+TEST(LubricantFigures, RefuseACoefficientThatNoIndexGives) {
   Lubricant lubricant = reference_lubricant();
   lubricant.pressure_viscosity_coefficient = 1e-6;
   EXPECT_EQ(refusal_reason([&] { lubricant_figures(lubricant, {}); }), "PRESSURE_VISCOSITY_INDEX");

@@ -30,7 +30,7 @@ double exponent(double FilmConditions::*member) {
          std::log(kFactor);
 }
 
-TEST(MinimumFilm, DiffersFromTextbookProblem) {
+TEST(MinimumFilm, MatchesATextbookProblem) {
   const nlohmann::json films = load_reference("published_checks.json").at("film");
   for (const nlohmann::json& problem : films) {
     const nlohmann::json& in = problem.at("inputs");
@@ -55,7 +55,7 @@ TEST(MinimumFilm, DiffersFromTextbookProblem) {
   }
 }
 
-TEST(CentralFilm, DiffersFromWorkedContacts) {
+TEST(CentralFilm, MatchesWorkedContacts) {
   int compared = 0;
   const nlohmann::json contacts = load_reference("worked_points.json").at("contacts");
   for (const nlohmann::json& contact : contacts) {
@@ -81,7 +81,7 @@ TEST(CentralFilm, DiffersFromWorkedContacts) {
   EXPECT_GE(compared, 10);
 }
 
-TEST(CentralFilm, HasWrongExponents) {
+TEST(CentralFilm, HasTheExponentsOfEq12) {
   EXPECT_NEAR(exponent(&FilmConditions::entrainment_speed), 0.68, 1e-14);
   EXPECT_NEAR(exponent(&FilmConditions::viscosity), 0.68, 1e-14);
   EXPECT_NEAR(exponent(&FilmConditions::pressure_viscosity_coefficient), 0.49, 1e-14);
@@ -91,7 +91,7 @@ TEST(CentralFilm, HasWrongExponents) {
   EXPECT_NEAR(std::log(by_load) / std::log(3), -0.073, 1e-14);
 }
 
-TEST(CentralFilm, DependsOnTheSystemOfUnits) {
+TEST(CentralFilm, IsIndependentOfTheSystemOfUnits) {
   // Lengths in units of 1/length_unit m, and so on: h must scale as a length.
   const double length = 7.3, mass = 0.19, time = 41;
   const double pressure = mass / (length * time * time);
@@ -108,7 +108,7 @@ TEST(CentralFilm, DependsOnTheSystemOfUnits) {
   EXPECT_NEAR(hamrock_dowson_minimum_film(scaled, 3, kLoad * force) / (minimum * length), 1, 1e-14);
 }
 
-TEST(CentralFilm, LosesItsSideLeakageLimits) {
+TEST(CentralFilm, HasItsSideLeakageLimits) {
   // R_s/R_e -> infinity: a line contact without side leakage.
   const double line =
       chittenden_dowson_central_film(with(&FilmConditions::side_leakage_radius, 1e9), kLoad);
@@ -121,12 +121,12 @@ TEST(CentralFilm, LosesItsSideLeakageLimits) {
   EXPECT_NEAR(thin / line, 1.23 * std::pow(ratio * 1e-12, 2.0 / 3), 1e-7 * thin / line);
 }
 
-TEST(CentralFilm, IsNotZeroWithoutEntrainment) {
+TEST(CentralFilm, IsZeroWithoutEntrainment) {
   EXPECT_EQ(chittenden_dowson_central_film(with(&FilmConditions::entrainment_speed, 0), kLoad), 0);
   EXPECT_EQ(hamrock_dowson_minimum_film(with(&FilmConditions::entrainment_speed, 0), 1, kLoad), 0);
 }
 
-TEST(CentralFilm, DiffersWhenTheLoadAloneVaries) {
+TEST(CentralFilm, ScalesFromUnitLoadToAnyLoad) {
   const double unit_load_film = chittenden_dowson_central_film(kTypical, 1.0);
   for (const double load : {1e-12, 1e-3, 1.0, 30.0, 2000.0, 1e6}) {
     const double film = chittenden_dowson_central_film(kTypical, load);
@@ -134,7 +134,7 @@ TEST(CentralFilm, DiffersWhenTheLoadAloneVaries) {
   }
 }
 
-TEST(EffectiveRadiusAlongAnAngle, LosesItsIdentities) {
+TEST(EffectiveRadiusAlongAnAngle, SatisfiesItsIdentities) {
   const double rx = 0.02, ry = 1.1;
   for (double theta = -4; theta < 4; theta += 0.01) {
     const double along = entrainment_radius(rx, ry, theta);

@@ -16,7 +16,7 @@ std::string designation(double kv100, const Points& cold = {}) {
   return gear_viscosity_grade(1e-6 * kv100, cold).designation;
 }
 
-TEST(GearViscosityGrade, DiffersFromThePublishedTable) {
+TEST(GearViscosityGrade, MatchesThePublishedTable) {
   const nlohmann::json table =
       load_reference("published_checks.json").at("inputs_only").at("sae_j306_2019");
   for (const auto& [grade, band] : table.at("kv100_bands_mm2_s").items()) {
@@ -41,7 +41,7 @@ TEST(GearViscosityGrade, DiffersFromThePublishedTable) {
   }
 }
 
-TEST(GearViscosityGrade, MisnamesOilsOfTheTrade) {
+TEST(GearViscosityGrade, NamesOilsOfTheTrade) {
   EXPECT_EQ(designation(14.5, {{233.15, 110, 0}}), "75W-90");
   EXPECT_EQ(designation(15.9, {{233.15, 165, 0}, {247.15, 30, 0}}), "80W-90");
   EXPECT_EQ(designation(26, {{261.15, 100, 0}}), "85W-140");
@@ -49,8 +49,8 @@ TEST(GearViscosityGrade, MisnamesOilsOfTheTrade) {
   EXPECT_EQ(designation(6.6, {{233.15, 20, 0}}), "75W-75");
 }
 
-TEST(GearViscosityGrade, ProvesMoreThanWasMeasured) {
-  // thin enough at -26 C, nobody looked at -40 C
+TEST(GearViscosityGrade, GrantsNoMoreThanWasMeasured) {
+  // Thin enough at -26 C; not measured at -40 C.
   const GearViscosityGrade grade = gear_viscosity_grade(14e-6, Points{{247.15, 90, 0}});
   EXPECT_EQ(grade.designation, "80W-90");
   EXPECT_NE(grade.note.find("75W"), std::string::npos);
@@ -62,7 +62,7 @@ TEST(GearViscosityGrade, ProvesMoreThanWasMeasured) {
   EXPECT_EQ(thick.note.find("75W"), std::string::npos);
 }
 
-TEST(GearViscosityGrade, NamesWhatHasNoGrade) {
+TEST(GearViscosityGrade, LeavesUnnamedWhatHasNoGrade) {
   EXPECT_EQ(designation(3.7, {{233.15, 1, 0}}), "");
   EXPECT_FALSE(gear_viscosity_grade(3.7e-6, Points{}).note.empty());
   EXPECT_FALSE(gear_viscosity_grade(std::nullopt, Points{}).note.empty());

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ std::string reason(const std::vector<double>& heights, double spacing) {
   return "none";
 }
 
-TEST(SpectralMoments, DifferFromTheDiscreteTransferOfASine) {
+TEST(SpectralMoments, MatchTheDiscreteTransferOfASine) {
   for (const int per_wave : {5, 8, 12, 50, 1000}) {
     const double spacing = kWavelength / per_wave;
     // whole waves for m0; whole waves of interior points, so two samples more, for m2 and m4
@@ -50,7 +51,7 @@ TEST(SpectralMoments, DifferFromTheDiscreteTransferOfASine) {
   }
 }
 
-TEST(SpectralMoments, ConvergeAtAnotherOrderThanTheSecond) {
+TEST(SpectralMoments, ConvergeAtSecondOrder) {
   const double m2 = std::pow(kAmplitude * kWaveNumber, 2) / 2;
   const double m4 = std::pow(kAmplitude * kWaveNumber * kWaveNumber, 2) / 2;
   const auto error = [&](int per_wave) {
@@ -66,7 +67,7 @@ TEST(SpectralMoments, ConvergeAtAnotherOrderThanTheSecond) {
   EXPECT_LT(error(2000).second, 1e-5);
 }
 
-TEST(SpectralMoments, ChangeWithTheDatum) {
+TEST(SpectralMoments, AreIndependentOfTheDatum) {
   std::vector<double> heights = sine(402, 40);
   const double spacing = kWavelength / 40;
   const SpectralMoments reference = spectral_moments(heights, spacing);
@@ -77,7 +78,7 @@ TEST(SpectralMoments, ChangeWithTheDatum) {
   EXPECT_NEAR(shifted.m4 / reference.m4, 1, 1e-7);
 }
 
-TEST(SpectralMoments, ChangeWithTheTiltWhenDetrended) {
+TEST(SpectralMoments, AreIndependentOfTheTiltWhenDetrended) {
   std::vector<double> heights = sine(402, 40);
   const double spacing = kWavelength / 40;
   const SpectralMoments reference =
@@ -90,11 +91,11 @@ TEST(SpectralMoments, ChangeWithTheTiltWhenDetrended) {
   EXPECT_NEAR(tilted.m0 / reference.m0, 1, 1e-9);
   EXPECT_NEAR(tilted.m2 / reference.m2, 1, 1e-9);
   EXPECT_NEAR(tilted.m4 / reference.m4, 1, 1e-9);
-  // and do when they are not
+  // Without levelling the tilt counts.
   EXPECT_GT(spectral_moments(heights, spacing).m0, 2 * reference.m0);
 }
 
-TEST(SpectralMoments, LeaveSomethingOfAStraightLine) {
+TEST(SpectralMoments, AreZeroForADetrendedStraightLine) {
   std::vector<double> heights;
   for (int i = 0; i < 11; ++i) heights.push_back(0.25 * i);
   const SpectralMoments moments = spectral_moments(heights, 0.5, Levelling::kLeastSquaresLine);
@@ -104,7 +105,7 @@ TEST(SpectralMoments, LeaveSomethingOfAStraightLine) {
   EXPECT_NEAR(spectral_moments(heights, 0.5).m2, 0.25, 1e-15);
 }
 
-TEST(SpectralMoments, MissAParabola) {
+TEST(SpectralMoments, AreExactForAParabola) {
   // z = x^2: both central differences are exact, slope 2 x and curvature 2
   std::vector<double> heights;
   for (int i = -5; i <= 5; ++i) heights.push_back(i * i);
@@ -114,7 +115,7 @@ TEST(SpectralMoments, MissAParabola) {
   EXPECT_NEAR(moments.m0, 1958.0 / 11 - 100, 1e-12);
 }
 
-TEST(SpectralMoments, DoNotScale) {
+TEST(SpectralMoments, ScaleWithHeightAndSpacing) {
   const std::vector<double> heights = sine(402, 40);
   std::vector<double> larger = heights;
   for (double& z : larger) z *= 3;
@@ -129,7 +130,7 @@ TEST(SpectralMoments, DoNotScale) {
   EXPECT_NEAR(longer.m4 / one.m4, 1.0 / 16, 1e-15);
 }
 
-TEST(SpectralMoments, AcceptAProfileThatHoldsNothing) {
+TEST(SpectralMoments, RefuseAnUnusableProfile) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(reason({0, 1, 0, 1, 0}, 1e-6), "none");
   EXPECT_NE(reason({}, 1e-6).find("0 heights"), std::string::npos);
@@ -140,7 +141,7 @@ TEST(SpectralMoments, AcceptAProfileThatHoldsNothing) {
   EXPECT_NE(reason({1e200, -1e200, 1e200, -1e200, 0}, 1e-6).find("not finite"), std::string::npos);
 }
 
-TEST(SpectralMoments, NameOnlyTheFirstFault) {
+TEST(SpectralMoments, NameEveryFault) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::string sentence = reason({0, 1, nan, nan}, -1);
   EXPECT_EQ(sentence.find("PROFILE_UNUSABLE"), 0u);
@@ -149,7 +150,39 @@ TEST(SpectralMoments, NameOnlyTheFirstFault) {
   EXPECT_NE(sentence.find("spacing is -1 m"), std::string::npos) << sentence;
 }
 
-TEST(EquivalentIsotropicMoments, ChangeAnIsotropicSurface) {
+TEST(WaveLength, IsThatOfASine) {
+  for (const int per_wave : {5, 8, 50}) {
+    const double spacing = kWavelength / per_wave;
+    const SpectralMoments moments = spectral_moments(sine(20 * per_wave + 2, per_wave), spacing);
+    EXPECT_NEAR(wave_length_in_spacings(moments, spacing) / per_wave, 1, 1e-9);
+  }
+}
+
+TEST(WaveLength, TellsFilteredNoiseFromWhiteNoise) {
+  constexpr double kSpacing = 0.5e-6;
+  std::mt19937 random(1);
+  std::normal_distribution<double> height(0, 0.3e-6);
+  std::vector<double> white(40'000);
+  for (double& z : white) z = height(random);
+  EXPECT_NEAR(wave_length_in_spacings(spectral_moments(white, kSpacing), kSpacing), 3, 0.05);
+  // ISO 16610-21 with lambda_s of five spacings.
+  constexpr double kCutOff = 5, kAlpha = 0.4697;
+  std::vector<double> filtered;
+  for (std::size_t i = 5; i + 5 < white.size(); ++i) {
+    double sum = 0;
+    for (int k = -5; k <= 5; ++k) {
+      const double x = k / (kAlpha * kCutOff);
+      sum += std::exp(-std::numbers::pi * x * x) / (kAlpha * kCutOff) *
+             white[i + static_cast<std::size_t>(k + 5) - 5];
+    }
+    filtered.push_back(sum);
+  }
+  const double waves = wave_length_in_spacings(spectral_moments(filtered, kSpacing), kSpacing);
+  EXPECT_NEAR(waves, 5.3, 0.1);
+  EXPECT_GT(waves, kLeastSpacingsPerWave);
+}
+
+TEST(EquivalentIsotropicMoments, LeaveAnIsotropicSurfaceUnchanged) {
   const SpectralMoments surface{1.6e-13, 0.02, 3e8};
   const SpectralMoments same = equivalent_isotropic_moments(surface, surface, {});
   EXPECT_DOUBLE_EQ(same.m0, surface.m0);
@@ -157,7 +190,7 @@ TEST(EquivalentIsotropicMoments, ChangeAnIsotropicSurface) {
   EXPECT_DOUBLE_EQ(same.m4, surface.m4);
 }
 
-TEST(EquivalentIsotropicMoments, MixTheirMeans) {
+TEST(EquivalentIsotropicMoments, AreTheMeansOfEq46AndItsPrintedForm) {
   const SpectralMoments axial{1, 4, 16};
   const SpectralMoments radial{3, 9, 25};
   const SpectralMoments mean = equivalent_isotropic_moments(axial, radial, {});
@@ -172,14 +205,14 @@ TEST(EquivalentIsotropicMoments, MixTheirMeans) {
   EXPECT_DOUBLE_EQ(as_printed.m4, std::sqrt(41.0));
 }
 
-TEST(CompositeMoments, DoNotAddUp) {
+TEST(CompositeMoments, AreSums) {
   const SpectralMoments sum = composite_moments({1, 2, 3}, {10, 20, 30});
   EXPECT_EQ(sum.m0, 11);
   EXPECT_EQ(sum.m2, 22);
   EXPECT_EQ(sum.m4, 33);
 }
 
-TEST(GreenwoodTrippRoughness, DiffersFromEquation48) {
+TEST(GreenwoodTrippRoughness, SatisfiesEq48) {
   const SpectralMoments moments{0.16e-12, 0.02, 3e8};
   const Roughness roughness = greenwood_tripp_roughness(moments);
   EXPECT_DOUBLE_EQ(roughness.composite_rms_height, 0.4e-6);
@@ -189,7 +222,7 @@ TEST(GreenwoodTrippRoughness, DiffersFromEquation48) {
               1 / (6 * std::numbers::pi * std::sqrt(3.0)), 1e-16);
 }
 
-TEST(GreenwoodTrippRoughness, LosesItsDimensions) {
+TEST(GreenwoodTrippRoughness, ScalesWithTheSurface) {
   // A surface s times as large in every direction: lengths times s, density over s^2.
   constexpr double kScale = 7;
   const SpectralMoments one{0.16e-12, 0.02, 3e8};
@@ -201,7 +234,7 @@ TEST(GreenwoodTrippRoughness, LosesItsDimensions) {
   EXPECT_NEAR(b.asperity_density / a.asperity_density, 1 / (kScale * kScale), 1e-16);
 }
 
-TEST(GreenwoodTrippRoughness, AcceptsASmoothSurface) {
+TEST(GreenwoodTrippRoughness, RefusesASmoothSurface) {
   EXPECT_THROW(greenwood_tripp_roughness({0, 0.02, 3e8}), Refusal);
   EXPECT_THROW(greenwood_tripp_roughness({1e-13, 0, 3e8}), Refusal);
   EXPECT_THROW(greenwood_tripp_roughness({1e-13, 0.02, 0}), Refusal);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kFifteen = 288.15;
 
-TEST(ThermalExpansion, DiffersFromClosedForms) {
+TEST(ThermalExpansion, MatchesClosedForms) {
   // d rho/dT at 15 C is -K_1 for every density
   for (const double rho : {820.0, 870.0, 1000.0}) {
     EXPECT_EQ(expanded_density(rho, kFifteen), rho);
@@ -25,7 +25,7 @@ TEST(ThermalExpansion, DiffersFromClosedForms) {
               1e-6);
 }
 
-TEST(DensityLaw, StraysFromD1250) {
+TEST(DensityLaw, StaysNearD1250) {
   for (const double rho : {820.0, 870.0, 950.0}) {
     const DensityLaw law = density_law(rho, BaseOilClass::kPolyalphaolefin);
     EXPECT_NEAR(law.density_at_zero_kelvin + law.slope * kFifteen, rho, 1e-9);
@@ -40,14 +40,14 @@ TEST(DensityLaw, StraysFromD1250) {
   }
 }
 
-TEST(DensityLaw, DiffersFromThePapersFluids) {
+TEST(DensityLaw, MatchesThePapersFluids) {
   // rho = 1016.1 - 0.6323 T: 833.9 kg/m3 at 15 C
   const DensityLaw law = density_law(1016.1 - 0.6323 * kFifteen, BaseOilClass::kPolyalphaolefin);
   EXPECT_NEAR(law.slope, -0.6323, 2 * law.slope_uncertainty);
   EXPECT_NEAR(law.slope / -0.6323, 1, 0.01);
 }
 
-TEST(DensityLaw, DoesNotReturnTheLineItWasGiven) {
+TEST(DensityLaw, ReturnsTheLineItWasGiven) {
   std::vector<DensityPoint> points;
   for (const double celsius : {60.0, 15.0, 100.0, -20.0}) {
     points.push_back({celsius + 273.15, 1016.1 - 0.6323 * (celsius + 273.15)});
@@ -58,14 +58,14 @@ TEST(DensityLaw, DoesNotReturnTheLineItWasGiven) {
   EXPECT_LT(law.root_mean_square_residual, 1e-9);
 }
 
-TEST(DensityLaw, DependsOnWhereASingleDensityWasMeasured) {
+TEST(DensityLaw, IsIndependentOfWhereASingleDensityWasMeasured) {
   const DensityLaw reference = density_law(870, BaseOilClass::kGroupII);
   const std::vector<DensityPoint> at_40 = {
       {313.15, reference.density_at_zero_kelvin + reference.slope * 313.15}};
   EXPECT_NEAR(density_law(at_40, BaseOilClass::kGroupII).slope, reference.slope, 1e-4);
 }
 
-TEST(DensityLaw, AnswersNonsense) {
+TEST(DensityLaw, RefusesNonsense) {
   const auto reason = [](std::vector<DensityPoint> points) {
     return refusal_of([&] { density_law(points, BaseOilClass::kGroupI); });
   };

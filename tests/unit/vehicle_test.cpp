@@ -17,7 +17,7 @@ Vehicle reference_vehicle() {
           v.at("rho_air"), v.at("r_w"), v.at("g")};
 }
 
-TEST(WheelTorque, DiffersFromItsPartsByHand) {
+TEST(WheelTorque, IsTheSumOfItsPartsByHand) {
   const Vehicle vehicle{1000, 0.01, 0.5, 2, 1.2, 0.3, 10};
   EXPECT_NEAR(wheel_torque(vehicle, 0, 0, 0), 0.3 * 100, 1e-13);
   EXPECT_NEAR(wheel_torque(vehicle, 10, 0, 0), 0.3 * (100 + 60), 1e-13);
@@ -27,7 +27,7 @@ TEST(WheelTorque, DiffersFromItsPartsByHand) {
               0.3 * (100 * std::cos(0.1) + 10000 * std::sin(0.1) + 60 - 1000), 1e-11);
 }
 
-TEST(WheelTorque, DiffersFromTheReferenceCruise) {
+TEST(WheelTorque, MatchesTheReferenceCruise) {
   // Pinion torque T_w N_p/N_g of the reference car on the level, to the digits it is quoted with.
   const Vehicle vehicle = reference_vehicle();
   const double at[][2] = {{20, 17.4}, {53, 25.0}, {65, 29.4}, {80, 36.3}, {100, 47.7}, {140, 77.9}};
@@ -38,7 +38,7 @@ TEST(WheelTorque, DiffersFromTheReferenceCruise) {
   }
 }
 
-TEST(WheelTorque, LosesItsSymmetries) {
+TEST(WheelTorque, SatisfiesItsSymmetries) {
   const Vehicle vehicle = reference_vehicle();
   const double level = wheel_torque(vehicle, 20, 0, 0);
   const double up = wheel_torque(vehicle, 20, 0.05, 0);
@@ -52,7 +52,7 @@ TEST(WheelTorque, LosesItsSymmetries) {
   EXPECT_NEAR((wheel_torque(vehicle, 40, 0, 0) - rest) / (level - rest), 4, 1e-13);
 }
 
-TEST(WheelTorque, AcceptsASpeedThatIsNotForward) {
+TEST(WheelTorque, RefusesASpeedThatIsNotForward) {
   const Vehicle vehicle = reference_vehicle();
   EXPECT_THROW(wheel_torque(vehicle, -1, 0, 0), Refusal);
   EXPECT_THROW(wheel_torque(vehicle, std::nan(""), 0, 0), Refusal);

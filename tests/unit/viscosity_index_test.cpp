@@ -10,7 +10,7 @@
 namespace tribodyn {
 namespace {
 
-TEST(ViscosityIndex, DiffersFromPublishedOils) {
+TEST(ViscosityIndex, MatchesPublishedOils) {
   const nlohmann::json check = load_reference("published_checks.json").at("viscosity_index");
   for (const nlohmann::json& oil : check.at("cases")) {
     EXPECT_NEAR(viscosity_index(oil.at("kv40_mm2_s"), oil.at("kv100_mm2_s")),
@@ -19,7 +19,7 @@ TEST(ViscosityIndex, DiffersFromPublishedOils) {
   }
 }
 
-TEST(ViscosityIndexReferences, DifferFromTheTableOfTheStandard) {
+TEST(ViscosityIndexReferences, MatchTheTableOfTheStandard) {
   // Y, L, H of ASTM D2270 table 1, in mm2/s: two or three rows of every piece.
   const double rows[][3] = {
       {2.0, 7.994, 6.394},  {2.5, 11.45, 9.063},  {3.5, 20.09, 15.66},  {4.1, 26.50, 20.37},
@@ -37,7 +37,7 @@ TEST(ViscosityIndexReferences, DifferFromTheTableOfTheStandard) {
   }
 }
 
-TEST(ViscosityIndexReferences, JumpWherePiecesJoin) {
+TEST(ViscosityIndexReferences, AreContinuousWherePiecesJoin) {
   for (const double join :
        {3.8, 4.4, 5.0, 6.4, 7.0, 7.7, 9.0, 12.0, 15.0, 18.0, 22.0, 28.0, 40.0, 55.0, 70.0}) {
     const ViscosityIndexReferences left = viscosity_index_references(std::nextafter(join, 0.0));
@@ -47,7 +47,7 @@ TEST(ViscosityIndexReferences, JumpWherePiecesJoin) {
   }
 }
 
-TEST(ViscosityIndexReferences, FallOrCross) {
+TEST(ViscosityIndexReferences, RiseAndNeverCross) {
   ViscosityIndexReferences last{0, 0};
   for (double y = 2; y < 200; y += 0.05) {
     const ViscosityIndexReferences references = viscosity_index_references(y);
@@ -59,7 +59,7 @@ TEST(ViscosityIndexReferences, FallOrCross) {
   }
 }
 
-TEST(ViscosityIndex, MissesItsDefinitionAtTheReferenceOils) {
+TEST(ViscosityIndex, MeetsItsDefinitionAtTheReferenceOils) {
   for (const double y : {2.0, 3.0, 5.5, 8.86, 14.0, 30.0, 90.0}) {
     const ViscosityIndexReferences references = viscosity_index_references(y);
     EXPECT_NEAR(viscosity_index(references.index_0, y), 0, 1e-11);
@@ -70,7 +70,7 @@ TEST(ViscosityIndex, MissesItsDefinitionAtTheReferenceOils) {
   }
 }
 
-TEST(ViscosityIndex, DoesNotFallAsTheViscosityAt40Rises) {
+TEST(ViscosityIndex, FallsAsTheViscosityAt40Rises) {
   for (const double y : {2.5, 8.0, 15.0, 80.0}) {
     double last = INFINITY;
     for (double u = 1.2 * y; u < 120 * y; u *= 1.05) {
@@ -82,7 +82,7 @@ TEST(ViscosityIndex, DoesNotFallAsTheViscosityAt40Rises) {
   }
 }
 
-TEST(ViscosityIndex, IsDefinedWhereTheStandardIsNot) {
+TEST(ViscosityIndex, IsRefusedWhereTheStandardIsUndefined) {
   EXPECT_THROW(viscosity_index(5, 1.99), Refusal);
   EXPECT_THROW(viscosity_index(8, 8), Refusal);
   EXPECT_THROW(viscosity_index(7, 8), Refusal);

@@ -18,7 +18,7 @@ ViscosityTemperatureLine line_of(double kv40, double kv100) {
   return viscosity_temperature_line({kFortyCelsius, 1e-6 * kv40}, {kHundredCelsius, 1e-6 * kv100});
 }
 
-TEST(ViscosityTemperatureLine, MissesItsOwnPoints) {
+TEST(ViscosityTemperatureLine, MeetsItsOwnPoints) {
   std::mt19937 random(341);
   std::uniform_real_distribution<double> lg(std::log10(0.22), 6.5), fraction(0.02, 0.98);
   for (int i = 0; i < 2000; ++i) {
@@ -34,7 +34,7 @@ TEST(ViscosityTemperatureLine, MissesItsOwnPoints) {
   }
 }
 
-TEST(ViscosityTemperatureLine, DiffersFromPublishedConstants) {
+TEST(ViscosityTemperatureLine, MatchesPublishedConstants) {
   // lg lg(v + 0.7) = A - B lg T of an ISO VG 32 oil, 32 and 5.4 mm2/s: A 9.5259, B 3.7449 with
   // T in whole kelvin (313, 373) as printed; 8.5 mm2/s at 80 C.
   const ViscosityTemperatureLine line = viscosity_temperature_line({313, 32e-6}, {373, 5.4e-6});
@@ -43,7 +43,7 @@ TEST(ViscosityTemperatureLine, DiffersFromPublishedConstants) {
   EXPECT_NEAR(1e6 * kinematic_viscosity(line, 353), 8.5, 0.05);
 }
 
-TEST(ViscosityTemperatureLine, DiffersFromTheSimplifiedFormAboveTwo) {
+TEST(ViscosityTemperatureLine, MatchesTheSimplifiedFormAboveTwo) {
   for (const auto& [kv40, kv100] : {std::pair{73.3, 8.86}, {22.83, 5.05}, {460.0, 30.0}}) {
     const auto w = [](double v) { return std::log10(std::log10(v + 0.7)); };
     const double slope = (w(kv40) - w(kv100)) / std::log10(kHundredCelsius / kFortyCelsius);
@@ -58,7 +58,7 @@ TEST(ViscosityTemperatureLine, DiffersFromTheSimplifiedFormAboveTwo) {
   }
 }
 
-TEST(ViscosityTemperatureLine, DiffersFromTheStandardsInverse) {
+TEST(ViscosityTemperatureLine, MatchesTheStandardsInverse) {
   // v = y - exp(-0.7487 - 3.295 y + 0.6119 y^2 - 0.3193 y^3), y = Z - 0.7: an approximation
   const ViscosityTemperatureLine line = line_of(3, 1);
   for (double temperature = 300; temperature < 460; temperature += 5) {
@@ -71,7 +71,7 @@ TEST(ViscosityTemperatureLine, DiffersFromTheStandardsInverse) {
   }
 }
 
-TEST(ViscosityTemperatureLine, RisesWithTemperatureOrLeavesItsRange) {
+TEST(ViscosityTemperatureLine, FallsAsTheTemperatureRises) {
   const ViscosityTemperatureLine line = line_of(100, 8);
   double last = INFINITY;
   for (double temperature = 240; temperature < 560; temperature += 1) {
@@ -81,7 +81,7 @@ TEST(ViscosityTemperatureLine, RisesWithTemperatureOrLeavesItsRange) {
   }
 }
 
-TEST(ViscosityTemperatureLine, AnswersWhereTheStandardDoesNot) {
+TEST(ViscosityTemperatureLine, RefusesWhereTheStandardIsUndefined) {
   const auto reason = [](double t1, double v1, double t2, double v2) {
     return refusal_reason([&] { viscosity_temperature_line({t1, 1e-6 * v1}, {t2, 1e-6 * v2}); });
   };
@@ -100,7 +100,7 @@ TEST(ViscosityTemperatureLine, AnswersWhereTheStandardDoesNot) {
   EXPECT_EQ(refusal_reason([] { kinematic_viscosity(line_of(2000, 8), 200); }), kReason);
 }
 
-TEST(WaltherVogel, StraysFromD341) {
+TEST(WaltherVogel, StaysNearD341) {
   // Vogel through 40 and 100 C with the T_0 of walther_reference_temperature: how far from D341.
   const DensityLaw density = density_law(870, BaseOilClass::kGroupI);
   double ordinary = 0, ordinary_between = 0, heavy = 0;
@@ -143,7 +143,7 @@ TEST(WaltherVogel, StraysFromD341) {
   EXPECT_LT(heavy, 0.067);
 }
 
-TEST(TemperatureOfViscosity, IsNotTheInverseOfEq34) {
+TEST(TemperatureOfViscosity, IsTheInverseOfEq34) {
   const Lubricant fluid = reference_lubricant();
   for (const double temperature : {230.0, 313.15, 420.0}) {
     EXPECT_NEAR(temperature_of_viscosity(fluid, ambient_viscosity(fluid, temperature)), temperature,

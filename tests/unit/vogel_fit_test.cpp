@@ -31,7 +31,7 @@ std::string reason(const std::vector<ViscosityPoint>& points) {
   return refusal_of([&] { fit_vogel(points); });
 }
 
-TEST(VogelFit, MissesTheLawThatMadeTheTable) {
+TEST(VogelFit, RecoversTheLawThatMadeTheTable) {
   for (const int fluid : {1, 2, 3}) {
     const Lubricant lubricant = reference_lubricant(fluid);
     const Law law{lubricant.vogel_viscosity_prefactor, lubricant.vogel_temperature_coefficient,
@@ -49,7 +49,7 @@ TEST(VogelFit, MissesTheLawThatMadeTheTable) {
   }
 }
 
-TEST(VogelFit, MissesRandomLaws) {
+TEST(VogelFit, RecoversRandomLaws) {
   std::mt19937 random(34);
   std::uniform_real_distribution<double> lg_eta(-4.6, -3.6), coefficient(500, 1600),
       reference(90, 180);
@@ -62,7 +62,7 @@ TEST(VogelFit, MissesRandomLaws) {
   }
 }
 
-TEST(VogelFit, DependsOnTheOrderOfRows) {
+TEST(VogelFit, IsIndependentOfRowOrder) {
   std::vector<ViscosityPoint> points = table(kOil, {-20, 0, 40, 70, 100, 130});
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, 0.02);
@@ -77,7 +77,7 @@ TEST(VogelFit, DependsOnTheOrderOfRows) {
   }
 }
 
-TEST(VogelFit, IsNotTheLeastOfItsSquares) {
+TEST(VogelFit, MinimisesItsSquares) {
   std::vector<ViscosityPoint> points = table(kOil, {-20, 0, 20, 40, 70, 100, 130});
   std::mt19937 random(11);
   std::normal_distribution<double> noise(0, 0.03);
@@ -132,7 +132,7 @@ Coverage coverage(const std::vector<double>& celsius, double noise_level, bool s
   return share;
 }
 
-TEST(VogelFit, UncertaintiesDoNotCoverTheTruth) {
+TEST(VogelFit, UncertaintiesCoverTheTruth) {
   // Stated noise, widened by chi-square where that exceeds 1: a little more than 95.4 %.
   const Coverage stated =
       coverage({-30, -10, 10, 25, 40, 55, 70, 85, 100, 120, 140}, 0.01, true, 4000);
@@ -150,7 +150,7 @@ TEST(VogelFit, UncertaintiesDoNotCoverTheTruth) {
   }
 }
 
-TEST(VogelFit, IgnoresWeights) {
+TEST(VogelFit, HeedsWeights) {
   std::vector<ViscosityPoint> points = table(kOil, {-40, -20, 0, 40, 70, 100, 130}, 0.005);
   points[0].viscosity *= 1.5;
   points[0].relative_standard_uncertainty = 0.5;
@@ -159,7 +159,7 @@ TEST(VogelFit, IgnoresWeights) {
   EXPECT_NEAR(fit.residuals[0], std::log(1.5), 0.01);
 }
 
-TEST(VogelFit, InventsAReferenceTemperature) {
+TEST(VogelFit, AssumesAReferenceTemperatureWhereTheTableHoldsNone) {
   // two temperatures: T_0 is the typical one, both met, and its uncertainty reaches A_1
   const VogelFit two = fit_vogel(table(kOil, {40, 100}));
   EXPECT_TRUE(two.reference_temperature_assumed);
@@ -181,7 +181,7 @@ TEST(VogelFit, InventsAReferenceTemperature) {
   EXPECT_TRUE(straight.reference_temperature_assumed);
 }
 
-TEST(VogelFitAt, MovesTheReferenceTemperature) {
+TEST(VogelFitAt, KeepsTheReferenceTemperature) {
   const VogelFit fit = fit_vogel_at(table(kOil, {40, 100}), 140, 10);
   EXPECT_EQ(fit.reference_temperature, 140);
   EXPECT_NEAR(std::sqrt(fit.covariance(2, 2)), 10, 1e-6);
@@ -192,7 +192,7 @@ TEST(VogelFitAt, MovesTheReferenceTemperature) {
             "VISCOSITY_TABLE_NOT_VOGEL");
 }
 
-TEST(VogelFit, AnswersNonsense) {
+TEST(VogelFit, RefusesNonsense) {
   const auto with = [](std::size_t row, double temperature, double viscosity, double u = 0) {
     std::vector<ViscosityPoint> points = table(kOil, {0, 40, 70, 100});
     points[row] = {temperature, viscosity, u};
@@ -229,7 +229,7 @@ TEST(VogelFit, AnswersNonsense) {
   EXPECT_NE(gelled.find("row 1"), std::string::npos);
 }
 
-TEST(VogelFit, NeitherAnswersNorRefuses) {
+TEST(VogelFit, AnswersInFiniteNumbersOrRefuses) {
   // any table gives finite numbers or a named refusal
   std::mt19937 random(99);
   std::uniform_real_distribution<double> temperature(195, 630), lg(-5.2, 7.2), kind(0, 1);

@@ -19,8 +19,8 @@ namespace {
 // Running time integrals, integrated as extra states after the eight of the model.
 enum IntegralIndex {
   kFrictionEnergy = kStateSize,  // int P dt
-  kSquaredRatio,                 // int (P / phi_s')^2 dt
-  kPinionShaftAngle,             // int phi_s' dt
+  kSquaredRatio,                 // int (P / P_in)^2 dt
+  kIncomingEnergy,               // int P_in dt
   kTransmissionErrorIntegral,    // int (x - b) dt
   kPinionFrictionImpulse,        // int T_fr,p dt
   kVectorSize
@@ -169,8 +169,8 @@ class CycleIntegrator {
     scale[kGearShaftTwist] = torque / system_.gear_pair().gear_shaft_stiffness;
     for (int i = kPinionShaftSpeed; i <= kGearShaftSpeed; ++i) scale[i] = 1.0;
     scale[kFrictionEnergy] = power * period;
-    scale[kSquaredRatio] = std::pow(power / shaft_speed, 2) * period;
-    scale[kPinionShaftAngle] = 1.0;
+    scale[kSquaredRatio] = std::pow(0.01, 2) * period;
+    scale[kIncomingEnergy] = torque;
     scale[kTransmissionErrorIntegral] = backlash * period;
     scale[kPinionFrictionImpulse] = 0.01 * torque * period;
     for (int i = 0; i < kVectorSize; ++i) scale[i] *= tolerance;
@@ -183,12 +183,14 @@ class CycleIntegrator {
   static int RightHandSide(double, N_Vector vector, N_Vector rate, void* user_data) {
     auto* self = static_cast<CycleIntegrator*>(user_data);
     const Instant now = self->EvaluateAt(vector);
-    const double shaft_speed = Data(vector)[kPinionShaftSpeed];
+    // Power comes in at the shaft that drives: at the pinion's in drive, at the wheel's in coast.
+    const double power_in = std::max(self->input_torque_ * Data(vector)[kPinionShaftSpeed], 0.0) +
+                            std::max(-self->resistive_torque_ * Data(vector)[kGearShaftSpeed], 0.0);
     double* out = Data(rate);
     std::copy(now.rate.begin(), now.rate.end(), out);
     out[kFrictionEnergy] = now.friction_power;
-    out[kSquaredRatio] = std::pow(now.friction_power / shaft_speed, 2);
-    out[kPinionShaftAngle] = shaft_speed;
+    out[kSquaredRatio] = std::pow(now.friction_power / power_in, 2);
+    out[kIncomingEnergy] = power_in;
     out[kTransmissionErrorIntegral] =
         now.transmission_error - self->system_.gear_pair().half_backlash;
     out[kPinionFrictionImpulse] = now.pinion_friction_torque;
@@ -304,9 +306,8 @@ class CycleIntegrator {
     result_.period = time;
     result_.vehicle_speed = system_.vehicle().wheel_radius * 2.0 * std::numbers::pi /
                             system_.gear_pair().gear_teeth / time;
-    result_.rms_inefficiency = 100.0 * std::sqrt(data[kSquaredRatio] / time) / input_torque_;
-    result_.energy_mean_inefficiency =
-        100.0 * data[kFrictionEnergy] / (input_torque_ * data[kPinionShaftAngle]);
+    result_.rms_inefficiency = 100.0 * std::sqrt(data[kSquaredRatio] / time);
+    result_.energy_mean_inefficiency = 100.0 * data[kFrictionEnergy] / data[kIncomingEnergy];
     result_.transmission_error.mean =
         system_.gear_pair().half_backlash + data[kTransmissionErrorIntegral] / time;
     result_.pinion_friction_torque.mean = data[kPinionFrictionImpulse] / time;

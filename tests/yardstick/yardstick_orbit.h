@@ -30,12 +30,13 @@ struct Extremes {
 };
 
 struct MeshCycle {
-  SectionState end;                       ///< state at phi_p = 2 pi / N_p, moved back to phi_p = 0
-  double input_torque = 0.0;              ///< T_s, N m
-  double period = 0.0;                    ///< time for phi_p to advance by 2 pi / N_p, s
-  double vehicle_speed = 0.0;             ///< r_w (2 pi / N_g) / period, m/s
-  double rms_inefficiency = 0.0;          ///< root of the time mean of eq 30 squared, %
-  double energy_mean_inefficiency = 0.0;  ///< 100 int P_friction dt / int T_s phi_s' dt, %
+  SectionState end;            ///< state at phi_p = 2 pi / N_p, moved back to phi_p = 0
+  double input_torque = 0.0;   ///< T_s, N m
+  double period = 0.0;         ///< time for phi_p to advance by 2 pi / N_p, s
+  double vehicle_speed = 0.0;  ///< r_w (2 pi / N_g) / period, m/s
+  /// P_in: T_s phi_s' in drive, -T_w phi_w' in coast, where the wheel drives.
+  double rms_inefficiency = 0.0;          ///< root of the time mean of (P_friction / P_in)^2, %
+  double energy_mean_inefficiency = 0.0;  ///< 100 int P_friction dt / int P_in dt, %
   Extremes transmission_error;            ///< x, m
   Extremes pinion_friction_torque;        ///< T_fr,p, N m
   double maximum_temperature = 0.0;       ///< T_c over the cycle and the loaded flanks, K

@@ -110,6 +110,7 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
   root.allow_extras();
   // Else a resource whose name is that of a command would be taken for the command.
   root.require_subcommand(0, 1);
+  root.set_help_all_flag("--help-all");
   bool version = false;
   root.add_flag("--version", version);
   GivenTexts given;
@@ -126,6 +127,9 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
   try {
     // CLI11 wants the arguments reversed.
     root.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::CallForAllHelp&) {
+    parsed.wants_help = true;
+    parsed.wants_all_help = true;
   } catch (const CLI::CallForHelp&) {
     parsed.wants_help = true;
   } catch (const CLI::ParseError& error) {
@@ -144,6 +148,12 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
 
   complain_of_extras(root, *app, parsed.command, commands, common_flags, parsed.complaints);
   if (parsed.command == nullptr) return parsed;
+  const auto typed = [&](const Flag& flag) {
+    TypedFlag out{typed_name(flag, arguments), given[&flag], flag.bare_unit};
+    const bool is_list_of_numbers = flag.is_repeatable && !flag.bare_unit.empty();
+    if (is_list_of_numbers) out.texts = split(joined(out.texts, ","), ',');
+    return out;
+  };
   for (const FlagList* list : {&parsed.command->flags, &common_flags}) {
     for (const Flag& flag : list->flags()) {
       const auto texts = given.find(&flag);
@@ -152,9 +162,11 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
         parsed.complaints.push_back(flag.first_name() + ": is not UTF-8 text");
       } else {
         flag.read(texts->second, parsed.complaints);
+        if (!flag.is_positional()) parsed.typed_flags[flag.field_name()] = typed(flag);
       }
     }
   }
+  name_flags_as_typed(arguments, {&parsed.command->flags, &common_flags}, parsed.complaints);
   if (parsed.command->check) parsed.command->check(parsed.complaints);
   return parsed;
 }

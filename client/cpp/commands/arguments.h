@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/cpp/commands/command.h"
+#include "client/cpp/commands/flag_errors.h"
 
 namespace tribodyn::client {
 
@@ -14,8 +15,10 @@ struct Parsed {
   const Command* command = nullptr;  ///< null: none named
   std::string group;                 ///< of several commands, e.g. "jobs", when only it is named
   bool wants_help = false;
+  bool wants_all_help = false;  ///< every option; then wants_help is true as well
   bool wants_version = false;
   Complaints complaints;
+  TypedFlags typed_flags;
 };
 
 /// "server = HOST:PORT" lines of a configuration file, '#' comments; complaints name `path`.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "client/cpp/commands/flag_errors.h"
 #include "client/cpp/commands/flags.h"
 #include "client/cpp/failure.h"
 #include "client/cpp/text/colour.h"
@@ -25,6 +26,7 @@ struct CommonOptions {
   OutputFormat output_format = OutputFormat::kTable;
   ColourChoice colour = ColourChoice::kAuto;
   ProgressChoice progress = ProgressChoice::kAuto;
+  TypedFlags typed_flags;  ///< the user's spelling of each flag, for error messages
 
   ProgressForm progress_form() const;
 
@@ -42,6 +44,9 @@ struct Command {
   FlagList flags;
   std::function<void(Complaints&)> check;  ///< what no flag alone can know; may be empty
   std::function<int(const CommonOptions&)> run;
+  /// The flags that --help lists, by any of their names; --help-all lists all flags. Empty:
+  /// --help shows all that are the command's own.
+  std::vector<std::string> main_flags = {};
 };
 
 /// The flags of CommonOptions, to be added to each command.

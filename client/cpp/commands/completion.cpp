@@ -166,7 +166,7 @@ std::vector<std::string> next_words(const Line& line, const std::vector<Command>
 }
 
 std::vector<std::string> flag_names(const std::vector<const FlagList*>& lists) {
-  std::vector<std::string> names = {"--help"};
+  std::vector<std::string> names = {"--help", "--help-all"};
   for (const FlagList* list : lists) {
     for (const Flag& flag : list->flags()) {
       if (flag.is_positional() || flag.is_hidden) continue;

@@ -3,6 +3,7 @@
 #include <array>
 #include <iostream>
 #include <memory>
+#include <string_view>
 
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/report/contact_report.h"
@@ -69,10 +70,11 @@ void add_contact_flags(FlagList& list, v1::EvaluateContactRequest& request) {
             });
   for (const ContactInput& input : kInputs) {
     set_number(request, input.field, input.standard);
-    list.number(flag_of_field(input.field), {input.unit, input.range, significant(input.standard)},
-                input.description, [&request, field = input.field](double value) {
-                  set_number(request, field, value);
-                });
+    const bool is_sump = std::string_view(input.field) == "sump_temperature_celsius";
+    list.number(
+        flag_of_field(input.field) + (is_sump ? ",--sump" : ""),
+        {input.unit, input.range, significant(input.standard)}, input.description,
+        [&request, field = input.field](double value) { set_number(request, field, value); });
   }
   add_model_flags(list, *request.mutable_model_options());
 }
@@ -112,6 +114,16 @@ Command contact_command() {
       {},
       {}};
   add_contact_flags(command.flags, *request);
+  command.main_flags = {"--lubricant",
+                        "--load-newtons",
+                        "--radius-x-metres",
+                        "--radius-y-metres",
+                        "--pinion-velocity-x-metres-per-second",
+                        "--pinion-velocity-y-metres-per-second",
+                        "--gear-velocity-x-metres-per-second",
+                        "--gear-velocity-y-metres-per-second",
+                        "--sump",
+                        "--inlet-temperature-rise-kelvin"};
   command.run = [request](const CommonOptions& options) { return run_contact(*request, options); };
   return command;
 }

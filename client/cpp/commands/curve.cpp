@@ -1,12 +1,13 @@
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "client/cpp/commands/operating_point.h"
+#include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
+#include "client/cpp/commands/show_results.h"
 #include "client/cpp/plot/curve_plot.h"
+#include "client/cpp/plot/panel.h"
 #include "client/cpp/report/curve_report.h"
-#include "client/cpp/report/results.h"
 
 namespace tribodyn::client {
 namespace {
@@ -18,6 +19,7 @@ constexpr double kSpeedStep = 5;
 
 struct CurveFlags {
   v1::InefficiencyCurveStudy study;
+  bool has_range = false;  ///< of speeds, given by a flag
   Scenario scenario;
   std::string csv_path;
   std::string plot_path;
@@ -29,50 +31,56 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
   study.set_last_speed_kilometers_per_hour(kLastSpeed);
   study.set_speed_step_kilometers_per_hour(kSpeedStep);
   list.group("Curve");
-  list.number("--first-speed-kilometers-per-hour,--first-speed", {"km/h", "0.1 to 400", "20"},
-              "Lowest vehicle speed",
-              [&](double value) { study.set_first_speed_kilometers_per_hour(value); });
-  list.number("--last-speed-kilometers-per-hour,--last-speed", {"km/h", "0.1 to 400", "140"},
-              "Highest vehicle speed",
-              [&](double value) { study.set_last_speed_kilometers_per_hour(value); });
-  list.number("--speed-step-kilometers-per-hour,--speed-step", {"km/h", "0.001 to 400", "5"},
-              "Between two points",
-              [&](double value) { study.set_speed_step_kilometers_per_hour(value); });
+  list.numbers("--speeds-kilometers-per-hour,--speeds,--speed",
+               {"km/h", "0.1 to 400", "20 to 140 by 5"},
+               "Vehicle speeds, several by commas, in place of a range",
+               [&](double value) { study.add_speeds_kilometers_per_hour(value); });
+  const auto range = [&](const char* names, const NumberText& text, const char* description,
+                         void (v1::InefficiencyCurveStudy::*set)(double)) {
+    list.number(names, text, description, [&flags, set](double value) {
+      (flags.study.*set)(value);
+      flags.has_range = true;
+    });
+  };
+  range("--first-speed-kilometers-per-hour,--first-speed", {"km/h", "0.1 to 400", "20"},
+        "Lowest vehicle speed", &v1::InefficiencyCurveStudy::set_first_speed_kilometers_per_hour);
+  range("--last-speed-kilometers-per-hour,--last-speed", {"km/h", "0.1 to 400", "140"},
+        "Highest vehicle speed", &v1::InefficiencyCurveStudy::set_last_speed_kilometers_per_hour);
+  range("--speed-step-kilometers-per-hour,--speed-step", {"km/h", "0.001 to 400", "5"},
+        "Between two points", &v1::InefficiencyCurveStudy::set_speed_step_kilometers_per_hour);
   list.choice("--direction", {"up", "down"},
               "Each point starts from the steady state before it; where two responses coexist, up "
               "and down differ. Default: up.",
               [&](int index) { study.set_direction(index == 0 ? v1::UP : v1::DOWN); });
-  list.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"}, "Road slope",
+  list.toggle("--independent-points",
+              "Solve each speed alone, as `tribodyn point` does, in about a third of the time: no "
+              "branch is followed from speed to speed and no jump is looked for. For comparing "
+              "many fluids.",
+              [&] { study.set_independent_points(true); });
+  list.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"},
+              "Road slope, also in percent: 6%",
               [&](double value) { study.set_ascent_angle_degrees(value); });
   add_model_and_start_flags(list, study);
   list.group("Files");
-  list.text("--csv", "FILE", "Also write every field of every point as CSV.",
-            [&](const std::string& path) { flags.csv_path = path; });
-  list.text("--plot", "FILE.svg", "Also draw the curves of all lubricants.",
-            [&](const std::string& path) { flags.plot_path = path; });
-}
-
-/// Titles for the plot; a picture without them is still a picture, so no error ends the command.
-std::map<std::string, std::string> titles_of(const std::vector<v1::Simulation>& simulations,
-                                             Connection& connection) {
-  std::map<std::string, std::string> titles;
-  for (const v1::Simulation& simulation : simulations) {
-    try {
-      titles[simulation.lubricant()] =
-          connection.get<v1::Lubricant>(simulation.lubricant()).display_name();
-    } catch (const ServiceError&) {
-      continue;
-    }
-  }
-  return titles;
+  add_result_file_flag(list, "--csv", "FILE", "Also write every field of every point as CSV.",
+                       flags.csv_path);
+  add_plot_flag(list,
+                "Also draw the curves of all lubricants, at most " +
+                    std::to_string(kDistinctLooks) + " of them, as SVG.",
+                flags.plot_path);
 }
 
 int run_curve(CurveFlags& flags, const CommonOptions& options) {
+  if (flags.study.speeds_kilometers_per_hour_size() > 0) {
+    flags.study.clear_first_speed_kilometers_per_hour();
+    flags.study.clear_last_speed_kilometers_per_hour();
+    flags.study.clear_speed_step_kilometers_per_hour();
+  }
   *flags.scenario.simulation.mutable_inefficiency_curve() = flags.study;
   Connection connection = options.connect();
-  const auto ended = run_scenario(flags.scenario, connection, options.progress_form());
+  const auto ended = run_scenario(flags.scenario, connection, options);
   if (ended.empty()) return kExitOk;
-  std::cout << results_text(ended, options.output_format, false, flags.scenario.shows_assumptions);
+  std::cout << shown_results(ended, connection, options, false, flags.scenario.shows_assumptions);
   std::vector<v1::Simulation> succeeded;
   for (const v1::Simulation& simulation : ended) {
     if (simulation.state() == v1::Simulation::SUCCEEDED) succeeded.push_back(simulation);
@@ -81,7 +89,7 @@ int run_curve(CurveFlags& flags, const CommonOptions& options) {
     write_file(flags.csv_path, points_csv(succeeded));
   }
   if (!flags.plot_path.empty() && !succeeded.empty()) {
-    write_file(flags.plot_path, curve_plot(succeeded, titles_of(succeeded, connection)));
+    write_file(flags.plot_path, curve_plot(succeeded, lubricant_titles(succeeded, connection)));
   }
   return report_failures(ended);
 }
@@ -105,7 +113,26 @@ Command curve_command() {
   add_scenario_flags(command.flags, flags->scenario);
   command.check = [flags](Complaints& complaints) {
     check_scenario(flags->scenario, true, complaints);
+    if (flags->has_range && flags->study.speeds_kilometers_per_hour_size() > 0) {
+      complaints.emplace_back(
+          "either --speed with all speeds, or --first-speed, --last-speed and --speed-step");
+    }
+    const std::size_t count = flags->scenario.lubricants.size();
+    if (!flags->plot_path.empty() && count > kDistinctLooks) {
+      complaints.push_back("--plot: " + std::to_string(count) + " lubricants; legal: at most " +
+                           std::to_string(kDistinctLooks) +
+                           ", for which colours and dashes differ. Draw them in several pictures");
+    }
+    if (flags->study.independent_points() &&
+        flags->study.direction() != v1::SWEEP_DIRECTION_UNSPECIFIED) {
+      complaints.emplace_back(
+          "--direction and --independent-points: one of them, as independent points are followed "
+          "in no direction");
+    }
   };
+  command.main_flags = {"--lubricant",  "--speed", "--first-speed", "--last-speed",
+                        "--speed-step", "--sump",  "--gear-set",    "--surface",
+                        "--vehicle",    "--csv",   "--plot"};
   command.run = [flags](const CommonOptions& options) { return run_curve(*flags, options); };
   return command;
 }

@@ -18,7 +18,7 @@ Command diff_command() {
       "diff",
       "what two lubricants differ in",
       "Compares two lubricants, or two revisions of one: viscosities, index, grade and every "
-      "parameter with its unit, how it is known and the relative difference (B - A)/A. Only what "
+      "parameter with its unit, how it is known and the relative difference (B - A)/|A|. Only what "
       "differs is shown, unless --all.",
       {"tribodyn diff 1 2", "tribodyn diff 1@1 1 --all --output csv"},
       {},

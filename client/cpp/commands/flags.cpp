@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <utility>
 
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
@@ -36,13 +36,11 @@ std::string flag_of_field(const std::string& field_path) {
   return "--" + flag;
 }
 
-std::optional<double> parse_number(const std::string& text) {
-  const char* first = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
-  const char* last = text.data() + text.size();
-  double value = 0;
-  const auto [end, error] = std::from_chars(first, last, value);
-  if (error != std::errc() || end != last || !std::isfinite(value)) return std::nullopt;
-  return value;
+std::string Flag::field_name() const {
+  if (!field.empty()) return field;
+  std::string name = first_name().substr(std::min<std::size_t>(first_name().size(), 2));
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
 }
 
 void FlagList::add(const std::string& names, const std::string& value_name,
@@ -68,15 +66,40 @@ Flag& FlagList::raw(const std::string& names, const std::string& value_name,
 void FlagList::number(const std::string& names, const NumberText& text,
                       const std::string& description, const std::function<void(double)>& set) {
   const std::string name = names.substr(0, names.find(','));
-  const std::string unit = text.unit == "-" ? "" : " in " + text.unit;
+  const std::string unit = text.unit == "-" ? "" : text.unit;
   add(names, value_name_of(text), described(description, text),
       [=](const std::string& given, Complaints& complaints) {
-        if (const auto value = parse_number(given)) {
+        std::string wrong;
+        if (const auto value = read_quantity(given, unit, unit, unit == "C", wrong)) {
           set(*value);
         } else {
-          complaints.push_back(complaint(name, given, "is not a number" + unit));
+          complaints.push_back(complaint(name, given, wrong));
         }
       });
+  flags_.back().bare_unit = unit;
+}
+
+void FlagList::numbers(const std::string& names, const NumberText& text,
+                       const std::string& description, const std::function<void(double)>& add) {
+  const std::string unit = text.unit == "-" ? "" : text.unit;
+  Flag flag{names, value_name_of(text), described(description, text), group_};
+  flag.is_repeatable = true;
+  flag.bare_unit = unit;
+  flag.read = [name = flag.first_name(), unit, add](const std::vector<std::string>& texts,
+                                                    Complaints& complaints) {
+    for (const std::string& given : texts) {
+      if (given.empty()) complaints.push_back(name + " is empty");
+      for (const std::string& part : split(given, ',')) {
+        std::string wrong;
+        if (const auto value = read_quantity(part, unit, unit, unit == "C", wrong)) {
+          add(*value);
+        } else {
+          complaints.push_back(complaint(name, part, wrong));
+        }
+      }
+    }
+  };
+  flags_.push_back(std::move(flag));
 }
 
 void FlagList::whole_number(const std::string& names, const NumberText& text,
@@ -116,9 +139,9 @@ Flag& FlagList::texts(const std::string& names, const std::string& value_name,
   return flags_.back();
 }
 
-void FlagList::choices(const std::string& names, const std::string& words,
-                       const std::string& description,
-                       const std::function<bool(const std::string&)>& add_value) {
+Flag& FlagList::choices(const std::string& names, const std::string& words,
+                        const std::string& description,
+                        const std::function<bool(const std::string&)>& add_value) {
   Flag flag{names, words, description, group_};
   flag.is_repeatable = true;
   flag.read = [name = flag.first_name(), words, add_value](const std::vector<std::string>& given,
@@ -137,6 +160,7 @@ void FlagList::choices(const std::string& names, const std::string& words,
   flag.words = split(words, '|');
   if (flag.words.size() == 1) flag.words.clear();  // a placeholder such as NAMES
   flags_.push_back(std::move(flag));
+  return flags_.back();
 }
 
 void FlagList::choice(const std::string& names, const std::vector<std::string>& words,

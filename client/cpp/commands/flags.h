@@ -22,6 +22,9 @@ struct Flag {
   std::function<void(const std::vector<std::string>&, Complaints&)> read = {};
   /// Another spelling of a flag that the help shows already.
   bool is_hidden = false;
+  /// Field of the request that it sets; empty: the one that its first name says.
+  std::string field = {};
+  std::string bare_unit = {};  ///< of a number that is given without one
   // Row of the server's constraint table, for the help; empty: none.
   std::string constraint_message = {};
   std::string constraint_field = {};
@@ -32,6 +35,8 @@ struct Flag {
 
   bool is_positional() const { return names.front() != '-'; }
   std::string first_name() const { return names.substr(0, names.find(',')); }
+  /// "sump_temperature_celsius" of "--sump-temperature-celsius,--sump".
+  std::string field_name() const;
 };
 
 /// How a number is described: unit, legal range and default are always shown together.
@@ -48,8 +53,12 @@ class FlagList {
   /// Following flags stand under this heading in the help.
   void group(std::string heading) { group_ = std::move(heading); }
 
+  /// A quantity: a number in the unit of `text`, or one with a unit of its own.
   void number(const std::string& names, const NumberText& text, const std::string& description,
               const std::function<void(double)>& set);
+  /// Several quantities by commas; the flag may be repeated.
+  void numbers(const std::string& names, const NumberText& text, const std::string& description,
+               const std::function<void(double)>& add);
   void whole_number(const std::string& names, const NumberText& text,
                     const std::string& description, const std::function<void(int)>& set);
   Flag& text(const std::string& names, const std::string& value_name,
@@ -61,8 +70,8 @@ class FlagList {
   void choice(const std::string& names, const std::vector<std::string>& words,
               const std::string& description, const std::function<void(int)>& set);
   /// As texts; `add` says whether it knows the word, one of `words`.
-  void choices(const std::string& names, const std::string& words, const std::string& description,
-               const std::function<bool(const std::string&)>& add);
+  Flag& choices(const std::string& names, const std::string& words, const std::string& description,
+                const std::function<bool(const std::string&)>& add);
   void toggle(const std::string& names, const std::string& description,
               const std::function<void()>& set);
 
@@ -84,8 +93,4 @@ class FlagList {
 /// "--sump-temperature-celsius" from "simulation.sump_temperature_celsius": flags are named after
 /// the fields they set.
 std::string flag_of_field(const std::string& field_path);
-
-/// The whole text as a finite number; nothing else will do.
-std::optional<double> parse_number(const std::string& text);
-
 }  // namespace tribodyn::client

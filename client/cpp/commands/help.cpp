@@ -42,16 +42,38 @@ std::string flag_text(const Flag& flag, const v1::Schema* schema) {
   return "  " + names + "\n" + wrapped(flag.description + legal_range(flag, schema), 6);
 }
 
-std::string flags_text(const FlagList& list, const v1::Schema* schema) {
+std::string flags_text(const std::vector<const Flag*>& flags, const v1::Schema* schema) {
   std::string text;
   std::string group;
-  for (const Flag& flag : list.flags()) {
-    if (flag.is_hidden) continue;
-    if (flag.group != group) text += "\n" + heading(flag.group) + "\n";
-    group = flag.group;
-    text += flag_text(flag, schema);
+  for (const Flag* flag : flags) {
+    if (flag->group != group) text += "\n" + heading(flag->group) + "\n";
+    group = flag->group;
+    text += flag_text(*flag, schema);
   }
   return text;
+}
+
+std::vector<const Flag*> visible_flags(const FlagList& list) {
+  std::vector<const Flag*> flags;
+  for (const Flag& flag : list.flags()) {
+    if (!flag.is_hidden) flags.push_back(&flag);
+  }
+  return flags;
+}
+
+/// Those of the short help, in the order of the long one.
+std::vector<const Flag*> main_flags_of(const Command& command) {
+  std::vector<const Flag*> flags = visible_flags(command.flags);
+  if (command.main_flags.empty()) return flags;
+  std::erase_if(flags, [&](const Flag* flag) {
+    const auto names = split(flag->names, ',');
+    const bool is_main = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+      return std::find(command.main_flags.begin(), command.main_flags.end(), name) !=
+             command.main_flags.end();
+    });
+    return !flag->is_positional() && !is_main;
+  });
+  return flags;
 }
 
 std::string group_of(const Command& command) {
@@ -93,7 +115,7 @@ std::string page(const std::vector<std::string>& words, const CommonOptions& opt
   for (const Command& command : commands) {
     if (command.path == name) {
       const auto schema = schema_for_help(command, options);
-      return help_text(command, common_flags, schema ? &*schema : nullptr);
+      return help_text(command, common_flags, schema ? &*schema : nullptr, HelpLength::kShort);
     }
     known.push_back(command.path);
     known.push_back(group_of(command));
@@ -142,10 +164,12 @@ std::string overview_text(const std::vector<Command>& commands) {
          "Asks a tribodynd server for mesh (conjunctional) losses; bearings, churning and seals "
          "are\nnot in them.\n\n"
          "usage: tribodyn COMMAND [options]\n"
-         "       tribodyn COMMAND --help     units, legal ranges and defaults of every option\n\n" +
+         "       tribodyn COMMAND --help       examples and the options that most calls need\n"
+         "       tribodyn COMMAND --help-all   every option\n\n" +
          heading("Commands") + "\n" + lines_text(lines) + "\n" + heading("Topics") + "\n" +
          topics_text() + "\n" + heading("From three numbers to a curve") + "\n" +
-         "  tribodyn lubricants create my-oil --kv40 73.3 --kv100 8.86 --density15 870\n"
+         "  tribodyn lubricants create my-oil --kv40 103 --kv100 15.1 --density15 868 \\\n"
+         "      --base-oil-class pao\n"
          "  tribodyn curve --lubricant my-oil --plot curve.svg\n"
          "\nExit codes: 0 done, 1 refused or failed, 2 wrong usage, 3 no server, 130 "
          "interrupted.\n";
@@ -158,27 +182,40 @@ std::string group_text(const std::string& group, const std::vector<Command>& com
   }
   if (lines.empty()) return "";
   return heading("Commands") + "\n" + lines_text(lines) + "\n`tribodyn " + lines.front().first +
-         " --help` and so on tell every option.\n";
+         " --help` and so on show their options.\n";
 }
 
 std::string help_text(const Command& command, const FlagList& common_flags,
-                      const v1::Schema* schema) {
-  std::string usage = "usage: tribodyn " + command.path;
-  for (const Flag& flag : command.flags.flags()) {
-    if (flag.is_positional()) usage += " " + flag.value_name + (flag.is_repeatable ? "..." : "");
-  }
-  const auto& flags = command.flags.flags();
-  const bool lacks_ranges =
-      schema == nullptr && std::any_of(flags.begin(), flags.end(), [](const Flag& flag) {
-        return !flag.constraint_field.empty();
-      });
-  std::string text = "tribodyn " + command.path + ": " + command.summary + "\n\n" + usage +
-                     " [options]\n\n" + wrapped(command.about, 0) +
-                     flags_text(command.flags, schema) + flags_text(common_flags, schema) + "\n" +
-                     heading("Examples") + "\n";
+                      const v1::Schema* schema, HelpLength length) {
+  std::string text =
+      "tribodyn " + command.path + ": " + command.summary + "\n\n" + heading("Examples") + "\n";
   for (const std::string& example : command.examples) text += "  " + example + "\n";
+  text += "\nusage: tribodyn " + command.path;
+  for (const Flag& flag : command.flags.flags()) {
+    if (flag.is_positional()) text += " " + flag.value_name + (flag.is_repeatable ? "..." : "");
+  }
+  text += " [options]\n\n" + wrapped(command.about, 0);
+  std::vector<const Flag*> flags = visible_flags(command.flags);
+  const std::size_t own_flags = flags.size();
+  if (length == HelpLength::kShort) {
+    flags = main_flags_of(command);
+  } else {
+    const std::vector<const Flag*> common = visible_flags(common_flags);
+    flags.insert(flags.end(), common.begin(), common.end());
+  }
+  text += flags_text(flags, schema);
+  const bool lacks_ranges =
+      schema == nullptr && std::any_of(flags.begin(), flags.end(), [](const Flag* flag) {
+        return !flag->constraint_field.empty();
+      });
   if (lacks_ranges) {
     text += "\nNo server answers: with one, legal ranges stand here too (tribodyn schema).\n";
+  }
+  if (length == HelpLength::kShort) {
+    const std::size_t more = own_flags - flags.size();
+    text += "\n" + std::string(more == 0 ? "" : std::to_string(more) + " more options: ") +
+            (more == 0 ? "Options of every command (--output, --server, ...): " : "") +
+            "tribodyn " + command.path + " --help-all\n";
   }
   return text;
 }

@@ -14,11 +14,16 @@ std::string overview_text(const std::vector<Command>& commands);
 /// `tribodyn lubricants --help`: the commands of a group.
 std::string group_text(const std::string& group, const std::vector<Command>& commands);
 
-/// `tribodyn COMMAND --help`: every flag with unit, legal range and default, then examples.
-/// Ranges of parameters come from `schema`; without it (no server) the help says where to find
-/// them.
+enum class HelpLength {
+  kShort,  ///< examples, then the flags that most calls need
+  kAll,    ///< every flag, those of every command too
+};
+
+/// `tribodyn COMMAND --help` or `--help-all`: examples, then flags with unit, legal range and
+/// default. Ranges of parameters come from `schema`; without it (no server) the help says where to
+/// find them.
 std::string help_text(const Command& command, const FlagList& common_flags,
-                      const v1::Schema* schema);
+                      const v1::Schema* schema, HelpLength length);
 
 /// The server's table of constraints if the help of this command shows some of it and the server
 /// answers at once.

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "client/cpp/commands/operating_point.h"
+#include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/plot/history_plot.h"
 #include "client/cpp/report/history_file.h"
@@ -47,17 +48,17 @@ void add_history_flags(FlagList& list, HistoryFlags& flags) {
                     "Print an overview where there are more: least and largest value of each run "
                     "of samples, one after the other",
                     [&](int count) { flags.maximum_points = count; });
-  list.text("--csv", "FILE",
-            "Also write all samples as CSV. What an interrupted download left is gone on with.",
-            [&](const std::string& path) { flags.csv_path = path; });
-  list.text("--npy", "FILE.npy",
-            "The same for NumPy: numpy.load(\"FILE.npy\")[\"mesh_force_newtons\"].",
-            [&](const std::string& path) { flags.numpy_path = path; });
-  list.text("--plot", "FILE.svg", "Also draw every column against time.",
-            [&](const std::string& path) { flags.plot_path = path; });
+  add_result_file_flag(
+      list, "--csv", "FILE",
+      "Also write all samples as CSV. What an interrupted download left is gone on with.",
+      flags.csv_path);
+  add_result_file_flag(list, "--npy", "FILE.npy",
+                       "The same for NumPy: numpy.load(\"FILE.npy\")[\"mesh_force_newtons\"].",
+                       flags.numpy_path);
+  add_plot_flag(list, "Also draw every column against time, as SVG.", flags.plot_path);
 }
 
-v1::Simulation computed(HistoryFlags& flags, Connection& connection, ProgressForm progress) {
+v1::Simulation computed(HistoryFlags& flags, Connection& connection, const CommonOptions& options) {
   v1::HistoryRequest& history = flags.history;
   if (history.columns_size() == 0) {
     history.add_columns("dynamic_transmission_error_metres");
@@ -73,7 +74,7 @@ v1::Simulation computed(HistoryFlags& flags, Connection& connection, ProgressFor
   auto& study = *flags.scenario.simulation.mutable_operating_point();
   study = operating_point_study(flags.point);
   *study.mutable_history() = history;
-  const auto ended = run_scenario(flags.scenario, connection, progress);
+  const auto ended = run_scenario(flags.scenario, connection, options);
   return ended.empty() ? v1::Simulation() : ended.front();
 }
 
@@ -81,7 +82,7 @@ int run_history(HistoryFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   const v1::Simulation simulation =
       flags.simulation.empty()
-          ? computed(flags, connection, options.progress_form())
+          ? computed(flags, connection, options)
           : connection.get_simulation(resource_name("simulations", flags.simulation));
   if (simulation.name().empty()) return kExitOk;  // detached
   if (simulation.state() != v1::Simulation::SUCCEEDED) return report_failures({simulation});
@@ -110,8 +111,11 @@ int run_history(HistoryFlags& flags, const CommonOptions& options) {
   }
   if (!flags.plot_path.empty()) {
     read.maximum_points = kPlottedPoints;
+    const v1::History plotted = connection.read_history(simulation.name(), read);
+    const auto titles = lubricant_titles({simulation}, connection);
+    const auto title = titles.find(simulation.lubricant());
     write_file(flags.plot_path,
-               history_plot(simulation, connection.read_history(simulation.name(), read)));
+               history_plot(simulation, plotted, title == titles.end() ? "" : title->second));
   }
   return kExitOk;
 }
@@ -139,6 +143,8 @@ Command history_command() {
     check_operating_point(flags->point, complaints);
     check_scenario(flags->scenario, false, complaints);
   };
+  command.main_flags = {"--lubricant",  "--speed",   "--sump", "--columns", "--mesh-cycles",
+                        "--simulation", "--surface", "--csv",  "--npy",     "--plot"};
   command.run = [flags](const CommonOptions& options) { return run_history(*flags, options); };
   return command;
 }

@@ -3,7 +3,9 @@
 #include <iostream>
 #include <memory>
 
+#include "client/cpp/commands/label_filter.h"
 #include "client/cpp/commands/scenario.h"
+#include "client/cpp/commands/show_results.h"
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/report/results.h"
 #include "client/cpp/resources/kind.h"
@@ -20,6 +22,7 @@ using google::protobuf::util::TimeUtil;
 struct JobFlags {
   std::vector<std::string> names;
   ListOptions list;
+  std::vector<std::string> labels;
   bool shows_assumptions = false;
 };
 
@@ -32,6 +35,7 @@ std::string jobs_table(const std::vector<v1::Simulation>& simulations) {
   Table table({{"Name", "", Table::Align::kLeft},
                {"State", "", Table::Align::kLeft},
                {"done", "%"},
+               {"pinned", "", Table::Align::kLeft},
                {"Created", "UTC", Table::Align::kLeft},
                {"took", ""},
                {"Lubricant", "", Table::Align::kLeft},
@@ -40,7 +44,7 @@ std::string jobs_table(const std::vector<v1::Simulation>& simulations) {
   for (const v1::Simulation& simulation : simulations) {
     const double seconds = run_seconds(simulation);
     table.add_row({resource_id(simulation.name()), state_text(simulation.state()),
-                   fixed(100 * simulation.progress_fraction(), 0),
+                   percent_text(simulation.progress_fraction()), simulation.pinned() ? "yes" : "",
                    simulation.has_create_time() ? time_text(simulation.create_time()) : "-",
                    seconds >= 0 ? duration_text(seconds) : "-", resource_id(simulation.lubricant()),
                    study_text(simulation), simulation.display_name()});
@@ -61,6 +65,7 @@ std::string jobs_csv(const std::vector<v1::Simulation>& simulations) {
          {"create_time",
           simulation.has_create_time() ? TimeUtil::ToString(simulation.create_time()) : ""},
          {"attempt", std::to_string(simulation.attempt())},
+         {"pinned", simulation.pinned() ? "true" : "false"},
          {"cache_hit", simulation.cache_hit() ? "true" : "false"},
          {"input_hash", simulation.input_hash()},
          {"run_seconds", seconds >= 0 ? shortest(seconds) : ""},
@@ -86,11 +91,13 @@ std::string jobs_text(const std::vector<v1::Simulation>& simulations, OutputForm
     case OutputFormat::kJson:
       break;
   }
-  return results_text(simulations, format, alone, false);
+  return results_text(simulations, format, alone, false, {});
 }
 
 int run_list(const JobFlags& flags, const CommonOptions& options) {
-  const auto list = options.connect().list_simulations(flags.list);
+  ListOptions list_options = flags.list;
+  list_options.filter = with_labels(list_options.filter, flags.labels);
+  const auto list = options.connect().list_simulations(list_options);
   std::cout << jobs_text(list.resources, options.output_format, false);
   if (list.has_more) {
     std::cerr << "There are more; --limit raises their number,\n--page-token "
@@ -101,10 +108,11 @@ int run_list(const JobFlags& flags, const CommonOptions& options) {
 
 /// A job that has a result is shown by it; one that has none, as it stands.
 int run_get(const JobFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
   const v1::Simulation simulation =
-      options.connect().get_simulation(resource_name("simulations", flags.names.front()));
+      connection.get_simulation(resource_name("simulations", flags.names.front()));
   if (simulation.state() == v1::Simulation::SUCCEEDED) {
-    std::cout << results_text({simulation}, options.output_format, true, flags.shows_assumptions);
+    std::cout << shown_results({simulation}, connection, options, true, flags.shows_assumptions);
     return report_failures({simulation});
   }
   std::cout << jobs_text({simulation}, options.output_format, true);
@@ -130,7 +138,7 @@ std::vector<v1::Simulation> named_jobs(const JobFlags& flags, Connection& connec
 int run_watch(const JobFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   const auto jobs = ended(connection, named_jobs(flags, connection), options);
-  std::cout << results_text(jobs, options.output_format, false, flags.shows_assumptions);
+  std::cout << shown_results(jobs, connection, options, false, flags.shows_assumptions);
   return report_failures(jobs);
 }
 
@@ -164,7 +172,7 @@ int run_again(const JobFlags& flags, const CommonOptions& options) {
     jobs.push_back(connection.create_simulation(request_of(job), create));
   }
   jobs = ended(connection, jobs, options);
-  std::cout << results_text(jobs, options.output_format, false, flags.shows_assumptions);
+  std::cout << shown_results(jobs, connection, options, false, flags.shows_assumptions);
   return report_failures(jobs);
 }
 
@@ -180,8 +188,22 @@ int run_each(const JobFlags& flags, const CommonOptions& options,
   return kExitOk;
 }
 
+/// As run_each, and says of which there was nothing to stop any more.
 int run_cancel(const JobFlags& flags, const CommonOptions& options) {
-  return run_each(flags, options, &Connection::cancel_simulation);
+  Connection connection = options.connect();
+  const std::vector<v1::Simulation> before = named_jobs(flags, connection);
+  std::vector<v1::Simulation> after;
+  for (const v1::Simulation& job : before) {
+    after.push_back(connection.cancel_simulation(job.name()));
+  }
+  std::cout << jobs_text(after, options.output_format, false);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    // One that ended between the two calls was not stopped by the second one either.
+    if (!has_ended(before[i].state()) && after[i].state() == v1::Simulation::CANCELLED) continue;
+    std::cerr << printable(after[i].name()) << " had already ended ("
+              << state_text(after[i].state()) << "); nothing was stopped.\n";
+  }
+  return kExitOk;
 }
 
 int run_pin(const JobFlags& flags, const CommonOptions& options) {
@@ -227,17 +249,19 @@ Command jobs_list_command() {
   Command command{"jobs list",
                   "the newest jobs of the server",
                   "Lists jobs, newest first.",
-                  {"tribodyn jobs list --limit 5"},
+                  {"tribodyn jobs list --limit 5", "tribodyn jobs list --label project=axle"},
                   {},
                   {},
                   {}};
   command.flags.whole_number("--limit,-n", {"jobs", "1 to 100000", "20"}, "How many",
                              [flags](int value) { flags->list.limit = value; });
   command.flags.text("--filter", "FILTER",
-                     "Restrictions joined by AND, e.g. 'state = FAILED AND lubricant = "
-                     "lubricants/1 AND create_time > 2026-01-31T00:00:00Z AND labels.project = "
-                     "axle'.",
+                     "Restrictions joined by AND, e.g. 'state = failed AND lubricant = 1 AND "
+                     "pinned = true AND create_time > 2026-01-31T00:00:00Z'; `tribodyn help "
+                     "filters` tells more.",
                      [flags](const std::string& text) { flags->list.filter = text; });
+  command.flags.texts("--label", "KEY[=VALUE]", "Only those with this label; repeatable.",
+                      [flags](const std::string& text) { flags->labels.push_back(text); });
   command.flags.text("--order-by", "FIELD", "create_time for the oldest first.",
                      [flags](const std::string& text) { flags->list.order_by = text; });
   command.flags.text("--page-token", "TOKEN",
@@ -261,7 +285,9 @@ Command jobs_get_command() {
 Command jobs_watch_command() {
   return job_command("jobs watch", "follow jobs to their end, then print their results",
                      "Follows jobs until all have ended and prints their results. Ctrl-C stops "
-                     "following; the jobs go on.",
+                     "following; the jobs go on. For a picture or a CSV file of a finished job "
+                     "repeat the command that submitted it, with --plot or --csv: its result is "
+                     "there and is not computed again.",
                      "tribodyn jobs watch 12", true, true, run_watch);
 }
 

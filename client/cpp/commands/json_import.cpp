@@ -6,8 +6,10 @@
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "client/cpp/failure.h"
+#include "client/cpp/resources/grouped_complaints.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -37,26 +39,44 @@ std::optional<Index> read_index(const std::string& text, const std::string& star
   return index;
 }
 
-/// The column of a row that a path in its resource means; empty when none is.
+/// The header, as it was typed, of the column that a path in its resource means; empty when none
+/// does.
 std::string column_of(const FileResource& row, const std::string& path) {
-  std::string column = path.substr(path.rfind('.') + 1);
-  const Labels& labels = labels_of(*row.resource);
+  const auto typed = [&](const std::string& column) {
+    const auto found = row.columns.find(column);
+    return found == row.columns.end() ? std::string() : found->second;
+  };
   const auto label = read_index(path, "labels[");
+  const Labels& labels = labels_of(*row.resource);
   if (label && label->value < static_cast<std::size_t>(labels.size())) {
-    column = "labels." + labels[static_cast<int>(label->value)].key();
+    return typed("labels." + labels[static_cast<int>(label->value)].key());
   }
-  const auto found = std::find(row.columns.begin(), row.columns.end(), column);
-  return found == row.columns.end() ? "" : column;
+  const auto known = read_index(path, "provenance[");
+  const ProvenanceEntries& entries = provenance_entries_of(*row.resource);
+  if (known && known->value < static_cast<std::size_t>(entries.size())) {
+    return typed(entries[static_cast<int>(known->value)].field() + path.substr(known->length));
+  }
+  // Of "measurements.viscosities[2].x" the innermost part that is a column.
+  std::vector<std::string> parts = split(path, '.');
+  std::reverse(parts.begin(), parts.end());
+  for (const std::string& part : parts) {
+    if (std::string column = typed(part.substr(0, part.find('['))); !column.empty()) {
+      return column;
+    }
+  }
+  return "";
 }
 
 /// "fluids.csv row 3 column density_...: sentence", "fluids.json, lubricants[2]: sentence".
-std::string complaint(const FileResource& about, const std::string& path,
-                      const std::string& sentence) {
+void add_complaint(const FileResource& about, const std::string& path, const std::string& sentence,
+                   GroupedComplaints& complaints) {
   const std::string column = column_of(about, path);
-  if (!column.empty()) return about.origin + " column " + printable(column) + ": " + sentence;
+  if (!column.empty()) {
+    return complaints.add(about.origin, "column " + printable(column), sentence);
+  }
   const std::string leaf = path.substr(path.rfind('.') + 1);
   const bool says_where = path == leaf && sentence.rfind(leaf + " ", 0) == 0;
-  return about.origin + ": " + (path.empty() || says_where ? "" : path + ": ") + sentence;
+  complaints.add(about.origin, "", (path.empty() || says_where ? "" : path + ": ") + sentence);
 }
 
 }  // namespace
@@ -71,20 +91,22 @@ std::string id_of_file(const std::string& path) {
 
 JsonImport::JsonImport(const ResourceKind& kind, std::vector<FileResource> resources,
                        const std::string& id)
-    : kind_(kind), resources_(std::move(resources)) {
-  std::map<std::string, const FileResource*> by_name;
-  for (const FileResource& each : resources_) {
+    : kind_(kind) {
+  std::map<std::string, std::string> origins;
+  for (FileResource& each : resources) {
     clear_output_only(*each.resource);
     const std::string name = kind.name_of(id_of(each, id));
     set_text(*each.resource, "name", name);
-    const auto [at, is_new] = by_name.emplace(name, &each);
-    if (is_new) continue;
-    throw Failure(kExitUsage, name + " stands in " + at->second->origin + " and in " + each.origin);
+    const auto [at, is_new] = origins.emplace(name, each.origin);
+    if (is_new) {
+      resources_.push_back(std::move(each));
+    } else {
+      duplicates_.push_back(name + " stands in " + at->second + " and in " + each.origin);
+    }
   }
 }
 
-std::vector<ResourcePointer> JsonImport::write(Connection& connection, bool replace,
-                                               bool validate_only) const {
+BatchWritten JsonImport::write(Connection& connection, bool replace, bool validate_only) const {
   if (resources_.empty()) return {};
   std::vector<BatchEntry> batch;
   for (const FileResource& each : resources_) batch.push_back({each.resource.get(), each.fields});
@@ -93,14 +115,14 @@ std::vector<ResourcePointer> JsonImport::write(Connection& connection, bool repl
 
 JsonImport::Verdict JsonImport::verdict(const ServiceError& refusal) const {
   Verdict out;
+  GroupedComplaints wrong;
   std::vector<bool> is_wrong(resources_.size());
   bool says_all = true;
   for (const FieldViolation& each : refusal.violations()) {
     const auto index = read_index(each.field, "requests[");
     if (!index || index->value >= resources_.size()) {
       says_all = false;
-      out.wrong.push_back(each.field == "*" ? each.description
-                                            : each.field + ": " + each.description);
+      wrong.add(each.field == "*" ? each.description : each.field + ": " + each.description);
       continue;
     }
     is_wrong[index->value] = true;
@@ -108,12 +130,13 @@ JsonImport::Verdict JsonImport::verdict(const ServiceError& refusal) const {
     const std::string inside = each.field.substr(index->length);
     const std::size_t dot = inside.find('.', 1);
     const std::string path = dot == std::string::npos ? "" : inside.substr(dot + 1);
-    out.wrong.push_back(complaint(resources_[index->value], path, each.description));
+    add_complaint(resources_[index->value], path, each.description, wrong);
   }
   if (refusal.violations().empty()) {
     says_all = false;
-    out.wrong.emplace_back(refusal.what());
+    wrong.add(refusal.what());
   }
+  out.wrong = wrong.lines();
   if (!says_all) return out;
   for (std::size_t i = 0; i < resources_.size(); ++i) {
     if (!is_wrong[i]) out.valid.push_back(resources_[i].origin);
@@ -121,8 +144,10 @@ JsonImport::Verdict JsonImport::verdict(const ServiceError& refusal) const {
   return out;
 }
 
-std::vector<ResourcePointer> JsonImport::send(Connection& connection, bool replace,
-                                              bool validate_only) const {
+BatchWritten JsonImport::send(Connection& connection, bool replace, bool validate_only) const {
+  if (!duplicates_.empty()) {
+    throw Failure(kExitUsage, joined(check(connection).wrong, "\n") + "\n  Nothing was written.");
+  }
   try {
     return write(connection, replace, validate_only);
   } catch (const ServiceError& error) {
@@ -140,14 +165,15 @@ std::vector<ResourcePointer> JsonImport::send(Connection& connection, bool repla
 }
 
 JsonImport::Verdict JsonImport::check(Connection& connection) const {
+  Verdict out;
   try {
     write(connection, true, true);
+    for (const FileResource& each : resources_) out.valid.push_back(each.origin);
   } catch (const ServiceError& error) {
     if (error.kind() != ServiceError::Kind::kRefused) throw;
-    return verdict(error);
+    out = verdict(error);
   }
-  Verdict out;
-  for (const FileResource& each : resources_) out.valid.push_back(each.origin);
+  out.wrong.insert(out.wrong.begin(), duplicates_.begin(), duplicates_.end());
   return out;
 }
 

@@ -13,13 +13,13 @@ std::string id_of_file(const std::string& path);
 /// Resources of one kind on their way from files to the server, all or none.
 class JsonImport {
  public:
-  /// `id` is that of a single resource; empty: the name in the file, else the file's own. Throws
-  /// Failure when two have the same name.
+  /// `id` is that of a single resource; empty: the name in the file, else the file's own. Two of
+  /// the same name are refused by send() and check(), together with what else is wrong.
   JsonImport(const ResourceKind& kind, std::vector<FileResource> resources, const std::string& id);
 
   /// Has the server write all of them, or with `validate_only` say what they would be. Throws
   /// Failure with everything that is wrong, each with its place in the files.
-  std::vector<ResourcePointer> send(Connection& connection, bool replace, bool validate_only) const;
+  BatchWritten send(Connection& connection, bool replace, bool validate_only) const;
 
   /// What is found wrong, and which places in the files are known to be right.
   struct Verdict {
@@ -30,12 +30,12 @@ class JsonImport {
   Verdict check(Connection& connection) const;
 
  private:
-  std::vector<ResourcePointer> write(Connection& connection, bool replace,
-                                     bool validate_only) const;
+  BatchWritten write(Connection& connection, bool replace, bool validate_only) const;
   Verdict verdict(const ServiceError& refusal) const;
 
   const ResourceKind& kind_;
-  std::vector<FileResource> resources_;
+  std::vector<FileResource> resources_;  ///< the first of each name
+  std::vector<std::string> duplicates_;  ///< a complaint for each duplicate
 };
 
 }  // namespace tribodyn::client

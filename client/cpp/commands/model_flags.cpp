@@ -1,5 +1,6 @@
 #include <google/protobuf/descriptor.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -24,8 +25,6 @@ const std::map<std::string, std::string>& switch_descriptions() {
       {"subtract_contact_point_motion", "Entrainment as the moving contact point sees it."},
       {"load_dependent_mesh_data", "Mesh stiffness, error and load shares at the actual torque."},
       {"tabulated_friction_arms",
-       "Friction arms of the tables instead of those of the actual sliding direction."},
-      {"tabulated_friction_arms",
        "Lever arms of friction from the tables of the gear set, not from the actual sliding."},
       {"exact_hertz", "Elliptic integrals in place of the fits of eqs 21, 22."},
       {"hertz_from_total_load", "Contact ellipse from the total load, not the film's part."},
@@ -33,12 +32,13 @@ const std::map<std::string, std::string>& switch_descriptions() {
   return kDescriptions;
 }
 
-/// The words of --as-published and the field each switches on.
+/// The words of --as-published and the field each switches on. Eq 46 acts where profiles become a
+/// surface, and is a flag there.
 const std::vector<std::pair<std::string, std::string>>& misprints() {
   static const std::vector<std::pair<std::string, std::string>> kMisprints = {
       {"eq17", "eq17_atan"},           {"eq20", "eq20_semi_major"},
       {"eq22", "eq22_inverted_ratio"}, {"eq31", "eq31_32_logarithm"},
-      {"eq43", "eq43_44_polynomials"}, {"eq46", "eq46_square_root_of_sum"},
+      {"eq43", "eq43_44_polynomials"},
   };
   return kMisprints;
 }
@@ -54,19 +54,33 @@ std::string misprint_words() {
 }
 
 void add_as_published_flag(FlagList& flags, v1::ModelOptions& options) {
-  flags.choices("--as-published", misprint_words(),
-                "Switch a misprint of the paper back on, to see what it does: " + misprint_words() +
-                    ", several by commas (eq31 stands for eqs 31 and 32, eq43 for 43 and 44). "
-                    "Default: all corrected.",
-                [&options](const std::string& given) {
-                  for (const auto& [word, field] : misprints()) {
-                    if (given == word || given == field) {
-                      switch_on(*options.mutable_as_published(), field);
-                      return true;
-                    }
-                  }
-                  return false;
-                });
+  Flag& flag = flags.choices(
+      "--as-published", misprint_words(),
+      "Switch a misprint of the paper back on, to see what it does: " + misprint_words() +
+          ", several by commas (eq31 stands for eqs 31 and 32, eq43 for 43 and 44). "
+          "Default: all corrected.",
+      [&options](const std::string& given) {
+        for (const auto& [word, field] : misprints()) {
+          if (given == word || given == field) {
+            switch_on(*options.mutable_as_published(), field);
+            return true;
+          }
+        }
+        return false;
+      });
+  flag.read = [read = flag.read](const std::vector<std::string>& given, Complaints& complaints) {
+    const std::size_t before = complaints.size();
+    read(given, complaints);
+    if (complaints.size() == before) return;
+    const bool names_eq46 = std::any_of(given.begin(), given.end(), [](const std::string& text) {
+      return text.find("eq46") != std::string::npos;
+    });
+    if (names_eq46) {
+      complaints.emplace_back(
+          "--as-published eq46 acts where measured profiles become a surface: tribodyn surfaces "
+          "import --profile ... --as-published eq46");
+    }
+  };
 }
 
 }  // namespace

@@ -9,7 +9,8 @@ void add_operating_point_flags(FlagList& flags, OperatingPointFlags& point) {
   flags.number("--acceleration-metres-per-second-squared,--acceleration",
                {"m/s2", "-50 to 50", "0"}, "Of the vehicle, as at an instant of a drive cycle",
                [&](double value) { point.acceleration_metres_per_second_squared = value; });
-  flags.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"}, "Road slope",
+  flags.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"},
+               "Road slope, also in percent: 6%",
                [&](double value) { point.ascent_angle_degrees = value; });
   flags.number("--pinion-torque-newton-metres,--torque", {"N m", "-1e5 to 1e5", ""},
                "In place of a speed, with the pinion speed; negative is coast",
@@ -28,25 +29,18 @@ void check_operating_point(const OperatingPointFlags& point, Complaints& complai
   const bool has_torque = point.pinion_torque_newton_metres.has_value();
   const bool has_pinion_speed = point.pinion_speed_radians_per_second.has_value();
   if (by_speed && (has_torque || has_pinion_speed)) {
-    complaints.emplace_back(
-        "either --speed-kilometers-per-hour, or --pinion-torque-newton-metres with "
-        "--pinion-speed-radians-per-second, not both");
+    complaints.emplace_back("either --speed, or --torque with --pinion-speed, not both");
   } else if (has_torque != has_pinion_speed) {
-    complaints.emplace_back(has_torque ? "--pinion-torque-newton-metres needs "
-                                         "--pinion-speed-radians-per-second"
-                                       : "--pinion-speed-radians-per-second needs "
-                                         "--pinion-torque-newton-metres");
+    complaints.emplace_back(has_torque ? "--torque needs --pinion-speed"
+                                       : "--pinion-speed needs --torque");
   } else if (!by_speed && !has_torque) {
-    complaints.emplace_back(
-        "--speed-kilometers-per-hour is missing, e.g. --speed-kilometers-per-hour 72.5");
+    complaints.emplace_back("--speed is missing, e.g. --speed 72.5");
   }
   if (has_torque && point.acceleration_metres_per_second_squared) {
-    complaints.emplace_back(
-        "--acceleration-metres-per-second-squared does not go with --pinion-torque-newton-metres");
+    complaints.emplace_back("--acceleration does not go with --torque");
   }
   if (has_torque && point.ascent_angle_degrees) {
-    complaints.emplace_back(
-        "--ascent-angle-degrees does not go with --pinion-torque-newton-metres");
+    complaints.emplace_back("--ascent does not go with --torque");
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include "client/cpp/commands/operating_point.h"
 #include "client/cpp/commands/scenario.h"
-#include "client/cpp/report/results.h"
+#include "client/cpp/commands/show_results.h"
 
 namespace tribodyn::client {
 namespace {
@@ -16,8 +16,8 @@ struct PointFlags {
 int run_point(PointFlags& flags, const CommonOptions& options) {
   *flags.scenario.simulation.mutable_operating_point() = operating_point_study(flags.point);
   Connection connection = options.connect();
-  const auto ended = run_scenario(flags.scenario, connection, options.progress_form());
-  std::cout << results_text(ended, options.output_format, true, flags.scenario.shows_assumptions);
+  const auto ended = run_scenario(flags.scenario, connection, options);
+  std::cout << shown_results(ended, connection, options, true, flags.scenario.shows_assumptions);
   return report_failures(ended);
 }
 
@@ -43,6 +43,9 @@ Command point_command() {
     check_operating_point(flags->point, complaints);
     check_scenario(flags->scenario, false, complaints);
   };
+  command.main_flags = {"--lubricant",    "--speed",   "--torque",     "--pinion-speed",
+                        "--acceleration", "--ascent",  "--sump",       "--gear-set",
+                        "--surface",      "--vehicle", "--assumptions"};
   command.run = [flags](const CommonOptions& options) { return run_point(*flags, options); };
   return command;
 }

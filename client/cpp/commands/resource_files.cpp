@@ -1,6 +1,7 @@
-#include <filesystem>
+#include <functional>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "client/cpp/commands/json_import.h"
@@ -9,6 +10,7 @@
 #include "client/cpp/resources/json_input.h"
 #include "client/cpp/resources/row_table.h"
 #include "client/cpp/resources/table_files.h"
+#include "client/cpp/text/table_text.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -29,42 +31,121 @@ struct ExportFlags {
   std::string file;
   std::string tooth_contact;
   std::string series;
+  std::string viscosity_table;
   bool all = false;
 };
 
-bool is_csv(const std::string& path) { return std::filesystem::path(path).extension() == ".csv"; }
+/// What rows of a table start from: a copy of the lubricant that --like names, without the words
+/// that describe it alone.
+ResourcePointer base_of_rows(Connection& connection, const ResourceKind& kind,
+                             const std::string& like) {
+  ResourcePointer base = copy_of(connection, kind, like, {});
+  for (const char* field : {"display_name", "description", "external_sample_id", "lims_id"}) {
+    if (base->GetDescriptor()->FindFieldByName(field) != nullptr) set_text(*base, field, "");
+  }
+  return base;
+}
+
+/// Caches the present resources of a kind by name, after one request to the server.
+std::function<ResourcePointer(const std::string&)> present_resources(Connection& connection,
+                                                                     const ResourceKind& kind) {
+  const auto by_name = std::make_shared<std::optional<std::map<std::string, ResourcePointer>>>();
+  return [by_name, &connection, &kind](const std::string& name) -> ResourcePointer {
+    if (!*by_name) {
+      by_name->emplace();
+      for (ResourcePointer& each : kind.calls->list(connection, {}).resources) {
+        const std::string key = text_field(*each, "name");
+        (*by_name)->emplace(key, std::move(each));
+      }
+    }
+    const auto found = (*by_name)->find(name);
+    if (found == (*by_name)->end()) return nullptr;
+    ResourcePointer copy = kind.make();
+    copy->CopyFrom(*found->second);
+    return copy;
+  };
+}
+
+/// What an import writes: the rows of tables and the resources of JSON files.
+std::vector<FileResource> resources_of(Connection& connection, const ResourceKind& kind,
+                                       const ImportFlags& flags) {
+  std::vector<FileResource> resources;
+  ResourcePointer like;
+  if (!flags.like.empty()) like = base_of_rows(connection, kind, flags.like);
+  RowBases bases;
+  bases.like = like.get();
+  if (flags.replace) bases.present = present_resources(connection, kind);
+  const auto add = [&](std::vector<FileResource> read) {
+    for (FileResource& each : read) {
+      flags.edits.apply(*each.resource);
+      if (!each.fields.empty()) {
+        for (const std::string& field : flags.edits.fields()) each.fields.push_back(field);
+      }
+      resources.push_back(std::move(each));
+    }
+  };
+  for (const std::string& path : flags.files) {
+    if (!is_table_file(path)) {
+      add(read_resources(read_file(path), path, &kind));
+      continue;
+    }
+    RowTable table = read_row_table(read_table_file(path, kLargestFile), path, kind, bases);
+    if (!table.note.empty()) std::cerr << "tribodyn: " << printable(table.note) << "\n";
+    add(std::move(table.resources));
+  }
+  return resources;
+}
+
+/// Gets the resources that were too many for the answer to a batch.
+void read_left_out(Connection& connection, const ResourceKind& kind, const ImportFlags& flags,
+                   BatchWritten& done) {
+  if (done.resources.size() == done.names.size()) return;
+  if (flags.validate_only) {
+    throw Failure(kExitFailed, "all " + std::to_string(done.names.size()) +
+                                   " are valid, but take more than 2 MB, which is too much for one "
+                                   "answer; check fewer at a time to see them");
+  }
+  for (const std::string& name : done.names) {
+    done.resources.push_back(kind.calls->get(connection, name));
+  }
+}
 
 /// All or none.
 int import_resources(const ResourceKind& kind, const ImportFlags& flags,
                      const CommonOptions& options) {
-  std::vector<FileResource> resources;
-  for (const std::string& path : flags.files) {
-    const std::string text = read_file(path);
-    for (auto& each :
-         is_csv(path) ? read_row_table(text, path, kind) : read_resources(text, path, &kind)) {
-      flags.edits.apply(*each.resource);
-      resources.push_back(std::move(each));
-    }
-  }
+  Connection connection = options.connect();
+  std::vector<FileResource> resources = resources_of(connection, kind, flags);
   if (resources.size() > 1 && !flags.id.empty()) {
     throw Failure(kExitUsage, "--id names one " + kind.singular + ", but there are " +
                                   std::to_string(resources.size()));
   }
+  if (flags.tables.eq46_as_published) {
+    throw Failure(kExitUsage, "--as-published acts on profiles: --profile is missing");
+  }
   const JsonImport import(kind, std::move(resources), flags.id);
-  Connection connection = options.connect();
-  const std::vector<ResourcePointer> done =
-      import.send(connection, flags.replace, flags.validate_only);
-  if (options.output_format != OutputFormat::kTable) {
-    std::cout << resources_text(kind, done, options.output_format, false);
+  BatchWritten done = import.send(connection, flags.replace, flags.validate_only);
+  const bool is_table = options.output_format == OutputFormat::kTable;
+  if (is_table && flags.validate_only && done.resources.empty()) {
+    for (const std::string& name : done.names) {
+      std::cout << "valid, not written: " << printable(name) << "\n";
+    }
     return kExitOk;
   }
-  if (done.size() == 1) {
-    show_written("imported", *done.front(), flags.validate_only, options.output_format);
+  read_left_out(connection, kind, flags, done);
+  if (!is_table) {
+    std::cout << resources_text(kind, done.resources, options.output_format, false);
     return kExitOk;
   }
-  for (const ResourcePointer& each : done) {
+  if (done.resources.size() == 1) {
+    show_written("imported", *done.resources.front(), flags.validate_only, options.output_format);
+    return kExitOk;
+  }
+  for (const ResourcePointer& each : done.resources) {
     std::cout << (flags.validate_only ? "valid, not written: " : "imported ")
               << printable(text_field(*each, "name")) << "\n";
+    if (const auto* lubricant = dynamic_cast<const v1::Lubricant*>(each.get())) {
+      std::cout << characterisation_warnings(*lubricant);
+    }
   }
   return kExitOk;
 }
@@ -101,9 +182,12 @@ void check_import(const ResourceKind& kind, const ImportFlags& flags, Complaints
     return;
   }
   std::size_t tables = 0;
-  for (const std::string& path : flags.files) tables += is_csv(path) ? 1 : 0;
+  for (const std::string& path : flags.files) tables += is_table_file(path) ? 1 : 0;
   if (tables > 0 && tables < flags.files.size()) {
     complaints.emplace_back("either JSON files or tables (.csv), not both at once");
+  }
+  if (!flags.like.empty() && !flags.files.empty() && tables == 0) {
+    complaints.emplace_back("--like is for tables; a JSON file holds all of its " + kind.plural);
   }
   if (flags.files.empty() && flags.id.empty()) complaints.emplace_back("--id is missing");
 }
@@ -148,16 +232,21 @@ int run_export(const ResourceKind& kind, const ExportFlags& flags, const CommonO
     if (!flags.series.empty()) write_file(flags.series, series_csv(gear_set));
     if (flags.file.empty()) return kExitOk;
   }
+  if (!flags.viscosity_table.empty()) {
+    write_file(flags.viscosity_table,
+               viscosity_table_csv(dynamic_cast<const v1::Lubricant&>(*resources.front())));
+    if (flags.file.empty()) return kExitOk;
+  }
   std::string text;
   const bool csv = options.output_format == OutputFormat::kCsv;
-  if (csv && kind.word == "lubricants" && !flags.all && resources.size() == 1) {
-    text = viscosity_table_csv(dynamic_cast<const v1::Lubricant&>(*resources.front()));
-  } else if (csv && kind.word == "gear-sets") {
+  if (csv && kind.word == "gear-sets") {
     throw Failure(kExitUsage, "a gear set has tables of its own: --tooth-contact and --series");
   } else if (csv) {
     std::string lost;
     text = row_table(kind, resources, lost);
-    std::cerr << "tribodyn: a table has no room for " << lost << "; JSON has\n";
+    if (!lost.empty()) {
+      std::cerr << "tribodyn: a table has no room for " << lost << "; JSON has\n";
+    }
   } else {
     text = export_text(kind, resources);
   }
@@ -206,8 +295,8 @@ Command import_command(const ResourceKind& kind) {
   }
   command.flags.group("Arguments");
   command.flags.texts("file", "FILE",
-                      "JSON, or a table whose name ends in .csv; - is standard "
-                      "input.",
+                      "JSON, or a table whose name ends in .csv, .tsv, .tab or .txt; - is JSON "
+                      "from standard input.",
                       [flags](const std::string& path) { flags->files.push_back(path); });
   command.flags.group("Options");
   command.flags.text("--id", "NAME",
@@ -215,7 +304,8 @@ Command import_command(const ResourceKind& kind) {
                      [flags](const std::string& text) { flags->id = resource_id(text); });
   command.flags
       .text("--like", "NAME",
-            "Of a table: what it does not tell is as in this " + kind.singular + ".",
+            "Of a table: a column that is missing and a cell that is empty are as in this " +
+                kind.singular + ".",
             [flags](const std::string& text) { flags->like = text; })
       .collection = kind.collection;
   command.flags.toggle("--replace", "Make a new revision of what is there already.",
@@ -228,10 +318,10 @@ Command import_command(const ResourceKind& kind) {
     check_import(kind, *flags, complaints);
   };
   command.run = [&kind, flags](const CommonOptions& options) {
-    const bool table =
-        !flags->tables.empty() ||
-        (is_csv(flags->files.front()) &&
-         (kind.word == "gear-sets" || !is_row_table(read_file(flags->files.front()))));
+    const bool table = !flags->tables.empty() ||
+                       (is_table_file(flags->files.front()) &&
+                        (kind.word == "gear-sets" ||
+                         !is_row_table(read_table_file(flags->files.front(), kLargestFile))));
     return table ? import_tables(kind, *flags, options) : import_resources(kind, *flags, options);
   };
   return command;
@@ -268,8 +358,12 @@ Command export_command(const ResourceKind& kind) {
                        [flags](const std::string& path) { flags->series = path; });
   } else if (kind.word == "lubricants") {
     command.about +=
-        " With --output csv, one fluid's measured viscosities as the table that "
-        "import reads, or of several a row each.";
+        " With --output csv, a row each: what was measured and stated, and how it is known. Cells "
+        "of what the server computed are empty; an import computes it again.";
+    command.flags.text("--viscosity-table", "FILE.csv",
+                       "Write the measured viscosities and densities as the table that import "
+                       "reads.",
+                       [flags](const std::string& path) { flags->viscosity_table = path; });
   } else {
     command.about += " With --output csv, a row each.";
   }
@@ -278,8 +372,10 @@ Command export_command(const ResourceKind& kind) {
       complaints.emplace_back(flags->all ? "either NAME or --all"
                                          : "NAME is missing; --all exports all " + kind.plural);
     }
-    if ((!flags->tooth_contact.empty() || !flags->series.empty()) && flags->names.size() != 1) {
-      complaints.emplace_back("tables are of one gear set: give one NAME");
+    const bool has_table =
+        !flags->tooth_contact.empty() || !flags->series.empty() || !flags->viscosity_table.empty();
+    if (has_table && flags->names.size() != 1) {
+      complaints.emplace_back("tables are of one " + kind.singular + ": give one NAME");
     }
   };
   command.run = [&kind, flags](const CommonOptions& options) {

@@ -3,7 +3,11 @@
 
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/resources/json_input.h"
+#include "client/cpp/resources/row_columns.h"
+#include "client/cpp/resources/table_files.h"
+#include "client/cpp/text/csv.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
@@ -30,6 +34,14 @@ bool read_profile(const std::string& text, TableFiles::Profile& profile) {
   return !profile.path.empty();
 }
 
+/// "surfaces/run-in@3" of its third revision, under whatever name it was asked for.
+std::string revision_name(const google::protobuf::Message& resource) {
+  const std::string name = text_field(resource, "name");
+  const auto* revision = resource.GetDescriptor()->FindFieldByName("revision");
+  return name.substr(0, name.find('@')) + "@" +
+         std::to_string(resource.GetReflection()->GetInt32(resource, revision));
+}
+
 ResourcePointer send_with_tables(Connection& connection, const ResourceKind& kind,
                                  const google::protobuf::Message& resource, const std::string& id,
                                  const TableFiles& tables, bool validate_only) {
@@ -37,7 +49,7 @@ ResourcePointer send_with_tables(Connection& connection, const ResourceKind& kin
     v1::ImportLubricantRequest request;
     request.mutable_lubricant()->CopyFrom(resource);
     request.set_lubricant_id(id);
-    request.set_viscosity_table_csv(read_file(tables.viscosity_table, kLargestTable));
+    request.set_viscosity_table_csv(read_table_file(tables.viscosity_table, kLargestTable));
     request.set_validate_only(validate_only);
     return std::make_unique<v1::Lubricant>(connection.import_lubricant(request));
   }
@@ -45,8 +57,9 @@ ResourcePointer send_with_tables(Connection& connection, const ResourceKind& kin
     v1::ImportGearSetRequest request;
     request.mutable_gear_set()->CopyFrom(resource);
     request.set_gear_set_id(id);
-    request.set_tooth_contact_csv(read_file(tables.tooth_contact, kLargestTable));
-    if (!tables.series.empty()) request.set_series_csv(read_file(tables.series, kLargestTable));
+    request.set_tooth_contact_csv(read_table_file(tables.tooth_contact, kLargestTable));
+    if (!tables.series.empty())
+      request.set_series_csv(read_table_file(tables.series, kLargestTable));
     request.set_validate_only(validate_only);
     return std::make_unique<v1::GearSet>(connection.import_gear_set(request));
   }
@@ -58,13 +71,56 @@ ResourcePointer send_with_tables(Connection& connection, const ResourceKind& kin
       v1::SurfaceProfile& profile = *request.add_profiles();
       profile.set_member(table.member);
       profile.set_direction(table.direction);
-      profile.set_csv(read_file(table.path, kLargestTable));
+      profile.set_csv(read_table_file(table.path, kLargestTable));
     }
     request.set_levelling(tables.levelling);
+    request.set_short_wave_cut_off_metres(tables.short_wave_cut_off_metres);
+    request.set_long_wave_cut_off_metres(tables.long_wave_cut_off_metres);
+    request.set_eq46_square_root_of_sum(tables.eq46_as_published);
     request.set_validate_only(validate_only);
     return std::make_unique<v1::Surface>(connection.import_surface_profiles(request));
   }
+  if (tables.eq46_as_published) {
+    throw Failure(kExitUsage, "--as-published acts on profiles: --profile is missing");
+  }
   return kind.calls->create(connection, resource, id, validate_only);
+}
+
+void drop(v1::Lubricant& lubricant, std::initializer_list<const char*> fields) {
+  for (const char* field : fields) {
+    lubricant.GetReflection()->ClearField(&lubricant,
+                                          v1::Lubricant::descriptor()->FindFieldByName(field));
+    drop_provenance(lubricant, field);
+  }
+}
+
+/// A table of viscosities is of another fluid: nothing of this one's viscosity is left beside it.
+void forget_viscosities(v1::Lubricant& lubricant) {
+  drop(lubricant, {"vogel_viscosity_prefactor_pascal_seconds",
+                   "vogel_temperature_coefficient_kelvin", "vogel_reference_temperature_kelvin"});
+  v1::LubricantMeasurements& measured = *lubricant.mutable_measurements();
+  measured.clear_kinematic_viscosity_40_celsius_square_millimetres_per_second();
+  measured.clear_kinematic_viscosity_100_celsius_square_millimetres_per_second();
+  measured.clear_sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second();
+  measured.clear_brookfield_viscosities();
+  measured.clear_viscosities();
+}
+
+void forget_densities(v1::Lubricant& lubricant) {
+  drop(lubricant, {"density_at_zero_kelvin_kilograms_per_cubic_metre",
+                   "density_slope_kilograms_per_cubic_metre_kelvin"});
+  lubricant.mutable_measurements()->clear_density_15_celsius_kilograms_per_cubic_metre();
+  lubricant.mutable_measurements()->clear_densities();
+}
+
+bool tells_densities(const std::string& path) {
+  const std::string text = read_table_file(path, kLargestTable);
+  const std::vector<CsvLine> lines = read_csv(text, 1);
+  return !lines.empty() &&
+         std::any_of(lines[0].cells.begin(), lines[0].cells.end(), [](const std::string& cell) {
+           const std::string word = plain_word(cell);
+           return word.starts_with("density") || word.starts_with("rho");
+         });
 }
 
 void replace_all(const std::string& from, const std::string& to, std::string& text) {
@@ -95,6 +151,28 @@ ServiceError with_file_names(const ServiceError& error, const TableFiles& tables
 
 }  // namespace
 
+namespace {
+
+/// The cut-off of a filter; a bare number is in `bare_unit`.
+void add_cut_off_flag(FlagList& flags, const char* name, const char* bare_unit,
+                      const std::string& description, double& cut_off) {
+  Flag& flag = flags.raw(name, bare_unit,
+                         description + " (Gaussian filter, ISO 16610-21). Default: no filter.");
+  flag.bare_unit = bare_unit;
+  flag.read = [name, bare_unit, &cut_off](const std::vector<std::string>& texts,
+                                          Complaints& complaints) {
+    std::string wrong;
+    const auto value = read_quantity(texts.back(), "m", bare_unit, false, wrong);
+    if (value) {
+      cut_off = *value;
+    } else {
+      complaints.push_back(std::string(name) + ": '" + printable(texts.back()) + "' " + wrong);
+    }
+  };
+}
+
+}  // namespace
+
 void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tables) {
   if (kind.word == "vehicles") return;
   flags.group("Tables (CSV; `tribodyn help files` names their columns)");
@@ -111,7 +189,8 @@ void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tabl
                [&](const std::string& path) { tables.series = path; });
   } else {
     Flag& profile = flags.raw("--profile", "[pinion|gear,][axial|radial,]FILE.csv",
-                              "A measured profile of a flank; repeatable.");
+                              "A measured profile of a flank; repeatable. Several of one flank "
+                              "along one direction are averaged.");
     profile.is_repeatable = true;
     profile.read = [&](const std::vector<std::string>& texts, Complaints& complaints) {
       for (const std::string& text : texts) {
@@ -126,6 +205,17 @@ void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tabl
         "What is taken off a profile before its moments are formed. Default: "
         "least-squares-line.",
         [&](int index) { tables.levelling = index == 0 ? v1::MEAN : v1::LEAST_SQUARES_LINE; });
+    add_cut_off_flag(flags, "--lambda-s", "um",
+                     "Waves shorter than this, noise of the instrument, are filtered out; e.g. 2.5",
+                     tables.short_wave_cut_off_metres);
+    add_cut_off_flag(flags, "--lambda-c", "mm",
+                     "Waves longer than this, waviness and form, are filtered out; e.g. 0.8",
+                     tables.long_wave_cut_off_metres);
+    flags.choice(
+        "--as-published", {"eq46"},
+        "Join two directions of a flank by eq 46 as the paper misprints it, sqrt(m_a + m_r) "
+        "in place of sqrt(m_a m_r), to see what it does.",
+        [&](int) { tables.eq46_as_published = true; });
   }
 }
 
@@ -144,14 +234,23 @@ void add_table(const ResourceKind& kind, const std::string& path, TableFiles& ta
 ResourcePointer copy_of(Connection& connection, const ResourceKind& kind, const std::string& name,
                         const TableFiles& tables) {
   ResourcePointer resource = kind.calls->get(connection, kind.name_of(name));
+  const std::string origin = revision_name(*resource);
   clear_output_only(*resource);
+  for (auto& entry : provenance_entries_of(*resource)) {
+    if (!entry.computed()) entry.set_source("as in " + origin);
+  }
   const auto clear = [&](std::initializer_list<const char*> fields) {
     for (const char* field : fields) {
       resource->GetReflection()->ClearField(resource.get(),
                                             resource->GetDescriptor()->FindFieldByName(field));
     }
   };
-  clear({"name", "derived_from"});
+  clear({"name", "derived_from", "display_name", "description"});
+  if (auto* lubricant = dynamic_cast<v1::Lubricant*>(resource.get());
+      lubricant != nullptr && !tables.viscosity_table.empty()) {
+    forget_viscosities(*lubricant);
+    if (tells_densities(tables.viscosity_table)) forget_densities(*lubricant);
+  }
   if (!tables.tooth_contact.empty()) {
     clear({"flank_slots", "series_by_torque", "load_share_by_torque"});
   }

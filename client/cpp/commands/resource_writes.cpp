@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <map>
 
 #include "client/cpp/report/resource_report.h"
 #include "client/cpp/resources/json_input.h"
@@ -98,6 +99,36 @@ int run_update(const ResourceKind& kind, const WriteFlags& flags, const CommonOp
   return kExitOk;
 }
 
+/// What the short help shows of a kind: the figures that a data sheet or a drawing gives.
+const std::vector<std::string>& main_figures(const ResourceKind& kind) {
+  static const std::map<std::string, std::vector<std::string>> kFlags = {
+      {"lubricants",
+       {"--kv40", "--kv100", "--density15", "--brookfield", "--kv100-sheared", "--base-oil-class",
+        "--pressure-viscosity"}},
+      {"gear-sets", {"--pinion-teeth", "--gear-teeth"}},
+      {"surfaces",
+       {"--composite-rms-height", "--asperity-density", "--asperity-radius",
+        "--asperity-friction-coefficient"}},
+      {"vehicles", {"--mass", "--drag-coefficient", "--wheel-radius", "--frontal-area"}},
+  };
+  return kFlags.at(kind.word);
+}
+
+/// The flags that name tables of a kind.
+const std::vector<std::string>& main_tables(const ResourceKind& kind) {
+  static const std::map<std::string, std::vector<std::string>> kFlags = {
+      {"lubricants", {"--viscosity-table"}},
+      {"gear-sets", {"--tooth-contact", "--series"}},
+      {"surfaces", {"--profile", "--levelling"}},
+      {"vehicles", {}},
+  };
+  return kFlags.at(kind.word);
+}
+
+void show_in_short_help(const std::vector<std::string>& flags, Command& command) {
+  command.main_flags.insert(command.main_flags.end(), flags.begin(), flags.end());
+}
+
 }  // namespace
 
 void show_written(const char* done, const Message& resource, bool validate_only,
@@ -121,17 +152,18 @@ Command create_command(const ResourceKind& kind) {
     command.about =
         "Adds a gear oil as a laboratory reports it: KV40, KV100 and the density at 15 C are "
         "enough. What the model needs beyond them is fitted, or estimated from the base-oil class, "
-        "and shown with its uncertainty and source. Values carry their unit: 8.86mm2/s, 40C, "
-        "20/GPa, 150mPas; `tribodyn help units` lists them.";
+        "and shown with its uncertainty and source. A number stands in the unit that the flag "
+        "shows, or carries its own: 0.868g/cm3, 98Pas; `tribodyn help units` lists them.";
     command.examples = {
-        "tribodyn lubricants create my-oil --kv40 73.3 --kv100 8.86 --density15 870 "
-        "--base-oil-class group-iii",
-        "tribodyn lubricants create my-oil --viscosity-table my-oil.csv --density15 870",
+        "tribodyn lubricants create my-oil --kv40 103 --kv100 15.1 --density15 868 "
+        "--base-oil-class pao --brookfield -40=98000",
+        "tribodyn lubricants create my-oil --viscosity-table my-oil.csv --density15 868",
         "tribodyn lubricants create my-oil --file my-oil.json --pressure-viscosity 20/GPa "
         "--label project=axle"};
   } else {
     command.about = "Adds a " + kind.singular +
-                    ". Values carry their unit, e.g. 0.4um; `tribodyn help units` lists them.";
+                    ". A number stands in the unit that the flag shows, or carries its own, e.g. "
+                    "400nm; `tribodyn help units` lists them.";
     command.examples = {"tribodyn " + kind.word + " create mine --like " + kind.example,
                         "tribodyn " + kind.word + " create mine --file mine.json"};
     if (kind.word == "gear-sets") {
@@ -153,6 +185,9 @@ Command create_command(const ResourceKind& kind) {
       .text("--like", "NAME", "Start from a copy of this " + kind.singular + "; flags go before.",
             [flags](const std::string& text) { flags->like = text; })
       .collection = kind.collection;
+  show_in_short_help(main_figures(kind), command);
+  show_in_short_help(main_tables(kind), command);
+  show_in_short_help({"--label", "--title", "--like", "--file"}, command);
   command.check = [flags, &kind](Complaints& complaints) {
     if (flags->name.empty()) {
       complaints.emplace_back("NAME is missing, e.g. tribodyn " + kind.word + " create mine");
@@ -160,7 +195,8 @@ Command create_command(const ResourceKind& kind) {
     if (!flags->like.empty() && !flags->file.empty()) {
       complaints.emplace_back("either --like or --file");
     }
-    if (flags->edits.empty() && flags->file.empty() && flags->like.empty() &&
+    // After another complaint, what was meant to be said of it may only have been misread.
+    if (complaints.empty() && flags->edits.empty() && flags->file.empty() && flags->like.empty() &&
         flags->tables.empty()) {
       complaints.emplace_back("nothing is said of it; see `tribodyn " + kind.word +
                               " create --help`");
@@ -196,11 +232,14 @@ Command update_command(const ResourceKind& kind) {
                        [flags] { flags->allow_missing = true; });
   command.flags.text("--etag", "ETAG", "Refuse if it has changed since it had this etag.",
                      [flags](const std::string& text) { flags->etag = text; });
+  show_in_short_help(main_figures(kind), command);
+  show_in_short_help({"--label", "--title", "--unset", "--provenance", "--uncertainty", "--file"},
+                     command);
   command.check = [flags, &kind](Complaints& complaints) {
     if (flags->name.empty()) {
       complaints.emplace_back("NAME is missing; `tribodyn " + kind.word + " list` shows them");
     }
-    if (flags->edits.empty() && flags->file.empty()) {
+    if (complaints.empty() && flags->edits.empty() && flags->file.empty()) {
       complaints.emplace_back("nothing is to be changed; see `tribodyn " + kind.word +
                               " update --help`");
     }

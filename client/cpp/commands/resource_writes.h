@@ -28,6 +28,9 @@ struct TableFiles {
   };
   std::vector<Profile> profiles;
   v1::Levelling levelling = v1::LEVELLING_UNSPECIFIED;
+  double short_wave_cut_off_metres = 0;  ///< lambda_s; 0: no filter
+  double long_wave_cut_off_metres = 0;   ///< lambda_c; 0: no filter
+  bool eq46_as_published = false;
 
   bool empty() const {
     return viscosity_table.empty() && tooth_contact.empty() && profiles.empty();
@@ -41,7 +44,8 @@ void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tabl
 void add_table(const ResourceKind& kind, const std::string& path, TableFiles& tables);
 
 /// A copy of a resource that exists, without its name and what the server sets; without what the
-/// tables bring, too.
+/// tables bring, too. Title and description are not copied, as they may be untrue of the copy; the
+/// source of a parameter becomes "as in surfaces/run-in@1", where the words of the original stand.
 ResourcePointer copy_of(Connection& connection, const ResourceKind& kind, const std::string& name,
                         const TableFiles& tables);
 

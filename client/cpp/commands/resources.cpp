@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "client/cpp/commands/command.h"
+#include "client/cpp/commands/label_filter.h"
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/report/resource_report.h"
 #include "client/cpp/text/text.h"
@@ -21,23 +22,9 @@ struct NameFlags {
   int limit = 100;
 };
 
-/// `labels.project = "axle"` of "project=axle", `labels.project:*` of "project".
-std::string label_restriction(const std::string& label) {
-  const std::size_t mark = label.find('=');
-  if (mark == std::string::npos) return "labels." + label + ":*";
-  std::string value;
-  for (const char c : label.substr(mark + 1)) {
-    if (c == '"' || c == '\\') value += '\\';
-    value += c;
-  }
-  return "labels." + label.substr(0, mark) + " = \"" + value + "\"";
-}
-
 int run_list(const ResourceKind& kind, const ListFlags& flags, const CommonOptions& options) {
   ListOptions list_options = flags.options;
-  for (const std::string& label : flags.labels) {
-    list_options.filter += (list_options.filter.empty() ? "" : " AND ") + label_restriction(label);
-  }
+  list_options.filter = with_labels(list_options.filter, flags.labels);
   list_options.limit = flags.limit;
   list_options.basic = options.output_format == OutputFormat::kTable;
   Connection connection = options.connect();
@@ -199,6 +186,9 @@ std::vector<Command> resource_commands(const ResourceKind& kind) {
   commands.push_back(deletion_command(kind, true));
   commands.push_back(revisions_command(kind));
   commands.push_back(import_command(kind));
+  commands.back().main_flags = {"--id",      "--like",      "--replace",       "--validate-only",
+                                "--profile", "--series",    "--tooth-contact", "--viscosity-table",
+                                "--label",   "--density15", "--base-oil-class"};
   commands.push_back(export_command(kind));
   return commands;
 }

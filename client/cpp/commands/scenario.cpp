@@ -19,15 +19,17 @@ void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
         constexpr v1::SteadyStateMethod kMethods[] = {v1::AUTOMATIC, v1::SHOOTING, v1::MARCH};
         simulation.mutable_solver_options()->set_method(kMethods[index]);
       });
-  flags.number("--tolerance", {"-", "1e-8 to 0.01", "0.001"},
-               "Wanted relative error of what shooting finds",
-               [&](double value) { simulation.mutable_solver_options()->set_tolerance(value); });
   flags.number(
-      "--relative-tolerance", {"-", "1e-11 to 1e-3", "1e-7"}, "Error of the time march, per step",
+      "--tolerance", {"-", "1e-8 to 0.01", "0.001"},
+      "Wanted relative error of inefficiency, torque and transmission error, whichever method",
+      [&](double value) { simulation.mutable_solver_options()->set_tolerance(value); });
+  flags.number(
+      "--relative-tolerance", {"-", "1e-11 to 1e-3", "1e-7"},
+      "Error of the time march, per step; read only where a point is marched",
       [&](double value) { simulation.mutable_solver_options()->set_relative_tolerance(value); });
   flags.number(
       "--settling-tolerance", {"-", "1e-12 to 0.1", "1e-6"},
-      "Relative change per period below which the response counts as steady",
+      "Relative change per period below which a marched response counts as steady",
       [&](double value) { simulation.mutable_solver_options()->set_settling_tolerance(value); });
   flags.whole_number("--maximum-mesh-cycles", {"mesh cycles", "1 to 100000", "4000"},
                      "Work limit of the search for the steady state", [&](int value) {
@@ -72,7 +74,8 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   flags.group("Fluid, hardware, temperatures");
   flags
       .texts("--lubricant,-l", "NAME",
-             "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` shows them).",
+             "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` shows them). A curve "
+             "takes several: -l 1,2 or -l 1 -l 2.",
              [&](const std::string& name) { scenario.lubricants.push_back(name); })
       .collection = "lubricants";
   flags
@@ -103,7 +106,7 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   flags.text("--display-name", "TEXT", "A title for the job, shown by `tribodyn jobs list`.",
              [&](const std::string& text) { simulation.set_display_name(text); });
   flags.texts("--label", "KEY=VALUE",
-              "Attach a label; `tribodyn jobs list --filter 'labels.KEY = VALUE'` finds the job.",
+              "Attach a label; `tribodyn jobs list --label KEY=VALUE` finds the job.",
               [&](const std::string& text) {
                 const std::size_t equals = text.find('=');
                 v1::Label& label = *simulation.add_labels();
@@ -141,7 +144,7 @@ std::vector<v1::Simulation> simulations_of(const Scenario& scenario) {
 }
 
 std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection,
-                                         ProgressForm progress) {
+                                         const CommonOptions& options) {
   std::vector<v1::Simulation> submitted;
   std::vector<std::string> labels;
   Complaints refusals;
@@ -151,7 +154,7 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
       labels.push_back(simulation.lubricant());
     } catch (const ServiceError& error) {
       if (error.kind() != ServiceError::Kind::kRefused) throw;
-      const std::string refusal = Failure(error).what();
+      const std::string refusal = Failure(with_flag_names(error, options.typed_flags)).what();
       if (std::find(refusals.begin(), refusals.end(), refusal) == refusals.end()) {
         refusals.push_back(refusal);
       }
@@ -167,7 +170,7 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
     return {};
   }
   if (!refusals.empty()) withdraw(submitted, refusals, connection);
-  if (!scenario.detach) return follow(connection, submitted, labels, progress);
+  if (!scenario.detach) return follow(connection, submitted, labels, options.progress_form());
   for (const v1::Simulation& simulation : submitted) {
     std::cout << simulation.name() << "  " << state_text(simulation.state())
               << "  follow: tribodyn jobs watch " << resource_id(simulation.name()) << "\n";

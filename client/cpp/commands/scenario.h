@@ -29,7 +29,7 @@ std::vector<v1::Simulation> simulations_of(const Scenario& scenario);
 /// Submits all, follows them together and returns them as they ended. Detached or only to be
 /// validated, it says so on standard output and returns nothing.
 std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection,
-                                         ProgressForm progress);
+                                         const CommonOptions& options);
 
 /// Prints on standard error which simulations have nothing to show and why; kExitFailed if any has.
 int report_failures(const std::vector<v1::Simulation>& simulations);

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -7,6 +6,8 @@
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/resources/json_input.h"
 #include "client/cpp/resources/row_table.h"
+#include "client/cpp/resources/table_files.h"
+#include "client/cpp/text/table_text.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -42,10 +43,10 @@ constexpr char kAnyId[] = "validated";
 
 /// What is wrong with a file, a complaint each; says what is right on standard output.
 void validate(Connection& connection, const std::string& path, std::vector<std::string>& wrong) {
-  const std::string text = read_file(path);
-  const bool is_csv = std::filesystem::path(path).extension() == ".csv";
-  const bool rows = is_csv && is_row_table(text);
-  if (is_csv && !rows) {
+  const bool is_table = is_table_file(path);
+  const std::string text = is_table ? read_table_file(path, kLargestFile) : read_file(path);
+  const bool rows = is_table && is_row_table(text);
+  if (is_table && !rows) {
     const ResourceKind* kind = kind_of_table(text);
     if (kind == nullptr) {
       wrong.push_back(path +
@@ -68,8 +69,8 @@ void validate(Connection& connection, const std::string& path, std::vector<std::
     }
     return;
   }
-  auto resources =
-      rows ? read_row_table(text, path, kind_of_rows(text)) : read_resources(text, path, nullptr);
+  auto resources = rows ? read_row_table(text, path, kind_of_rows(text)).resources
+                        : read_resources(text, path, nullptr);
   if (resources.empty()) {
     std::cout << path << ": valid, but it holds nothing\n";
     return;
@@ -114,8 +115,8 @@ Command validate_command() {
       {}};
   command.flags.group("Arguments");
   command.flags.texts("file", "FILE",
-                      "JSON, or a table whose name ends in .csv; - is standard "
-                      "input.",
+                      "JSON, or a table whose name ends in .csv, .tsv, .tab or .txt; - is "
+                      "JSON from standard input.",
                       [files](const std::string& path) { files->push_back(path); });
   command.check = [files](Complaints& complaints) {
     if (files->empty()) complaints.emplace_back("FILE is missing");

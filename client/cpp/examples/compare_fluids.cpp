@@ -13,12 +13,12 @@ using namespace tribodyn;
 /// A fluid of which only a data sheet is known; what else the model needs, the server estimates.
 v1::Lubricant fluid_of_a_data_sheet() {
   v1::Lubricant fluid;
-  fluid.set_display_name("Data sheet: 73.3 and 8.86 mm2/s, 870 kg/m3");
-  fluid.set_base_oil_class(v1::Lubricant::GROUP_III);
+  fluid.set_display_name("Data sheet: 103 and 15.1 mm2/s, 868 kg/m3");
+  fluid.set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
   auto& measured = *fluid.mutable_measurements();
-  measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73.3);
-  measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(8.86);
-  measured.set_density_15_celsius_kilograms_per_cubic_metre(870);
+  measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(103);
+  measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(15.1);
+  measured.set_density_15_celsius_kilograms_per_cubic_metre(868);
   return fluid;
 }
 

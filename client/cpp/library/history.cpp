@@ -87,6 +87,7 @@ v1::History Connection::read_history(const std::string& name, const HistoryOptio
         out.set_start_row(schema.start_row());
         out.set_total_rows(schema.total_rows());
         out.set_rows_per_pair(schema.rows_per_pair());
+        *out.mutable_input_warnings() = schema.input_warnings();
         for (const auto& each : schema.columns()) {
           v1::History::Column* column = out.add_columns();
           column->set_name(each.name());

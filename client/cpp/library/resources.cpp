@@ -74,6 +74,12 @@ Listing<Resource> all_pages(Request request, int limit, const Call& call) {
   return all;
 }
 
+template <class Resource, class Response>
+BatchResult<Resource> batch_result(const Response& response) {
+  const auto& parts = Methods<Resource>::parts(response);
+  return {{response.written().begin(), response.written().end()}, {parts.begin(), parts.end()}};
+}
+
 }  // namespace
 
 template <class Resource>
@@ -119,19 +125,18 @@ Resource Connection::update(const Resource& resource, const UpdateOptions& optio
 }
 
 template <class Resource>
-std::vector<Resource> Connection::create_all(const std::vector<Resource>& resources,
+BatchResult<Resource> Connection::create_all(const std::vector<Resource>& resources,
                                              bool validate_only) {
   typename Methods<Resource>::BatchCreate batch;
   for (const Resource& each : resources) Methods<Resource>::part(*batch.add_requests()) = each;
   batch.set_validate_only(validate_only);
   const auto response =
       services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kBatchCreate, batch);
-  const auto& parts = Methods<Resource>::parts(response);
-  return {parts.begin(), parts.end()};
+  return batch_result<Resource>(response);
 }
 
 template <class Resource>
-std::vector<Resource> Connection::update_all(const std::vector<ResourceUpdate<Resource>>& updates,
+BatchResult<Resource> Connection::update_all(const std::vector<ResourceUpdate<Resource>>& updates,
                                              bool allow_missing, bool validate_only) {
   typename Methods<Resource>::BatchUpdate batch;
   for (const ResourceUpdate<Resource>& each : updates) {
@@ -143,8 +148,7 @@ std::vector<Resource> Connection::update_all(const std::vector<ResourceUpdate<Re
   batch.set_validate_only(validate_only);
   const auto response =
       services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kBatchUpdate, batch);
-  const auto& parts = Methods<Resource>::parts(response);
-  return {parts.begin(), parts.end()};
+  return batch_result<Resource>(response);
 }
 
 template <class Resource>
@@ -179,9 +183,9 @@ Resource Connection::undelete(const std::string& name, const std::string& etag) 
   template v1::Resource Connection::get(const std::string&);                                  \
   template Listing<v1::Resource> Connection::list(const ListOptions&);                        \
   template v1::Resource Connection::update(const v1::Resource&, const UpdateOptions&);        \
-  template std::vector<v1::Resource> Connection::create_all(const std::vector<v1::Resource>&, \
+  template BatchResult<v1::Resource> Connection::create_all(const std::vector<v1::Resource>&, \
                                                             bool);                            \
-  template std::vector<v1::Resource> Connection::update_all(                                  \
+  template BatchResult<v1::Resource> Connection::update_all(                                  \
       const std::vector<ResourceUpdate<v1::Resource>>&, bool, bool);                          \
   template Listing<v1::Resource> Connection::revisions(const std::string&, int);              \
   template v1::Resource Connection::remove(const std::string&, const std::string&);           \

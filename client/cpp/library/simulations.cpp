@@ -10,7 +10,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr auto kOneWatch = std::chrono::seconds(60);
+constexpr std::chrono::duration<double> kLongestWatch = std::chrono::seconds(60);
 constexpr milliseconds kBetweenWatches(250);
 constexpr int kWatchRetries =
     20;  // about 40 s in all: long enough for a server that drains and restarts
@@ -94,16 +94,21 @@ v1::Simulation Connection::wait_for_end(
     const std::stop_token& stop) {
   v1::WatchSimulationRequest request;
   request.set_name(name);
+  using std::chrono::system_clock;
+  // A watch that nobody ends is taken up again: so a connection that died silently is found.
+  const auto one_watch = std::chrono::duration_cast<system_clock::duration>(
+      std::min(kLongestWatch, 2 * services_->timeout));
   bool ended = false;
   Backoff backoff;
   for (int tries_left = kWatchRetries; !ended && !stop.stop_requested();) {
     grpc::ClientContext context;
-    // A watch that nobody ends is taken up again: so a connection that died silently is found.
-    context.set_deadline(std::chrono::system_clock::now() + kOneWatch);
+    context.set_deadline(system_clock::now() + one_watch);
     const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
     const auto reader = services_->simulations->WatchSimulation(&context, request);
+    bool was_silent = true;
     v1::SimulationEvent event;
     while (reader->Read(&event)) {
+      was_silent = false;
       tries_left = kWatchRetries;
       backoff.reset();
       ended = has_ended(event.state());
@@ -112,11 +117,16 @@ v1::Simulation Connection::wait_for_end(
     }
     const grpc::Status status = reader->Finish();
     if (ended || stop.stop_requested()) break;
-    if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) continue;
-    const bool broken = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE;
-    if (!broken) throw service_error(status, address());
-    if (tries_left-- == 0) {
-      throw ServiceError(ServiceError::Kind::kCannotConnect, "lost the server at " + address());
+    if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) {
+      // A watch without a message, not even a heartbeat, is either too short for one or its server
+      // is frozen. This call tells which: it throws when the server does not answer.
+      if (was_silent && has_ended(get_simulation(name).state())) break;
+    } else {
+      const bool broken = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE;
+      if (!broken) throw service_error(status, address());
+      if (tries_left-- == 0) {
+        throw ServiceError(ServiceError::Kind::kCannotConnect, "lost the server at " + address());
+      }
     }
     if (!pause(backoff.next(kBetweenWatches), stop)) break;
   }

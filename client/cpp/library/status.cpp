@@ -1,6 +1,7 @@
 #include "client/cpp/library/status.h"
 
 #include <array>
+#include <cctype>
 #include <optional>
 #include <vector>
 
@@ -88,13 +89,23 @@ ServiceError refusal(const grpc::Status& status) {
   return {text, static_cast<int>(status.error_code()), reason, violations, delay};
 }
 
+/// "connection refused" of "failed to connect to all addresses; last error: UNKNOWN: ipv4:...:
+/// Failed to connect to remote host: Connection refused": only the cause tells a person something.
+std::string connection_reason(const std::string& message) {
+  const std::size_t mark = message.rfind(": ");
+  std::string reason = printable(mark == std::string::npos ? message : message.substr(mark + 2));
+  if (reason.empty()) return "no connection";
+  reason[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(reason[0])));
+  return reason;
+}
+
 }  // namespace
 
 ServiceError service_error(const grpc::Status& status, const std::string& address) {
   const bool answered = !status.error_details().empty();
   if (status.error_code() == grpc::StatusCode::UNAVAILABLE && !answered) {
-    return {Kind::kCannotConnect, "cannot connect to the server at " + address + " (" +
-                                      printable(status.error_message()) + ")"};
+    return {Kind::kCannotConnect, "cannot connect to the server at " + address + ": " +
+                                      connection_reason(status.error_message())};
   }
   if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED && !answered) {
     return {Kind::kNoAnswer, "no answer in time from the server at " + address};

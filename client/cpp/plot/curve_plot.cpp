@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <tuple>
+#include <utility>
 
+#include "client/cpp/plot/footer.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/report/inputs.h"
+#include "client/cpp/report/warnings.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 
@@ -13,12 +15,11 @@ namespace tribodyn::client {
 namespace {
 
 constexpr double kCurveWidth = 960;
-constexpr double kHeight = 860;
+constexpr double kFooterTop = 826;  // base line of the first line of the footer
 constexpr double kCurveLeft = 70;
+constexpr double kCurveRight = 30;
 constexpr char kDegreesCelsius[] = "\xC2\xB0\x43";
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr int kLongestLabel = 22;
-constexpr int kLongestNote = 30;
 
 bool has_branch_end(const std::vector<v1::Simulation>& simulations) {
   return std::any_of(simulations.begin(), simulations.end(), [](const v1::Simulation& simulation) {
@@ -30,9 +31,10 @@ bool has_branch_end(const std::vector<v1::Simulation>& simulations) {
 
 /// The line is broken where a branch ends: the response jumps there.
 template <class Value>
-Series series_of(const v1::Simulation& simulation, std::size_t index, Value value) {
+Series series_of(const v1::Simulation& simulation, const Look& look, Value value) {
   Series series;
-  series.colour = series_colour(index);
+  series.colour = look.colour;
+  series.dashes = look.dashes;
   const bool down = simulation.result().direction() == v1::DOWN;
   const auto add = [&](double x, double y, bool hollow) {
     series.x.push_back(x);
@@ -49,18 +51,10 @@ Series series_of(const v1::Simulation& simulation, std::size_t index, Value valu
   return series;
 }
 
-/// "Lubricant 1: ester-olefin copolymer" becomes a label and a note; without a title, the id does.
-std::pair<std::string, std::string> label_and_note(
-    const v1::Simulation& simulation, const std::map<std::string, std::string>& titles) {
+FluidTitle title_of(const v1::Simulation& simulation,
+                    const std::map<std::string, std::string>& titles) {
   const auto found = titles.find(simulation.lubricant());
-  const std::string title = found != titles.end() ? found->second : "";
-  const std::size_t colon = title.find(": ");
-  const std::string label = title.substr(0, colon);
-  const std::string note = colon == std::string::npos ? "" : title.substr(colon + 2);
-  if (label.empty() || display_width(label) > kLongestLabel) {
-    return {"lubricant " + resource_id(simulation.lubricant()), ""};
-  }
-  return {label, display_width(note) > kLongestNote ? "" : note};
+  return fluid_title(simulation.lubricant(), found != titles.end() ? found->second : "");
 }
 
 Panel inefficiency_panel(const std::vector<v1::Simulation>& simulations,
@@ -71,23 +65,28 @@ Panel inefficiency_panel(const std::vector<v1::Simulation>& simulations,
   panel.height = 350;
   panel.title = "Mesh inefficiency, % of input power";
   panel.x_title = "Vehicle speed, km/h";
+  panel.shows_samples = true;
   for (std::size_t i = 0; i < simulations.size(); ++i) {
-    Series rms = series_of(simulations[i], i, [](const v1::PointResult& result) {
+    const Look look = look_of(i);
+    Series rms = series_of(simulations[i], look, [](const v1::PointResult& result) {
       return result.has_inefficiency_rms_percent() ? result.inefficiency_rms_percent() : kNone;
     });
     rms.width = 1.3;
-    rms.dashes = "5 4";
+    rms.dashes = look.side_dashes;
     panel.series.push_back(std::move(rms));
   }
   for (std::size_t i = 0; i < simulations.size(); ++i) {
-    Series mean = series_of(simulations[i], i, [](const v1::PointResult& result) {
+    const Look look = look_of(i);
+    Series mean = series_of(simulations[i], look, [](const v1::PointResult& result) {
       return result.has_inefficiency_energy_mean_percent()
                  ? result.inefficiency_energy_mean_percent()
                  : kNone;
     });
     mean.width = 2.4;
-    mean.has_markers = true;
-    std::tie(mean.label, mean.note) = label_and_note(simulations[i], titles);
+    mean.marker = look.marker;
+    const FluidTitle title = title_of(simulations[i], titles);
+    mean.label = title.label;
+    mean.note = title.note;
     panel.series.push_back(std::move(mean));
   }
   return panel;
@@ -103,13 +102,13 @@ Panel small_panel(const std::vector<v1::Simulation>& simulations, Point corner,
   panel.title = title;
   panel.x_title = "Vehicle speed, km/h";
   for (std::size_t i = 0; i < simulations.size(); ++i) {
-    panel.series.push_back(series_of(simulations[i], i, value));
+    panel.series.push_back(series_of(simulations[i], look_of(i), value));
   }
   return panel;
 }
 
 /// What the kinds of line mean, on one line.
-void draw_key(bool has_bands, Svg& svg) {
+void draw_key(bool has_bands, bool has_hatching, Svg& svg) {
   const double y = 72;
   const TextStyle style{12.5, "start", "#444", false, 0};
   double x = kCurveLeft;
@@ -123,12 +122,18 @@ void draw_key(bool has_bands, Svg& svg) {
   word("energy mean");
   svg.line({x, y}, {x + 28, y}, {"#444", 1.3, "5 4"});
   x += 36;
-  word("RMS over time (eq 30)");
-  if (!has_bands) return;
-  svg.rectangle({x, y - 7}, 28, 14, "#9a9a9a", 0.18);
-  svg.circle({x + 14, y}, 3.4, "#fff", {"#444", 1.6, ""});
-  x += 36;
-  word("flanks separate (vibro-impact)");
+  word("RMS (Paouris et al. 2018, eq 30)");
+  if (has_bands) {
+    svg.rectangle({x, y - 7}, 28, 14, "#9a9a9a", 0.18);
+    svg.circle({x + 14, y}, 3.4, "#fff", {"#444", 1.6, ""});
+    x += 36;
+    word("flanks separate");
+  }
+  if (has_hatching) {
+    svg.hatched_rectangle({x, y - 7}, 28, 14, kHatchColour);
+    x += 36;
+    word("outside a validated range");
+  }
 }
 
 /// What all curves share; what differs is left to the labels.
@@ -137,46 +142,63 @@ std::string caption(const std::vector<v1::Simulation>& simulations) {
   const v1::Simulation& first = simulations.front();
   std::string text = inputs_text(first, kDegreesCelsius);
   text[0] = 'G';
-  text += first.inefficiency_curve().direction() == v1::DOWN ? "; down-sweep" : "; up-sweep";
-  text += "; model " + model_options_text(first.model_options());
-  return text + " (" + first.result().model_version() + ").";
+  text += "; " + sweep_text(first.inefficiency_curve());
+  return text + "; model " + model_options_text(first.model_options()) + ".";
+}
+
+std::vector<std::string> texts_below(const std::vector<v1::Simulation>& simulations) {
+  std::vector<std::string> texts = {
+      caption(simulations),
+      std::string("Mesh (conjunctional) loss only: bearings, churning and seals are not in it.") +
+          (has_branch_end(simulations)
+               ? " Lines break where the branch that they follow ends: the response jumps."
+               : "")};
+  for (std::string& text : footer_texts(simulations)) texts.push_back(std::move(text));
+  return texts;
+}
+
+/// Where figures must not be ranked, the panels are hatched from foot to head; where a law is
+/// outside its range otherwise, a strip of the main panel is.
+struct Hatching {
+  std::vector<std::pair<double, double>> bands;
+  std::string note;
+  std::pair<double, double> note_band;
+  std::vector<Strip> strips;
+};
+
+Hatching hatching_of(const std::vector<v1::Simulation>& simulations) {
+  Hatching hatching;
+  for (const CurveWarning& warning : curve_warnings(simulations)) {
+    if (!warning.mark.empty()) hatching.strips.push_back({warning.mark, warning.bands});
+    if (!forbids_ranking(warning.code)) continue;
+    hatching.bands.insert(hatching.bands.end(), warning.bands.begin(), warning.bands.end());
+    hatching.note = "do not rank oils here";
+    hatching.note_band = *std::max_element(
+        warning.bands.begin(), warning.bands.end(),
+        [](const auto& x, const auto& y) { return x.second - x.first < y.second - y.first; });
+  }
+  hatching.bands = merged_bands(std::move(hatching.bands));
+  return hatching;
 }
 
 }  // namespace
 
 std::vector<std::pair<double, double>> contact_loss_bands(
     const std::vector<v1::Simulation>& simulations) {
-  std::vector<std::pair<double, double>> spans;
-  for (const v1::Simulation& simulation : simulations) {
-    const auto& points = simulation.result().points();
-    for (int i = 0; i < points.size(); ++i) {
-      if (!points[i].result().contact_loss()) continue;
-      const double speed = points[i].speed_kilometers_per_hour();
-      const double before = i > 0 ? points[i - 1].speed_kilometers_per_hour() : speed;
-      const double after =
-          i + 1 < points.size() ? points[i + 1].speed_kilometers_per_hour() : speed;
-      spans.emplace_back((before + speed) / 2, (speed + after) / 2);
-    }
-  }
-  std::sort(spans.begin(), spans.end());
-  std::vector<std::pair<double, double>> bands;
-  for (const auto& span : spans) {
-    if (!bands.empty() && span.first <= bands.back().second) {
-      bands.back().second = std::max(bands.back().second, span.second);
-    } else {
-      bands.push_back(span);
-    }
-  }
-  return bands;
+  return speed_bands(simulations,
+                     [](const v1::PointResult& result) { return result.contact_loss(); });
 }
 
 std::string curve_plot(const std::vector<v1::Simulation>& simulations,
                        const std::map<std::string, std::string>& titles) {
   const auto bands = contact_loss_bands(simulations);
-  Svg svg(kCurveWidth, kHeight);
+  const Hatching hatching = hatching_of(simulations);
+  const std::vector<std::string> below =
+      footer_lines(texts_below(simulations), kCurveWidth - kCurveLeft - kCurveRight);
+  Svg svg(kCurveWidth, kFooterTop + kFooterPitch * static_cast<double>(below.size()));
   svg.text({kCurveLeft, 40}, "What each fluid costs in the gear mesh",
            {21, "start", "#111", true, 0});
-  draw_key(!bands.empty(), svg);
+  draw_key(!bands.empty(), !hatching.bands.empty() || !hatching.strips.empty(), svg);
   Panel panels[] = {
       inefficiency_panel(simulations, titles),
       small_panel(simulations, {kCurveLeft, 565}, "Mesh loss, W",
@@ -186,19 +208,17 @@ std::string curve_plot(const std::vector<v1::Simulation>& simulations,
                   [](const v1::PointResult& result) {
                     return result.contact_temperature_kelvin().maximum() - kZeroCelsius;
                   })};
+  panels[0].strips = hatching.strips;
+  panels[0].hatch_note = hatching.note;
+  panels[0].hatch_note_range = hatching.note_band;
   panels[1].starts_at_zero = true;
+  panels[2].has_arbitrary_zero = true;
   for (Panel& panel : panels) {
     panel.bands = bands;
+    panel.hatched = hatching.bands;
     draw_panel(panel, svg);
   }
-  svg.text({kCurveLeft, kHeight - 30}, caption(simulations), {11.5, "start", "#555", false, 0});
-  svg.text(
-      {kCurveLeft, kHeight - 13},
-      std::string("Mesh (conjunctional) loss only: bearings, churning and seals are not in it.") +
-          (has_branch_end(simulations)
-               ? " Lines break where the branch that they follow ends: the response jumps."
-               : ""),
-      {11.5, "start", "#555", false, 0});
+  draw_footer(below, {kCurveLeft, kFooterTop}, svg);
   return svg.finish();
 }
 

@@ -6,16 +6,19 @@
 #include <map>
 #include <vector>
 
+#include "client/cpp/plot/footer.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/report/history_report.h"
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
 
 constexpr double kHistoryWidth = 960;
 constexpr double kHistoryLeft = 80;
+constexpr double kHistoryRight = 90;
 constexpr double kPanelHeight = 130;
 constexpr double kPanelPitch = 180;
 constexpr double kTop = 100;
@@ -24,6 +27,7 @@ struct UnitSuffix {
   const char* suffix;
   const char* unit;
   double factor;
+  double offset = 0;
 };
 
 // Longest first where one ends in another.
@@ -36,6 +40,7 @@ constexpr UnitSuffix kUnits[] = {
     {"_metres", "\xC2\xB5m", 1e6},
     {"_seconds", "ms", 1e3},
     {"_watts", "W", 1},
+    {"_temperature_kelvin", "\xC2\xB0\x43", 1, -kZeroCelsius},
     {"_kelvin", "K", 1},
     {"_pascals", "GPa", 1e-9},
     {"_percent", "%", 1},
@@ -63,13 +68,13 @@ std::vector<std::pair<std::string, std::vector<const v1::History::Column*>>> gro
   return groups;
 }
 
-std::vector<double> scaled(const v1::History::Column& column, double factor) {
+std::vector<double> scaled(const v1::History::Column& column, double factor, double offset = 0) {
   std::vector<double> values;
   values.reserve(column.values_size());
   const bool has_gaps = zero_means_no_contact(column.name());
   for (const double value : column.values()) {
     values.push_back(has_gaps && value == 0 ? std::numeric_limits<double>::quiet_NaN()
-                                            : factor * value);
+                                            : factor * value + offset);
   }
   return values;
 }
@@ -93,8 +98,8 @@ std::pair<std::string, std::vector<double>> abscissa(const v1::History& history)
 
 ColumnTitle column_title(const std::string& column) {
   std::string words = column_quantity(column);
+  ColumnTitle title;
   std::string unit;
-  double factor = 1;
   for (const UnitSuffix& known : kUnits) {
     const std::string suffix = known.suffix;
     if (words.size() <= suffix.size() ||
@@ -102,40 +107,51 @@ ColumnTitle column_title(const std::string& column) {
       continue;
     }
     words.erase(words.size() - suffix.size());
+    if (known.offset != 0) words += "_temperature";  // a quantity, not a part of the unit
     unit = known.unit;
-    factor = known.factor;
+    title.factor = known.factor;
+    title.offset = known.offset;
     break;
   }
   std::replace(words.begin(), words.end(), '_', ' ');
   words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-  return {unit.empty() ? words : words + ", " + unit, factor};
+  title.title = unit.empty() ? words : words + ", " + unit;
+  return title;
 }
 
-std::string history_plot(const v1::Simulation& simulation, const v1::History& history) {
+std::string history_plot(const v1::Simulation& simulation, const v1::History& history,
+                         const std::string& lubricant_title) {
   const auto groups = grouped(history);
   const auto [x_title, x] = abscissa(history);
-  const double height = kTop + kPanelPitch * static_cast<double>(groups.size()) + 20;
-  Svg svg(kHistoryWidth, height);
-  svg.text({kHistoryLeft, 38},
-           "Steady state of " + simulation.lubricant() + ": " + study_text(simulation),
+  std::vector<std::string> texts = {"Model " + model_options_text(simulation.model_options()) +
+                                    "."};
+  for (std::string& text : footer_texts({simulation})) texts.push_back(std::move(text));
+  const std::vector<std::string> below =
+      footer_lines(texts, kHistoryWidth - kHistoryLeft - kHistoryRight);
+  const double footer_top = kTop + kPanelPitch * static_cast<double>(groups.size()) + 8;
+  Svg svg(kHistoryWidth, footer_top + kFooterPitch * static_cast<double>(below.size()));
+  const FluidTitle fluid = fluid_title(simulation.lubricant(), lubricant_title);
+  svg.text({kHistoryLeft, 38}, "Steady state with " + fluid.label + ": " + study_text(simulation),
            {19, "start", "#111", true, 0});
-  svg.text({kHistoryLeft, 60}, inputs_text(simulation, "\xC2\xB0\x43"),
+  svg.text({kHistoryLeft, 60},
+           (fluid.note.empty() ? "" : fluid.note + "; ") + inputs_text(simulation, "\xC2\xB0\x43"),
            {12, "start", "#555", false, 0});
   double top = kTop;
   for (const auto& [quantity, columns] : groups) {
     const ColumnTitle title = column_title(quantity);
     Panel panel;
     panel.corner = {kHistoryLeft, top};
-    panel.width = kHistoryWidth - kHistoryLeft - 90;
+    panel.width = kHistoryWidth - kHistoryLeft - kHistoryRight;
     panel.height = kPanelHeight;
     panel.title = title.title;
+    panel.has_arbitrary_zero = title.offset != 0;
     panel.shows_x_numbers = true;
     if (&quantity == &groups.back().first) panel.x_title = x_title;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       Series series;
-      series.colour = series_colour(i);
+      series.colour = look_of(i).colour;
       series.x = x;
-      series.y = scaled(*columns[i], title.factor);
+      series.y = scaled(*columns[i], title.factor, title.offset);
       series.width = 1.8;
       if (columns.size() > 1)
         series.label = "flank " + columns[i]->name().substr(columns[i]->name().size() - 1);
@@ -144,9 +160,7 @@ std::string history_plot(const v1::Simulation& simulation, const v1::History& hi
     draw_panel(panel, svg);
     top += kPanelPitch;
   }
-  const std::string caption = "Model " + model_options_text(simulation.model_options()) + " (" +
-                              simulation.result().model_version() + ").";
-  svg.text({kHistoryLeft, height - 14}, caption, {11.5, "start", "#555", false, 0});
+  draw_footer(below, {kHistoryLeft, footer_top}, svg);
   return svg.finish();
 }
 

@@ -14,6 +14,10 @@ constexpr double kNoteDistance = 15;   // between a label and its note
 constexpr char kGridColour[] = "#e4e4e4";
 constexpr char kInkColour[] = "#444";
 constexpr char kBandColour[] = "#9a9a9a";
+constexpr char kHatchInk[] = "#8a5a00";
+constexpr double kHatchNoteSize = 12;
+constexpr double kStripHeight = 8;
+constexpr double kSampleWidth = 26;  // of a line in front of its label
 
 struct Range {
   double low = std::numeric_limits<double>::infinity();
@@ -59,6 +63,61 @@ void draw_grid(const Panel& panel, const Scale& scale, const std::vector<double>
   svg.line({panel.corner.x, bottom}, {panel.corner.x + panel.width, bottom}, {kInkColour, 1, ""});
 }
 
+/// The vertical axis; a zigzag near its foot, or its head, says that zero lies beyond.
+void draw_axis(const Panel& panel, const Scale& scale, Svg& svg) {
+  constexpr double kBreakStart = 6;  // from the end of the axis
+  constexpr double kBreakLength = 12;
+  constexpr double kBreakWidth = 5;
+  const double x = panel.corner.x;
+  const double top = panel.corner.y;
+  const double bottom = top + panel.height;
+  const bool cut_below = scale.y.low > 0 && !panel.has_arbitrary_zero;
+  const bool cut_above = scale.y.high < 0 && !panel.has_arbitrary_zero;
+  std::vector<Point> axis = {{x, bottom}};
+  const auto add_break = [&](double start) {  // upwards from its lower end
+    axis.push_back({x, start});
+    axis.push_back({x - kBreakWidth, start - 0.25 * kBreakLength});
+    axis.push_back({x + kBreakWidth, start - 0.75 * kBreakLength});
+    axis.push_back({x, start - kBreakLength});
+  };
+  if (cut_below) add_break(bottom - kBreakStart);
+  if (cut_above) add_break(top + kBreakStart + kBreakLength);
+  axis.push_back({x, top});
+  svg.polyline(axis, {kInkColour, 1, ""});
+}
+
+void draw_marker(Marker marker, Point at, bool hollow, const std::string& colour, Svg& svg) {
+  const double r = hollow ? 3.4 : 2.6;
+  const std::string fill = hollow ? "#fff" : colour;
+  const Stroke stroke{colour, hollow ? 1.6 : 0, ""};
+  switch (marker) {
+    case Marker::kNone:
+      return;
+    case Marker::kCircle:
+      return svg.circle(at, r, fill, stroke);
+    case Marker::kSquare:
+      return svg.polygon(
+          {{at.x - r, at.y - r}, {at.x + r, at.y - r}, {at.x + r, at.y + r}, {at.x - r, at.y + r}},
+          fill, stroke);
+    case Marker::kTriangle:
+      return svg.polygon({{at.x, at.y - 1.3 * r},
+                          {at.x + 1.2 * r, at.y + 0.9 * r},
+                          {at.x - 1.2 * r, at.y + 0.9 * r}},
+                         fill, stroke);
+    case Marker::kInvertedTriangle:
+      return svg.polygon({{at.x, at.y + 1.3 * r},
+                          {at.x - 1.2 * r, at.y - 0.9 * r},
+                          {at.x + 1.2 * r, at.y - 0.9 * r}},
+                         fill, stroke);
+    case Marker::kDiamond:
+      return svg.polygon({{at.x, at.y - 1.4 * r},
+                          {at.x + 1.4 * r, at.y},
+                          {at.x, at.y + 1.4 * r},
+                          {at.x - 1.4 * r, at.y}},
+                         fill, stroke);
+  }
+}
+
 void draw_series(const Series& series, const Scale& scale, Svg& svg) {
   std::vector<Point> piece;
   const std::size_t count = std::min(series.x.size(), series.y.size());
@@ -74,36 +133,52 @@ void draw_series(const Series& series, const Scale& scale, Svg& svg) {
     }
   }
   end_piece();
-  if (!series.has_markers) return;
+  if (series.marker == Marker::kNone) return;
   for (std::size_t i = 0; i < count; ++i) {
     if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
     const bool hollow = i < series.hollow.size() && series.hollow[i];
-    svg.circle({scale.at_x(series.x[i]), scale.at_y(series.y[i])}, hollow ? 3.4 : 2.4,
-               hollow ? "#fff" : series.colour, {series.colour, hollow ? 1.6 : 0, ""});
+    draw_marker(series.marker, {scale.at_x(series.x[i]), scale.at_y(series.y[i])}, hollow,
+                series.colour, svg);
   }
 }
 
-/// Labels at the ends of their lines, pushed apart where lines end close together.
-void draw_labels(const Panel& panel, const Scale& scale, Svg& svg) {
-  struct Label {
-    double y;
-    const Series* series;
-  };
-  std::vector<Label> labels;
+/// A text beside the frame and the end of the line that it names.
+struct EndLabel {
+  double y;
+  Point line_end;
+  const Series* series;
+};
+
+std::vector<EndLabel> end_labels(const Panel& panel, const Scale& scale) {
+  std::vector<EndLabel> labels;
   for (const Series& series : panel.series) {
     if (series.label.empty()) continue;
     for (std::size_t i = std::min(series.x.size(), series.y.size()); i-- > 0;) {
       if (!std::isfinite(series.y[i])) continue;
-      labels.push_back({scale.at_y(series.y[i]), &series});
+      const Point end{scale.at_x(series.x[i]), scale.at_y(series.y[i])};
+      labels.push_back({end.y, end, &series});
       break;
     }
   }
-  std::sort(labels.begin(), labels.end(), [](const Label& a, const Label& b) { return a.y < b.y; });
+  std::sort(labels.begin(), labels.end(),
+            [](const EndLabel& a, const EndLabel& b) { return a.y < b.y; });
+  return labels;
+}
+
+/// Labels near the ends of their lines, pushed apart where lines end close together. A thin line
+/// leads to an end that is not beside its label.
+void draw_labels(const Panel& panel, const Scale& scale, Svg& svg) {
+  std::vector<EndLabel> labels = end_labels(panel, scale);
+  // Notes are left out where they would push labels out of the frame.
+  const bool shows_notes =
+      static_cast<double>(labels.size()) * (kLabelDistance + kNoteDistance) <= panel.height;
+  const auto note_height = [&](const EndLabel& label) {
+    return shows_notes && !label.series->note.empty() ? kNoteDistance : 0;
+  };
   for (int pass = 0; pass < 100; ++pass) {
     for (std::size_t i = 1; i < labels.size(); ++i) {
-      const double overlap = kLabelDistance +
-                             (labels[i - 1].series->note.empty() ? 0 : kNoteDistance) -
-                             (labels[i].y - labels[i - 1].y);
+      const double overlap =
+          kLabelDistance + note_height(labels[i - 1]) - (labels[i].y - labels[i - 1].y);
       if (overlap <= 0) continue;
       labels[i].y += overlap / 2;
       labels[i - 1].y -= overlap / 2;
@@ -112,23 +187,91 @@ void draw_labels(const Panel& panel, const Scale& scale, Svg& svg) {
   // None below the frame, where the numbers of the axis stand.
   double lowest = panel.corner.y + panel.height;
   for (auto label = labels.rbegin(); label != labels.rend(); ++label) {
-    label->y = std::min(label->y, lowest - (label->series->note.empty() ? 0 : kNoteDistance) - 4);
+    label->y = std::min(label->y, lowest - note_height(*label) - 4);
     lowest = label->y - kLabelDistance + 4;
   }
-  for (const Label& label : labels) {
-    svg.text({panel.corner.x + panel.width + 10, label.y + 4}, label.series->label,
-             {kLabelSize + 0.5, "start", label.series->colour, true, 0});
-    svg.text({panel.corner.x + panel.width + 10, label.y + 4 + kNoteDistance}, label.series->note,
+  const double right = panel.corner.x + panel.width;
+  for (const EndLabel& label : labels) {
+    const std::string colour = legible_on_white(label.series->colour);
+    const bool is_beside = right - label.line_end.x < 1 && std::abs(label.y - label.line_end.y) < 9;
+    if (!is_beside) svg.line(label.line_end, {right + 8, label.y}, {colour, 0.7, "1.5 2.5"});
+    double x = right + 10;
+    if (panel.shows_samples) {
+      svg.line({x, label.y}, {x + kSampleWidth, label.y},
+               {label.series->colour, label.series->width, label.series->dashes});
+      draw_marker(label.series->marker, {x + kSampleWidth / 2, label.y}, false,
+                  label.series->colour, svg);
+      x += kSampleWidth + 6;
+    }
+    svg.text({x, label.y + 4}, label.series->label, {kLabelSize + 0.5, "start", colour, true, 0});
+    if (!shows_notes) continue;
+    svg.text({x, label.y + 4 + kNoteDistance}, label.series->note,
              {kLabelSize - 0.5, "start", kInkColour, false, 0});
   }
 }
 
+/// Ranges of x behind the lines.
+void draw_bands(const Panel& panel, const Scale& scale, Svg& svg) {
+  svg.begin_clip(panel.corner, panel.width, panel.height);
+  for (const auto& [from, to] : panel.bands) {
+    svg.rectangle({scale.at_x(from), panel.corner.y}, scale.at_x(to) - scale.at_x(from),
+                  panel.height, kBandColour, 0.18);
+  }
+  for (const auto& [from, to] : panel.hatched) {
+    svg.hatched_rectangle({scale.at_x(from), panel.corner.y}, scale.at_x(to) - scale.at_x(from),
+                          panel.height, kHatchColour);
+  }
+  svg.end_clip();
+}
+
+/// From the foot of the frame upwards, each with its letter at the start of its first range.
+void draw_strips(const Panel& panel, const Scale& scale, Svg& svg) {
+  double y = panel.corner.y + panel.height - kStripHeight - 2;
+  for (const Strip& strip : panel.strips) {
+    for (const auto& [from, to] : strip.ranges) {
+      const double width = scale.at_x(to) - scale.at_x(from);
+      svg.rectangle({scale.at_x(from), y - 1}, width, kStripHeight + 2, "#fff");
+      svg.hatched_rectangle({scale.at_x(from), y}, width, kStripHeight, kHatchColour);
+    }
+    if (!strip.ranges.empty()) {
+      const double x = scale.at_x(strip.ranges.front().first) + 3;
+      svg.rectangle({x, y - 1}, kStripHeight, kStripHeight + 2, "#fff");
+      svg.text({x + kStripHeight / 2, y + kStripHeight - 1}, strip.letter,
+               {kStripHeight + 2, "middle", kHatchInk, true, 0});
+    }
+    y -= kStripHeight + 3;
+  }
+}
+
+/// The note on what is hatched, on white at the top of its range.
+void draw_hatch_note(const Panel& panel, const Scale& scale, Svg& svg) {
+  if (panel.hatch_note.empty()) return;
+  const auto& [from, to] = panel.hatch_note_range;
+  const double width = text_width(panel.hatch_note, kHatchNoteSize) + 12;
+  const double middle = (std::max(scale.at_x(from), panel.corner.x) +
+                         std::min(scale.at_x(to), panel.corner.x + panel.width)) /
+                        2;
+  const double left = std::clamp(middle - width / 2, panel.corner.x,
+                                 std::max(panel.corner.x, panel.corner.x + panel.width - width));
+  svg.rectangle({left, panel.corner.y + 6}, width, 20, "#fff", 0.85);
+  svg.text({left + width / 2, panel.corner.y + 20}, panel.hatch_note,
+           {kHatchNoteSize, "middle", kHatchInk, true, 0});
+}
+
 }  // namespace
 
-const std::string& series_colour(std::size_t index) {
+Look look_of(std::size_t index) {
   static const std::array<std::string, 6> kColours = {"#0072b2", "#d55e00", "#009e73",
                                                       "#cc79a7", "#e69f00", "#56b4e9"};
-  return kColours[index % kColours.size()];
+  static const std::array<std::pair<const char*, const char*>, 4> kDashes = {
+      {{"", "5 4"}, {"10 3", "1.5 3"}, {"10 3 2 3", "5 2 1.5 2"}, {"2.5 3", "8 5"}}};
+  static constexpr std::array<Marker, 5> kMarkers = {Marker::kCircle, Marker::kSquare,
+                                                     Marker::kTriangle, Marker::kDiamond,
+                                                     Marker::kInvertedTriangle};
+  static_assert(kColours.size() * kDashes.size() == kDistinctLooks);
+  const auto& [dashes, side_dashes] = kDashes.at(index / kColours.size());
+  return {kColours[index % kColours.size()], dashes, side_dashes,
+          kMarkers[index % kMarkers.size()]};
 }
 
 void draw_panel(const Panel& panel, Svg& svg) {
@@ -149,19 +292,17 @@ void draw_panel(const Panel& panel, Svg& svg) {
 
   const double bottom = panel.corner.y + panel.height;
   svg.text({panel.corner.x, panel.corner.y - 10}, panel.title, {13, "start", "#222", true, 0});
-  svg.begin_clip(panel.corner, panel.width, panel.height);
-  for (const auto& [from, to] : panel.bands) {
-    svg.rectangle({scale.at_x(from), panel.corner.y}, scale.at_x(to) - scale.at_x(from),
-                  panel.height, kBandColour, 0.18);
-  }
-  svg.end_clip();
+  draw_bands(panel, scale, svg);
   draw_grid(panel, scale, x_ticks, y_ticks, svg);
+  draw_axis(panel, scale, svg);
+  draw_strips(panel, scale, svg);
   if (panel.line_at) {
     const double y = scale.at_y(*panel.line_at);
     svg.line({panel.corner.x, y}, {panel.corner.x + panel.width, y}, {kInkColour, 1, "2 3"});
   }
   for (const Series& series : panel.series) draw_series(series, scale, svg);
   draw_labels(panel, scale, svg);
+  draw_hatch_note(panel, scale, svg);
   if (!panel.x_title.empty()) {
     svg.text({panel.corner.x + panel.width / 2, bottom + 36}, panel.x_title,
              {12.5, "middle", kInkColour, false, 0});

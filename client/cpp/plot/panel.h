@@ -9,19 +9,38 @@
 
 namespace tribodyn::client {
 
-/// Colours that stay apart for colour-blind readers and in print (Okabe and Ito, 2008).
-const std::string& series_colour(std::size_t index);
+enum class Marker { kNone, kCircle, kSquare, kTriangle, kDiamond, kInvertedTriangle };
+
+/// How the lines of one fluid look. Six colours stay apart for colour-blind readers and in print
+/// (Okabe and Ito, 2008); the seventh fluid has the first colour again, but other dashes. So no two
+/// of kDistinctLooks fluids have both in common.
+struct Look {
+  std::string colour;
+  std::string dashes;       ///< of the main line; empty: solid
+  std::string side_dashes;  ///< of a second, thinner line; never one of the main lines'
+  Marker marker;
+};
+inline constexpr char kHatchColour[] = "#c9a55c";
+inline constexpr std::size_t kDistinctLooks = 24;
+/// Throws std::out_of_range from kDistinctLooks on.
+Look look_of(std::size_t index);
 
 /// One line of a panel. A NaN breaks it.
 struct Series {
-  std::string label;  ///< written at the line's end; empty: none
+  std::string label;  ///< written beside the frame, level with the line's end; empty: none
   std::string note;   ///< a second, lighter line below the label
   std::string colour;
   std::vector<double> x, y;
   double width = 2;
   std::string dashes;
-  bool has_markers = false;
+  Marker marker = Marker::kNone;
   std::vector<bool> hollow;  ///< markers drawn open; may be empty
+};
+
+/// Ranges of x marked by a hatched strip along the foot of a panel, under a letter.
+struct Strip {
+  std::string letter;
+  std::vector<std::pair<double, double>> ranges;
 };
 
 /// A chart: axes, grid, shaded bands of x, lines.
@@ -32,7 +51,15 @@ struct Panel {
   std::string x_title;  ///< below; empty: none
   bool shows_x_numbers = true;
   bool starts_at_zero = false;
-  std::vector<std::pair<double, double>> bands;
+  /// The zero of the axis means nothing, as that of degrees Celsius; else an axis that leaves zero
+  /// out bears the mark of a break.
+  bool has_arbitrary_zero = false;
+  std::vector<std::pair<double, double>> bands;    ///< shaded
+  std::vector<std::pair<double, double>> hatched;  ///< hatched from foot to head
+  std::vector<Strip> strips;                       ///< one above the other
+  std::string hatch_note;                          ///< written at the top of the range below
+  std::pair<double, double> hatch_note_range;
+  bool shows_samples = false;     ///< a piece of each line in front of its label
   std::optional<double> line_at;  ///< a thin horizontal reference line
   std::vector<Series> series;
 };

@@ -33,7 +33,10 @@ class Svg {
                  double opacity = 1);
   void line(Point from, Point to, const Stroke& stroke);
   void polyline(const std::vector<Point>& points, const Stroke& stroke);
+  void polygon(const std::vector<Point>& corners, const std::string& fill, const Stroke& stroke);
   void circle(Point centre, double radius, const std::string& fill, const Stroke& stroke);
+  /// A rectangle filled with thin oblique lines.
+  void hatched_rectangle(Point corner, double width, double height, const std::string& colour);
   void text(Point at, std::string_view text, const TextStyle& style = {});
   /// Following elements are cut at this rectangle until the clip ends.
   void begin_clip(Point corner, double width, double height);
@@ -43,11 +46,16 @@ class Svg {
  private:
   double width_, height_;
   int clips_ = 0;
+  std::vector<std::string> hatch_colours_;
   std::string body_;
 };
 
 /// Text with &, <, >, quotes and control characters made harmless in XML.
 std::string xml_escaped(std::string_view text);
+
+/// The colour "#rrggbb" as it is, or so much darker that text in it has a contrast of 4.5 to 1 with
+/// white, which WCAG 2.1 asks of small text.
+std::string legible_on_white(const std::string& colour);
 
 /// Roughly how wide sans-serif text comes out, for placing labels.
 double text_width(std::string_view text, double size);

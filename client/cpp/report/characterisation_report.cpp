@@ -61,7 +61,7 @@ std::string warnings_text(const v1::LubricantCharacterisation& fluid) {
     add("Not measured but estimated, with the uncertainty and the source below: " +
         joined(estimated, ", ") + ".");
   }
-  return text.empty() ? "" : "\n" + heading("To know before relying on it") + "\n" + text;
+  return text;
 }
 
 }  // namespace
@@ -78,12 +78,12 @@ std::string characterisation_sheet(const v1::Lubricant& lubricant) {
              significant(fluid.kinematic_viscosity_100_celsius_square_millimetres_per_second()),
              "mm2/s");
   if (fluid.has_viscosity_index()) {
-    sheet.line("viscosity index", fixed(fluid.viscosity_index(), 0), "", "ASTM D2270");
+    sheet.line("viscosity index", significant(fluid.viscosity_index(), 3), "", "ASTM D2270");
   }
   sheet.line("density at 15 C", significant(fluid.density_15_celsius_kilograms_per_cubic_metre()),
              "kg/m3");
   sheet.line("SAE J306 grade", fluid.sae_j306_grade().empty() ? "none" : fluid.sae_j306_grade());
-  if (fluid.temperature_of_150_pascal_seconds_celsius() != 0) {
+  if (fluid.has_temperature_of_150_pascal_seconds_celsius()) {
     sheet.line("150 Pa s at", significant(fluid.temperature_of_150_pascal_seconds_celsius(), 3),
                "C",
                "by the law; would earn " + (fluid.expected_low_temperature_grade().empty()
@@ -98,7 +98,13 @@ std::string characterisation_sheet(const v1::Lubricant& lubricant) {
             fixed(100 * fluid.root_mean_square_residual(), 2) + " %\n";
   }
   if (fluid.walther_comparison_size() > 0) text += comparison_text(fluid);
-  return text + warnings_text(fluid);
+  const std::string warnings = warnings_text(fluid);
+  return text +
+         (warnings.empty() ? "" : "\n" + heading("To know before relying on it") + "\n" + warnings);
+}
+
+std::string characterisation_warnings(const v1::Lubricant& lubricant) {
+  return warnings_text(lubricant.characterisation());
 }
 
 }  // namespace tribodyn::client

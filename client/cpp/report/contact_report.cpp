@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "client/cpp/report/inputs.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
@@ -87,13 +88,15 @@ std::string contact_report(const v1::EvaluateContactResponse& contact) {
                    quantity.equation});
   }
   std::string text = table.text();
+  Sheet sheet;
+  add_input_warnings(contact.input_warnings(), sheet);
   text +=
       "\nstatus " + printable(contact.status()) +
       "; limiting stress at the centre: " + (contact.limiting_stress_at_centre() ? "yes" : "no") +
       " (" + std::to_string(contact.limiting_stress_switches()) +
       " switches); thermal roots: " + std::to_string(contact.thermal_roots()) + "\nmodel version " +
       printable(contact.model_version()) + "\n";
-  return text;
+  return text + sheet.text();
 }
 
 }  // namespace tribodyn::client

@@ -1,12 +1,14 @@
 #include "client/cpp/report/curve_report.h"
 
-#include <map>
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/report/precision.h"
+#include "client/cpp/report/warnings.h"
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
@@ -15,18 +17,28 @@
 namespace tribodyn::client {
 namespace {
 
+/// Whether the losses of a curve are better read in kilowatts.
+bool is_in_kilowatts(const v1::SimulationResult& result) {
+  return std::any_of(result.points().begin(), result.points().end(),
+                     [](const v1::CurvePoint& point) {
+                       return std::abs(point.result().mesh_loss_power_watts()) >= 1000;
+                     });
+}
+
 Table curve_table(const v1::Simulation& simulation) {
-  Table table({{"speed", "km/h"},
-               {"inefficiency", "energy mean %"},
-               {"inefficiency", "RMS %"},
-               {"error", "estimated %"},
-               {"mesh loss", "W"},
-               {"T_s", "N m"},
-               {"film", "mean um"},
-               {"lambda", "min"},
-               {"lambda", "mean"},
-               {"T contact", "mean C"},
-               {"T contact", "max C"},
+  const bool kilowatts = is_in_kilowatts(simulation.result());
+  constexpr auto kDecimal = Table::Align::kDecimal;
+  Table table({{"speed", "km/h", kDecimal},
+               {"inefficiency", "energy mean %", kDecimal},
+               {"of it", "solver error", kDecimal},
+               {"inefficiency", "RMS %", kDecimal},
+               {"mesh loss", kilowatts ? "kW" : "W", kDecimal},
+               {"T_s", "N m", kDecimal},
+               {"film", "mean um", kDecimal},
+               {"lambda", "min", kDecimal},
+               {"lambda", "mean", kDecimal},
+               {"T contact", "mean C", kDecimal},
+               {"T contact", "max C", kDecimal},
                {"contact", "lost"}});
   for (const v1::CurvePoint& point : simulation.result().points()) {
     const std::string speed = significant(point.speed_kilometers_per_hour());
@@ -36,14 +48,18 @@ Table curve_table(const v1::Simulation& simulation) {
     }
     const v1::PointResult& at = point.result();
     const Precision precision(simulation, at);
+    const double loss = at.mesh_loss_power_watts();
     table.add_row(
         {speed,
          at.has_inefficiency_energy_mean_percent()
              ? precision.estimated(at.inefficiency_energy_mean_percent(), 3)
              : "-",
+         at.has_inefficiency_energy_mean_percent()
+             ? precision.error_of(at.inefficiency_energy_mean_percent())
+             : "-",
          at.has_inefficiency_rms_percent() ? precision.estimated(at.inefficiency_rms_percent(), 3)
                                            : "-",
-         precision.error_percent(), precision.estimated(at.mesh_loss_power_watts(), 1),
+         kilowatts ? precision.estimated(1e-3 * loss, 4) : precision.estimated(loss, 1),
          precision.estimated(at.pinion_torque_newton_metres(), 2),
          precision.other(1e6 * at.central_film_thickness_metres().mean(), 3),
          precision.other(at.film_ratio().minimum(), 2), precision.other(at.film_ratio().mean(), 2),
@@ -54,26 +70,7 @@ Table curve_table(const v1::Simulation& simulation) {
   return table;
 }
 
-/// The same warning at many speeds is one remark.
-void add_warnings(const v1::SimulationResult& result, Sheet& sheet) {
-  std::map<std::string, std::pair<int, std::string>> warnings;  // by code: count, first message
-  for (const v1::CurvePoint& point : result.points()) {
-    for (const auto& warning : point.result().warnings()) {
-      auto& [count, message] = warnings[warning.code()];
-      if (count++ == 0) {
-        message =
-            "at " + significant(point.speed_kilometers_per_hour()) + " km/h: " + warning.message();
-      }
-    }
-  }
-  if (!warnings.empty()) sheet.heading("Outside the validated range");
-  for (const auto& [code, warning] : warnings) {
-    sheet.remark(code + " (" + std::to_string(warning.first) +
-                 (warning.first == 1 ? " speed), " : " speeds), ") + warning.second);
-  }
-}
-
-/// So is the same refusal.
+/// The same refusal at many speeds is one remark.
 void add_refusals(const v1::SimulationResult& result, Sheet& sheet) {
   std::vector<std::pair<std::string, std::string>> refusals;  // why, at which speeds
   for (const v1::CurvePoint& point : result.points()) {
@@ -91,6 +88,19 @@ void add_refusals(const v1::SimulationResult& result, Sheet& sheet) {
   for (const auto& [why, speeds] : refusals) sheet.remark(speeds + " km/h: " + why);
 }
 
+void add_jumps(const v1::SimulationResult& result, Sheet& sheet) {
+  bool is_first = true;
+  for (const v1::CurvePoint& point : result.points()) {
+    if (!point.has_branch_end()) continue;
+    if (std::exchange(is_first, false)) sheet.heading("Jumps of the response");
+    const auto& end = point.branch_end();
+    sheet.remark("The branch of steady states that the curve follows " +
+                 std::string(result.direction() == v1::DOWN ? "down" : "up") + " ends between " +
+                 fixed(end.followed_to_kilometers_per_hour(), 2) + " and " +
+                 fixed(end.gone_at_kilometers_per_hour(), 2) + " km/h: there the response jumps.");
+  }
+}
+
 void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
   int without_period = 0;
   int without_estimate = 0;
@@ -99,13 +109,13 @@ void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
     if (!point.result().settled()) ++without_period;
     if (!point.result().has_estimated_relative_error()) ++without_estimate;
   }
-  for (const v1::CurvePoint& point : result.points()) {
-    if (!point.has_branch_end()) continue;
-    const auto& end = point.branch_end();
-    sheet.remark("The branch of steady states that the curve follows " +
-                 std::string(result.direction() == v1::DOWN ? "down" : "up") + " ends between " +
-                 fixed(end.followed_to_kilometers_per_hour(), 2) + " and " +
-                 fixed(end.gone_at_kilometers_per_hour(), 2) + " km/h: there the response jumps.");
+  if (result.independent_points() || without_period > 0 || without_estimate > 0) {
+    sheet.heading("How the speeds were solved");
+  }
+  if (result.independent_points()) {
+    sheet.remark(
+        "Each speed was solved alone: no branch of steady states was followed, and no jump between "
+        "branches was looked for.");
   }
   if (without_period > 0) {
     sheet.remark(std::to_string(without_period) +
@@ -117,8 +127,18 @@ void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
   }
 }
 
+/// "BASE_OIL_UNSPECIFIED PARAMETER_ESTIMATED".
+std::string codes_of(const InputWarnings& warnings) {
+  std::string text;
+  for (const v1::RangeWarning& warning : warnings) {
+    text += (text.empty() ? "" : " ") + warning.code();
+  }
+  return text;
+}
+
 std::string direction_word(const v1::Simulation& simulation) {
   if (!simulation.has_inefficiency_curve()) return "";
+  if (simulation.inefficiency_curve().independent_points()) return "INDEPENDENT_POINTS";
   return simulation.inefficiency_curve().direction() == v1::DOWN ? "DOWN" : "UP";
 }
 
@@ -134,9 +154,11 @@ std::string curve_report(const v1::Simulation& simulation, bool shows_assumption
       "; " + inputs_text(simulation) + "; model " + model_options_text(simulation.model_options()));
   Sheet notes;
   add_refusals(result, notes);
-  add_warnings(result, notes);
+  add_warnings(simulation, notes);
+  add_jumps(result, notes);
   add_solver_remarks(result, notes);
   add_provenance(result, shows_assumptions, notes);
+  add_input_warnings(result.input_warnings(), notes);
   return head.text() + "\n" + curve_table(simulation).text() + "\n" + notes.text();
 }
 
@@ -164,6 +186,7 @@ std::string points_csv(const std::vector<v1::Simulation>& simulations) {
       }
       row.emplace_back("refusal_reason", point.refusal_reason());
       row.emplace_back("refusal_message", point.refusal_message());
+      row.emplace_back("input_warnings", codes_of(simulation.result().input_warnings()));
       row.emplace_back("model_version", simulation.result().model_version());
       row.emplace_back("input_hash", simulation.result().input_hash());
       rows.push_back(std::move(row));

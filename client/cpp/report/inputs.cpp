@@ -7,6 +7,7 @@
 #include <cctype>
 #include <map>
 
+#include "client/cpp/report/warnings.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 
@@ -56,7 +57,7 @@ std::string point_text(const v1::OperatingPointStudy& study) {
 }
 
 std::string curve_text(const v1::InefficiencyCurveStudy& study) {
-  const std::string direction = study.direction() == v1::DOWN ? ", down-sweep" : ", up-sweep";
+  const std::string direction = ", " + sweep_text(study);
   const std::string ascent = ascent_text(study.ascent_angle_degrees());
   if (study.speeds_kilometers_per_hour_size() > 0) {
     const auto& speeds = study.speeds_kilometers_per_hour();
@@ -140,6 +141,11 @@ std::string study_text(const v1::Simulation& simulation) {
   }
 }
 
+std::string sweep_text(const v1::InefficiencyCurveStudy& study) {
+  if (study.independent_points()) return "independent points";
+  return study.direction() == v1::DOWN ? "down-sweep" : "up-sweep";
+}
+
 std::string provenance_word(v1::Provenance provenance) {
   std::string word = v1::Provenance_Name(provenance);
   word = word.substr(word.find('_') + 1);
@@ -175,6 +181,15 @@ void add_provenance(const v1::SimulationResult& result, bool shows_all, Sheet& s
                    assumption->value() +
                    (assumption->source().empty() ? "" : " (" + assumption->source() + ")"));
     }
+  }
+}
+
+void add_input_warnings(const InputWarnings& warnings, Sheet& sheet) {
+  if (!warnings.empty()) sheet.heading("To know of lubricant and surface");
+  for (const v1::RangeWarning& warning : warnings) {
+    std::string words = warning_words(warning.code());
+    words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+    sheet.remark(words + ": " + warning.message() + " [" + warning.code() + "]");
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/report/precision.h"
+#include "client/cpp/report/warnings.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
@@ -21,42 +22,53 @@ void add_heading(const v1::Simulation& simulation, Sheet& sheet) {
   sheet.remark("model: " + model_options_text(simulation.model_options()));
 }
 
+/// The wheel drives the pinion.
+bool is_coast(const v1::PointResult& result) { return result.pinion_torque_newton_metres() < 0; }
+
 std::string share_of(double part, double whole) {
   return whole > 0 ? fixed(100 * part / whole, 1) + " % of it" : "";
 }
 
 void add_losses(const v1::PointResult& result, const Precision& precision, Sheet& sheet) {
   sheet.heading("Mesh loss (conjunctional; bearings, churning and seals are not in it)");
-  sheet.line("inefficiency, energy mean",
-             result.has_inefficiency_energy_mean_percent()
-                 ? precision.estimated(result.inefficiency_energy_mean_percent(), 4)
-                 : "-",
-             "%", "loss energy over input energy");
+  const double mean = result.inefficiency_energy_mean_percent();
+  const bool has_mean = result.has_inefficiency_energy_mean_percent();
+  sheet.line(
+      "inefficiency, energy mean", has_mean ? precision.estimated(mean, 4) : "-", "%",
+      (has_mean && precision.is_estimated() ? precision.error_of(mean) + " (solver); " : "") +
+          "loss energy over the energy that comes in");
   sheet.line("inefficiency, RMS",
              result.has_inefficiency_rms_percent()
                  ? precision.estimated(result.inefficiency_rms_percent(), 4)
                  : "-",
              "%", "eq 30, RMS over time");
   if (precision.is_estimated()) {
-    sheet.line("estimated error", precision.error_percent(), "%",
-               "of inefficiencies, losses, torque, transmission error");
+    sheet.line("relative solver error", precision.error_percent(), "%",
+               "of each inefficiency, loss, torque and transmission error");
   } else {
-    sheet.line("estimated error", "not estimated", "", "three digits are given");
+    sheet.line("relative solver error", "not estimated", "", "three digits are given");
   }
   const double loss = result.mesh_loss_power_watts();
-  const auto watts = [&](double part) { return precision.part(part, loss, 2); };
-  sheet.line("mesh loss", watts(loss), "W",
-             "of " + precision.estimated(1e-3 * result.input_power_watts(), 4) + " kW input");
-  sheet.line("  viscous", watts(result.viscous_loss_power_watts()), "W",
+  const bool kilowatts = std::abs(loss) >= 1000;
+  const double unit = kilowatts ? 1e3 : 1;
+  const auto power = [&](double part) {
+    return precision.part(part / unit, loss / unit, kilowatts ? 4 : 2);
+  };
+  const char* unit_text = kilowatts ? "kW" : "W";
+  sheet.line("mesh loss", power(loss), unit_text,
+             "of " + precision.estimated(1e-3 * result.input_power_watts(), 4) +
+                 " kW that come in " +
+                 (is_coast(result) ? "at the wheel: coast" : "at the pinion"));
+  sheet.line("  viscous", power(result.viscous_loss_power_watts()), unit_text,
              share_of(result.viscous_loss_power_watts(), loss));
-  sheet.line("  boundary", watts(result.boundary_loss_power_watts()), "W",
+  sheet.line("  boundary", power(result.boundary_loss_power_watts()), unit_text,
              share_of(result.boundary_loss_power_watts(), loss));
   for (int slot = 0; slot < result.flank_losses_size(); ++slot) {
     const auto& flank = result.flank_losses(slot);
     sheet.line(
         "  flank slot " + std::to_string(slot),
-        watts(flank.viscous_watts() + flank.boundary_watts()), "W",
-        watts(flank.viscous_watts()) + " viscous + " + watts(flank.boundary_watts()) + " boundary");
+        power(flank.viscous_watts() + flank.boundary_watts()), unit_text,
+        power(flank.viscous_watts()) + " viscous + " + power(flank.boundary_watts()) + " boundary");
   }
   sheet.line("mesh loss torque", precision.estimated(result.mesh_loss_torque_newton_metres(), 4),
              "N m", "at the pinion");
@@ -90,9 +102,9 @@ void add_extremes(const char* label, const char* unit, const v1::Extremes& extre
 std::string cycle_table(const v1::PointResult& result, const Precision& precision) {
   Table table({{"Over the steady state", "", Table::Align::kLeft},
                {"unit", "", Table::Align::kLeft},
-               {"minimum", ""},
-               {"mean", ""},
-               {"maximum", ""}});
+               {"minimum", "", Table::Align::kDecimal},
+               {"mean", "", Table::Align::kDecimal},
+               {"maximum", "", Table::Align::kDecimal}});
   const auto add = [&](const char* label, const char* unit, const v1::Extremes& extremes,
                        double factor, double offset, int decimals) {
     add_extremes(
@@ -157,15 +169,18 @@ void add_contact(const v1::PointResult& result, bool probed, const Precision& pr
   }
 }
 
-void add_energy_balance(const v1::PowerBalance& power, const Precision& precision, Sheet& sheet) {
-  const double input = power.input_joules();
+void add_energy_balance(const v1::PointResult& result, const Precision& precision, Sheet& sheet) {
+  const v1::PowerBalance& power = result.power_balance();
+  const bool coast = is_coast(result);
+  const double input = coast ? -power.output_joules() : power.input_joules();
+  const double output = coast ? -power.input_joules() : power.output_joules();
   if (input == 0) return;
   const double dampers = power.shaft_damping_joules() + power.mesh_damping_joules();
-  const double gap = input - power.output_joules() - power.friction_joules() - dampers -
-                     power.stored_joules() - power.parametric_joules();
+  const double gap = input - output - power.friction_joules() - dampers - power.stored_joules() -
+                     power.parametric_joules();
   const auto joules = [&](double part) { return precision.part(part, input, 4); };
-  sheet.line("energy balance", joules(input) + " J in = " + joules(power.output_joules()) +
-                                   " out + " + joules(power.friction_joules()) + " friction + " +
+  sheet.line("energy balance", joules(input) + " J in = " + joules(output) + " out + " +
+                                   joules(power.friction_joules()) + " friction + " +
                                    joules(dampers) + " dampers + " + joules(power.stored_joules()) +
                                    " stored + " + joules(power.parametric_joules()) +
                                    " parametric (gap " + significant(gap, 2) + ")");
@@ -222,7 +237,7 @@ void add_solver(const v1::Simulation& simulation, const v1::PointResult& result,
                             std::to_string(statistics.accelerations()) + " accelerations");
   sheet.line("evaluated", std::to_string(statistics.right_hand_sides()) + " right-hand sides, " +
                               std::to_string(statistics.contact_solutions()) + " contacts");
-  add_energy_balance(result.power_balance(), precision, sheet);
+  add_energy_balance(result, precision, sheet);
 }
 
 }  // namespace
@@ -245,10 +260,8 @@ std::string point_report(const v1::Simulation& simulation, bool shows_assumption
   add_contact(result, simulation.operating_point().probe_coexisting_response(), precision, rest);
   add_solver(simulation, result, precision, rest);
   add_provenance(simulation.result(), shows_assumptions, rest);
-  if (result.warnings_size() > 0) rest.heading("Outside the validated range");
-  for (const auto& warning : result.warnings()) {
-    rest.remark(warning.code() + ": " + warning.message());
-  }
+  add_input_warnings(simulation.result().input_warnings(), rest);
+  add_warnings(simulation, rest);
   return head.text() + "\n" + losses.text() + "\n" + cycle_table(result, precision) + "\n" +
          rest.text();
 }

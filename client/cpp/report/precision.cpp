@@ -29,11 +29,12 @@ int decimals_of(double value, int digits) {
   return digits - 1 - std::atoi(text.c_str() + text.find('e') + 1);
 }
 
-/// As fixed(); with an exponent where digits before the decimal point mean nothing.
+/// As fixed(); negative `decimals` round to tens, hundreds, ... and fill up with zeros. Nobody
+/// reads watts with an exponent.
 std::string rounded(double value, int decimals) {
   if (decimals >= 0 || value == 0) return fixed(value, std::max(decimals, 0));
-  const int places_before = 1 + static_cast<int>(std::floor(std::log10(std::abs(value))));
-  return scientific(value, std::max(places_before + decimals, 1));
+  const double place = std::pow(10, -decimals);
+  return fixed(std::round(value / place) * place, 0);
 }
 
 }  // namespace
@@ -47,6 +48,12 @@ Precision::Precision(const v1::Simulation& simulation, const v1::PointResult& re
 
 std::string Precision::error_percent() const {
   return is_estimated_ ? significant(100 * relative_error_, 2) : "-";
+}
+
+std::string Precision::error_of(double value) const {
+  if (!is_estimated_ || !std::isfinite(value)) return "-";
+  const double error = relative_error_ * std::abs(value);
+  return "+/- " + (error == 0 ? "0" : fixed(error, std::max(0, decimals_of(error, 1))));
 }
 
 std::string Precision::part(double value, double whole, int decimals) const {

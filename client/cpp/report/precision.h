@@ -14,8 +14,10 @@ class Precision {
   Precision(const v1::Simulation& simulation, const v1::PointResult& result);
 
   bool is_estimated() const { return is_estimated_; }
-  /// The estimated error, e.g. "0.02"; "-" when there is none.
+  /// The solver's relative error, e.g. "0.02" of 0.02 %; "-" when it is not estimated.
   std::string error_percent() const;
+  /// The solver's error of a figure, in the unit of the figure: "+/- 0.0006"; "-" as above.
+  std::string error_of(double value) const;
 
   /// A figure that the estimate speaks of. Half a unit of its last digit is at least its error; at
   /// most `decimals` places, else at least two significant digits. Three of what is not estimated.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "client/cpp/failure.h"
 #include "client/cpp/report/inputs.h"
@@ -117,13 +118,18 @@ std::string uncertainty_text(double uncertainty) {
   return uncertainty >= 10 ? fixed(uncertainty, 0) : significant(uncertainty, 2);
 }
 
-/// Whether the warning stands among those of the fluid already.
+/// Whether the warning, of one or several sentences, stands among those of the fluid already, or
+/// below the profiles of a surface.
 bool is_said(const Message& resource, const v1::ParameterProvenance& known) {
+  if (dynamic_cast<const v1::Surface*>(&resource) != nullptr) return known.computed();
   const auto* lubricant = dynamic_cast<const v1::Lubricant*>(&resource);
   if (lubricant == nullptr) return false;
-  const auto& warnings = lubricant->characterisation().warnings();
-  return std::any_of(warnings.begin(), warnings.end(),
-                     [&](const auto& warning) { return warning.sentence() == known.warning(); });
+  std::string rest = known.warning();
+  for (const auto& warning : lubricant->characterisation().warnings()) {
+    const std::size_t at = rest.find(warning.sentence());
+    if (at != std::string::npos) rest.erase(at, warning.sentence().size());
+  }
+  return rest.find_first_not_of(' ') == std::string::npos;
 }
 
 std::string parameter_table(const Message& resource) {
@@ -205,9 +211,14 @@ std::string profiles_text(const v1::Surface& surface) {
                {"along", "", Table::Align::kLeft},
                {"samples", ""},
                {"spacing", "um"},
+               {"lambda_s", "um"},
+               {"lambda_c", "um"},
                {"RMS height", "um"},
                {"RMS slope", "-"},
                {"RMS curvature", "1/um"}});
+  const auto cut_off = [](double metres) {
+    return metres == 0 ? std::string("-") : significant(1e6 * metres);
+  };
   for (const auto& profile : surface.measurements()) {
     table.add_row(
         {profile.member() == 0
@@ -217,11 +228,20 @@ std::string profiles_text(const v1::Surface& surface) {
                                   : enum_word(*v1::ProfileDirection_descriptor()->FindValueByNumber(
                                         profile.direction())),
          std::to_string(profile.samples()), significant(1e6 * profile.spacing_metres()),
+         cut_off(profile.short_wave_cut_off_metres()), cut_off(profile.long_wave_cut_off_metres()),
          significant(1e6 * std::sqrt(profile.mean_square_height_square_metres()), 4),
          significant(std::sqrt(profile.mean_square_slope()), 4),
          significant(1e-6 * std::sqrt(profile.mean_square_curvature_per_square_metre()), 4)});
   }
-  return "\n" + table.text();
+  std::set<std::string> warnings;
+  for (const v1::ParameterProvenance& entry : surface.provenance()) {
+    if (entry.computed() && !entry.warning().empty()) warnings.insert(entry.warning());
+  }
+  std::string text = "\n" + table.text();
+  for (const std::string& warning : warnings) {
+    text += caution(wrapped("! " + printable(warning) + ".", 2));
+  }
+  return text;
 }
 
 /// A column of a kind's table, beside name and title: a number or text, perhaps inside a block.

@@ -33,5 +33,7 @@ const v1::ParameterProvenance* provenance_of(const google::protobuf::Message& re
 
 /// The characterisation's figures, warnings and fits, for a lubricant.
 std::string characterisation_sheet(const v1::Lubricant& lubricant);
+/// The warnings alone, a line or more each; empty when there are none.
+std::string characterisation_warnings(const v1::Lubricant& lubricant);
 
 }  // namespace tribodyn::client

@@ -124,25 +124,31 @@ std::string parameter_word(const FieldDescriptor& field) {
   return lower_kebab(label_of_field(field.name()));
 }
 
-/// One flag under its short names, whose value carries the unit, and a hidden one under the full
-/// name, which says the unit itself.
+/// What a number without a unit is in: the unit that its wording names, else that of the trade.
+std::string bare_unit_of(const FieldDescriptor& field) {
+  const Wording wording = wording_of(field);
+  return *wording.bare_unit != '\0' ? wording.bare_unit : trade_unit_of_field(field.name());
+}
+
+/// One flag under its short names, whose bare numbers are in the unit of the trade, and a hidden
+/// one under the full name, which says the unit itself.
 void add_number_flags(FlagList& flags, const Leaf& leaf, ResourceEdits& edits) {
   const FieldDescriptor& field = *leaf.field;
   const std::string unit = unit_of_field(field.name());
+  const std::string bare_unit = bare_unit_of(field);
   const Wording wording = wording_of(field);
   const std::string full_name = flag_of_field(field.name());
   std::string names = wording.names;
   if (names.empty() || *wording.bare_unit == '\0') {
     names = "--" + parameter_word(field) + (names.empty() ? "" : "," + names);
   }
-  const bool bare_is_legal = unit.empty() || *wording.bare_unit != '\0';
-  const auto read = [leaf, unit, &edits](const std::string& name, const std::string& bare_unit,
+  const auto read = [leaf, unit, &edits](const std::string& name, const std::string& bare,
                                          const std::vector<std::string>& texts,
                                          Complaints& complaints) {
     for (const std::string& text : texts) {
       std::string wrong;
       const auto value =
-          read_quantity(text, unit, bare_unit, is_temperature_field(leaf.field->name()), wrong);
+          read_quantity(text, unit, bare, is_temperature_field(leaf.field->name()), wrong);
       const bool whole = leaf.field->cpp_type() != FieldDescriptor::CPPTYPE_INT32 ||
                          (value && *value == static_cast<int>(*value));
       if (!value || !whole) {
@@ -157,21 +163,20 @@ void add_number_flags(FlagList& flags, const Leaf& leaf, ResourceEdits& edits) {
       }
     }
   };
-  Flag& flag = flags.raw(names,
-                         unit.empty()    ? "NUMBER"
-                         : bare_is_legal ? wording.bare_unit
-                                         : "QUANTITY",
-                         sentence(wording.description, label_of_field(field.name())) +
-                             (bare_is_legal ? "" : " Or in " + unit + ": " + full_name + "."));
-  flag.read = [read, name = flag.first_name(), bare = std::string(wording.bare_unit)](
-                  const auto& texts, Complaints& complaints) {
-    read(name, bare, texts, complaints);
+  Flag& flag = flags.raw(names, bare_unit.empty() ? "NUMBER" : bare_unit,
+                         sentence(wording.description, label_of_field(field.name())));
+  flag.read = [read, name = flag.first_name(), bare_unit](const auto& texts,
+                                                          Complaints& complaints) {
+    read(name, bare_unit, texts, complaints);
   };
+  flag.field = field.name();
+  flag.bare_unit = bare_unit;
   flag.constraint_message = field.containing_type()->name();
   flag.constraint_field = field.name();
   if ((names + ",").find(full_name + ",") != std::string::npos) return;
   Flag& full = flags.raw(full_name, unit, "In " + unit + ".");
   full.is_hidden = true;
+  full.bare_unit = unit;
   full.read = [read, full_name, unit](const auto& texts, Complaints& complaints) {
     read(full_name, unit, texts, complaints);
   };
@@ -370,6 +375,15 @@ const FieldDescriptor* find_parameter(const ResourceKind& kind, const std::strin
   wrong = "'" + printable(word) + "' is no parameter of a " + kind.singular +
           (meant.empty() ? "" : " (is " + meant + " meant?)");
   return nullptr;
+}
+
+std::vector<TradeName> trade_names(const FieldDescriptor& field) {
+  const Wording wording = wording_of(field);
+  std::vector<TradeName> out;
+  for (const std::string& name : split(wording.names, ',')) {
+    out.push_back({name.substr(2), wording.bare_unit});
+  }
+  return out;
 }
 
 std::vector<std::string> parameter_words(const ResourceKind& kind) {

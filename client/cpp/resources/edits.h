@@ -53,8 +53,20 @@ const google::protobuf::FieldDescriptor* find_parameter(const ResourceKind& kind
 /// Names of all parameters, as flags spell them, without units.
 std::vector<std::string> parameter_words(const ResourceKind& kind);
 
+/// A name that the trade has for a field, "kv40", and the unit of a bare number that is given to
+/// it; empty where the number must have a unit.
+struct TradeName {
+  std::string word;
+  std::string bare_unit;
+};
+std::vector<TradeName> trade_names(const google::protobuf::FieldDescriptor& field);
+
 /// States that the client gave the value of a parameter: what was known of another value is void.
 void set_user_provenance(google::protobuf::Message& resource, const std::string& field);
+
+/// How a field is known; an entry "user" is made where there is none.
+v1::ParameterProvenance& provenance_entry(google::protobuf::Message& resource,
+                                          const std::string& field);
 
 void drop_provenance(google::protobuf::Message& resource, const std::string& field);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ struct FileResource {
   const ResourceKind* kind;
   ResourcePointer resource;
   std::string origin;  ///< "fluids.json", "fluids.json, lubricants[2]", "fluids.csv row 3"
-  std::vector<std::string> fields = {};   ///< that it can tell of; empty: all
-  std::vector<std::string> columns = {};  ///< of the table whose row it is
+  std::vector<std::string> fields = {};  ///< that it can tell of; empty: all
+  /// Of the table whose row it is: by the name of the field, the header as it was typed.
+  std::map<std::string, std::string> columns = {};
 };
 
 /// The resources of a JSON text in the protos' JSON form (names in camelCase or as in the protos):

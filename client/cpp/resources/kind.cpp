@@ -29,19 +29,22 @@ class TypedCalls final : public ResourceCalls {
                          const UpdateOptions& options) const override {
     return own(connection.update(typed(resource), options));
   }
-  std::vector<ResourcePointer> write_all(Connection& connection,
-                                         const std::vector<BatchEntry>& batch, bool replace,
-                                         bool validate_only) const override {
-    std::vector<Resource> resources;
+  BatchWritten write_all(Connection& connection, const std::vector<BatchEntry>& batch, bool replace,
+                         bool validate_only) const override {
+    BatchResult<Resource> result;
     if (replace) {
       std::vector<ResourceUpdate<Resource>> updates;
       for (const BatchEntry& each : batch) updates.push_back({typed(*each.resource), each.fields});
-      resources = connection.update_all(updates, true, validate_only);
+      result = connection.update_all(updates, true, validate_only);
     } else {
+      std::vector<Resource> resources;
       for (const BatchEntry& each : batch) resources.push_back(typed(*each.resource));
-      resources = connection.create_all(resources, validate_only);
+      result = connection.create_all(resources, validate_only);
     }
-    return own_each(std::move(resources));
+    BatchWritten out;
+    for (const v1::WrittenResource& each : result.written) out.names.push_back(each.name());
+    out.resources = own_each(std::move(result.resources));
+    return out;
   }
   ResourceList revisions(Connection& connection, const std::string& name,
                          int limit) const override {

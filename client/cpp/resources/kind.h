@@ -24,6 +24,12 @@ struct ResourceList {
   std::string next_page_token;  ///< empty: there are no more
 };
 
+/// What a batch wrote, in the order of what was sent.
+struct BatchWritten {
+  std::vector<std::string> names;
+  std::vector<ResourcePointer> resources;  ///< empty: too many for one answer, see BatchResult
+};
+
 /// The calls of Connection for resources whose kind is known only at run time. Every message given
 /// must be of that kind.
 class ResourceCalls {
@@ -36,9 +42,8 @@ class ResourceCalls {
   virtual ResourcePointer update(Connection& connection, const google::protobuf::Message& resource,
                                  const UpdateOptions& options) const = 0;
   /// All or none; `replace` updates what is there already.
-  virtual std::vector<ResourcePointer> write_all(Connection& connection,
-                                                 const std::vector<BatchEntry>& batch, bool replace,
-                                                 bool validate_only) const = 0;
+  virtual BatchWritten write_all(Connection& connection, const std::vector<BatchEntry>& batch,
+                                 bool replace, bool validate_only) const = 0;
   virtual ResourceList revisions(Connection& connection, const std::string& name,
                                  int limit) const = 0;
   virtual ResourcePointer remove(Connection& connection, const std::string& name,

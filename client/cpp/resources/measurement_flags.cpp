@@ -14,14 +14,17 @@ v1::LubricantMeasurements& measurements_of(Message& resource) {
 }
 
 /// "-40C=150000mPas": a temperature and what was measured there; nothing, with a complaint, when it
-/// is not that. The second text is left as it is.
+/// is not that. The second text is left as it is. `instead` names the flag of a value without a
+/// temperature.
 std::optional<std::pair<double, std::string>> split_pair(const std::string& flag,
+                                                         const std::string& instead,
                                                          const std::string& text,
                                                          Complaints& complaints) {
   const std::size_t mark = text.find('=');
   const std::string start = flag + ": '" + printable(text) + "' ";
   if (mark == std::string::npos) {
-    complaints.push_back(start + "is not TEMPERATURE=VALUE");
+    complaints.push_back(start + "is not TEMPERATURE=VALUE" +
+                         (instead.empty() ? "" : "; did you mean " + instead + "?"));
     return std::nullopt;
   }
   std::string wrong;
@@ -35,13 +38,15 @@ std::optional<std::pair<double, std::string>> split_pair(const std::string& flag
 
 /// `read` takes temperature and text of one value; says whether it could, else why not.
 template <class Read>
-void add_pair_flag(FlagList& flags, const std::string& name, const std::string& value_name,
-                   const std::string& description, Read read) {
+void add_pair_flag(FlagList& flags, const std::string& name, const std::string& instead,
+                   const char* field, const std::string& value_name, const std::string& description,
+                   Read read) {
   Flag& flag = flags.raw(name, value_name, description);
   flag.is_repeatable = true;
-  flag.read = [name, read](const std::vector<std::string>& texts, Complaints& complaints) {
+  flag.field = field;
+  flag.read = [name, instead, read](const std::vector<std::string>& texts, Complaints& complaints) {
     for (const std::string& text : texts) {
-      const auto pair = split_pair(name, text, complaints);
+      const auto pair = split_pair(name, instead, text, complaints);
       if (!pair) continue;
       std::string wrong;
       if (!read(pair->first, pair->second, wrong)) {
@@ -54,7 +59,7 @@ void add_pair_flag(FlagList& flags, const std::string& name, const std::string& 
 }  // namespace
 
 void add_measurement_list_flags(FlagList& flags, ResourceEdits& edits) {
-  add_pair_flag(flags, "--brookfield", "T=mPa s",
+  add_pair_flag(flags, "--brookfield", "", "brookfield_viscosities", "T=mPa s",
                 "Brookfield viscosity at low temperature (ASTM D2983), e.g. -40=150000 or "
                 "-40C=150Pas; repeatable.",
                 [&edits](double celsius, const std::string& text, std::string& wrong) {
@@ -67,7 +72,7 @@ void add_measurement_list_flags(FlagList& flags, ResourceEdits& edits) {
                   });
                   return true;
                 });
-  add_pair_flag(flags, "--viscosity", "T=QUANTITY",
+  add_pair_flag(flags, "--viscosity", "--kv40 or --kv100", "viscosities", "T=QUANTITY",
                 "A viscosity, kinematic (20C=180mm2/s) or dynamic (20C=150mPas); repeatable, three "
                 "temperatures or more determine T_0 of Vogel's law.",
                 [&edits](double celsius, const std::string& text, std::string& wrong) {
@@ -88,7 +93,7 @@ void add_measurement_list_flags(FlagList& flags, ResourceEdits& edits) {
                   });
                   return true;
                 });
-  add_pair_flag(flags, "--density", "T=kg/m3",
+  add_pair_flag(flags, "--density", "--density15", "densities", "T=kg/m3",
                 "A density at another temperature, e.g. 100=815; repeatable, two temperatures or "
                 "more determine its slope.",
                 [&edits](double celsius, const std::string& text, std::string& wrong) {

@@ -13,17 +13,6 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-v1::ParameterProvenance& entry_of(Message& resource, const std::string& field) {
-  ProvenanceEntries& entries = provenance_entries_of(resource);
-  for (auto& entry : entries) {
-    if (entry.field() == field) return entry;
-  }
-  auto& entry = *entries.Add();
-  entry.set_field(field);
-  entry.set_provenance(v1::PROVENANCE_USER);
-  return entry;
-}
-
 std::vector<std::string> provenance_words() {
   std::vector<std::string> words;
   const auto* type = v1::Provenance_descriptor();
@@ -72,7 +61,7 @@ void read_provenance(const ResourceKind& kind, const std::string& text, Resource
   }
   const auto provenance = static_cast<v1::Provenance>(found - words.begin() + 1);
   edits.add("provenance", [name = field->name(), provenance, source](Message& resource) {
-    auto& entry = entry_of(resource, name);
+    auto& entry = provenance_entry(resource, name);
     entry.set_provenance(provenance);
     entry.set_source(source);
     entry.set_computed(false);
@@ -86,17 +75,35 @@ void read_uncertainty(const ResourceKind& kind, const std::string& text, Resourc
       read_assignment(kind, "--uncertainty", kUncertaintyForm, text, complaints);
   if (field == nullptr) return;
   std::string wrong;
-  const auto uncertainty = read_quantity(value, unit_of_field(field->name()), "", false, wrong);
+  // An uncertainty of a temperature is a difference, in kelvin.
+  const std::string unit = unit_of_field(field->name());
+  const std::string trade = trade_unit_of_field(field->name());
+  const auto uncertainty = read_quantity(value, unit, trade == "C" ? "K" : trade, false, wrong);
   if (!uncertainty) {
     complaints.push_back("--uncertainty: '" + printable(value) + "' " + wrong);
     return;
   }
+  // An estimate whose uncertainty the user states is the user's from then on: computed again, it
+  // would have the estimator's.
   edits.add("provenance", [name = field->name(), uncertainty](Message& resource) {
-    entry_of(resource, name).set_standard_uncertainty(*uncertainty);
+    auto& entry = provenance_entry(resource, name);
+    entry.set_standard_uncertainty(*uncertainty);
+    entry.set_computed(false);
   });
 }
 
 }  // namespace
+
+v1::ParameterProvenance& provenance_entry(Message& resource, const std::string& field) {
+  ProvenanceEntries& entries = provenance_entries_of(resource);
+  for (auto& entry : entries) {
+    if (entry.field() == field) return entry;
+  }
+  auto& entry = *entries.Add();
+  entry.set_field(field);
+  entry.set_provenance(v1::PROVENANCE_USER);
+  return entry;
+}
 
 void drop_provenance(Message& resource, const std::string& field) {
   ProvenanceEntries& entries = provenance_entries_of(resource);
@@ -107,7 +114,7 @@ void drop_provenance(Message& resource, const std::string& field) {
 
 void set_user_provenance(Message& resource, const std::string& field) {
   drop_provenance(resource, field);
-  entry_of(resource, field);
+  provenance_entry(resource, field);
 }
 
 void add_provenance_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& edits) {
@@ -121,8 +128,9 @@ void add_provenance_flags(FlagList& flags, const ResourceKind& kind, ResourceEdi
   provenance.read = [&kind, &edits](const std::vector<std::string>& texts, Complaints& complaints) {
     for (const std::string& text : texts) read_provenance(kind, text, edits, complaints);
   };
-  Flag& uncertainty = flags.raw("--uncertainty", kUncertaintyForm,
-                                "Standard uncertainty of a parameter, with its unit; repeatable.");
+  Flag& uncertainty = flags.raw(
+      "--uncertainty", kUncertaintyForm,
+      "Standard uncertainty of a parameter, e.g. pressure-viscosity=0.5/GPa; repeatable.");
   uncertainty.is_repeatable = true;
   uncertainty.read = [&kind, &edits](const std::vector<std::string>& texts,
                                      Complaints& complaints) {

@@ -3,17 +3,17 @@
 #include <google/protobuf/descriptor.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <functional>
+#include <cctype>
 #include <optional>
 #include <set>
 
 #include "client/cpp/failure.h"
 #include "client/cpp/resources/edits.h"
+#include "client/cpp/resources/grouped_complaints.h"
+#include "client/cpp/resources/row_columns.h"
 #include "client/cpp/text/csv.h"
-#include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
@@ -21,185 +21,313 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-constexpr std::string_view kLabel = "labels.";
-constexpr std::size_t kMostComplaints = 100;
-
-/// A field at the top of a resource, or in its one block of measurements.
-struct Column {
-  const FieldDescriptor* block = nullptr;
-  const FieldDescriptor* field = nullptr;
-
-  const Message& parent(const Message& resource) const {
-    return block == nullptr ? resource : resource.GetReflection()->GetMessage(resource, block);
-  }
-  Message& mutable_parent(Message& resource) const {
-    return block == nullptr ? resource
-                            : *resource.GetReflection()->MutableMessage(&resource, block);
-  }
-};
-
-bool is_number(const FieldDescriptor& field) {
-  return field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ||
-         field.cpp_type() == FieldDescriptor::CPPTYPE_INT32;
+bool is_digit(const std::string& text, std::size_t at) {
+  return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
-std::vector<Column> columns_of(const ResourceKind& kind) {
-  std::vector<Column> texts;
-  std::vector<Column> numbers;
-  const auto* type = kind.prototype->GetDescriptor();
-  for (int i = 0; i < type->field_count(); ++i) {
-    const FieldDescriptor* field = type->field(i);
-    if (is_output_only(*field) || field->is_repeated()) continue;
-    if (field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) {
-      (is_number(*field) ? numbers : texts).push_back({nullptr, field});
-      continue;
-    }
-    for (int k = 0; k < field->message_type()->field_count(); ++k) {
-      const FieldDescriptor* inner = field->message_type()->field(k);
-      if (!inner->is_repeated() && is_number(*inner)) texts.push_back({field, inner});
-    }
-  }
-  texts.insert(texts.end(), numbers.begin(), numbers.end());
-  return texts;
-}
-
-bool set_number(const Column& column, const std::string& text, Message& resource) {
-  double value = 0;
-  const char* begin = text.data() + (text[0] == '+' ? 1 : 0);
-  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return false;
-  Message& parent = column.mutable_parent(resource);
-  if (column.field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
-    parent.GetReflection()->SetDouble(&parent, column.field, value);
-    return true;
-  }
-  if (!(std::abs(value) < 1e9) || value != std::floor(value)) return false;
-  parent.GetReflection()->SetInt32(&parent, column.field, static_cast<int>(value));
-  return true;
-}
-
-bool set_class(const Column& column, const std::string& text, Message& resource) {
-  const auto* type = column.field->enum_type();
-  if (type == v1::Lubricant::BaseOilClass_descriptor() && (text == "pao" || text == "pag")) {
-    return set_class(column, text == "pao" ? "POLYALPHAOLEFIN" : "POLYALKYLENE_GLYCOL", resource);
-  }
-  for (int i = 0; i < type->value_count(); ++i) {
-    const auto* value = type->value(i);
-    if (text != value->name() && text != enum_word(*value)) continue;
-    resource.GetReflection()->SetEnum(&resource, column.field, value);
-    return true;
+/// Whether a comma stands between digits.
+bool has_decimal_comma(const std::string& text) {
+  for (std::size_t i = 1; i + 1 < text.size(); ++i) {
+    if (text[i] == ',' && is_digit(text, i - 1) && is_digit(text, i + 1)) return true;
   }
   return false;
 }
 
-/// What is wrong with the cell, or nothing.
-std::string set_cell(const Column& column, const std::string& text, Message& resource) {
-  const std::string quoted = "'" + printable(text.substr(0, 60)) + "'";
-  if (is_number(*column.field)) {
-    const bool whole = column.field->cpp_type() == FieldDescriptor::CPPTYPE_INT32;
-    if (set_number(column, text, resource)) return "";
-    return quoted + (whole ? " is not a whole number" : " is not a number with a decimal point");
-  }
-  if (column.field->cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
-    if (set_class(column, text, resource)) return "";
-    return quoted + " is not one of " + joined(enum_words(*column.field->enum_type()), ", ");
-  }
-  resource.GetReflection()->SetString(&resource, column.field, text);
-  return "";
+std::string with_decimal_points(std::string text) {
+  std::replace(text.begin(), text.end(), ',', '.');
+  return text;
 }
 
-/// Whether the resource has tables of its own (labels and provenance are none).
-bool has_tables(const Message& resource) {
+/// In a table of decimal commas, "1.234" may be a thousand, as "1.234,5" is.
+bool may_be_thousands(const std::string& text) {
+  const std::size_t point = text.find('.');
+  if (point == std::string::npos) return false;
+  if (has_decimal_comma(text)) return true;
+  return point > 0 && is_digit(text, point - 1) && is_digit(text, point + 1) &&
+         is_digit(text, point + 2) && is_digit(text, point + 3) && !is_digit(text, point + 4);
+}
+
+bool holds_numbers(const RowColumn& column) {
+  return column.is_number() || column.kind == RowColumn::Kind::kMeasurements ||
+         (column.kind == RowColumn::Kind::kProvenance &&
+          column.part == RowColumn::Part::kStandardUncertainty);
+}
+
+/// Reads a table row by row.
+class RowReader {
+ public:
+  RowReader(const std::string& text, const std::string& path, const ResourceKind& kind,
+            const RowBases& bases)
+      : path_(path),
+        kind_(kind),
+        bases_(bases),
+        lines_(read_csv(text)),
+        separator_(csv_separator(text)) {
+    std::erase_if(lines_, [](const CsvLine& line) {
+      return std::all_of(line.cells.begin(), line.cells.end(),
+                         [](const std::string& cell) { return cell.empty(); });
+    });
+  }
+
+  RowTable result() {
+    if (lines_.empty()) throw Failure(kExitUsage, path_ + ": the table is empty");
+    read_header();
+    check_widths();
+    read_units();
+    look_for_decimal_commas();
+    for (const CsvLine& line : lines_) read_row(line);
+    if (wrong_.empty() && out_.resources.empty()) wrong_.add("has no rows");
+    if (!wrong_.empty()) {
+      throw Failure(kExitUsage,
+                    path_ + ":\n  " + joined(wrong_.lines(), "\n  ") + "\n  Nothing was written.");
+    }
+    return std::move(out_);
+  }
+
+ private:
+  static std::string row_text(const CsvLine& line) { return "row " + std::to_string(line.number); }
+  std::string column_text(std::size_t k) const { return "column " + printable(header_[k]); }
+
+  /// Columns that spreadsheets leave at the end have neither a name nor cells.
+  bool is_blank(std::size_t k) const {
+    return std::all_of(lines_.begin(), lines_.end(), [&](const CsvLine& line) {
+      return k >= line.cells.size() || line.cells[k].empty();
+    });
+  }
+
+  void read_header() {
+    header_ = std::move(lines_.front().cells);
+    lines_.erase(lines_.begin());
+    while (!header_.empty() && header_.back().empty() && is_blank(header_.size() - 1)) {
+      header_.pop_back();
+    }
+    std::set<std::string> seen;
+    for (std::size_t k = 0; k < header_.size(); ++k) {
+      std::string wrong;
+      std::optional<RowColumn> column = find_column(kind_, header_[k], wrong);
+      if (!column) {
+        wrong_.add(header_[k].empty()
+                       ? "column " + std::to_string(k + 1) + " has no name"
+                       : "column '" + printable(header_[k].substr(0, 100)) + "' " + wrong);
+      } else {
+        const bool is_cold = column->kind == RowColumn::Kind::kColdViscosity;
+        const std::string full = is_cold ? header_[k] : header_of(*column);
+        if (!seen.insert(full).second) wrong_.add(column_text(k) + " is there twice");
+        columns_by_name_.emplace(full, header_[k]);
+        tells_provenance_ = tells_provenance_ || column->kind == RowColumn::Kind::kProvenance;
+      }
+      columns_.push_back(std::move(column));
+    }
+  }
+
+  void check_widths() {
+    for (CsvLine& line : lines_) {
+      while (line.cells.size() > header_.size() && line.cells.back().empty()) line.cells.pop_back();
+      if (line.cells.size() == header_.size()) continue;
+      wrong_.add(row_text(line), "",
+                 "has " + std::to_string(line.cells.size()) + " cells, the header " +
+                     std::to_string(header_.size()));
+    }
+    std::erase_if(lines_, [&](const CsvLine& line) { return line.cells.size() != header_.size(); });
+  }
+
+  /// A first row that names no resource and holds units in place of numbers.
+  bool is_units_row(const CsvLine& line) const {
+    bool has_unit = false;
+    for (std::size_t k = 0; k < header_.size(); ++k) {
+      if (!columns_[k]) continue;
+      const std::string& cell = line.cells[k];
+      if (header_of(*columns_[k]) == "name") {
+        const std::string word = plain_word(cell);
+        if (!word.empty() && word.find("unit") != 0 && word.find("einheit") != 0) return false;
+      }
+      if (!columns_[k]->is_number() || cell.empty()) continue;
+      const bool is_unit = unit_ratio(cell, cell).has_value() && cell != "1";  // "1/GPa" is one
+      if (!is_unit && cell.find_first_of("0123456789") < 2) return false;
+      has_unit = true;
+    }
+    return has_unit;
+  }
+
+  void read_units() {
+    if (lines_.empty() || !is_units_row(lines_.front())) return;
+    const CsvLine line = lines_.front();
+    lines_.erase(lines_.begin());
+    for (std::size_t k = 0; k < header_.size(); ++k) {
+      if (!columns_[k] || !columns_[k]->is_number() || line.cells[k].empty()) continue;
+      std::string unit = line.cells[k];
+      if (unit.size() > 2 && (unit.front() == '(' || unit.front() == '[')) {
+        unit = unit.substr(1, unit.size() - 2);
+      }
+      if (unit == "-") continue;
+      const bool is_cold = columns_[k]->kind == RowColumn::Kind::kColdViscosity;
+      const std::string& name = columns_[k]->field->name();
+      const std::string own = is_cold ? "mPa s" : unit_of_field(name);
+      std::string wrong;
+      if (own.empty() || !read_quantity("1", own, unit, is_temperature_field(name), wrong)) {
+        wrong_.add(row_text(line), column_text(k),
+                   "'" + printable(line.cells[k].substr(0, 60)) +
+                       "' looks like a unit, but is none of it" +
+                       (own.empty() ? "" : " (" + own + ")") +
+                       "; correct it, or begin the row with #");
+        continue;
+      }
+      columns_[k]->bare_unit = unit;
+    }
+  }
+
+  /// Every cell that should hold a number.
+  template <class Use>
+  void for_each_number(const Use& use) {
+    for (CsvLine& line : lines_) {
+      for (std::size_t k = 0; k < header_.size(); ++k) {
+        if (columns_[k] && holds_numbers(*columns_[k])) use(line, k, line.cells[k]);
+      }
+    }
+  }
+
+  void look_for_decimal_commas() {
+    std::size_t count = 0;
+    std::string first;
+    for_each_number([&](const CsvLine& line, std::size_t k, const std::string& cell) {
+      if (!has_decimal_comma(cell)) return;
+      if (count++ == 0) {
+        first = row_text(line) + " " + column_text(k) + ": '" + printable(cell.substr(0, 60)) + "'";
+      }
+    });
+    if (count == 0) return;
+    const std::string cells =
+        std::to_string(count) + (count == 1 ? " cell has" : " cells have") + " a decimal comma";
+    if (separator_ == ',') {
+      wrong_.add(cells + " (the first: " + first +
+                 "); legal: a decimal point, or semicolons between the cells");
+      for_each_number([](const CsvLine&, std::size_t, std::string& cell) {
+        if (has_decimal_comma(cell)) cell.clear();
+      });
+      return;
+    }
+    out_.note = path_ + ": " + cells + ", read as a decimal point";
+    for_each_number([&](const CsvLine& line, std::size_t k, std::string& cell) {
+      if (may_be_thousands(cell)) {
+        wrong_.add(row_text(line), column_text(k),
+                   "'" + printable(cell.substr(0, 60)) +
+                       "' has a point in a table of decimal commas; legal: one of the two, and "
+                       "nothing between thousands");
+        cell.clear();
+      } else if (has_decimal_comma(cell)) {
+        cell = with_decimal_points(cell);
+      }
+    });
+  }
+
+  std::string name_in(const CsvLine& line) const {
+    for (std::size_t k = 0; k < header_.size(); ++k) {
+      if (columns_[k] && columns_[k]->field != nullptr && header_of(*columns_[k]) == "name") {
+        return line.cells[k].empty() ? "" : kind_.name_of(line.cells[k]);
+      }
+    }
+    return "";
+  }
+
+  void read_row(const CsvLine& line) {
+    FileResource& read = out_.resources.emplace_back(
+        FileResource{&kind_, kind_.make(), path_ + " " + row_text(line)});
+    bool clears = false;
+    if (bases_.like != nullptr) {
+      read.resource->CopyFrom(*bases_.like);
+    } else if (bases_.present && tells_provenance_) {
+      if (ResourcePointer present = bases_.present(name_in(line))) {
+        read.resource = std::move(present);
+        clears = true;
+      }
+    }
+    // How a number is known comes after the number, which voids what was known of another one.
+    for (const bool provenance : {false, true}) {
+      for (std::size_t k = 0; k < header_.size(); ++k) {
+        if (!columns_[k]) continue;
+        if ((columns_[k]->kind == RowColumn::Kind::kProvenance) != provenance) continue;
+        set(line, k, clears, *read.resource);
+      }
+    }
+    if (bases_.like != nullptr) leave_law_to_viscosities(line, *read.resource);
+    if (text_field(*read.resource, "name").empty()) wrong_.add(row_text(line), "", "has no name");
+    for (const char* field : {"name", "derived_from"}) {
+      const std::string stated = text_field(*read.resource, field);
+      if (!stated.empty()) set_text(*read.resource, field, kind_.name_of(stated));
+    }
+    if (bases_.like == nullptr) read.fields = fields();
+    read.columns = columns_by_name_;
+  }
+
+  /// A law that the base states is not the law of a row with viscosities of its own.
+  void leave_law_to_viscosities(const CsvLine& line, Message& resource) const {
+    bool has_viscosity = false;
+    std::set<std::string> stated;
+    for (std::size_t k = 0; k < header_.size(); ++k) {
+      if (!columns_[k] || columns_[k]->field == nullptr || line.cells[k].empty()) continue;
+      const std::string& name = columns_[k]->field->name();
+      stated.insert(name);
+      has_viscosity = has_viscosity ||
+                      (columns_[k]->block != nullptr && name.find("viscosit") != std::string::npos);
+    }
+    if (!has_viscosity) return;
+    constexpr const char* kLaw[] = {"vogel_viscosity_prefactor_pascal_seconds",
+                                    "vogel_temperature_coefficient_kelvin",
+                                    "vogel_reference_temperature_kelvin"};
+    if (std::any_of(std::begin(kLaw), std::end(kLaw),
+                    [&](const char* each) { return stated.count(each) != 0; })) {
+      return;
+    }
+    for (const char* each : kLaw) {
+      const FieldDescriptor* field = resource.GetDescriptor()->FindFieldByName(each);
+      if (field == nullptr) return;
+      resource.GetReflection()->ClearField(&resource, field);
+      drop_provenance(resource, each);
+    }
+  }
+
+  void set(const CsvLine& line, std::size_t k, bool clears, Message& resource) {
+    const std::string& cell = line.cells[k];
+    if (cell.empty()) {
+      if (clears) clear_cell(*columns_[k], resource);
+      return;
+    }
+    const std::string wrong = set_cell(*columns_[k], cell, resource);
+    if (!wrong.empty()) wrong_.add(row_text(line), column_text(k), wrong);
+  }
+
+  /// The fields that the columns tell of, those of a block as "block.field": what else the block
+  /// holds stays.
+  std::vector<std::string> fields() const {
+    std::set<std::string> out;
+    for (const auto& column : columns_) {
+      if (column) out.insert(mask_of(*column));
+    }
+    out.erase("");
+    return {out.begin(), out.end()};
+  }
+
+  const std::string path_;
+  const ResourceKind& kind_;
+  const RowBases& bases_;
+  std::vector<CsvLine> lines_;
+  const char separator_;
+  std::vector<std::string> header_;
+  std::vector<std::optional<RowColumn>> columns_;  ///< nullopt: not known
+  std::map<std::string, std::string> columns_by_name_;
+  bool tells_provenance_ = false;
+  GroupedComplaints wrong_;
+  RowTable out_;
+};
+
+/// Whether a row cannot hold all of the resource: tables other than a lubricant's measurements.
+bool has_other_tables(const Message& resource) {
   std::vector<const FieldDescriptor*> fields;
   resource.GetReflection()->ListFields(resource, &fields);
-  return std::any_of(fields.begin(), fields.end(), [&](const FieldDescriptor* field) {
-    if (field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE || is_output_only(*field)) {
-      return false;
-    }
-    if (field->is_repeated()) return field->name() != "labels" && field->name() != "provenance";
-    return has_tables(resource.GetReflection()->GetMessage(resource, field));
+  return std::any_of(fields.begin(), fields.end(), [](const FieldDescriptor* field) {
+    return field->is_repeated() && !is_output_only(*field) && field->name() != "labels" &&
+           field->name() != "provenance";
   });
-}
-
-bool is_computed(const Message& resource, const Column& column) {
-  if (column.block != nullptr) return false;
-  const ProvenanceEntries& entries = provenance_entries_of(resource);
-  return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) {
-    return entry.computed() && entry.field() == column.field->name();
-  });
-}
-
-std::string cell_of(const Column& column, const Message& resource) {
-  const Message& parent = column.parent(resource);
-  const auto& reflection = *parent.GetReflection();
-  if (column.field->has_presence() && !reflection.HasField(parent, column.field)) return "";
-  switch (column.field->cpp_type()) {
-    case FieldDescriptor::CPPTYPE_DOUBLE: {
-      const double value = reflection.GetDouble(parent, column.field);
-      return value == 0 && !column.field->has_presence() ? "" : shortest(value);
-    }
-    case FieldDescriptor::CPPTYPE_INT32:
-      return std::to_string(reflection.GetInt32(parent, column.field));
-    case FieldDescriptor::CPPTYPE_ENUM: {
-      const auto* value = reflection.GetEnum(parent, column.field);
-      return value->number() == 0 ? "" : enum_word(*value);
-    }
-    default:
-      return reflection.GetString(parent, column.field);
-  }
-}
-
-/// What one cell of a column does to a resource.
-using SetCell = std::function<std::string(const std::string& text, Message& resource)>;
-
-/// One for each column of the header; complaints for those that are none.
-std::vector<SetCell> read_header(const std::vector<std::string>& header, const ResourceKind& kind,
-                                 std::vector<std::string>& complaints) {
-  const std::vector<Column> columns = columns_of(kind);
-  std::vector<std::string> known;
-  for (const Column& column : columns) known.push_back(column.field->name());
-  std::vector<SetCell> out;
-  std::set<std::string> seen;
-  for (const std::string& name : header) {
-    const std::string start = "column '" + printable(name.substr(0, 100)) + "' ";
-    if (!seen.insert(name).second) complaints.push_back(start + "is there twice");
-    if (name.rfind(kLabel, 0) == 0 && name.size() > kLabel.size()) {
-      out.emplace_back([key = name.substr(kLabel.size())](const std::string& text, Message& to) {
-        set_label(to, key, &text);
-        return std::string();
-      });
-      continue;
-    }
-    const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end()) {
-      const std::string meant = nearest(name, known);
-      complaints.push_back(
-          start + "is not known" +
-          (meant.empty() ? "; `tribodyn help files` names them" : " (is " + meant + " meant?)"));
-      out.emplace_back([](const std::string&, Message&) { return std::string(); });
-      continue;
-    }
-    out.emplace_back(
-        [column = columns[static_cast<std::size_t>(found - known.begin())]](
-            const std::string& text, Message& to) { return set_cell(column, text, to); });
-  }
-  return out;
-}
-
-/// The fields that the columns tell of, those of a block as "block.field": what else the block
-/// holds has no room in a table and stays.
-std::vector<std::string> fields_of(const std::vector<std::string>& header,
-                                   const ResourceKind& kind) {
-  std::set<std::string> out;
-  for (const std::string& name : header) {
-    if (name.rfind(kLabel, 0) == 0) out.insert("labels");
-  }
-  for (const Column& column : columns_of(kind)) {
-    const std::string& name = column.field->name();
-    if (name == "name" || std::find(header.begin(), header.end(), name) == header.end()) continue;
-    out.insert(column.block == nullptr ? name : column.block->name() + "." + name);
-  }
-  return {out.begin(), out.end()};
 }
 
 }  // namespace
@@ -207,77 +335,37 @@ std::vector<std::string> fields_of(const std::vector<std::string>& header,
 bool is_row_table(const std::string& text) {
   const std::vector<CsvLine> header = read_csv(text, 1);
   return !header.empty() &&
-         std::find(header[0].cells.begin(), header[0].cells.end(), "name") != header[0].cells.end();
+         std::any_of(header[0].cells.begin(), header[0].cells.end(),
+                     [](const std::string& cell) { return plain_word(cell) == "name"; });
 }
 
-std::vector<FileResource> read_row_table(const std::string& text, const std::string& path,
-                                         const ResourceKind& kind) {
-  if (!is_utf8(text)) throw Failure(kExitUsage, path + " is not UTF-8 text");
-  const std::vector<CsvLine> lines = read_csv(text);
-  std::vector<std::string> complaints;
-  std::vector<FileResource> resources;
-  const std::vector<std::string>& header = lines.at(0).cells;
-  const std::vector<SetCell> setters = read_header(header, kind, complaints);
-  const std::vector<std::string> fields = fields_of(header, kind);
-  for (std::size_t i = 1; i < lines.size() && complaints.size() < kMostComplaints; ++i) {
-    const std::string row = "row " + std::to_string(lines[i].number);
-    if (lines[i].cells.size() != header.size()) {
-      complaints.push_back(row + " has " + std::to_string(lines[i].cells.size()) +
-                           " cells, the header " + std::to_string(header.size()));
-      continue;
-    }
-    FileResource& read = resources.emplace_back(FileResource{&kind, kind.make(), path + " " + row});
-    for (std::size_t k = 0; k < header.size(); ++k) {
-      if (lines[i].cells[k].empty()) continue;
-      const std::string wrong = setters[k](lines[i].cells[k], *read.resource);
-      if (!wrong.empty()) complaints.push_back(row + " column " + header[k] + ": " + wrong);
-    }
-    for (const char* field : {"name", "derived_from"}) {
-      const std::string stated = text_field(*read.resource, field);
-      if (stated.empty()) continue;
-      read.resource->GetReflection()->SetString(
-          read.resource.get(), read.resource->GetDescriptor()->FindFieldByName(field),
-          kind.name_of(stated));
-    }
-    if (text_field(*read.resource, "name").empty()) complaints.push_back(row + " has no name");
-    read.fields = fields;
-    read.columns = header;
-  }
-  if (complaints.empty() && resources.empty()) complaints.emplace_back("has no rows");
-  if (!complaints.empty()) {
-    throw Failure(kExitUsage,
-                  path + ":\n  " + joined(complaints, "\n  ") + "\n  Nothing was written.");
-  }
-  return resources;
+RowTable read_row_table(const std::string& text, const std::string& path, const ResourceKind& kind,
+                        const RowBases& bases) {
+  return RowReader(text, path, kind, bases).result();
 }
 
 std::string row_table(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,
                       std::string& lost) {
   std::set<std::string> keys;
-  bool tables = false;
+  lost.clear();
   for (const ResourcePointer& resource : resources) {
     for (const v1::Label& label : labels_of(*resource)) keys.insert(label.key());
-    tables = tables || has_tables(*resource);
+    if (has_other_tables(*resource)) lost = "measured profiles";
   }
-  lost = std::string("how each number is known") + (tables ? " and tables of measurements" : "");
-  const std::vector<Column> columns = columns_of(kind);
+  std::vector<RowColumn> columns = columns_of(kind);
+  const std::vector<RowColumn> provenance = provenance_columns(resources);
+  columns.insert(columns.end(), provenance.begin(), provenance.end());
+  for (const std::string& key : keys) {
+    RowColumn& column = columns.emplace_back();
+    column.kind = RowColumn::Kind::kLabel;
+    column.key = key;
+  }
   std::vector<std::string> header;
-  for (const Column& column : columns) header.push_back(column.field->name());
-  for (const std::string& key : keys) header.push_back(std::string(kLabel) + key);
+  for (const RowColumn& column : columns) header.push_back(header_of(column));
   std::string text = csv_line(header);
   for (const ResourcePointer& resource : resources) {
-    const bool computed_too = has_tables(*resource);
     std::vector<std::string> cells;
-    for (const Column& column : columns) {
-      const bool left_out = !computed_too && is_computed(*resource, column);
-      cells.push_back(left_out ? "" : cell_of(column, *resource));
-    }
-    for (const std::string& key : keys) {
-      std::string& cell = cells.emplace_back();
-      for (const v1::Label& label : labels_of(*resource)) {
-        if (label.key() == key) cell = label.value();
-      }
-    }
+    for (const RowColumn& column : columns) cells.push_back(cell_of(column, *resource));
     text += csv_line(cells);
   }
   return text;

@@ -3,9 +3,13 @@
 #include <google/protobuf/descriptor.h>
 
 #include <algorithm>
+#include <iostream>
+#include <set>
 #include <vector>
 
+#include "client/cpp/resources/json_input.h"
 #include "client/cpp/text/csv.h"
+#include "client/cpp/text/table_text.h"
 #include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
@@ -24,6 +28,15 @@ void append_series(const char* quantity, const v1::FourierSeries& series, std::s
 }
 
 }  // namespace
+
+std::string read_table_file(const std::string& path, std::size_t most_bytes) {
+  static std::set<std::string> told;  // a file is read once to see what it is, then for its rows
+  std::string note;
+  std::string text = table_text(read_file(path, most_bytes), path, note);
+  if (!note.empty() && told.insert(path).second)
+    std::cerr << "tribodyn: " << printable(note) << "\n";
+  return text;
+}
 
 std::string tooth_contact_csv(const v1::GearSet& gear_set) {
   const auto* type = v1::FlankSlot::descriptor();

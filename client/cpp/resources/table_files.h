@@ -1,11 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
 
 namespace tribodyn::client {
+
+/// The text of a table that a user named, as UTF-8 (table_text.h); says on standard error what was
+/// converted. "-" is standard input. Throws Failure.
+std::string read_table_file(const std::string& path, std::size_t most_bytes);
 
 // The tables that the server's imports read, written from a resource; numbers as their shortest
 // exact text.

@@ -76,13 +76,22 @@ void append_flanks(const Message& parent, const FieldDescriptor& field, const st
   }
 }
 
+/// Whether readers would take the bare cell for something else: for several cells, for one without
+/// the blanks around it, for a note, or for the line by which Excel is told the separator.
+bool needs_quotes(std::string_view cell) {
+  if (cell.find_first_of(",;\t\"\r\n") != std::string_view::npos) return true;
+  return !cell.empty() && (cell.front() == ' ' || cell.back() == ' ' || cell.front() == '#' ||
+                           cell.starts_with("sep="));
+}
+
 }  // namespace
 
 std::string csv_line(const std::vector<std::string>& cells) {
   std::string line;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (i > 0) line += ',';
-    if (cells[i].find_first_of(",\"\r\n") == std::string::npos) {
+    const bool is_line = cells.size() == 1 && cells.front().empty();  // an empty line is no row
+    if (!is_line && !needs_quotes(cells[i])) {
       line += cells[i];
       continue;
     }
@@ -134,19 +143,29 @@ std::string csv_text(const std::vector<CsvRow>& rows) {
 
 namespace {
 
+/// An empty line, a note, or the line by which Excel is told the separator.
+bool is_skipped(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \r");
+  return first == std::string_view::npos || line[first] == '#' ||
+         (line.starts_with("sep=") && line.size() <= 6);  // with its carriage return
+}
+
+/// The first line that is not skipped.
+std::string_view header_line(std::string_view text) {
+  if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    if (!is_skipped(line)) return line;
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+  }
+  return {};
+}
+
 /// Reads cell after cell of a text.
 class CsvReader {
  public:
-  explicit CsvReader(std::string_view text) : rest_(text) {
+  explicit CsvReader(std::string_view text) : rest_(text), separator_(csv_separator(text)) {
     if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
-    const std::string_view header = rest_.substr(0, rest_.find('\n'));
-    std::ptrdiff_t most = 0;
-    for (const char each : {',', ';', '\t'}) {
-      const std::ptrdiff_t count = std::count(header.begin(), header.end(), each);
-      if (count <= most) continue;
-      most = count;
-      separator_ = each;
-    }
   }
 
   bool at_end() const { return rest_.empty(); }
@@ -162,8 +181,7 @@ class CsvReader {
   bool skip() {
     const std::size_t end = std::min(rest_.find('\n'), rest_.size());
     const std::string_view line = rest_.substr(0, end);
-    const std::size_t first = line.find_first_not_of(" \r");
-    if (first != std::string_view::npos && line[first] != '#') return false;
+    if (!is_skipped(line)) return false;
     rest_.remove_prefix(std::min(end + 1, rest_.size()));
     ++line_;
     return true;
@@ -176,6 +194,7 @@ class CsvReader {
     while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
     const bool quoted = !rest_.empty() && rest_.front() == '"';
     if (quoted) read_quoted(cell);
+    const std::size_t kept = cell.size();  // blanks in quotes belong to the cell
     const std::size_t end =
         std::min(rest_.find_first_of(std::string{separator_, '\n'}), rest_.size());
     cell += rest_.substr(0, end);
@@ -183,8 +202,7 @@ class CsvReader {
     rest_.remove_prefix(std::min(end + 1, rest_.size()));
     if (!more) ++line_;
     const auto is_blank = [](char c) { return c == ' ' || c == '\r'; };
-    while (!quoted && !cell.empty() && is_blank(cell.back())) cell.pop_back();
-    if (quoted && cell.ends_with('\r')) cell.pop_back();
+    while (cell.size() > kept && is_blank(cell.back())) cell.pop_back();
     return more;
   }
 
@@ -200,11 +218,24 @@ class CsvReader {
   }
 
   std::string_view rest_;
-  char separator_ = ',';
+  const char separator_;
   int line_ = 1;
 };
 
 }  // namespace
+
+char csv_separator(std::string_view text) {
+  const std::string_view header = header_line(text);
+  char separator = ',';
+  std::ptrdiff_t most = 0;
+  for (const char each : {',', ';', '\t'}) {
+    const std::ptrdiff_t count = std::count(header.begin(), header.end(), each);
+    if (count <= most) continue;
+    most = count;
+    separator = each;
+  }
+  return separator;
+}
 
 std::vector<CsvLine> read_csv(std::string_view text, std::size_t most) {
   CsvReader reader(text);

@@ -11,7 +11,8 @@
 
 namespace tribodyn::client {
 
-/// One CSV line (RFC 4180 with a plain line feed): cells with a comma, quote or line break quoted.
+/// One CSV line (RFC 4180 with a plain line feed). Quotes cells that readers would not take as they
+/// are: with a separator, quote or line break in them, with blanks around them, or like a note.
 std::string csv_line(const std::vector<std::string>& cells);
 
 /// A line of a CSV text that was read.
@@ -20,9 +21,13 @@ struct CsvLine {
   std::vector<std::string> cells;
 };
 
-/// The lines of a CSV text, at most so many: cells separated by commas, semicolons or tabs,
-/// whichever the first line has most of; in quotes they may hold anything. Empty lines and those
-/// that begin with '#' are left out, as are blanks around cells and a byte order mark.
+/// What separates the cells of a CSV text: of comma, semicolon and tab the one that the header has
+/// most of.
+char csv_separator(std::string_view text);
+
+/// The lines of a CSV text, at most so many: cells separated by csv_separator(); in quotes they may
+/// hold anything. Empty lines and those that begin with '#' are left out, as are blanks around
+/// cells and a byte order mark.
 std::vector<CsvLine> read_csv(std::string_view text, std::size_t most = SIZE_MAX);
 
 /// A row under construction: each cell with its header.

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -43,6 +44,19 @@ void write_file(const std::string& path, const std::string& text) {
     unlink(target.c_str());
     throw Failure(kExitFailed, "cannot write " + path + ": " + why);
   }
+}
+
+std::string why_not_writable(const std::string& path) {
+  struct stat info;
+  const bool exists = stat(path.c_str(), &info) == 0;
+  if (exists && S_ISDIR(info.st_mode)) return "is a folder";
+  // A file is replaced, which takes the right to write to its folder.
+  std::string target = path;
+  if (!exists || S_ISREG(info.st_mode)) {
+    const std::size_t slash = path.rfind('/');
+    target = slash == std::string::npos ? "." : path.substr(0, std::max<std::size_t>(slash, 1));
+  }
+  return access(target.c_str(), W_OK) == 0 ? "" : std::strerror(errno);
 }
 
 }  // namespace tribodyn::client

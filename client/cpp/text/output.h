@@ -15,4 +15,8 @@ std::string json_text(const google::protobuf::Message& message);
 /// Throws Failure when the file cannot be written.
 void write_file(const std::string& path, const std::string& text);
 
+/// Why write_file() would fail for a path, as far as that can be told without writing; empty when
+/// nothing stands against it.
+std::string why_not_writable(const std::string& path);
+
 }  // namespace tribodyn::client

@@ -31,12 +31,20 @@ int percent(const JobProgress& job) {
 
 }  // namespace
 
+std::string percent_text(double fraction) {
+  // The last bits of a product must not take a percent away.
+  const double percent = 100 * std::clamp(fraction, 0.0, 1.0) + 1e-9;
+  // Rounded down, so that 100 % appears only when the work is complete.
+  return fraction > 0 && percent < 10 ? fixed(std::floor(10 * percent) / 10, 1)
+                                      : fixed(std::floor(percent), 0);
+}
+
 std::string progress_bar_line(const JobProgress& job, int label_width, double elapsed_seconds,
                               int width) {
   const int filled = kBarWidth * percent(job) / 100;
   std::string label = printable(job.label);
   label.resize(label.size() + std::max(0, label_width - display_width(label)), ' ');
-  std::string number = std::to_string(percent(job));
+  std::string number = percent_text(percent(job) < 99 ? job.fraction : 0.01 * percent(job));
   number.insert(0, 3 - std::min<std::size_t>(3, number.size()), ' ');
   std::string line = label + " [" + std::string(filled, '#') +
                      std::string(kBarWidth - filled, '.') + "] " + number + " %  " +

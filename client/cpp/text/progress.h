@@ -16,6 +16,10 @@ struct JobProgress {
   bool ended = false;
 };
 
+/// A fraction in percent: "0.4", "12". Below 10 % there is a decimal, so that a curve of a thousand
+/// points is seen to move.
+std::string percent_text(double fraction);
+
 /// One terminal line: label, bar, percent, time, stage; at most `width` columns.
 std::string progress_bar_line(const JobProgress& job, int label_width, double elapsed_seconds,
                               int width);

@@ -1,6 +1,7 @@
 #include "client/cpp/text/table.h"
 
 #include <algorithm>
+#include <cctype>
 #include <stdexcept>
 #include <utility>
 
@@ -12,7 +13,26 @@ namespace {
 
 std::string padded(const std::string& text, int width, Table::Align align) {
   const std::string blanks(std::max(0, width - display_width(text)), ' ');
-  return align == Table::Align::kRight ? blanks + text : text + blanks;
+  return align == Table::Align::kLeft ? text + blanks : blanks + text;
+}
+
+/// How many characters of a number follow its integer part; 0 of any other text.
+int fraction_width(const std::string& cell) {
+  const std::size_t point = cell.find('.');
+  const bool is_number =
+      !cell.empty() && std::isdigit(static_cast<unsigned char>(cell.back())) != 0;
+  return !is_number || point == std::string::npos ? 0 : static_cast<int>(cell.size() - point);
+}
+
+/// Blanks behind each number, so that right-aligned decimal points stand one below the other.
+void align_decimal_points(std::size_t column, std::vector<std::vector<std::string>>& rows) {
+  int widest = 0;
+  for (const auto& row : rows) widest = std::max(widest, fraction_width(row[column]));
+  for (auto& row : rows) {
+    std::string& cell = row[column];
+    if (cell.empty() || std::isdigit(static_cast<unsigned char>(cell.back())) == 0) continue;
+    cell.append(static_cast<std::size_t>(widest - fraction_width(cell)), ' ');
+  }
 }
 
 std::string without_trailing_blanks(std::string line) {
@@ -30,10 +50,12 @@ void Table::add_row(std::vector<std::string> cells) {
 }
 
 std::string Table::text() const {
+  std::vector<std::vector<std::string>> rows = rows_;
   std::vector<int> widths;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
+    if (columns_[c].align == Align::kDecimal) align_decimal_points(c, rows);
     int width = std::max(display_width(columns_[c].header), display_width(columns_[c].unit));
-    for (const auto& row : rows_) width = std::max(width, display_width(row[c]));
+    for (const auto& row : rows) width = std::max(width, display_width(row[c]));
     widths.push_back(width);
   }
   std::string result;
@@ -50,7 +72,7 @@ std::string Table::text() const {
     add_line([&](std::size_t c) { return columns_[c].unit; });
   }
   add_line([&](std::size_t c) { return std::string(widths[c], '-'); });
-  for (const auto& row : rows_) {
+  for (const auto& row : rows) {
     add_line([&](std::size_t c) { return row[c]; });
   }
   return result;

@@ -8,7 +8,8 @@ namespace tribodyn::client {
 /// A table for a person: every column as wide as its widest cell.
 class Table {
  public:
-  enum class Align { kLeft, kRight };
+  /// kDecimal: decimal points one below the other.
+  enum class Align { kLeft, kRight, kDecimal };
   struct Column {
     std::string header;
     std::string unit;  ///< second header line; left out when no column has one

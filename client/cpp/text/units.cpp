@@ -4,6 +4,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -51,6 +53,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 37> kUnitWor
     {"seconds", "s"},
 }};
 
+constexpr double kDegreesPerRadian = 57.295779513082323;  // 180 / pi
+
 /// Kilogram, metre, second, kelvin, radian.
 using Dimensions = std::array<int, 5>;
 
@@ -89,6 +93,8 @@ constexpr std::array kAtoms = {
     Atom{"%", 1, -2, {}},
     Atom{"1", 1, 0, {}},
     Atom{"deg", 0.017453292519943295, 0, {0, 0, 0, 0, 1}},
+    Atom{"degrees", 0.017453292519943295, 0, {0, 0, 0, 0, 1}},
+    Atom{"rpm", 0.10471975511965977, 0, {0, 0, -1, 0, 1}},
 };
 
 constexpr std::array<std::pair<char, int>, 9> kPrefixes = {{{'G', 9},
@@ -177,8 +183,9 @@ class UnitReader {
   bool factor(int sign, Unit& unit) {
     if (text_[at_] == '(') {
       ++at_;
-      if (!product(sign, unit) || at_ == text_.size()) return false;
+      if (++depth_ > kDeepestBracket || !product(sign, unit) || at_ == text_.size()) return false;
       ++at_;
+      --depth_;
       return true;
     }
     const std::size_t start = at_;
@@ -197,6 +204,7 @@ class UnitReader {
     const auto [end, error] =
         std::from_chars(text_.data() + at_, text_.data() + text_.size(), power);
     if (error == std::errc()) at_ = static_cast<std::size_t>(end - text_.data());
+    if (power < -kGreatestPower || power > kGreatestPower) return false;
     power *= sign;
     unit.mantissa *= std::pow(atom->mantissa, power);
     unit.exponent += atom->exponent * power;
@@ -206,8 +214,13 @@ class UnitReader {
     return true;
   }
 
+  // Far beyond any unit; a file may hold anything where a unit is expected.
+  static constexpr int kDeepestBracket = 10;
+  static constexpr int kGreatestPower = 99;
+
   std::string text_;
   std::size_t at_ = 0;
+  int depth_ = 0;  // of brackets that are open at `at_`
 };
 
 std::optional<Unit> parse_unit(std::string_view text) {
@@ -293,6 +306,41 @@ std::string with_unit(std::string_view number, std::string_view unit) {
          std::string(unit.starts_with("1/") ? unit.substr(1) : unit);
 }
 
+/// Units that a number is mistakenly given in, by the unit that it should be in.
+const std::map<std::string, std::vector<const char*>>& mistaken_units() {
+  static const std::map<std::string, std::vector<const char*>> kUnits = {
+      {"kg/m3", {"g/cm3"}},
+      {"mm2/s", {"m2/s"}},
+      {"mPa s", {"Pa s"}},
+      {"Pa s", {"mPa s"}},
+      {"1/Pa", {"1/Pa", "1/GPa"}},
+      {"Pa", {"Pa", "MPa", "GPa"}},
+      {"kg", {"t", "g"}},
+      {"m", {"m", "mm", "um"}},
+      {"s", {"s", "us", "ns"}},
+      {"K", {"K"}},
+      {"C", {"K"}},
+      {"km/h", {"m/s"}},
+      {"rad/s", {"rpm"}},
+      {"W/(m K)", {"mW/(m K)"}},
+  };
+  return kUnits;
+}
+
+/// "73.3" of "73,3": a number whose decimal point is a comma; empty for any other text.
+std::string with_decimal_point(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || comma == 0 || comma + 1 == text.size()) return "";
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (!is_digit(text[comma - 1]) || !is_digit(text[comma + 1])) return "";
+  std::string changed(text);
+  changed[comma] = '.';
+  const std::string_view number = std::string_view(changed).substr(0, end_of_number(changed));
+  const bool is_number = number.size() > comma && shifted(number, 0).has_value() &&
+                         changed.find(',') == std::string::npos;
+  return is_number ? changed : "";
+}
+
 /// Celsius, Fahrenheit or kelvin, as `unit`, one of C and K.
 std::optional<double> read_temperature(std::string_view number, std::string_view given,
                                        const std::string& unit) {
@@ -354,6 +402,10 @@ std::optional<double> read_quantity(std::string_view text, const std::string& un
   const std::size_t end = end_of_number(text);
   const std::string_view number = text.substr(0, end);
   const std::string_view own = trimmed(text.substr(end));
+  if (const std::string meant = with_decimal_point(text); !meant.empty()) {
+    wrong = "has a decimal comma; decimal point, please: " + meant;
+    return std::nullopt;
+  }
   if (!shifted(number, 0)) {
     wrong = "is not a number" + (unit.empty() ? "" : " in " + unit);
     return std::nullopt;
@@ -369,15 +421,50 @@ std::optional<double> read_quantity(std::string_view text, const std::string& un
     return std::nullopt;
   }
   if (given == unit) return shifted(number, 0);
+  if (given == "%" && (unit == "degrees" || unit == "deg")) {
+    return std::atan(shifted(number, -2).value_or(0)) * kDegreesPerRadian;
+  }
   const auto source = parse_unit(given);
   const auto target = parse_unit(unit);
   if (!source || !target || source->dimensions != target->dimensions) {
     wrong = "is not in " + (unit.empty() ? "a pure number" : unit + " or a multiple of it");
     return std::nullopt;
   }
-  const auto value = shifted(number, source->exponent - target->exponent);
-  if (!value) wrong = "is too large";
-  return value ? std::optional(*value * (source->mantissa / target->mantissa)) : std::nullopt;
+  const auto power = shifted(number, source->exponent - target->exponent);
+  const double value = power.value_or(HUGE_VAL) * (source->mantissa / target->mantissa);
+  if (std::isfinite(value)) return value;
+  wrong = "is too large";
+  return std::nullopt;
+}
+
+std::string unit_slip(std::string_view text, const std::string& unit, const std::string& bare_unit,
+                      double low, double high) {
+  const auto units = mistaken_units().find(unit);
+  if (units == mistaken_units().end()) return "";
+  text = trimmed(text);
+  const std::string number(text.substr(0, end_of_number(text)));
+  const std::string own(trimmed(text.substr(number.size())));
+  const std::string given = own.empty() ? bare_unit : own;
+  const bool temperature = is_celsius(unit) || unit == "K";
+  std::string meant;
+  for (const char* candidate : units->second) {
+    std::string wrong;
+    const auto value = read_quantity(number, unit, candidate, temperature, wrong);
+    if (candidate == given || !value || *value < low || *value > high) continue;
+    if (!meant.empty()) return "";  // two units would do: neither is likelier
+    meant = candidate;
+  }
+  if (meant.empty()) return "";
+  std::string cure = number + " looks like " + meant + ": write " + number +
+                     (meant.starts_with("1/") ? meant.substr(1) : meant);
+  std::string wrong;
+  const auto in_bare_unit = read_quantity(number, bare_unit, meant, temperature, wrong);
+  if (!bare_unit.empty() && in_bare_unit) {
+    std::array<char, 64> plain;
+    std::snprintf(plain.data(), plain.size(), "%.6g", *in_bare_unit);
+    cure += std::string(" or ") + plain.data();
+  }
+  return cure;
 }
 
 std::string trade_unit_of_field(std::string_view field) {

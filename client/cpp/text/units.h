@@ -26,10 +26,17 @@ std::optional<double> unit_ratio(std::string_view from, std::string_view to);
 
 /// What "20/GPa", "40 C", "8.86mm2/s" or "0.14" is in `unit`. A number without a unit is in
 /// `bare_unit`; empty: it must have one. `temperature`: Celsius and kelvin convert with their
-/// zeros. Otherwise nothing, and `wrong` says in words what is the matter.
+/// zeros. Where `unit` is degrees, a slope in percent is an angle too: "30%" is 16.7 degrees.
+/// Otherwise nothing, and `wrong` says in words what is the matter.
 std::optional<double> read_quantity(std::string_view text, const std::string& unit,
                                     const std::string& bare_unit, bool temperature,
                                     std::string& wrong);
+
+/// The likely slip behind a quantity outside [low, high] (in `unit`), if the number lies inside in
+/// exactly one other usual unit: "0.895 looks like g/cm3: write 0.895g/cm3 or 895". `bare_unit` is
+/// that of a number without a unit. Empty: none is known.
+std::string unit_slip(std::string_view text, const std::string& unit, const std::string& bare_unit,
+                      double low, double high);
 
 /// The unit that the trade uses for a field: 1/GPa for 1/Pa, mPa s for Pa s, MPa for Pa, C for
 /// temperatures in kelvin, um for roughness and backlash; others as they are.

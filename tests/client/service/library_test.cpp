@@ -104,9 +104,11 @@ TEST_F(Library, ABatchIsWrittenWholeOrNotAtAll) {
   fluids[0].set_name("lubricants/batch-drained");
   fluids[0].set_derived_from("lubricants/batch-filled");
   fluids[1].set_name("lubricants/batch-filled");
-  EXPECT_EQ(connection.create_all(fluids, true).size(), 2U);
-  const auto created = connection.create_all(fluids);
+  EXPECT_EQ(connection.create_all(fluids, true).resources.size(), 2U);
+  const auto result = connection.create_all(fluids);
+  const std::vector<v1::Lubricant>& created = result.resources;
   ASSERT_EQ(created.size(), 2U);
+  EXPECT_EQ(result.written[1].name(), "lubricants/batch-filled");
   EXPECT_EQ(created[0].name(), "lubricants/batch-drained");
   EXPECT_NEAR(created[1].characterisation().viscosity_index(), 92, 0.5);
 
@@ -124,8 +126,8 @@ TEST_F(Library, ABatchIsWrittenWholeOrNotAtAll) {
   other.set_name("lubricants/batch-new");
   const auto updated =
       connection.update_all<v1::Lubricant>({{renamed, {"display_name"}}, {other, {}}}, true);
-  EXPECT_EQ(updated[0].revision(), 2);
-  EXPECT_EQ(updated[1].revision(), 1);
+  EXPECT_EQ(updated.written[0].revision(), 2);
+  EXPECT_EQ(updated.written[1].revision(), 1);
 }
 
 TEST_F(Library, AllViolationsComeAtOnce) {

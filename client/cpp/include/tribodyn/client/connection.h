@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tribodyn/client/error.h"
+#include "tribodyn/v1/batches.pb.h"
 #include "tribodyn/v1/contacts.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
@@ -51,6 +52,14 @@ template <class Resource>
 struct ResourceUpdate {
   Resource resource;
   std::vector<std::string> update_mask;  ///< fields to take over; empty: all
+};
+
+/// What a batch wrote, in the order of what was sent.
+template <class Resource>
+struct BatchResult {
+  std::vector<v1::WrittenResource> written;
+  /// Empty if `written` is not: together they take more than 2 MB, and get() or list() has them.
+  std::vector<Resource> resources;
 };
 
 /// How an update is made.
@@ -109,15 +118,14 @@ class Connection {
   /// `resource` has an etag that is no longer the present one, the update is refused (ABORTED).
   template <class Resource>
   Resource update(const Resource& resource, const UpdateOptions& options = {});
-  // Batches: all of them or none. One may be derived from another one, in any order. What comes
-  // back is in the order of what was sent; of very many (2 MB) only names, etags and revisions.
+  // Batches: all of them or none. One may be derived from another one, in any order.
   /// Adds resources under the ids in their names.
   template <class Resource>
-  std::vector<Resource> create_all(const std::vector<Resource>& resources,
+  BatchResult<Resource> create_all(const std::vector<Resource>& resources,
                                    bool validate_only = false);
   /// Updates each as update() does; with `allow_missing` creates those that are not there.
   template <class Resource>
-  std::vector<Resource> update_all(const std::vector<ResourceUpdate<Resource>>& updates,
+  BatchResult<Resource> update_all(const std::vector<ResourceUpdate<Resource>>& updates,
                                    bool allow_missing = false, bool validate_only = false);
   /// Newest first; limit 0: all.
   template <class Resource>

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tribodyn::client {
+
+/// The filter of a list with a restriction added for each label: "project=axle" becomes
+/// `labels.project = "axle"`, "project" becomes `labels.project:*`.
+std::string with_labels(std::string filter, const std::vector<std::string>& labels);
+
+}  // namespace tribodyn::client

@@ -1,0 +1,43 @@
+#include "client/cpp/commands/show_results.h"
+
+#include <algorithm>
+
+#include "client/cpp/report/results.h"
+
+namespace tribodyn::client {
+namespace {
+
+/// Of the gear sets that the simulations rest on. One that the server does not tell is left out:
+/// the results are shown all the same.
+std::vector<v1::GearSet> gear_sets_of(const std::vector<v1::Simulation>& simulations,
+                                      Connection& connection) {
+  std::vector<v1::GearSet> gear_sets;
+  std::vector<std::string> names;
+  for (const v1::Simulation& simulation : simulations) {
+    const std::string& name = simulation.gear_set_revision();
+    if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) continue;
+    names.push_back(name);
+    try {
+      gear_sets.push_back(connection.get<v1::GearSet>(name));
+      gear_sets.back().set_name(name);
+    } catch (const ServiceError&) {
+      continue;
+    }
+  }
+  return gear_sets;
+}
+
+}  // namespace
+
+std::string shown_results(const std::vector<v1::Simulation>& simulations, Connection& connection,
+                          const CommonOptions& options, bool alone, bool shows_assumptions) {
+  TorqueLimits limits;
+  if (options.output_format == OutputFormat::kTable) {
+    for (const v1::GearSet& gear_set : gear_sets_of(simulations, connection)) {
+      limits[gear_set.name()] = largest_torque(gear_set);
+    }
+  }
+  return results_text(simulations, options.output_format, alone, shows_assumptions, limits);
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,130 @@
+#include "client/cpp/plot/footer.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "client/cpp/report/warnings.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+constexpr double kFooterSize = 11.5;
+constexpr int kLongestLabel = 20;  // characters beside the frame of a curve
+constexpr int kLongestNote = 30;
+constexpr std::size_t kShownHash = 12;  // hexadecimal digits, of 64
+
+/// The first characters of a text, an ellipsis in place of the rest.
+std::string elided(const std::string& text, int longest) {
+  if (display_width(text) <= longest) return text;
+  std::size_t end = 0;
+  for (int shown = 0; end < text.size(); ++end) {
+    const bool starts_a_character = (static_cast<unsigned char>(text[end]) & 0xC0U) != 0x80U;
+    if (starts_a_character && ++shown == longest) break;
+  }
+  std::string start = text.substr(0, end);
+  start.erase(start.find_last_not_of(' ') + 1);
+  return start + "\xE2\x80\xA6";
+}
+
+std::string ids_text(const std::vector<std::string>& names) {
+  std::vector<std::string> ids;
+  ids.reserve(names.size());
+  for (const std::string& name : names) ids.push_back(resource_id(name));
+  return joined(ids, ", ");
+}
+
+std::string warning_text(const CurveWarning& warning, bool is_curve) {
+  std::string start;
+  if (is_curve && !warning.mark.empty()) start = "Strip " + warning.mark + ": ";
+  if (is_curve && forbids_ranking(warning.code)) start = "Hatched: ";
+  std::string text = start + warning_words(warning.code);
+  if (start.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  if (is_curve) text += ", at " + warning.speeds_text;
+  if (!warning.names.empty()) text += " (" + ids_text(warning.names) + ")";
+  return text + " [" + warning.code + "].";
+}
+
+/// What is to be known of fluids and surface themselves, with the fluids concerned: they are named
+/// only where they are not all.
+std::vector<std::string> input_texts(const std::vector<v1::Simulation>& simulations) {
+  std::map<std::string, std::vector<std::string>> names;  // by code
+  for (const v1::Simulation& simulation : simulations) {
+    std::set<std::string> codes;  // some come once for every measurement
+    for (const v1::RangeWarning& warning : simulation.result().input_warnings()) {
+      if (codes.insert(warning.code()).second) {
+        names[warning.code()].push_back(simulation.lubricant());
+      }
+    }
+  }
+  std::vector<std::string> texts;
+  for (const auto& [code, concerned] : names) {
+    std::string text = warning_words(code);
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    if (concerned.size() < simulations.size()) text += " (" + ids_text(concerned) + ")";
+    texts.push_back(text + " [" + code + "].");
+  }
+  return texts;
+}
+
+/// "Model version V; inputs 1: 0123456789ab, 2: ..."
+std::string identity_text(const std::vector<v1::Simulation>& simulations) {
+  std::set<std::string> versions;
+  std::vector<std::string> hashes;
+  for (const v1::Simulation& simulation : simulations) {
+    versions.insert(simulation.result().model_version());
+    const std::string hash = simulation.result().input_hash().substr(0, kShownHash);
+    hashes.push_back(simulations.size() == 1 ? hash
+                                             : resource_id(simulation.lubricant()) + ": " + hash);
+  }
+  return "Model version " + joined({versions.begin(), versions.end()}, ", ") + "; hash of inputs " +
+         joined(hashes, ", ") + ".";
+}
+
+}  // namespace
+
+std::vector<std::string> footer_texts(const std::vector<v1::Simulation>& simulations) {
+  std::vector<std::string> texts;
+  if (simulations.empty()) return texts;
+  const bool is_curve = simulations.front().has_inefficiency_curve();
+  for (const CurveWarning& warning : curve_warnings(simulations)) {
+    texts.push_back(warning_text(warning, is_curve));
+  }
+  for (std::string& text : input_texts(simulations)) texts.push_back(std::move(text));
+  texts.push_back(identity_text(simulations));
+  return texts;
+}
+
+std::vector<std::string> footer_lines(const std::vector<std::string>& texts, double width) {
+  const int columns = static_cast<int>(width / text_width("x", kFooterSize));
+  std::vector<std::string> lines;
+  for (const std::string& text : texts) {
+    for (std::string& line : split(wrapped(text, 0, columns), '\n')) {
+      if (!line.empty()) lines.push_back(std::move(line));
+    }
+  }
+  return lines;
+}
+
+void draw_footer(const std::vector<std::string>& lines, Point first, Svg& svg) {
+  for (const std::string& line : lines) {
+    svg.text(first, line, {kFooterSize, "start", "#555", false, 0});
+    first.y += kFooterPitch;
+  }
+}
+
+FluidTitle fluid_title(const std::string& lubricant, const std::string& title) {
+  if (title.empty()) {
+    const std::string id = resource_id(lubricant);
+    const std::string whole = "lubricant " + id;
+    return {display_width(whole) <= kLongestLabel ? whole : elided(id, kLongestLabel), ""};
+  }
+  const std::size_t colon = title.find(": ");
+  const std::string note = colon == std::string::npos ? "" : title.substr(colon + 2);
+  return {elided(title.substr(0, colon), kLongestLabel), elided(note, kLongestNote)};
+}
+
+}  // namespace tribodyn::client

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+
+#include "core/study/operating_point.h"
+
+namespace tribodyn {
+
+/// MARCH_TOLERANCE_UNUSED, if relative_tolerance or settling_tolerance differs from its default and
+/// nothing read it: only a march does. Returns nullopt otherwise.
+std::optional<RangeWarning> unused_march_tolerance(const PointOptions& options,
+                                                   const PointResult& result);
+
+}  // namespace tribodyn

@@ -1,0 +1,257 @@
+// Tables of resources as people and spreadsheets write them.
+#include "client/cpp/resources/row_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "client/cpp/failure.h"
+#include "client/cpp/resources/row_columns.h"
+#include "client/cpp/text/table_text.h"
+
+namespace tribodyn::client {
+namespace {
+
+const ResourceKind& oil_kind() { return kind_of(*v1::Lubricant::descriptor()); }
+
+const v1::Lubricant& as_lubricant(const FileResource& read) {
+  return dynamic_cast<const v1::Lubricant&>(*read.resource);
+}
+
+std::string table_refusal(const std::string& text) {
+  try {
+    read_row_table(text, "t.csv", oil_kind());
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.exit_code(), kExitUsage);
+    return failure.what();
+  }
+  return "";
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++found;
+  return found;
+}
+
+double kv40(const v1::Lubricant& oil) {
+  return oil.measurements().kinematic_viscosity_40_celsius_square_millimetres_per_second();
+}
+
+TEST(RowTable, TakesTheNamesOfTheTradeInAnyCase) {
+  const RowTable table = read_row_table(
+      "Name,KV40,kv100,Density15 (g/cm3),Base Oil Class,Condition,Pressure-Viscosity "
+      "[1/GPa],Brookfield -40 C,brookfield_-26\n"
+      "a,73.3,8.86,0.87,PAO,Fresh,20,150 Pas,21000\n",
+      "t.csv", oil_kind());
+  const v1::Lubricant& oil = as_lubricant(table.resources.at(0));
+  EXPECT_EQ(oil.name(), "lubricants/a");
+  EXPECT_EQ(kv40(oil), 73.3);
+  EXPECT_EQ(oil.measurements().density_15_celsius_kilograms_per_cubic_metre(), 870);
+  EXPECT_EQ(oil.base_oil_class(), v1::Lubricant::POLYALPHAOLEFIN);
+  EXPECT_EQ(oil.condition(), v1::Lubricant::FRESH);
+  EXPECT_DOUBLE_EQ(oil.pressure_viscosity_coefficient_per_pascal(), 20e-9);
+  ASSERT_EQ(oil.measurements().brookfield_viscosities_size(), 2);
+  EXPECT_EQ(oil.measurements().brookfield_viscosities(0).temperature_celsius(), -40);
+  EXPECT_EQ(oil.measurements().brookfield_viscosities(0).dynamic_viscosity_millipascal_seconds(),
+            150000);
+  EXPECT_EQ(oil.measurements().brookfield_viscosities(1).temperature_celsius(), -26);
+  EXPECT_EQ(table.note, "");
+}
+
+TEST(RowTable, KnowsTheSpellingsOfBaseOils) {
+  const struct {
+    const char* text;
+    v1::Lubricant::BaseOilClass meant;
+  } kSpellings[] = {
+      {"PAO", v1::Lubricant::POLYALPHAOLEFIN},   {"Group IV", v1::Lubricant::POLYALPHAOLEFIN},
+      {"Group III", v1::Lubricant::GROUP_III},   {"Gr. III", v1::Lubricant::GROUP_III},
+      {"III", v1::Lubricant::GROUP_III},         {"Gruppe III", v1::Lubricant::GROUP_III},
+      {"group-iii", v1::Lubricant::GROUP_III},   {"GROUP_II", v1::Lubricant::GROUP_II},
+      {"API Group 1", v1::Lubricant::GROUP_I},   {"Ester", v1::Lubricant::ESTER},
+      {"Naphthenic", v1::Lubricant::NAPHTHENIC}, {"pag", v1::Lubricant::POLYALKYLENE_GLYCOL}};
+  for (const auto& each : kSpellings) {
+    const auto* found = find_base_oil_class(each.text);
+    ASSERT_NE(found, nullptr) << each.text;
+    EXPECT_EQ(found->number(), each.meant) << each.text;
+  }
+  for (const char* each : {"", "group v", "mineral", "gr", "iiii"}) {
+    EXPECT_EQ(find_base_oil_class(each), nullptr) << each;
+  }
+}
+
+TEST(RowTable, ReadsDecimalCommasWhereCommasDoNotSeparate) {
+  for (const char separator : {';', '\t'}) {
+    std::string text = "name;kv40;kv100\na;73,3;8,86\nb;100;14,5\n";
+    std::replace(text.begin(), text.end(), ';', separator);
+    const RowTable table = read_row_table(text, "t.csv", oil_kind());
+    EXPECT_EQ(kv40(as_lubricant(table.resources.at(0))), 73.3);
+    EXPECT_EQ(kv40(as_lubricant(table.resources.at(1))), 100);
+    EXPECT_NE(table.note.find("3 cells have a decimal comma"), std::string::npos) << table.note;
+  }
+  const std::string said = table_refusal("name,kv40,kv100\na,\"73,3\",\"8,86\"\nb,\"100,1\",14\n");
+  EXPECT_NE(said.find("3 cells have a decimal comma (the first: row 2 column kv40: '73,3')"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(count(said, "row "), 1U) << said;
+  EXPECT_NE(table_refusal("name;kv40;kv100\na;1.103;8,86\n").find("decimal commas"),
+            std::string::npos);
+  EXPECT_NE(table_refusal("name;kv40;kv100\na;1.103,5;8,86\n").find("thousands"),
+            std::string::npos);
+}
+
+TEST(RowTable, UnderstandsARowOfUnits) {
+  const RowTable table = read_row_table(
+      "name;kv40;density15;pressure_viscosity_coefficient_per_pascal\n"
+      ";cSt;g/cm3;1/GPa\na;73.3;0.87;20\n",
+      "t.csv", oil_kind());
+  ASSERT_EQ(table.resources.size(), 1U);
+  const v1::Lubricant& oil = as_lubricant(table.resources[0]);
+  EXPECT_EQ(kv40(oil), 73.3);
+  EXPECT_EQ(oil.measurements().density_15_celsius_kilograms_per_cubic_metre(), 870);
+  EXPECT_DOUBLE_EQ(oil.pressure_viscosity_coefficient_per_pascal(), 20e-9);
+  const std::string said = table_refusal("name,kv40,density15\nUnits,furlong,kg\na,1,2\n");
+  EXPECT_NE(said.find("row 2 column kv40: 'furlong' looks like a unit"), std::string::npos) << said;
+  EXPECT_NE(said.find("begin the row with #"), std::string::npos) << said;
+}
+
+TEST(RowTable, TellsTheSameMistakeOnceWithACount) {
+  std::string text = "name,kv40,base_oil_class\n";
+  for (int i = 0; i < 30; ++i)
+    text += "oil-" + std::to_string(i) + ",x" + (i == 7 ? "x" : "") + ",none\n";
+  const std::string said = table_refusal(text);
+  EXPECT_NE(said.find("60 mistakes of 3 kinds, each told once"), std::string::npos) << said;
+  EXPECT_NE(said.find("row 2 column kv40: 'x' is not a number"), std::string::npos) << said;
+  EXPECT_NE(said.find("(and in 28 more, the last row 31)"), std::string::npos) << said;
+  EXPECT_NE(said.find("row 9 column kv40: 'xx'"), std::string::npos) << said;
+  EXPECT_EQ(count(said, "'none' is not one of"), 1U) << said;
+}
+
+TEST(RowTable, NamesHeadersThatAreUnknownTwiceOrInAWrongUnit) {
+  const std::string said =
+      table_refusal("name,kv4O,kv100,KV100,density15 (m),display_nme\na,1,2,3,4,5\n");
+  EXPECT_NE(said.find("column 'kv4O' is not known"), std::string::npos) << said;
+  EXPECT_NE(said.find("column KV100 is there twice"), std::string::npos) << said;
+  EXPECT_NE(said.find("has the unit m, which is not one of it (kg/m3)"), std::string::npos) << said;
+  EXPECT_NE(said.find("is display_name meant?"), std::string::npos) << said;
+}
+
+TEST(RowTable, GivesBackAllThatIsStatedAndMeasured) {
+  std::vector<ResourcePointer> oils;
+  auto oil = std::make_unique<v1::Lubricant>();
+  oil->set_name("lubricants/a");
+  oil->set_description("two\nlines, \"quoted\"");
+  oil->set_base_oil_class(v1::Lubricant::ESTER);
+  v1::LubricantMeasurements& measured = *oil->mutable_measurements();
+  measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(1.0 / 3);
+  measured.set_sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second(8.1);
+  for (const auto& [celsius, viscosity] : {std::pair(-40.0, 1.5e5), {-26.0, 1e4 / 3}, {-26.0, 9}}) {
+    auto& row = *measured.add_brookfield_viscosities();
+    row.set_temperature_celsius(celsius);
+    row.set_dynamic_viscosity_millipascal_seconds(viscosity);
+  }
+  auto* row = measured.add_viscosities();
+  row->set_temperature_celsius(20);
+  row->set_kinematic_viscosity_square_millimetres_per_second(205);
+  row->set_relative_standard_uncertainty(0.01);
+  row = measured.add_viscosities();
+  row->set_temperature_celsius(-0.1);
+  row->set_dynamic_viscosity_millipascal_seconds(0.1 + 0.2);
+  auto& density = *measured.add_densities();
+  density.set_temperature_celsius(100);
+  density.set_density_kilograms_per_cubic_metre(815);
+  oil->set_pressure_viscosity_coefficient_per_pascal(1.0 / 3e8);
+  oil->set_havriliak_negami_beta(0);
+  auto* known = oil->add_provenance();
+  known->set_field("pressure_viscosity_coefficient_per_pascal");
+  known->set_provenance(v1::PROVENANCE_MEASURED);
+  known->set_source("Laboratory X; report 12");
+  known->set_standard_uncertainty(1e-9 / 3);
+  known->set_warning("old sample");
+  auto* label = oil->add_labels();
+  label->set_key("project");
+  label->set_value("axle");
+  v1::Lubricant kept = *oil;
+  // The cell of what the server computed is empty.
+  oil->set_thermal_conductivity_watts_per_metre_kelvin(0.15);
+  known = oil->add_provenance();
+  known->set_field("thermal_conductivity_watts_per_metre_kelvin");
+  known->set_computed(true);
+  known->set_source("an estimate");
+  oils.push_back(std::move(oil));
+  std::string lost;
+  const std::string text = row_table(oil_kind(), oils, lost);
+  EXPECT_EQ(lost, "");
+  EXPECT_EQ(text.find("an estimate"), std::string::npos);
+  const RowTable again = read_row_table(text, "t.csv", oil_kind());
+  EXPECT_EQ(as_lubricant(again.resources.at(0)).SerializeAsString(), kept.SerializeAsString())
+      << text;
+  // No cell may be a formula to a spreadsheet.
+  EXPECT_NE(text.find("150000 mPa s at -40 C; "), std::string::npos) << text;
+}
+
+TEST(RowTable, TakesWhatItDoesNotTellFromTheBase) {
+  v1::Lubricant like;
+  like.set_base_oil_class(v1::Lubricant::ESTER);
+  like.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73);
+  like.set_thermal_conductivity_watts_per_metre_kelvin(0.15);
+  like.set_pressure_viscosity_coefficient_per_pascal(2e-8);
+  for (const char* field : {"thermal_conductivity_watts_per_metre_kelvin",
+                            "pressure_viscosity_coefficient_per_pascal"}) {
+    auto& known = *like.add_provenance();
+    known.set_field(field);
+    known.set_source("measured");
+  }
+  RowBases bases;
+  bases.like = &like;
+  const RowTable table =
+      read_row_table("name,kv40,pressure_viscosity_coefficient_per_pascal\na,,1e-8\nb,80,\n",
+                     "t.csv", oil_kind(), bases);
+  const v1::Lubricant& a = as_lubricant(table.resources.at(0));
+  const v1::Lubricant& b = as_lubricant(table.resources.at(1));
+  EXPECT_EQ(kv40(a), 73);
+  EXPECT_EQ(kv40(b), 80);
+  EXPECT_EQ(a.pressure_viscosity_coefficient_per_pascal(), 1e-8);
+  EXPECT_EQ(b.pressure_viscosity_coefficient_per_pascal(), 2e-8);
+  EXPECT_EQ(a.base_oil_class(), v1::Lubricant::ESTER);
+  ASSERT_EQ(a.provenance_size(), 1) << "what was known of another value is void";
+  EXPECT_EQ(a.provenance(0).field(), "thermal_conductivity_watts_per_metre_kelvin");
+  EXPECT_EQ(b.provenance_size(), 2);
+  EXPECT_TRUE(table.resources[0].fields.empty()) << "all of it is written";
+}
+
+TEST(TableText, IsUtf8WhateverAProgramWrote) {
+  std::string note;
+  EXPECT_EQ(table_text("name\n\xc3\xa4\n", "t", note), "name\n\xc3\xa4\n");
+  EXPECT_EQ(note, "");
+  EXPECT_EQ(table_text("name\n\xe4l, 15\xb0\x43\n", "t", note),
+            "name\n\xc3\xa4l, 15\xc2\xb0\x43\n");
+  EXPECT_NE(note.find("Latin-1"), std::string::npos);
+  const std::string utf16("\xff\xfen\0a\0\xe4\0\n\0", 10);
+  EXPECT_EQ(table_text(utf16, "t", note), "na\xc3\xa4\n");
+  EXPECT_EQ(table_text(utf16.substr(2), "t", note), "na\xc3\xa4\n");
+  EXPECT_EQ(table_text(std::string("\xfe\xff\0n\0a", 6), "t", note), "na");
+  EXPECT_NE(note.find("UTF-16"), std::string::npos);
+}
+
+TEST(TableText, RefusesWorkbooksInOneSentence) {
+  for (const std::string& bytes : {std::string("PK\x03\x04\x14\0\x06\0", 8),
+                                   std::string("\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")}) {
+    std::string note;
+    try {
+      table_text(bytes, "oils.csv", note);
+      FAIL() << "a workbook is no table";
+    } catch (const Failure& failure) {
+      EXPECT_EQ(std::string(failure.what()),
+                "oils.csv is an Excel workbook: save it as \"CSV UTF-8 (comma delimited)\" and "
+                "give that file");
+    }
+  }
+  std::string note;
+  EXPECT_THROW(table_text(std::string("name\0x", 6), "t", note), Failure);
+  EXPECT_THROW(table_text(std::string("\xff\xfe\x00\xd8", 4), "t", note), Failure)
+      << "half a surrogate";
+}
+
+}  // namespace
+}  // namespace tribodyn::client

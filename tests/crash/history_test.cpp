@@ -1,0 +1,266 @@
+// The checker of the crash test, against histories in which exactly one thing is wrong: it must
+// make exactly the complaint that fits, and none about a history in which nothing is wrong.
+#include "tests/crash/history.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <utility>
+
+namespace tribodyn::crash {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr State kQueued = v1::Simulation::QUEUED;
+constexpr State kRunning = v1::Simulation::RUNNING;
+constexpr State kSucceeded = v1::Simulation::SUCCEEDED;
+constexpr State kFailed = v1::Simulation::FAILED;
+constexpr State kCancelled = v1::Simulation::CANCELLED;
+
+/// Adds a simulation that is in the state of its last event.
+v1::Simulation& add(History& history, const std::string& name, const std::string& request_id,
+                    std::vector<SeenEvent> events) {
+  v1::Simulation& simulation = history.simulations[name];
+  simulation.set_name(name);
+  simulation.set_request_id(request_id);
+  simulation.set_state(events.back().state);
+  simulation.set_attempt(events.back().attempt);
+  simulation.set_event_sequence(events.back().sequence);
+  history.events[name] = std::move(events);
+  ++history.requests;
+  return simulation;
+}
+
+void set_result(v1::Simulation& simulation, const std::string& hash, double speed) {
+  simulation.set_input_hash(hash);
+  simulation.mutable_result()->set_input_hash(hash);
+  simulation.mutable_result()->clear_points();
+  simulation.mutable_result()->add_points()->set_speed_kilometers_per_hour(speed);
+}
+
+/// A history with everything that may happen. A simulation runs again after a crash, is served from
+/// the cache, is cancelled, fails after too many crashes or at its deadline, is asked for twice,
+/// and is never acknowledged; so is an update of a resource. A batch has an effect or none.
+History faultless() {
+  History history;
+  const std::vector<SeenEvent> run_again = {
+      {1, kQueued, 1}, {2, kRunning, 1}, {3, kQueued, 2}, {4, kRunning, 2}, {5, kSucceeded, 2}};
+  set_result(add(history, "simulations/1", "0-0", run_again), "hash of 7", 65);
+  set_result(add(history, "simulations/2", "0-1", {{1, kQueued, 1}, {2, kSucceeded, 1}}),
+             "hash of 7", 65);
+  add(history, "simulations/3", "1-0", {{1, kQueued, 1}, {2, kRunning, 1}, {3, kCancelled, 1}});
+  add(history, "simulations/4", "1-1", {{1, kQueued, 1}, {2, kRunning, 1}, {3, kFailed, 1}})
+      .mutable_error()
+      ->set_reason("WORKER_LOST");
+  set_result(
+      add(history, "simulations/5", "1-2", {{1, kQueued, 1}, {2, kRunning, 1}, {3, kSucceeded, 1}}),
+      "hash of 8", 66);
+  ++history.requests;  // one that the server never received
+  history.submissions = {{"0-0", "simulations/1", "7"},
+                         {"0-0", "simulations/1", "7"},
+                         {"0-1", "simulations/2", "7"},
+                         {"1-0", "simulations/3", "9"},
+                         {"1-1", "simulations/4", "9"}};
+  history.ended = {{"simulations/1", kSucceeded}, {"simulations/3", kCancelled}};
+  history.watches = {{"simulations/1", 0, run_again},
+                     {"simulations/1", 3, {{4, kRunning, 2}, {5, kSucceeded, 2}}},
+                     {"simulations/3", 0, {{1, kQueued, 1}, {2, kRunning, 1}}},
+                     {"simulations/4", 0, {}}};
+  history.histories = {{"simulations/1", "rows"}, {"simulations/2", "rows"}};
+  history.undisturbed["7"] = result_bits(history.simulations["simulations/1"]) + "rows";
+  v1::Simulation& late =
+      add(history, "simulations/late", "1-3", {{1, kQueued, 1}, {2, kFailed, 1}});
+  late.mutable_error()->set_reason("DEADLINE_EXCEEDED");
+  late.mutable_deadline_time()->set_seconds(100);
+  late.mutable_end_time()->set_seconds(100);
+  history.kept_revisions = {{"lubricants/a@1", "0"},
+                            {"lubricants/a@2", "1"},
+                            {"lubricants/a@3", "2"},
+                            {"lubricants/b@1", "0"},
+                            {"lubricants/c@1", "0"}};
+  history.revisions = {{"lubricants/a@1", "0"}, {"lubricants/a@3", "2"}};
+  history.batches = {{{"lubricants/b", "lubricants/c"}, true},
+                     {{"lubricants/d", "lubricants/e"}, false}};
+  return history;
+}
+
+TEST(CrashHistory, WithoutAFaultIsNotComplainedAbout) {
+  EXPECT_THAT(violations(faultless()), IsEmpty());
+}
+
+struct Fault {
+  std::string name;
+  std::function<void(History&)> plant;
+  std::string complaint;
+};
+
+void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.complaint; }
+
+class CrashHistoryFault : public testing::TestWithParam<Fault> {};
+
+TEST_P(CrashHistoryFault, IsTheOneComplaint) {
+  History history = faultless();
+  GetParam().plant(history);
+  EXPECT_THAT(violations(history), ElementsAre(GetParam().complaint));
+}
+
+/// Replaces the events of a simulation and moves it to the state of the last one.
+void set_events(History& history, const std::string& name, std::vector<SeenEvent> events) {
+  v1::Simulation& simulation = history.simulations[name];
+  simulation.set_state(events.back().state);
+  simulation.set_attempt(events.back().attempt);
+  simulation.set_event_sequence(events.back().sequence);
+  history.events[name] = std::move(events);
+}
+
+const std::vector<Fault> kFaults = {
+    {"AcknowledgedSimulationIsLost",
+     [](History& history) {
+       history.simulations.erase("simulations/4");
+       history.events.erase("simulations/4");
+     },
+     "simulations/4 was acknowledged and is lost"},
+    {"AcknowledgedNameIsOfAnotherRequest",
+     [](History& history) { history.simulations["simulations/4"].set_request_id("3-7"); },
+     "simulations/4 was acknowledged to request 1-1 and belongs to request 3-7"},
+    {"OneRequestHasTwoNames",
+     [](History& history) {
+       add(history, "simulations/6", "0-1", {{1, kQueued, 1}, {2, kCancelled, 1}});
+       history.submissions.push_back({"0-1", "simulations/6", "7"});
+     },
+     "one request made simulations/2 and simulations/6"},
+    {"MoreSimulationsThanRequests", [](History& history) { history.requests = 5; },
+     "5 requests made 6 simulations"},
+    {"EndDoesNotLast",
+     [](History& history) {
+       history.ended.push_back({"simulations/5", kCancelled});
+     },
+     "simulations/5 had ended CANCELLED and is SUCCEEDED"},
+    {"NeverEnds",
+     [](History& history) {
+       add(history, "simulations/6", "2-0", {{1, kQueued, 1}, {2, kRunning, 1}});
+     },
+     "simulations/6 never ended"},
+    {"FailsWithoutACrash",
+     [](History& history) {
+       history.simulations["simulations/4"].mutable_error()->set_reason("INTERNAL");
+     },
+     "simulations/4 failed with INTERNAL"},
+    {"FailsBeforeItsDeadline",
+     [](History& history) {
+       history.simulations["simulations/late"].mutable_deadline_time()->set_nanos(1);
+     },
+     "simulations/late failed with DEADLINE_EXCEEDED"},
+    {"FailsByADeadlineThatItDoesNotHave",
+     [](History& history) { history.simulations["simulations/late"].clear_deadline_time(); },
+     "simulations/late failed with DEADLINE_EXCEEDED"},
+    {"EqualInputsHaveTwoHistories",
+     [](History& history) {
+       set_result(add(history, "simulations/6", "2-0", {{1, kQueued, 1}, {2, kSucceeded, 1}}),
+                  "hash of 8", 66);
+       history.histories["simulations/6"] = "other rows";
+     },
+     "simulations/5 and simulations/6 have equal inputs and different results"},
+    {"EqualInputsHaveTwoResults",
+     [](History& history) {
+       set_result(add(history, "simulations/6", "2-0", {{1, kQueued, 1}, {2, kSucceeded, 1}}),
+                  "hash of 8", 67);
+     },
+     "simulations/5 and simulations/6 have equal inputs and different results"},
+    {"ResultIsOfOtherInputs",
+     [](History& history) {
+       history.simulations["simulations/5"].mutable_result()->set_input_hash("hash of 7");
+     },
+     "simulations/5 has the result of other inputs"},
+    {"ResultHasOtherBits",
+     [](History& history) {
+       set_result(add(history, "simulations/6", "2-0", {{1, kQueued, 1}, {2, kSucceeded, 1}}),
+                  "another hash", 65.00000000000001);
+       history.submissions.push_back({"2-0", "simulations/6", "7"});
+     },
+     "simulations/6 has other bits than an undisturbed run"},
+    {"EventIsMissing",
+     [](History& history) {
+       set_events(history, "simulations/5", {{1, kQueued, 1}, {3, kSucceeded, 1}});
+     },
+     "simulations/5: a gap before event 3 (SUCCEEDED, attempt 1)"},
+    {"FirstEventIsMissing",
+     [](History& history) {
+       set_events(history, "simulations/5", {{2, kRunning, 1}, {3, kSucceeded, 1}});
+     },
+     "simulations/5: a gap before event 2 (RUNNING, attempt 1)"},
+    {"WatchLeavesAnEventOut",
+     [](History& history) {
+       history.watches.push_back({"simulations/5", 0, {{1, kQueued, 1}, {3, kSucceeded, 1}}});
+     },
+     "simulations/5: a gap before event 3 (SUCCEEDED, attempt 1)"},
+    {"ResumedWatchLeavesAnEventOut",
+     [](History& history) {
+       history.watches.push_back({"simulations/5", 1, {{3, kSucceeded, 1}}});
+     },
+     "simulations/5: a gap before event 3 (SUCCEEDED, attempt 1)"},
+    {"StateMovesBackwards",
+     [](History& history) {
+       set_events(history, "simulations/5",
+                  {{1, kQueued, 1}, {2, kRunning, 1}, {3, kQueued, 1}, {4, kSucceeded, 1}});
+     },
+     "simulations/5: event 3 (QUEUED, attempt 1) after event 2 (RUNNING, attempt 1)"},
+    {"AttemptMovesBackwards",
+     [](History& history) {
+       set_events(history, "simulations/5", {{1, kQueued, 2}, {2, kSucceeded, 1}});
+     },
+     "simulations/5: event 2 (SUCCEEDED, attempt 1) after event 1 (QUEUED, attempt 2)"},
+    {"EventFollowsTheEnd",
+     [](History& history) {
+       set_events(history, "simulations/5",
+                  {{1, kQueued, 1}, {2, kFailed, 1}, {3, kQueued, 2}, {4, kSucceeded, 2}});
+     },
+     "simulations/5: event 3 (QUEUED, attempt 2) after event 2 (FAILED, attempt 1)"},
+    {"LastEventIsNotTheState",
+     [](History& history) { history.events["simulations/4"].back().state = kCancelled; },
+     "simulations/4 is at event 3 (FAILED, attempt 1) and its last event is "
+     "event 3 (CANCELLED, attempt 1)"},
+    {"LastEventIsMissing", [](History& history) { history.events["simulations/5"].pop_back(); },
+     "simulations/5 is at event 3 (SUCCEEDED, attempt 1) and its last event is "
+     "event 2 (RUNNING, attempt 1)"},
+    {"HasNoEvents", [](History& history) { history.events.erase("simulations/5"); },
+     "simulations/5 has no events"},
+    {"SentEventIsNotKept",
+     [](History& history) {
+       history.watches.push_back({"simulations/4", 0, {{1, kQueued, 1}, {2, kCancelled, 1}}});
+     },
+     "simulations/4: event 2 (CANCELLED, attempt 1) was sent and is not kept"},
+    {"SentEventIsBehindTheLastOneKept",
+     [](History& history) {
+       history.watches.push_back({"simulations/2", 2, {{3, kCancelled, 1}}});
+     },
+     "simulations/2: event 3 (CANCELLED, attempt 1) was sent and is not kept"},
+    {"ClientIsRefused", [](History& history) { history.refusals.emplace_back("no such thing"); },
+     "refused: no such thing"},
+    {"RevisionIsLost",
+     [](History& history) {
+       history.revisions.push_back({"lubricants/a@4", "3"});
+     },
+     "lubricants/a@4 was acknowledged and is lost"},
+    {"RevisionIsAnother",
+     [](History& history) {
+       history.revisions.push_back({"lubricants/a@2", "3"});
+     },
+     "lubricants/a@2 was acknowledged as \"3\" and is \"1\""},
+    {"UpdateMakesTwoRevisions",
+     [](History& history) { history.kept_revisions["lubricants/a@4"] = "2"; },
+     "one update made lubricants/a@3 and lubricants/a@4"},
+    {"BatchIsLost", [](History& history) { history.batches[1].is_acknowledged = true; },
+     "of the acknowledged batch of lubricants/d 0 of 2 are there"},
+    {"BatchIsKeptInPart", [](History& history) { history.kept_revisions["lubricants/e@1"] = "0"; },
+     "of the batch of lubricants/d 1 of 2 are there"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, CrashHistoryFault, testing::ValuesIn(kFaults),
+                         [](const auto& fault) { return fault.param.name; });
+
+}  // namespace
+}  // namespace tribodyn::crash

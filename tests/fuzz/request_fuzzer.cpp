@@ -1,0 +1,280 @@
+// libFuzzer: requests that parse and are hostile, through the application layer over a database
+// with the seeds. Each is answered or refused with a reason; none crashes, hangs, ends in INTERNAL
+// or leaves a database that cannot be read. An input is text: the method's name, then the request
+// in protobuf's text format. Requests are changed field by field (HostileMessages), not byte by
+// byte. Most are only validated: a server with a fresh database takes longer than many requests.
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/text_format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "google/rpc/code.pb.h"
+#include "server/app/contacts.h"
+#include "server/app/resources.h"
+#include "server/app/schemas.h"
+#include "server/app/simulations.h"
+#include "server/store/seeds.h"
+#include "tests/support/hostile_message.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::Message;
+using google::protobuf::TextFormat;
+
+constexpr std::size_t kWrittenOneIn = 8;           // of requests that would write
+constexpr std::size_t kMostChanges = 4;            // of one mutation
+constexpr std::size_t kLargestRefusal = 8 * 1024;  // gRPC clients take no longer header [bytes]
+constexpr std::size_t kLargestAnswer = 16 * 1024 * 1024;  // GrpcServer sends no larger one [bytes]
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+/// The application over a database that holds the seeds. Nothing runs: simulations stay queued.
+class Server {
+ public:
+  Server()
+      : folder_(folder()),
+        store_(folder_ / "tribodyn.db"),
+        jobs_(store_, {}),
+        application_{store_, jobs_} {
+    static const std::vector<NewResource> kSeeds = seed_resources();
+    store_.add_resources(kSeeds, system_time());
+  }
+  ~Server() {
+    jobs_.stop();
+    std::filesystem::remove_all(folder_);
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  Application& application() { return application_; }
+
+ private:
+  static std::filesystem::path folder() {
+    const std::filesystem::path memory = "/dev/shm";
+    const auto parent =
+        std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();
+    std::string name = (parent / "request_fuzzer.XXXXXX").string();
+    require(mkdtemp(name.data()) != nullptr);
+    return name;
+  }
+
+  const std::filesystem::path folder_;
+  Store store_;
+  SimulationJobs jobs_;
+  Application application_;
+};
+
+/// The server in its first state: writes of earlier inputs must not decide what an input finds.
+std::unique_ptr<Server>& server() {
+  static std::unique_ptr<Server> kServer;
+  if (!kServer) {
+    spdlog::set_level(spdlog::level::off);
+    kServer = std::make_unique<Server>();
+  }
+  return kServer;
+}
+
+void judge_refusal(const google::rpc::Status& status) {
+  require(status.code() != google::rpc::INTERNAL && status.code() != google::rpc::UNKNOWN &&
+          status.code() != google::rpc::OK && status.code() != google::rpc::DATA_LOSS);
+  require(!status.message().empty());
+  require(status.ByteSizeLong() <= kLargestRefusal);
+}
+
+template <class Answer>
+bool judge(const Outcome<Answer>& outcome) {
+  if (!outcome.ok()) {
+    judge_refusal(outcome.error());
+    return false;
+  }
+  require(outcome.message().ByteSizeLong() <= kLargestAnswer);
+  return true;
+}
+
+/// A method: its request, and a call that judges the answer and says whether it was accepted.
+struct Method {
+  const Message* prototype;
+  std::function<bool(Application&, const Message&)> call;
+  bool writes = false;
+};
+
+template <class Request, class Answer>
+Method method(Outcome<Answer> (*function)(Application&, const Request&), bool writes = false) {
+  return {&Request::default_instance(),
+          [function](Application& application, const Message& request) {
+            return judge(function(application, static_cast<const Request&>(request)));
+          },
+          writes};
+}
+
+const std::map<std::string, Method>& methods() {
+  static const std::map<std::string, Method> kMethods = [] {
+    Method create_simulation = {
+        &v1::CreateSimulationRequest::default_instance(),
+        [](Application& application, const Message& request) {
+          return judge(server::create_simulation(
+              application, static_cast<const v1::CreateSimulationRequest&>(request), {"fuzzer"}));
+        },
+        true};
+    return std::map<std::string, Method>{
+        {"CreateSimulation", create_simulation},
+        {"ListSimulations", method(list_simulations)},
+        {"EvaluateContact", method(evaluate_contact)},
+        {"GetSchema", method(get_schema)},
+        {"CreateLubricant", method(create_lubricant, true)},
+        {"UpdateLubricant", method(update_lubricant, true)},
+        {"BatchCreateLubricants", method(batch_create_lubricants, true)},
+        {"BatchUpdateLubricants", method(batch_update_lubricants, true)},
+        {"ListLubricants", method(list_lubricants)},
+        {"ListLubricantRevisions", method(list_lubricant_revisions)},
+        {"GetLubricant", method(get_lubricant)},
+        {"DeleteLubricant", method(delete_lubricant, true)},
+        {"UndeleteLubricant", method(undelete_lubricant, true)},
+        {"GetGearSet", method(get_gear_set)},
+        {"UpdateGearSet", method(update_gear_set, true)},
+        {"BatchCreateSurfaces", method(batch_create_surfaces, true)},
+        {"ListSurfaces", method(list_surfaces)},
+        {"UpdateVehicle", method(update_vehicle, true)},
+        {"ListVehicles", method(list_vehicles)},
+    };
+  }();
+  return kMethods;
+}
+
+/// Everything that a client may list, page by page, is still readable.
+void read_everything(Application& application) {
+  const auto all_pages = [&](auto list, auto request) {
+    request.set_page_size(2);
+    for (int pages = 0; pages < 1000; ++pages) {
+      const auto outcome = list(application, request);
+      require(outcome.ok());
+      request.set_page_token(outcome.message().next_page_token());
+      if (request.page_token().empty()) return;
+    }
+    std::abort();  // pages without end
+  };
+  v1::ListLubricantsRequest lubricants;
+  lubricants.set_show_deleted(true);
+  lubricants.set_order_by("display_name desc");
+  all_pages(list_lubricants, lubricants);
+  all_pages(list_gear_sets, v1::ListGearSetsRequest());
+  all_pages(list_surfaces, v1::ListSurfacesRequest());
+  all_pages(list_vehicles, v1::ListVehiclesRequest());
+  all_pages(list_simulations, v1::ListSimulationsRequest());
+}
+
+class NoComplaints : public google::protobuf::io::ErrorCollector {
+ public:
+  void AddError(int, google::protobuf::io::ColumnNumber, const std::string&) override {}
+};
+
+/// An input taken apart.
+struct Input {
+  std::string name;
+  const Method* method = nullptr;
+  std::unique_ptr<Message> request;
+
+  std::string text() const {
+    std::string out;
+    TextFormat::PrintToString(*request, &out);
+    return name + "\n" + out;
+  }
+};
+
+/// Returns an input without a request if the text names no method or is no request of it.
+Input parse(const std::uint8_t* data, std::size_t size) {
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  Input out;
+  const std::size_t end = std::min(text.find('\n'), text.size());
+  out.name = text.substr(0, end);
+  const auto found = methods().find(out.name);
+  if (found == methods().end()) return out;
+  out.method = &found->second;
+  std::unique_ptr<Message> request(out.method->prototype->New());
+  NoComplaints quiet;
+  TextFormat::Parser parser;
+  parser.RecordErrorsTo(&quiet);
+  if (parser.ParseFromString(text.substr(std::min(end + 1, text.size())), request.get())) {
+    out.request = std::move(request);
+  }
+  return out;
+}
+
+/// Sets the field by which a request is only validated; returns false if it has none.
+bool only_validate(Message& request) {
+  const auto* field = request.GetDescriptor()->FindFieldByName("validate_only");
+  if (field != nullptr) request.GetReflection()->SetBool(&request, field, true);
+  return field != nullptr;
+}
+
+std::size_t copy_out(const Input& input, std::uint8_t* data, std::size_t size,
+                     std::size_t maximum_size) {
+  const std::string text = input.text();
+  if (text.size() > maximum_size) return size;  // as it was
+  std::memcpy(data, text.data(), text.size());
+  return text.size();
+}
+
+}  // namespace
+}  // namespace tribodyn::server
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace tribodyn::server;
+  const Input input = parse(data, size);
+  if (!input.request) return 0;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  // Chosen by the input, so that a crash can be repeated.
+  const bool is_chosen = std::hash<std::string_view>()(text) % kWrittenOneIn == 0;
+  const bool writes = input.method->writes && (is_chosen || !only_validate(*input.request));
+  const bool accepted = input.method->call(server()->application(), *input.request);
+  if (accepted && writes) {
+    read_everything(server()->application());
+    server().reset();
+  }
+  return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t maximum_size, unsigned int seed) {
+  using namespace tribodyn::server;
+  Input input = parse(data, size);
+  if (!input.request) {  // the first input of a run without a corpus
+    auto chosen = methods().begin();
+    std::advance(chosen, seed % methods().size());
+    input.name = chosen->first;
+    input.request.reset(chosen->second.prototype->New());
+  }
+  tribodyn::HostileMessages hostile(seed);
+  for (std::size_t changes = 1 + seed % kMostChanges; changes > 0; --changes) {
+    hostile.mutate(*input.request);
+  }
+  return copy_out(input, data, size, maximum_size);
+}
+
+extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data, std::size_t size,
+                                                 const std::uint8_t* other, std::size_t other_size,
+                                                 std::uint8_t* out, std::size_t maximum_size,
+                                                 unsigned int seed) {
+  using namespace tribodyn::server;
+  Input input = parse(data, size);
+  const Input source = parse(other, other_size);
+  if (!input.request || !source.request || input.name != source.name) return 0;
+  tribodyn::HostileMessages(seed).graft(*source.request, *input.request);
+  return copy_out(input, out, 0, maximum_size);
+}

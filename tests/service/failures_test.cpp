@@ -1,0 +1,109 @@
+// What a client receives and what the log records when the server itself fails.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <new>
+#include <stdexcept>
+
+#include "google/rpc/code.pb.h"
+#include "google/rpc/error_details.pb.h"
+#include "server/app/guard.h"
+#include "server/app/log_text.h"
+#include "server/app/message_source.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr char kCause[] = "row 7 of the table\nforged=1";
+
+google::rpc::Status failure_of(const std::function<void()>& body) {
+  const auto outcome = guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
+    body();
+    return v1::Simulation();
+  });
+  return outcome.ok() ? google::rpc::Status() : outcome.error();
+}
+
+std::string reason_of(const google::rpc::Status& status) {
+  google::rpc::ErrorInfo info;
+  for (const auto& detail : status.details()) detail.UnpackTo(&info);
+  return info.reason();
+}
+
+/// The word that stands between the two parts in the text.
+std::string between(const std::string& text, const std::string& before, char after) {
+  const std::size_t begin = text.find(before) + before.size();
+  return text.substr(begin, text.find(after, begin) - begin);
+}
+
+TEST(Failures, ADefectIsLoggedWithItsCauseAndToldByAnIdOnly) {
+  const LogCapture log;
+  const google::rpc::Status told = failure_of([] { throw std::logic_error(kCause); });
+  EXPECT_EQ(told.code(), google::rpc::INTERNAL);
+  EXPECT_THAT(told.message(), Not(HasSubstr("row 7")));
+  const std::string id = between(log.text(), "id=", ' ');
+  EXPECT_EQ(id.size(), 16U) << log.text();
+  EXPECT_THAT(told.message(), HasSubstr(id));
+  EXPECT_THAT(log.text(), HasSubstr("cause=\"row 7 of the table?forged=1\"")) << "on one line";
+}
+
+TEST(Failures, WhatIsThrownNeedNotBeAnException) {
+  EXPECT_EQ(failure_of([] { throw 7; }).code(), google::rpc::INTERNAL);
+}
+
+TEST(Failures, MemoryThatIsUsedUpIsNoDefect) {
+  const google::rpc::Status told = failure_of([] { throw std::bad_alloc(); });
+  EXPECT_EQ(told.code(), google::rpc::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(reason_of(told), "OUT_OF_MEMORY");
+}
+
+/// A stream whose second message fails.
+class FailingSource : public MessageSource<v1::SimulationEvent> {
+ public:
+  explicit FailingSource(std::function<void()> fail) : fail_(std::move(fail)) {}
+  Step next(v1::SimulationEvent&) override {
+    if (++asked_ > 1) fail_();
+    return Step::kMessage;
+  }
+
+ private:
+  std::function<void()> fail_;
+  int asked_ = 0;
+};
+
+TEST(Failures, AStreamThatFailsIsLoggedWithItsCauseAndToldByAnIdOnly) {
+  const LogCapture log;
+  FailingSource source([] { throw std::logic_error(kCause); });
+  v1::SimulationEvent event;
+  google::rpc::Status end;
+  EXPECT_EQ(next_step(source, event, end), FailingSource::Step::kMessage);
+  EXPECT_EQ(next_step(source, event, end), FailingSource::Step::kEnd);
+  EXPECT_EQ(end.code(), google::rpc::INTERNAL);
+  EXPECT_THAT(end.message(), HasSubstr(between(log.text(), "id=", ' ')));
+  EXPECT_THAT(end.message(), Not(HasSubstr("row 7")));
+  EXPECT_THAT(log.text(), HasSubstr("row 7"));
+}
+
+TEST(Failures, AStreamThatRunsOutOfMemorySaysSo) {
+  FailingSource source([] { throw std::bad_alloc(); });
+  v1::SimulationEvent event;
+  google::rpc::Status end;
+  next_step(source, event, end);
+  EXPECT_EQ(next_step(source, event, end), FailingSource::Step::kEnd);
+  EXPECT_EQ(end.code(), google::rpc::RESOURCE_EXHAUSTED);
+}
+
+TEST(Failures, TextOfUnknownOriginStaysOneWordOfALogLine) {
+  EXPECT_EQ(log_word("unix:/tmp/x\n[critical] forged=1\x80", 100),
+            "unix:/tmp/x_[critical]_forged_1_");
+  EXPECT_EQ(log_word("abcdef", 3), "abc");
+  EXPECT_EQ(log_text("a b=c\r\nd", 100), "a b=c??d");
+}
+
+}  // namespace
+}  // namespace tribodyn::server

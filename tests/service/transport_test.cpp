@@ -1,0 +1,177 @@
+// Requests that are too large, unreadable or never whole, over the wire.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <memory>
+#include <regex>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
+#include "server/api/acceptor.h"
+#include "server/api/byte_budget.h"
+#include "tests/service/grpc_fixture.h"
+#include "tests/service/raw_client.h"
+#include "tests/support/run_length.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::HasSubstr;
+
+/// The status and everything that its details say.
+std::string all_of(const grpc::Status& status) {
+  google::rpc::Status parsed;
+  parsed.ParseFromString(status.error_details());
+  std::string out = std::to_string(status.error_code()) + " " + status.error_message();
+  for (const auto& any : parsed.details()) {
+    google::rpc::BadRequest bad;
+    google::rpc::ErrorInfo info;
+    if (any.UnpackTo(&info)) out += " " + info.reason();
+    if (!any.UnpackTo(&bad)) continue;
+    for (const auto& each : bad.field_violations()) {
+      out += "\n" + each.field() + ": " + each.description();
+    }
+  }
+  return out;
+}
+
+class Transport : public GrpcTest {
+ protected:
+  int port() const { return std::stoi(address_.substr(address_.rfind(':') + 1)); }
+  grpc::Status call(const std::string& method, const std::string& bytes) {
+    return RawClient(channel_).call("/tribodyn.v1." + method, bytes).first;
+  }
+};
+
+/// CreateGearSetRequest whose gear set holds empty flank slots, in so many bytes.
+std::string empty_flank_slots(std::size_t bytes) {
+  const std::size_t content = (bytes - 6) / 2 * 2;
+  std::string out = "\x0a";
+  for (std::size_t left = content; left > 0; left >>= 7) {
+    out += static_cast<char>((left & 127) | (left > 127 ? 128 : 0));
+  }
+  for (std::size_t i = 0; i < content; i += 2) out += std::string("\x3a\x00", 2);
+  return out;
+}
+
+TEST_F(Transport, ARequestThatGrowsWhenItIsParsedIsRefusedBefore) {
+  constexpr long kMebibytes = 8;
+  const long before = process_->peak_memory_kibibytes();
+  const grpc::Status status = call("GearSets/CreateGearSet", empty_flank_slots(kMebibytes << 20));
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_THAT(all_of(status), HasSubstr("gear_set.flank_slots: 4194301 entries; legal: at most 3"));
+  // Parsed, they take 348 times as much.
+  if (!kUnderSanitizer) {
+    EXPECT_LT(process_->peak_memory_kibibytes() - before, 12 * kMebibytes * 1024);
+  }
+}
+
+TEST_F(Transport, ARequestOfTooManyBytesIsRefusedByItsMethod) {
+  const std::string two_mebibytes(2 << 20, '\0');
+  for (const char* method : {"Simulations/CreateSimulation", "Lubricants/ListLubricants",
+                             "Contacts/EvaluateContact", "Lubricants/UpdateLubricant"}) {
+    const grpc::Status status = call(method, two_mebibytes);
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << method;
+    EXPECT_THAT(all_of(status), HasSubstr("the request has 2097152 bytes; legal: at most 1048576"));
+  }
+}
+
+TEST_F(Transport, AnUnreadableRequestIsAnInvalidArgument) {
+  const std::string no_utf8("\x0a\x04\xff\xfe\xfd\xfc");
+  for (const char* method :
+       {"Lubricants/GetLubricant", "Simulations/CancelSimulation", "Simulations/WatchSimulation"}) {
+    for (const std::string& bytes : {no_utf8, std::string("\x0a\x7f"), std::string("\x0b\x0b")}) {
+      const grpc::Status status = call(method, bytes);
+      EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << method;
+      EXPECT_THAT(all_of(status), HasSubstr("INVALID_FIELDS"));
+      EXPECT_THAT(all_of(status), HasSubstr("the request cannot be read"));
+    }
+  }
+}
+
+TEST_F(Transport, UnreadableRequestsDoNotFloodTheLog) {
+  for (int i = 0; i < 300; ++i) call("Lubricants/GetLubricant", "\x0a\x04\xff\xfe\xfd\xfc");
+  std::istringstream log(process_->log());
+  const std::regex own(R"(\[\d{4}-.*\] \[tribodynd\] \[\w+\] .*)");
+  int reports = 0;
+  for (std::string line; std::getline(log, line);) {
+    EXPECT_TRUE(std::regex_match(line, own)) << line;
+    if (line.find("protobuf_report") != std::string::npos) ++reports;
+  }
+  EXPECT_GE(reports, 1);
+  EXPECT_LE(reports, 20) << "one a second";
+}
+
+/// Requests that lack their last byte, sent side by side.
+std::vector<std::unique_ptr<HalfSentCall>> half_sent(int port, int count, std::size_t size) {
+  std::vector<std::unique_ptr<HalfSentCall>> calls(static_cast<std::size_t>(count));
+  std::vector<std::thread> threads;
+  for (auto& each : calls) {
+    threads.emplace_back([&each, port, size] {
+      each = std::make_unique<HalfSentCall>(port, "/tribodyn.v1.GearSets/CreateGearSet", size);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  return calls;
+}
+
+TEST_F(Transport, HalfSentRequestsShareALimitOfMemoryAndKeepNobodyOut) {
+  constexpr int kCalls = 6;
+  constexpr std::size_t kBytes = 60 << 20;
+  const auto calls = half_sent(port(), kUnderSanitizer ? 1 : kCalls, kBytes);
+  EXPECT_LT(process_->peak_memory_kibibytes(), 240 * 1024) << "not the sum of them";
+  const auto channel = connect(address_);
+  EXPECT_TRUE(RawClient(channel).call("/tribodyn.v1.Lubricants/ListLubricants", "").first.ok());
+}
+
+TEST_F(Transport, AHalfSentRequestHoldsUpNoShutdown) {
+  const auto calls = half_sent(port(), 1, 100'000);
+  process_->signal(SIGTERM);
+  EXPECT_EQ(process_->wait(std::chrono::seconds(8)), 0) << process_->log();
+}
+
+TEST(ByteBudget, IsSharedByLargeRequestsOnly) {
+  ByteBudget budget(100, 10);
+  auto first = budget.take(60);
+  ASSERT_TRUE(first);
+  EXPECT_FALSE(budget.take(50));
+  EXPECT_TRUE(budget.take(10)) << "a small one needs none of it";
+  {
+    const auto second = budget.take(40);
+    EXPECT_TRUE(second);
+    EXPECT_FALSE(budget.take(11));
+  }
+  EXPECT_TRUE(budget.take(40)) << "given back";
+  first.reset();
+  EXPECT_TRUE(budget.take(100));
+}
+
+TEST(Acceptor, TurnsConnectionsAwayBeyondItsLimit) {
+  const int lowest = dup(STDIN_FILENO);  // this process has so many files open already
+  close(lowest);
+  Acceptor acceptor({"127.0.0.1", 0, ""}, lowest + 5);
+  std::vector<int> taken;  // by the thread of the acceptor
+  std::atomic<int> count = 0;
+  acceptor.start([&](int, int connection) {
+    taken.push_back(connection);
+    ++count;
+  });
+  {
+    const SilentConnections first(acceptor.address().port, 1);
+    EXPECT_TRUE(eventually([&] { return count == 1; }));
+    const SilentConnections flood(acceptor.address().port, 200);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    acceptor.stop();
+  }
+  EXPECT_LT(taken.size(), 100U);
+  for (const int connection : taken) close(connection);
+}
+
+}  // namespace
+}  // namespace tribodyn::server

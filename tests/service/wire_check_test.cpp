@@ -1,0 +1,263 @@
+// Requests that are judged by their bytes, before they are parsed.
+#include "server/convert/wire_check.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <google/protobuf/message.h>
+#include <google/protobuf/reflection.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "server/convert/element_limits.h"
+#include "server/convert/gear_set_checks.h"
+#include "server/convert/request_limits.h"
+#include "tests/service/contract_methods.h"
+#include "tests/service/support.h"
+#include "tests/support/run_length.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::MethodDescriptor;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The violations of a request as "path: description". The bytes come in blocks of a few bytes.
+std::vector<std::string> judge_bytes(const std::string& bytes, const Descriptor& type) {
+  google::protobuf::io::ArrayInputStream in(bytes.data(), static_cast<int>(bytes.size()), 7);
+  Violations violations;
+  check_wire(in, static_cast<int>(bytes.size()), type, violations);
+  std::vector<std::string> out;
+  for (const Violation& each : violations) out.push_back(each.field + ": " + each.description);
+  return out;
+}
+std::vector<std::string> judge_bytes(const Message& message) {
+  return judge_bytes(message.SerializeAsString(), *message.GetDescriptor());
+}
+
+/// A field of a length, as it stands on the wire.
+std::string wire_field(int number, const std::string& content) {
+  std::string out;
+  google::protobuf::io::StringOutputStream stream(&out);
+  google::protobuf::io::CodedOutputStream coded(&stream);
+  coded.WriteTag(static_cast<std::uint32_t>(number) << 3 | 2);
+  coded.WriteVarint32(static_cast<std::uint32_t>(content.size()));
+  coded.WriteString(content);
+  coded.Trim();
+  return out;
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string out;
+  for (int i = 0; i < times; ++i) out += text;
+  return out;
+}
+
+void collect_lists(const Descriptor& type, std::set<const Descriptor*>& seen,
+                   std::set<const FieldDescriptor*>& lists) {
+  if (!seen.insert(&type).second) return;
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    if (field.is_repeated()) lists.insert(&field);
+    if (field.message_type() != nullptr) collect_lists(*field.message_type(), seen, lists);
+  }
+}
+
+TEST(ElementLimits, EveryListThatARequestCanHoldHasOne) {
+  std::set<const Descriptor*> seen;
+  std::set<const FieldDescriptor*> lists;
+  for (const MethodDescriptor* method : all_methods()) {
+    collect_lists(*method->input_type(), seen, lists);
+  }
+  EXPECT_GT(lists.size(), 40U);
+  for (const FieldDescriptor* list : lists) {
+    EXPECT_TRUE(maximum_elements(*list))
+        << list->full_name() << ": add a row to element_limits.cpp";
+  }
+}
+
+TEST(WireCheck, NamesTheListItsElementsAndItsLimit) {
+  v1::CreateGearSetRequest request;
+  const std::string slots = wire_field(1, repeated(std::string("\x3a\x00", 2), 5000));
+  EXPECT_THAT(judge_bytes(slots, *request.GetDescriptor()),
+              ElementsAre("gear_set.flank_slots: 5000 entries; legal: at most 3"));
+  v1::BatchUpdateLubricantsRequest batch;
+  for (int i = 0; i < 3; ++i) batch.add_requests();
+  for (int i = 0; i < 201; ++i) batch.mutable_requests(1)->mutable_update_mask()->add_paths("");
+  for (int i = 0; i < 65; ++i) batch.mutable_requests(2)->mutable_lubricant()->add_labels();
+  EXPECT_THAT(judge_bytes(batch),
+              ElementsAre("requests[1].update_mask.paths: 201 entries; legal: at most 200",
+                          "requests[2].lubricant.labels: 65 entries; legal: at most 64"));
+}
+
+TEST(WireCheck, CountsNumbersPackedAndSingle) {
+  v1::CreateSimulationRequest request;
+  auto* curve = request.mutable_simulation()->mutable_inefficiency_curve();
+  for (int i = 0; i < 1000; ++i) curve->add_speeds_kilometers_per_hour(i + 1);
+  EXPECT_THAT(judge_bytes(request), IsEmpty());
+  const std::string single("\x09\x00\x00\x00\x00\x00\x00\x59\x40", 9);
+  const std::string more = request.SerializeAsString() + wire_field(1, wire_field(12, single));
+  EXPECT_THAT(
+      judge_bytes(more, *request.GetDescriptor()),
+      ElementsAre("simulation.inefficiency_curve.speeds_kilometers_per_hour: 1001 entries; legal: "
+                  "at most 1000"));
+}
+
+TEST(WireCheck, AddsUpTheListsOfAMessageThatComesInParts) {
+  v1::CreateSimulationRequest request;
+  for (int i = 0; i < 40; ++i) request.mutable_simulation()->add_labels()->set_key("k");
+  EXPECT_THAT(judge_bytes(request), IsEmpty());
+  EXPECT_THAT(judge_bytes(repeated(request.SerializeAsString(), 2), *request.GetDescriptor()),
+              ElementsAre("simulation.labels: 80 entries; legal: at most 64"));
+}
+
+TEST(WireCheck, LimitsFieldsThatItDoesNotKnow) {
+  v1::CreateLubricantRequest request;
+  const std::string unknown("\xf8\x3f\x01", 3);  // field 1023 = 1
+  EXPECT_THAT(judge_bytes(wire_field(1, repeated(unknown, 100)), *request.GetDescriptor()),
+              IsEmpty());
+  EXPECT_THAT(
+      judge_bytes(wire_field(1, repeated(unknown, 101)), *request.GetDescriptor()),
+      ElementsAre("lubricant: 101 fields that Lubricant does not have; legal: at most 100"));
+  // A known field of another wire type is an unknown one to the parser, and to the check.
+  EXPECT_THAT(judge_bytes(wire_field(1, repeated(std::string("\x20\x01", 2), 101)),
+                          *request.GetDescriptor()),
+              ElementsAre(HasSubstr("101 fields")));
+}
+
+TEST(WireCheck, LimitsElementsInAll) {
+  v1::BatchCreateLubricantsRequest batch;
+  auto* lubricant = batch.add_requests()->mutable_lubricant();
+  for (int i = 0; i < 64; ++i) lubricant->add_labels();
+  for (int i = 0; i < 200; ++i) lubricant->add_provenance();
+  const std::string one = batch.SerializeAsString();
+  EXPECT_THAT(judge_bytes(repeated(one, 3000), *batch.GetDescriptor()), IsEmpty());
+  EXPECT_THAT(judge_bytes(repeated(one, 4000), *batch.GetDescriptor()),
+              ElementsAre(HasSubstr("1064000 messages and texts in all; legal: at most 1000000")));
+}
+
+TEST(WireCheck, RefusesBytesThatAreNoMessage) {
+  const Descriptor& type = *v1::CreateLubricantRequest::descriptor();
+  for (const std::string& bytes :
+       {std::string("\x0a"), std::string("\x0a\x05\x01"), std::string("\x00", 1),
+        std::string("\x0a\xff\xff\xff\xff\x0f"), std::string("\x0b\x0c"), std::string("\x0c"),
+        std::string("\x0f"), wire_field(1, std::string("\x0a\x05\x01")),
+        std::string(100'000, '\x0b')}) {
+    EXPECT_THAT(judge_bytes(bytes, type), ElementsAre(HasSubstr("no CreateLubricantRequest")));
+  }
+}
+
+/// Fills a message with what the wire may hold, lists at and around their limits among it.
+void fill_lists(Message& message, std::mt19937& random, int depth) {
+  const auto& reflection = *message.GetReflection();
+  for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
+    const FieldDescriptor& field = *message.GetDescriptor()->field(i);
+    if (random() % 3 != 0) continue;
+    const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+    if (!field.is_repeated()) {
+      if (is_message && depth > 0) {
+        fill_lists(*reflection.MutableMessage(&message, &field), random, depth - 1);
+      }
+      continue;
+    }
+    const int maximum = maximum_elements(field).value_or(0);
+    const int count =
+        maximum < 1000 && random() % 8 == 0 ? maximum + static_cast<int>(random() % 2) : 2;
+    for (int k = 0; k < count; ++k) {
+      if (is_message) {
+        Message* added = reflection.AddMessage(&message, &field);
+        if (depth > 0 && count == 2) fill_lists(*added, random, depth - 1);
+      } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
+        reflection.AddString(&message, &field, "x");
+      } else {
+        reflection.AddDouble(&message, &field, k);
+      }
+    }
+  }
+}
+
+TEST(WireCheck, JudgesByBytesAsCountingJudgesTheParsedRequest) {
+  std::mt19937 random(20261122);
+  int refused = 0;
+  for (int round = 0; round < (kUnderAddressSanitizer ? 10 : 30); ++round) {
+    for (const MethodDescriptor* method : all_methods()) {
+      const std::unique_ptr<Message> request(google::protobuf::MessageFactory::generated_factory()
+                                                 ->GetPrototype(method->input_type())
+                                                 ->New());
+      fill_lists(*request, random, 5);
+      Violations counted;
+      check_counts(*request, "", counted);
+      std::multiset<std::string> expected;
+      for (const Violation& each : counted) {
+        expected.insert(each.field + ": " + each.description);
+      }
+      const std::vector<std::string> found = judge_bytes(*request);
+      EXPECT_EQ(std::multiset<std::string>(found.begin(), found.end()), expected);
+      refused += expected.empty() ? 0 : 1;
+    }
+  }
+  EXPECT_GT(refused, 5) << "the messages are too tame";
+}
+
+TEST(WireCheck, LetsTheLargestAcceptableSimulationPass) {
+  v1::CreateSimulationRequest request;
+  auto* simulation = request.mutable_simulation();
+  simulation->set_display_name(std::string(200, 'x'));
+  for (int i = 0; i < 64; ++i) {
+    v1::Label* label = simulation->add_labels();
+    label->set_key(std::string(190, 'k') + std::to_string(i));
+    label->set_value(std::string(200, 'v'));
+  }
+  auto* history = simulation->mutable_operating_point()->mutable_history();
+  for (int i = 0; i < 100; ++i) history->add_columns(std::string(200, 'c'));
+  EXPECT_THAT(judge_bytes(request), IsEmpty());
+  EXPECT_LT(request.ByteSizeLong(), kUsualRequestBytes / 8);
+}
+
+TEST(RequestLimits, AGearSetOfTheFinestTablesFits) {
+  v1::CreateGearSetRequest request;
+  *request.mutable_gear_set() = seed<v1::GearSet>("gearSets/A");
+  auto* gear_set = request.mutable_gear_set();
+  const auto stretch = [](auto* numbers) { numbers->Resize(kMaximumFlankSamples, 0.5); };
+  for (v1::FlankSlot& slot : *gear_set->mutable_flank_slots()) {
+    const auto& reflection = *slot.GetReflection();
+    for (int i = 0; i < slot.GetDescriptor()->field_count(); ++i) {
+      auto numbers =
+          reflection.GetMutableRepeatedFieldRef<double>(&slot, slot.GetDescriptor()->field(i));
+      while (numbers.size() < kMaximumFlankSamples) numbers.Add(0.5);
+    }
+  }
+  for (int i = 0; i < 20; ++i) {
+    auto* shares = gear_set->add_load_share_by_torque();
+    for (int k = 0; k < 3; ++k) stretch(shares->add_slots()->mutable_load_share());
+    *gear_set->add_series_by_torque() = gear_set->series();
+  }
+  EXPECT_THAT(judge_bytes(request), IsEmpty());
+  const auto* method =
+      v1::GearSet::descriptor()->file()->service(0)->FindMethodByName("CreateGearSet");
+  EXPECT_LT(request.ByteSizeLong(), maximum_request_bytes(*method));
+  EXPECT_LT(maximum_request_bytes(*method), kMaximumResponseBytes) << "its answer holds it";
+}
+
+TEST(Violations, KeepTheFirstAndCountAll) {
+  Violations violations;
+  for (int i = 0; i < 100'000; ++i) violations.push_back({std::to_string(i), "x"});
+  EXPECT_EQ(violations.size(), 100'000U);
+  const auto kept = std::distance(violations.begin(), violations.end());
+  EXPECT_EQ(static_cast<std::size_t>(kept), std::size_t{Violations::kMostKept});
+  EXPECT_EQ(violations.front().field, "0");
+  Violations more;
+  more.push_back({"first", "x"});
+  more.append(violations);
+  EXPECT_EQ(more.size(), 100'001U);
+}
+
+}  // namespace
+}  // namespace tribodyn::server
