@@ -84,6 +84,9 @@ ProcessFigures process_figures(int process_id) {
   for (std::string line; std::getline(status, line);) {
     const std::string value = line.substr(line.find(':') + 1);
     if (line.starts_with("VmRSS:")) out.resident_bytes = 1024 * std::stod(value);
+    if (line.starts_with("RssAnon:")) out.anonymous_bytes = 1024 * std::stod(value);
+    if (line.starts_with("RssFile:")) out.file_bytes = 1024 * std::stod(value);
+    if (line.starts_with("RssShmem:")) out.shared_bytes = 1024 * std::stod(value);
     if (line.starts_with("Threads:")) out.threads = std::stoi(value);
   }
   std::ifstream stat(folder + "/stat");

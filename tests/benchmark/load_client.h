@@ -27,7 +27,10 @@ Latencies closed_loop(int under_way, int count, const StartRequest& start);
 
 /// What the system says of a process.
 struct ProcessFigures {
-  double resident_bytes = 0;
+  double resident_bytes = 0;     ///< the sum of the next three
+  double anonymous_bytes = 0;    ///< heaps and stacks
+  double file_bytes = 0;         ///< mapped files: the program and its libraries
+  double shared_bytes = 0;       ///< mapped memory that processes may share
   double processor_seconds = 0;  ///< of all its threads since it began
   int threads = 0;
   int descriptors = 0;

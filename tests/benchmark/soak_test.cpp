@@ -1,11 +1,14 @@
 // A server under a steady mix of requests must not grow: resident memory, threads and descriptors.
-// usage: soak_test [SECONDS]      default: TRIBODYN_SOAK_SECONDS, else 90; the full mode is 3600
+// usage: soak_test [SECONDS]      default: TRIBODYN_SOAK_SECONDS, else 90; the full mode is 7200
+// The full mode prints the server's memory by kind each minute and counts the second hour.
 #include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>
@@ -24,9 +27,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::duration;
 
-constexpr double kFullSeconds = 3600;
+constexpr double kFullSeconds = 7200;
 constexpr double kLeastRequestsPerSecond = 400;
-constexpr double kMostGrowthPerSecond = 2.0 / 120;  // [MB]; in the full mode 1 MB in all
+constexpr double kMostGrowthPerSecond = 2.0 / 120;  // [MB/s]
+constexpr double kMostGrowthInFullMode = 0.2;       // [MB], in the second hour
 constexpr auto kBetweenLooks = std::chrono::milliseconds(200);
 
 /// Between the least and the most that was seen.
@@ -109,6 +113,15 @@ class Client {
   int round_ = 0;
 };
 
+void print_memory(double seconds, const ProcessFigures& figures, std::int64_t requests) {
+  fmt::print(
+      "{:5.0f} s  resident {:6.2f} MB  anonymous {:6.2f}  files {:6.2f}  shared {:6.2f}  {} "
+      "requests\n",
+      seconds, figures.resident_bytes / 1e6, figures.anonymous_bytes / 1e6,
+      figures.file_bytes / 1e6, figures.shared_bytes / 1e6, requests);
+  std::fflush(stdout);
+}
+
 int run(double length) {
   const TemporaryFolder folder;
   const std::string database = folder.file("tribodyn.db");
@@ -127,26 +140,41 @@ int run(double length) {
   }
   const auto begin = Clock::now();
   const bool is_full = length >= kFullSeconds;
-  const double warm_up = is_full ? 600 : std::min(60.0, length / 2), counted = length - warm_up;
-  std::this_thread::sleep_for(duration<double>(warm_up));
+  const double warm_up = is_full ? kFullSeconds / 2 : std::min(60.0, length / 2),
+               counted = length - warm_up;
+  const auto seconds = [begin] { return duration<double>(Clock::now() - begin).count(); };
+  ProcessFigures last;
+  double next_line = 0;
+  const auto look = [&] {
+    last = process_figures(id);
+    if (is_full && seconds() >= next_line) {
+      print_memory(seconds(), last, requests);
+      next_line += 60;
+    }
+    std::this_thread::sleep_for(kBetweenLooks);
+  };
+  while (seconds() < warm_up) look();
   const std::int64_t requests_before = requests;
-  const double first = process_figures(id).resident_bytes;
+  const ProcessFigures first = process_figures(id);
   Range threads;
   Range descriptors;
-  ProcessFigures last;
-  while (Clock::now() - begin < duration<double>(length)) {
-    last = process_figures(id);
+  while (seconds() < length) {
+    look();
     threads.add(last.threads);
     descriptors.add(last.descriptors);
-    std::this_thread::sleep_for(kBetweenLooks);
   }
   const auto served = static_cast<double>(requests - requests_before);
   stop = true;
   for (std::thread& client : clients) client.join();
-  const double growth = (last.resident_bytes - first) / 1e6;
+  const auto growth = [&](double ProcessFigures::*bytes) {
+    return (last.*bytes - first.*bytes) / 1e6;
+  };
   const std::vector<Measurement> figures = {
-      {"soak_growth_of_resident_memory", growth, "MB",
-       is_full ? 1.0 : kMostGrowthPerSecond * counted},
+      {"soak_growth_of_resident_memory", growth(&ProcessFigures::resident_bytes), "MB",
+       is_full ? kMostGrowthInFullMode : kMostGrowthPerSecond * counted},
+      {"soak_growth_of_anonymous_memory", growth(&ProcessFigures::anonymous_bytes), "MB", {}},
+      {"soak_growth_of_mapped_files", growth(&ProcessFigures::file_bytes), "MB", {}},
+      {"soak_growth_of_shared_memory", growth(&ProcessFigures::shared_bytes), "MB", {}},
       {"soak_requests", served, "-", kLeastRequestsPerSecond * counted, false},
       {"soak_range_of_threads", threads.width(), "-", 0},
       {"soak_range_of_descriptors", descriptors.width(), "-", 0},
