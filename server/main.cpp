@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "server/app/stored_inputs.h"
+#include "server/application/stored_inputs.h"
 #include "server/daemon/daemon.h"
-#include "server/store/maintenance.h"
-#include "server/store/store_error.h"
+#include "server/storage/maintenance.h"
+#include "server/storage/store_error.h"
 
 namespace tribodyn::server {
 namespace {

@@ -15,17 +15,17 @@
 #include <thread>
 
 #include "core/version.h"
-#include "server/api/grpc_server.h"
-#include "server/api/metrics_listener.h"
-#include "server/app/stored_inputs.h"
+#include "server/application/stored_inputs.h"
 #include "server/daemon/service_manager.h"
-#include "server/jobs/golden_case.h"
-#include "server/jobs/platform.h"
-#include "server/store/database_files.h"
-#include "server/store/durable_files.h"
-#include "server/store/maintenance.h"
-#include "server/store/seeds.h"
-#include "server/store/store.h"
+#include "server/simulation/golden_case.h"
+#include "server/simulation/result_key.h"
+#include "server/storage/database_files.h"
+#include "server/storage/durable_files.h"
+#include "server/storage/maintenance.h"
+#include "server/storage/seeds.h"
+#include "server/storage/store.h"
+#include "server/transport/grpc/grpc_server.h"
+#include "server/transport/http/metrics_listener.h"
 
 namespace tribodyn::server {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <csignal>
 
-#include "server/api/listen_address.h"
 #include "server/daemon/settings.h"
+#include "server/transport/listen_address.h"
 
 namespace tribodyn::server {
 

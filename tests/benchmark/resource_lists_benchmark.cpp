@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "server/app/resources.h"
+#include "server/application/resources.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

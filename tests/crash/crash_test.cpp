@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "server/store/maintenance.h"
+#include "server/storage/maintenance.h"
 #include "tests/crash/crash_run.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_length.h"

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "server/store/maintenance.h"
-#include "server/store/seeds.h"
-#include "server/store/store.h"
+#include "server/storage/maintenance.h"
+#include "server/storage/seeds.h"
+#include "server/storage/store.h"
 #include "tests/crash/faulty_vfs.h"
 #include "tests/crash/file_call_hook.h"
 #include "tests/service/support.h"

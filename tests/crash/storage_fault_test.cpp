@@ -14,11 +14,11 @@
 #include <random>
 #include <thread>
 
-#include "server/app/simulations.h"
-#include "server/store/deadline.h"
-#include "server/store/maintenance.h"
-#include "server/store/seeds.h"
-#include "server/store/store.h"
+#include "server/application/simulations.h"
+#include "server/storage/deadline.h"
+#include "server/storage/maintenance.h"
+#include "server/storage/seeds.h"
+#include "server/storage/store.h"
 #include "tests/crash/faulty_vfs.h"
 #include "tests/service/support.h"
 #include "tests/support/run_length.h"

@@ -6,12 +6,12 @@
 #include <cstdlib>
 #include <string>
 
-#include "server/convert/accept_resource.h"
-#include "server/convert/import_gear_set.h"
-#include "server/convert/import_lubricant.h"
-#include "server/convert/import_surface.h"
-#include "server/convert/lubricant_parameters.h"
-#include "server/store/seeds.h"
+#include "server/resources/accept_resource.h"
+#include "server/resources/imports/import_gear_set.h"
+#include "server/resources/imports/import_lubricant.h"
+#include "server/resources/imports/import_surface.h"
+#include "server/resources/lubricant_parameters.h"
+#include "server/storage/seeds.h"
 
 namespace tribodyn::server {
 namespace {

@@ -22,11 +22,11 @@
 #include <vector>
 
 #include "google/rpc/code.pb.h"
-#include "server/app/contacts.h"
-#include "server/app/resources.h"
-#include "server/app/schemas.h"
-#include "server/app/simulations.h"
-#include "server/store/seeds.h"
+#include "server/application/contacts.h"
+#include "server/application/resources.h"
+#include "server/application/schemas.h"
+#include "server/application/simulations.h"
+#include "server/storage/seeds.h"
 #include "tests/support/hostile_message.h"
 
 namespace tribodyn::server {

@@ -13,11 +13,11 @@
 #include "client/cpp/text/csv.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
-#include "server/app/field_mask.h"
-#include "server/app/list_filter.h"
-#include "server/app/page_token.h"
-#include "server/convert/csv_table.h"
-#include "server/store/seeds.h"
+#include "server/application/field_mask.h"
+#include "server/application/list_filter.h"
+#include "server/application/page_token.h"
+#include "server/resources/imports/csv_table.h"
+#include "server/storage/seeds.h"
 #include "tribodyn/v1/lubricants.pb.h"
 
 namespace tribodyn {

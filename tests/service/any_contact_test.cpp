@@ -7,10 +7,10 @@
 #include <random>
 
 #include "google/rpc/error_details.pb.h"
-#include "server/app/contacts.h"
-#include "server/convert/check_message.h"
-#include "server/convert/constraints.h"
-#include "server/convert/contact_inputs.h"
+#include "server/application/contacts.h"
+#include "server/contract/check_message.h"
+#include "server/contract/constraints.h"
+#include "server/simulation/contact_inputs.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -6,13 +6,13 @@
 #include <cstring>
 
 #include "google/rpc/error_details.pb.h"
-#include "server/app/contacts.h"
-#include "server/app/errors.h"
-#include "server/app/resources.h"
-#include "server/app/simulations.h"
-#include "server/app/streams.h"
-#include "server/jobs/janitor.h"
-#include "server/store/maintenance.h"
+#include "server/application/contacts.h"
+#include "server/application/errors.h"
+#include "server/application/resources.h"
+#include "server/application/simulations.h"
+#include "server/application/streams.h"
+#include "server/scheduling/janitor.h"
+#include "server/storage/maintenance.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -8,11 +8,11 @@
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
-#include "server/app/resources.h"
-#include "server/convert/accept_resource.h"
-#include "server/convert/constraints.h"
-#include "server/store/deadline.h"
-#include "server/store/maintenance.h"
+#include "server/application/resources.h"
+#include "server/contract/constraints.h"
+#include "server/resources/accept_resource.h"
+#include "server/storage/deadline.h"
+#include "server/storage/maintenance.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

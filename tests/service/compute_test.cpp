@@ -1,6 +1,6 @@
 // What a study computes: the same bits whichever gear sets were prepared before and however many
 // threads there are, and curves of independent points.
-#include "server/jobs/compute.h"
+#include "server/simulation/compute.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 #include <thread>
 
 #include "core/refusal.h"
-#include "server/convert/cost_estimate.h"
-#include "server/convert/input_hash.h"
-#include "server/convert/simulation_inputs.h"
+#include "server/simulation/cost_estimate.h"
+#include "server/simulation/input_hash.h"
+#include "server/simulation/simulation_inputs.h"
 #include "tests/service/support.h"
 #include "tests/support/run_length.h"
 

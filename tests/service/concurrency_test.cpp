@@ -5,10 +5,10 @@
 #include <thread>
 
 #include "google/rpc/code.pb.h"
-#include "server/app/contacts.h"
-#include "server/app/resources.h"
-#include "server/app/simulations.h"
-#include "server/app/streams.h"
+#include "server/application/contacts.h"
+#include "server/application/resources.h"
+#include "server/application/simulations.h"
+#include "server/application/streams.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

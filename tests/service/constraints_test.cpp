@@ -1,6 +1,6 @@
 // Every row of the table of constraints has a request that breaks it; every rule between fields
 // too.
-#include "server/convert/constraints.h"
+#include "server/contract/constraints.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,12 +11,12 @@
 #include <ostream>
 #include <set>
 
-#include "server/convert/check_message.h"
-#include "server/convert/contact_inputs.h"
-#include "server/convert/gear_set_checks.h"
-#include "server/convert/import_surface.h"
-#include "server/convert/output_only.h"
-#include "server/convert/simulation_inputs.h"
+#include "server/contract/check_message.h"
+#include "server/contract/output_only.h"
+#include "server/resources/gear_set_checks.h"
+#include "server/resources/imports/import_surface.h"
+#include "server/simulation/contact_inputs.h"
+#include "server/simulation/simulation_inputs.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/schemas.pb.h"
 

@@ -5,9 +5,9 @@
 #include <functional>
 
 #include "core/version.h"
-#include "server/convert/from_core.h"
-#include "server/convert/output_only.h"
-#include "server/convert/to_core.h"
+#include "server/contract/output_only.h"
+#include "server/mapping/from_core.h"
+#include "server/mapping/to_core.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -11,7 +11,7 @@
 #include <fstream>
 #include <thread>
 
-#include "server/api/listen_address.h"
+#include "server/transport/listen_address.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"

@@ -8,9 +8,9 @@
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
-#include "server/app/guard.h"
-#include "server/app/log_text.h"
-#include "server/app/message_source.h"
+#include "server/application/guard.h"
+#include "server/application/log_text.h"
+#include "server/application/message_source.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

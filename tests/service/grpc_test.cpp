@@ -11,8 +11,8 @@
 
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
-#include "server/convert/output_only.h"
-#include "server/convert/provenance.h"
+#include "server/contract/output_only.h"
+#include "server/resources/provenance.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
 #include "tribodyn/v1/contacts.grpc.pb.h"

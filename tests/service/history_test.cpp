@@ -8,8 +8,8 @@
 #include <cstring>
 #include <limits>
 
-#include "server/history/column_codec.h"
-#include "server/history/pyramid.h"
+#include "server/storage/history/column_codec.h"
+#include "server/storage/history/pyramid.h"
 
 namespace tribodyn::server {
 namespace {

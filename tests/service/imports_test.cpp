@@ -1,5 +1,5 @@
 // Tables that clients send as text: what is wrong in them is named by row and column.
-#include "server/app/imports.h"
+#include "server/application/imports.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "google/rpc/error_details.pb.h"
-#include "server/app/resources.h"
-#include "server/convert/csv_table.h"
+#include "server/application/resources.h"
+#include "server/resources/imports/csv_table.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -5,10 +5,10 @@
 #include <thread>
 
 #include "core/refusal.h"
-#include "server/jobs/golden_case.h"
-#include "server/jobs/job_queue.h"
-#include "server/jobs/progress_board.h"
-#include "server/jobs/simulation_jobs.h"
+#include "server/execution/simulation_jobs.h"
+#include "server/scheduling/job_queue.h"
+#include "server/scheduling/progress_board.h"
+#include "server/simulation/golden_case.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -10,10 +10,10 @@
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
-#include "server/app/simulations.h"
-#include "server/app/streams.h"
-#include "server/jobs/janitor.h"
-#include "server/store/maintenance.h"
+#include "server/application/simulations.h"
+#include "server/application/streams.h"
+#include "server/scheduling/janitor.h"
+#include "server/storage/maintenance.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

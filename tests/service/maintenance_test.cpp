@@ -1,5 +1,5 @@
 // Old files, damaged files, backups and what restores them.
-#include "server/store/maintenance.h"
+#include "server/storage/maintenance.h"
 
 #include <SQLiteCpp/Statement.h>
 #include <gmock/gmock.h>
@@ -11,9 +11,9 @@
 #include <map>
 #include <thread>
 
-#include "server/app/stored_inputs.h"
-#include "server/store/schema.h"
-#include "server/store/seeds.h"
+#include "server/application/stored_inputs.h"
+#include "server/storage/schema.h"
+#include "server/storage/seeds.h"
 #include "tests/service/support.h"
 #include "tests/support/paths.h"
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <map>
 
-#include "server/app/contacts.h"
-#include "server/app/resources.h"
-#include "server/app/simulations.h"
-#include "server/app/streams.h"
-#include "server/convert/provenance.h"
+#include "server/application/contacts.h"
+#include "server/application/resources.h"
+#include "server/application/simulations.h"
+#include "server/application/streams.h"
+#include "server/resources/provenance.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -1,5 +1,5 @@
 // The standard methods: what a create, an update or a deletion may lose, mix up or leave half done.
-#include "server/app/resources.h"
+#include "server/application/resources.h"
 
 #include <gmock/gmock.h>
 #include <google/protobuf/util/message_differencer.h>
@@ -9,14 +9,14 @@
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
-#include "server/app/contacts.h"
-#include "server/app/schemas.h"
-#include "server/app/simulations.h"
-#include "server/convert/constraints.h"
-#include "server/convert/element_limits.h"
-#include "server/convert/output_only.h"
-#include "server/convert/provenance.h"
-#include "server/store/deadline.h"
+#include "server/application/contacts.h"
+#include "server/application/element_limits.h"
+#include "server/application/schemas.h"
+#include "server/application/simulations.h"
+#include "server/contract/constraints.h"
+#include "server/contract/output_only.h"
+#include "server/resources/provenance.h"
+#include "server/storage/deadline.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

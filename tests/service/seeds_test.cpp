@@ -1,14 +1,14 @@
 // Every number of the seeds against the files that they come from.
-#include "server/store/seeds.h"
+#include "server/storage/seeds.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/gear/gear_set.h"
-#include "server/convert/accept_resource.h"
-#include "server/convert/check_message.h"
-#include "server/convert/provenance.h"
-#include "server/convert/to_core.h"
+#include "server/contract/check_message.h"
+#include "server/mapping/to_core.h"
+#include "server/resources/accept_resource.h"
+#include "server/resources/provenance.h"
 #include "tests/service/reference_data.h"
 #include "tests/service/support.h"
 

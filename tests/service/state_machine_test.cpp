@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "server/store/maintenance.h"
-#include "server/store/store.h"
+#include "server/storage/maintenance.h"
+#include "server/storage/store.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/results.pb.h"
 

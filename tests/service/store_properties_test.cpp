@@ -8,12 +8,12 @@
 #include <map>
 
 #include "google/rpc/code.pb.h"
-#include "server/app/resources.h"
-#include "server/app/simulations.h"
-#include "server/convert/constraints.h"
-#include "server/convert/output_only.h"
-#include "server/store/maintenance.h"
-#include "server/store/seeds.h"
+#include "server/application/resources.h"
+#include "server/application/simulations.h"
+#include "server/contract/constraints.h"
+#include "server/contract/output_only.h"
+#include "server/storage/maintenance.h"
+#include "server/storage/seeds.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

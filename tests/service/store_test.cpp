@@ -1,4 +1,4 @@
-#include "server/store/store.h"
+#include "server/storage/store.h"
 
 #include <SQLiteCpp/Statement.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "server/store/schema.h"
-#include "server/store/seeds.h"
+#include "server/storage/schema.h"
+#include "server/storage/seeds.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -10,8 +10,8 @@
 
 #include "core/refusal.h"
 #include "google/rpc/error_details.pb.h"
-#include "server/app/simulations.h"
-#include "server/store/seeds.h"
+#include "server/application/simulations.h"
+#include "server/storage/seeds.h"
 
 namespace tribodyn::server {
 namespace {

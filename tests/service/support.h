@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "google/rpc/status.pb.h"
-#include "server/app/application.h"
-#include "server/convert/resource_names.h"
-#include "server/jobs/simulation_jobs.h"
-#include "server/store/store.h"
+#include "server/application/application.h"
+#include "server/contract/resource_names.h"
+#include "server/execution/simulation_jobs.h"
+#include "server/storage/store.h"
 #include "tribodyn/v1/contacts.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
 

@@ -13,8 +13,8 @@
 
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
-#include "server/api/acceptor.h"
-#include "server/api/byte_budget.h"
+#include "server/transport/acceptor.h"
+#include "server/transport/byte_budget.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
 #include "tests/support/run_length.h"

@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "server/convert/check_message.h"
-#include "server/convert/contact_inputs.h"
-#include "server/convert/simulation_inputs.h"
+#include "server/contract/check_message.h"
+#include "server/simulation/contact_inputs.h"
+#include "server/simulation/simulation_inputs.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -1,5 +1,5 @@
 // Requests that are judged by their bytes, before they are parsed.
-#include "server/convert/wire_check.h"
+#include "server/application/wire_check.h"
 
 #include <gmock/gmock.h>
 #include <google/protobuf/io/coded_stream.h>
@@ -11,9 +11,9 @@
 #include <random>
 #include <set>
 
-#include "server/convert/element_limits.h"
-#include "server/convert/gear_set_checks.h"
-#include "server/convert/request_limits.h"
+#include "server/application/element_limits.h"
+#include "server/application/request_limits.h"
+#include "server/resources/gear_set_checks.h"
 #include "tests/service/contract_methods.h"
 #include "tests/service/support.h"
 

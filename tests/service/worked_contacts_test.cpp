@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "server/app/contacts.h"
+#include "server/application/contacts.h"
 #include "tests/service/reference_data.h"
 #include "tests/service/support.h"
 

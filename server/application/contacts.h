@@ -1,0 +1,13 @@
+#pragma once
+
+#include "server/application/application.h"
+#include "server/application/outcome.h"
+#include "tribodyn/v1/contacts.pb.h"
+
+namespace tribodyn::server {
+
+/// Solves one contact, at once and without a trace.
+Outcome<v1::EvaluateContactResponse> evaluate_contact(Application& application,
+                                                      const v1::EvaluateContactRequest& request);
+
+}  // namespace tribodyn::server

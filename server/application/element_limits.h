@@ -1,0 +1,34 @@
+#pragma once
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "server/contract/violations.h"
+
+namespace tribodyn::server {
+
+/// Largest number of elements that a list has in any acceptable request; nullopt if the table has
+/// no row for the field. Every repeated field that a request can hold has a row. Throws
+/// std::logic_error if a row names no list of the contract.
+std::optional<int> maximum_elements(const google::protobuf::FieldDescriptor& field);
+
+/// "65 entries; legal: at most 64".
+std::string too_many_text(std::int64_t count, std::int64_t maximum);
+
+/// Adds a violation for every list in `message`, at any depth, that has more elements than its row
+/// allows. Does not look into such a list.
+void check_counts(const google::protobuf::Message& message, const std::string& path,
+                  Violations& violations);
+
+inline constexpr int kMaximumMaskPaths = 200;  ///< more than any resource has fields
+/// Messages, texts of lists and unknown fields of one request. A batch of 20,000 lubricants with
+/// 17 provenance entries, 5 labels and 8 measurements each has 0.7 million.
+inline constexpr int kMaximumRequestElements = 1'000'000;
+/// Of one message: fields that only newer clients know.
+inline constexpr int kMaximumUnknownFields = 100;
+
+}  // namespace tribodyn::server

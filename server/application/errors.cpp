@@ -1,0 +1,172 @@
+#include "server/application/errors.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdint>
+#include <random>
+
+#include "google/rpc/error_details.pb.h"
+#include "server/application/log_text.h"
+
+namespace tribodyn::server {
+namespace {
+
+google::rpc::BadRequest bad_request(const Violations& violations) {
+  google::rpc::BadRequest out;
+  std::size_t bytes = 0;
+  std::size_t shown = 0;
+  for (const Violation& violation : violations) {
+    bytes += violation.field.size() + violation.description.size() + 12;
+    if (bytes > kMaximumBadRequestBytes) break;
+    ++shown;
+    auto* added = out.add_field_violations();
+    added->set_field(violation.field);
+    added->set_description(violation.description);
+  }
+  if (shown < violations.size()) {
+    auto* rest = out.add_field_violations();
+    rest->set_field("*");
+    rest->set_description(fmt::format("{} more violations", violations.size() - shown));
+  }
+  return out;
+}
+
+void add_resource(const std::string& type, const std::string& name, google::rpc::Status& status) {
+  google::rpc::ResourceInfo info;
+  info.set_resource_type(type);
+  info.set_resource_name(name);
+  status.add_details()->PackFrom(info);
+}
+
+void add_retry(int seconds, google::rpc::Status& status) {
+  google::rpc::RetryInfo info;
+  info.mutable_retry_delay()->set_seconds(seconds);
+  status.add_details()->PackFrom(info);
+}
+
+constexpr int kRestartSeconds = 5;  // of a server that another one takes the place of
+constexpr int kStoreSeconds = 5;
+constexpr int kContentionSeconds = 1;
+constexpr int kMemorySeconds = 5;
+constexpr std::size_t kLongestCause = 500;  // bytes in the log
+
+}  // namespace
+
+google::rpc::Status error(google::rpc::Code code, const std::string& reason,
+                          const std::string& message) {
+  google::rpc::Status status;
+  status.set_code(code);
+  status.set_message(message);
+  google::rpc::ErrorInfo info;
+  info.set_domain(kErrorDomain);
+  info.set_reason(reason);
+  status.add_details()->PackFrom(info);
+  return status;
+}
+
+google::rpc::Status invalid(const Violations& violations) {
+  const Violation& first = violations.front();
+  std::string message = first.field.empty() ? first.description
+                                            : fmt::format("{}: {}", first.field, first.description);
+  if (violations.size() > 1) message += fmt::format(" (and {} more)", violations.size() - 1);
+  return with_violations(error(google::rpc::INVALID_ARGUMENT, "INVALID_FIELDS", message),
+                         violations);
+}
+
+google::rpc::Status with_violations(google::rpc::Status status, const Violations& violations) {
+  status.add_details()->PackFrom(bad_request(violations));
+  return status;
+}
+
+google::rpc::Status not_found(const std::string& type, const std::string& name,
+                              const std::string& message) {
+  google::rpc::Status status = error(google::rpc::NOT_FOUND, "NOT_FOUND", message);
+  add_resource(type, name, status);
+  return status;
+}
+
+google::rpc::Status already_exists(const std::string& reason, const std::string& type,
+                                   const std::string& name, const std::string& message,
+                                   const Violations& violations) {
+  google::rpc::Status status = error(google::rpc::ALREADY_EXISTS, reason, message);
+  add_resource(type, name, status);
+  if (!violations.empty()) status.add_details()->PackFrom(bad_request(violations));
+  return status;
+}
+
+google::rpc::Status not_possible(const std::string& reason, const std::string& type,
+                                 const std::string& name, const std::string& message) {
+  google::rpc::Status status = error(google::rpc::FAILED_PRECONDITION, reason, message);
+  add_resource(type, name, status);
+  return status;
+}
+
+google::rpc::Status aborted(const std::string& reason, const std::string& type,
+                            const std::string& name, const std::string& message, bool may_retry) {
+  google::rpc::Status status = error(google::rpc::ABORTED, reason, message);
+  add_resource(type, name, status);
+  if (may_retry) add_retry(kContentionSeconds, status);
+  return status;
+}
+
+google::rpc::Status store_failed(const StoreError& failure) {
+  if (failure.kind() == StoreError::Kind::kDeadline) return deadline_exceeded();
+  if (failure.kind() == StoreError::Kind::kDataLoss ||
+      failure.kind() == StoreError::Kind::kCorrupt) {
+    return error(google::rpc::DATA_LOSS, "STORED_DATA_DAMAGED",
+                 "what the database holds is not what was written: `tribodynd check` names the "
+                 "damage; a forced run computes a result again, and a backup restores the rest");
+  }
+  const bool is_misplaced = failure.kind() == StoreError::Kind::kMisplaced;
+  google::rpc::Status status =
+      is_misplaced
+          ? error(google::rpc::UNAVAILABLE, "DATABASE_MISPLACED",
+                  "the database's file was deleted, renamed or replaced on the server; nothing is "
+                  "written until it is back")
+          : error(google::rpc::UNAVAILABLE, "STORE_FAILED",
+                  "the database could not be read or written");
+  add_retry(kStoreSeconds, status);
+  return status;
+}
+
+google::rpc::Status exhausted(const std::string& message, int retry_seconds) {
+  google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, "TOO_MANY_WAITING", message);
+  add_retry(retry_seconds, status);
+  return status;
+}
+
+google::rpc::Status deadline_exceeded() {
+  return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
+               "the deadline passed before the request was applied; nothing has changed");
+}
+
+google::rpc::Status stream_deadline_exceeded() {
+  return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
+               "the stream has been open for as long as it may be; call again to continue");
+}
+
+google::rpc::Status shutting_down() {
+  google::rpc::Status status =
+      error(google::rpc::UNAVAILABLE, "SHUTTING_DOWN", "the server is shutting down");
+  add_retry(kRestartSeconds, status);
+  return status;
+}
+
+google::rpc::Status internal_error(std::string_view cause) {
+  std::random_device random;
+  const std::string id = fmt::format("{:016x}", (std::uint64_t{random()} << 32) | random());
+  spdlog::error("event=internal_error id={} cause=\"{}\"", id, log_text(cause, kLongestCause));
+  return error(google::rpc::INTERNAL, "INTERNAL",
+               fmt::format("internal error {}; the server's log states its cause", id));
+}
+
+google::rpc::Status out_of_memory() {
+  spdlog::error("event=out_of_memory");
+  google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, "OUT_OF_MEMORY",
+                                     "the server has no memory left for this request");
+  add_retry(kMemorySeconds, status);
+  return status;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "google/rpc/code.pb.h"
+#include "google/rpc/status.pb.h"
+#include "server/contract/violations.h"
+#include "server/storage/store_error.h"
+
+namespace tribodyn::server {
+
+inline constexpr char kErrorDomain[] = "tribodyn";
+
+/// An error with ErrorInfo (domain "tribodyn" and the reason, UPPER_SNAKE_CASE).
+google::rpc::Status error(google::rpc::Code code, const std::string& reason,
+                          const std::string& message);
+
+/// INVALID_ARGUMENT with every violation as BadRequest. Details travel in a header block that gRPC
+/// clients limit to 8 KiB: what does not fit is counted in a last violation.
+google::rpc::Status invalid(const Violations& violations);
+
+/// An error whatever the fields hold, with the fields that it is about as BadRequest.
+google::rpc::Status with_violations(google::rpc::Status status, const Violations& violations);
+
+/// NOT_FOUND with ResourceInfo.
+google::rpc::Status not_found(const std::string& type, const std::string& name,
+                              const std::string& message);
+
+/// ALREADY_EXISTS with ResourceInfo and, unless empty, BadRequest.
+google::rpc::Status already_exists(const std::string& reason, const std::string& type,
+                                   const std::string& name, const std::string& message,
+                                   const Violations& violations = {});
+
+/// FAILED_PRECONDITION with ResourceInfo.
+google::rpc::Status not_possible(const std::string& reason, const std::string& type,
+                                 const std::string& name, const std::string& message);
+
+/// ABORTED with ResourceInfo: others changed it meanwhile; with RetryInfo where the same request
+/// may succeed a moment later.
+google::rpc::Status aborted(const std::string& reason, const std::string& type,
+                            const std::string& name, const std::string& message, bool may_retry);
+
+/// What a client is told of a failure of the database: DEADLINE_EXCEEDED, DATA_LOSS, or UNAVAILABLE
+/// with RetryInfo. It names no file of the server.
+google::rpc::Status store_failed(const StoreError& failure);
+
+/// RESOURCE_EXHAUSTED with RetryInfo.
+google::rpc::Status exhausted(const std::string& message, int retry_seconds);
+
+/// DEADLINE_EXCEEDED, by the server's own limit or the client's. Only before anything is committed.
+google::rpc::Status deadline_exceeded();
+/// DEADLINE_EXCEEDED for a stream that was open for as long as it may be.
+google::rpc::Status stream_deadline_exceeded();
+
+/// UNAVAILABLE, SHUTTING_DOWN, with RetryInfo.
+google::rpc::Status shutting_down();
+
+/// INTERNAL: a defect of the server. Logs `cause` under an id; the client gets the id and no cause.
+google::rpc::Status internal_error(std::string_view cause);
+
+/// RESOURCE_EXHAUSTED, OUT_OF_MEMORY, with RetryInfo: an allocation failed. Logs it.
+google::rpc::Status out_of_memory();
+
+/// Serialised size of BadRequest that surely reaches a client.
+inline constexpr std::size_t kMaximumBadRequestBytes = 5500;
+
+}  // namespace tribodyn::server

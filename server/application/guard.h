@@ -1,0 +1,35 @@
+#pragma once
+
+#include <spdlog/spdlog.h>
+
+#include <exception>
+#include <new>
+
+#include "core/refusal.h"
+#include "server/application/errors.h"
+#include "server/application/outcome.h"
+#include "server/storage/store_error.h"
+
+namespace tribodyn::server {
+
+/// Runs the body of an RPC and turns every exception into an error. Of an unexpected exception only
+/// what() is logged.
+template <class Message, class Body>
+Outcome<Message> guarded(const Body& body) {
+  try {
+    return body();
+  } catch (const Refusal& refusal) {
+    return error(google::rpc::INVALID_ARGUMENT, refusal.reason(), refusal.what());
+  } catch (const StoreError& failure) {
+    if (failure.kind() != StoreError::Kind::kDeadline) spdlog::error("{}", failure.what());
+    return store_failed(failure);
+  } catch (const std::bad_alloc&) {
+    return out_of_memory();
+  } catch (const std::exception& defect) {
+    return internal_error(defect.what());
+  } catch (...) {
+    return internal_error("an exception of unknown type");
+  }
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,229 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <memory>
+#include <numeric>
+#include <optional>
+
+#include "server/application/guard.h"
+#include "server/application/simulation_lookup.h"
+#include "server/application/streams.h"
+#include "server/contract/constraints.h"
+#include "server/contract/resource_names.h"
+#include "server/mapping/history_columns.h"
+#include "server/storage/history/pyramid.h"
+
+static_assert(std::endian::native == std::endian::little, "chunks are little-endian");
+
+namespace tribodyn::server {
+namespace {
+
+constexpr int kLargestMaximumPoints = 1'000'000;
+static_assert(kMaximumHistoryRows >= kMaximumHistoryValues);
+
+/// Columns by their place in the shape, and rows of them.
+struct Window {
+  std::vector<std::size_t> columns;
+  std::int64_t start_row = 0;
+  std::int64_t end_row = 0;
+  std::int64_t maximum_points = 0;  // 0: all
+};
+
+/// A place among the open histories, all of which share one budget of memory.
+class OpenHistory {
+ public:
+  explicit OpenHistory(std::shared_ptr<std::atomic<int>> open) : open_(std::move(open)) {
+    ++*open_;
+  }
+  ~OpenHistory() { --*open_; }
+  OpenHistory(const OpenHistory&) = delete;
+  OpenHistory& operator=(const OpenHistory&) = delete;
+
+  /// Values of a chunk at present: whole blocks, 256 KiB while few read.
+  std::int64_t chunk_values() const {
+    const std::int64_t share = kOpenHistoryValues / std::max(1, open_->load());
+    return std::clamp(share / kHistoryBlock * kHistoryBlock, kHistoryBlock, kChunkValues);
+  }
+
+ private:
+  std::shared_ptr<std::atomic<int>> open_;
+};
+
+/// The schema, then chunks: each column as far as the others before any goes on.
+class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
+ public:
+  HistorySource(Application& application, HistoryShape shape, Window window,
+                const v1::SimulationResult& result)
+      : store_(application.store),
+        open_(application.open_histories),
+        shape_(std::move(shape)),
+        window_(std::move(window)),
+        input_warnings_(result.input_warnings()),
+        rows_(window_.end_row - window_.start_row) {
+    if (window_.maximum_points == 0 || rows_ <= window_.maximum_points) return;
+    overview_ = overview(window_.start_row, window_.end_row, shape_.rows, window_.maximum_points);
+    rows_ = 2 * overview_->pairs();
+  }
+
+  Step next(v1::ReadHistoryResponse& out) override {
+    out.Clear();
+    if (!told_schema_) {
+      told_schema_ = true;
+      tell_schema(*out.mutable_schema());
+      return Step::kMessage;
+    }
+    if (next_row_ >= rows_) return Step::kEnd;
+    if (column_ == 0) run_ = std::min(open_.chunk_values(), rows_ - next_row_);
+    try {
+      const std::vector<double> values = read(shape_.columns[window_.columns[column_]]);
+      v1::HistoryChunk& chunk = *out.mutable_chunk();
+      chunk.set_column(static_cast<int>(column_));
+      chunk.set_first_row(next_row_);
+      chunk.set_values(values.data(), values.size() * sizeof(double));
+    } catch (const StoreError& failure) {
+      spdlog::error("{}", failure.what());
+      error_ = store_failed(failure);
+      return Step::kEnd;
+    }
+    if (error_.code() != 0) return Step::kEnd;
+    if (++column_ == window_.columns.size()) {
+      column_ = 0;
+      next_row_ += run_;
+    }
+    return Step::kMessage;
+  }
+
+  google::rpc::Status error() const override { return error_; }
+
+ private:
+  void tell_schema(v1::HistorySchema& out) const {
+    for (const std::size_t place : window_.columns) {
+      v1::HistorySchema::Column* column = out.add_columns();
+      column->set_name(shape_.names[place]);
+      column->set_unit(std::string(history_column_unit(shape_.names[place])));
+    }
+    out.set_start_row(window_.start_row);
+    out.set_row_count(rows_);
+    out.set_total_rows(shape_.rows);
+    if (overview_) out.set_rows_per_pair(overview_->rows_per_pair);
+    *out.mutable_input_warnings() = input_warnings_;
+  }
+
+  /// The present run of a column.
+  std::vector<double> read(std::int64_t column) {
+    const auto level = [&](int which, std::int64_t start, std::int64_t count) {
+      std::vector<double> values(static_cast<std::size_t>(count));
+      if (!store_.read_history(column, which, start, values)) {
+        error_ = not_found("tribodyn.v1.HistoryChunk", "", "the history has been evicted");
+      }
+      return values;
+    };
+    if (!overview_) return level(0, window_.start_row + next_row_, run_);
+    return overview_pairs(*overview_, next_row_ / 2, run_ / 2, level);
+  }
+
+  Store& store_;
+  const OpenHistory open_;
+  const HistoryShape shape_;
+  const Window window_;
+  const google::protobuf::RepeatedPtrField<v1::RangeWarning> input_warnings_;
+  std::int64_t rows_;  // to come in all
+  std::optional<Overview> overview_;
+  bool told_schema_ = false;
+  std::int64_t next_row_ = 0;
+  std::int64_t run_ = 0;  // rows of the present chunks
+  std::size_t column_ = 0;
+  google::rpc::Status error_;
+};
+
+/// Places of the stored names that a request means: "flank_load_newtons" stands for its three
+/// flanks.
+std::vector<std::size_t> expand(const std::string& asked, const std::vector<std::string>& stored) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    if (stored[i] == asked || stored[i].starts_with(asked + "_flank_")) out.push_back(i);
+  }
+  return out;
+}
+
+std::optional<Window> window(const v1::ReadHistoryRequest& request, const HistoryShape& shape,
+                             Violations& violations) {
+  Window out;
+  const int asked = std::min(request.columns_size(), kMaximumHistoryColumns);
+  for (int i = 0; i < asked; ++i) {
+    const std::vector<std::size_t> meant = expand(request.columns(i), shape.names);
+    if (meant.empty()) {
+      violations.push_back(
+          {fmt::format("columns[{}]", i),
+           fmt::format("no such column here{}", meant_text(request.columns(i), shape.names))});
+    }
+    for (const std::size_t place : meant) {
+      if (std::find(out.columns.begin(), out.columns.end(), place) == out.columns.end()) {
+        out.columns.push_back(place);
+      }
+    }
+  }
+  if (request.columns_size() > kMaximumHistoryColumns) {
+    violations.push_back({"columns", fmt::format("{} columns; legal: at most {}",
+                                                 request.columns_size(), kMaximumHistoryColumns)});
+  }
+  if (request.columns().empty()) {
+    out.columns.resize(shape.names.size());
+    std::iota(out.columns.begin(), out.columns.end(), 0);
+  }
+  const std::int64_t start = request.start_row();
+  if (start < 0 || start > shape.rows) {
+    violations.push_back(
+        {"start_row", fmt::format("start_row = {}; legal: 0 to {}", start, shape.rows)});
+  }
+  if (request.row_count() < 0) {
+    violations.push_back({"row_count", fmt::format("row_count = {}; legal: 0 (to the end) or more",
+                                                   request.row_count())});
+  }
+  if (request.max_points() != 0 && (request.max_points() < kLeastMaximumPoints ||
+                                    request.max_points() > kLargestMaximumPoints)) {
+    violations.push_back(
+        {"max_points",
+         fmt::format("max_points = {}; legal: {} to {}, or 0 (all rows)", request.max_points(),
+                     kLeastMaximumPoints, kLargestMaximumPoints)});
+  }
+  if (!violations.empty()) return std::nullopt;
+  out.maximum_points = request.max_points();
+  out.start_row = start;
+  const std::int64_t left = shape.rows - start;
+  out.end_row = start + (request.row_count() == 0 ? left : std::min(left, request.row_count()));
+  return out;
+}
+
+}  // namespace
+
+StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
+                                                    const v1::ReadHistoryRequest& request) {
+  using Source = std::shared_ptr<MessageSource<v1::ReadHistoryResponse>>;
+  return guarded<Source>([&]() -> Outcome<Source> {
+    const auto found = find_simulation(application, request.name());
+    if (!found.ok()) return found.error();
+    const StoredSimulation& stored = found.message();
+    if (stored.state != StoredState::kSucceeded) {
+      return not_possible("NO_RESULT_YET", "tribodyn.v1.Simulation", request.name(),
+                          request.name() + " has not succeeded, so it has no history");
+    }
+    HistoryShape shape = application.store.history_shape(stored.id);
+    if (shape.names.empty()) {
+      return not_found("tribodyn.v1.HistoryChunk", request.name(),
+                       request.name() + " was run without history");
+    }
+    Violations violations;
+    auto rows = window(request, shape, violations);
+    if (!rows) return invalid(violations);
+    v1::SimulationResult result;
+    result.ParseFromString(application.store.result(stored.id).value_or(""));
+    return Source(
+        std::make_shared<HistorySource>(application, std::move(shape), std::move(*rows), result));
+  });
+}
+
+}  // namespace tribodyn::server

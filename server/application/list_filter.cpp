@@ -1,0 +1,332 @@
+#include "server/application/list_filter.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/timestamp.pb.h>
+#include <google/protobuf/util/time_util.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include "server/application/computed_fields.h"
+#include "server/contract/output_only.h"
+#include "server/contract/resource_names.h"
+#include "server/storage/resource_types.h"
+
+namespace tribodyn::server {
+namespace {
+
+using Comparison = Restriction::Comparison;
+using google::protobuf::util::TimeUtil;
+
+constexpr std::string_view kLabels = "labels.";
+
+struct Token {
+  std::string text;
+  bool quoted = false;
+};
+
+/// Words, quoted texts and operators of a filter, one after the other.
+class Scanner {
+ public:
+  explicit Scanner(std::string_view text) : rest_(text) { skip_spaces(); }
+
+  bool at_end() const { return rest_.empty(); }
+
+  Token field() {
+    return {take([](char c) { return is_word(c); }), false};
+  }
+
+  std::string comparison() {
+    for (const std::string_view each : {"!=", "<=", ">=", "=", "<", ">", ":"}) {
+      if (rest_.substr(0, each.size()) != each) continue;
+      rest_.remove_prefix(each.size());
+      skip_spaces();
+      return std::string(each);
+    }
+    return {};
+  }
+
+  /// Nothing when a quoted text does not end.
+  std::optional<Token> value() {
+    if (rest_.empty() || rest_.front() != '"') {
+      return Token{take([](char c) { return std::isspace(static_cast<unsigned char>(c)) == 0; }),
+                   false};
+    }
+    Token out{"", true};
+    for (std::size_t i = 1; i < rest_.size(); ++i) {
+      if (rest_[i] == '"') {
+        rest_.remove_prefix(i + 1);
+        skip_spaces();
+        return out;
+      }
+      if (rest_[i] == '\\' && i + 1 < rest_.size()) ++i;
+      out.text += rest_[i];
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static bool is_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-';
+  }
+
+  template <class Test>
+  std::string take(const Test& test) {
+    const auto end = std::find_if_not(rest_.begin(), rest_.end(), test);
+    std::string out(rest_.begin(), end);
+    rest_.remove_prefix(out.size());
+    skip_spaces();
+    return out;
+  }
+
+  void skip_spaces() {
+    while (!rest_.empty() && std::isspace(static_cast<unsigned char>(rest_.front())) != 0) {
+      rest_.remove_prefix(1);
+    }
+  }
+
+  std::string_view rest_;
+};
+
+Comparison comparison_of(const std::string& text) {
+  if (text == "!=") return Comparison::kNotEqual;
+  if (text == "<") return Comparison::kLess;
+  if (text == "<=") return Comparison::kLessOrEqual;
+  if (text == ">") return Comparison::kGreater;
+  if (text == ">=") return Comparison::kGreaterOrEqual;
+  if (text == ":") return Comparison::kContains;
+  return Comparison::kEqual;
+}
+
+std::optional<PropertyKind> kind_of(const std::string& key, const std::string& collection) {
+  if (key == "name" || (key.starts_with(kLabels) && key.size() > kLabels.size())) {
+    return PropertyKind::kText;
+  }
+  for (const PropertyField& field : property_fields(collection)) {
+    if (field.key == key) return field.kind;
+  }
+  const ComputedField* computed = find_computed_field(collection, key);
+  return computed == nullptr ? std::nullopt : std::optional(computed->kind);
+}
+
+/// The key of a field that is named by its short name, "kv40"; other keys as they are.
+std::string full_key(const std::string& key, const std::string& collection) {
+  const ComputedField* computed = find_computed_field(collection, key);
+  return computed == nullptr ? key : computed->key;
+}
+
+/// The collection of the resources that a field names; empty: it names none.
+std::string named_collection(const std::string& key, const std::string& collection) {
+  if (key == "name" || key == "derived_from") return collection;
+  return key == "lubricant" ? kLubricants : "";
+}
+
+/// "SUCCEEDED" of "succeeded", "GROUP_III" of "group-iii": as tables and flags write an enum.
+std::string enum_name_of(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) {
+    return c == '-' || c == ' ' ? '_' : static_cast<char>(std::toupper(c));
+  });
+  return word;
+}
+
+std::string unknown_field_text(const std::string& key, const std::string& collection) {
+  return fmt::format("\"{}\" is no field of a filter on {}{}", plain_excerpt(key), collection,
+                     meant_text(key, filter_fields(collection)));
+}
+
+std::optional<PropertyValue> number_value(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<PropertyValue> flag_value(const std::string& text) {
+  const std::string word = enum_name_of(text);
+  if (word != "TRUE" && word != "FALSE") return std::nullopt;
+  return std::int64_t{word == "TRUE" ? 1 : 0};
+}
+
+std::optional<PropertyValue> time_value(const std::string& text) {
+  google::protobuf::Timestamp time;
+  if (!TimeUtil::FromString(text, &time)) return std::nullopt;
+  return TimeUtil::TimestampToMicroseconds(time);
+}
+
+/// A state is never unspecified; what a resource states may be.
+std::vector<std::string> enum_names(const std::string& key, const std::string& collection) {
+  const auto message = new_resource(collection);
+  const auto* field = message->GetDescriptor()->FindFieldByName(key);
+  const bool may_be_missing = !is_output_only(*field);
+  const auto* values = field->enum_type();
+  std::vector<std::string> names;
+  for (int i = 0; i < values->value_count(); ++i) {
+    if (may_be_missing || values->value(i)->number() != 0)
+      names.push_back(values->value(i)->name());
+  }
+  return names;
+}
+
+class FilterReader {
+ public:
+  FilterReader(std::string_view text, const std::string& collection, Violations& violations)
+      : scanner_(text), collection_(collection), violations_(violations) {}
+
+  std::vector<Restriction> read() {
+    std::vector<Restriction> out;
+    while (!scanner_.at_end()) {
+      if (out.size() == kMaximumRestrictions) {
+        complain(fmt::format("more than {} restrictions", kMaximumRestrictions));
+        return out;
+      }
+      std::optional<Restriction> next = restriction();
+      if (!next) return out;
+      out.push_back(std::move(*next));
+      if (scanner_.at_end()) return out;
+      const std::string joint = scanner_.field().text;
+      if (joint != "AND" || scanner_.at_end()) {
+        complain("restrictions are joined by AND, e.g. condition = USED AND labels.project = axle");
+        return out;
+      }
+    }
+    return out;
+  }
+
+ private:
+  void complain(std::string text) { violations_.push_back({"filter", std::move(text)}); }
+
+  /// Nothing when the rest cannot be read.
+  std::optional<Restriction> restriction() {
+    Restriction out;
+    out.key = scanner_.field().text;
+    const std::string comparison = scanner_.comparison();
+    if (out.key.empty() || comparison.empty()) {
+      complain("legal: field, one of = != < <= > >= :, value; e.g. condition = USED");
+      return std::nullopt;
+    }
+    const std::optional<Token> value = scanner_.value();
+    if (!value || (value->text.empty() && !value->quoted)) {
+      complain(
+          fmt::format("the value of {} is missing or its quotes are open", plain_excerpt(out.key)));
+      return std::nullopt;
+    }
+    out.comparison = comparison_of(comparison);
+    read_value(*value, out);
+    out.key = full_key(out.key, collection_);
+    return out;
+  }
+
+  void read_value(const Token& value, Restriction& out) {
+    const auto kind = kind_of(out.key, collection_);
+    if (!kind) return complain(unknown_field_text(out.key, collection_));
+    if (out.comparison == Comparison::kContains && value.text == "*" && !value.quoted) {
+      out.comparison = Comparison::kPresent;
+      return;
+    }
+    if (out.comparison == Comparison::kContains && *kind != PropertyKind::kText) {
+      return complain(fmt::format("{} is no text: \":\" does not apply", out.key));
+    }
+    switch (*kind) {
+      case PropertyKind::kText:
+        return read_text(value, out);
+      case PropertyKind::kNumber:
+        return set(number_value(value.text), value, "a finite number", out);
+      case PropertyKind::kFlag:
+        return set(flag_value(value.text), value, "true or false", out);
+      case PropertyKind::kTime:
+        return set(time_value(value.text), value, "a time such as 2026-01-31T12:00:00Z", out);
+      case PropertyKind::kEnum:
+        return read_enum(value, out);
+    }
+  }
+
+  void set(const std::optional<PropertyValue>& read, const Token& value, const char* legal,
+           Restriction& out) {
+    if (read) {
+      out.value = *read;
+    } else {
+      complain(fmt::format("{} = \"{}\"; legal: {}", out.key, plain_excerpt(value.text), legal));
+    }
+  }
+
+  /// The name of a resource may be given without its collection.
+  void read_text(const Token& value, Restriction& out) const {
+    out.value = value.text;
+    const std::string named = named_collection(out.key, collection_);
+    const bool is_whole_name =
+        out.comparison == Comparison::kEqual || out.comparison == Comparison::kNotEqual;
+    if (is_whole_name && !named.empty() && !value.text.empty() &&
+        value.text.find('/') == std::string::npos) {
+      out.value = named + "/" + value.text;
+    }
+  }
+
+  void read_enum(const Token& value, Restriction& out) {
+    const std::vector<std::string> names = enum_names(out.key, collection_);
+    const std::string name = enum_name_of(value.text);
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      return complain(fmt::format("{} = \"{}\" is unknown{}", out.key, plain_excerpt(value.text),
+                                  meant_text(name, names)));
+    }
+    out.value = name;
+  }
+
+  Scanner scanner_;
+  const std::string& collection_;
+  Violations& violations_;
+};
+
+}  // namespace
+
+std::vector<Restriction> parse_filter(std::string_view filter, const std::string& collection,
+                                      Violations& violations) {
+  if (filter.size() > kMaximumFilterLength) {
+    violations.push_back({"filter", fmt::format("{} bytes; legal: at most {}", filter.size(),
+                                                kMaximumFilterLength)});
+    return {};
+  }
+  return FilterReader(filter, collection, violations).read();
+}
+
+Order parse_order(std::string_view order_by, const std::string& collection,
+                  Violations& violations) {
+  Scanner scanner(order_by.substr(0, kMaximumFilterLength));
+  if (scanner.at_end()) return {};
+  Order out;
+  out.key = scanner.field().text;
+  const std::string direction = scanner.field().text;
+  const bool known =
+      out.key == "name" || (kind_of(out.key, collection) && out.key.find('.') == std::string::npos);
+  if (!known) {
+    std::vector<std::string> fields = filter_fields(collection);
+    std::erase(fields, "labels.KEY");
+    violations.push_back(
+        {"order_by", fmt::format("\"{}\" is nothing to order {} by{}", plain_excerpt(out.key),
+                                 collection, meant_text(out.key, fields))});
+  }
+  if (!scanner.at_end() || (!direction.empty() && direction != "asc" && direction != "desc")) {
+    violations.push_back({"order_by", "legal: one field, then nothing, asc or desc"});
+  }
+  out.descending = direction == "desc";
+  out.key = out.key == "name" ? "" : full_key(out.key, collection);
+  return out;
+}
+
+std::vector<std::string> filter_fields(const std::string& collection) {
+  std::vector<std::string> out = {"labels.KEY", "name"};
+  for (const PropertyField& field : property_fields(collection)) out.push_back(field.key);
+  for (const ComputedField& field : computed_fields(collection)) {
+    out.push_back(field.key);
+    out.insert(out.end(), field.short_names.begin(), field.short_names.end());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+}  // namespace tribodyn::server

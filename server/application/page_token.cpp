@@ -1,0 +1,81 @@
+#include "server/application/page_token.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "server/support/sha256.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr std::size_t kScopeDigits = 16;
+constexpr std::size_t kLongestToken = 20'000;
+
+std::string to_hex(const std::string& bytes) {
+  std::string out;
+  for (const char c : bytes) out += fmt::format("{:02x}", static_cast<unsigned char>(c));
+  return out;
+}
+
+std::optional<std::string> from_hex(const std::string& hex) {
+  if (hex.size() % 2 != 0 || hex.size() > kLongestToken) return std::nullopt;
+  std::string out;
+  for (std::size_t i = 0; i < hex.size(); i += 2) {
+    unsigned int byte = 0;
+    const auto [end, error] = std::from_chars(hex.data() + i, hex.data() + i + 2, byte, 16);
+    if (error != std::errc() || end != hex.data() + i + 2) return std::nullopt;
+    out += static_cast<char>(byte);
+  }
+  return out;
+}
+
+/// The kind by its first letter, then the value.
+std::string text_of(const PropertyValue& value) {
+  if (const auto* time = std::get_if<std::int64_t>(&value)) return fmt::format("t{}", *time);
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("n{}", *number);
+  return "s" + std::get<std::string>(value);
+}
+
+template <class Number>
+std::optional<PropertyValue> parse_number(const std::string& text) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<PropertyValue> parse_value(const std::string& text) {
+  switch (text.empty() ? '\0' : text.front()) {
+    case 't':
+      return parse_number<std::int64_t>(text);
+    case 'n':
+      return parse_number<double>(text);
+    case 's':
+      return text.substr(1);
+    default:
+      return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::string page_token(const std::string& scope, const PageStart& last) {
+  return sha256(scope).substr(0, kScopeDigits) + to_hex(last.name + ' ' + text_of(last.value));
+}
+
+std::optional<PageStart> parse_page_token(const std::string& scope, const std::string& token) {
+  if (token.size() < kScopeDigits ||
+      token.substr(0, kScopeDigits) != sha256(scope).substr(0, kScopeDigits)) {
+    return std::nullopt;
+  }
+  const auto text = from_hex(token.substr(kScopeDigits));
+  if (!text) return std::nullopt;
+  const std::size_t space = text->find(' ');
+  if (space == std::string::npos) return std::nullopt;
+  auto value = parse_value(text->substr(space + 1));
+  if (!value) return std::nullopt;
+  return PageStart{std::move(*value), text->substr(0, space)};
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,219 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "server/application/application.h"
+#include "server/application/computed_fields.h"
+#include "server/application/guard.h"
+#include "server/application/list_filter.h"
+#include "server/application/outcome.h"
+#include "server/application/page_token.h"
+#include "server/application/paging.h"
+#include "server/application/resource_kinds.h"
+#include "server/application/stored_messages.h"
+#include "server/contract/output_only.h"
+#include "server/resources/lubricant_parameters.h"
+
+namespace tribodyn::server {
+
+// The standard methods that read or delete, for every kind of resource alike; resource_writes.h has
+// the others. Bodies of RPCs: run inside `guarded`.
+
+inline constexpr int kDefaultResourcePageSize = 100;
+inline constexpr int kUpdateAttempts = 10;  ///< against other writers
+
+template <class Resource>
+google::rpc::Status name_taken(const std::string& name, bool deleted) {
+  return already_exists("ALREADY_EXISTS", Resource::descriptor()->full_name(), name,
+                        deleted ? name + " exists and is deleted; undelete it or take another name"
+                                : name + " exists already; update it or take another name");
+}
+
+template <class Resource>
+google::rpc::Status etag_mismatch(const std::string& name) {
+  return aborted("ETAG_MISMATCH", Resource::descriptor()->full_name(), name,
+                 name + " has changed since this etag was given out; get it again", false);
+}
+
+template <class Resource>
+google::rpc::Status contention(const std::string& name) {
+  return aborted("CONTENTION", Resource::descriptor()->full_name(), name,
+                 name + " keeps being changed by others; try again", true);
+}
+
+inline google::rpc::Status unreadable(const std::string& name) {
+  return error(google::rpc::DATA_LOSS, "STORED_RESOURCE_UNREADABLE",
+               name + " cannot be read from the database");
+}
+
+/// What a single lubricant shows beside its parameters.
+inline void add_characterisation(v1::Lubricant& lubricant) {
+  *lubricant.mutable_characterisation() = characterisation(lubricant);
+}
+inline void add_characterisation(v1::GearSet&) {}
+inline void add_characterisation(v1::Surface&) {}
+inline void add_characterisation(v1::Vehicle&) {}
+
+/// What a lubricant shows in a list.
+inline void add_list_figures(v1::Lubricant& lubricant) {
+  *lubricant.mutable_characterisation() = brief_characterisation(lubricant);
+}
+inline void add_list_figures(v1::GearSet&) {}
+inline void add_list_figures(v1::Surface&) {}
+inline void add_list_figures(v1::Vehicle&) {}
+
+/// Does not ask the store, so that what has been written is answered whatever the deadline.
+template <class Resource>
+Outcome<Resource> answer(const StoredResource& stored) {
+  auto out = to_message<Resource>(stored);
+  if (!out) return unreadable(stored.name);
+  add_characterisation(*out);
+  return *out;
+}
+
+/// What is wrong with a name, whether there is such a resource or not; empty: nothing.
+template <class Resource>
+std::string name_problem(Application& application, const std::string& name,
+                         bool revisions_allowed) {
+  const std::string collection = Kind<Resource>::kCollection;
+  const auto parsed = parse_revision_name(name, collection);
+  if (!parsed) {
+    return unknown_name_text(name, collection, application.store.resource_names(collection));
+  }
+  if (parsed->revision == 0 || revisions_allowed) return {};
+  return plain_excerpt(name) + " is a revision; legal: the name without it";
+}
+
+/// The stored revision that a name without problems means; nullopt if there is none.
+template <class Resource>
+std::optional<StoredResource> find_named(Application& application, const std::string& name) {
+  const RevisionName parsed = *parse_revision_name(name, Kind<Resource>::kCollection);
+  return parsed.revision == 0 ? application.store.resource(parsed.name)
+                              : application.store.revision(parsed.name, parsed.revision);
+}
+
+/// NOT_FOUND with the name that may be meant. Compares the name with all of its collection.
+template <class Resource>
+google::rpc::Status unknown_name(Application& application, const std::string& name) {
+  const std::string collection = Kind<Resource>::kCollection;
+  return not_found(
+      Resource::descriptor()->full_name(), name,
+      unknown_name_text(name, collection, application.store.resource_names(collection)));
+}
+
+/// The stored revision that a name means; INVALID_ARGUMENT for what is no name, or NOT_FOUND.
+template <class Resource>
+Outcome<StoredResource> find_stored(Application& application, const std::string& name,
+                                    bool revisions_allowed) {
+  const std::string problem = name_problem<Resource>(application, name, revisions_allowed);
+  if (!problem.empty()) return invalid({{"name", problem}});
+  if (auto found = find_named<Resource>(application, name)) return *std::move(found);
+  return unknown_name<Resource>(application, name);
+}
+
+template <class Resource>
+Outcome<Resource> get_resource(Application& application, const std::string& name) {
+  const auto found = find_stored<Resource>(application, name, true);
+  if (!found.ok()) return found.error();
+  return answer<Resource>(found.message());
+}
+
+/// Deletes or undeletes; what is so already stays as it is.
+template <class Resource, class Request>
+Outcome<Resource> set_deleted(Application& application, const Request& request, bool deleted) {
+  for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
+    const auto found = find_stored<Resource>(application, request.name(), false);
+    if (!found.ok()) return found.error();
+    StoredResource present = found.message();
+    if (!request.etag().empty() && request.etag() != etag_of(present)) {
+      return etag_mismatch<Resource>(present.name);
+    }
+    if (present.delete_time.has_value() == deleted) return answer<Resource>(present);
+    const Microseconds now = system_time();
+    if (deleted ? application.store.delete_resource(present, now)
+                : application.store.undelete_resource(present)) {
+      present.delete_time = deleted ? std::optional(now) : std::nullopt;
+      return answer<Resource>(present);
+    }
+  }
+  return contention<Resource>(request.name());
+}
+
+/// Appends rows to a response; false when one of them cannot be read.
+template <class Resource, class Response>
+google::rpc::Status append(const Page<StoredResource>& page, Response& response) {
+  for (const StoredResource& row : page.rows) {
+    auto message = to_message<Resource>(row);
+    if (!message) return unreadable(row.name);
+    add_list_figures(*message);
+    *Kind<Resource>::add(response) = std::move(*message);
+  }
+  return {};
+}
+
+template <class Resource, class Response, class Request>
+Outcome<Response> list_resources(Application& application, const Request& request) {
+  Violations violations;
+  ResourceQuery query;
+  query.collection = Kind<Resource>::kCollection;
+  query.limit = page_size(request.page_size(), kDefaultResourcePageSize, violations);
+  query.byte_limit = kMaximumPageBytes;
+  query.show_deleted = request.show_deleted();
+  query.restrictions = parse_filter(request.filter(), query.collection, violations);
+  const Order order = parse_order(request.order_by(), query.collection, violations);
+  query.order_key = order.key;
+  query.descending = order.descending;
+  const std::string scope = fmt::format("{} {} {} {}", query.collection, request.show_deleted(),
+                                        request.order_by(), request.filter());
+  if (!request.page_token().empty()) {
+    query.after = parse_page_token(scope, request.page_token());
+    if (!query.after) add_bad_page_token(violations);
+  }
+  if (!violations.empty()) return invalid(violations);
+  const auto read_page = [&](const ResourceQuery& stored) {
+    return application.store.resources(stored);
+  };
+  const Page<StoredResource> page =
+      needs_computed_fields(query) ? query_by_computed_fields(query, read_page) : read_page(query);
+  Response response;
+  if (const auto failed = append<Resource>(page, response); failed.code() != 0) return failed;
+  if (page.more) {
+    const StoredResource& last = page.rows.back();
+    response.set_next_page_token(page_token(scope, {order_value(last, order.key), last.name}));
+  }
+  return response;
+}
+
+template <class Resource, class Response, class Request>
+Outcome<Response> list_revisions(Application& application, const Request& request) {
+  Violations violations;
+  const int size = page_size(request.page_size(), kDefaultResourcePageSize, violations);
+  const std::string scope = "revisions of " + request.name();
+  std::optional<PageStart> after;
+  if (!request.page_token().empty()) {
+    after = parse_page_token(scope, request.page_token());
+    if (!after || !std::holds_alternative<std::int64_t>(after->value)) {
+      add_bad_page_token(violations);
+    }
+  }
+  if (!violations.empty()) return invalid(violations);
+  const auto found = find_stored<Resource>(application, request.name(), false);
+  if (!found.ok()) return found.error();
+  const int before = after ? static_cast<int>(std::get<std::int64_t>(after->value)) : 0;
+  Page<StoredResource> page =
+      application.store.revisions(request.name(), before, size, kMaximumPageBytes);
+  for (StoredResource& row : page.rows) row.is_present = false;  // all names with their revision
+  Response response;
+  if (const auto failed = append<Resource>(page, response); failed.code() != 0) return failed;
+  if (page.more) {
+    response.set_next_page_token(
+        page_token(scope, {std::int64_t{page.rows.back().revision}, request.name()}));
+  }
+  return response;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,335 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "server/application/field_mask.h"
+#include "server/application/resource_methods.h"
+#include "server/contract/check_message.h"
+#include "server/contract/constraints.h"
+#include "server/execution/simulation_runner.h"
+#include "server/resources/accept_resource.h"
+#include "server/storage/deadline.h"
+#include "server/storage/resource_lookup.h"
+
+namespace tribodyn::server {
+
+// The standard methods that create and update, one resource or a batch of them, for every kind
+// alike. Bodies of RPCs: run inside `guarded`.
+
+inline constexpr std::size_t kMaximumBatchViolations = 100;
+
+/// As if the body had been stored.
+template <class Resource>
+Resource preview(const std::string& body) {
+  Resource out;
+  out.ParseFromString(body);
+  fill_units(*Resource::descriptor(), *out.mutable_provenance());
+  add_characterisation(out);
+  return out;
+}
+
+/// The name that a new resource is to have, or a violation.
+template <class Resource>
+std::string new_name(const std::string& id, const std::string& stated, Violations& violations) {
+  const std::string collection = Kind<Resource>::kCollection;
+  std::string name = id.empty() ? stated : collection + "/" + id;
+  if (is_resource_name(name, collection)) return name;
+  const std::string field = std::string(Kind<Resource>::kField) + "_id";
+  violations.push_back(
+      {field,
+       id.empty() && stated.empty()
+           ? field + " is not set; legal: letters, digits, '-', '_' and '.'"
+           : fmt::format("\"{}\"; legal: letters, digits, '-', '_' and '.', at most {} bytes",
+                         plain_excerpt(id.empty() ? stated : id),
+                         kMaximumTextLength - collection.size() - 1)});
+  return {};
+}
+
+/// Stores a new resource that has been accepted.
+template <class Resource>
+Outcome<Resource> store_new(Application& application, const Resource& accepted,
+                            bool validate_only) {
+  const std::string& name = accepted.name();
+  if (const auto taken = application.store.resource(name)) {
+    return name_taken<Resource>(name, taken->delete_time.has_value());
+  }
+  const std::string body = accepted.SerializeAsString();
+  if (validate_only) return preview<Resource>(body);
+  const auto stored =
+      application.store.write_resources({{{name, body}, std::nullopt}}, system_time());
+  if (!stored) return name_taken<Resource>(name, false);
+  return answer<Resource>(stored->front());
+}
+
+/// What the request of a create or an update comes to, from its first look at the store to the
+/// resource that is to be stored.
+template <class Resource>
+struct Draft {
+  std::string name;                       ///< of the resource; empty where it is wrong
+  std::optional<Resource> stated;         ///< whole; none: not to be judged, or accepted
+  std::optional<StoredResource> present;  ///< that an update starts from; none: it is a new one
+  std::string body;                       ///< what has been accepted, serialised
+  Violations violations;                  ///< paths as in the request
+  std::optional<google::rpc::Status> refusal;  ///< why it cannot be, whatever it states
+  std::string refused_field;                   ///< what the refusal is about: "lubricant.etag"
+
+  bool is_bad() const { return refusal || !violations.empty(); }
+  void refuse(const google::rpc::Status& status, const char* field) {
+    refusal = status;
+    refused_field = join_path(Kind<Resource>::kField, field);
+  }
+};
+
+template <class Resource, class Request>
+void draft_create(Application& application, const Request& request, Draft<Resource>& draft) {
+  draft.stated = Kind<Resource>::of(request);
+  draft.name =
+      new_name<Resource>(Kind<Resource>::id(request), draft.stated->name(), draft.violations);
+  draft.stated->set_name(draft.name);
+  if (draft.name.empty()) return;
+  if (const auto taken = application.store.resource(draft.name)) {
+    draft.refuse(name_taken<Resource>(draft.name, taken->delete_time.has_value()), "name");
+  }
+}
+
+template <class Resource, class Request>
+void draft_update(Application& application, const Request& request, Draft<Resource>& draft) {
+  const Resource& stated = Kind<Resource>::of(request);
+  const std::string problem = name_problem<Resource>(application, stated.name(), false);
+  if (!problem.empty()) {
+    draft.violations.push_back({join_path(Kind<Resource>::kField, "name"), problem});
+    return;
+  }
+  draft.name = stated.name();
+  const auto found = find_named<Resource>(application, stated.name());
+  if (!found) {
+    if (!request.allow_missing()) {
+      return draft.refuse(unknown_name<Resource>(application, stated.name()), "name");
+    }
+    draft.stated = stated;
+    return;
+  }
+  const StoredResource& present = *found;
+  if (present.delete_time) {
+    return draft.refuse(not_possible("DELETED", Resource::descriptor()->full_name(), present.name,
+                                     deleted_name_text(present.name)),
+                        "name");
+  }
+  if (!stated.etag().empty() && stated.etag() != etag_of(present)) {
+    return draft.refuse(etag_mismatch<Resource>(present.name), "etag");
+  }
+  Resource merged;
+  if (!merged.ParseFromString(present.body)) {
+    return draft.refuse(unreadable(present.name), "name");
+  }
+  merge(stated, request.update_mask(), merged, draft.violations);
+  if (!draft.violations.empty()) return;
+  merged.set_name(present.name);
+  draft.stated = std::move(merged);
+  draft.present = present;
+}
+
+/// The draft of a Create...Request or an Update...Request.
+template <class Resource, class Request>
+Draft<Resource> draft_of(Application& application, const Request& request) {
+  Draft<Resource> draft;
+  if (!Kind<Resource>::is_in(request)) {
+    draft.violations.push_back({Kind<Resource>::kField, "not set"});
+  } else if constexpr (requires { request.update_mask(); }) {
+    draft_update(application, request, draft);
+  } else {
+    draft_create(application, request, draft);
+  }
+  return draft;
+}
+
+template <class Resource>
+void accept_draft(const ResourceLookup& lookup, Draft<Resource>& draft) {
+  if (!draft.stated) return;
+  std::optional<Resource> before;
+  if (draft.present) before.emplace().ParseFromString(draft.present->body);
+  const auto accepted = accept(*draft.stated, before ? &*before : nullptr, lookup,
+                               Kind<Resource>::kField, draft.violations);
+  if (!accepted) return;
+  draft.body = accepted->SerializeAsString();
+  draft.stated.reset();
+}
+
+/// Stores what has been accepted, all or none, and says what is stored then; what is as it was
+/// makes no revision. Nothing when somebody else has been faster.
+template <class Resource>
+std::optional<std::vector<StoredResource>> store_drafts(Application& application,
+                                                        std::vector<Draft<Resource>> drafts) {
+  std::vector<StoredResource> all(drafts.size());
+  std::vector<ResourceWrite> writes;
+  std::vector<std::size_t> places;  // of the writes
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    Draft<Resource>& draft = drafts[i];
+    if (draft.present && draft.present->body == draft.body) {
+      all[i] = std::move(*draft.present);
+    } else {
+      places.push_back(i);
+      writes.push_back({{draft.name, std::move(draft.body)}, std::move(draft.present)});
+    }
+  }
+  if (writes.empty()) return all;
+  auto written = application.store.write_resources(writes, system_time());
+  if (!written) return std::nullopt;
+  for (std::size_t i = 0; i < places.size(); ++i) all[places[i]] = std::move((*written)[i]);
+  return all;
+}
+
+/// Creates or updates one resource.
+template <class Resource, class Request>
+Outcome<Resource> write_resource(Application& application, const Request& request) {
+  for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
+    std::vector<Draft<Resource>> drafts;
+    Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request));
+    accept_draft(resource_lookup(application.store), draft);
+    if (!draft.violations.empty()) return invalid(draft.violations);
+    if (draft.refusal) return *draft.refusal;
+    if (request.validate_only()) return preview<Resource>(draft.body);
+    if (const auto stored = store_drafts(application, std::move(drafts))) {
+      return answer<Resource>(stored->front());
+    }
+  }
+  return contention<Resource>(Kind<Resource>::of(request).name());
+}
+
+/// Where each resource of a batch stands in it; a violation for each that stands in it twice.
+template <class Resource>
+std::map<std::string, std::size_t> places_of(std::vector<Draft<Resource>>& drafts) {
+  std::map<std::string, std::size_t> places;
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    const std::string& name = drafts[i].name;
+    if (!drafts[i].stated || name.empty()) continue;
+    const auto [first, is_new] = places.emplace(name, i);
+    if (is_new) continue;
+    drafts[i].violations.push_back(
+        {join_path(Kind<Resource>::kField, "name"),
+         fmt::format("{} stands in requests[{}] too; legal: once", name, first->second)});
+  }
+  return places;
+}
+
+/// The store as it will be with a batch: so that one resource of it may descend from another one.
+template <class Resource>
+ResourceLookup lookup_with(const std::vector<Draft<Resource>>& drafts,
+                           const std::map<std::string, std::size_t>& places,
+                           const ResourceLookup& stored) {
+  return {[&drafts, &places, stored](const RevisionName& name) -> std::optional<FoundResource> {
+            const auto found = places.find(name.name);
+            if (found == places.end() || name.revision != 0) return stored.find(name);
+            const Draft<Resource>& draft = drafts[found->second];
+            return FoundResource{0, false,
+                                 draft.stated ? draft.stated->SerializeAsString() : draft.body};
+          },
+          [&places, stored](const std::string& collection) {
+            std::vector<std::string> names = stored.names(collection);
+            for (const auto& [name, place] : places) names.push_back(name);
+            std::sort(names.begin(), names.end());
+            return names;
+          },
+          std::make_shared<KnownChains>()};
+}
+
+/// Everything that is wrong with a batch, or nothing. A refusal that no violation goes with keeps
+/// its code.
+template <class Resource>
+std::optional<google::rpc::Status> refusal_of(const std::vector<Draft<Resource>>& drafts) {
+  Violations violations;
+  const google::rpc::Status* first = nullptr;
+  bool all_refusals = true;
+  for (std::size_t i = 0; i < drafts.size() && violations.size() < kMaximumBatchViolations; ++i) {
+    const std::string path = fmt::format("requests[{}]", i);
+    for (const Violation& each : drafts[i].violations) {
+      violations.push_back({join_path(path, each.field), each.description});
+      all_refusals = false;
+    }
+    if (!drafts[i].refusal) continue;
+    if (first == nullptr) first = &*drafts[i].refusal;
+    violations.push_back({join_path(path, drafts[i].refused_field), drafts[i].refusal->message()});
+  }
+  if (violations.empty()) return std::nullopt;
+  return all_refusals ? with_violations(*first, violations) : invalid(violations);
+}
+
+/// Drafts of all requests, accepted or with what is wrong with them; of a batch in which much is
+/// wrong perhaps not all. Throws StoreError.
+template <class Resource, class Batch>
+std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& batch) {
+  std::vector<Draft<Resource>> drafts;
+  std::size_t bad = 0;
+  for (const auto& request : batch.requests()) {
+    Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request));
+    if (request.validate_only() && !batch.validate_only()) {
+      draft.violations.push_back(
+          {"validate_only", "set for one of a batch; legal: for the whole batch"});
+    }
+    if (draft.is_bad() && ++bad >= kMaximumBatchViolations) return drafts;
+  }
+  const auto places = places_of(drafts);
+  const ResourceLookup lookup = lookup_with(drafts, places, resource_lookup(application.store));
+  bad = 0;
+  for (Draft<Resource>& draft : drafts) {
+    if (DeadlineScope::has_passed()) return drafts;
+    accept_draft(lookup, draft);
+    if (draft.is_bad() && ++bad >= kMaximumBatchViolations) return drafts;
+  }
+  return drafts;
+}
+
+/// The response to a batch: what was written of each resource, and the resources themselves unless
+/// they take more than kMaximumPageBytes. `resource_at` gives one after the other.
+template <class Resource, class Response, class ResourceAt>
+Outcome<Response> answer_all(std::size_t count, const ResourceAt& resource_at) {
+  Response response;
+  std::size_t bytes = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    Outcome<Resource> found = resource_at(i);
+    if (!found.ok()) return found.error();
+    v1::WrittenResource* written = response.add_written();
+    written->set_name(found.message().name());
+    written->set_etag(found.message().etag());
+    written->set_revision(found.message().revision());
+    if (response.is_abridged()) continue;
+    bytes += found.message().ByteSizeLong();
+    *Kind<Resource>::add(response) = std::move(found.message());
+    if (bytes <= kMaximumPageBytes) continue;
+    Kind<Resource>::all(response)->Clear();
+    response.set_is_abridged(true);
+  }
+  return response;
+}
+
+/// Creates or updates all resources of a batch, or none.
+template <class Resource, class Response, class Batch>
+Outcome<Response> write_batch(Application& application, const Batch& batch) {
+  Violations violations;
+  check_size(batch, "requests", violations);
+  if (!violations.empty()) return invalid(violations);
+  for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
+    std::vector<Draft<Resource>> drafts = drafts_of<Resource>(application, batch);
+    if (DeadlineScope::has_passed()) return deadline_exceeded();
+    if (const auto refusal = refusal_of(drafts)) return *refusal;
+    if (batch.validate_only()) {
+      return answer_all<Resource, Response>(drafts.size(), [&](std::size_t i) {
+        return Outcome<Resource>(preview<Resource>(drafts[i].body));
+      });
+    }
+    if (const auto stored = store_drafts(application, std::move(drafts))) {
+      return answer_all<Resource, Response>(
+          stored->size(), [&](std::size_t i) { return answer<Resource>((*stored)[i]); });
+    }
+  }
+  return contention<Resource>("a resource of the batch");
+}
+
+}  // namespace tribodyn::server

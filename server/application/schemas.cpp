@@ -1,0 +1,101 @@
+#include "server/application/schemas.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/version.h"
+#include "server/application/guard.h"
+#include "server/application/list_filter.h"
+#include "server/contract/constraints.h"
+#include "server/mapping/history_columns.h"
+#include "server/resources/imports/import_gear_set.h"
+#include "server/resources/imports/import_lubricant.h"
+#include "server/resources/imports/import_surface.h"
+#include "server/resources/provenance.h"
+#include "server/storage/resource_types.h"
+#include "tribodyn/v1/simulations.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::EnumDescriptor;
+
+void add_constraint(const Constraint& row, v1::Schema& out) {
+  v1::Constraint* added = out.add_constraints();
+  added->set_message(std::string(row.message));
+  added->set_field(std::string(row.field));
+  added->set_unit(std::string(row.unit));
+  added->set_minimum(row.minimum);
+  added->set_maximum(row.maximum);
+  added->set_equation(std::string(row.equation));
+  added->set_reason(std::string(row.reason));
+  added->set_zero_is_unset(row.zero == Zero::kUnset);
+  added->set_required(is_required(row));
+}
+
+void add_words(const std::string& name, const std::vector<std::string>& words, v1::Schema& out) {
+  v1::Vocabulary* added = out.add_vocabularies();
+  added->set_name(name);
+  for (const std::string& word : words) added->add_words(word);
+}
+
+void add_enum(const EnumDescriptor& descriptor, v1::Schema& out) {
+  const std::string& name = descriptor.full_name();
+  const std::string package = descriptor.file()->package() + ".";
+  v1::Vocabulary* added = out.add_vocabularies();
+  added->set_name(name.starts_with(package) ? name.substr(package.size()) : name);
+  for (int i = 0; i < descriptor.value_count(); ++i) added->add_words(descriptor.value(i)->name());
+}
+
+void add_vocabularies(v1::Schema& out) {
+  add_words("history.columns", history_column_names(), out);
+  for (const char* collection : {kLubricants, kGearSets, kSurfaces, kVehicles}) {
+    add_words(std::string(collection) + ".filter", filter_fields(collection), out);
+    const auto message = new_resource(collection);
+    const ParameterPaths paths = parameter_paths(*message->GetDescriptor());
+    add_words(std::string(collection) + ".parameters", paths.numbers, out);
+  }
+  add_words("ImportLubricantRequest.viscosity_table_csv", viscosity_headers(), out);
+  add_words("ImportGearSetRequest.tooth_contact_csv", tooth_contact_headers(), out);
+  add_words("ImportGearSetRequest.series_csv", series_headers(), out);
+  add_words("SurfaceProfile.csv", profile_headers(), out);
+  for (const EnumDescriptor* each :
+       {v1::Lubricant::BaseOilClass_descriptor(), v1::Lubricant::Condition_descriptor(),
+        v1::Provenance_descriptor(), v1::FlankMember_descriptor(),
+        v1::ProfileDirection_descriptor(), v1::Levelling_descriptor(), v1::PointModel_descriptor(),
+        v1::PointStart_descriptor(), v1::SweepDirection_descriptor(),
+        v1::Simulation::State_descriptor(),
+        v1::ModelOptions::PressureViscosityIndex_descriptor()}) {
+    add_enum(*each, out);
+  }
+}
+
+std::vector<std::string> known_messages() {
+  std::vector<std::string> out;
+  for (const Constraint& row : constraints()) {
+    if (out.empty() || out.back() != row.message) out.emplace_back(row.message);
+  }
+  return out;
+}
+
+}  // namespace
+
+Outcome<v1::Schema> get_schema(Application&, const v1::GetSchemaRequest& request) {
+  return guarded<v1::Schema>([&]() -> Outcome<v1::Schema> {
+    v1::Schema out;
+    out.set_model_version(kModelVersion);
+    for (const Constraint& row : constraints()) {
+      if (request.message().empty() || request.message() == row.message) add_constraint(row, out);
+    }
+    if (out.constraints().empty()) {
+      return invalid(
+          {{"message", fmt::format("\"{}\" has no constraints{}", plain_excerpt(request.message()),
+                                   meant_text(request.message(), known_messages()))}});
+    }
+    if (request.message().empty()) add_vocabularies(out);
+    return out;
+  });
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,364 @@
+#include "server/application/simulations.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/util/time_util.h>
+#include <spdlog/spdlog.h>
+
+#include <optional>
+
+#include "server/application/element_limits.h"
+#include "server/application/guard.h"
+#include "server/application/list_filter.h"
+#include "server/application/page_token.h"
+#include "server/application/paging.h"
+#include "server/application/request_text.h"
+#include "server/application/result_summary.h"
+#include "server/application/simulation_lookup.h"
+#include "server/simulation/assumptions.h"
+#include "server/simulation/cost_estimate.h"
+#include "server/simulation/input_hash.h"
+#include "server/simulation/result_key.h"
+#include "server/simulation/simulation_inputs.h"
+#include "server/storage/resource_lookup.h"
+#include "server/support/sha256.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr int kDefaultPageSize = 50;
+
+static_assert(static_cast<int>(StoredState::kQueued) == v1::Simulation::QUEUED);
+static_assert(static_cast<int>(StoredState::kRunning) == v1::Simulation::RUNNING);
+static_assert(static_cast<int>(StoredState::kSucceeded) == v1::Simulation::SUCCEEDED);
+static_assert(static_cast<int>(StoredState::kFailed) == v1::Simulation::FAILED);
+static_assert(static_cast<int>(StoredState::kCancelled) == v1::Simulation::CANCELLED);
+
+using google::protobuf::util::TimeUtil;
+
+template <class Row>
+void set_revisions(const Row& row, v1::Simulation& out) {
+  out.set_lubricant_revision(row.lubricant_revision);
+  out.set_gear_set_revision(row.gear_set_revision);
+  out.set_surface_revision(row.surface_revision);
+  out.set_vehicle_revision(row.vehicle_revision);
+}
+
+/// Microseconds after `now`; nothing without a deadline.
+std::optional<Microseconds> deadline_time(const v1::Simulation& requested, Microseconds now) {
+  if (!requested.has_deadline_seconds()) return std::nullopt;
+  return now + static_cast<Microseconds>(1e6 * requested.deadline_seconds());
+}
+
+NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
+                             const SimulationInputs& inputs, const std::string& request_hash,
+                             const Caller& caller) {
+  const v1::Simulation& effective = inputs.effective;
+  std::vector<std::pair<std::string, std::string>> labels;
+  for (const v1::Label& each : inputs.requested.labels()) {
+    labels.emplace_back(each.key(), each.value());
+  }
+  return {.request = inputs.requested.SerializeAsString(),
+          .key = result_key(inputs),
+          .ledger = ledger(inputs),
+          .request_id = request.request_id(),
+          .request_hash = request_hash,
+          .is_forced = request.force(),
+          .deadline_time = deadline_time(inputs.requested, system_time()),
+          .client = caller.client,
+          .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
+          .labels = std::move(labels),
+          .lubricant_revision = effective.lubricant_revision(),
+          .gear_set_revision = effective.gear_set_revision(),
+          .surface_revision = effective.surface_revision(),
+          .vehicle_revision = effective.vehicle_revision()};
+}
+
+/// What a request that is only checked would become; without a name.
+v1::Simulation preview(const SimulationInputs& inputs, const NewSimulation& simulation) {
+  v1::Simulation out = inputs.requested;
+  set_revisions(simulation, out);
+  out.set_state(v1::Simulation::QUEUED);
+  out.set_input_hash(simulation.key.input_hash);
+  out.set_canonical_inputs(canonical_inputs(inputs));
+  *out.mutable_cost_estimate() = estimate_cost(inputs.effective);
+  if (simulation.deadline_time) {
+    *out.mutable_deadline_time() = TimeUtil::MicrosecondsToTimestamp(*simulation.deadline_time);
+  }
+  return out;
+}
+
+/// The stored row as a message, without its result.
+v1::Simulation to_message(Application& application, const StoredSimulation& stored) {
+  v1::Simulation out;
+  out.ParseFromString(stored.request);
+  out.set_name(simulation_name(stored.id));
+  out.set_state(static_cast<v1::Simulation::State>(stored.state));
+  set_revisions(stored, out);
+  out.set_input_hash(stored.input_hash);
+  out.set_attempt(stored.attempt);
+  out.set_cache_hit(stored.cache_hit);
+  out.set_event_sequence(stored.sequence);
+  out.set_request_id(stored.request_id);
+  out.set_pinned(stored.is_pinned);
+  const auto& keep = application.jobs.retention().keep;
+  if (keep && stored.end_time && !stored.is_pinned) {
+    *out.mutable_expire_time() = TimeUtil::MicrosecondsToTimestamp(*stored.end_time + *keep);
+  }
+  *out.mutable_create_time() = TimeUtil::MicrosecondsToTimestamp(stored.create_time);
+  if (stored.start_time) {
+    *out.mutable_start_time() = TimeUtil::MicrosecondsToTimestamp(*stored.start_time);
+  }
+  if (stored.end_time) {
+    *out.mutable_end_time() = TimeUtil::MicrosecondsToTimestamp(*stored.end_time);
+  }
+  if (stored.deadline_time) {
+    *out.mutable_deadline_time() = TimeUtil::MicrosecondsToTimestamp(*stored.deadline_time);
+  }
+  if (stored.state == StoredState::kFailed) {
+    out.mutable_error()->set_reason(stored.error_reason);
+    out.mutable_error()->set_message(stored.error_message);
+  }
+  if (stored.state == StoredState::kSucceeded) {
+    out.set_progress_fraction(1);
+  } else if (stored.state == StoredState::kRunning) {
+    const auto progress = application.jobs.progress(stored.id);
+    if (progress) out.set_progress_fraction(progress->fraction);
+  }
+  return out;
+}
+
+/// The answer to a request whose request_id belongs to another one.
+google::rpc::Status request_id_taken(const StoredSimulation& stored,
+                                     const v1::CreateSimulationRequest& request,
+                                     const std::string& text) {
+  v1::Simulation earlier;
+  earlier.ParseFromString(stored.request);
+  const std::string field = first_difference(text, request_text(earlier, stored.is_forced));
+  return already_exists(
+      "REQUEST_ID_REUSED", "tribodyn.v1.Simulation", simulation_name(stored.id),
+      fmt::format("request_id \"{}\" made {} by a request that differs in {}; take another one",
+                  request.request_id(), simulation_name(stored.id), field),
+      {{"request_id", fmt::format("belongs to another request; it differs in {}", field)}});
+}
+
+/// The simulation that an earlier request of the same id made, or that it was another request.
+std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
+                                                      const v1::CreateSimulationRequest& request,
+                                                      const std::string& text) {
+  if (request.request_id().empty()) return std::nullopt;
+  const auto id = application.store.simulation_of_request(request.request_id());
+  if (!id) return std::nullopt;
+  const auto stored = application.store.simulation(*id);
+  if (!stored) return std::nullopt;
+  if (stored->request_hash != sha256(text)) return request_id_taken(*stored, request, text);
+  if (stored->state == StoredState::kQueued) application.jobs.ensure_queued(*stored);
+  return to_message(application, *stored);
+}
+
+/// As much of its result as the view asks for, if it has one.
+void set_result(Application& application, v1::SimulationView view, v1::SimulationView otherwise,
+                std::int64_t id, v1::Simulation& out) {
+  const v1::SimulationView meant = view == v1::SIMULATION_VIEW_UNSPECIFIED ? otherwise : view;
+  if (meant == v1::SIMULATION_VIEW_BASIC) return;
+  const auto result = application.store.result(id);
+  if (!result) return;
+  out.mutable_result()->ParseFromString(*result);
+  if (meant == v1::SIMULATION_VIEW_SUMMARY) abridge(*out.mutable_result());
+}
+
+/// As the store understands them.
+std::vector<Restriction> restrictions(const std::string& filter, Violations& violations) {
+  std::vector<Restriction> out = parse_filter(filter, kSimulations, violations);
+  for (Restriction& each : out) {
+    const bool has_order = each.key == "create_time";
+    const bool is_label = each.key.starts_with("labels.");
+    const bool is_equality = each.comparison == Restriction::Comparison::kEqual ||
+                             each.comparison == Restriction::Comparison::kNotEqual;
+    if (each.key == "name") {
+      violations.push_back({"filter", "a name is not filtered by; get the simulation"});
+    } else if (!has_order && !is_equality &&
+               !(is_label && each.comparison == Restriction::Comparison::kPresent)) {
+      violations.push_back({"filter", each.key + ": legal: = or !=, of labels also :*"});
+    }
+    const std::string* word = std::get_if<std::string>(&each.value);
+    v1::Simulation::State state = v1::Simulation::STATE_UNSPECIFIED;
+    if (each.key == "state" && word != nullptr && v1::Simulation::State_Parse(*word, &state)) {
+      each.value = std::int64_t{state};
+    }
+  }
+  return out;
+}
+
+bool is_ascending(const std::string& order_by, Violations& violations) {
+  if (order_by == "create_time" || order_by == "create_time asc") return true;
+  if (!order_by.empty() && order_by != "create_time desc") {
+    violations.push_back({"order_by", "legal: create_time, followed by nothing, asc or desc"});
+  }
+  return false;
+}
+
+/// Where the page behind a token begins.
+std::optional<SimulationQuery::Place> place(const std::string& scope, const std::string& token) {
+  const std::optional<PageStart> start = parse_page_token(scope, token);
+  if (!start) return std::nullopt;
+  const auto* time = std::get_if<std::int64_t>(&start->value);
+  const auto id = simulation_id(start->name);
+  if (time == nullptr || !id) return std::nullopt;
+  return SimulationQuery::Place{*time, *id};
+}
+
+/// Joins what the client calls the request, the job and its result. Names only, no inputs.
+void log_submission(const NewSimulation& simulation, const Added& added) {
+  spdlog::info(
+      "event=simulation_{} simulation={} request_id={} client={} input_hash={} cost_seconds={:.6f}",
+      added.kind == Added::Kind::kQueued   ? "queued"
+      : added.kind == Added::Kind::kServed ? "served"
+                                           : "not_added",
+      added.id == 0 ? "-" : simulation_name(added.id), simulation.request_id, simulation.client,
+      simulation.key.input_hash, simulation.cost_seconds);
+}
+
+google::rpc::Status no_place(Application& application, int retry_seconds) {
+  if (application.jobs.is_stopping()) return shutting_down();
+  return exhausted(
+      fmt::format("too many simulations wait already; try again in {} s", retry_seconds),
+      retry_seconds);
+}
+
+}  // namespace
+
+Outcome<v1::Simulation> create_simulation(Application& application,
+                                          const v1::CreateSimulationRequest& request,
+                                          const Caller& caller) {
+  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
+    Violations violations;
+    check_request_id(request.request_id(), violations);
+    if (!request.has_simulation()) violations.push_back({"simulation", "not set"});
+    check_counts(request.simulation(), "simulation", violations);  // before work that they multiply
+    if (!violations.empty()) return invalid(violations);
+    const std::string text = request_text(client_part(request.simulation()), request.force());
+    // Before anything else, as what it rests on may have changed since.
+    auto earlier = earlier_answer(application, request, text);
+    if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
+    const StopWatch watch;
+    const auto inputs = read_simulation(request.simulation(), resource_lookup(application.store),
+                                        "simulation", violations);
+    application.jobs.metrics().observe(Phase::kValidation, watch.seconds());
+    if (!inputs) {
+      application.jobs.metrics().count(Submission::kInvalid);
+      return invalid(violations);
+    }
+    const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), caller);
+    if (request.validate_only()) return preview(*inputs, simulation);
+    const auto [added, retry_seconds] = application.jobs.submit(simulation);
+    log_submission(simulation, added);
+    if (added.kind == Added::Kind::kNoPlace) return no_place(application, retry_seconds);
+    if (added.kind == Added::Kind::kRequestIdTaken) {
+      return request_id_taken(added.stored, request, text);
+    }
+    return to_message(application, added.stored);
+  });
+}
+
+Outcome<v1::Simulation> get_simulation(Application& application,
+                                       const v1::GetSimulationRequest& request) {
+  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
+    const auto found = find_simulation(application, request.name());
+    if (!found.ok()) return found.error();
+    v1::Simulation out = to_message(application, found.message());
+    set_result(application, request.view(), v1::SIMULATION_VIEW_SUMMARY, found.message().id, out);
+    return out;
+  });
+}
+
+Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
+                                                      const v1::ListSimulationsRequest& request) {
+  return guarded<v1::ListSimulationsResponse>([&]() -> Outcome<v1::ListSimulationsResponse> {
+    Violations violations;
+    SimulationQuery query;
+    query.limit = page_size(request.page_size(), kDefaultPageSize, violations);
+    query.byte_limit = kMaximumPageBytes;
+    query.restrictions = restrictions(request.filter(), violations);
+    query.ascending = is_ascending(request.order_by(), violations);
+    const std::string scope =
+        fmt::format("{}\n{}\n{}", kSimulations, request.filter(), request.order_by());
+    if (!request.page_token().empty()) {
+      query.after = place(scope, request.page_token());
+      if (!query.after) add_bad_page_token(violations);
+    }
+    if (!violations.empty()) return invalid(violations);
+    const Page<StoredSimulation> page = application.store.simulations(query);
+    v1::ListSimulationsResponse response;
+    std::size_t bytes = 0;
+    bool is_cut = false;
+    for (const StoredSimulation& row : page.rows) {
+      v1::Simulation next = to_message(application, row);
+      set_result(application, request.view(), v1::SIMULATION_VIEW_BASIC, row.id, next);
+      bytes += next.ByteSizeLong();
+      is_cut = response.simulations_size() > 0 && bytes > kMaximumPageBytes;
+      if (is_cut) break;
+      *response.add_simulations() = std::move(next);
+    }
+    if (page.more || is_cut) {
+      const StoredSimulation& last = page.rows[response.simulations_size() - 1];
+      response.set_next_page_token(page_token(scope, {last.create_time, simulation_name(last.id)}));
+    }
+    return response;
+  });
+}
+
+namespace {
+
+Outcome<v1::Simulation> set_pinned(Application& application, const std::string& name,
+                                   bool is_pinned) {
+  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
+    const auto found = find_simulation(application, name);
+    if (!found.ok()) return found.error();
+    // All reads come before the write: once the write is committed, nothing may fail any more.
+    v1::Simulation before;
+    set_result(application, v1::SIMULATION_VIEW_SUMMARY, v1::SIMULATION_VIEW_SUMMARY,
+               found.message().id, before);
+    const auto pinned = application.store.set_pinned(found.message().id, is_pinned);
+    if (!pinned) return does_not_exist(name);
+    v1::Simulation out = to_message(application, *pinned);
+    if (before.has_result()) *out.mutable_result() = std::move(*before.mutable_result());
+    return out;
+  });
+}
+
+}  // namespace
+
+Outcome<v1::Simulation> pin_simulation(Application& application,
+                                       const v1::PinSimulationRequest& request) {
+  return set_pinned(application, request.name(), true);
+}
+
+Outcome<v1::Simulation> unpin_simulation(Application& application,
+                                         const v1::UnpinSimulationRequest& request) {
+  return set_pinned(application, request.name(), false);
+}
+
+Outcome<v1::Simulation> cancel_simulation(Application& application,
+                                          const v1::CancelSimulationRequest& request) {
+  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
+    auto found = find_simulation(application, request.name());
+    if (!found.ok()) return found.error();
+    StoredSimulation& stored = found.message();
+    const auto event = application.jobs.cancel(stored.id);
+    if (!event) {
+      v1::GetSimulationRequest now;
+      now.set_name(request.name());
+      return get_simulation(application, now);
+    }
+    // The answer is not read back: a read after the deadline would report a failure of a committed
+    // call.
+    stored.state = event->state;
+    stored.attempt = event->attempt;
+    stored.sequence = event->sequence;
+    stored.start_time = event->start_time;
+    stored.end_time = event->time;
+    return to_message(application, stored);
+  });
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,203 @@
+#include "server/contract/check_message.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "server/contract/constraints.h"
+#include "server/contract/output_only.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::Reflection;
+
+/// One field of one message under check.
+struct Place {
+  const FieldDescriptor& field;
+  std::string path;
+  Violations& violations;
+  Missing missing;
+};
+
+void check_number(const Place& place, double value) {
+  const Constraint* row =
+      find_constraint(place.field.containing_type()->name(), place.field.name());
+  if (row == nullptr) {
+    if (!std::isfinite(value)) {
+      place.violations.push_back(
+          {place.path, fmt::format("{} = {}; must be finite", place.field.name(), value)});
+    }
+    return;
+  }
+  if (value == 0 && row->zero == Zero::kUnset && !place.field.has_presence()) return;
+  if (value >= row->minimum && value <= row->maximum) return;  // false for NaN
+  std::string text = out_of_range_text(*row, value);
+  if (value == 0 && !place.field.has_presence() && !place.field.is_repeated()) {
+    text += "; 0 also means not set";
+  }
+  place.violations.push_back({place.path, std::move(text)});
+}
+
+void check_enum(const Place& place, int value) {
+  if (place.field.enum_type()->FindValueByNumber(value) != nullptr) return;
+  std::string names;
+  for (int i = 0; i < place.field.enum_type()->value_count(); ++i) {
+    names += (i == 0 ? "" : ", ") + place.field.enum_type()->value(i)->name();
+  }
+  place.violations.push_back(
+      {place.path, fmt::format("{} = {}; legal: {}", place.field.name(), value, names)});
+}
+
+void check_text(const Place& place, const std::string& value) {
+  const std::string& name = place.field.name();
+  const int longest = name == "description" || name == "source" || name == "warning"
+                          ? kMaximumProseLength
+                          : kMaximumTextLength;
+  if (value.size() <= static_cast<std::size_t>(longest)) return;
+  place.violations.push_back(
+      {place.path, fmt::format("{} has {} bytes; legal: at most {}", name, value.size(), longest)});
+}
+
+/// An unset field that could have been set.
+void check_missing(const Place& place) {
+  const Constraint* row =
+      find_constraint(place.field.containing_type()->name(), place.field.name());
+  if (row == nullptr || !is_required(*row)) return;
+  place.violations.push_back({place.path, not_set_text(*row)});
+}
+
+/// Tables of a gear set have checks that name row and column: gear_set_checks.h.
+bool is_table(const FieldDescriptor& field) {
+  if (field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) return false;
+  const std::string& type = field.message_type()->name();
+  return type == "MeshSeries" || type == "FlankSlot" || type == "LoadShareAtTorque";
+}
+
+void check_singular(const Message& message, const Reflection& reflection, const Place& place) {
+  switch (place.field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return check_number(place, reflection.GetDouble(message, &place.field));
+    case FieldDescriptor::CPPTYPE_INT32:
+      return check_number(place, reflection.GetInt32(message, &place.field));
+    case FieldDescriptor::CPPTYPE_ENUM:
+      return check_enum(place, reflection.GetEnumValue(message, &place.field));
+    case FieldDescriptor::CPPTYPE_STRING:
+      return check_text(place, reflection.GetString(message, &place.field));
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return check_message(reflection.GetMessage(message, &place.field), place.path,
+                           place.violations, place.missing);
+    default:
+      return;
+  }
+}
+
+void check_element(const Message& message, const Reflection& reflection, int index,
+                   const Place& place) {
+  switch (place.field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return check_number(place, reflection.GetRepeatedDouble(message, &place.field, index));
+    case FieldDescriptor::CPPTYPE_STRING:
+      return check_text(place, reflection.GetRepeatedString(message, &place.field, index));
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      return check_message(reflection.GetRepeatedMessage(message, &place.field, index), place.path,
+                           place.violations, place.missing);
+    default:
+      return;
+  }
+}
+
+/// Elements up to the longest list the service accepts, and a limited number of complaints.
+void check_repeated(const Message& message, const Reflection& reflection, const Place& place) {
+  const FieldDescriptor& field = place.field;
+  const std::string& path = place.path;
+  Violations& violations = place.violations;
+  const int count = std::min(reflection.FieldSize(message, &field), kMaximumCurvePoints);
+  Violations found;
+  for (int i = 0; i < count; ++i) {
+    check_element(message, reflection, i,
+                  {field, fmt::format("{}[{}]", path, i), found, place.missing});
+  }
+  const std::size_t reported =
+      std::min(found.size(), static_cast<std::size_t>(kMaximumReportedElements));
+  for (std::size_t i = 0; i < reported; ++i) violations.push_back(found[i]);
+  if (found.size() > reported) {
+    violations.push_back(
+        {path, fmt::format("{} more of its elements are not acceptable", found.size() - reported)});
+  }
+}
+
+bool may_be_infinite(std::string_view field) {
+  return field == "shear_rate_per_second" ||
+         field == "pinion_thermal_resistance_kelvins_per_watt" ||
+         field == "gear_thermal_resistance_kelvins_per_watt";
+}
+
+bool is_finite(double value, bool infinity_allowed, const FieldDescriptor& field) {
+  if (std::isfinite(value)) return true;
+  return std::isinf(value) && value > 0 && (infinity_allowed || may_be_infinite(field.name()));
+}
+
+std::string first_not_finite(const Message& message, bool infinity_allowed) {
+  const Reflection& reflection = *message.GetReflection();
+  const auto& descriptor = *message.GetDescriptor();
+  for (int f = 0; f < descriptor.field_count(); ++f) {
+    const FieldDescriptor& field = *descriptor.field(f);
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+      const int count = field.is_repeated() ? reflection.FieldSize(message, &field) : 1;
+      for (int i = 0; i < count; ++i) {
+        const double value = field.is_repeated() ? reflection.GetRepeatedDouble(message, &field, i)
+                                                 : reflection.GetDouble(message, &field);
+        if (!is_finite(value, infinity_allowed, field)) return field.name();
+      }
+    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      const bool allowed = infinity_allowed || may_be_infinite(field.name());
+      const int count = field.is_repeated()
+                            ? reflection.FieldSize(message, &field)
+                            : static_cast<int>(reflection.HasField(message, &field));
+      for (int i = 0; i < count; ++i) {
+        const Message& inner = field.is_repeated()
+                                   ? reflection.GetRepeatedMessage(message, &field, i)
+                                   : reflection.GetMessage(message, &field);
+        const std::string path = first_not_finite(inner, allowed);
+        if (!path.empty()) return field.name() + "." + path;
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+void check_message(const Message& message, const std::string& path, Violations& violations,
+                   Missing missing) {
+  const Reflection& reflection = *message.GetReflection();
+  const auto& descriptor = *message.GetDescriptor();
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const FieldDescriptor& field = *descriptor.field(i);
+    if (is_output_only(field) || is_table(field)) continue;
+    const Place place{field, join_path(path, field.name()), violations, missing};
+    if (field.is_repeated()) {
+      check_repeated(message, reflection, place);
+    } else if (!field.has_presence() || reflection.HasField(message, &field)) {
+      check_singular(message, reflection, place);
+    } else if (missing == Missing::kViolation) {
+      check_missing(place);
+    }
+  }
+}
+
+void check_size(const Message& request, const std::string& list, Violations& violations) {
+  const auto& descriptor = *request.GetDescriptor();
+  const int size = request.GetReflection()->FieldSize(request, descriptor.FindFieldByName(list));
+  const Constraint& row = *find_constraint(descriptor.name(), list);
+  if (size >= row.minimum && size <= row.maximum) return;
+  violations.push_back({list, out_of_range_text(row, size)});
+}
+
+std::string first_not_finite(const Message& message) { return first_not_finite(message, false); }
+
+}  // namespace tribodyn::server

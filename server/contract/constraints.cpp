@@ -1,0 +1,288 @@
+#include "server/contract/constraints.h"
+
+#include <fmt/format.h>
+
+namespace tribodyn::server {
+namespace {
+
+constexpr Constraint kConstraints[] = {
+    // message, field, unit, minimum, maximum, equation, reason, zero
+    {"Lubricant", "vogel_viscosity_prefactor_pascal_seconds", "Pa s", 1e-12, 1e3, "eq 34, eta_ref",
+     ""},
+    {"Lubricant", "vogel_temperature_coefficient_kelvin", "K", 1, 1e5, "eq 34, A_1", ""},
+    {"Lubricant", "vogel_reference_temperature_kelvin", "K", 0, 400, "eq 34, T_0,ref", ""},
+    {"Lubricant", "pressure_viscosity_coefficient_per_pascal", "1/Pa", 1e-10, 1e-6, "eq 33, alpha*",
+     ""},
+    {"Lubricant", "pressure_viscosity_temperature_kelvin", "K", 150, 600, "eq 33",
+     "where alpha* was measured"},
+    {"Lubricant", "relaxation_time_seconds", "s", 0, 10, "eq 24, lambda", ""},
+    {"Lubricant", "havriliak_negami_alpha", "", 0.01, 5, "eq 24, alpha", ""},
+    {"Lubricant", "havriliak_negami_beta", "", 0, 5, "eq 24, beta", ""},
+    {"Lubricant", "rheology_reference_temperature_kelvin", "K", 150, 600, "eq 25, T_ref", ""},
+    {"Lubricant", "limiting_shear_stress_at_zero_pressure_pascals", "Pa", 0, 1e10, "eq 23, tau_L0",
+     ""},
+    {"Lubricant", "limiting_shear_stress_coefficient", "", 0, 10, "eq 23, gamma_L", ""},
+    {"Lubricant", "thermal_conductivity_watts_per_metre_kelvin", "W/(m K)", 1e-3, 100, "eq 35, k_f",
+     ""},
+    {"Lubricant", "density_at_zero_kelvin_kilograms_per_cubic_metre", "kg/m3", 100, 1e5, "eq 26",
+     ""},
+    {"Lubricant", "density_slope_kilograms_per_cubic_metre_kelvin", "kg/(m3 K)", -100, 100, "eq 26",
+     ""},
+    {"LubricantMeasurements", "kinematic_viscosity_40_celsius_square_millimetres_per_second",
+     "mm2/s", 1, 1e5, "eq 34, KV40", "ASTM D341 and D2270 begin at 2 mm2/s", Zero::kUnset},
+    {"LubricantMeasurements", "kinematic_viscosity_100_celsius_square_millimetres_per_second",
+     "mm2/s", 0.5, 1e4, "eq 34, KV100", "", Zero::kUnset},
+    {"LubricantMeasurements",
+     "sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second", "mm2/s", 0.5, 1e4,
+     "SAE J306-2019", "CEC L-45-A-99", Zero::kUnset},
+    {"LubricantMeasurements", "density_15_celsius_kilograms_per_cubic_metre", "kg/m3", 500, 2000,
+     "eq 26", "", Zero::kUnset},
+    {"BrookfieldViscosity", "temperature_celsius", "C", -70, 20, "SAE J306-2019", "ASTM D2983"},
+    {"BrookfieldViscosity", "dynamic_viscosity_millipascal_seconds", "mPa s", 10, 1e7,
+     "SAE J306-2019", "ASTM D2983"},
+    {"ViscosityMeasurement", "temperature_celsius", "C", -70, 250, "eq 34", ""},
+    {"ViscosityMeasurement", "kinematic_viscosity_square_millimetres_per_second", "mm2/s", 0.1, 1e7,
+     "eq 34", ""},
+    {"ViscosityMeasurement", "dynamic_viscosity_millipascal_seconds", "mPa s", 0.1, 1e7, "eq 34",
+     ""},
+    {"ViscosityMeasurement", "relative_standard_uncertainty", "", 0, 1, "eq 34",
+     "0 means not stated"},
+    {"DensityMeasurement", "temperature_celsius", "C", -70, 250, "eq 26", ""},
+    {"DensityMeasurement", "density_kilograms_per_cubic_metre", "kg/m3", 500, 2000, "eq 26", ""},
+    {"ParameterProvenance", "standard_uncertainty", "", 0, 1e16, "",
+     "in the unit of the parameter; 0 means not known"},
+
+    {"Surface", "asperity_density_per_square_metre", "1/m2", 1e3, 1e16, "eq 41, eta_G", ""},
+    {"Surface", "asperity_radius_metres", "m", 1e-9, 1, "eq 41, beta_G", ""},
+    {"Surface", "composite_rms_height_metres", "m", 1e-10, 1e-2, "eq 41, sigma_G",
+     "the film ratio divides by it"},
+    {"Surface", "tribofilm_shear_strength_pascals", "Pa", 0, 1e10, "eq 40, tau_0", ""},
+    {"Surface", "asperity_friction_coefficient", "", 0, 10, "eq 40, zeta", ""},
+    {"SurfaceMeasurement", "samples", "", 5, 1000000, "eq 45", ""},
+    {"SurfaceMeasurement", "spacing_metres", "m", 1e-10, 1e-2, "eq 45", ""},
+    {"SurfaceMeasurement", "short_wave_cut_off_metres", "m", 1e-9, 1e-2, "eq 45, lambda_s",
+     "ISO 16610-21", Zero::kUnset},
+    {"SurfaceMeasurement", "long_wave_cut_off_metres", "m", 1e-9, 1, "eq 45, lambda_c",
+     "ISO 16610-21", Zero::kUnset},
+    {"ImportSurfaceProfilesRequest", "short_wave_cut_off_metres", "m", 1e-9, 1e-2,
+     "eq 45, lambda_s", "ISO 16610-21", Zero::kUnset},
+    {"ImportSurfaceProfilesRequest", "long_wave_cut_off_metres", "m", 1e-9, 1, "eq 45, lambda_c",
+     "ISO 16610-21", Zero::kUnset},
+    {"SurfaceMeasurement", "mean_square_height_square_metres", "m2", 1e-24, 1e-4, "eq 45, m0", ""},
+    {"SurfaceMeasurement", "mean_square_slope", "", 1e-16, 1e4, "eq 45, m2", ""},
+    {"SurfaceMeasurement", "mean_square_curvature_per_square_metre", "1/m2", 1e-8, 1e20,
+     "eq 45, m4", ""},
+
+    {"Vehicle", "mass_kilograms", "kg", 1, 1e6, "eq 7, m_v", ""},
+    {"Vehicle", "rolling_resistance_coefficient", "", 0, 1, "eq 7, f_r", ""},
+    {"Vehicle", "drag_coefficient", "", 0, 10, "eq 7, c_a", ""},
+    {"Vehicle", "frontal_area_square_metres", "m2", 0, 1e3, "eq 7, A_f", ""},
+    {"Vehicle", "air_density_kilograms_per_cubic_metre", "kg/m3", 0, 10, "eq 7, rho_air", ""},
+    {"Vehicle", "wheel_radius_metres", "m", 0.01, 10, "eq 7, r_w", ""},
+    {"Vehicle", "gravity_metres_per_second_squared", "m/s2", 0, 100, "eq 7, g", ""},
+
+    {"GearSet", "pinion_teeth", "", 2, 1000, "eqs 8-11, N_p", ""},
+    {"GearSet", "gear_teeth", "", 2, 1000, "eqs 8-11, N_g", ""},
+    {"GearSet", "youngs_modulus_pascals", "Pa", 1e6, 1e13, "eq 13, E", ""},
+    {"GearSet", "poissons_ratio", "", -0.99, 0.5, "eq 13, nu", ""},
+    {"GearSet", "solid_thermal_conductivity_watts_per_metre_kelvin", "W/(m K)", 1e-3, 1e4,
+     "eq 35, k_s", ""},
+    {"GearSet", "solid_density_kilograms_per_cubic_metre", "kg/m3", 1, 1e5, "eq 35, rho_s", ""},
+    {"GearSet", "solid_specific_heat_capacity_joules_per_kilogram_kelvin", "J/(kg K)", 1, 1e5,
+     "eq 35, c_p", ""},
+    {"DrivelineDynamics", "pinion_shaft_inertia_kilogram_square_metres", "kg m2", 1e-9, 1e6,
+     "eq 1, I_s", ""},
+    {"DrivelineDynamics", "pinion_inertia_kilogram_square_metres", "kg m2", 1e-9, 1e6, "eq 2, I_p",
+     ""},
+    {"DrivelineDynamics", "gear_inertia_kilogram_square_metres", "kg m2", 1e-9, 1e6, "eq 3, I_g",
+     ""},
+    {"DrivelineDynamics", "wheel_inertia_kilogram_square_metres", "kg m2", 1e-9, 1e6, "eq 4, I_w",
+     ""},
+    {"DrivelineDynamics", "pinion_shaft_stiffness_newton_metres_per_radian", "N m/rad", 1e-3, 1e12,
+     "eqs 1, 2, k_t1", ""},
+    {"DrivelineDynamics", "gear_shaft_stiffness_newton_metres_per_radian", "N m/rad", 1e-3, 1e12,
+     "eqs 3, 4, k_t2", ""},
+    {"DrivelineDynamics", "pinion_shaft_damping_newton_metre_seconds_per_radian", "N m s/rad", 0,
+     1e9, "eqs 1, 2, c_t1", ""},
+    {"DrivelineDynamics", "gear_shaft_damping_newton_metre_seconds_per_radian", "N m s/rad", 0, 1e9,
+     "eqs 3, 4, c_t2", ""},
+    {"DrivelineDynamics", "mesh_damping_newton_seconds_per_metre", "N s/m", 0, 1e9, "eqs 2, 3, c",
+     ""},
+    {"DrivelineDynamics", "half_backlash_metres", "m", 0, 1e-2, "eq 5, b", ""},
+
+    {"MeshSeries", "pinion_torque_newton_metres", "N m", 0, 1e5, "eqs 8-11", ""},
+    {"FourierSeries", "mean", "", -1e12, 1e12, "eqs 8-11", "in the unit of the series"},
+    {"FourierSeries", "sine", "", -1e12, 1e12, "eqs 8-11", "in the unit of the series"},
+    {"FourierSeries", "cosine", "", -1e12, 1e12, "eqs 8-11", "in the unit of the series"},
+    {"FlankSlot", "load_share", "", 0, 1.001, "eq 29", "a share of the mesh force"},
+    {"FlankSlot", "radius_x_metres", "m", 1e-5, 1e4, "eqs 15, 20, R_zx", ""},
+    {"FlankSlot", "radius_y_metres", "m", 1e-5, 1e4, "eqs 15, 20, R_zy", ""},
+    {"FlankSlot", "pinion_velocity_x_metres", "m", -10, 10, "eq 17, A_up", ""},
+    {"FlankSlot", "pinion_velocity_y_metres", "m", -10, 10, "eq 17, A_vp", ""},
+    {"FlankSlot", "gear_velocity_x_metres", "m", -10, 10, "eq 17, A_ug", ""},
+    {"FlankSlot", "gear_velocity_y_metres", "m", -10, 10, "eq 17, A_vg", ""},
+    {"FlankSlot", "contact_point_velocity_x_metres", "m", -10, 10, "eq 17", ""},
+    {"FlankSlot", "contact_point_velocity_y_metres", "m", -10, 10, "eq 17", ""},
+    {"FlankSlot", "pinion_friction_arm_metres", "m", -10, 10, "eq 2, r_fr,p", ""},
+    {"FlankSlot", "gear_friction_arm_metres", "m", -10, 10, "eq 3, r_fr,g", ""},
+    {"LoadShareAtTorque", "pinion_torque_newton_metres", "N m", 0, 1e5, "eq 29", ""},
+    {"LoadShareAtTorque.Slot", "load_share", "", 0, 1.001, "eq 29", "a share of the mesh force"},
+
+    {"EvaluateContactRequest", "load_newtons", "N", 0, 1e6, "eq 41, W", ""},
+    {"EvaluateContactRequest", "radius_x_metres", "m", 1e-5, 1e4, "eqs 15, 20, R_zx", ""},
+    {"EvaluateContactRequest", "radius_y_metres", "m", 1e-5, 1e4, "eqs 15, 20, R_zy", ""},
+    {"EvaluateContactRequest", "pinion_velocity_x_metres_per_second", "m/s", -1e3, 1e3,
+     "eq 17, u_s,p", ""},
+    {"EvaluateContactRequest", "pinion_velocity_y_metres_per_second", "m/s", -1e3, 1e3,
+     "eq 17, v_s,p", ""},
+    {"EvaluateContactRequest", "gear_velocity_x_metres_per_second", "m/s", -1e3, 1e3,
+     "eq 17, u_s,g", ""},
+    {"EvaluateContactRequest", "gear_velocity_y_metres_per_second", "m/s", -1e3, 1e3,
+     "eq 17, v_s,g", ""},
+    {"EvaluateContactRequest", "sump_temperature_celsius", "C", -70, 200, "eq 14", ""},
+    {"EvaluateContactRequest", "inlet_temperature_rise_kelvin", "K", 0, 300, "eq 14", ""},
+    {"EvaluateContactRequest", "youngs_modulus_pascals", "Pa", 1e6, 1e13, "eq 13, E", ""},
+    {"EvaluateContactRequest", "poissons_ratio", "", -0.99, 0.5, "eq 13, nu", ""},
+    {"EvaluateContactRequest", "solid_thermal_conductivity_watts_per_metre_kelvin", "W/(m K)", 1e-3,
+     1e4, "eq 35, k_s", ""},
+    {"EvaluateContactRequest", "solid_density_kilograms_per_cubic_metre", "kg/m3", 1, 1e5,
+     "eq 35, rho_s", ""},
+    {"EvaluateContactRequest", "solid_specific_heat_capacity_joules_per_kilogram_kelvin",
+     "J/(kg K)", 1, 1e5, "eq 35, c_p", ""},
+    {"EvaluateContactRequest", "asperity_density_per_square_metre", "1/m2", 1e3, 1e16,
+     "eq 41, eta_G", ""},
+    {"EvaluateContactRequest", "asperity_radius_metres", "m", 1e-9, 1, "eq 41, beta_G", ""},
+    {"EvaluateContactRequest", "composite_rms_height_metres", "m", 1e-10, 1e-2, "eq 41, sigma_G",
+     "the film ratio divides by it"},
+    {"EvaluateContactRequest", "tribofilm_shear_strength_pascals", "Pa", 0, 1e10, "eq 40, tau_0",
+     ""},
+    {"EvaluateContactRequest", "asperity_friction_coefficient", "", 0, 10, "eq 40, zeta", ""},
+
+    {"Simulation", "sump_temperature_celsius", "C", -70, 200, "eq 14", ""},
+    {"Simulation", "inlet_temperature_rise_kelvin", "K", 0, 300, "eq 14", ""},
+    {"Simulation", "deadline_seconds", "s", 0.001, 31'622'400, "work limit", "at most a year"},
+    {"Cruise", "speed_kilometers_per_hour", "km/h", 0.1, 400, "eq 7", ""},
+    {"Cruise", "ascent_angle_degrees", "degrees", -45, 45, "eq 7", ""},
+    {"DriveCycleSnapshot", "speed_kilometers_per_hour", "km/h", 0.1, 400, "eq 7", ""},
+    {"DriveCycleSnapshot", "acceleration_metres_per_second_squared", "m/s2", -50, 50, "eq 7", ""},
+    {"DriveCycleSnapshot", "ascent_angle_degrees", "degrees", -45, 45, "eq 7", ""},
+    {"PrescribedTorque", "pinion_torque_newton_metres", "N m", -1e5, 1e5, "eq 1, T_s", ""},
+    {"PrescribedTorque", "pinion_speed_radians_per_second", "rad/s", 0.01, 1e4, "eq 1, phidot_s",
+     "the model needs forward rotation"},
+    {"HistoryRequest", "mesh_cycles", "", 1, 1000, "work limit", "", Zero::kUnset},
+    {"HistoryRequest", "samples_per_mesh_cycle", "", 2, 100000, "work limit", "", Zero::kUnset},
+    {"InefficiencyCurveStudy", "speeds_kilometers_per_hour", "km/h", 0.1, 400, "eq 7", ""},
+    {"InefficiencyCurveStudy", "first_speed_kilometers_per_hour", "km/h", 0.1, 400, "eq 7", "",
+     Zero::kUnset},
+    {"InefficiencyCurveStudy", "last_speed_kilometers_per_hour", "km/h", 0.1, 400, "eq 7", "",
+     Zero::kUnset},
+    {"InefficiencyCurveStudy", "speed_step_kilometers_per_hour", "km/h", 1e-3, 400, "eq 7", "",
+     Zero::kUnset},
+    {"InefficiencyCurveStudy", "ascent_angle_degrees", "degrees", -45, 45, "eq 7", ""},
+    {"SolverOptions", "relative_tolerance", "", 1e-11, 1e-3, "eqs 1-6",
+     "below it lies round-off, above it no steady state", Zero::kUnset},
+    {"SolverOptions", "tolerance", "", 1e-8, 1e-2, "eq 30", "what shooting can estimate and keep",
+     Zero::kUnset},
+    {"SolverOptions", "settling_tolerance", "", 1e-12, 1e-1, "eq 30", "", Zero::kUnset},
+    {"SolverOptions", "maximum_mesh_cycles", "", 1, 100000, "work limit", "", Zero::kUnset},
+    {"SolverOptions", "recorded_mesh_cycles", "", 1, 1000, "work limit", "", Zero::kUnset},
+
+    {"BatchCreateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchUpdateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchCreateGearSetsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchUpdateGearSetsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchCreateSurfacesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchUpdateSurfacesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchCreateVehiclesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+    {"BatchUpdateVehiclesRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
+     "requests of one transaction"},
+};
+
+/// A unit that people write in place of the contract's, and the range of the usual: a number that
+/// is not legal but is usual in that unit was probably written in it.
+struct UnitSlip {
+  std::string_view message;  ///< whose fields it concerns; empty: all
+  std::string_view unit;     ///< of the contract
+  std::string_view written;
+  double factor;
+  double offset;
+  double least_usual, most_usual;  ///< in the contract's unit
+};
+
+constexpr UnitSlip kUnitSlips[] = {
+    // Lubricants have 780 to 1150 kg/m3 at 15 C.
+    {"", "kg/m3", "g/cm3", 1e3, 0, 700, 1300},
+    {"", "kg/m3", "g/cm3 with its decimal point one place off", 1e2, 0, 700, 1300},
+    // Gear oils have 3 to 50 mm2/s at 100 C and 15 to 1000 mm2/s at 40 C.
+    {"", "mm2/s", "m2/s", 1e6, 0, 2, 5000},
+    {"", "mm2/s", "St", 1e2, 0, 2, 5000},
+    // Brookfield viscosities are 3000 to 300 000 mPa s.
+    {"", "mPa s", "Pa s", 1e3, 0, 1, 1e6},
+    {"", "mPa s", "uPa s", 1e-3, 0, 1, 1e6},
+    // alpha* of oils is 8 to 40 1/GPa.
+    {"", "1/Pa", "1/GPa", 1e-9, 0, 4e-9, 1e-7},
+    {"", "1/Pa", "mm2/N", 1e-6, 0, 4e-9, 1e-7},
+    {"Lubricant", "K", "C", 1, 273.15, 200, 420},
+    // Asperities are 1 to 1000 um in radius, the height of flanks is 0.05 to 5 um.
+    {"Surface", "m", "um", 1e-6, 0, 1e-8, 1e-3},
+    {"Surface", "Pa", "MPa", 1e6, 0, 1e4, 1e9}};
+
+/// "; 0.895 looks like g/cm3: did you mean 895 kg/m3?", or nothing.
+std::string slip_text(const Constraint& row, double value) {
+  for (const UnitSlip& slip : kUnitSlips) {
+    if (slip.unit != row.unit || !(slip.message.empty() || slip.message == row.message)) continue;
+    const double meant = value * slip.factor + slip.offset;
+    if (!(meant >= slip.least_usual && meant <= slip.most_usual)) continue;
+    if (!(meant >= row.minimum && meant <= row.maximum)) continue;
+    return fmt::format("; {} looks like {}: did you mean {:.6g} {}?", value, slip.written, meant,
+                       row.unit);
+  }
+  return "";
+}
+
+/// "legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".
+std::string legal_text(const Constraint& row) {
+  return fmt::format("legal: {} to {} ({}{}{})", number_text(row.minimum),
+                     quantity_text(row.maximum, row.unit), row.equation,
+                     row.equation.empty() || row.reason.empty() ? "" : ": ", row.reason);
+}
+
+}  // namespace
+
+std::span<const Constraint> constraints() { return kConstraints; }
+
+bool is_required(const Constraint& row) {
+  return row.message == "Lubricant" || row.message == "GearSet" ||
+         row.message == "DrivelineDynamics" || row.message == "Surface" || row.message == "Vehicle";
+}
+
+const Constraint* find_constraint(std::string_view message, std::string_view field) {
+  for (const Constraint& row : kConstraints) {
+    if (row.message == message && row.field == field) return &row;
+  }
+  return nullptr;
+}
+
+std::string number_text(double value) { return fmt::format("{}", value); }
+
+std::string quantity_text(double value, std::string_view unit) {
+  return unit.empty() ? number_text(value) : fmt::format("{} {}", value, unit);
+}
+
+std::string out_of_range_text(const Constraint& row, double value) {
+  return fmt::format("{} = {}; {}{}", row.field, quantity_text(value, row.unit), legal_text(row),
+                     slip_text(row, value));
+}
+
+std::string not_set_text(const Constraint& row) {
+  return fmt::format("{} is not set; {}", row.field, legal_text(row));
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <google/protobuf/repeated_ptr_field.h>
+
+#include <string>
+
+#include "server/contract/violations.h"
+#include "tribodyn/v1/labels.pb.h"
+
+namespace tribodyn::server {
+
+using Labels = google::protobuf::RepeatedPtrField<v1::Label>;
+
+inline constexpr int kMaximumSimulationLabels = 64;
+
+/// Keys of letters, digits, '-', '_' and '.', each once.
+void check_labels(const Labels& labels, const std::string& path, Violations& violations);
+
+/// In the order of their keys.
+void sort_labels(Labels& labels);
+
+}  // namespace tribodyn::server

@@ -1,0 +1,132 @@
+#include "server/contract/resource_names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+
+#include "server/contract/constraints.h"
+
+namespace tribodyn::server {
+namespace {
+
+bool is_id_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+         c == '_' || c == '.';
+}
+
+/// Edits (Levenshtein) from one text to all of another, and to that beginning of it which is next.
+struct Edits {
+  std::size_t whole = 0;
+  std::size_t beginning = 0;
+};
+
+Edits edits(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return {row.back(), *std::min_element(row.begin(), row.end())};
+}
+
+/// The part after "lubricants/": the collection says nothing about which name is meant.
+std::string_view id_of(std::string_view name) { return name.substr(name.find('/') + 1); }
+
+}  // namespace
+
+std::string plain_excerpt(std::string_view text) {
+  std::string out(text.substr(0, 60));
+  for (char& c : out) {
+    if (c < ' ' || c > '~') c = '?';
+  }
+  return text.size() > 60 ? out + "..." : out;
+}
+
+bool is_resource_name(std::string_view name, std::string_view collection) {
+  if (name.size() > static_cast<std::size_t>(kMaximumTextLength)) return false;
+  if (name.size() < collection.size() + 2 || name.substr(0, collection.size()) != collection ||
+      name[collection.size()] != '/') {
+    return false;
+  }
+  const std::string_view id = name.substr(collection.size() + 1);
+  return std::all_of(id.begin(), id.end(), is_id_character);
+}
+
+std::optional<RevisionName> parse_revision_name(std::string_view name,
+                                                std::string_view collection) {
+  const std::size_t at = name.find('@');
+  if (!is_resource_name(name.substr(0, at), collection)) return std::nullopt;
+  RevisionName out{std::string(name.substr(0, at)), 0};
+  if (at == std::string_view::npos) return out;
+  const std::string_view digits = name.substr(at + 1);
+  const auto [end, error] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), out.revision);
+  const bool is_canonical = std::to_string(out.revision) == digits;
+  if (error != std::errc() || !is_canonical || out.revision < 1) return std::nullopt;
+  return out;
+}
+
+std::string revision_name(std::string_view name, int revision) {
+  return fmt::format("{}@{}", name, revision);
+}
+
+std::string deleted_name_text(std::string_view name) {
+  return fmt::format("\"{}\" is deleted; undelete it to use it", plain_excerpt(name));
+}
+
+std::optional<std::int64_t> simulation_id(std::string_view name) {
+  if (!is_resource_name(name, kSimulations)) return std::nullopt;
+  const std::string_view digits = name.substr(std::string_view(kSimulations).size() + 1);
+  std::int64_t id = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), id);
+  if (error != std::errc() || end != digits.data() + digits.size() || id <= 0) return std::nullopt;
+  return id;
+}
+
+std::string simulation_name(std::int64_t id) { return fmt::format("{}/{}", kSimulations, id); }
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {
+  const std::string_view compared = id_of(name).substr(0, kMaximumTextLength);
+  if (compared.empty()) return {};
+  const std::size_t few = std::max<std::size_t>(2, compared.size() / 3);
+  const std::size_t few_in_beginning = compared.size() / 4;  // of one letter, any name begins so
+  std::string nearest;
+  std::size_t fewest = few + 1;
+  for (const std::string& each : existing) {
+    const Edits found = edits(compared, id_of(each));
+    std::size_t count = found.whole;
+    if (id_of(each).starts_with(compared)) count = 0;
+    if (found.beginning <= few_in_beginning) count = std::min(count, found.beginning + 1);
+    if (count >= fewest) continue;
+    fewest = count;
+    nearest = each;
+  }
+  return nearest;
+}
+
+std::string meant_text(std::string_view name, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(name, known);
+  if (!nearest.empty()) return fmt::format("; did you mean \"{}\"?", nearest);
+  return fmt::format("; legal: {}", fmt::join(known, ", "));
+}
+
+std::string unknown_name_text(std::string_view name, std::string_view collection,
+                              const std::vector<std::string>& existing) {
+  const std::string nearest = nearest_name(name, existing);
+  const std::string hint = nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
+  if (parse_revision_name(name, collection)) {
+    return fmt::format("\"{}\" does not exist{}", plain_excerpt(name), hint);
+  }
+  return fmt::format("\"{}\" is not a name of the form \"{}/{{id}}\"{}", plain_excerpt(name),
+                     collection, hint);
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,315 @@
+#include "server/resources/gear_set_checks.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/reflection.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/refusal.h"
+#include "server/contract/constraints.h"
+#include "server/mapping/to_core.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using Numbers = google::protobuf::RepeatedFieldRef<double>;
+
+constexpr double kShareTolerance = 1e-3;
+constexpr double kContinuityTolerance = 1e-6;  // of the value, or of a thousandth
+constexpr double kPowerTolerance = 1e-6;       // of the speeds that make it up
+
+/// Adds violations up to a limit and counts the rest.
+class TableComplaints {
+ public:
+  TableComplaints(const std::string& path, Violations& violations)
+      : path_(path), violations_(violations) {}
+  ~TableComplaints() {
+    if (count_ <= kMaximumTableViolations) return;
+    violations_.push_back(
+        {path_, fmt::format("{} more violations", count_ - kMaximumTableViolations)});
+  }
+  TableComplaints(const TableComplaints&) = delete;
+  TableComplaints& operator=(const TableComplaints&) = delete;
+
+  bool any() const { return count_ > 0; }
+  /// `place` and `text` are made only when they are kept.
+  template <class Place, class Text>
+  void add(const Place& place, const Text& text) {
+    if (++count_ <= kMaximumTableViolations) violations_.push_back({place(), text()});
+  }
+
+ private:
+  const std::string& path_;
+  Violations& violations_;
+  std::size_t count_ = 0;
+};
+
+Numbers column(const v1::FlankSlot& slot, const FieldDescriptor& field) {
+  return slot.GetReflection()->GetRepeatedFieldRef<double>(slot, &field);
+}
+
+/// Every column of every slot has the samples of the first one; false when not.
+bool check_sizes(const v1::GearSet& set, const std::string& path, Violations& violations) {
+  const std::size_t before = violations.size();
+  const std::string slots = join_path(path, "flank_slots");
+  if (set.flank_slots_size() != kFlankPairs) {
+    violations.push_back(
+        {slots, fmt::format("{} slots; legal: {} (eq 29)", set.flank_slots_size(), kFlankPairs)});
+    return false;
+  }
+  const int samples = set.flank_slots(0).load_share_size();
+  if (samples < 2 || samples > kMaximumFlankSamples) {
+    violations.push_back({slots + "[0].load_share", fmt::format("{} samples; legal: 2 to {}",
+                                                                samples, kMaximumFlankSamples)});
+    return false;
+  }
+  const auto& descriptor = *v1::FlankSlot::descriptor();
+  for (int k = 0; k < kFlankPairs; ++k) {
+    for (int i = 0; i < descriptor.field_count(); ++i) {
+      const int size = column(set.flank_slots(k), *descriptor.field(i)).size();
+      if (size == samples) continue;
+      violations.push_back(
+          {fmt::format("{}[{}].{}", slots, k, descriptor.field(i)->name()),
+           fmt::format("{} samples; legal: {}, as in the load share of the first slot", size,
+                       samples)});
+    }
+  }
+  return violations.size() == before;
+}
+
+void check_numbers(const v1::GearSet& set, const LocateSample& locate,
+                   TableComplaints& complaints) {
+  const auto& descriptor = *v1::FlankSlot::descriptor();
+  for (int k = 0; k < kFlankPairs; ++k) {
+    for (int i = 0; i < descriptor.field_count(); ++i) {
+      const FieldDescriptor& field = *descriptor.field(i);
+      const Constraint* row = find_constraint("FlankSlot", field.name());
+      const Numbers values = column(set.flank_slots(k), field);
+      for (int j = 0; j < values.size(); ++j) {
+        const double value = values.Get(j);
+        if (value >= row->minimum && value <= row->maximum) continue;  // false for NaN
+        complaints.add([&] { return locate(k, j, field.name()); },
+                       [&] { return out_of_range_text(*row, value); });
+      }
+    }
+  }
+}
+
+void check_shares(const v1::GearSet& set, const LocateSample& locate, TableComplaints& complaints) {
+  const int samples = set.flank_slots(0).load_share_size();
+  for (int j = 0; j < samples; ++j) {
+    double sum = 0;
+    for (const v1::FlankSlot& slot : set.flank_slots()) sum += slot.load_share(j);
+    if (std::abs(sum - 1) <= kShareTolerance) continue;
+    complaints.add([&] { return locate(0, j, "load_share"); },
+                   [&] {
+                     return fmt::format(
+                         "load shares of the three pairs add up to {}; legal: 1 within {} (eq 29)",
+                         sum, kShareTolerance);
+                   });
+  }
+}
+
+void check_continuity(const v1::GearSet& set, const LocateSample& locate,
+                      TableComplaints& complaints) {
+  const auto& descriptor = *v1::FlankSlot::descriptor();
+  for (int k = 0; k + 1 < kFlankPairs; ++k) {
+    for (int i = 0; i < descriptor.field_count(); ++i) {
+      const FieldDescriptor& field = *descriptor.field(i);
+      const Numbers here = column(set.flank_slots(k), field);
+      const double last = here.Get(here.size() - 1);
+      const double first = column(set.flank_slots(k + 1), field).Get(0);
+      if (std::abs(last - first) <= kContinuityTolerance * (1e-3 + std::abs(last))) continue;
+      complaints.add([&] { return locate(k, here.size() - 1, field.name()); },
+                     [&] {
+                       return fmt::format(
+                           "{} = {}, but {} where the next pair takes over ({}); legal: equal",
+                           field.name(), last, first, locate(k + 1, 0, field.name()));
+                     });
+    }
+  }
+}
+
+void check_power(const v1::GearSet& set, const LocateSample& locate, TableComplaints& complaints) {
+  const double ratio = static_cast<double>(set.pinion_teeth()) / set.gear_teeth();
+  for (int k = 0; k < kFlankPairs; ++k) {
+    const v1::FlankSlot& slot = set.flank_slots(k);
+    for (int j = 0; j < slot.load_share_size(); ++j) {
+      const double pinion =
+          std::hypot(slot.pinion_velocity_x_metres(j), slot.pinion_velocity_y_metres(j));
+      const double sliding =
+          std::hypot(slot.pinion_velocity_x_metres(j) - ratio * slot.gear_velocity_x_metres(j),
+                     slot.pinion_velocity_y_metres(j) - ratio * slot.gear_velocity_y_metres(j));
+      const double arms =
+          slot.pinion_friction_arm_metres(j) + ratio * slot.gear_friction_arm_metres(j);
+      if (std::abs(arms + sliding) <= kPowerTolerance * std::max(pinion, sliding)) continue;
+      complaints.add(
+          [&] { return locate(k, j, "pinion_friction_arm_metres"); },
+          [&] {
+            return fmt::format(
+                "r_fr,p + r_fr,g N_p/N_g = {} m, sliding speed A = {} m per rad/s; legal: the "
+                "negative of one another (power in = power lost)",
+                arms, sliding);
+          });
+    }
+  }
+}
+
+void check_range(std::string_view message, std::string_view field, double value,
+                 const std::string& path, Violations& violations) {
+  const Constraint* row = find_constraint(message, field);
+  if (value >= row->minimum && value <= row->maximum) return;  // false for NaN
+  violations.push_back({path, out_of_range_text(*row, value)});
+}
+
+void check_fourier(const v1::FourierSeries& series, const std::string& path,
+                   Violations& violations) {
+  if (series.sine_size() != series.cosine_size() || series.sine_size() > kMaximumHarmonics) {
+    violations.push_back(
+        {path, fmt::format("{} sine and {} cosine terms; legal: as many of each, at most {}",
+                           series.sine_size(), series.cosine_size(), kMaximumHarmonics)});
+  }
+  check_range("FourierSeries", "mean", series.mean(), join_path(path, "mean"), violations);
+  const int harmonics = std::min({series.sine_size(), series.cosine_size(), kMaximumHarmonics});
+  for (int i = 0; i < harmonics; ++i) {
+    check_range("FourierSeries", "sine", series.sine(i), fmt::format("{}.sine[{}]", path, i),
+                violations);
+    check_range("FourierSeries", "cosine", series.cosine(i), fmt::format("{}.cosine[{}]", path, i),
+                violations);
+  }
+}
+
+/// Entries of ascending torque.
+template <class Entries>
+void check_torques(const Entries& entries, const std::string& path, Violations& violations) {
+  if (entries.size() > kMaximumTorques) {
+    violations.push_back(
+        {path, fmt::format("{} torques; legal: at most {}", entries.size(), kMaximumTorques)});
+  }
+  for (int i = 0; i < std::min(entries.size(), kMaximumTorques); ++i) {
+    check_range("LoadShareAtTorque", "pinion_torque_newton_metres",
+                entries.Get(i).pinion_torque_newton_metres(),
+                fmt::format("{}[{}].pinion_torque_newton_metres", path, i), violations);
+  }
+  for (int i = 1; i < std::min(entries.size(), kMaximumTorques); ++i) {
+    const double before = entries.Get(i - 1).pinion_torque_newton_metres();
+    const double torque = entries.Get(i).pinion_torque_newton_metres();
+    if (torque > before) continue;
+    violations.push_back({fmt::format("{}[{}].pinion_torque_newton_metres", path, i),
+                          fmt::format("{} N m after {} N m; legal: ascending", torque, before)});
+  }
+}
+
+void check_shares_by_torque(const v1::GearSet& set, const std::string& path,
+                            Violations& violations) {
+  const int samples = set.flank_slots(0).load_share_size();
+  const Constraint* row = find_constraint("LoadShareAtTorque.Slot", "load_share");
+  for (int i = 0; i < set.load_share_by_torque_size(); ++i) {
+    const v1::LoadShareAtTorque& entry = set.load_share_by_torque(i);
+    const std::string here = fmt::format("{}[{}]", path, i);
+    const auto locate = [&](int slot, int sample, std::string_view name) {
+      return fmt::format("{}.slots[{}].{}[{}]", here, slot, name, sample);
+    };
+    bool whole = entry.slots_size() == kFlankPairs;
+    for (const auto& slot : entry.slots()) whole = whole && slot.load_share_size() == samples;
+    if (!whole) {
+      violations.push_back({here + ".slots", fmt::format("legal: {} slots of {} samples, as in "
+                                                         "flank_slots",
+                                                         kFlankPairs, samples)});
+      continue;
+    }
+    v1::GearSet shares;  // the slots in the form that the checks want
+    TableComplaints complaints(here, violations);
+    for (const auto& slot : entry.slots()) {
+      *shares.add_flank_slots()->mutable_load_share() = slot.load_share();
+    }
+    for (int k = 0; k < kFlankPairs; ++k) {
+      for (int j = 0; j < samples; ++j) {
+        const double share = shares.flank_slots(k).load_share(j);
+        if (share >= row->minimum && share <= row->maximum) continue;
+        complaints.add([&] { return locate(k, j, "load_share"); },
+                       [&] { return out_of_range_text(*row, share); });
+      }
+    }
+    if (!complaints.any()) check_shares(shares, locate, complaints);
+  }
+}
+
+}  // namespace
+
+void check_flank_slots(const v1::GearSet& gear_set, const LocateSample& locate,
+                       const std::string& path, Violations& violations) {
+  if (!check_sizes(gear_set, path, violations)) return;
+  TableComplaints complaints(path, violations);
+  check_numbers(gear_set, locate, complaints);
+  if (complaints.any()) return;
+  check_shares(gear_set, locate, complaints);
+  check_continuity(gear_set, locate, complaints);
+  if (gear_set.gear_teeth() > 0) check_power(gear_set, locate, complaints);
+}
+
+void check_series(const v1::MeshSeries& series, const v1::GearSet& gear_set,
+                  const std::string& path, Violations& violations) {
+  const std::size_t before = violations.size();
+  check_range("MeshSeries", "pinion_torque_newton_metres", series.pinion_torque_newton_metres(),
+              join_path(path, "pinion_torque_newton_metres"), violations);
+  const auto check = [&](const v1::FourierSeries& each, const char* field) {
+    check_fourier(each, join_path(path, field), violations);
+  };
+  check(series.pinion_contact_radius_metres(), "pinion_contact_radius_metres");
+  check(series.gear_contact_radius_metres(), "gear_contact_radius_metres");
+  check(series.mesh_stiffness_newtons_per_metre(), "mesh_stiffness_newtons_per_metre");
+  check(series.static_transmission_error_metres(), "static_transmission_error_metres");
+  if (violations.size() > before || gear_set.pinion_teeth() <= 0) return;
+  const double pinion = series.pinion_contact_radius_metres().mean();
+  const double gear = series.gear_contact_radius_metres().mean();
+  const double expected = pinion * gear_set.gear_teeth() / gear_set.pinion_teeth();
+  if (std::abs(gear - expected) <= kRatioTolerance * std::abs(expected)) return;
+  violations.push_back(
+      {join_path(path, "gear_contact_radius_metres.mean"),
+       fmt::format("R_g0 = {} m; legal: R_p0 N_g/N_p = {} m within {}, or the transmission error "
+                   "winds up (eqs 8, 9)",
+                   gear, expected, kRatioTolerance)});
+}
+
+void check_gear_set(const v1::GearSet& gear_set, const LocateSample& locate,
+                    const std::string& path, Violations& violations) {
+  const std::size_t before = violations.size();
+  if (!gear_set.has_series()) {
+    violations.push_back({join_path(path, "series"), "not set (eqs 8-11)"});
+  } else {
+    check_series(gear_set.series(), gear_set, join_path(path, "series"), violations);
+  }
+  if (!gear_set.has_dynamics()) {
+    violations.push_back({join_path(path, "dynamics"), "not set (eqs 1-5)"});
+  }
+  check_flank_slots(gear_set, locate, path, violations);
+  const std::string by_torque = join_path(path, "series_by_torque");
+  check_torques(gear_set.series_by_torque(), by_torque, violations);
+  for (int i = 0; i < std::min(gear_set.series_by_torque_size(), kMaximumTorques); ++i) {
+    check_series(gear_set.series_by_torque(i), gear_set, fmt::format("{}[{}]", by_torque, i),
+                 violations);
+  }
+  const std::string shares = join_path(path, "load_share_by_torque");
+  check_torques(gear_set.load_share_by_torque(), shares, violations);
+  if (violations.size() > before) return;
+  check_shares_by_torque(gear_set, shares, violations);
+  if (violations.size() > before) return;
+  try {
+    check(to_core(gear_set));
+  } catch (const Refusal& refusal) {
+    violations.push_back({path.empty() ? "gear_set" : path, refusal.what()});
+  }
+}
+
+void check_gear_set(const v1::GearSet& gear_set, const std::string& path, Violations& violations) {
+  const auto locate = [&](int slot, int sample, std::string_view name) {
+    return fmt::format("{}[{}].{}[{}]", join_path(path, "flank_slots"), slot, name, sample);
+  };
+  check_gear_set(gear_set, locate, path, violations);
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,446 @@
+#include "server/resources/lubricant_parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/lubricant/characterisation.h"
+#include "core/lubricant/viscosity.h"
+#include "core/lubricant/viscosity_index.h"
+#include "core/refusal.h"
+#include "server/mapping/to_core.h"
+#include "server/resources/provenance.h"
+#include "server/support/lru_cache.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using Stated = LubricantParameters<std::optional<KnownParameter>>;
+using Known = LubricantParameters<KnownParameter>;
+
+constexpr char kKinematic40[] = "kinematic_viscosity_40_celsius_square_millimetres_per_second";
+constexpr char kKinematic100[] = "kinematic_viscosity_100_celsius_square_millimetres_per_second";
+constexpr char kSheared100[] =
+    "sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second";
+
+constexpr double kFifteenCelsius = 15 + kZeroCelsius;
+constexpr double kSquareMillimetres = 1e-6;
+constexpr double kMillipascals = 1e-3;
+
+/// A parameter's name in the contract and in the core.
+struct Member {
+  const char* field;
+  const char* name;
+  std::optional<KnownParameter> Stated::*stated;
+  KnownParameter Known::*known;
+};
+
+constexpr Member kMembers[] = {
+    {"vogel_viscosity_prefactor_pascal_seconds", "vogel_viscosity_prefactor",
+     &Stated::vogel_viscosity_prefactor, &Known::vogel_viscosity_prefactor},
+    {"vogel_temperature_coefficient_kelvin", "vogel_temperature_coefficient",
+     &Stated::vogel_temperature_coefficient, &Known::vogel_temperature_coefficient},
+    {"vogel_reference_temperature_kelvin", "vogel_reference_temperature",
+     &Stated::vogel_reference_temperature, &Known::vogel_reference_temperature},
+    {"pressure_viscosity_coefficient_per_pascal", "pressure_viscosity_coefficient",
+     &Stated::pressure_viscosity_coefficient, &Known::pressure_viscosity_coefficient},
+    {"pressure_viscosity_temperature_kelvin", "pressure_viscosity_temperature",
+     &Stated::pressure_viscosity_temperature, &Known::pressure_viscosity_temperature},
+    {"relaxation_time_seconds", "relaxation_time", &Stated::relaxation_time,
+     &Known::relaxation_time},
+    {"havriliak_negami_alpha", "havriliak_negami_alpha", &Stated::havriliak_negami_alpha,
+     &Known::havriliak_negami_alpha},
+    {"havriliak_negami_beta", "havriliak_negami_beta", &Stated::havriliak_negami_beta,
+     &Known::havriliak_negami_beta},
+    {"rheology_reference_temperature_kelvin", "rheology_reference_temperature",
+     &Stated::rheology_reference_temperature, &Known::rheology_reference_temperature},
+    {"limiting_shear_stress_at_zero_pressure_pascals", "limiting_shear_stress_at_zero_pressure",
+     &Stated::limiting_shear_stress_at_zero_pressure,
+     &Known::limiting_shear_stress_at_zero_pressure},
+    {"limiting_shear_stress_coefficient", "limiting_shear_stress_coefficient",
+     &Stated::limiting_shear_stress_coefficient, &Known::limiting_shear_stress_coefficient},
+    {"thermal_conductivity_watts_per_metre_kelvin", "thermal_conductivity",
+     &Stated::thermal_conductivity, &Known::thermal_conductivity},
+    {"density_at_zero_kelvin_kilograms_per_cubic_metre", "density_at_zero_kelvin",
+     &Stated::density_at_zero_kelvin, &Known::density_at_zero_kelvin},
+    {"density_slope_kilograms_per_cubic_metre_kelvin", "density_temperature_slope",
+     &Stated::density_temperature_slope, &Known::density_temperature_slope},
+};
+
+const FieldDescriptor* descriptor(const Member& member) {
+  return v1::Lubricant::descriptor()->FindFieldByName(member.field);
+}
+
+bool is_set(const v1::Lubricant& lubricant, const Member& member) {
+  return lubricant.GetReflection()->HasField(lubricant, descriptor(member));
+}
+
+v1::Provenance to_message(Provenance provenance) {
+  switch (provenance) {
+    case Provenance::kPublished:
+      return v1::PROVENANCE_PUBLISHED;
+    case Provenance::kDerived:
+      return v1::PROVENANCE_DERIVED;
+    case Provenance::kLiterature:
+      return v1::PROVENANCE_LITERATURE;
+    case Provenance::kMeasured:
+      return v1::PROVENANCE_MEASURED;
+    case Provenance::kFitted:
+      return v1::PROVENANCE_FITTED;
+    case Provenance::kAssumed:
+      return v1::PROVENANCE_ASSUMED;
+    case Provenance::kCalibrated:
+      return v1::PROVENANCE_CALIBRATED;
+    case Provenance::kUser:
+      return v1::PROVENANCE_USER;
+  }
+  return v1::PROVENANCE_UNSPECIFIED;
+}
+
+BaseOilClass to_core(v1::Lubricant::BaseOilClass base_oil) {
+  switch (base_oil) {
+    case v1::Lubricant::GROUP_I:
+      return BaseOilClass::kGroupI;
+    case v1::Lubricant::GROUP_II:
+      return BaseOilClass::kGroupII;
+    case v1::Lubricant::GROUP_III:
+      return BaseOilClass::kGroupIII;
+    case v1::Lubricant::POLYALPHAOLEFIN:
+      return BaseOilClass::kPolyalphaolefin;
+    case v1::Lubricant::ESTER:
+      return BaseOilClass::kEster;
+    case v1::Lubricant::POLYALKYLENE_GLYCOL:
+      return BaseOilClass::kPolyalkyleneGlycol;
+    case v1::Lubricant::NAPHTHENIC:
+      return BaseOilClass::kNaphthenic;
+    default:
+      return BaseOilClass::kUnspecified;
+  }
+}
+
+std::optional<double> stated_number(double value, double factor) {
+  return value == 0 ? std::nullopt : std::optional<double>(value * factor);
+}
+
+/// The density law that turns kinematic viscosities of a table into dynamic ones: as stated,
+/// measured, or typical of the class.
+DensityLaw density_law_of(const FluidMeasurements& fluid) {
+  const Stated& stated = fluid.stated;
+  if (stated.density_at_zero_kelvin && stated.density_temperature_slope) {
+    return {stated.density_at_zero_kelvin->value, stated.density_temperature_slope->value, 0, 0, 0};
+  }
+  std::vector<DensityPoint> points = fluid.densities;
+  if (fluid.density_15) points.insert(points.begin(), {kFifteenCelsius, *fluid.density_15});
+  if (points.empty()) return density_law(estimate_density_15(fluid.base_oil).value, fluid.base_oil);
+  return points.size() == 1 && fluid.density_15 ? density_law(*fluid.density_15, fluid.base_oil)
+                                                : density_law(points, fluid.base_oil);
+}
+
+ViscosityPoint to_core(const v1::ViscosityMeasurement& row, const DensityLaw* law) {
+  const double temperature = row.temperature_celsius() + kZeroCelsius;
+  double viscosity = row.dynamic_viscosity_millipascal_seconds() * kMillipascals;
+  if (row.has_kinematic_viscosity_square_millimetres_per_second()) {
+    viscosity = row.kinematic_viscosity_square_millimetres_per_second() * kSquareMillimetres *
+                (law->density_at_zero_kelvin + law->slope * temperature);
+  }
+  return {temperature, viscosity, row.relative_standard_uncertainty()};
+}
+
+/// What was entered, and the field of LubricantMeasurements that each viscosity comes from.
+struct Entered {
+  FluidMeasurements fluid;
+  std::string kinematic_viscosity_40_field = kKinematic40;
+  std::string kinematic_viscosity_100_field = kKinematic100;
+  std::vector<std::string> viscosity_fields;  ///< one a row of fluid.viscosities
+
+  std::string field(const GrossError& error) const {
+    switch (error.measurement) {
+      case Measurement::kKinematicViscosity40:
+        return kinematic_viscosity_40_field;
+      case Measurement::kKinematicViscosity100:
+        return kinematic_viscosity_100_field;
+      case Measurement::kShearedKinematicViscosity100:
+        return kSheared100;
+      case Measurement::kViscosity:
+        return viscosity_fields[error.row];
+      case Measurement::kColdViscosity:
+        return fmt::format("brookfield_viscosities[{}].dynamic_viscosity_millipascal_seconds",
+                           error.row);
+    }
+    return "";
+  }
+};
+
+std::string field_of(const v1::ViscosityMeasurement& row, int index) {
+  return fmt::format("viscosities[{}].{}", index,
+                     row.has_kinematic_viscosity_square_millimetres_per_second()
+                         ? "kinematic_viscosity_square_millimetres_per_second"
+                         : "dynamic_viscosity_millipascal_seconds");
+}
+
+/// A row of the table that is KV40 or KV100, which no single number states, is taken for it. False
+/// for every other row.
+bool take_trade_viscosity(const v1::ViscosityMeasurement& row, int index, Entered& out) {
+  constexpr double kBathTolerance = 0.01;  // K, that of ASTM D445
+  if (!row.has_kinematic_viscosity_square_millimetres_per_second()) return false;
+  if (row.relative_standard_uncertainty() != 0) return false;
+  const auto take = [&](double celsius, std::optional<double>& viscosity, std::string& field) {
+    if (std::abs(row.temperature_celsius() - celsius) > kBathTolerance || viscosity) return false;
+    viscosity = row.kinematic_viscosity_square_millimetres_per_second() * kSquareMillimetres;
+    field = field_of(row, index);
+    return true;
+  };
+  return take(40, out.fluid.kinematic_viscosity_40, out.kinematic_viscosity_40_field) ||
+         take(100, out.fluid.kinematic_viscosity_100, out.kinematic_viscosity_100_field);
+}
+
+/// Everything that was entered, in the core's terms; what the server computed before is left out.
+/// Throws Refusal.
+Entered entered(const v1::Lubricant& lubricant) {
+  const v1::LubricantMeasurements& measured = lubricant.measurements();
+  Entered result;
+  FluidMeasurements& out = result.fluid;
+  out.base_oil = to_core(lubricant.base_oil_class());
+  out.kinematic_viscosity_40 = stated_number(
+      measured.kinematic_viscosity_40_celsius_square_millimetres_per_second(), kSquareMillimetres);
+  out.kinematic_viscosity_100 = stated_number(
+      measured.kinematic_viscosity_100_celsius_square_millimetres_per_second(), kSquareMillimetres);
+  out.sheared_kinematic_viscosity_100 = stated_number(
+      measured.sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second(),
+      kSquareMillimetres);
+  out.density_15 = stated_number(measured.density_15_celsius_kilograms_per_cubic_metre(), 1);
+  for (const v1::DensityMeasurement& row : measured.densities()) {
+    out.densities.push_back(
+        {row.temperature_celsius() + kZeroCelsius, row.density_kilograms_per_cubic_metre()});
+  }
+  for (const v1::BrookfieldViscosity& row : measured.brookfield_viscosities()) {
+    out.cold_viscosities.push_back({row.temperature_celsius() + kZeroCelsius,
+                                    row.dynamic_viscosity_millipascal_seconds() * kMillipascals,
+                                    0});
+  }
+  for (const Member& member : kMembers) {
+    if (!is_set(lubricant, member)) continue;
+    const v1::ParameterProvenance* entry = find_provenance(lubricant.provenance(), member.field);
+    if (entry != nullptr && entry->computed()) continue;
+    KnownParameter known{lubricant.GetReflection()->GetDouble(lubricant, descriptor(member)),
+                         {},
+                         Provenance::kUser,
+                         ""};
+    if (entry != nullptr && entry->standard_uncertainty() > 0) {
+      known.standard_uncertainty = entry->standard_uncertainty();
+    }
+    out.stated.*member.stated = known;
+  }
+  std::optional<DensityLaw> law;
+  for (int i = 0; i < measured.viscosities_size(); ++i) {
+    const v1::ViscosityMeasurement& row = measured.viscosities(i);
+    if (take_trade_viscosity(row, i, result)) continue;
+    if (row.has_kinematic_viscosity_square_millimetres_per_second() && !law) {
+      law = density_law_of(out);
+    }
+    out.viscosities.push_back(to_core(row, law ? &*law : nullptr));
+    result.viscosity_fields.push_back(field_of(row, i));
+  }
+  return result;
+}
+
+/// "lubricant.field", or nothing for what is no parameter.
+std::string field_of_parameter(const std::string& name) {
+  for (const Member& member : kMembers) {
+    if (name == member.name) return member.field;
+  }
+  return {};
+}
+
+/// The entry of one field, made when there is none.
+v1::ParameterProvenance* entry_of(v1::Lubricant& lubricant, const std::string& field) {
+  for (v1::ParameterProvenance& entry : *lubricant.mutable_provenance()) {
+    if (entry.field() == field) return &entry;
+  }
+  v1::ParameterProvenance* entry = lubricant.add_provenance();
+  entry->set_field(field);
+  return entry;
+}
+
+void set_computed(v1::Lubricant& lubricant, const Member& member, const CharacterisedFluid& fluid) {
+  const KnownParameter& known = fluid.parameters.*member.known;
+  lubricant.GetReflection()->SetDouble(&lubricant, descriptor(member), known.value);
+  v1::ParameterProvenance* entry = entry_of(lubricant, member.field);
+  entry->set_provenance(to_message(known.provenance));
+  entry->set_source(known.source);
+  entry->set_standard_uncertainty(known.standard_uncertainty.value_or(0));
+  entry->set_computed(true);
+  std::string warning;
+  for (const CharacterisationWarning& each : fluid.warnings) {
+    if (each.parameter == member.name) warning += (warning.empty() ? "" : " ") + each.sentence;
+  }
+  entry->set_warning(warning);
+}
+
+void add_residual(double temperature, double measured, const Lubricant& lubricant,
+                  v1::LubricantCharacterisation& out) {
+  v1::ViscosityResidual* row = out.add_viscosity_residuals();
+  const double fitted = ambient_viscosity(lubricant, temperature);
+  row->set_temperature_celsius(temperature - kZeroCelsius);
+  row->set_measured_dynamic_viscosity_millipascal_seconds(measured / kMillipascals);
+  row->set_fitted_dynamic_viscosity_millipascal_seconds(fitted / kMillipascals);
+  row->set_residual(std::log(measured / fitted));
+}
+
+/// What the stored law leaves of each measured viscosity.
+void add_residuals(const FluidMeasurements& fluid, const Lubricant& lubricant,
+                   v1::LubricantCharacterisation& out) {
+  const auto add_kinematic = [&](const std::optional<double>& viscosity, double temperature) {
+    if (!viscosity) return;
+    add_residual(temperature, *viscosity * density(lubricant, temperature), lubricant, out);
+  };
+  add_kinematic(fluid.kinematic_viscosity_40, kFortyCelsius);
+  add_kinematic(fluid.kinematic_viscosity_100, kHundredCelsius);
+  for (const ViscosityPoint& row : fluid.viscosities) {
+    add_residual(row.temperature, row.viscosity, lubricant, out);
+  }
+  for (const ViscosityPoint& row : fluid.cold_viscosities) {
+    add_residual(row.temperature, row.viscosity, lubricant, out);
+  }
+  double squares = 0;
+  for (const v1::ViscosityResidual& row : out.viscosity_residuals()) {
+    squares += row.residual() * row.residual();
+  }
+  if (out.viscosity_residuals_size() > 0) {
+    out.set_root_mean_square_residual(std::sqrt(squares / out.viscosity_residuals_size()));
+  }
+}
+
+void add_figures(const CharacterisedFluid& fluid, v1::LubricantCharacterisation& out) {
+  out.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
+      fluid.kinematic_viscosity_40 / kSquareMillimetres);
+  out.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(
+      fluid.kinematic_viscosity_100 / kSquareMillimetres);
+  if (fluid.viscosity_index) out.set_viscosity_index(*fluid.viscosity_index);
+  out.set_sae_j306_grade(fluid.grade.designation);
+  out.set_sae_j306_grade_note(fluid.grade.note);
+  out.set_temperature_of_150_pascal_seconds_celsius(fluid.temperature_of_150_pascal_seconds -
+                                                    kZeroCelsius);
+  out.set_expected_low_temperature_grade(fluid.expected_low_temperature_grade);
+  for (const ViscosityLawComparison& each : fluid.walther_comparison) {
+    v1::ViscosityLawComparison* row = out.add_walther_comparison();
+    row->set_temperature_celsius(each.temperature - kZeroCelsius);
+    row->set_walther_dynamic_viscosity_millipascal_seconds(each.walther_viscosity / kMillipascals);
+    row->set_vogel_dynamic_viscosity_millipascal_seconds(each.vogel_viscosity / kMillipascals);
+  }
+  for (const CharacterisationWarning& each : fluid.warnings) {
+    v1::CharacterisationWarning* row = out.add_warnings();
+    row->set_code(each.code);
+    row->set_field(field_of_parameter(each.parameter));
+    row->set_sentence(each.sentence);
+  }
+  for (const GrossError& each : fluid.gross_errors) {  // stored before they were refused
+    v1::CharacterisationWarning* row = out.add_warnings();
+    row->set_code(each.code);
+    row->set_sentence(each.sentence);
+  }
+}
+
+v1::RangeWarning range_warning(const std::string& code, const std::string& sentence) {
+  v1::RangeWarning out;
+  out.set_code(code);
+  out.set_message(sentence);
+  return out;
+}
+
+std::vector<v1::RangeWarning> make_fluid_warnings(const v1::Lubricant& lubricant) {
+  constexpr char kEstimated[] = "PARAMETER_ESTIMATED";
+  std::vector<v1::RangeWarning> out;
+  std::string estimated;
+  try {
+    const CharacterisedFluid fluid = characterise(entered(lubricant).fluid);
+    for (const CharacterisationWarning& each : fluid.warnings) {
+      if (each.code != kEstimated) {
+        out.push_back(range_warning(each.code, each.sentence));
+        continue;
+      }
+      std::string name = each.parameter;
+      std::replace(name.begin(), name.end(), '_', ' ');
+      estimated += (estimated.empty() ? "" : ", ") + name;
+    }
+    for (const GrossError& each : fluid.gross_errors) {
+      out.push_back(range_warning(each.code, each.sentence));
+    }
+  } catch (const Refusal& refusal) {  // e.g. laws that do not reach 40 C
+    out.push_back(range_warning(refusal.reason(), refusal.what()));
+  }
+  if (!estimated.empty()) {
+    out.push_back(range_warning(kEstimated, "Not measured but estimated: " + estimated + "."));
+  }
+  return out;
+}
+
+}  // namespace
+
+void complete_parameters(v1::Lubricant& lubricant, const std::string& path,
+                         Violations& violations) {
+  bool complete = true;
+  for (const Member& member : kMembers) complete = complete && is_set(lubricant, member);
+  if (complete && !lubricant.has_measurements()) return;
+  try {
+    const Entered stated = entered(lubricant);
+    const CharacterisedFluid fluid = characterise(stated.fluid);
+    for (const GrossError& error : fluid.gross_errors) {
+      violations.push_back(
+          {join_path(path, "measurements." + stated.field(error)), error.sentence});
+    }
+    if (!fluid.gross_errors.empty()) return;
+    for (const Member& member : kMembers) {
+      if (!is_set(lubricant, member)) set_computed(lubricant, member, fluid);
+    }
+  } catch (const Refusal& refusal) {  // of a fluid that is complete, the measurements alone
+    if (!complete) violations.push_back({path, refusal.what()});
+  }
+}
+
+void forget_computed(v1::Lubricant& lubricant) {
+  auto& entries = *lubricant.mutable_provenance();
+  for (int i = entries.size() - 1; i >= 0; --i) {
+    if (!entries.Get(i).computed()) continue;
+    const auto* field = v1::Lubricant::descriptor()->FindFieldByName(entries.Get(i).field());
+    if (field == nullptr || !field->has_presence()) continue;
+    lubricant.GetReflection()->ClearField(&lubricant, field);
+    entries.DeleteSubrange(i, 1);
+  }
+}
+
+v1::LubricantCharacterisation characterisation(const v1::Lubricant& lubricant) {
+  v1::LubricantCharacterisation out;
+  const Lubricant laws = to_core(lubricant);
+  const double measured = lubricant.measurements().density_15_celsius_kilograms_per_cubic_metre();
+  out.set_density_15_celsius_kilograms_per_cubic_metre(
+      measured == 0 ? density(laws, kFifteenCelsius) : measured);
+  try {
+    const FluidMeasurements fluid = entered(lubricant).fluid;
+    add_residuals(fluid, laws, out);
+    add_figures(characterise(fluid), out);
+  } catch (const Refusal& refusal) {  // e.g. laws that do not reach 40 C
+    v1::CharacterisationWarning* warning = out.add_warnings();
+    warning->set_code(refusal.reason());
+    warning->set_sentence(refusal.what());
+  }
+  return out;
+}
+
+std::vector<v1::RangeWarning> fluid_warnings(const v1::Lubricant& lubricant) {
+  static LruCache<std::string, std::vector<v1::RangeWarning>> kept;
+  return kept.get(lubricant.SerializeAsString(), [&] { return make_fluid_warnings(lubricant); });
+}
+
+v1::LubricantCharacterisation brief_characterisation(const v1::Lubricant& lubricant) {
+  v1::LubricantCharacterisation out = characterisation(lubricant);
+  out.clear_viscosity_residuals();
+  out.clear_walther_comparison();
+  out.clear_warnings();
+  return out;
+}
+
+}  // namespace tribodyn::server

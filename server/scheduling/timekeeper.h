@@ -1,0 +1,52 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "server/scheduling/progress_board.h"
+#include "server/storage/times.h"
+
+namespace tribodyn::server {
+
+/// A thread that looks at the clock for everybody: says which deadlines have come, and wakes
+/// observers every `tick`, so that a stream notices that it has been silent for long. Safe for
+/// concurrent access without external synchronization.
+class Timekeeper {
+ public:
+  /// `on_due` is told the id of each deadline, on the thread, with no lock held.
+  Timekeeper(std::chrono::milliseconds tick, std::function<Microseconds()> clock,
+             std::function<void(std::int64_t)> on_due);
+  ~Timekeeper();
+  Timekeeper(const Timekeeper&) = delete;
+  Timekeeper& operator=(const Timekeeper&) = delete;
+
+  void add_deadline(std::int64_t id, Microseconds time);
+  /// Woken for as long as it lives.
+  void observe(const std::weak_ptr<ProgressObserver>& observer);
+  /// Nobody is told anything any more.
+  void stop();
+
+ private:
+  void run();
+  std::vector<std::int64_t> take_due();
+  std::vector<std::shared_ptr<ProgressObserver>> living_observers();
+
+  const std::chrono::milliseconds tick_;
+  const std::function<Microseconds()> clock_;
+  const std::function<void(std::int64_t)> on_due_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::multimap<Microseconds, std::int64_t> deadlines_;     // guarded by mutex_
+  std::vector<std::weak_ptr<ProgressObserver>> observers_;  // guarded by mutex_
+  bool stopping_ = false;                                   // guarded by mutex_
+  std::thread thread_;
+};
+
+}  // namespace tribodyn::server

@@ -1,0 +1,155 @@
+#include "server/simulation/assumptions.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "server/contract/constraints.h"
+#include "server/contract/output_only.h"
+#include "server/resources/imports/import_surface.h"
+#include "server/resources/lubricant_parameters.h"
+#include "server/resources/provenance.h"
+#include "server/simulation/solver_defaults.h"
+#include "server/support/lru_cache.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using Ledger = std::vector<v1::Assumption>;
+
+void add(Ledger& ledger, const std::string& resource, const std::string& field,
+         const std::string& value, v1::Provenance provenance, const std::string& source) {
+  v1::Assumption entry;
+  entry.set_resource(resource);
+  entry.set_field(field);
+  entry.set_value(value);
+  entry.set_provenance(provenance);
+  entry.set_source(source);
+  ledger.push_back(std::move(entry));
+}
+
+void add(Ledger& ledger, const std::string& resource, const Provenances& all,
+         const std::string& field, const std::string& value) {
+  const v1::ParameterProvenance* entry = find_provenance(all, field);
+  add(ledger, resource, field, value,
+      entry == nullptr ? v1::PROVENANCE_UNSPECIFIED : entry->provenance(),
+      entry == nullptr ? "" : entry->source());
+}
+
+/// Every plain number of a message.
+void add_numbers(Ledger& ledger, const std::string& resource, const Provenances& all,
+                 const Message& message, const std::string& prefix) {
+  const auto& descriptor = *message.GetDescriptor();
+  const auto& reflection = *message.GetReflection();
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const FieldDescriptor& field = *descriptor.field(i);
+    const Constraint* row = find_constraint(descriptor.name(), field.name());
+    if (field.is_repeated() || is_output_only(field) || row == nullptr) continue;
+    const double value = field.cpp_type() == FieldDescriptor::CPPTYPE_INT32
+                             ? reflection.GetInt32(message, &field)
+                             : reflection.GetDouble(message, &field);
+    add(ledger, resource, all, prefix + field.name(), quantity_text(value, row->unit));
+  }
+}
+
+std::string torques(const v1::GearSet& set) {
+  std::string text;
+  for (const v1::MeshSeries& series : set.series_by_torque()) {
+    text += (text.empty() ? "" : ", ") + number_text(series.pinion_torque_newton_metres());
+  }
+  return text + " N m";
+}
+
+void add_gear_set(Ledger& ledger, const v1::GearSet& set, bool load_dependent) {
+  const Provenances& all = set.provenance();
+  add_numbers(ledger, set.name(), all, set, "");
+  add(ledger, set.name(), all, "series",
+      fmt::format("{} harmonics at {}", set.series().mesh_stiffness_newtons_per_metre().sine_size(),
+                  quantity_text(set.series().pinion_torque_newton_metres(), "N m")));
+  const int samples = set.flank_slots().empty() ? 0 : set.flank_slots(0).load_share_size();
+  add(ledger, set.name(), all, "flank_slots",
+      fmt::format("{} slots of {} samples", set.flank_slots_size(), samples));
+  add_numbers(ledger, set.name(), all, set.dynamics(), "dynamics.");
+  if (load_dependent) {
+    add(ledger, set.name(), all, "series_by_torque", torques(set));
+    add(ledger, set.name(), all, "load_share_by_torque", torques(set));
+  }
+}
+
+void add_choice(Ledger& ledger, const char* field, const std::string& stated,
+                const std::string& effective) {
+  add(ledger, "request", field, effective,
+      stated.empty() ? v1::PROVENANCE_ASSUMED : v1::PROVENANCE_USER,
+      stated.empty() ? "default: the request does not state it" : "stated in the request");
+}
+
+void add_request(Ledger& ledger, const SimulationInputs& inputs) {
+  const v1::Simulation& asked = inputs.requested;
+  const v1::Simulation& effective = inputs.effective;
+  add_choice(ledger, "lubricant", asked.lubricant(), effective.lubricant());
+  add_choice(ledger, "gear_set", asked.gear_set(), effective.gear_set());
+  add_choice(ledger, "surface", asked.surface(), effective.surface());
+  add_choice(ledger, "vehicle", asked.vehicle(), effective.vehicle());
+  const bool sump = asked.has_sump_temperature_celsius();
+  add(ledger, "request", "sump_temperature_celsius",
+      quantity_text(effective.sump_temperature_celsius(), "C"),
+      sump ? v1::PROVENANCE_USER : v1::PROVENANCE_ASSUMED,
+      sump ? "stated in the request" : "default: the request does not state it");
+  const bool rise = asked.has_inlet_temperature_rise_kelvin();
+  add(ledger, "request", "inlet_temperature_rise_kelvin",
+      quantity_text(effective.inlet_temperature_rise_kelvin(), "K"),
+      rise ? v1::PROVENANCE_USER : v1::PROVENANCE_PUBLISHED,
+      rise ? "stated in the request" : "default: the value published with eq 14");
+}
+
+void add_resources(Ledger& ledger, const SimulationInputs& inputs) {
+  const auto add_all = [&ledger](const auto& resource) {
+    add_numbers(ledger, resource.name(), resource.provenance(), resource, "");
+  };
+  add_all(*inputs.lubricant);
+  add_gear_set(ledger, *inputs.gear_set,
+               inputs.effective.model_options().load_dependent_mesh_data());
+  add_all(*inputs.surface);
+  add_all(*inputs.vehicle);
+}
+
+std::string serialised(Ledger ledger, std::vector<v1::RangeWarning> warnings) {
+  v1::SimulationResult out;
+  for (v1::Assumption& each : ledger) *out.add_assumptions() = std::move(each);
+  for (v1::RangeWarning& each : warnings) *out.add_input_warnings() = std::move(each);
+  return out.SerializeAsString();
+}
+
+}  // namespace
+
+std::vector<v1::Assumption> assumptions(const SimulationInputs& inputs) {
+  Ledger ledger;
+  add_request(ledger, inputs);
+  add_resources(ledger, inputs);
+  return ledger;
+}
+
+std::vector<v1::RangeWarning> input_warnings(const SimulationInputs& inputs) {
+  std::vector<v1::RangeWarning> out = fluid_warnings(*inputs.lubricant);
+  for (v1::RangeWarning& each : surface_warnings(*inputs.surface)) out.push_back(std::move(each));
+  return out;
+}
+
+std::string ledger(const SimulationInputs& inputs) {
+  static LruCache<std::pair<Resources, bool>, std::string> kept;
+  const bool load_dependent = inputs.effective.model_options().load_dependent_mesh_data();
+  Ledger of_request;
+  add_request(of_request, inputs);
+  // The bytes of two messages in a row are those of both merged.
+  return serialised(std::move(of_request), {}) +
+         kept.get({resources(inputs), load_dependent}, [&inputs] {
+           Ledger of_resources;
+           add_resources(of_resources, inputs);
+           return serialised(std::move(of_resources), input_warnings(inputs));
+         });
+}
+
+}  // namespace tribodyn::server

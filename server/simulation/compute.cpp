@@ -1,0 +1,124 @@
+#include "server/simulation/compute.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string_view>
+
+#include "core/refusal.h"
+#include "server/contract/check_message.h"
+#include "server/mapping/from_core.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr std::string_view kShearRate = "flank_shear_rate_per_second";
+
+std::string stage_of(const OperatingCondition& condition) {
+  if (condition.kind == OperatingCondition::Kind::kPrescribedTorque) {
+    return fmt::format("settling at {} N m and {} rad/s", condition.pinion_torque,
+                       condition.pinion_speed);
+  }
+  return fmt::format("settling at {} km/h", kilometers_per_hour(condition.vehicle_speed));
+}
+
+/// No number of a history may be NaN, and only a shear rate infinite (no film under sliding).
+void check_finite(const History& history) {
+  for (std::size_t c = 0; c < history.values.size(); ++c) {
+    const bool infinite_allowed = history.names[c].starts_with(kShearRate);
+    for (const double value : history.values[c]) {
+      if (std::isnan(value) || (std::isinf(value) && !infinite_allowed)) {
+        throw Refusal("RESULT_NOT_FINITE",
+                      "history column " + history.names[c] + " holds a number that is not finite");
+      }
+    }
+  }
+}
+
+PointResult solve_point(const PointStudy& study, const Scene& scene,
+                        const std::shared_ptr<PreparedGearSet>& gear_set,
+                        const StudyFunctions& studies, const ReportProgress& report) {
+  PointOptions options = study.options;
+  const StageText stage = [&study] { return stage_of(study.condition); };
+  options.progress = [&](double fraction) { return report(fraction, stage); };
+  return studies.solve_operating_point(scene, study.condition, options, gear_set);
+}
+
+std::vector<SweepPoint> solve_curve(const CurveStudy& study, const Scene& scene,
+                                    const std::shared_ptr<PreparedGearSet>& gear_set,
+                                    const StudyFunctions& studies, const ReportProgress& report) {
+  const bool down = study.options.direction == SweepDirection::kDown;
+  const std::size_t count = study.vehicle_speeds.size();
+  std::size_t done = 0;
+  SweepOptions options = study.options;
+  const StageText stage = [&] {
+    const std::size_t now = std::min(done, count - 1);
+    const double speed = study.vehicle_speeds[down ? count - 1 - now : now];
+    return fmt::format("settling at {} km/h, point {} of {}", kilometers_per_hour(speed), now + 1,
+                       count);
+  };
+  options.point.progress = [&](double fraction) { return report(fraction, stage); };
+  const auto on_point = [&done](const SweepPoint&) { ++done; };
+  return studies.sweep_speed(scene, study.vehicle_speeds, study.ascent_angle, options, on_point,
+                             gear_set);
+}
+
+void add_point(PointResult& result, Computed& out) {
+  *out.result.add_points() = to_curve_point(result);
+  check_finite(result.history);
+  for (std::size_t c = 0; c < result.history.names.size(); ++c) {
+    out.result.add_history_columns(result.history.names[c]);
+    out.result.set_history_rows(static_cast<std::int64_t>(result.history.values[c].size()));
+    out.history.push_back({result.history.names[c], std::move(result.history.values[c])});
+  }
+}
+
+void add_curve(const SimulationInputs& inputs, const std::vector<SweepPoint>& points,
+               Computed& out) {
+  for (const SweepPoint& point : points) *out.result.add_points() = to_curve_point(point);
+  const v1::InefficiencyCurveStudy& curve = inputs.effective.inefficiency_curve();
+  out.result.set_independent_points(curve.independent_points());
+  if (!curve.independent_points()) out.result.set_direction(curve.direction());
+}
+
+}  // namespace
+
+Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
+             PreparedGearSets& gear_sets, const ReportProgress& report) {
+  const Scene physical = scene(inputs);
+  const Study asked = study(inputs);
+  const std::string& revision = inputs.effective.gear_set_revision();
+  const std::shared_ptr<PreparedGearSet> gear_set = gear_sets.take(revision, physical);
+  Solved out;
+  if (const auto* point = std::get_if<PointStudy>(&asked)) {
+    out = solve_point(*point, physical, gear_set, studies, report);
+  } else {
+    out = solve_curve(std::get<CurveStudy>(asked), physical, gear_set, studies, report);
+  }
+  // Not after an exception, which may have left something half made.
+  gear_sets.give_back(revision, physical.options, gear_set);
+  return out;
+}
+
+Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved solved) {
+  Computed out;
+  if (auto* point = std::get_if<PointResult>(&solved)) {
+    add_point(*point, out);
+  } else {
+    add_curve(inputs, std::get<std::vector<SweepPoint>>(solved), out);
+  }
+  const std::string bad = first_not_finite(out.result);
+  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
+  out.result.set_model_version(key.model_version);
+  out.result.set_input_hash(key.input_hash);
+  out.result.set_platform(key.platform);
+  return out;
+}
+
+Computed compute(const SimulationInputs& inputs, const ResultKey& key,
+                 const StudyFunctions& studies, const ReportProgress& report) {
+  PreparedGearSets gear_sets;
+  return to_result(inputs, key, solve(inputs, studies, gear_sets, report));
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,67 @@
+#include "server/simulation/contact_inputs.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "core/refusal.h"
+#include "server/contract/check_message.h"
+#include "server/mapping/from_core.h"
+#include "server/mapping/to_core.h"
+#include "server/resources/lubricant_parameters.h"
+#include "server/simulation/study_checks.h"
+
+namespace tribodyn::server {
+
+std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& request,
+                                          const ResourceLookup& lookup, Violations& violations) {
+  const std::size_t before = violations.size();
+  check_message(request, "", violations);
+  check_model_options(request.model_options(), "model_options", violations);
+  std::optional<v1::Lubricant> lubricant;
+  std::string path = "lubricant_parameters";
+  if (request.has_lubricant_parameters()) {
+    lubricant = request.lubricant_parameters();
+  } else if (request.fluid_case() == v1::EvaluateContactRequest::kLubricant) {
+    path = "lubricant";
+    auto found =
+        find_resource<v1::Lubricant>(lookup, request.lubricant(), kLubricants, path, violations);
+    if (found) lubricant = *found->resource;
+  } else {
+    violations.push_back({"fluid", "not set; legal: lubricant or lubricant_parameters"});
+  }
+  if (lubricant) {
+    check_fluid_at_inlet(*lubricant, request.sump_temperature_celsius(),
+                         request.inlet_temperature_rise_kelvin(), path, violations);
+  }
+  if (violations.size() > before) return std::nullopt;
+  return lubricant;
+}
+
+v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request,
+                                             const v1::Lubricant& lubricant) {
+  const FlankContactModel model(
+      to_core(lubricant), solid(request), roughness(request), boundary_friction(request),
+      request.sump_temperature_celsius() + kZeroCelsius, request.inlet_temperature_rise_kelvin(),
+      to_core(request.model_options()));
+  const ContactSolution solution = model.solve(contact_conditions(request));
+  if (solution.status != ContactStatus::kOk && solution.status != ContactStatus::kNoLoad) {
+    throw Refusal(contact_status_name(solution.status), contact_status_sentence(solution.status));
+  }
+  if (solution.contact_temperature > kHottestContact) {
+    throw Refusal("CONTACT_TOO_HOT",
+                  fmt::format("the contact would be at {:.4g} K, and the model means nothing above "
+                              "{} K, where steel melts; check the units of the fluid's parameters "
+                              "(eq 23, eq 34), of the velocities and of the load",
+                              solution.contact_temperature, kHottestContact));
+  }
+  v1::EvaluateContactResponse response = to_message(solution);
+  for (v1::RangeWarning& each : fluid_warnings(lubricant)) {
+    *response.add_input_warnings() = std::move(each);
+  }
+  const std::string bad = first_not_finite(response);
+  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
+  return response;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,136 @@
+#include "server/simulation/cost_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tribodyn::server {
+namespace {
+
+/// Contact solutions, and what one takes with all that is computed around it.
+struct Work {
+  double contact_solutions = 0;
+  double seconds_each = 0;
+};
+
+constexpr double kPreparationSeconds = 0.26e-3;  // of a scene, whatever is studied
+constexpr double kUsualTolerance = 1e-3;
+constexpr Work kQuasiStaticPoint{340, 0.25e-6};  // at the usual tolerance
+constexpr double kQuasiStaticOrder = 0.4;        // contact solutions grow so with a sharper one
+// A shot point: as many steps as the mesh cycle is long, and what a sharper tolerance takes.
+constexpr double kShotSolutions = 130;  // at the usual tolerance
+constexpr double kShotOrder = 0.48;
+constexpr double kShotSolutionsAtOneKilometerPerHour = 12'800;
+constexpr double kShotSecondsEach = 0.21e-6;
+constexpr double kPinionSpeedAtOneKilometerPerHour = 3.2;  // of the paper's axle [rad/s]
+// A curve that follows a branch, over speeds up to e times the least: what its points take far from
+// one another, and the
+// halvings on the way to a branch's end, the likelier the wider the curve.
+constexpr double kSpreadSeconds = 0.7e-3;
+constexpr double kHalvingSeconds = 0.13e-3;
+constexpr double kEndInterval = 0.04;  // [km/h]
+constexpr Work kMarchedCycle{2300, 0.8e-6};
+constexpr double kUsualMarchedCycles = 35;
+constexpr Work kOrbitSample{3, 2.3e-6};  // of a history, three flanks
+constexpr Work kMarchedSample{3, 1.3e-6};
+constexpr double kValueSeconds = 3e-9;  // of a history, repeated from the first period
+
+void add(const Work& work, double count, v1::CostEstimate& out) {
+  const double solutions = count * work.contact_solutions;
+  out.set_contact_solutions(out.contact_solutions() + solutions);
+  out.set_processor_seconds(out.processor_seconds() + solutions * work.seconds_each);
+}
+
+double times_sharper(const v1::SolverOptions& solver) {
+  return kUsualTolerance / solver.tolerance();
+}
+
+void add_shot_point(double speed_kilometers_per_hour, const v1::SolverOptions& solver,
+                    v1::CostEstimate& out) {
+  const double solutions = kShotSolutions * std::pow(times_sharper(solver), kShotOrder) +
+                           kShotSolutionsAtOneKilometerPerHour / speed_kilometers_per_hour;
+  add({solutions, kShotSecondsEach}, 1, out);
+}
+
+void add_point(double speed_kilometers_per_hour, v1::PointModel model,
+               const v1::SolverOptions& solver, v1::CostEstimate& out) {
+  if (model == v1::QUASI_STATIC) {
+    add(kQuasiStaticPoint, std::pow(times_sharper(solver), kQuasiStaticOrder), out);
+  } else if (solver.method() == v1::MARCH) {
+    add(kMarchedCycle, std::min<double>(kUsualMarchedCycles, solver.maximum_mesh_cycles()), out);
+  } else {
+    add_shot_point(speed_kilometers_per_hour, solver, out);
+  }
+}
+
+/// What a curve takes besides its points; its speeds are ascending.
+double following_seconds(const google::protobuf::RepeatedField<double>& speeds) {
+  if (speeds.size() < 2) return 0;
+  const double first = *speeds.begin();
+  const double last = *speeds.rbegin();
+  const double step = (last - first) / (speeds.size() - 1);
+  const double halvings = std::max(0.0, std::log2(step / kEndInterval));
+  return std::log(last / first) * (kSpreadSeconds + kHalvingSeconds * halvings);
+}
+
+void add_curve(const v1::InefficiencyCurveStudy& curve, const v1::SolverOptions& solver,
+               v1::CostEstimate& out) {
+  const auto& speeds = curve.speeds_kilometers_per_hour();
+  for (const double speed : speeds) add_point(speed, curve.model(), solver, out);
+  if (curve.model() == v1::QUASI_STATIC || curve.independent_points()) return;
+  out.set_processor_seconds(out.processor_seconds() + following_seconds(speeds));
+}
+
+/// The vehicle speed of a point, or one at which the pinion of the paper's axle turns as fast
+/// [km/h].
+double speed_of(const v1::OperatingPointStudy& point) {
+  if (point.has_cruise()) return point.cruise().speed_kilometers_per_hour();
+  if (point.has_drive_cycle_snapshot()) {
+    return point.drive_cycle_snapshot().speed_kilometers_per_hour();
+  }
+  return point.prescribed_torque().pinion_speed_radians_per_second() /
+         kPinionSpeedAtOneKilometerPerHour;
+}
+
+/// Only a march works out every sample: an orbit repeats.
+void add_history(const v1::HistoryRequest& history, bool is_marched, v1::CostEstimate& out) {
+  const double samples = history.samples_per_mesh_cycle();
+  const double rows = history.mesh_cycles() * samples;
+  if (is_marched) {
+    add(kMarchedSample, rows, out);
+  } else {
+    add(kOrbitSample, samples, out);
+  }
+  const int columns = history.columns_size() + 1;  // and time
+  out.set_processor_seconds(out.processor_seconds() + rows * columns * kValueSeconds);
+}
+
+void add_study(const v1::Simulation& effective, v1::CostEstimate& out) {
+  const v1::SolverOptions& solver = effective.solver_options();
+  if (effective.has_inefficiency_curve()) {
+    return add_curve(effective.inefficiency_curve(), solver, out);
+  }
+  const v1::OperatingPointStudy& point = effective.operating_point();
+  const double speed = speed_of(point);
+  add_point(speed, point.model(), solver, out);
+  if (point.probe_coexisting_response()) add_point(speed, point.model(), solver, out);
+  if (point.has_history()) add_history(point.history(), solver.method() == v1::MARCH, out);
+}
+
+/// To two digits.
+double rounded(double value) {
+  const double scale = std::pow(10.0, 1 - std::floor(std::log10(value)));
+  return std::round(value * scale) / scale;
+}
+
+}  // namespace
+
+v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
+  v1::CostEstimate out;
+  out.set_processor_seconds(kPreparationSeconds);
+  add_study(effective, out);
+  // What is alike is to come in the order of its arrival, not by a difference that means nothing.
+  out.set_processor_seconds(rounded(out.processor_seconds()));
+  return out;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,78 @@
+#include "server/simulation/golden_case.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/refusal.h"
+#include "server/simulation/result_key.h"
+#include "server/storage/seeds.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr double kSolverTolerance = 1e-6;
+/// Far above what that and round-off leave open, far below what a wrong law does.
+constexpr double kRelativeTolerance = 1e-4;
+
+struct Figure {
+  const char* name;
+  double expected;
+  double (*value)(const v1::PointResult&);
+};
+
+/// Lubricant 1 in gear set A with the run-in surface at 72.5 km/h, the first resonance, where the
+/// teeth part: dynamics, film, heat and friction all take part. By the march of
+/// tribodyn-model-2.
+constexpr Figure kFigures[] = {
+    {"pinion_torque_newton_metres", 33.15439064,
+     [](const v1::PointResult& point) { return point.pinion_torque_newton_metres(); }},
+    {"inefficiency_energy_mean_percent", 1.384566506,
+     [](const v1::PointResult& point) { return point.inefficiency_energy_mean_percent(); }},
+    {"viscous_loss_power_watts", 89.64757038,
+     [](const v1::PointResult& point) { return point.viscous_loss_power_watts(); }},
+    {"boundary_loss_power_watts", 1.783013767,
+     [](const v1::PointResult& point) { return point.boundary_loss_power_watts(); }},
+    {"contact_temperature_kelvin.maximum", 368.3391248,
+     [](const v1::PointResult& point) { return point.contact_temperature_kelvin().maximum(); }},
+    {"mesh_force_newtons.maximum", 3956.958836,
+     [](const v1::PointResult& point) { return point.mesh_force_newtons().maximum(); }},
+};
+
+ResourceLookup seeds() {
+  return {[all = seed_resources()](const RevisionName& name) -> std::optional<FoundResource> {
+            for (const NewResource& each : all) {
+              if (each.name == name.name) return FoundResource{1, false, each.body};
+            }
+            return std::nullopt;
+          },
+          [](const std::string&) { return std::vector<std::string>(); }};
+}
+
+}  // namespace
+
+std::string check_golden_case(const StudyFunctions& studies) {
+  v1::Simulation simulation;
+  simulation.set_lubricant("lubricants/1");
+  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(72.5);
+  simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
+  Violations violations;
+  const auto inputs = read_simulation(simulation, seeds(), "simulation", violations);
+  if (!inputs) return "golden case: " + violations.front().description;
+  try {
+    const Computed computed = compute(*inputs, result_key(*inputs), studies,
+                                      [](double, const StageText&) { return true; });
+    const v1::PointResult& point = computed.result.points(0).result();
+    for (const Figure& figure : kFigures) {
+      const double value = figure.value(point);
+      if (std::abs(value - figure.expected) <= kRelativeTolerance * figure.expected) continue;
+      return fmt::format("golden case: {} came out as {}; {} is right", figure.name, value,
+                         figure.expected);
+    }
+  } catch (const std::exception& error) {
+    return std::string("golden case: ") + error.what();
+  }
+  return {};
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,53 @@
+#include "server/storage/connections.h"
+
+#include <sqlite3.h>
+
+#include "server/storage/deadline.h"
+
+namespace tribodyn::server {
+
+void configure_sqlite() {
+  // Without effect where SQLite is in use already, e.g. in a test.
+  sqlite3_config(SQLITE_CONFIG_MULTITHREAD);
+  sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
+}
+
+void heed_deadlines(Connection& connection) {
+  constexpr int kInstructions = 1000;  // about 10 us between looks at the clock
+  sqlite3_progress_handler(
+      connection.getHandle(), kInstructions,
+      [](void*) { return DeadlineScope::has_passed() ? 1 : 0; }, nullptr);
+}
+
+void ReaderPool::open(const std::filesystem::path& database, int connections) {
+  for (int i = 0; i < connections; ++i) {
+    // Read-write at the file level, as a WAL reader may have to rebuild the index; query_only bars
+    // it from changing anything.
+    auto connection = std::make_unique<Connection>(database.string(), SQLite::OPEN_READWRITE,
+                                                   kBusyTimeoutMilliseconds);
+    connection->exec("PRAGMA query_only = ON");
+    // In KiB: what many readers of histories share comes from the system's cache.
+    connection->exec("PRAGMA cache_size = -256");
+    connection->execAndGet("SELECT count(*) FROM sqlite_master");  // opens the log too
+    heed_deadlines(*connection);
+    give_back(std::move(connection));
+  }
+}
+
+ReaderPool::Loan ReaderPool::borrow() {
+  std::unique_lock lock(mutex_);
+  returned_.wait(lock, [this] { return !idle_.empty(); });
+  auto connection = std::move(idle_.back());
+  idle_.pop_back();
+  return Loan(*this, std::move(connection));
+}
+
+void ReaderPool::give_back(std::unique_ptr<Connection> connection) {
+  {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(connection));
+  }
+  returned_.notify_one();
+}
+
+}  // namespace tribodyn::server

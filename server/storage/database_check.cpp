@@ -1,0 +1,257 @@
+#include "server/storage/database_check.h"
+
+#include <SQLiteCpp/Statement.h>
+
+#include <map>
+#include <optional>
+
+#include "server/storage/checksum.h"
+#include "server/storage/history_rows.h"
+#include "server/storage/properties.h"
+#include "server/storage/resource_types.h"
+#include "server/storage/schema.h"
+#include "server/storage/store_error.h"
+#include "server/support/sha256.h"
+#include "tribodyn/v1/results.pb.h"
+#include "tribodyn/v1/simulations.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr std::size_t kMaximumProblems = 100;
+
+int pragma(Connection& db, const std::string& name) {
+  return db.execAndGet("PRAGMA " + name).getInt();
+}
+
+/// Whether a database holds nothing yet, so that a server would make its tables.
+bool is_new(Connection& db) {
+  return db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0 &&
+         pragma(db, "user_version") == 0 && pragma(db, "application_id") == 0;
+}
+
+/// Runs a query that selects what must not be; each row is a sentence.
+void find_rows(Connection& db, const char* sql, Problems& problems) {
+  SQLite::Statement query(db, sql);
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    problems.push_back(query.getColumn(0).getString());
+  }
+}
+
+void check_file(Connection& db, Problems& problems) {
+  SQLite::Statement integrity(db, "PRAGMA integrity_check(20)");
+  while (integrity.executeStep()) {
+    const std::string row = integrity.getColumn(0).getString();
+    if (row != "ok") problems.push_back(row);
+  }
+  SQLite::Statement keys(db, "PRAGMA foreign_key_check");
+  while (problems.size() < kMaximumProblems && keys.executeStep()) {
+    problems.push_back("a row of " + keys.getColumn(0).getString() + " points at a row of " +
+                       keys.getColumn(2).getString() + " that is not there");
+  }
+}
+
+void check_rows(Connection& db, Problems& problems) {
+  for (const char* sql : {
+           "SELECT r.name || ': revisions have gaps' FROM resources r JOIN revisions v "
+           "ON v.resource = r.id GROUP BY r.id "
+           "HAVING count(*) <> max(v.revision) OR min(v.revision) <> 1",
+           "SELECT r.name || ': its present revision is not its last' FROM resources r "
+           "LEFT JOIN revisions v ON v.id = r.present AND v.resource = r.id "
+           "WHERE v.revision IS NOT "
+           "(SELECT max(revision) FROM revisions WHERE resource = r.id)",
+           "SELECT name || ': no known kind of resource' FROM resources "
+           "WHERE collection NOT IN ('lubricants', 'gearSets', 'surfaces', 'vehicles')",
+           "SELECT 'simulations/' || s.id || ': its events have gaps' FROM simulations s "
+           "WHERE (SELECT count(*) FROM events WHERE simulation = s.id) <> s.sequence OR "
+           "(SELECT coalesce(max(sequence), 0) FROM events WHERE simulation = s.id) <> s.sequence",
+           "SELECT 'simulations/' || s.id || ': its last event is of another state' "
+           "FROM simulations s JOIN events e ON e.simulation = s.id AND e.sequence = s.sequence "
+           "WHERE e.state <> s.state OR e.attempt <> s.attempt",
+           "SELECT 'simulations/' || a.simulation || ': its states move backwards' "
+           "FROM events a JOIN events b ON b.simulation = a.simulation "
+           "AND b.sequence = a.sequence + 1 WHERE a.state > 2 OR b.attempt < a.attempt OR "
+           "(b.attempt = a.attempt AND b.state <= a.state)",
+           "SELECT 'result ' || id || ': its content is not what was written' FROM results "
+           "WHERE checksum <> checksum(body)",
+           "SELECT 'simulations/' || s.id || ': columns of its history differ in length' "
+           "FROM simulations s JOIN history_columns h ON h.result = s.result GROUP BY s.id "
+           "HAVING min(rows) <> max(rows)",
+       }) {
+    find_rows(db, sql, problems);
+  }
+}
+
+void check_histories(Connection& db, Problems& problems) {
+  SQLite::Statement query(db, "SELECT id, result FROM history_columns");
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    if (is_whole_column(db, query.getColumn(0).getInt64())) continue;
+    problems.push_back("result " + query.getColumn(1).getString() + ": its history is damaged");
+  }
+}
+
+void check_ledgers(Connection& db, Problems& problems) {
+  SQLite::Statement query(db, "SELECT id, content_hash, body FROM ledgers");
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    if (sha256(bytes_of(query.getColumn(2))) == query.getColumn(1).getString()) continue;
+    problems.push_back("ledger " + query.getColumn(0).getString() +
+                       ": its content is not what was written");
+  }
+}
+
+bool bears_name(const google::protobuf::Message& message, const std::string& name) {
+  return message.GetReflection()->GetString(
+             message, message.GetDescriptor()->FindFieldByName("name")) == name;
+}
+
+void check_bodies(Connection& db, Problems& problems) {
+  SQLite::Statement query(db,
+                          "SELECT r.name, v.revision, v.content_hash, v.body FROM revisions v "
+                          "JOIN resources r ON r.id = v.resource ORDER BY v.id");
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    const std::string name = query.getColumn(0).getString();
+    const std::string revision = name + "@" + query.getColumn(1).getString();
+    const std::string body = query.getColumn(3).getString();
+    if (sha256(body) != query.getColumn(2).getString()) {
+      problems.push_back(revision + ": its content is not what was written");
+      continue;
+    }
+    const auto message = new_resource(collection_of(name));
+    if (!message || !message->ParseFromString(body)) {
+      problems.push_back(revision + ": cannot be read");
+    } else if (!bears_name(*message, name)) {
+      problems.push_back(revision + ": holds another resource");
+    }
+  }
+}
+
+std::map<std::string, PropertyValue> stored_properties(Connection& db, std::int64_t id) {
+  SQLite::Statement query(db, "SELECT key, value FROM properties WHERE resource = ?");
+  query.bind(1, id);
+  std::map<std::string, PropertyValue> out;
+  while (query.executeStep()) {
+    const SQLite::Column value = query.getColumn(1);
+    PropertyValue& held = out[query.getColumn(0).getString()];
+    if (value.isInteger()) held = value.getInt64();
+    if (value.isFloat()) held = value.getDouble();
+    if (value.isText()) held = value.getString();
+  }
+  return out;
+}
+
+void check_properties(Connection& db, Problems& problems) {
+  SQLite::Statement query(db,
+                          "SELECT r.id, r.name, r.collection, v.body, r.create_time, v.create_time "
+                          "FROM resources r JOIN revisions v ON v.id = r.present");
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    std::map<std::string, PropertyValue> expected;
+    for (Property& each :
+         properties_of(query.getColumn(2).getString(), query.getColumn(3).getString(),
+                       query.getColumn(4).getInt64(), query.getColumn(5).getInt64())) {
+      expected[each.key] = std::move(each.value);
+    }
+    if (stored_properties(db, query.getColumn(0).getInt64()) == expected) continue;
+    problems.push_back(query.getColumn(1).getString() +
+                       ": what it is found by is not what it holds");
+  }
+}
+
+std::optional<std::string> revision_body(Connection& db, const std::string& name, int revision) {
+  SQLite::Statement query(db,
+                          "SELECT v.body FROM revisions v JOIN resources r ON r.id = v.resource "
+                          "WHERE r.name = ? AND v.revision = ?");
+  query.bind(1, name);
+  query.bind(2, revision);
+  if (!query.executeStep()) return std::nullopt;
+  return query.getColumn(0).getString();
+}
+
+void check_simulations(Connection& db, const HashInputs& hash_inputs, Problems& problems) {
+  const FindRevision find = [&db](const std::string& name, int revision) {
+    return revision_body(db, name, revision);
+  };
+  SQLite::Statement query(
+      db,
+      "SELECT s.id, s.request, s.input_hash, b.body, "
+      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.lubricant), "
+      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.gear_set), "
+      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.surface), "
+      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.vehicle) "
+      "FROM simulations s LEFT JOIN results b ON b.id = s.result");
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    const std::string name = "simulations/" + query.getColumn(0).getString();
+    const std::string hash = query.getColumn(2).getString();
+    v1::Simulation request;
+    if (!request.ParseFromString(query.getColumn(1).getString())) {
+      problems.push_back(name + ": its request cannot be read");
+    }
+    if (query.getColumn(3).isNull()) continue;
+    v1::SimulationResult result;
+    if (!result.ParseFromString(query.getColumn(3).getString())) {
+      problems.push_back(name + ": its result cannot be read");
+    } else if (result.input_hash() != hash) {
+      problems.push_back(name + ": its result is of other inputs");
+    } else if (hash_inputs) {
+      request.set_lubricant(query.getColumn(4).getString());
+      request.set_gear_set(query.getColumn(5).getString());
+      request.set_surface(query.getColumn(6).getString());
+      request.set_vehicle(query.getColumn(7).getString());
+      const auto again = hash_inputs(request, result.model_version(), find);
+      if (again && *again != hash) problems.push_back(name + ": its inputs have another hash");
+    }
+  }
+}
+
+}  // namespace
+
+void check_identity(Connection& db, const std::filesystem::path& path) {
+  const int version = pragma(db, "user_version");
+  const int application = pragma(db, "application_id");
+  const std::string name = "database " + path.string();
+  if (application != kApplicationId) {
+    throw StoreError(StoreError::Kind::kForeign,
+                     name + (is_new(db) ? " is empty" : " belongs to another program"));
+  }
+  if (version > kSchemaVersion) {
+    throw StoreError(StoreError::Kind::kNewerSchema,
+                     name + " has schema " + std::to_string(version) +
+                         ", written by a newer tribodynd; this one knows schemas up to " +
+                         std::to_string(kSchemaVersion));
+  }
+}
+
+void require_servable(Connection& db, const std::filesystem::path& path) {
+  if (is_new(db)) return;
+  check_identity(db, path);
+  const std::vector<std::string> differences = schema_differences(db);
+  if (differences.empty()) return;
+  const std::size_t more = differences.size() - 1;
+  throw StoreError(StoreError::Kind::kCorrupt,
+                   "database " + path.string() +
+                       " is not as tribodynd makes it: " + differences.front() +
+                       (more > 0 ? " (and " + std::to_string(more) + " more)" : ""));
+}
+
+Problems problems_of(Connection& db, const std::filesystem::path& path,
+                     const HashInputs& hash_inputs) {
+  if (is_new(db)) return {};
+  check_identity(db, path);
+  Problems problems;
+  check_file(db, problems);
+  if (!problems.empty()) return problems;
+  problems = schema_differences(db);
+  if (!problems.empty()) return problems;
+  if (pragma(db, "user_version") < kSchemaVersion) return problems;  // the next start migrates it
+  add_checksum_function(db);
+  db.exec("BEGIN");  // one moment of a database in use
+  check_rows(db, problems);
+  check_histories(db, problems);
+  check_ledgers(db, problems);
+  check_bodies(db, problems);
+  check_properties(db, problems);
+  check_simulations(db, hash_inputs, problems);
+  db.exec("COMMIT");
+  return problems;
+}
+
+}  // namespace tribodyn::server

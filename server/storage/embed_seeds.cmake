@@ -1,0 +1,11 @@
+# cmake -DOUTPUT=embedded_seeds.cpp "-DSEEDS=a.json;b.json" -P embed_seeds.cmake
+set(source "#include \"server/storage/embedded_seeds.h\"\n\nnamespace tribodyn::server {\nnamespace {\n\n")
+string(APPEND source "constexpr EmbeddedSeed kSeeds[] = {\n")
+foreach(seed ${SEEDS})
+  get_filename_component(name ${seed} NAME)
+  file(READ ${seed} json)
+  string(APPEND source "    {\"${name}\", R\"seed(${json})seed\"},\n")
+endforeach()
+string(APPEND source "};\n\n}  // namespace\n\nstd::span<const EmbeddedSeed> embedded_seeds() { return kSeeds; }\n\n")
+string(APPEND source "}  // namespace tribodyn::server\n")
+file(WRITE ${OUTPUT} "${source}")

@@ -1,0 +1,169 @@
+#include "server/storage/maintenance.h"
+
+#include <SQLiteCpp/Backup.h>
+#include <SQLiteCpp/Statement.h>
+#include <sqlite3.h>
+
+#include <new>
+
+#include "server/storage/connections.h"
+#include "server/storage/database_check.h"
+#include "server/storage/database_files.h"
+#include "server/storage/database_lock.h"
+#include "server/storage/durable_files.h"
+#include "server/storage/store_error.h"
+#include "server/storage/translate_error.h"
+
+namespace tribodyn::server {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kAllPages = -1;
+
+Connection open_existing(const fs::path& path, int flags) {
+  if (!fs::exists(path)) {
+    throw StoreError(StoreError::Kind::kCannotOpen, "there is no database " + path.string());
+  }
+  return {path.string(), flags, kBusyTimeoutMilliseconds};
+}
+
+/// Runs an action on the database `path`; its failures become StoreError.
+template <class Action>
+auto translated(const fs::path& path, const Action& action) {
+  try {
+    return action();
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path);
+  } catch (const fs::filesystem_error& error) {
+    throw StoreError(StoreError::Kind::kFailed, error.what());
+  } catch (const std::bad_alloc&) {
+    throw StoreError(StoreError::Kind::kFailed, "not enough memory to read " + path.string());
+  }
+}
+
+StoreError in_use(const fs::path& database) {
+  return {StoreError::Kind::kInUse,
+          "database " + database.string() + " is in use by another program"};
+}
+
+/// Copies a database into an empty file, as it is at one moment, and returns the problems of the
+/// copy.
+Problems copy_and_check(const fs::path& from, const fs::path& to) {
+  {
+    Connection source = open_existing(from, SQLite::OPEN_READONLY);
+    // Without a read transaction SQLite begins the copy anew whenever another connection commits,
+    // and under steady writes never finishes it.
+    source.exec("BEGIN");
+    check_identity(source, from);  // the first read begins the transaction
+    translated(to, [&] {
+      Connection target = open_existing(to, SQLite::OPEN_READWRITE);
+      if (SQLite::Backup(target, source).executeStep(kAllPages) != SQLITE_DONE) throw in_use(from);
+    });
+  }
+  // Able to write, so that closing it removes the log file that opening it makes.
+  Connection copied = open_existing(to, SQLite::OPEN_READWRITE);
+  return problems_of(copied, to);
+}
+
+/// Moves the contents of a database's write-ahead log into the database file. Returns false if the
+/// file is no SQLite database, or a damaged one.
+bool fold_log(const fs::path& database) {
+  if (fs::file_size(database) == 0) return false;
+  try {
+    Connection db = open_existing(database, SQLite::OPEN_READWRITE);
+    db.execAndGet("SELECT count(*) FROM sqlite_master");
+    SQLite::Statement checkpoint(db, "PRAGMA wal_checkpoint(TRUNCATE)");
+    checkpoint.executeStep();
+    if (checkpoint.getColumn(0).getInt() == 0) return true;
+    throw in_use(database);
+  } catch (const SQLite::Exception& error) {
+    const int code = error.getErrorCode();
+    if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) return false;
+    throw translate_error(error, database);
+  }
+}
+
+/// Gives the database a second name, the first of X.replaced, X.replaced.2, ... that no file and no
+/// log has. Returns that name.
+fs::path kept_name(const fs::path& database) {
+  for (int number = 1;; ++number) {
+    fs::path name = database.string() + ".replaced";
+    if (number > 1) name += "." + std::to_string(number);
+    if (fs::exists(name.string() + "-wal") || fs::exists(name.string() + "-journal")) continue;
+    if (!fs::exists(database)) {
+      if (!fs::exists(name)) return name;
+    } else if (add_name(database, name) || fs::equivalent(database, name)) {
+      return name;  // equivalent: a restore that was killed has done this before
+    }
+  }
+}
+
+/// Prepares for another file to take the name of the database: keeps the old one under a second
+/// name, and leaves no log that SQLite would apply to the new one. Returns the second name.
+fs::path keep_old(const fs::path& database) {
+  const bool is_folded = fs::exists(database) && fold_log(database);
+  fs::path kept = kept_name(database);
+  for (const char* suffix : {"-wal", "-journal"}) {
+    const fs::path log = database.string() + suffix;
+    if (!fs::exists(log)) continue;
+    if (!is_folded) {
+      fs::rename(log, kept.string() + suffix);
+    } else if (fs::file_size(log) == 0) {
+      fs::remove(log);
+    } else {
+      throw in_use(database);
+    }
+  }
+  fs::remove(database.string() + "-shm");
+  sync_folder_of(database);
+  return kept;
+}
+
+}  // namespace
+
+void backup_database(const fs::path& database, const fs::path& copy) {
+  const StoreError is_there(StoreError::Kind::kFailed,
+                            copy.string() + " exists; name a file that does not");
+  translated(database, [&] {
+    if (fs::exists(copy)) throw is_there;
+    UnfinishedFile unfinished(copy);
+    const Problems problems = copy_and_check(database, unfinished.path());
+    if (!problems.empty()) {
+      throw StoreError(StoreError::Kind::kCorrupt,
+                       database.string() + " is damaged, no backup was made: " + problems.front());
+    }
+    if (!unfinished.publish_as_new()) throw is_there;
+  });
+}
+
+std::optional<fs::path> restore_database(const fs::path& copy, const fs::path& database) {
+  const fs::path target = canonical_path(database);
+  return translated(copy, [&]() -> std::optional<fs::path> {
+    const bool is_first = !fs::exists(target);
+    if (!is_first && fs::exists(copy) && fs::equivalent(copy, target)) {
+      throw StoreError(StoreError::Kind::kFailed, copy.string() + " is the database itself");
+    }
+    const DatabaseLock lock(target);
+    UnfinishedFile unfinished(target);
+    const Problems problems = copy_and_check(copy, unfinished.path());
+    if (!problems.empty()) {
+      throw StoreError(StoreError::Kind::kCorrupt,
+                       copy.string() + " is damaged: " + problems.front());
+    }
+    fs::path kept = translated(target, [&] { return keep_old(target); });
+    unfinished.publish_over();
+    if (is_first) return std::nullopt;
+    return kept;
+  });
+}
+
+std::vector<std::string> check_database(const fs::path& database, const HashInputs& hash_inputs) {
+  return translated(database, [&] {
+    require_usable_path(canonical_path(database));
+    Connection db = open_existing(database, SQLite::OPEN_READONLY);
+    return problems_of(db, database, hash_inputs);
+  });
+}
+
+}  // namespace tribodyn::server

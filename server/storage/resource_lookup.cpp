@@ -1,0 +1,42 @@
+#include "server/storage/resource_lookup.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tribodyn::server {
+
+ResourceLookup resource_lookup(Store& store) {
+  return {[&store](const RevisionName& name) -> std::optional<FoundResource> {
+            auto found = name.revision == 0 ? store.resource(name.name)
+                                            : store.revision(name.name, name.revision);
+            if (!found) return std::nullopt;
+            return FoundResource{found->revision, found->delete_time.has_value(),
+                                 std::move(found->body)};
+          },
+          [&store](const std::string& collection) { return store.resource_names(collection); }};
+}
+
+ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation) {
+  ResourceLookup out = resource_lookup(store);
+  std::vector<RevisionName> accepted;
+  const auto add = [&accepted](const std::string& name, const char* collection) {
+    if (const auto parsed = parse_revision_name(name, collection)) accepted.push_back(*parsed);
+  };
+  add(simulation.lubricant_revision, kLubricants);
+  add(simulation.gear_set_revision, kGearSets);
+  add(simulation.surface_revision, kSurfaces);
+  add(simulation.vehicle_revision, kVehicles);
+  out.find = [find = out.find, accepted](RevisionName name) {
+    for (const RevisionName& each : accepted) {
+      if (each.name == name.name) name = each;
+    }
+    auto found = find(name);
+    if (found) found->is_deleted = false;
+    return found;
+  };
+  return out;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,186 @@
+#include "server/storage/resource_queries.h"
+
+#include <SQLiteCpp/Statement.h>
+
+#include <algorithm>
+
+#include "server/storage/resource_rows.h"
+
+namespace tribodyn::server {
+namespace {
+
+using Comparison = Restriction::Comparison;
+
+constexpr int kFewRows = 500;  ///< so many rows are sorted in no time
+
+/// SQL with the values for its question marks, in their order.
+struct Clause {
+  std::string sql;
+  std::vector<PropertyValue> values;
+
+  void add(const std::string& more, std::vector<PropertyValue> more_values = {}) {
+    sql += more;
+    values.insert(values.end(), more_values.begin(), more_values.end());
+  }
+};
+
+void bind_all(SQLite::Statement& statement, const std::vector<PropertyValue>& values) {
+  int index = 0;
+  for (const PropertyValue& value : values) bind_value(statement, ++index, value);
+}
+
+/// The comparison of a column with the value of a restriction.
+Clause compared(const std::string& column, const Restriction& restriction) {
+  switch (restriction.comparison) {
+    case Comparison::kEqual:
+    case Comparison::kNotEqual:  // by its caller
+      return {column + " = ?", {restriction.value}};
+    case Comparison::kLess:
+      return {column + " < ?", {restriction.value}};
+    case Comparison::kLessOrEqual:
+      return {column + " <= ?", {restriction.value}};
+    case Comparison::kGreater:
+      return {column + " > ?", {restriction.value}};
+    case Comparison::kGreaterOrEqual:
+      return {column + " >= ?", {restriction.value}};
+    case Comparison::kContains:
+      return {"instr(lower(" + column + "), lower(?)) > 0", {restriction.value}};
+    case Comparison::kPresent:
+      return {"TRUE", {}};
+  }
+  return {"FALSE", {}};
+}
+
+/// A condition on the resource r alone, whatever leads the query.
+Clause condition(const Restriction& restriction) {
+  Clause out;
+  const bool negated = restriction.comparison == Comparison::kNotEqual;
+  const std::string begin = negated ? " AND NOT " : " AND ";
+  if (restriction.key == "name") {
+    const Clause test = compared("r.name", restriction);
+    out.add(begin + "(" + test.sql + ")", test.values);
+    return out;
+  }
+  const Clause test = compared("p.value", restriction);
+  out.add(begin + "EXISTS (SELECT 1 FROM properties p WHERE p.resource = r.id AND p.key = ? AND ",
+          {restriction.key});
+  out.add(test.sql + ")", test.values);
+  return out;
+}
+
+/// "FROM" and "WHERE" of the rows of the index that a restriction selects, as d.
+Clause selected(const std::string& collection, const Restriction& restriction) {
+  const Clause test = compared("d.value", restriction);
+  Clause out{" d.collection = ? AND d.key = ? AND ", {collection, restriction.key}};
+  out.add(test.sql, test.values);
+  return out;
+}
+
+bool has_index(const Restriction& restriction) {
+  return restriction.key != "name" && restriction.comparison != Comparison::kNotEqual &&
+         restriction.comparison != Comparison::kContains;
+}
+
+/// How many rows a restriction selects; kFewRows stands for more.
+int count_up_to_few(Connection& db, const std::string& collection, const Restriction& restriction) {
+  const Clause rows = selected(collection, restriction);
+  SQLite::Statement query(db, "SELECT count(*) FROM (SELECT 1 FROM properties d WHERE" + rows.sql +
+                                  " LIMIT " + std::to_string(kFewRows) + ")");
+  bind_all(query, rows.values);
+  query.executeStep();
+  return query.getColumn(0).getInt();
+}
+
+/// The restriction that selects the fewest rows if those are few, else null.
+const Restriction* most_selective(Connection& db, const ResourceQuery& query) {
+  const Restriction* best = nullptr;
+  int fewest = kFewRows;
+  for (const Restriction& each : query.restrictions) {
+    if (!has_index(each)) continue;
+    const int count = count_up_to_few(db, query.collection, each);
+    if (count < fewest) {
+      fewest = count;
+      best = &each;
+    }
+  }
+  return best;
+}
+
+constexpr char kJoined[] =
+    " CROSS JOIN resources r ON r.id = d.resource CROSS JOIN revisions v ON v.id = r.present";
+
+/// Where a page that is ordered by `columns` goes on.
+void add_start_and_order(Clause& sql, const ResourceQuery& query, const std::string& value_column,
+                         const std::string& name_column) {
+  const std::string beyond = query.descending ? " < " : " > ";
+  const std::string direction = query.descending ? " DESC" : "";
+  if (query.order_key.empty()) {
+    if (query.after) sql.add(" AND " + name_column + beyond + "?", {query.after->name});
+    sql.add(" ORDER BY " + name_column + direction);
+    return;
+  }
+  if (query.after) {
+    sql.add(" AND (" + value_column + ", " + name_column + ")" + beyond + "(?, ?)",
+            {query.after->value, query.after->name});
+  }
+  sql.add(" ORDER BY " + value_column + direction + ", " + name_column + direction);
+}
+
+void add_conditions(Clause& sql, const ResourceQuery& query, const Restriction* but) {
+  if (!query.show_deleted) sql.add(" AND r.delete_time IS NULL");
+  for (const Restriction& each : query.restrictions) {
+    if (&each == but) continue;
+    const Clause more = condition(each);
+    sql.add(more.sql, more.values);
+  }
+}
+
+Clause statement(Connection& db, const ResourceQuery& query) {
+  Clause sql{kResourceColumns, {}};
+  const bool by_name = query.order_key.empty();
+  const Restriction* leading = most_selective(db, query);
+  const bool sorted = leading != nullptr;
+  if (leading == nullptr && by_name) {
+    const auto equal = std::find_if(
+        query.restrictions.begin(), query.restrictions.end(), [](const Restriction& each) {
+          return has_index(each) && each.comparison == Comparison::kEqual;
+        });
+    if (equal != query.restrictions.end()) leading = &*equal;
+  }
+  if (leading != nullptr) {
+    const Clause rows = selected(query.collection, *leading);
+    sql.add(std::string("FROM properties d") + kJoined);
+    if (!by_name) {
+      sql.add(" CROSS JOIN properties o ON o.resource = r.id AND o.key = ?", {query.order_key});
+    }
+    sql.add(" WHERE" + rows.sql, rows.values);
+    add_conditions(sql, query, leading);
+    // A sorted name is written so that no index is taken for its order.
+    add_start_and_order(sql, query, "o.value", sorted ? "+d.name" : "d.name");
+    return sql;
+  }
+  if (by_name) {
+    sql.add("FROM resources r CROSS JOIN revisions v ON v.id = r.present WHERE r.collection = ?",
+            {query.collection});
+    add_conditions(sql, query, nullptr);
+    add_start_and_order(sql, query, "", "r.name");
+    return sql;
+  }
+  sql.add(std::string("FROM properties d") + kJoined + " WHERE d.collection = ? AND d.key = ?",
+          {query.collection, query.order_key});
+  add_conditions(sql, query, nullptr);
+  add_start_and_order(sql, query, "d.value", "d.name");
+  return sql;
+}
+
+}  // namespace
+
+Page<StoredResource> query_resources(Connection& db, const ResourceQuery& query) {
+  const Clause sql = statement(db, query);
+  SQLite::Statement rows(db, sql.sql + " LIMIT " + std::to_string(query.limit + 1));
+  bind_all(rows, sql.values);
+  return read_page<StoredResource>(rows, query.limit, query.byte_limit, kBodyColumn,
+                                   stored_resource);
+}
+
+}  // namespace tribodyn::server

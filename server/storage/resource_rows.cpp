@@ -1,0 +1,120 @@
+#include "server/storage/resource_rows.h"
+
+#include <algorithm>
+
+#include "server/storage/resource_types.h"
+#include "server/support/sha256.h"
+
+namespace tribodyn::server {
+namespace {
+
+void insert_properties(Connection& db, const StoredResource& resource) {
+  const std::string collection = collection_of(resource.name);
+  Prepared insert(db, "INSERT INTO properties VALUES (?, ?, ?, ?, ?)");
+  for (const Property& each : properties_of(collection, resource.body, resource.create_time,
+                                            resource.revision_create_time)) {
+    insert.bind(1, resource.id);
+    insert.bind(2, each.key);
+    bind_value(insert, 3, each.value);
+    insert.bind(4, collection);
+    insert.bind(5, resource.name);
+    insert.exec();
+    insert.reset();
+  }
+}
+
+/// Adds the row and makes it the present one.
+void add_revision(Connection& db, const StoredResource& added) {
+  Prepared insert(db,
+                  "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
+                  "VALUES (?, ?, ?, ?, ?)");
+  insert.bind(1, added.id);
+  insert.bind(2, added.revision);
+  insert.bind(3, added.revision_create_time);
+  insert.bind(4, added.content_hash);
+  bind_blob(insert, 5, added.body);
+  insert.exec();
+  Prepared present(db, "UPDATE resources SET present = ? WHERE id = ?");
+  present.bind(1, db.getLastInsertRowid());
+  present.bind(2, added.id);
+  present.exec();
+}
+
+}  // namespace
+
+void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes) {
+  statement.bind(index, bytes.data(), static_cast<int>(bytes.size()));
+}
+
+void bind_value(SQLite::Statement& statement, int index, const PropertyValue& value) {
+  std::visit([&](const auto& held) { statement.bind(index, held); }, value);
+}
+
+bool is_taken(Connection& db, const std::string& name) {
+  Prepared taken(db, "SELECT 1 FROM resources WHERE name = ?");
+  taken.bind(1, name);
+  return taken.executeStep();
+}
+
+bool is_unchanged(Connection& db, const StoredResource& present) {
+  Prepared unchanged(db,
+                     "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
+                     "WHERE r.id = ? AND v.revision = ? AND "
+                     "(r.delete_time IS NULL) = ?");
+  unchanged.bind(1, present.id);
+  unchanged.bind(2, present.revision);
+  unchanged.bind(3, present.delete_time ? 0 : 1);
+  return unchanged.executeStep();
+}
+
+StoredResource insert_resource(Connection& db, const NewResource& resource, Microseconds now) {
+  Prepared insert(
+      db, "INSERT INTO resources (name, collection, present, create_time) VALUES (?, ?, 0, ?)");
+  insert.bind(1, resource.name);
+  insert.bind(2, collection_of(resource.name));
+  insert.bind(3, now);
+  insert.exec();
+  StoredResource added;
+  added.id = db.getLastInsertRowid();
+  added.name = resource.name;
+  added.revision = 1;
+  added.create_time = now;
+  added.revision_create_time = now;
+  added.content_hash = sha256(resource.body);
+  added.body = resource.body;
+  add_revision(db, added);
+  insert_properties(db, added);
+  return added;
+}
+
+StoredResource insert_revision(Connection& db, const StoredResource& present,
+                               const std::string& body, Microseconds now) {
+  StoredResource added = present;
+  added.revision = present.revision + 1;
+  // The wall clock may have been set back since the former revision.
+  added.revision_create_time = std::max(now, present.revision_create_time);
+  added.content_hash = sha256(body);
+  added.body = body;
+  add_revision(db, added);
+  Prepared clear(db, "DELETE FROM properties WHERE resource = ?");
+  clear.bind(1, present.id);
+  clear.exec();
+  insert_properties(db, added);
+  return added;
+}
+
+StoredResource stored_resource(const SQLite::Statement& query) {
+  StoredResource out;
+  out.id = query.getColumn(0).getInt64();
+  out.name = query.getColumn(1).getString();
+  out.revision = query.getColumn(2).getInt();
+  out.is_present = query.getColumn(3).getInt() != 0;
+  out.create_time = query.getColumn(4).getInt64();
+  out.revision_create_time = query.getColumn(5).getInt64();
+  if (!query.getColumn(6).isNull()) out.delete_time = query.getColumn(6).getInt64();
+  out.content_hash = query.getColumn(7).getString();
+  out.body = query.getColumn(8).getString();
+  return out;
+}
+
+}  // namespace tribodyn::server

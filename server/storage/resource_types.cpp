@@ -1,0 +1,43 @@
+#include "server/storage/resource_types.h"
+
+#include "tribodyn/v1/gear_sets.pb.h"
+#include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/simulations.pb.h"
+#include "tribodyn/v1/surfaces.pb.h"
+#include "tribodyn/v1/vehicles.pb.h"
+
+namespace tribodyn::server {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+std::string collection_of(std::string_view name) {
+  return std::string(name.substr(0, name.find('/')));
+}
+
+std::unique_ptr<Message> new_resource(std::string_view collection) {
+  if (collection == "lubricants") return std::make_unique<v1::Lubricant>();
+  if (collection == "gearSets") return std::make_unique<v1::GearSet>();
+  if (collection == "surfaces") return std::make_unique<v1::Surface>();
+  if (collection == "vehicles") return std::make_unique<v1::Vehicle>();
+  if (collection == "simulations") return std::make_unique<v1::Simulation>();
+  return nullptr;
+}
+
+void set_missing_numbers(Message& message) {
+  const auto& descriptor = *message.GetDescriptor();
+  const auto& reflection = *message.GetReflection();
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const FieldDescriptor* field = descriptor.field(i);
+    if (field->is_repeated() || !field->has_presence()) continue;
+    const bool set = reflection.HasField(message, field);
+    if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      if (set) set_missing_numbers(*reflection.MutableMessage(&message, field));
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && !set &&
+               field->real_containing_oneof() == nullptr) {
+      reflection.SetDouble(&message, field, 0);
+    }
+  }
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/storage/connection.h"
+#include "server/storage/times.h"
+
+namespace tribodyn::server {
+
+/// What is on disk, schema 5. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// tribodyn.v1 in binary form: field numbers never change meaning.
+///
+///   resources    lubricants, gear sets, surfaces, vehicles: one row a name, with the revision that
+///                is the present one; delete_time is set while it is deleted (nothing is lost)
+///   revisions    what a resource was: never changed and never removed, numbered 1, 2, ... without
+///                gaps. content_hash: SHA-256 of body, 64 hex digits
+///   properties   what lists are filtered and ordered by: the values of the present revision
+///                (properties.h); derived from it, kept in step with it
+///   simulations  one row per job; id is the number in "simulations/{id}" and the order of
+///                creation. state as in Simulation.State; its changes are those of life_cycle.h.
+///                attempt counts from 1, lost_attempts those that ended with the server's process;
+///                sequence is that of the latest event. request: the Simulation as the client
+///                stated it; request_hash: of all that it stated (request_text.h), to tell a
+///                repeated request_id from a misused one; lubricant, gear_set, surface, vehicle:
+///                the revisions it rests on. is_forced: no result that was there before is taken.
+///                Progress is not kept: a job that a crash interrupts starts again. client: on
+///                whose behalf it waits (fair share); cost_seconds: estimated, of one processor.
+///                pinned: neither expires nor is evicted; others may go, with their events and with
+///                a result and a ledger that no other one has
+///   simulation_labels  what lists are filtered by beside columns of simulations, of its request
+///   events       every change of state of a job, numbered 1, 2, ... without gaps, written with it
+///   ledgers      assumptions of results, each distinct list once: a SimulationResult with nothing
+///                else. They belong to the job, as they name its resources
+///   results      one SimulationResult without assumptions for equal inputs (input_hash), model
+///                version and platform, written with the change of state of the first job that
+///                has it. platform is empty, and the result serves no other job, where it comes
+///                from an older schema. checksum: of body (checksum.h); stored_bytes: of body and
+///                of the blocks of its history, which go together
+///   history_columns  of time histories, in the order of position; ids are never used again
+///   history_blocks   a column cut into runs of kHistoryBlock doubles, numbered 0, 1, ..., and each
+///                compressed (column_codec.h): level 0 as it is, levels above it the least and
+///                largest values of runs of its rows (pyramid.h), written once with it. checksum:
+///                of data
+///
+/// The text of a schema that a release has written never changes: the tables of a database are
+/// compared with it (schema_differences).
+inline constexpr int kSchemaVersion = 5;
+inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
+
+/// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A
+/// new database goes the same way as an old one, so that there is one description of the tables.
+void migrate(Connection& database, int from, Microseconds now);
+
+/// How the tables, indexes, triggers and views of a database differ from those that this program
+/// makes for its schema, a sentence each. Whoever adds a trigger changes what every write does.
+/// Throws SQLite::Exception.
+std::vector<std::string> schema_differences(Connection& database);
+
+}  // namespace tribodyn::server

@@ -1,0 +1,437 @@
+#include "server/storage/simulation_rows.h"
+
+#include <algorithm>
+
+#include "server/storage/checksum.h"
+#include "server/storage/history_rows.h"
+#include "server/storage/resource_rows.h"
+#include "server/storage/store_error.h"
+#include "server/support/sha256.h"
+
+namespace tribodyn::server {
+
+const char kSimulationColumns[] =
+    "SELECT id, state, attempt, sequence, create_time, start_time, end_time, deadline_time, "
+    "request, request_hash, is_forced, cache_hit, input_hash, error_reason, error_message, "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), "
+    "request_id, pinned, client, cost_seconds "
+    "FROM simulations ";
+
+namespace {
+
+std::optional<Microseconds> time_of(const SQLite::Column& column) {
+  if (column.isNull()) return std::nullopt;
+  return column.getInt64();
+}
+
+void bind_optional(SQLite::Statement& statement, int index,
+                   const std::optional<std::int64_t>& value) {
+  if (value) {
+    statement.bind(index, *value);
+  } else {
+    statement.bind(index);
+  }
+}
+
+void bind_text_or_null(SQLite::Statement& statement, int index, const std::string& text) {
+  if (text.empty()) {
+    statement.bind(index);
+  } else {
+    statement.bind(index, text);
+  }
+}
+
+/// Row of "lubricants/1@2" in revisions.
+std::int64_t revision_row(Connection& db, const std::string& name) {
+  Prepared query(db,
+                 "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
+                 "name = substr(?1, 1, instr(?1, '@') - 1)");
+  query.bind(1, name);
+  if (!query.executeStep()) throw SQLite::Exception("no such revision");
+  return query.getColumn(0).getInt64();
+}
+
+std::optional<std::int64_t> result_row(Connection& db, const ResultKey& key) {
+  Prepared query(db,
+                 "SELECT id FROM results "
+                 "WHERE input_hash = ? AND model_version = ? AND platform = ? AND "
+                 "platform <> ''");
+  query.bind(1, key.input_hash);
+  query.bind(2, key.model_version);
+  query.bind(3, key.platform);
+  if (!query.executeStep()) return std::nullopt;
+  return query.getColumn(0).getInt64();
+}
+
+void insert_event(Connection& db, std::int64_t id, const StoredEvent& event) {
+  Prepared insert(db, "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
+  insert.bind(1, id);
+  insert.bind(2, event.sequence);
+  insert.bind(3, event.time);
+  insert.bind(4, static_cast<int>(event.state));
+  insert.bind(5, event.attempt);
+  insert.bind(6, event.reason);
+  insert.exec();
+}
+
+/// The simulation that an earlier request of this id made.
+std::optional<Added> repeated_request(Connection& db, const NewSimulation& simulation) {
+  if (simulation.request_id.empty()) return std::nullopt;
+  Prepared query(db, "SELECT id, request_hash FROM simulations WHERE request_id = ?");
+  query.bind(1, simulation.request_id);
+  if (!query.executeStep()) return std::nullopt;
+  const bool is_same = query.getColumn(1).getString() == simulation.request_hash;
+  return Added{is_same ? Added::Kind::kRepeated : Added::Kind::kRequestIdTaken,
+               query.getColumn(0).getInt64()};
+}
+
+/// A QUEUED row with its first event.
+std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microseconds now) {
+  Prepared insert(
+      db,
+      "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
+      "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle, client, "
+      "cost_seconds) VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.bind(1, now);
+  bind_optional(insert, 2, simulation.deadline_time);
+  bind_blob(insert, 3, simulation.request);
+  bind_text_or_null(insert, 4, simulation.request_id);
+  insert.bind(5, simulation.request_hash);
+  insert.bind(6, simulation.is_forced ? 1 : 0);
+  insert.bind(7, simulation.key.input_hash);
+  if (!simulation.ledger.empty()) insert.bind(8, ledger_row(db, simulation.ledger));
+  int index = 8;
+  for (const std::string* each : {&simulation.lubricant_revision, &simulation.gear_set_revision,
+                                  &simulation.surface_revision, &simulation.vehicle_revision}) {
+    ++index;
+    if (!each->empty()) insert.bind(index, revision_row(db, *each));
+  }
+  insert.bind(13, simulation.client);
+  insert.bind(14, simulation.cost_seconds);
+  insert.exec();
+  const std::int64_t id = db.getLastInsertRowid();
+  for (const auto& [key, value] : simulation.labels) {
+    Prepared label(db, "INSERT INTO simulation_labels VALUES (?, ?, ?)");
+    label.bind(1, key);
+    label.bind(2, value);
+    label.bind(3, id);
+    label.exec();
+  }
+  insert_event(db, id, {.sequence = 1, .time = now, .reason = ""});
+  return id;
+}
+
+/// Bytes that go when a result goes.
+std::int64_t size_of(const NewResult& result, const std::vector<CompressedColumn>& history) {
+  std::size_t bytes = result.body.size();
+  for (const CompressedColumn& column : history) {
+    for (const std::vector<std::string>& level : column.levels) {
+      for (const std::string& block : level) bytes += block.size();
+    }
+  }
+  return static_cast<std::int64_t>(bytes);
+}
+
+void insert_history(Connection& db, std::int64_t result,
+                    const std::vector<CompressedColumn>& history) {
+  for (std::size_t i = 0; i < history.size(); ++i) {
+    insert_history_column(db, result, static_cast<std::int64_t>(i), history[i]);
+  }
+}
+
+std::int64_t insert_result(Connection& db, const NewResult& result,
+                           const std::vector<CompressedColumn>& history, Microseconds now) {
+  Prepared insert(db,
+                  "INSERT INTO results (input_hash, model_version, platform, create_time, body, "
+                  "checksum, stored_bytes) VALUES (?, ?, ?, ?, ?, ?, ?)");
+  insert.bind(1, result.key.input_hash);
+  insert.bind(2, result.key.model_version);
+  insert.bind(3, result.key.platform);
+  insert.bind(4, now);
+  bind_blob(insert, 5, result.body);
+  insert.bind(6, checksum(result.body));
+  insert.bind(7, size_of(result, history));
+  insert.exec();
+  const std::int64_t row = db.getLastInsertRowid();
+  insert_history(db, row, history);
+  return row;
+}
+
+/// Whether a stored result and its history are what was written.
+bool is_whole_result(Connection& db, std::int64_t row) {
+  Prepared body(db, "SELECT body, checksum FROM results WHERE id = ?");
+  body.bind(1, row);
+  if (!body.executeStep()) return false;
+  if (checksum(bytes_of(body.getColumn(0))) != body.getColumn(1).getInt64()) return false;
+  const std::vector<std::int64_t> columns = query_history_shape(db, row).columns;
+  return std::all_of(columns.begin(), columns.end(),
+                     [&](std::int64_t column) { return is_whole_column(db, column); });
+}
+
+/// Writes a result in the place of one that is damaged, for all simulations that have it.
+void repair_result(Connection& db, std::int64_t row, const NewResult& result,
+                   const std::vector<CompressedColumn>& history) {
+  Prepared update(db,
+                  "UPDATE results SET body = ?2, checksum = ?3, stored_bytes = ?4 WHERE id = ?1");
+  update.bind(1, row);
+  bind_blob(update, 2, result.body);
+  update.bind(3, checksum(result.body));
+  update.bind(4, size_of(result, history));
+  update.exec();
+  Prepared clear(db, "DELETE FROM history_columns WHERE result = ?");
+  clear.bind(1, row);
+  clear.exec();
+  insert_history(db, row, history);
+}
+
+/// Of a simulation that came to another result than equal inputs have.
+std::optional<StoredEvent> not_reproduced(Connection& db, std::int64_t id, Microseconds now,
+                                          const ResultKey& key) {
+  return change_state(db, {.id = id,
+                           .to = StoredState::kFailed,
+                           .time = now,
+                           .from = StoredState::kRunning,
+                           .error_reason = "RESULT_NOT_REPRODUCED",
+                           .error_message = "equal inputs have another result, of model " +
+                                            key.model_version + " on " + key.platform});
+}
+
+/// Bit for bit, histories too.
+bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) try {
+  Prepared body(db, "SELECT 1 FROM results WHERE id = ? AND body = ? AND checksum = ?");
+  body.bind(1, row);
+  bind_blob(body, 2, result.body);
+  body.bind(3, checksum(result.body));
+  if (!body.executeStep()) return false;
+  const HistoryShape shape = query_history_shape(db, row);
+  if (shape.names.size() != result.history.size()) return false;
+  for (std::size_t i = 0; i < result.history.size(); ++i) {
+    if (shape.names[i] != result.history[i].name ||
+        !holds_column(db, shape.columns[i], result.history[i].values)) {
+      return false;
+    }
+  }
+  return true;
+} catch (const StoreError& damage) {
+  if (damage.kind() != StoreError::Kind::kDataLoss) throw;
+  return false;
+}
+
+}  // namespace
+
+std::int64_t ledger_row(Connection& db, const std::string& body) {
+  const std::string hash = sha256(body);
+  Prepared find(db, "SELECT id, body FROM ledgers WHERE content_hash = ?");
+  find.bind(1, hash);
+  if (!find.executeStep()) {
+    Prepared insert(db, "INSERT INTO ledgers (content_hash, body) VALUES (?, ?)");
+    insert.bind(1, hash);
+    bind_blob(insert, 2, body);
+    insert.exec();
+    return db.getLastInsertRowid();
+  }
+  const std::int64_t row = find.getColumn(0).getInt64();
+  if (bytes_of(find.getColumn(1)) != body) {  // damaged
+    Prepared repair(db, "UPDATE ledgers SET body = ? WHERE id = ?");
+    bind_blob(repair, 1, body);
+    repair.bind(2, row);
+    repair.exec();
+  }
+  return row;
+}
+
+StoredSimulation stored_simulation(const SQLite::Statement& query) {
+  StoredSimulation out;
+  out.id = query.getColumn(0).getInt64();
+  out.state = static_cast<StoredState>(query.getColumn(1).getInt());
+  out.attempt = query.getColumn(2).getInt();
+  out.sequence = query.getColumn(3).getInt64();
+  out.create_time = query.getColumn(4).getInt64();
+  out.start_time = time_of(query.getColumn(5));
+  out.end_time = time_of(query.getColumn(6));
+  out.deadline_time = time_of(query.getColumn(7));
+  out.request = query.getColumn(kRequestColumn).getString();
+  out.request_hash = query.getColumn(9).getString();
+  out.is_forced = query.getColumn(10).getInt() != 0;
+  out.cache_hit = query.getColumn(11).getInt() != 0;
+  out.input_hash = query.getColumn(12).getString();
+  out.error_reason = query.getColumn(13).getString();
+  out.error_message = query.getColumn(14).getString();
+  out.lubricant_revision = query.getColumn(15).getString();
+  out.gear_set_revision = query.getColumn(16).getString();
+  out.surface_revision = query.getColumn(17).getString();
+  out.vehicle_revision = query.getColumn(18).getString();
+  out.request_id = query.getColumn(19).getString();
+  out.is_pinned = query.getColumn(20).getInt() != 0;
+  out.client = query.getColumn(21).getString();
+  out.cost_seconds = query.getColumn(22).getDouble();
+  return out;
+}
+
+std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id) {
+  Prepared query(db, std::string(kSimulationColumns) + "WHERE id = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) return std::nullopt;
+  return stored_simulation(query);
+}
+
+namespace {
+
+Added insert_or_find(Connection& db, const NewSimulation& simulation, Microseconds now,
+                     bool may_wait) {
+  if (const auto repeated = repeated_request(db, simulation)) return *repeated;
+  std::optional<std::int64_t> result;
+  if (!simulation.is_forced) result = result_row(db, simulation.key);
+  if (!result && !may_wait) return {Added::Kind::kNoPlace, 0};
+  const std::int64_t id = insert_row(db, simulation, now);
+  if (!result) return {Added::Kind::kQueued, id};
+  change_state(
+      db,
+      {.id = id, .to = StoredState::kSucceeded, .time = now, .result = result, .cache_hit = true});
+  return {Added::Kind::kServed, id};
+}
+
+}  // namespace
+
+Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
+                        bool may_wait) {
+  Added added = insert_or_find(db, simulation, now, may_wait);
+  // Read inside the transaction: a read after the commit could fail or come too late, and the
+  // client would be told that nothing has changed.
+  if (added.kind != Added::Kind::kNoPlace) added.stored = *query_simulation(db, added.id);
+  return added;
+}
+
+std::optional<StoredEvent> change_state(Connection& db, const StateChange& change) {
+  Prepared update(
+      db,
+      "UPDATE simulations SET state = ?2, sequence = sequence + 1, attempt = attempt + (?2 = 1), "
+      "lost_attempts = lost_attempts + ?9, "
+      "start_time = CASE ?2 WHEN 1 THEN NULL WHEN 2 THEN ?3 ELSE start_time END, "
+      "end_time = CASE WHEN ?2 >= 3 THEN ?3 END, "
+      "error_reason = ?5, error_message = ?6, result = ?7, cache_hit = ?8 "
+      "WHERE id = ?1 AND state = coalesce(?4, state) AND state <= 2 AND state <> ?2 "
+      "RETURNING sequence, attempt, start_time");
+  update.bind(1, change.id);
+  update.bind(2, static_cast<int>(change.to));
+  update.bind(3, change.time);
+  if (change.from) {
+    update.bind(4, static_cast<int>(*change.from));
+  } else {
+    update.bind(4);
+  }
+  bind_text_or_null(update, 5, change.error_reason);
+  bind_text_or_null(update, 6, change.error_message);
+  bind_optional(update, 7, change.result);
+  update.bind(8, change.cache_hit ? 1 : 0);
+  update.bind(9, change.attempt_is_lost ? 1 : 0);
+  if (!update.executeStep()) return std::nullopt;
+  StoredEvent event{update.getColumn(0).getInt64(), change.time, change.to,
+                    update.getColumn(1).getInt(), change.reason};
+  event.start_time = time_of(update.getColumn(2));
+  update.executeStep();  // to its end: only then is it done
+  insert_event(db, change.id, event);
+  return event;
+}
+
+std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
+                                            std::int64_t after_sequence) {
+  Prepared query(db,
+                 "SELECT sequence, time, state, attempt, reason FROM events "
+                 "WHERE simulation = ? AND sequence > ? ORDER BY sequence LIMIT 1");
+  query.bind(1, id);
+  query.bind(2, after_sequence);
+  if (!query.executeStep()) return std::nullopt;
+  return StoredEvent{query.getColumn(0).getInt64(), query.getColumn(1).getInt64(),
+                     static_cast<StoredState>(query.getColumn(2).getInt()),
+                     query.getColumn(3).getInt(), query.getColumn(4).getString()};
+}
+
+std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
+                                            const ResultKey& key) {
+  Prepared update(
+      db, "UPDATE simulations SET input_hash = ? WHERE id = ? AND state = 1 RETURNING is_forced");
+  update.bind(1, key.input_hash);
+  update.bind(2, id);
+  if (!update.executeStep()) return std::nullopt;
+  const bool is_forced = update.getColumn(0).getInt() != 0;
+  update.executeStep();
+  std::optional<std::int64_t> result;
+  if (!is_forced) result = result_row(db, key);
+  return change_state(db, {.id = id,
+                           .to = result ? StoredState::kSucceeded : StoredState::kRunning,
+                           .time = now,
+                           .from = StoredState::kQueued,
+                           .result = result,
+                           .cache_hit = result.has_value()});
+}
+
+std::optional<std::string> query_result(Connection& db, std::int64_t id) {
+  Prepared query(db,
+                 "SELECT r.body, r.checksum, l.body, l.content_hash FROM simulations s "
+                 "JOIN results r ON r.id = s.result "
+                 "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) return std::nullopt;
+  const std::string_view result = bytes_of(query.getColumn(0));
+  const std::string_view ledger = bytes_of(query.getColumn(2));
+  const bool has_ledger = !query.getColumn(3).isNull();
+  if (checksum(result) != query.getColumn(1).getInt64() ||
+      (has_ledger && sha256(ledger) != query.getColumn(3).getString())) {
+    throw StoreError(StoreError::Kind::kDataLoss,
+                     "the stored result of simulations/" + std::to_string(id) + " is damaged");
+  }
+  // The bytes of two messages in a row are those of both merged.
+  return std::string(result).append(ledger);
+}
+
+std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
+                                             const NewResult& result,
+                                             const std::vector<CompressedColumn>& history) {
+  std::optional<std::int64_t> row = result_row(db, result.key);
+  if (row && !is_same_result(db, *row, result)) {
+    if (is_whole_result(db, *row)) return not_reproduced(db, id, now, result.key);
+    repair_result(db, *row, result, history);
+  }
+  if (!row) row = insert_result(db, result, history, now);
+  return change_state(db, {.id = id,
+                           .to = StoredState::kSucceeded,
+                           .time = now,
+                           .from = StoredState::kRunning,
+                           .result = row});
+}
+
+std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
+  std::vector<std::pair<std::int64_t, int>> running;
+  Prepared find(db,
+                "SELECT id, lost_attempts FROM simulations WHERE state IN (1, 2) AND state = 2");
+  while (find.executeStep()) {
+    running.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
+  }
+  for (const auto& [id, lost] : running) {
+    StateChange change{.id = id, .to = StoredState::kQueued, .time = now, .reason = "SERVER_LOST"};
+    change.attempt_is_lost = true;
+    if (lost + 1 >= kMaximumLostAttempts) {
+      change.to = StoredState::kFailed;
+      change.error_reason = "WORKER_LOST";
+      change.error_message = "the server died " + std::to_string(kMaximumLostAttempts) +
+                             " times while it ran; it is not tried again";
+    }
+    change_state(db, change);
+  }
+  std::vector<Waiting> waiting;
+  Prepared query(db,
+                 "SELECT id, lost_attempts, deadline_time, client, cost_seconds FROM simulations "
+                 "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
+  while (query.executeStep()) {
+    waiting.push_back({query.getColumn(0).getInt64(), query.getColumn(1).getInt(),
+                       time_of(query.getColumn(2)), query.getColumn(3).getString(),
+                       query.getColumn(4).getDouble()});
+  }
+  return waiting;
+}
+
+}  // namespace tribodyn::server

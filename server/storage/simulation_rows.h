@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/storage/connection.h"
+#include "server/storage/stored_simulation.h"
+#include "server/storage/times.h"
+
+namespace tribodyn::server {
+
+// Rows of simulations, events, results and ledgers on an open connection, inside the caller's
+// transaction. All throw SQLite::Exception.
+
+/// The row of a serialised list of assumptions, added if it is not there and repaired if it is
+/// damaged.
+std::int64_t ledger_row(Connection& db, const std::string& body);
+
+/// Columns of stored_simulation, to be followed by the rest of a SELECT over simulations.
+extern const char kSimulationColumns[];
+inline constexpr int kRequestColumn = 8;
+StoredSimulation stored_simulation(const SQLite::Statement& query);
+
+std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id);
+
+/// As Store::add_simulation.
+Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
+                        bool may_wait);
+
+/// One step of the state machine, and what the row says afterwards.
+struct StateChange {
+  std::int64_t id = 0;
+  StoredState to = StoredState::kQueued;
+  Microseconds time = 0;
+  std::optional<StoredState> from = {};  ///< empty: from whichever allows it
+  std::string reason = {};               ///< of the event
+  std::string error_reason = {};         ///< of FAILED
+  std::string error_message = {};
+  std::optional<std::int64_t> result = {};  ///< row, of SUCCEEDED
+  bool cache_hit = false;
+  bool attempt_is_lost = false;  ///< its server died
+};
+
+/// Changes the state and writes the event; nothing when the state does not allow it.
+std::optional<StoredEvent> change_state(Connection& db, const StateChange& change);
+
+std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
+                                            std::int64_t after_sequence);
+
+/// As Store::result. Throws StoreError kDataLoss too.
+std::optional<std::string> query_result(Connection& db, std::int64_t id);
+
+// As Store::mark_running, mark_succeeded and requeue_unfinished.
+std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
+                                            const ResultKey& key);
+std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
+                                             const NewResult& result,
+                                             const std::vector<CompressedColumn>& history);
+std::vector<Waiting> requeue_lost(Connection& db, Microseconds now);
+
+}  // namespace tribodyn::server

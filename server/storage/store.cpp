@@ -1,0 +1,386 @@
+#include "server/storage/store.h"
+
+#include <SQLiteCpp/Transaction.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "server/storage/database_check.h"
+#include "server/storage/database_files.h"
+#include "server/storage/deadline.h"
+#include "server/storage/durable_files.h"
+#include "server/storage/resource_queries.h"
+#include "server/storage/resource_rows.h"
+#include "server/storage/schema.h"
+#include "server/storage/simulation_queries.h"
+#include "server/storage/simulation_rows.h"
+#include "server/storage/translate_error.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr int kReaderConnections = 8;
+
+std::filesystem::path usable_path(const std::filesystem::path& database) {
+  std::filesystem::path path = canonical_path(database);
+  require_usable_path(path);
+  return path;
+}
+
+void check_deadline(const std::filesystem::path& path) {
+  if (DeadlineScope::has_passed()) {
+    throw StoreError(StoreError::Kind::kDeadline,
+                     "database " + path.string() + ": the deadline has passed");
+  }
+}
+
+Connection open_writer(const std::filesystem::path& path) try {
+  configure_sqlite();
+  return {path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kBusyTimeoutMilliseconds};
+} catch (const SQLite::Exception& error) {
+  throw translate_error(error, path);
+}
+
+/// Thrown by a change that is not to be.
+struct Undone {};
+
+}  // namespace
+
+void Store::require_place() const {
+  const std::string misplaced = this->misplaced();
+  if (!misplaced.empty()) throw StoreError(StoreError::Kind::kMisplaced, misplaced);
+}
+
+/// The files are looked for before the action, so that nothing is written in vain, and after it, so
+/// that nothing is acknowledged that went into a file which lost its name meanwhile.
+template <class Action>
+auto Store::write(const Action& action) {
+  const std::lock_guard lock(writer_mutex_);
+  check_deadline(path_);
+  require_place();
+  try {
+    auto out = action(writer_);
+    require_place();
+    return out;
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
+}
+
+void Store::write_together(const GroupCommit::Action& action) {
+  check_deadline(path_);
+  require_place();
+  try {
+    group_commit_.run(action);
+    require_place();
+  } catch (const Undone&) {
+    return;
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
+}
+
+template <class Action>
+auto Store::read(const Action& action) {
+  check_deadline(path_);
+  try {
+    ReaderPool::Loan loan = readers_.borrow();
+    return action(*loan);
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
+}
+
+Store::Store(const std::filesystem::path& database)
+    : path_(usable_path(database)),
+      lock_(path_),
+      writer_(open_writer(path_)),
+      group_commit_(writer_, writer_mutex_) {
+  open_schema();
+  heed_deadlines(writer_);
+  try {
+    // What a writer would undo stays in memory (pages that were there before, a few hundred KiB),
+    // so that no file is opened now and then.
+    writer_.exec("PRAGMA temp_store = MEMORY");
+    readers_.open(path_, kReaderConnections);
+    lock_.lock_new_file();
+    files_.emplace(path_);
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
+}
+
+void Store::open_schema() {
+  write([this](Connection& db) {
+    require_servable(db, path_);
+    const int version = db.execAndGet("PRAGMA user_version").getInt();
+    if (sqlite3_db_readonly(db.getHandle(), "main") == 1) {
+      throw StoreError(StoreError::Kind::kReadOnly,
+                       "database " + path_.string() + " cannot be written: it is read-only");
+    }
+    // SQLite reports some failures only as another mode.
+    if (db.execAndGet("PRAGMA journal_mode = WAL").getString() != "wal") {
+      throw StoreError(StoreError::Kind::kFailed,
+                       "database " + path_.string() + ": cannot make its write-ahead log");
+    }
+    db.exec("PRAGMA synchronous = FULL");
+    db.exec("PRAGMA foreign_keys = ON");
+    if (version < kSchemaVersion) migrate(db, version, system_time());
+    return true;
+  });
+}
+
+void Store::add_resources(const std::vector<NewResource>& resources, Microseconds now) {
+  write([&](Connection& db) {
+    SQLite::Transaction transaction(db);
+    for (const NewResource& each : resources) {
+      if (!is_taken(db, each.name)) insert_resource(db, each, now);
+    }
+    transaction.commit();
+    return true;
+  });
+}
+
+std::optional<StoredResource> Store::resource(const std::string& name) {
+  return read([&](Connection& db) -> std::optional<StoredResource> {
+    Prepared query(db,
+                   std::string(kResourceColumns) +
+                       "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?");
+    query.bind(1, name);
+    if (!query.executeStep()) return std::nullopt;
+    return stored_resource(query);
+  });
+}
+
+std::optional<StoredResource> Store::revision(const std::string& name, int revision) {
+  return read([&](Connection& db) -> std::optional<StoredResource> {
+    Prepared query(db, std::string(kResourceColumns) +
+                           "FROM resources r JOIN revisions v ON v.resource = r.id "
+                           "WHERE r.name = ? AND v.revision = ?");
+    query.bind(1, name);
+    query.bind(2, revision);
+    if (!query.executeStep()) return std::nullopt;
+    return stored_resource(query);
+  });
+}
+
+Page<StoredResource> Store::resources(const ResourceQuery& query) {
+  return read([&](Connection& db) { return query_resources(db, query); });
+}
+
+Page<StoredResource> Store::revisions(const std::string& name, int before, int limit,
+                                      std::size_t byte_limit) {
+  return read([&](Connection& db) {
+    Prepared query(db, std::string(kResourceColumns) +
+                           "FROM resources r JOIN revisions v ON v.resource = r.id "
+                           "WHERE r.name = ? AND v.revision < ? "
+                           "ORDER BY v.revision DESC LIMIT ?");
+    query.bind(1, name);
+    query.bind(2, before == 0 ? std::numeric_limits<int>::max() : before);
+    query.bind(3, limit + 1);
+    return read_page<StoredResource>(query, limit, byte_limit, kBodyColumn, stored_resource);
+  });
+}
+
+std::vector<std::string> Store::resource_names(const std::string& collection) {
+  return read([&](Connection& db) {
+    Prepared query(
+        db,
+        "SELECT name FROM resources WHERE collection = ? AND delete_time IS NULL ORDER BY name");
+    query.bind(1, collection);
+    std::vector<std::string> names;
+    while (query.executeStep()) names.push_back(query.getColumn(0).getString());
+    return names;
+  });
+}
+
+std::optional<std::vector<StoredResource>> Store::write_resources(
+    const std::vector<ResourceWrite>& writes, Microseconds now) {
+  return write([&](Connection& db) -> std::optional<std::vector<StoredResource>> {
+    SQLite::Transaction transaction(db);
+    std::vector<StoredResource> written;
+    written.reserve(writes.size());
+    for (const auto& [resource, present] : writes) {
+      if (present ? !is_unchanged(db, *present) : is_taken(db, resource.name)) return std::nullopt;
+      written.push_back(present ? insert_revision(db, *present, resource.body, now)
+                                : insert_resource(db, resource, now));
+    }
+    transaction.commit();
+    return written;
+  });
+}
+
+template <class Change>
+bool Store::change(const StoredResource& present, const Change& change) {
+  return write([&](Connection& db) {
+    SQLite::Transaction transaction(db);
+    if (!is_unchanged(db, present)) return false;
+    change(db);
+    transaction.commit();
+    return true;
+  });
+}
+
+bool Store::delete_resource(const StoredResource& present, Microseconds now) {
+  return change(present, [&](Connection& db) {
+    Prepared mark(db, "UPDATE resources SET delete_time = ? WHERE id = ?");
+    mark.bind(1, now);
+    mark.bind(2, present.id);
+    mark.exec();
+  });
+}
+
+bool Store::undelete_resource(const StoredResource& present) {
+  return change(present, [&](Connection& db) {
+    Prepared mark(db, "UPDATE resources SET delete_time = NULL WHERE id = ?");
+    mark.bind(1, present.id);
+    mark.exec();
+  });
+}
+
+Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait) {
+  Added added;
+  write_together([&](Connection& db) { added = insert_simulation(db, simulation, now, may_wait); });
+  return added;
+}
+
+std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
+  return read([&](Connection& db) { return query_simulation(db, id); });
+}
+
+std::optional<std::int64_t> Store::simulation_of_request(const std::string& request_id) {
+  return read([&](Connection& db) -> std::optional<std::int64_t> {
+    Prepared query(db, "SELECT id FROM simulations WHERE request_id = ?");
+    query.bind(1, request_id);
+    if (!query.executeStep()) return std::nullopt;
+    return query.getColumn(0).getInt64();
+  });
+}
+
+Page<StoredSimulation> Store::simulations(const SimulationQuery& query) {
+  return read([&](Connection& db) { return query_simulations(db, query); });
+}
+
+std::optional<StoredSimulation> Store::set_pinned(std::int64_t id, bool is_pinned) {
+  std::optional<StoredSimulation> out;
+  write_together([&](Connection& db) {
+    Prepared update(db, "UPDATE simulations SET pinned = ? WHERE id = ?");
+    update.bind(1, is_pinned ? 1 : 0);
+    update.bind(2, id);
+    update.exec();
+    out = query_simulation(db, id);
+  });
+  return out;
+}
+
+Removed Store::remove_oldest(Microseconds ended_by, int limit) {
+  return write([&](Connection& db) {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const Removed removed = server::remove_oldest(db, ended_by, limit);
+    transaction.commit();
+    return removed;
+  });
+}
+
+std::int64_t Store::used_bytes() {
+  return read([](Connection& db) { return server::used_bytes(db); });
+}
+
+std::int64_t Store::removable_bytes() {
+  return read([](Connection& db) { return server::removable_bytes(db); });
+}
+
+std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after_sequence) {
+  return read([&](Connection& db) { return query_next_event(db, id, after_sequence); });
+}
+
+template <class Change>
+std::optional<StoredEvent> Store::change_simulation(const Change& change) {
+  std::optional<StoredEvent> event;
+  write_together([&](Connection& db) {
+    event = change(db);
+    if (!event) throw Undone();
+  });
+  return event;
+}
+
+std::optional<StoredEvent> Store::mark_running(std::int64_t id, Microseconds now,
+                                               const ResultKey& key) {
+  return change_simulation([&](Connection& db) { return start_simulation(db, id, now, key); });
+}
+
+std::optional<StoredEvent> Store::mark_queued(std::int64_t id, Microseconds now,
+                                              const std::string& reason) {
+  return change_simulation([&](Connection& db) {
+    return change_state(db, {.id = id, .to = StoredState::kQueued, .time = now, .reason = reason});
+  });
+}
+
+std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds now) {
+  return change_simulation([&](Connection& db) {
+    return change_state(db, {.id = id, .to = StoredState::kCancelled, .time = now});
+  });
+}
+
+std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
+                                              const std::string& reason,
+                                              const std::string& message) {
+  return change_simulation([&](Connection& db) {
+    return change_state(db, {.id = id,
+                             .to = StoredState::kFailed,
+                             .time = now,
+                             .error_reason = reason,
+                             .error_message = message});
+  });
+}
+
+std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds now,
+                                                 const NewResult& result) {
+  // Before anybody has to wait for it.
+  std::vector<CompressedColumn> history;
+  for (const StoredColumn& each : result.history) history.push_back(compress(each));
+  return change_simulation(
+      [&](Connection& db) { return finish_simulation(db, id, now, result, history); });
+}
+
+std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
+  return write([&](Connection& db) {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    std::vector<Waiting> waiting = requeue_lost(db, now);
+    transaction.commit();
+    return waiting;
+  });
+}
+
+std::optional<std::string> Store::result(std::int64_t id) {
+  return read([&](Connection& db) { return query_result(db, id); });
+}
+
+HistoryShape Store::history_shape(std::int64_t id) {
+  return read([&](Connection& db) {
+    Prepared query(db, "SELECT result FROM simulations WHERE id = ?");
+    query.bind(1, id);
+    const bool has_result = query.executeStep() && !query.getColumn(0).isNull();
+    return has_result ? query_history_shape(db, query.getColumn(0).getInt64()) : HistoryShape();
+  });
+}
+
+bool Store::read_history(std::int64_t column, int level, std::int64_t start,
+                         std::span<double> values) {
+  return read([&](Connection& db) { return query_history(db, column, level, start, values); });
+}
+
+std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,
+                                        std::int64_t start, std::int64_t count) {
+  const HistoryShape shape = history_shape(id);
+  const auto found = std::find(shape.names.begin(), shape.names.end(), column);
+  std::vector<double> values(static_cast<std::size_t>(count));
+  if (found == shape.names.end() ||
+      !read_history(shape.columns[found - shape.names.begin()], 0, start, values)) {
+    throw StoreError(StoreError::Kind::kFailed, "no such history column");
+  }
+  return values;
+}
+
+}  // namespace tribodyn::server

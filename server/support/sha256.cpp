@@ -1,0 +1,58 @@
+#include "server/support/sha256.h"
+
+#include <openssl/evp.h>
+
+#include <array>
+#include <stdexcept>
+
+namespace tribodyn::server {
+namespace {
+
+void check(bool is_done) {
+  if (!is_done) throw std::runtime_error("SHA-256 is not available");
+}
+
+}  // namespace
+
+struct Sha256::Context {
+  EVP_MD_CTX* state = EVP_MD_CTX_new();
+  Context() = default;
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+  ~Context() { EVP_MD_CTX_free(state); }
+};
+
+Sha256::Sha256() : context_(std::make_unique<Context>()) {
+  check(EVP_DigestInit_ex(context_->state, EVP_sha256(), nullptr) == 1);
+}
+
+Sha256::~Sha256() = default;
+
+Sha256::Sha256(const Sha256& other) : context_(std::make_unique<Context>()) {
+  check(EVP_MD_CTX_copy_ex(context_->state, other.context_->state) == 1);
+}
+
+void Sha256::add(std::string_view bytes) {
+  check(EVP_DigestUpdate(context_->state, bytes.data(), bytes.size()) == 1);
+}
+
+std::string Sha256::finish() {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+  unsigned int length = 0;
+  check(EVP_DigestFinal_ex(context_->state, digest.data(), &length) == 1);
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string hex;
+  for (unsigned int i = 0; i < length; ++i) {
+    hex += kDigits[digest[i] >> 4U];
+    hex += kDigits[digest[i] & 15U];
+  }
+  return hex;
+}
+
+std::string sha256(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.finish();
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,88 @@
+#include "server/transport/grpc/grpc_server.h"
+
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/resource_quota.h>
+#include <grpcpp/server_builder.h>
+
+#include <chrono>
+
+#include "server/application/request_limits.h"
+#include "server/transport/grpc/protobuf_log.h"
+
+namespace tribodyn::server {
+namespace {
+
+using ExternalConnections = grpc::experimental::ExternalConnectionAcceptor;
+
+/// What gRPC may hold for all connections: two of the largest requests, and open streams. Beyond it
+/// gRPC ends calls with RESOURCE_EXHAUSTED.
+constexpr std::size_t kGrpcBytes = 2 * kMaximumRequestBytes + (32 << 20);
+constexpr int kMaximumStreamsPerConnection = 1000;
+constexpr std::size_t kMaximumOpenStreams = 10'000;
+constexpr int kMaximumReflectionThreads = 16;   // reflection is gRPC's only blocking service here
+constexpr int kHandshakeMilliseconds = 10'000;  // who connects and stays silent goes
+constexpr int kIdleMilliseconds = 600'000;      // without any call; clients connect again unseen
+/// An older connection takes no new call, and clients connect again unseen; it is closed once a
+/// stream could have ended. So no request that never arrives whole is kept for good.
+constexpr int kConnectionAgeMilliseconds = 3'600'000;
+constexpr auto kShutdownGrace = std::chrono::seconds(1);
+
+}  // namespace
+
+GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
+                       const TimeLimits& limits)
+    : acceptor_(address),
+      live_(kMaximumOpenStreams),
+      services_(grpc_services(application, live_, limits)) {
+  log_protobuf_reports();
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  grpc::ServerBuilder builder;
+  std::shared_ptr<ExternalConnections> connections =
+      builder.experimental().AddExternalConnectionAcceptor(
+          grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
+          grpc::InsecureServerCredentials());
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaximumStreamsPerConnection);
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMilliseconds);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleMilliseconds);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, kConnectionAgeMilliseconds);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS,
+                             static_cast<int>((limits.stream + limits.call).count()));
+  builder.SetMaxReceiveMessageSize(static_cast<int>(kMaximumRequestBytes));
+  builder.SetMaxSendMessageSize(static_cast<int>(kMaximumResponseBytes));
+  grpc::ResourceQuota quota("tribodynd");
+  quota.SetMaxThreads(kMaximumReflectionThreads);
+  quota.Resize(kGrpcBytes);
+  builder.SetResourceQuota(quota);
+  builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);  // else one a processor
+  for (const auto& each : services_) builder.RegisterService(each.get());
+  builder.RegisterCallbackGenericService(&unknown_methods_);
+  server_ = builder.BuildAndStart();
+  if (!server_) throw ListenError("gRPC does not start on " + to_text(address));
+  set_serving(false);
+  acceptor_.start([connections](int listener, int connection) {
+    ExternalConnections::NewConnectionParameters accepted;
+    accepted.listener_fd = listener;
+    accepted.fd = connection;
+    connections->HandleNewConnection(&accepted);
+  });
+}
+
+GrpcServer::~GrpcServer() { shutdown(); }
+
+void GrpcServer::set_serving(bool serving) {
+  server_->GetHealthCheckService()->SetServingStatus(serving);
+}
+
+void GrpcServer::shutdown() {
+  if (!server_) return;
+  acceptor_.stop();
+  set_serving(false);
+  live_.close_all();
+  server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
+  server_->Wait();
+  server_.reset();
+}
+
+}  // namespace tribodyn::server
