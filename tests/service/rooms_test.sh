@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# The rooms of server/ are those that its README lists, include only lower ones, and are drawn as they
+# are; a tree that breaks one of these rules is refused.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+deploy/draw-rooms --check
+
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+# refused CHANGE COMPLAINT: what --check says of a copy of the tree after the change.
+refused() {
+  rm -rf "${tree:?}"/*
+  mkdir "$tree/deploy"
+  cp deploy/draw-rooms "$tree/deploy"
+  cp -r server "$tree"
+  (cd "$tree" && eval "$1")
+  local said
+  if said=$("$tree/deploy/draw-rooms" --check 2>&1); then
+    echo "not refused: $1"
+    exit 1
+  fi
+  [[ $said == *"$2"* ]] || { printf 'after %s, "%s" is not in: %s\n' "$1" "$2" "$said"; exit 1; }
+}
+refused 'sed -i "1i #include \"server/application/errors.h\"" server/storage/store.cpp' \
+  'server/storage/store.cpp:1: storage includes the higher room application'
+refused 'mkdir server/cellar; touch server/cellar/wine.h' 'does not list the room server/cellar'
+refused 'rm -r server/metrics' 'server/metrics has no sources'
+refused 'sed -i "1i #include \"server/support/sha256.h\"" server/daemon/daemon.cpp' 'run deploy/draw-rooms'
