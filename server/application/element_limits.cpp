@@ -54,7 +54,7 @@ constexpr ElementLimit kElementLimits[] = {
     {"Vehicle", "labels", kMaximumLabels},
     {"Simulation", "labels", kMaximumSimulationLabels},
     {"HistoryRequest", "columns", kMaximumHistoryColumns},
-    {"InefficiencyCurveStudy", "speeds_kilometers_per_hour", kMaximumCurvePoints},
+    {"InefficiencyCurveStudy", "speeds_kilometres_per_hour", kMaximumCurvePoints},
     {"ReadHistoryRequest", "columns", kMaximumHistoryColumns},
     {"SimulationResult", "points", kMaximumCurvePoints},
     {"SimulationResult", "assumptions", 1000},

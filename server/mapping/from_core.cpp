@@ -174,7 +174,7 @@ v1::EvaluateContactResponse to_message(const ContactSolution& s) {
 
 v1::PointResult to_message(const PointResult& result, int maximum_contact_losses) {
   v1::PointResult out;
-  out.set_vehicle_speed_kilometers_per_hour(kilometers_per_hour(result.vehicle_speed));
+  out.set_vehicle_speed_kilometres_per_hour(kilometres_per_hour(result.vehicle_speed));
   out.set_mean_pinion_speed_radians_per_second(result.mean_pinion_speed);
   out.set_mesh_frequency_hertz(result.mesh_frequency);
   out.set_pinion_torque_newton_metres(result.pinion_torque);
@@ -202,14 +202,14 @@ v1::PointResult to_message(const PointResult& result, int maximum_contact_losses
 
 v1::CurvePoint to_curve_point(const PointResult& result) {
   v1::CurvePoint out;
-  out.set_speed_kilometers_per_hour(kilometers_per_hour(result.vehicle_speed));
+  out.set_speed_kilometres_per_hour(kilometres_per_hour(result.vehicle_speed));
   *out.mutable_result() = to_message(result, kContactLossesOfAPoint);
   return out;
 }
 
 v1::CurvePoint to_curve_point(const SweepPoint& point) {
   v1::CurvePoint out;
-  out.set_speed_kilometers_per_hour(kilometers_per_hour(point.vehicle_speed));
+  out.set_speed_kilometres_per_hour(kilometres_per_hour(point.vehicle_speed));
   if (point.result) {
     *out.mutable_result() = to_message(*point.result, kContactLossesOfACurvePoint);
   } else {
@@ -217,15 +217,15 @@ v1::CurvePoint to_curve_point(const SweepPoint& point) {
     out.set_refusal_message(point.refusal_sentence);
   }
   if (point.branch_end) {
-    out.mutable_branch_end()->set_followed_to_kilometers_per_hour(
-        kilometers_per_hour(point.branch_end->followed_to));
-    out.mutable_branch_end()->set_gone_at_kilometers_per_hour(
-        kilometers_per_hour(point.branch_end->gone_at));
+    out.mutable_branch_end()->set_followed_to_kilometres_per_hour(
+        kilometres_per_hour(point.branch_end->followed_to));
+    out.mutable_branch_end()->set_gone_at_kilometres_per_hour(
+        kilometres_per_hour(point.branch_end->gone_at));
   }
   return out;
 }
 
-double kilometers_per_hour(double metres_per_second) {
+double kilometres_per_hour(double metres_per_second) {
   const double value = metres_per_second * 3.6;
   if (value == 0 || !std::isfinite(value)) return value;
   const double scale = std::pow(10.0, 11 - std::floor(std::log10(std::abs(value))));

@@ -20,6 +20,6 @@ v1::CurvePoint to_curve_point(const PointResult& result);
 v1::CurvePoint to_curve_point(const SweepPoint& point);
 
 /// m/s to km/h, rounded to 12 significant digits so that a stated 67.5 km/h comes back as 67.5.
-double kilometers_per_hour(double metres_per_second);
+double kilometres_per_hour(double metres_per_second);
 
 }  // namespace tribodyn::server

@@ -19,7 +19,7 @@ std::string stage_of(const OperatingCondition& condition) {
     return fmt::format("settling at {} N m and {} rad/s", condition.pinion_torque,
                        condition.pinion_speed);
   }
-  return fmt::format("settling at {} km/h", kilometers_per_hour(condition.vehicle_speed));
+  return fmt::format("settling at {} km/h", kilometres_per_hour(condition.vehicle_speed));
 }
 
 /// No number of a history may be NaN, and only a shear rate infinite (no film under sliding).
@@ -54,7 +54,7 @@ std::vector<SweepPoint> solve_curve(const CurveStudy& study, const Scene& scene,
   const StageText stage = [&] {
     const std::size_t now = std::min(done, count - 1);
     const double speed = study.vehicle_speeds[down ? count - 1 - now : now];
-    return fmt::format("settling at {} km/h, point {} of {}", kilometers_per_hour(speed), now + 1,
+    return fmt::format("settling at {} km/h, point {} of {}", kilometres_per_hour(speed), now + 1,
                        count);
   };
   options.point.progress = [&](double fraction) { return report(fraction, stage); };

@@ -19,9 +19,9 @@ constexpr double kQuasiStaticOrder = 0.4;        // contact solutions grow so wi
 // A shot point: as many steps as the mesh cycle is long, and what a sharper tolerance takes.
 constexpr double kShotSolutions = 130;  // at the usual tolerance
 constexpr double kShotOrder = 0.48;
-constexpr double kShotSolutionsAtOneKilometerPerHour = 12'800;
+constexpr double kShotSolutionsAtOneKilometrePerHour = 12'800;
 constexpr double kShotSecondsEach = 0.21e-6;
-constexpr double kPinionSpeedAtOneKilometerPerHour = 3.2;  // of the paper's axle [rad/s]
+constexpr double kPinionSpeedAtOneKilometrePerHour = 3.2;  // of the paper's axle [rad/s]
 // A curve that follows a branch, over speeds up to e times the least: what its points take far from
 // one another, and the
 // halvings on the way to a branch's end, the likelier the wider the curve.
@@ -44,21 +44,21 @@ double times_sharper(const v1::SolverOptions& solver) {
   return kUsualTolerance / solver.tolerance();
 }
 
-void add_shot_point(double speed_kilometers_per_hour, const v1::SolverOptions& solver,
+void add_shot_point(double speed_kilometres_per_hour, const v1::SolverOptions& solver,
                     v1::CostEstimate& out) {
   const double solutions = kShotSolutions * std::pow(times_sharper(solver), kShotOrder) +
-                           kShotSolutionsAtOneKilometerPerHour / speed_kilometers_per_hour;
+                           kShotSolutionsAtOneKilometrePerHour / speed_kilometres_per_hour;
   add({solutions, kShotSecondsEach}, 1, out);
 }
 
-void add_point(double speed_kilometers_per_hour, v1::PointModel model,
+void add_point(double speed_kilometres_per_hour, v1::PointModel model,
                const v1::SolverOptions& solver, v1::CostEstimate& out) {
   if (model == v1::QUASI_STATIC) {
     add(kQuasiStaticPoint, std::pow(times_sharper(solver), kQuasiStaticOrder), out);
   } else if (solver.method() == v1::MARCH) {
     add(kMarchedCycle, std::min<double>(kUsualMarchedCycles, solver.maximum_mesh_cycles()), out);
   } else {
-    add_shot_point(speed_kilometers_per_hour, solver, out);
+    add_shot_point(speed_kilometres_per_hour, solver, out);
   }
 }
 
@@ -74,7 +74,7 @@ double following_seconds(const google::protobuf::RepeatedField<double>& speeds) 
 
 void add_curve(const v1::InefficiencyCurveStudy& curve, const v1::SolverOptions& solver,
                v1::CostEstimate& out) {
-  const auto& speeds = curve.speeds_kilometers_per_hour();
+  const auto& speeds = curve.speeds_kilometres_per_hour();
   for (const double speed : speeds) add_point(speed, curve.model(), solver, out);
   if (curve.model() == v1::QUASI_STATIC || curve.independent_points()) return;
   out.set_processor_seconds(out.processor_seconds() + following_seconds(speeds));
@@ -83,12 +83,12 @@ void add_curve(const v1::InefficiencyCurveStudy& curve, const v1::SolverOptions&
 /// The vehicle speed of a point, or one at which the pinion of the paper's axle turns as fast
 /// [km/h].
 double speed_of(const v1::OperatingPointStudy& point) {
-  if (point.has_cruise()) return point.cruise().speed_kilometers_per_hour();
+  if (point.has_cruise()) return point.cruise().speed_kilometres_per_hour();
   if (point.has_drive_cycle_snapshot()) {
-    return point.drive_cycle_snapshot().speed_kilometers_per_hour();
+    return point.drive_cycle_snapshot().speed_kilometres_per_hour();
   }
   return point.prescribed_torque().pinion_speed_radians_per_second() /
-         kPinionSpeedAtOneKilometerPerHour;
+         kPinionSpeedAtOneKilometrePerHour;
 }
 
 /// Only a march works out every sample: an orbit repeats.

@@ -54,7 +54,7 @@ ResourceLookup seeds() {
 std::string check_golden_case(const StudyFunctions& studies) {
   v1::Simulation simulation;
   simulation.set_lubricant("lubricants/1");
-  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(72.5);
+  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(72.5);
   simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
   Violations violations;
   const auto inputs = read_simulation(simulation, seeds(), "simulation", violations);

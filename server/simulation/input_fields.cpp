@@ -100,16 +100,16 @@ constexpr InputFields kInputFields[] = {
      "cruise drive_cycle_snapshot prescribed_torque model start "
      "probe_coexisting_response history",
      ""},
-    {"Cruise", "speed_kilometers_per_hour ascent_angle_degrees", ""},
+    {"Cruise", "speed_kilometres_per_hour ascent_angle_degrees", ""},
     {"DriveCycleSnapshot",
-     "speed_kilometers_per_hour acceleration_metres_per_second_squared "
+     "speed_kilometres_per_hour acceleration_metres_per_second_squared "
      "ascent_angle_degrees",
      ""},
     {"PrescribedTorque", "pinion_torque_newton_metres pinion_speed_radians_per_second", ""},
     {"HistoryRequest", "columns mesh_cycles samples_per_mesh_cycle", ""},
     {"InefficiencyCurveStudy",
-     "speeds_kilometers_per_hour first_speed_kilometers_per_hour "
-     "last_speed_kilometers_per_hour speed_step_kilometers_per_hour direction "
+     "speeds_kilometres_per_hour first_speed_kilometres_per_hour "
+     "last_speed_kilometres_per_hour speed_step_kilometres_per_hour direction "
      "ascent_angle_degrees model start independent_points",
      ""},
 };

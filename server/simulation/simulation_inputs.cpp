@@ -70,10 +70,10 @@ void fill_curve(v1::InefficiencyCurveStudy* study) {
     study->set_direction(v1::UP);
   }
   const std::vector<double> speeds = curve_speeds(*study);
-  *study->mutable_speeds_kilometers_per_hour() = {speeds.begin(), speeds.end()};
-  study->clear_first_speed_kilometers_per_hour();
-  study->clear_last_speed_kilometers_per_hour();
-  study->clear_speed_step_kilometers_per_hour();
+  *study->mutable_speeds_kilometres_per_hour() = {speeds.begin(), speeds.end()};
+  study->clear_first_speed_kilometres_per_hour();
+  study->clear_last_speed_kilometres_per_hour();
+  study->clear_speed_step_kilometres_per_hour();
 }
 
 v1::Simulation with_defaults(v1::Simulation simulation) {
@@ -110,12 +110,12 @@ OperatingCondition condition(const v1::OperatingPointStudy& study) {
   OperatingCondition out;
   if (study.has_cruise()) {
     out.kind = OperatingCondition::Kind::kCruise;
-    out.vehicle_speed = study.cruise().speed_kilometers_per_hour() / 3.6;
+    out.vehicle_speed = study.cruise().speed_kilometres_per_hour() / 3.6;
     out.ascent_angle = study.cruise().ascent_angle_degrees() * kRadiansPerDegree;
   } else if (study.has_drive_cycle_snapshot()) {
     const v1::DriveCycleSnapshot& snapshot = study.drive_cycle_snapshot();
     out.kind = OperatingCondition::Kind::kDriveCycleSnapshot;
-    out.vehicle_speed = snapshot.speed_kilometers_per_hour() / 3.6;
+    out.vehicle_speed = snapshot.speed_kilometres_per_hour() / 3.6;
     out.acceleration = snapshot.acceleration_metres_per_second_squared();
     out.ascent_angle = snapshot.ascent_angle_degrees() * kRadiansPerDegree;
   } else {
@@ -261,7 +261,7 @@ Study study(const SimulationInputs& inputs) {
   }
   const v1::InefficiencyCurveStudy& message = inputs.effective.inefficiency_curve();
   CurveStudy out;
-  for (const double speed : message.speeds_kilometers_per_hour()) {
+  for (const double speed : message.speeds_kilometres_per_hour()) {
     out.vehicle_speeds.push_back(speed / 3.6);
   }
   out.ascent_angle = message.ascent_angle_degrees() * kRadiansPerDegree;

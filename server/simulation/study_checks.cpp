@@ -19,36 +19,36 @@ namespace {
 
 /// How many speeds first, last and step make; 0 when they make none.
 double grid_size(const v1::InefficiencyCurveStudy& study) {
-  const double first = study.first_speed_kilometers_per_hour();
-  const double last = study.last_speed_kilometers_per_hour();
-  const double step = study.speed_step_kilometers_per_hour();
+  const double first = study.first_speed_kilometres_per_hour();
+  const double last = study.last_speed_kilometres_per_hour();
+  const double step = study.speed_step_kilometres_per_hour();
   if (!(first > 0) || !(last >= first) || !(step > 0)) return 0;
   return std::floor((last - first) / step + 1e-9) + 1;
 }
 
 bool has_range(const v1::InefficiencyCurveStudy& study) {
-  return study.first_speed_kilometers_per_hour() != 0 ||
-         study.last_speed_kilometers_per_hour() != 0 || study.speed_step_kilometers_per_hour() != 0;
+  return study.first_speed_kilometres_per_hour() != 0 ||
+         study.last_speed_kilometres_per_hour() != 0 || study.speed_step_kilometres_per_hour() != 0;
 }
 
 void check_speed_range(const v1::InefficiencyCurveStudy& study, const std::string& path,
                        Violations& violations) {
-  const double first = study.first_speed_kilometers_per_hour();
-  const double last = study.last_speed_kilometers_per_hour();
-  const double step = study.speed_step_kilometers_per_hour();
+  const double first = study.first_speed_kilometres_per_hour();
+  const double last = study.last_speed_kilometres_per_hour();
+  const double step = study.speed_step_kilometres_per_hour();
   const auto missing = [&](const char* field, double value) {
     if (value == 0) {
       violations.push_back({join_path(path, field),
                             fmt::format("{} is not set; first, last and step go together", field)});
     }
   };
-  missing("first_speed_kilometers_per_hour", first);
-  missing("last_speed_kilometers_per_hour", last);
-  missing("speed_step_kilometers_per_hour", step);
+  missing("first_speed_kilometres_per_hour", first);
+  missing("last_speed_kilometres_per_hour", last);
+  missing("speed_step_kilometres_per_hour", step);
   if (first != 0 && last != 0 && last < first) {
     violations.push_back(
-        {join_path(path, "last_speed_kilometers_per_hour"),
-         fmt::format("last_speed_kilometers_per_hour = {} km/h; legal: at least the first speed, "
+        {join_path(path, "last_speed_kilometres_per_hour"),
+         fmt::format("last_speed_kilometres_per_hour = {} km/h; legal: at least the first speed, "
                      "{} km/h; for a sweep downwards set direction",
                      last, first)});
   }
@@ -139,8 +139,8 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
                      "direction is that in which a branch is followed from point to point",
                      v1::SweepDirection_Name(study.direction()))});
   }
-  const bool explicit_speeds = !study.speeds_kilometers_per_hour().empty();
-  const std::string speeds = join_path(path, "speeds_kilometers_per_hour");
+  const bool explicit_speeds = !study.speeds_kilometres_per_hour().empty();
+  const std::string speeds = join_path(path, "speeds_kilometres_per_hour");
   if (explicit_speeds && has_range(study)) {
     violations.push_back({speeds, "set together with first, last and step; legal: one of the two"});
     return;
@@ -151,15 +151,15 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
   }
   if (!explicit_speeds) check_speed_range(study, path, violations);
   const double points =
-      explicit_speeds ? study.speeds_kilometers_per_hour_size() : grid_size(study);
+      explicit_speeds ? study.speeds_kilometres_per_hour_size() : grid_size(study);
   if (points > kMaximumCurvePoints) {
     violations.push_back(
-        {explicit_speeds ? speeds : join_path(path, "speed_step_kilometers_per_hour"),
+        {explicit_speeds ? speeds : join_path(path, "speed_step_kilometres_per_hour"),
          fmt::format("{} points; legal: at most {} (work limit)", points, kMaximumCurvePoints)});
     return;
   }
   if (explicit_speeds) {
-    const auto& list = study.speeds_kilometers_per_hour();
+    const auto& list = study.speeds_kilometres_per_hour();
     std::vector<double> sorted(list.begin(), list.end());
     std::erase_if(sorted, [](double speed) { return !std::isfinite(speed); });
     std::sort(sorted.begin(), sorted.end());
@@ -198,13 +198,13 @@ void check_mesh_data(const v1::GearSet& gear_set, const v1::ModelOptions& option
 }
 
 std::vector<double> curve_speeds(const v1::InefficiencyCurveStudy& study) {
-  const auto& list = study.speeds_kilometers_per_hour();
+  const auto& list = study.speeds_kilometres_per_hour();
   std::vector<double> speeds(list.begin(), list.end());
   if (speeds.empty()) {
     const int count = static_cast<int>(std::min(grid_size(study), kMaximumCurvePoints + 1.0));
     for (int i = 0; i < count; ++i) {
-      speeds.push_back(study.first_speed_kilometers_per_hour() +
-                       i * study.speed_step_kilometers_per_hour());
+      speeds.push_back(study.first_speed_kilometres_per_hour() +
+                       i * study.speed_step_kilometres_per_hour());
     }
   }
   std::sort(speeds.begin(), speeds.end());

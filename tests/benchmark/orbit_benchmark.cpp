@@ -61,7 +61,7 @@ double time_of(Run&& run) {
 
 struct Place {
   const char* name;
-  double kilometers_per_hour;
+  double kilometres_per_hour;
   PointStart start;
   double error;  // asked of all
 };
@@ -105,7 +105,7 @@ Transient march(PreparedScene& scene, const Place& place, const MarchingSolver& 
   system.solve_together(&scene.contacts());
   const double ratio =
       static_cast<double>(system.mesh().pinion_teeth()) / system.mesh().gear_teeth();
-  const double wheel = wheel_torque(scene.scene().vehicle, place.kilometers_per_hour / 3.6, 0, 0);
+  const double wheel = wheel_torque(scene.scene().vehicle, place.kilometres_per_hour / 3.6, 0, 0);
   Transient out;
   const auto start = Clock::now();
   system.set_torques({wheel * ratio, wheel});
@@ -170,7 +170,7 @@ int run(const std::string& results, const std::string& table, int turns) {
   std::vector<Measurement> out;
   for (const Place& place : kPlaces) {
     OperatingCondition condition;
-    condition.vehicle_speed = place.kilometers_per_hour / 3.6;
+    condition.vehicle_speed = place.kilometres_per_hour / 3.6;
     const PointResult truth = truth_of(prepared, condition, place.start);
     Contest contest;
     std::map<std::string, double> fifty;

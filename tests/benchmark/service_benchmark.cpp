@@ -131,7 +131,7 @@ StartRequest gets(Stub& stub, const std::string& name) {
 
 v1::Simulation point_at(double speed) {
   v1::Simulation out = point_simulation();
-  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(speed);
+  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
   return out;
 }
 
@@ -346,9 +346,9 @@ class Watcher final : public grpc::ClientReadReactor<v1::SimulationEvent> {
 v1::Simulation endless() {
   v1::Simulation out = curve_simulation();
   auto* curve = out.mutable_inefficiency_curve();
-  curve->set_first_speed_kilometers_per_hour(60);
-  curve->set_last_speed_kilometers_per_hour(80);
-  curve->set_speed_step_kilometers_per_hour(0.0201);
+  curve->set_first_speed_kilometres_per_hour(60);
+  curve->set_last_speed_kilometres_per_hour(80);
+  curve->set_speed_step_kilometres_per_hour(0.0201);
   out.mutable_solver_options()->set_method(v1::MARCH);
   out.mutable_solver_options()->set_relative_tolerance(1e-11);
   out.mutable_solver_options()->set_settling_tolerance(1e-12);
@@ -576,9 +576,9 @@ void measure_refusals(std::vector<Measurement>& out) {
 v1::Simulation long_curve(int number) {
   v1::Simulation out = curve_simulation();
   auto* curve = out.mutable_inefficiency_curve();
-  curve->set_first_speed_kilometers_per_hour(20 + 0.01 * number);
-  curve->set_last_speed_kilometers_per_hour(119.9 + 0.01 * number);
-  curve->set_speed_step_kilometers_per_hour(0.1);
+  curve->set_first_speed_kilometres_per_hour(20 + 0.01 * number);
+  curve->set_last_speed_kilometres_per_hour(119.9 + 0.01 * number);
+  curve->set_speed_step_kilometres_per_hour(0.1);
   return out;
 }
 

@@ -64,7 +64,7 @@ class Client {
     auto* point = create.mutable_simulation()->mutable_operating_point();
     // A third of them anew, the others from the cache.
     const int speed = round_ % 3 == 0 ? round_ : round_ % 7;
-    point->mutable_cruise()->set_speed_kilometers_per_hour(20 + number_ + 1e-4 * speed);
+    point->mutable_cruise()->set_speed_kilometres_per_hour(20 + number_ + 1e-4 * speed);
     point->mutable_history()->add_columns("mesh_force_newtons");
     const std::string name = call(create, &v1::Simulations::Stub::CreateSimulation).name();
     {

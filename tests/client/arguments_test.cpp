@@ -203,8 +203,8 @@ TEST(Arguments, QuantitiesOfALubricantNeedNoUnit) {
 
 TEST(Arguments, NameTheFlagThatWasTyped) {
   EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed", "fast"}).complains_of("--speed: 'fast'"));
-  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed-kilometers-per-hour", "fast"})
-                  .complains_of("--speed-kilometers-per-hour: 'fast'"));
+  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed-kilometres-per-hour", "fast"})
+                  .complains_of("--speed-kilometres-per-hour: 'fast'"));
   const Outcome wrong({"lubricants", "create", "x", "--kv40", "73,3", "--density", "868"});
   EXPECT_TRUE(
       wrong.complains_of("--kv40: '73,3' has a decimal comma; decimal point, please: 73.3"));
@@ -238,12 +238,12 @@ TEST(Refusals, NameTheFlagThatWasTypedAndTheCure) {
             "write 0.895g/cm3 or 895");
   EXPECT_EQ(told({"lubricants", "create", "x", "--kv40", "100"}, density), density.description);
   EXPECT_EQ(told({"point", "-l", "1", "--speed=-5"},
-                 {"simulation.operating_point.cruise.speed_kilometers_per_hour",
-                  "speed_kilometers_per_hour = -5 km/h; legal: 0.1 to 400 km/h (eq 7)"}),
+                 {"simulation.operating_point.cruise.speed_kilometres_per_hour",
+                  "speed_kilometres_per_hour = -5 km/h; legal: 0.1 to 400 km/h (eq 7)"}),
             "--speed = -5 km/h; legal: 0.1 to 400 km/h (eq 7)");
   EXPECT_EQ(told({"curve", "-l", "1", "--speed", "20,900"},
-                 {"simulation.inefficiency_curve.speeds_kilometers_per_hour[1]",
-                  "speeds_kilometers_per_hour = 900 km/h; legal: 0.1 to 400 km/h (eq 7)"}),
+                 {"simulation.inefficiency_curve.speeds_kilometres_per_hour[1]",
+                  "speeds_kilometres_per_hour = 900 km/h; legal: 0.1 to 400 km/h (eq 7)"}),
             "--speed = 900 km/h; legal: 0.1 to 400 km/h (eq 7)");
   EXPECT_EQ(told({"lubricants", "create", "x", "--kv40", "1", "--brookfield", "-40=9",
                   "--brookfield", "-400=9"},

@@ -81,7 +81,7 @@ for command in point contact history curve; do
     case "$command $flag" in
       *" --timeout-seconds") continue ;;  # the client's own
       contact\ *) given=() ;;
-      curve\ * | *" --speed-kilometers-per-hour" | *" --speeds-kilometers-per-hour") given=(--lubricant 1) ;;
+      curve\ * | *" --speed-kilometres-per-hour" | *" --speeds-kilometres-per-hour") given=(--lubricant 1) ;;
       *" --pinion-torque-newton-metres") given=(--lubricant 1 --pinion-speed 1) ;;
       *" --pinion-speed-radians-per-second") given=(--lubricant 1 --torque 1) ;;
     esac
@@ -129,7 +129,7 @@ out_is_json
 out_has '"centralFilmThicknessMetres": [0-9.]+e-0?[67]'
 
 echo "--- point"
-expect 0 point --lubricant 1 --speed-kilometers-per-hour 72.5 --progress lines
+expect 0 point --lubricant 1 --speed-kilometres-per-hour 72.5 --progress lines
 for part in 'inefficiency, energy mean +[0-9.]+ %' 'inefficiency, RMS' 'mesh loss +[0-9.]+ W' \
   'film ratio lambda' 'contact loss' 'model version' 'input hash +[0-9a-f]{64}' \
   'relative solver error +0\.[0-9]+ +%' 'right-hand sides' 'assumed'; do

@@ -114,8 +114,8 @@ TEST(CurvePlot, BreaksTheLineWhereABranchEnds) {
   v1::Simulation curve = sample_curve("1", 1);
   const int whole = lines_of(curve);
   v1::BranchEnd* end = curve.mutable_result()->mutable_points(10)->mutable_branch_end();
-  end->set_followed_to_kilometers_per_hour(69.1);
-  end->set_gone_at_kilometers_per_hour(69.14);
+  end->set_followed_to_kilometres_per_hour(69.1);
+  end->set_gone_at_kilometres_per_hour(69.14);
   const int broken_below = lines_of(curve);
   EXPECT_GT(broken_below, whole);
   EXPECT_NE(curve_plot({curve}, {}).find("Lines break where the branch"), std::string::npos);
@@ -126,7 +126,7 @@ TEST(CurvePlot, BreaksTheLineWhereABranchEnds) {
 /// The curve with a warning from one speed to another.
 v1::Simulation with_warning(v1::Simulation curve, const std::string& code, double from, double to) {
   for (auto& point : *curve.mutable_result()->mutable_points()) {
-    const double speed = point.speed_kilometers_per_hour();
+    const double speed = point.speed_kilometres_per_hour();
     if (speed < from || speed > to) continue;
     auto& warning = *point.mutable_result()->add_warnings();
     warning.set_code(code);
@@ -274,7 +274,7 @@ TEST(ContactLossBands, ReachHalfWayToTheNeighboursAndMerge) {
             (Bands{{62.5, 82.5}}));
   v1::Simulation curve = sample_curve("1", 1);
   for (auto& point : *curve.mutable_result()->mutable_points()) {
-    point.mutable_result()->set_contact_loss(point.speed_kilometers_per_hour() < 21);
+    point.mutable_result()->set_contact_loss(point.speed_kilometres_per_hour() < 21);
   }
   EXPECT_EQ(contact_loss_bands({curve}), (Bands{{20, 22.5}}));
 }

@@ -15,7 +15,7 @@ void fill_result(double speed, double level, v1::PointResult& result) {
   const bool separates = speed >= 65 && speed <= 80;
   const double inefficiency = level * (1.35 - 0.002 * (speed - 20)) + (separates ? 0.08 : 0);
   const double input = 20 * speed * (1 + speed * speed / 5000);
-  result.set_vehicle_speed_kilometers_per_hour(speed);
+  result.set_vehicle_speed_kilometres_per_hour(speed);
   result.set_mean_pinion_speed_radians_per_second(2.75 * speed);
   result.set_mesh_frequency_hertz(5.68 * speed);
   result.set_pinion_torque_newton_metres(input / (2.75 * speed));
@@ -67,9 +67,9 @@ v1::Simulation sample_curve(const std::string& lubricant, double level) {
   auto& study = *simulation.mutable_inefficiency_curve();
   study.set_direction(v1::UP);
   for (int speed = 20; speed <= 140; speed += 5) {
-    study.add_speeds_kilometers_per_hour(speed);
+    study.add_speeds_kilometres_per_hour(speed);
     v1::CurvePoint& point = *simulation.mutable_result()->add_points();
-    point.set_speed_kilometers_per_hour(speed);
+    point.set_speed_kilometres_per_hour(speed);
     fill_result(speed, level, *point.mutable_result());
   }
   return simulation;
@@ -82,9 +82,9 @@ v1::Simulation sample_point() {
   succeed(simulation);
   simulation.mutable_model_options()->set_isothermal(true);
   simulation.mutable_model_options()->mutable_as_published()->set_eq17_atan(true);
-  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(72.5);
+  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(72.5);
   v1::CurvePoint& point = *simulation.mutable_result()->add_points();
-  point.set_speed_kilometers_per_hour(72.5);
+  point.set_speed_kilometres_per_hour(72.5);
   v1::PointResult& result = *point.mutable_result();
   fill_result(72.5, 1, result);
   v1::ContactLoss& loss = *result.add_contact_losses();

@@ -144,7 +144,7 @@ TEST(Csv, HeadersHaveUnitsAndDoNotDependOnValues) {
   const auto headers = split(full[0], ',');
   EXPECT_EQ(std::set<std::string>(headers.begin(), headers.end()).size(), headers.size());
   for (const std::string& line : full) EXPECT_EQ(split(line, ',').size(), headers.size());
-  EXPECT_TRUE(holds(full[0], ",speed_kilometers_per_hour,"));
+  EXPECT_TRUE(holds(full[0], ",speed_kilometres_per_hour,"));
   EXPECT_TRUE(holds(full[0], ",minimum_central_film_thickness_metres,"));
   EXPECT_TRUE(holds(full[0], ",flank_losses_2_boundary_watts,"));
   EXPECT_TRUE(holds(full[0], ",inefficiency_rms_percent,"));
@@ -326,7 +326,7 @@ TEST(Reports, BeginWithATorqueFarBeyondTheDataOfTheGearSet) {
 TEST(Reports, NameAWarningInPlainWordsBeforeItsCode) {
   v1::Simulation curve = sample_curve("2", 1);
   for (auto& point : *curve.mutable_result()->mutable_points()) {
-    if (point.speed_kilometers_per_hour() > 30) continue;
+    if (point.speed_kilometres_per_hour() > 30) continue;
     auto& warning = *point.mutable_result()->add_warnings();
     warning.set_code("COLD_INLET");
     warning.set_message("inlet at 0 C");

@@ -348,7 +348,7 @@ Works works_of_ten_cycles(Bench& bench, const PointResult& point, Disturb distur
 }
 
 struct PowerCase {
-  double kilometers_per_hour;
+  double kilometres_per_hour;
   bool energy_consistent;
   bool vibro_impact;
 };
@@ -360,7 +360,7 @@ TEST_P(PowerBalanceIdentities, ClosesOverTenPeriodsAndInTransients) {
   Scene scene = reference_scene();
   scene.options.energy_consistent = p.energy_consistent;
   Bench bench(scene);
-  const PointResult point = solve_operating_point(scene, cruise(p.kilometers_per_hour), {});
+  const PointResult point = solve_operating_point(scene, cruise(p.kilometres_per_hour), {});
   ASSERT_TRUE(point.settled);
   ASSERT_EQ(point.contact_loss, p.vibro_impact);
 
@@ -396,7 +396,7 @@ TEST_P(PowerBalanceIdentities, ClosesInTheReportOfAPoint) {
     PointOptions options;
     options.method = method;
     options.relative_tolerance = kShortRun ? 1e-6 : 1e-8;
-    const PointResult point = solve_operating_point(scene, cruise(p.kilometers_per_hour), options);
+    const PointResult point = solve_operating_point(scene, cruise(p.kilometres_per_hour), options);
     const PowerBalance& w = point.power_balance;
     const double residual = w.input - w.output - w.friction - w.shaft_damping - w.mesh_damping -
                             w.stored - w.parametric;

@@ -26,9 +26,9 @@
 namespace tribodyn {
 namespace {
 
-OperatingCondition prescribed_at(double pinion_torque, double kilometers_per_hour) {
+OperatingCondition prescribed_at(double pinion_torque, double kilometres_per_hour) {
   const Scene scene = reference_scene();
-  return prescribed(pinion_torque, kilometers_per_hour / 3.6 / scene.vehicle.wheel_radius *
+  return prescribed(pinion_torque, kilometres_per_hour / 3.6 / scene.vehicle.wheel_radius *
                                        scene.gear_set.gear_teeth / scene.gear_set.pinion_teeth);
 }
 

@@ -19,7 +19,7 @@ namespace {
 
 /// Released from more deflection than the static one, at constant torques.
 struct InitialValueProblem {
-  double speed_kilometers_per_hour;
+  double speed_kilometres_per_hour;
   double pinion_torque;      ///< [N m]
   double excess_deflection;  ///< [m]
   int mesh_cycles;
@@ -58,7 +58,7 @@ class OrderTest : public testing::Test {
   }
 
   double mean_speed(const InitialValueProblem& problem) const {
-    return problem.speed_kilometers_per_hour / 3.6 / scene_.vehicle.wheel_radius *
+    return problem.speed_kilometres_per_hour / 3.6 / scene_.vehicle.wheel_radius *
            scene_.gear_set.gear_teeth / scene_.gear_set.pinion_teeth;
   }
   double wheel_torque(const InitialValueProblem& problem) const {

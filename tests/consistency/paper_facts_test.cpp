@@ -14,10 +14,10 @@ namespace {
 
 using Curve = std::map<int, PointResult>;  // by km/h
 
-Curve sweep(const Scene& scene, const std::vector<int>& kilometers_per_hour,
+Curve sweep(const Scene& scene, const std::vector<int>& kilometres_per_hour,
             SweepDirection direction = SweepDirection::kUp) {
   std::vector<double> speeds;
-  for (const int v : kilometers_per_hour) speeds.push_back(v / 3.6);
+  for (const int v : kilometres_per_hour) speeds.push_back(v / 3.6);
   SweepOptions options;
   options.direction = direction;
   Curve out;
@@ -33,9 +33,9 @@ Curve curve_of(int fluid) {
   return sweep(reference_scene(fluid), {20, 35, 50, 60, 90, 100, 120, 140});
 }
 
-PointResult point(const Scene& scene, double kilometers_per_hour) {
+PointResult point(const Scene& scene, double kilometres_per_hour) {
   OperatingCondition condition;
-  condition.vehicle_speed = kilometers_per_hour / 3.6;
+  condition.vehicle_speed = kilometres_per_hour / 3.6;
   return solve_operating_point(scene, condition, {});
 }
 
@@ -84,12 +84,12 @@ TEST(Figure6And7, ContactIsLostNearTheFirstResonanceAndGoneFrom81) {
 // To half a kilometre per hour: 71.5 to 80.5 on the way up, 65.5 to 80.5 at 30.1 to 37.0 N m on the
 // way down.
 TEST(Figure6And7, EdgesOfContactLossToHalfAKilometrePerHour) {
-  const auto lost = [](std::vector<double> kilometers_per_hour, SweepDirection direction) {
-    for (double& speed : kilometers_per_hour) speed /= 3.6;
+  const auto lost = [](std::vector<double> kilometres_per_hour, SweepDirection direction) {
+    for (double& speed : kilometres_per_hour) speed /= 3.6;
     SweepOptions options;
     options.direction = direction;
     std::map<double, double> torque_where_lost;
-    for (const SweepPoint& at : sweep_speed(reference_scene(), kilometers_per_hour, 0, options)) {
+    for (const SweepPoint& at : sweep_speed(reference_scene(), kilometres_per_hour, 0, options)) {
       if (!at.result->contact_loss) continue;
       torque_where_lost[std::round(36 * at.vehicle_speed) / 10] = at.result->pinion_torque;
     }
@@ -233,7 +233,7 @@ TEST(Figure5, HeatingBendsTheTractionCurveDown) {
 }
 
 // The paper's fall does not start at 20 km/h: the excess first rises to 9.8 % at 25 to 30.
-TEST(Figures15And16, NeglectingShearThinningCostsLessFrom30KilometersPerHourUp) {
+TEST(Figures15And16, NeglectingShearThinningCostsLessFrom30KilometresPerHourUp) {
   Scene scene = reference_scene();
   scene.options.newtonian = true;
   const Curve thinning = curve_of(1);

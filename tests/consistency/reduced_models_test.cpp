@@ -43,12 +43,12 @@ struct Loss {
 
 /// Phase by phase, contact by contact, by the reference kernel: two Gauss points in each interval
 /// of the tables, on whose ends the integrand has its kinks. T_w given.
-Loss plain_quasi_static(const Scene& scene, double kilometers_per_hour) {
+Loss plain_quasi_static(const Scene& scene, double kilometres_per_hour) {
   const MeshData mesh(scene.gear_set);
   const FlankContactModel model = contact_model(scene);
-  const double wheel = wheel_torque(scene.vehicle, kilometers_per_hour / 3.6, 0, 0);
+  const double wheel = wheel_torque(scene.vehicle, kilometres_per_hour / 3.6, 0, 0);
   const double ratio = static_cast<double>(mesh.pinion_teeth()) / mesh.gear_teeth();
-  const double speed = kilometers_per_hour / 3.6 / scene.vehicle.wheel_radius / ratio;
+  const double speed = kilometres_per_hour / 3.6 / scene.vehicle.wheel_radius / ratio;
   const int points = 2 * mesh.intervals();
   std::vector<double> friction_torque(points, 0.0);
   Loss out{ratio * wheel, 0, 0};
@@ -101,15 +101,15 @@ TEST(QuasiStatic, IsWhatPhaseByPhaseGivesWithinItsOwnEstimateAtEveryTolerance) {
     const Scene scene = reference_scene(fluid, fluid == 1 ? 40 : 90);
     PreparedScene prepared(scene);
     PreparedGearSet& gear_set = prepared.gear_set();
-    for (const double kilometers_per_hour : {1.0, 20.0, 100.0}) {
-      const Loss plain = plain_quasi_static(scene, kilometers_per_hour);
+    for (const double kilometres_per_hour : {1.0, 20.0, 100.0}) {
+      const Loss plain = plain_quasi_static(scene, kilometres_per_hour);
       for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5}) {
-        SCOPED_TRACE(testing::Message() << kilometers_per_hour << " km/h at " << tolerance);
+        SCOPED_TRACE(testing::Message() << kilometres_per_hour << " km/h at " << tolerance);
         GearPairSystem system(gear_set.mesh(), prepared.contacts().model(),
                               gear_set.gear_set().dynamics, scene.options);
         PointOptions options;
         options.tolerance = tolerance;
-        const OperatingTarget target = target_of(scene, cruise(kilometers_per_hour));
+        const OperatingTarget target = target_of(scene, cruise(kilometres_per_hour));
         system.set_torques(target.torques);
         const auto r = solve_quasi_static(system, prepared.contacts(), gear_set.grids(),
                                           quasi_static_request(target, options));

@@ -34,7 +34,7 @@ PointOptions marched(PointStart start = PointStart::kQuasiStatic) {
 }
 
 struct ShootingPlace {
-  double kilometers_per_hour;
+  double kilometres_per_hour;
   PointStart start;
 };
 
@@ -42,19 +42,19 @@ class ShotResponse : public testing::TestWithParam<ShootingPlace> {};
 
 TEST_P(ShotResponse, ErrsLessThanItSaysAndAskedAtEveryTolerance) {
   const ShootingPlace place = GetParam();
-  if (kShortRun && place.kilometers_per_hour != 72.5 && place.kilometers_per_hour != 100) {
+  if (kShortRun && place.kilometres_per_hour != 72.5 && place.kilometres_per_hour != 100) {
     GTEST_SKIP() << "a march takes ten seconds under ASan: two speeds are marched there";
   }
   const Scene scene = reference_scene();
   const PointResult exact =
-      solve_operating_point(scene, cruise(place.kilometers_per_hour), marched(place.start));
+      solve_operating_point(scene, cruise(place.kilometres_per_hour), marched(place.start));
   for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
     if (kShortRun && tolerance != 1e-3 && tolerance != 1e-6) continue;
     PointOptions options;
     options.model = PointModel::kFull;
     options.start = place.start;
     options.tolerance = tolerance;
-    const PointResult r = solve_operating_point(scene, cruise(place.kilometers_per_hour), options);
+    const PointResult r = solve_operating_point(scene, cruise(place.kilometres_per_hour), options);
     SCOPED_TRACE(tolerance);
     ASSERT_EQ(r.method, SteadyStateMethod::kShooting);
     EXPECT_TRUE(r.settled);
@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Speeds, ShotResponse,
                                          ShootingPlace{140, PointStart::kQuasiStatic}),
                          [](const auto& place) {
                            std::string name = std::to_string(
-                               static_cast<int>(10 * place.param.kilometers_per_hour));
+                               static_cast<int>(10 * place.param.kilometres_per_hour));
                            return name + (place.param.start == PointStart::kLargeVibration ? "_down"
                                                                                            : "_up");
                          });
@@ -325,7 +325,7 @@ TEST(ShootingResults, DoNotDependOnAHistoryBeingAskedFor) {
 // Friction is where the time goes: a scene that takes more of it than this has got slow.
 TEST(ShootingWork, FrictionEvaluationsOfAPointAreFew) {
   struct Scenario {
-    double kilometers_per_hour;
+    double kilometres_per_hour;
     PointStart start;
     long most;
   };
@@ -336,12 +336,12 @@ TEST(ShootingWork, FrictionEvaluationsOfAPointAreFew) {
         Scenario{72.5, PointStart::kQuasiStatic, 340}, Scenario{80, PointStart::kQuasiStatic, 800},
         Scenario{100, PointStart::kQuasiStatic, 280},
         Scenario{140, PointStart::kQuasiStatic, 280}}) {
-    SCOPED_TRACE(at.kilometers_per_hour);
+    SCOPED_TRACE(at.kilometres_per_hour);
     PointOptions options;
     options.model = PointModel::kFull;
     options.start = at.start;
     const PointResult r =
-        solve_operating_point(reference_scene(), cruise(at.kilometers_per_hour), options);
+        solve_operating_point(reference_scene(), cruise(at.kilometres_per_hour), options);
     EXPECT_EQ(r.method, SteadyStateMethod::kShooting);
     EXPECT_LE(r.statistics.contact_solutions, at.most);
     EXPECT_GT(r.statistics.contact_solutions, 100);

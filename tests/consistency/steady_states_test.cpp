@@ -18,12 +18,12 @@
 namespace tribodyn {
 namespace {
 
-PointResult point(double kilometers_per_hour, PointStart start = PointStart::kQuasiStatic,
+PointResult point(double kilometres_per_hour, PointStart start = PointStart::kQuasiStatic,
                   bool probe = false) {
   PointOptions options;
   options.start = start;
   options.probe_coexisting_response = probe;
-  return solve_operating_point(reference_scene(), cruise(kilometers_per_hour), options);
+  return solve_operating_point(reference_scene(), cruise(kilometres_per_hour), options);
 }
 
 bool warns(const PointResult& result, const std::string& code) {
@@ -124,14 +124,14 @@ TEST(SteadyStates, TheDoubledPeriodIsFollowedDownToWhereTheSingleOneAttractsToo)
 }
 
 /// Of a sweep: where branches end [km/h].
-std::vector<double> branch_ends(const std::vector<double>& kilometers_per_hour,
+std::vector<double> branch_ends(const std::vector<double>& kilometres_per_hour,
                                 SweepDirection direction,
                                 SteadyStateMethod method = SteadyStateMethod::kAutomatic) {
   SweepOptions options;
   options.direction = direction;
   options.point.method = method;
   std::vector<double> speeds, out;
-  for (const double speed : kilometers_per_hour) speeds.push_back(speed / 3.6);
+  for (const double speed : kilometres_per_hour) speeds.push_back(speed / 3.6);
   for (const SweepPoint& at : sweep_speed(reference_scene(), speeds, 0, options)) {
     if (!at.branch_end) continue;
     const double sign = direction == SweepDirection::kUp ? 1 : -1;

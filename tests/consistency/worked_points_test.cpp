@@ -28,7 +28,7 @@ void expect_worked_orbits(const char* block) {
     // The worked orbits keep the arms of the tables while speeds fluctuate; see model_options.h.
     scene.options.tabulated_friction_arms = true;
     OperatingCondition condition;
-    condition.vehicle_speed = orbit.at("speed_kilometers_per_hour").get<double>() / 3.6;
+    condition.vehicle_speed = orbit.at("speed_kilometres_per_hour").get<double>() / 3.6;
     condition.ascent_angle = orbit.value("ascent_angle_radians", 0.0);
     PointOptions options;
     options.tolerance = 1e-7;

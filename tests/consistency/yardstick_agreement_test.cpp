@@ -14,7 +14,7 @@ constexpr double kAgreement = 1e-6;
 
 struct AgreementPlace {
   const char* name;
-  double kilometers_per_hour;
+  double kilometres_per_hour;
   PointStart start = PointStart::kQuasiStatic;
   bool isothermal = false;
   bool newtonian = false;
@@ -25,7 +25,7 @@ class YardstickAgreement : public testing::TestWithParam<AgreementPlace> {};
 
 TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   const AgreementPlace& place = GetParam();
-  const double speed = place.kilometers_per_hour / 3.6;
+  const double speed = place.kilometres_per_hour / 3.6;
   Scene scene = reference_scene();
   scene.options.isothermal = place.isothermal;
   scene.options.newtonian = place.newtonian;

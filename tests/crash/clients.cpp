@@ -45,11 +45,11 @@ bool is_refusal(const client::ServiceError& error) {
 void set_study(int number, v1::Simulation& out) {
   if (number % 5 == 4) {
     auto* curve = out.mutable_inefficiency_curve();
-    for (int speed = 40; speed <= 90; speed += 10) curve->add_speeds_kilometers_per_hour(speed);
+    for (int speed = 40; speed <= 90; speed += 10) curve->add_speeds_kilometres_per_hour(speed);
     return;
   }
   auto* point = out.mutable_operating_point();
-  point->mutable_cruise()->set_speed_kilometers_per_hour(20 + number % 90);
+  point->mutable_cruise()->set_speed_kilometres_per_hour(20 + number % 90);
   if (number % 5 == 3) point->set_model(v1::QUASI_STATIC);
   if (number % 2 == 1) point->mutable_history()->add_columns("mesh_force_newtons");
   if (number % kMarchedOneIn == 0) out.mutable_solver_options()->set_method(v1::MARCH);

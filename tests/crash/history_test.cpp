@@ -38,7 +38,7 @@ void set_result(v1::Simulation& simulation, const std::string& hash, double spee
   simulation.set_input_hash(hash);
   simulation.mutable_result()->set_input_hash(hash);
   simulation.mutable_result()->clear_points();
-  simulation.mutable_result()->add_points()->set_speed_kilometers_per_hour(speed);
+  simulation.mutable_result()->add_points()->set_speed_kilometres_per_hour(speed);
 }
 
 /// A history with everything that may happen. A simulation runs again after a crash, is served from

@@ -119,7 +119,7 @@ TEST_F(AppTest, ASimulationIsAcceptedListedAndRead) {
   EXPECT_EQ(curve.result().points_size(), 13);
   EXPECT_EQ(curve.result().direction(), v1::UP);
   EXPECT_TRUE(curve.has_create_time() && curve.has_start_time() && curve.has_end_time());
-  EXPECT_EQ(curve.inefficiency_curve().speed_step_kilometers_per_hour(), 10) << "as requested";
+  EXPECT_EQ(curve.inefficiency_curve().speed_step_kilometres_per_hour(), 10) << "as requested";
 }
 
 /// What came of a history: its schema, and the columns put together.
@@ -165,7 +165,7 @@ v1::Simulation with_history(int cycles, int samples) {
 
 v1::Simulation labelled(const std::string& project, double speed) {
   v1::Simulation out = point_simulation();
-  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(speed);
+  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
   v1::Label* label = out.add_labels();
   label->set_key("project");
   label->set_value(project);
@@ -366,8 +366,8 @@ TEST_F(AppTest, HistoriesComeAsASchemaAndChunks) {
 TEST_F(AppTest, TheSummaryOfTheLongestCurveIsSmall) {
   v1::Simulation simulation = curve_simulation();
   auto* curve = simulation.mutable_inefficiency_curve();
-  curve->set_last_speed_kilometers_per_hour(119.9);
-  curve->set_speed_step_kilometers_per_hour(0.1);
+  curve->set_last_speed_kilometres_per_hour(119.9);
+  curve->set_speed_step_kilometres_per_hour(0.1);
   auto request = named<v1::GetSimulationRequest>(finished(simulation));
   const auto summary = get_simulation(app_, request).message();
   EXPECT_EQ(summary.result().points_size(), 1000);
@@ -458,7 +458,7 @@ TEST_F(AppTest, AHistoryNeedsAResultThatHasOne) {
   bench_.restart(patient_studies(release));
   Application app = bench_.application();
   v1::Simulation another = point_simulation();  // no result serves it
-  another.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(66);
+  another.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(66);
   const std::string running = bench_.create(another);
   EXPECT_EQ(read_history(app, named<v1::ReadHistoryRequest>(running)).error().code(),
             google::rpc::FAILED_PRECONDITION);

@@ -50,7 +50,7 @@ std::string bits_alone(const v1::Simulation& simulation) {
 v1::Simulation point_of(const std::string& lubricant, double speed) {
   v1::Simulation out = point_simulation();
   out.set_lubricant(lubricant);
-  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(speed);
+  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
   return out;
 }
 
@@ -203,7 +203,7 @@ v1::Simulation independent_curve(const std::vector<double>& speeds) {
   v1::Simulation out = curve_simulation();
   v1::InefficiencyCurveStudy* curve = out.mutable_inefficiency_curve();
   curve->Clear();
-  *curve->mutable_speeds_kilometers_per_hour() = {speeds.begin(), speeds.end()};
+  *curve->mutable_speeds_kilometres_per_hour() = {speeds.begin(), speeds.end()};
   curve->set_independent_points(true);
   return out;
 }
@@ -229,7 +229,7 @@ TEST(IndependentPoints, AreTheBitsOfSinglePointsInEveryModel) {
       single.mutable_operating_point()->set_model(model);
       const v1::CurvePoint point = result_of(single).points(0);
       EXPECT_EQ(curve.points(i).SerializeAsString(), point.SerializeAsString())
-          << model << " at " << point.speed_kilometers_per_hour();
+          << model << " at " << point.speed_kilometres_per_hour();
       EXPECT_FALSE(curve.points(i).has_branch_end());
     }
   }
@@ -240,7 +240,7 @@ TEST(IndependentPoints, StartEachFromTheStatedStart) {
   asked.mutable_inefficiency_curve()->set_start(v1::LARGE_VIBRATION);
   const v1::SimulationResult curve = result_of(asked);
   for (const v1::CurvePoint& each : curve.points()) {
-    v1::Simulation single = point_of(asked.lubricant(), each.speed_kilometers_per_hour());
+    v1::Simulation single = point_of(asked.lubricant(), each.speed_kilometres_per_hour());
     single.mutable_operating_point()->set_start(v1::LARGE_VIBRATION);
     EXPECT_EQ(each.SerializeAsString(), result_of(single).points(0).SerializeAsString());
   }

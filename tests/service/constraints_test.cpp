@@ -91,7 +91,7 @@ struct Subject {
     } else if (name == "Cruise") {
       use(point->mutable_cruise(), "simulation.operating_point.cruise.");
     } else if (name == "DriveCycleSnapshot") {
-      point->mutable_drive_cycle_snapshot()->set_speed_kilometers_per_hour(50);
+      point->mutable_drive_cycle_snapshot()->set_speed_kilometres_per_hour(50);
       use(point->mutable_drive_cycle_snapshot(),
           "simulation.operating_point.drive_cycle_snapshot.");
     } else if (name == "PrescribedTorque") {

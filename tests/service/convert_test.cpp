@@ -206,7 +206,7 @@ PointResult full_result() {
 
 TEST(FromCore, OptionalAndRepeatedPartsOfAPointComeBack) {
   const v1::CurvePoint point = to_curve_point(full_result());
-  EXPECT_EQ(point.speed_kilometers_per_hour(), 67.5);
+  EXPECT_EQ(point.speed_kilometres_per_hour(), 67.5);
   const v1::PointResult& result = point.result();
   EXPECT_EQ(result.inefficiency_rms_percent(), 1.25);
   EXPECT_EQ(result.inefficiency_energy_mean_percent(), 1.125);
@@ -297,7 +297,7 @@ TEST(FromCore, ARefusedPointKeepsItsPlaceOnTheCurve) {
                                                          .refusal_reason = "WORK_LIMIT",
                                                          .refusal_sentence = "s",
                                                          .branch_end = {}});
-  EXPECT_EQ(point.speed_kilometers_per_hour(), 36);
+  EXPECT_EQ(point.speed_kilometres_per_hour(), 36);
   EXPECT_FALSE(point.has_result());
   EXPECT_EQ(point.refusal_reason(), "WORK_LIMIT");
 }
@@ -313,14 +313,14 @@ TEST(FromCore, ABranchEndArrivesThroughBytesAndJson) {
   ASSERT_TRUE(by_bytes.ParseFromString(sent.SerializeAsString()));
   std::string json;
   ASSERT_TRUE(google::protobuf::util::MessageToJsonString(sent, &json).ok());
-  EXPECT_NE(json.find("\"branchEnd\":{\"followedToKilometersPerHour\":71.29,"
-                      "\"goneAtKilometersPerHour\":71.33}"),
+  EXPECT_NE(json.find("\"branchEnd\":{\"followedToKilometresPerHour\":71.29,"
+                      "\"goneAtKilometresPerHour\":71.33}"),
             std::string::npos)
       << json;
   ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(json, &by_json).ok());
   for (const v1::CurvePoint& arrived : {by_bytes, by_json}) {
-    EXPECT_EQ(arrived.branch_end().followed_to_kilometers_per_hour(), 71.29);
-    EXPECT_EQ(arrived.branch_end().gone_at_kilometers_per_hour(), 71.33);
+    EXPECT_EQ(arrived.branch_end().followed_to_kilometres_per_hour(), 71.29);
+    EXPECT_EQ(arrived.branch_end().gone_at_kilometres_per_hour(), 71.33);
     EXPECT_EQ(arrived.SerializeAsString(), sent.SerializeAsString());
   }
 }
@@ -328,10 +328,10 @@ TEST(FromCore, ABranchEndArrivesThroughBytesAndJson) {
 TEST(FromCore, SpeedsComeBackAsTheyWereStated) {
   for (int tenths = 1; tenths <= 4000; ++tenths) {
     const double speed = tenths / 10.0;
-    EXPECT_EQ(kilometers_per_hour(speed / 3.6), speed);
+    EXPECT_EQ(kilometres_per_hour(speed / 3.6), speed);
   }
-  EXPECT_EQ(kilometers_per_hour(0), 0);
-  EXPECT_EQ(kilometers_per_hour(-10 / 3.6), -10);
+  EXPECT_EQ(kilometres_per_hour(0), 0);
+  EXPECT_EQ(kilometres_per_hour(-10 / 3.6), -10);
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ v1::Simulation some_seconds() {
   constexpr double kStep = 10;
 #endif
   v1::Simulation simulation = curve_simulation();
-  simulation.mutable_inefficiency_curve()->set_speed_step_kilometers_per_hour(kStep);
+  simulation.mutable_inefficiency_curve()->set_speed_step_kilometres_per_hour(kStep);
   simulation.mutable_solver_options()->set_method(v1::MARCH);
   return simulation;
 }
@@ -149,7 +149,7 @@ TEST_F(DrainTest, WhatRunsMayEndWhileNothingNewIsAccepted) {
   v1::Simulation next = point_simulation();  // another one each time: one accepted is not refused
   EXPECT_TRUE(eventually([&] {
     auto* const cruise = next.mutable_operating_point()->mutable_cruise();
-    cruise->set_speed_kilometers_per_hour(cruise->speed_kilometers_per_hour() + 0.25);
+    cruise->set_speed_kilometres_per_hour(cruise->speed_kilometres_per_hour() + 0.25);
     v1::Simulation refused;
     return create(next, &refused).error_code() == grpc::StatusCode::UNAVAILABLE;
   }));

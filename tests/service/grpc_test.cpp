@@ -189,7 +189,7 @@ TEST_F(GrpcTest, ShootingAloneIsUsedOrFailsByNameWithTheValues) {
   v1::Simulation request = point_simulation();
   request.mutable_solver_options()->set_method(v1::SHOOTING);
   const auto ended = [&](double speed) {
-    request.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(speed);
+    request.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
     v1::Simulation created;
     EXPECT_TRUE(create(request, &created).ok());
     EXPECT_TRUE(
@@ -213,8 +213,8 @@ TEST_F(GrpcTest, ACurveByShootingAloneNamesThePointsThatItLacks) {
   request.mutable_solver_options()->set_method(v1::SHOOTING);
   v1::InefficiencyCurveStudy* curve = request.mutable_inefficiency_curve();
   curve->Clear();
-  curve->add_speeds_kilometers_per_hour(100);
-  curve->add_speeds_kilometers_per_hour(150);
+  curve->add_speeds_kilometres_per_hour(100);
+  curve->add_speeds_kilometres_per_hour(150);
   v1::Simulation created;
   ASSERT_TRUE(create(request, &created).ok());
   ASSERT_TRUE(eventually([&] { return get(created.name()).state() >= v1::Simulation::SUCCEEDED; }));

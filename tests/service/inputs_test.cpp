@@ -94,7 +94,7 @@ TEST(Inputs, EveryOperatingConditionArrives) {
   EXPECT_EQ(point.options.history.mesh_cycles, 3);
   EXPECT_EQ(point.options.history.samples_per_mesh_cycle, 192);
 
-  asked->mutable_drive_cycle_snapshot()->set_speed_kilometers_per_hour(36);
+  asked->mutable_drive_cycle_snapshot()->set_speed_kilometres_per_hour(36);
   asked->mutable_drive_cycle_snapshot()->set_acceleration_metres_per_second_squared(-2);
   point = std::get<PointStudy>(study(inputs_of(simulation)));
   EXPECT_EQ(point.condition.kind, OperatingCondition::Kind::kDriveCycleSnapshot);
@@ -112,9 +112,9 @@ TEST(Inputs, EveryOperatingConditionArrives) {
 TEST(Inputs, ARangeOfSpeedsIncludesItsLast) {
   v1::Simulation simulation = curve_simulation();
   v1::InefficiencyCurveStudy* asked = simulation.mutable_inefficiency_curve();
-  asked->set_first_speed_kilometers_per_hour(0.1);
-  asked->set_last_speed_kilometers_per_hour(0.7);
-  asked->set_speed_step_kilometers_per_hour(0.1);
+  asked->set_first_speed_kilometres_per_hour(0.1);
+  asked->set_last_speed_kilometres_per_hour(0.7);
+  asked->set_speed_step_kilometres_per_hour(0.1);
   asked->set_direction(v1::DOWN);
   asked->set_ascent_angle_degrees(180 / std::numbers::pi / 10);
   const auto curve = std::get<CurveStudy>(study(inputs_of(simulation)));
@@ -262,7 +262,7 @@ TEST(Hash, EqualSpeedsHoweverStatedAreEqualInputs) {
   v1::Simulation listed = curve_simulation();
   listed.mutable_inefficiency_curve()->Clear();
   for (int speed = 140; speed >= 20; speed -= 10) {
-    listed.mutable_inefficiency_curve()->add_speeds_kilometers_per_hour(speed);
+    listed.mutable_inefficiency_curve()->add_speeds_kilometres_per_hour(speed);
   }
   EXPECT_EQ(input_hash(inputs_of(listed)), input_hash(inputs_of(curve_simulation())));
 }
@@ -295,7 +295,7 @@ TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
     before = seconds;
   }
   v1::Simulation slow = point_simulation();
-  slow.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(5);
+  slow.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(5);
   v1::Simulation quasi_static = slow;
   quasi_static.mutable_operating_point()->set_model(v1::QUASI_STATIC);
   EXPECT_LT(estimate_cost(inputs_of(quasi_static).effective).processor_seconds(),
@@ -304,7 +304,7 @@ TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
 
 TEST(CostEstimate, IsTheSameForWhatIsAlike) {
   v1::Simulation other = point_simulation();
-  other.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(65.01);
+  other.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(65.01);
   EXPECT_EQ(estimate_cost(inputs_of(point_simulation()).effective).processor_seconds(),
             estimate_cost(inputs_of(other).effective).processor_seconds());
 }
@@ -313,7 +313,7 @@ TEST(CostEstimate, KnowsThatSlowPointsAndWideCurvesTakeLonger) {
   const auto curve_seconds = [](const std::vector<double>& speeds) {
     v1::Simulation out = curve_simulation();
     out.mutable_inefficiency_curve()->Clear();
-    *out.mutable_inefficiency_curve()->mutable_speeds_kilometers_per_hour() = {speeds.begin(),
+    *out.mutable_inefficiency_curve()->mutable_speeds_kilometres_per_hour() = {speeds.begin(),
                                                                                speeds.end()};
     return estimate_cost(inputs_of(out).effective).processor_seconds();
   };

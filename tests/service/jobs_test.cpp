@@ -310,7 +310,7 @@ TEST(SimulationJobs, ASimulationSucceedsAndItsResultIsStored) {
   ASSERT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED));
   const v1::Simulation done = bench.get(name);
   EXPECT_EQ(done.result().points(0).result().inefficiency_rms_percent(), 1.5);
-  EXPECT_EQ(done.result().points(0).speed_kilometers_per_hour(), 65);
+  EXPECT_EQ(done.result().points(0).speed_kilometres_per_hour(), 65);
   EXPECT_EQ(done.progress_fraction(), 1);
   EXPECT_EQ(done.result().input_hash().size(), 64U);
   EXPECT_GT(done.result().assumptions_size(), 40);

@@ -54,7 +54,7 @@ std::vector<v1::Simulation> requests() {
   std::vector<v1::Simulation> out;
   for (const double speed : {20, 50, 72, 110}) {
     v1::Simulation point = point_simulation();
-    point.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(speed);
+    point.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
     point.mutable_operating_point()->mutable_history()->add_columns("mesh_force_newtons");
     out.push_back(point);
     for (const v1::PointModel model : {v1::QUASI_STATIC, v1::ONE_DEGREE}) {

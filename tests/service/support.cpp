@@ -141,7 +141,7 @@ v1::EvaluateContactRequest contact_request() {
 v1::Simulation point_simulation() {
   v1::Simulation out;
   out.set_lubricant("lubricants/1");
-  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(65);
+  out.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(65);
   return out;
 }
 
@@ -149,18 +149,18 @@ v1::Simulation curve_simulation() {
   v1::Simulation out;
   out.set_lubricant("lubricants/2");
   v1::InefficiencyCurveStudy* curve = out.mutable_inefficiency_curve();
-  curve->set_first_speed_kilometers_per_hour(20);
-  curve->set_last_speed_kilometers_per_hour(140);
-  curve->set_speed_step_kilometers_per_hour(10);
+  curve->set_first_speed_kilometres_per_hour(20);
+  curve->set_last_speed_kilometres_per_hour(140);
+  curve->set_speed_step_kilometres_per_hour(10);
   return out;
 }
 
 v1::Simulation long_simulation(v1::SteadyStateMethod method) {
   v1::Simulation out = curve_simulation();
   v1::InefficiencyCurveStudy* curve = out.mutable_inefficiency_curve();
-  curve->set_first_speed_kilometers_per_hour(60);
-  curve->set_last_speed_kilometers_per_hour(80);
-  curve->set_speed_step_kilometers_per_hour(0.0201);
+  curve->set_first_speed_kilometres_per_hour(60);
+  curve->set_last_speed_kilometres_per_hour(80);
+  curve->set_speed_step_kilometres_per_hour(0.0201);
   v1::SolverOptions* solver = out.mutable_solver_options();
   solver->set_method(method);
   solver->set_tolerance(1e-8);

@@ -149,26 +149,26 @@ TEST(AsPublished, Eq46IsRefusedWhereNoProfileBecomesASurface) {
 }
 
 TEST(Curve, SpeedsAreStatedInExactlyOneWay) {
-  const std::string speeds = "simulation.inefficiency_curve.speeds_kilometers_per_hour";
+  const std::string speeds = "simulation.inefficiency_curve.speeds_kilometres_per_hour";
   v1::Simulation simulation = curve_simulation();
-  simulation.mutable_inefficiency_curve()->add_speeds_kilometers_per_hour(30);
+  simulation.mutable_inefficiency_curve()->add_speeds_kilometres_per_hour(30);
   EXPECT_THAT(check(simulation), violation(speeds, "one of the two"));
   simulation.mutable_inefficiency_curve()->Clear();
   EXPECT_THAT(check(simulation), violation(speeds, "not set"));
-  simulation.mutable_inefficiency_curve()->set_first_speed_kilometers_per_hour(10);
+  simulation.mutable_inefficiency_curve()->set_first_speed_kilometres_per_hour(10);
   EXPECT_THAT(
       check(simulation),
-      violation("simulation.inefficiency_curve.last_speed_kilometers_per_hour", "go together"));
+      violation("simulation.inefficiency_curve.last_speed_kilometres_per_hour", "go together"));
   EXPECT_THAT(
       check(simulation),
-      violation("simulation.inefficiency_curve.speed_step_kilometers_per_hour", "go together"));
+      violation("simulation.inefficiency_curve.speed_step_kilometres_per_hour", "go together"));
 }
 
 TEST(Curve, LastIsNotBelowFirst) {
   v1::Simulation simulation = curve_simulation();
-  simulation.mutable_inefficiency_curve()->set_last_speed_kilometers_per_hour(10);
+  simulation.mutable_inefficiency_curve()->set_last_speed_kilometres_per_hour(10);
   EXPECT_THAT(check(simulation),
-              violation("simulation.inefficiency_curve.last_speed_kilometers_per_hour",
+              violation("simulation.inefficiency_curve.last_speed_kilometres_per_hour",
                         "at least the first speed, 20 km/h"));
 }
 
@@ -176,20 +176,20 @@ TEST(Curve, SpeedsDiffer) {
   v1::Simulation simulation = curve_simulation();
   auto* curve = simulation.mutable_inefficiency_curve();
   curve->Clear();
-  for (const double speed : {50.0, 20.0, 50.0}) curve->add_speeds_kilometers_per_hour(speed);
+  for (const double speed : {50.0, 20.0, 50.0}) curve->add_speeds_kilometres_per_hour(speed);
   EXPECT_THAT(check(simulation),
-              violation("simulation.inefficiency_curve.speeds_kilometers_per_hour",
+              violation("simulation.inefficiency_curve.speeds_kilometres_per_hour",
                         "50 km/h is named twice"));
 }
 
 TEST(Curve, PointsAndWorkAreLimited) {
   v1::Simulation simulation = curve_simulation();
   auto* curve = simulation.mutable_inefficiency_curve();
-  curve->set_speed_step_kilometers_per_hour(0.1);
+  curve->set_speed_step_kilometres_per_hour(0.1);
   EXPECT_THAT(check(simulation),
-              violation("simulation.inefficiency_curve.speed_step_kilometers_per_hour",
+              violation("simulation.inefficiency_curve.speed_step_kilometres_per_hour",
                         "1201 points; legal: at most 1000"));
-  curve->set_speed_step_kilometers_per_hour(0.125);
+  curve->set_speed_step_kilometres_per_hour(0.125);
   EXPECT_THAT(check(simulation), IsEmpty());
   simulation.mutable_solver_options()->set_maximum_mesh_cycles(100000);
   EXPECT_THAT(check(simulation), violation("simulation.inefficiency_curve", "work limit"));
@@ -199,12 +199,12 @@ TEST(Curve, ManyBadSpeedsAreCountedNotListed) {
   v1::Simulation simulation = curve_simulation();
   auto* curve = simulation.mutable_inefficiency_curve();
   curve->Clear();
-  for (int i = 0; i < 200'000; ++i) curve->add_speeds_kilometers_per_hour(-1 - i);
+  for (int i = 0; i < 200'000; ++i) curve->add_speeds_kilometres_per_hour(-1 - i);
   const Violations found = check(simulation);
   EXPECT_LT(found.size(), 20U);
   EXPECT_THAT(found,
-              violation("simulation.inefficiency_curve.speeds_kilometers_per_hour", "990 more"));
-  EXPECT_THAT(found, violation("simulation.inefficiency_curve.speeds_kilometers_per_hour",
+              violation("simulation.inefficiency_curve.speeds_kilometres_per_hour", "990 more"));
+  EXPECT_THAT(found, violation("simulation.inefficiency_curve.speeds_kilometres_per_hour",
                                "200000 points; legal: at most 1000"));
 }
 
@@ -233,7 +233,7 @@ TEST(Simulation, WhatOnlyTheServerSetsIsIgnored) {
   simulation.set_name("simulations/1");
   simulation.set_state(v1::Simulation::SUCCEEDED);
   simulation.set_progress_fraction(kNaN);
-  simulation.mutable_result()->add_points()->set_speed_kilometers_per_hour(kNaN);
+  simulation.mutable_result()->add_points()->set_speed_kilometres_per_hour(kNaN);
   Violations violations;
   const auto inputs = read_simulation(simulation, seed_lookup(), "simulation", violations);
   ASSERT_TRUE(inputs);

@@ -99,13 +99,13 @@ TEST(WireCheck, NamesTheListItsElementsAndItsLimit) {
 TEST(WireCheck, CountsNumbersPackedAndSingle) {
   v1::CreateSimulationRequest request;
   auto* curve = request.mutable_simulation()->mutable_inefficiency_curve();
-  for (int i = 0; i < 1000; ++i) curve->add_speeds_kilometers_per_hour(i + 1);
+  for (int i = 0; i < 1000; ++i) curve->add_speeds_kilometres_per_hour(i + 1);
   EXPECT_THAT(judge_bytes(request), IsEmpty());
   const std::string single("\x09\x00\x00\x00\x00\x00\x00\x59\x40", 9);
   const std::string more = request.SerializeAsString() + wire_field(1, wire_field(12, single));
   EXPECT_THAT(
       judge_bytes(more, *request.GetDescriptor()),
-      ElementsAre("simulation.inefficiency_curve.speeds_kilometers_per_hour: 1001 entries; legal: "
+      ElementsAre("simulation.inefficiency_curve.speeds_kilometres_per_hour: 1001 entries; legal: "
                   "at most 1000"));
 }
 

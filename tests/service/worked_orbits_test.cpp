@@ -36,7 +36,7 @@ void expect_orbit(const v1::CurvePoint& point, const std::string& name) {
 TEST(WorkedOrbits, AnOperatingPointArrivesThroughTheWholeService) {
   Bench bench{StudyFunctions()};
   v1::Simulation simulation = point_simulation();
-  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometers_per_hour(100);
+  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(100);
   simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
   const std::string name = bench.create(simulation);
   ASSERT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED)) << bench.get(name).error().message();
@@ -48,9 +48,9 @@ TEST(WorkedOrbits, ACurveArrivesThroughTheWholeService) {
   v1::Simulation simulation = curve_simulation();
   simulation.set_lubricant("lubricants/1");
   v1::InefficiencyCurveStudy* curve = simulation.mutable_inefficiency_curve();
-  curve->set_first_speed_kilometers_per_hour(20);
-  curve->set_last_speed_kilometers_per_hour(140);
-  curve->set_speed_step_kilometers_per_hour(40);
+  curve->set_first_speed_kilometres_per_hour(20);
+  curve->set_last_speed_kilometres_per_hour(140);
+  curve->set_speed_step_kilometres_per_hour(40);
   simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
   const std::string name = bench.create(simulation);
   ASSERT_TRUE(bench.reaches(name, v1::Simulation::SUCCEEDED)) << bench.get(name).error().message();

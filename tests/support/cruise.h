@@ -5,9 +5,9 @@
 namespace tribodyn {
 
 /// Steady road load on the level at a vehicle speed [km/h].
-inline OperatingCondition cruise(double kilometers_per_hour) {
+inline OperatingCondition cruise(double kilometres_per_hour) {
   OperatingCondition condition;
-  condition.vehicle_speed = kilometers_per_hour / 3.6;
+  condition.vehicle_speed = kilometres_per_hour / 3.6;
   return condition;
 }
 

@@ -17,13 +17,13 @@ struct RandomPlace {
   OperatingCondition condition;
 };
 
-inline RandomPlace random_place(std::mt19937_64& random, double kilometers_per_hour) {
+inline RandomPlace random_place(std::mt19937_64& random, double kilometres_per_hour) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
   const auto change = [&](double& value, double most) { value *= std::exp(between(-most, most)); };
   const int fluid = static_cast<int>(between(1, 4)), kind = static_cast<int>(between(0, 8));
-  RandomPlace place{reference_scene(fluid, between(-30, 140)), cruise(kilometers_per_hour)};
+  RandomPlace place{reference_scene(fluid, between(-30, 140)), cruise(kilometres_per_hour)};
   Scene& scene = place.scene;
   if (kind == 4) scene.gear_set = reference_gear_set("B");
   DrivelineDynamics& d = scene.gear_set.dynamics;
@@ -42,7 +42,7 @@ inline RandomPlace random_place(std::mt19937_64& random, double kilometers_per_h
   if (kind == 3) d.half_backlash *= between(0, 3);
   if (kind == 5) {
     place.condition = prescribed(between(-60, 150),
-                                 kilometers_per_hour / 3.6 / scene.vehicle.wheel_radius * 36 / 13);
+                                 kilometres_per_hour / 3.6 / scene.vehicle.wheel_radius * 36 / 13);
   }
   if (kind == 6) {
     scene.options.energy_consistent = between(0, 1) < 0.5;

@@ -13,7 +13,7 @@ namespace tribodyn {
 
 /// The flank contacts of one scene at one speed over a mesh cycle.
 struct RealisticContacts {
-  double kilometers_per_hour;
+  double kilometres_per_hour;
   std::vector<ContactConditions> conditions;
 };
 
@@ -27,14 +27,14 @@ inline FlankContactModel contact_model(const Scene& scene) {
 /// Loaded contacts of a gear set at a cruising speed: the mean mesh force by eq 7, shared as the
 /// tables say, with a dynamic part of half of it and one of a tenth in the sliding speed, at
 /// frequencies that have nothing in common with the tables.
-inline RealisticContacts realistic_contacts(const Scene& scene, double kilometers_per_hour,
+inline RealisticContacts realistic_contacts(const Scene& scene, double kilometres_per_hour,
                                             int phases) {
   const MeshData mesh(scene.gear_set);
-  const double speed = kilometers_per_hour / 3.6;
+  const double speed = kilometres_per_hour / 3.6;
   const double wheel_speed = speed / scene.vehicle.wheel_radius;
   const double pinion_speed = wheel_speed * scene.gear_set.gear_teeth / scene.gear_set.pinion_teeth;
   const double force = wheel_torque(scene.vehicle, speed, 0, 0) / mesh.mean_gear_contact_radius();
-  RealisticContacts out{kilometers_per_hour, {}};
+  RealisticContacts out{kilometres_per_hour, {}};
   for (int j = 0; j < phases; ++j) {
     const double phase = (j + 0.5) / phases;
     std::array<FlankKinematics, kFlankPairs> flanks;

@@ -31,10 +31,10 @@ TEST(WheelTorque, MatchesTheReferenceCruise) {
   // Pinion torque T_w N_p/N_g of the reference car on the level, to the digits it is quoted with.
   const Vehicle vehicle = reference_vehicle();
   const double at[][2] = {{20, 17.4}, {53, 25.0}, {65, 29.4}, {80, 36.3}, {100, 47.7}, {140, 77.9}};
-  for (const auto& [kilometers_per_hour, pinion_torque] : at) {
-    EXPECT_NEAR(wheel_torque(vehicle, kilometers_per_hour / 3.6, 0, 0) * 13 / 36, pinion_torque,
+  for (const auto& [kilometres_per_hour, pinion_torque] : at) {
+    EXPECT_NEAR(wheel_torque(vehicle, kilometres_per_hour / 3.6, 0, 0) * 13 / 36, pinion_torque,
                 0.051)
-        << kilometers_per_hour;
+        << kilometres_per_hour;
   }
 }
 

@@ -159,7 +159,7 @@ class WorkedOrbit : public testing::TestWithParam<std::string> {
  protected:
   const json& worked() const { return Find("orbits", GetParam()); }
   double vehicle_speed() const {
-    return worked().at("speed_kilometers_per_hour").get<double>() / 3.6;
+    return worked().at("speed_kilometres_per_hour").get<double>() / 3.6;
   }
 
   void ExpectMeasures(const MeshCycle& cycle) const {

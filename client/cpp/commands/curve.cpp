@@ -27,14 +27,14 @@ struct CurveFlags {
 
 void add_curve_flags(FlagList& list, CurveFlags& flags) {
   v1::InefficiencyCurveStudy& study = flags.study;
-  study.set_first_speed_kilometers_per_hour(kFirstSpeed);
-  study.set_last_speed_kilometers_per_hour(kLastSpeed);
-  study.set_speed_step_kilometers_per_hour(kSpeedStep);
+  study.set_first_speed_kilometres_per_hour(kFirstSpeed);
+  study.set_last_speed_kilometres_per_hour(kLastSpeed);
+  study.set_speed_step_kilometres_per_hour(kSpeedStep);
   list.group("Curve");
-  list.numbers("--speeds-kilometers-per-hour,--speeds,--speed",
+  list.numbers("--speeds-kilometres-per-hour,--speeds,--speed",
                {"km/h", "0.1 to 400", "20 to 140 by 5"},
                "Vehicle speeds, several by commas, in place of a range",
-               [&](double value) { study.add_speeds_kilometers_per_hour(value); });
+               [&](double value) { study.add_speeds_kilometres_per_hour(value); });
   const auto range = [&](const char* names, const NumberText& text, const char* description,
                          void (v1::InefficiencyCurveStudy::*set)(double)) {
     list.number(names, text, description, [&flags, set](double value) {
@@ -42,12 +42,12 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
       flags.has_range = true;
     });
   };
-  range("--first-speed-kilometers-per-hour,--first-speed", {"km/h", "0.1 to 400", "20"},
-        "Lowest vehicle speed", &v1::InefficiencyCurveStudy::set_first_speed_kilometers_per_hour);
-  range("--last-speed-kilometers-per-hour,--last-speed", {"km/h", "0.1 to 400", "140"},
-        "Highest vehicle speed", &v1::InefficiencyCurveStudy::set_last_speed_kilometers_per_hour);
-  range("--speed-step-kilometers-per-hour,--speed-step", {"km/h", "0.001 to 400", "5"},
-        "Between two points", &v1::InefficiencyCurveStudy::set_speed_step_kilometers_per_hour);
+  range("--first-speed-kilometres-per-hour,--first-speed", {"km/h", "0.1 to 400", "20"},
+        "Lowest vehicle speed", &v1::InefficiencyCurveStudy::set_first_speed_kilometres_per_hour);
+  range("--last-speed-kilometres-per-hour,--last-speed", {"km/h", "0.1 to 400", "140"},
+        "Highest vehicle speed", &v1::InefficiencyCurveStudy::set_last_speed_kilometres_per_hour);
+  range("--speed-step-kilometres-per-hour,--speed-step", {"km/h", "0.001 to 400", "5"},
+        "Between two points", &v1::InefficiencyCurveStudy::set_speed_step_kilometres_per_hour);
   list.choice("--direction", {"up", "down"},
               "Each point starts from the steady state before it; where two responses coexist, up "
               "and down differ. Default: up.",
@@ -71,10 +71,10 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
 }
 
 int run_curve(CurveFlags& flags, const CommonOptions& options) {
-  if (flags.study.speeds_kilometers_per_hour_size() > 0) {
-    flags.study.clear_first_speed_kilometers_per_hour();
-    flags.study.clear_last_speed_kilometers_per_hour();
-    flags.study.clear_speed_step_kilometers_per_hour();
+  if (flags.study.speeds_kilometres_per_hour_size() > 0) {
+    flags.study.clear_first_speed_kilometres_per_hour();
+    flags.study.clear_last_speed_kilometres_per_hour();
+    flags.study.clear_speed_step_kilometres_per_hour();
   }
   *flags.scenario.simulation.mutable_inefficiency_curve() = flags.study;
   Connection connection = options.connect();
@@ -113,7 +113,7 @@ Command curve_command() {
   add_scenario_flags(command.flags, flags->scenario);
   command.check = [flags](Complaints& complaints) {
     check_scenario(flags->scenario, true, complaints);
-    if (flags->has_range && flags->study.speeds_kilometers_per_hour_size() > 0) {
+    if (flags->has_range && flags->study.speeds_kilometres_per_hour_size() > 0) {
       complaints.emplace_back(
           "either --speed with all speeds, or --first-speed, --last-speed and --speed-step");
     }

@@ -12,7 +12,7 @@ using Complaints = std::vector<std::string>;
 
 /// One flag or positional argument of a command: how help shows it, and how its texts are read.
 struct Flag {
-  std::string names;        ///< "--speed-kilometers-per-hour,--speed"; "name" for a positional
+  std::string names;        ///< "--speed-kilometres-per-hour,--speed"; "name" for a positional
   std::string value_name;   ///< "KM/H", "NAME", "FILE"; empty for a switch
   std::string description;  ///< with legal range and default
   std::string group;        ///< heading in the help

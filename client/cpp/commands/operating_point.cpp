@@ -4,8 +4,8 @@ namespace tribodyn::client {
 
 void add_operating_point_flags(FlagList& flags, OperatingPointFlags& point) {
   flags.group("Operating point: a speed, or a torque with a pinion speed");
-  flags.number("--speed-kilometers-per-hour,--speed", {"km/h", "0.1 to 400", ""}, "Vehicle speed",
-               [&](double value) { point.speed_kilometers_per_hour = value; });
+  flags.number("--speed-kilometres-per-hour,--speed", {"km/h", "0.1 to 400", ""}, "Vehicle speed",
+               [&](double value) { point.speed_kilometres_per_hour = value; });
   flags.number("--acceleration-metres-per-second-squared,--acceleration",
                {"m/s2", "-50 to 50", "0"}, "Of the vehicle, as at an instant of a drive cycle",
                [&](double value) { point.acceleration_metres_per_second_squared = value; });
@@ -25,7 +25,7 @@ void add_operating_point_flags(FlagList& flags, OperatingPointFlags& point) {
 }
 
 void check_operating_point(const OperatingPointFlags& point, Complaints& complaints) {
-  const bool by_speed = point.speed_kilometers_per_hour.has_value();
+  const bool by_speed = point.speed_kilometres_per_hour.has_value();
   const bool has_torque = point.pinion_torque_newton_metres.has_value();
   const bool has_pinion_speed = point.pinion_speed_radians_per_second.has_value();
   if (by_speed && (has_torque || has_pinion_speed)) {
@@ -53,13 +53,13 @@ v1::OperatingPointStudy operating_point_study(const OperatingPointFlags& point) 
     torque.set_pinion_speed_radians_per_second(point.pinion_speed_radians_per_second.value_or(0));
   } else if (point.acceleration_metres_per_second_squared) {
     auto& snapshot = *study.mutable_drive_cycle_snapshot();
-    snapshot.set_speed_kilometers_per_hour(point.speed_kilometers_per_hour.value_or(0));
+    snapshot.set_speed_kilometres_per_hour(point.speed_kilometres_per_hour.value_or(0));
     snapshot.set_acceleration_metres_per_second_squared(
         *point.acceleration_metres_per_second_squared);
     snapshot.set_ascent_angle_degrees(ascent);
   } else {
-    study.mutable_cruise()->set_speed_kilometers_per_hour(
-        point.speed_kilometers_per_hour.value_or(0));
+    study.mutable_cruise()->set_speed_kilometres_per_hour(
+        point.speed_kilometres_per_hour.value_or(0));
     study.mutable_cruise()->set_ascent_angle_degrees(ascent);
   }
   return study;

@@ -10,7 +10,7 @@ namespace tribodyn::client {
 /// What holds an operating point, as flags: a speed (with acceleration and slope), or a torque with
 /// a pinion speed.
 struct OperatingPointFlags {
-  std::optional<double> speed_kilometers_per_hour;
+  std::optional<double> speed_kilometres_per_hour;
   std::optional<double> acceleration_metres_per_second_squared;
   std::optional<double> ascent_angle_degrees;
   std::optional<double> pinion_torque_newton_metres;

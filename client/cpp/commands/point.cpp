@@ -30,7 +30,7 @@ Command point_command() {
       "one operating point, in full",
       "Submits one operating point, follows it and prints inefficiencies, losses, film, "
       "temperatures, contact loss, solver statistics and what the result rests on.",
-      {"tribodyn point --lubricant 1 --speed-kilometers-per-hour 72.5",
+      {"tribodyn point --lubricant 1 --speed-kilometres-per-hour 72.5",
        "tribodyn point --lubricant 2 --speed 100 --sump-temperature-celsius 90 --isothermal",
        "tribodyn point --lubricant 1 --pinion-torque-newton-metres 60 "
        "--pinion-speed-radians-per-second 200 --output json"},

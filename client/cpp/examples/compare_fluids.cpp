@@ -26,7 +26,7 @@ v1::Simulation cruise(const std::string& lubricant) {
   v1::Simulation simulation;
   simulation.set_lubricant(lubricant);
   auto& study = *simulation.mutable_operating_point();
-  study.mutable_cruise()->set_speed_kilometers_per_hour(50);
+  study.mutable_cruise()->set_speed_kilometres_per_hour(50);
   study.set_model(v1::QUASI_STATIC);
   return simulation;
 }

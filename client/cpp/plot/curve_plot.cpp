@@ -42,9 +42,9 @@ Series series_of(const v1::Simulation& simulation, const Look& look, Value value
     series.hollow.push_back(hollow);
   };
   for (const v1::CurvePoint& point : simulation.result().points()) {
-    const double jump = point.branch_end().followed_to_kilometers_per_hour();
+    const double jump = point.branch_end().followed_to_kilometres_per_hour();
     if (point.has_branch_end() && !down) add(jump, kNone, false);
-    add(point.speed_kilometers_per_hour(), point.has_result() ? value(point.result()) : kNone,
+    add(point.speed_kilometres_per_hour(), point.has_result() ? value(point.result()) : kNone,
         point.result().contact_loss());
     if (point.has_branch_end() && down) add(jump, kNone, false);
   }

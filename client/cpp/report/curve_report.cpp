@@ -41,7 +41,7 @@ Table curve_table(const v1::Simulation& simulation) {
                {"T contact", "max C", kDecimal},
                {"contact", "lost"}});
   for (const v1::CurvePoint& point : simulation.result().points()) {
-    const std::string speed = significant(point.speed_kilometers_per_hour());
+    const std::string speed = significant(point.speed_kilometres_per_hour());
     if (!point.has_result()) {
       table.add_row({speed, "refused"});
       continue;
@@ -77,7 +77,7 @@ void add_refusals(const v1::SimulationResult& result, Sheet& sheet) {
     if (point.has_result()) continue;
     std::string why = point.refusal_message();
     why.append(" [").append(point.refusal_reason()).append("]");
-    const std::string speed = significant(point.speed_kilometers_per_hour());
+    const std::string speed = significant(point.speed_kilometres_per_hour());
     if (refusals.empty() || refusals.back().first != why) {
       refusals.emplace_back(why, speed);
     } else {
@@ -96,8 +96,8 @@ void add_jumps(const v1::SimulationResult& result, Sheet& sheet) {
     const auto& end = point.branch_end();
     sheet.remark("The branch of steady states that the curve follows " +
                  std::string(result.direction() == v1::DOWN ? "down" : "up") + " ends between " +
-                 fixed(end.followed_to_kilometers_per_hour(), 2) + " and " +
-                 fixed(end.gone_at_kilometers_per_hour(), 2) + " km/h: there the response jumps.");
+                 fixed(end.followed_to_kilometres_per_hour(), 2) + " and " +
+                 fixed(end.gone_at_kilometres_per_hour(), 2) + " km/h: there the response jumps.");
   }
 }
 
@@ -177,7 +177,7 @@ std::string points_csv(const std::vector<v1::Simulation>& simulations) {
           {"inlet_temperature_rise_kelvin", shortest(inputs.inlet_temperature_rise_kelvin)},
           {"model_options", model_options_text(simulation.model_options())},
           {"direction", direction_word(simulation)}};
-      row.emplace_back("speed_kilometers_per_hour", shortest(point.speed_kilometers_per_hour()));
+      row.emplace_back("speed_kilometres_per_hour", shortest(point.speed_kilometres_per_hour()));
       // A refused speed keeps its line, with empty cells: a gap must not pass for zeros.
       if (point.has_result()) {
         append_fields(point.result(), "", row);

@@ -39,11 +39,11 @@ std::string ascent_text(double degrees) {
 std::string point_text(const v1::OperatingPointStudy& study) {
   switch (study.condition_case()) {
     case v1::OperatingPointStudy::kCruise:
-      return "cruise at " + significant(study.cruise().speed_kilometers_per_hour()) + " km/h" +
+      return "cruise at " + significant(study.cruise().speed_kilometres_per_hour()) + " km/h" +
              ascent_text(study.cruise().ascent_angle_degrees());
     case v1::OperatingPointStudy::kDriveCycleSnapshot: {
       const auto& snapshot = study.drive_cycle_snapshot();
-      return significant(snapshot.speed_kilometers_per_hour()) + " km/h accelerating at " +
+      return significant(snapshot.speed_kilometres_per_hour()) + " km/h accelerating at " +
              significant(snapshot.acceleration_metres_per_second_squared()) + " m/s2" +
              ascent_text(snapshot.ascent_angle_degrees());
     }
@@ -59,15 +59,15 @@ std::string point_text(const v1::OperatingPointStudy& study) {
 std::string curve_text(const v1::InefficiencyCurveStudy& study) {
   const std::string direction = ", " + sweep_text(study);
   const std::string ascent = ascent_text(study.ascent_angle_degrees());
-  if (study.speeds_kilometers_per_hour_size() > 0) {
-    const auto& speeds = study.speeds_kilometers_per_hour();
+  if (study.speeds_kilometres_per_hour_size() > 0) {
+    const auto& speeds = study.speeds_kilometres_per_hour();
     const auto [least, largest] = std::minmax_element(speeds.begin(), speeds.end());
     return "inefficiency curve from " + significant(*least) + " to " + significant(*largest) +
            " km/h, " + std::to_string(speeds.size()) + " speeds" + direction + ascent;
   }
-  return "inefficiency curve from " + significant(study.first_speed_kilometers_per_hour()) +
-         " to " + significant(study.last_speed_kilometers_per_hour()) + " km/h by " +
-         significant(study.speed_step_kilometers_per_hour()) + direction + ascent;
+  return "inefficiency curve from " + significant(study.first_speed_kilometres_per_hour()) +
+         " to " + significant(study.last_speed_kilometres_per_hour()) + " km/h by " +
+         significant(study.speed_step_kilometres_per_hour()) + direction + ascent;
 }
 
 /// "20.525 1/GPa" of "2.0525e-08 1/Pa"; what cannot be read stays as it is.

@@ -83,7 +83,7 @@ void add_operation(const v1::PointResult& result, bool is_pinion_torque_given,
     return is_given ? fixed(value, 3) : precision.estimated(value, 3);
   };
   sheet.heading("Operation");
-  sheet.line("vehicle speed", fixed(result.vehicle_speed_kilometers_per_hour(), 2), "km/h");
+  sheet.line("vehicle speed", fixed(result.vehicle_speed_kilometres_per_hour(), 2), "km/h");
   sheet.line("pinion speed", fixed(result.mean_pinion_speed_radians_per_second(), 3), "rad/s");
   sheet.line("mesh frequency", fixed(result.mesh_frequency_hertz(), 2), "Hz");
   sheet.line("pinion torque T_s",

@@ -136,7 +136,7 @@ std::vector<CurveWarning> curve_warnings(const std::vector<v1::Simulation>& simu
   std::map<std::string, std::vector<std::string>> names;
   for (const v1::Simulation& simulation : simulations) {
     for (const v1::CurvePoint& point : simulation.result().points()) {
-      const double speed = point.speed_kilometers_per_hour();
+      const double speed = point.speed_kilometres_per_hour();
       all_speeds.insert(speed);
       for (const v1::RangeWarning& each : point.result().warnings()) {
         CurveWarning& warning = by_code[each.code()];

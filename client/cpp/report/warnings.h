@@ -57,10 +57,10 @@ std::vector<std::pair<double, double>> speed_bands(const std::vector<v1::Simulat
     const auto& points = simulation.result().points();
     for (int i = 0; i < points.size(); ++i) {
       if (!points[i].has_result() || !holds(points[i].result())) continue;
-      const double speed = points[i].speed_kilometers_per_hour();
-      const double before = i > 0 ? points[i - 1].speed_kilometers_per_hour() : speed;
+      const double speed = points[i].speed_kilometres_per_hour();
+      const double before = i > 0 ? points[i - 1].speed_kilometres_per_hour() : speed;
       const double after =
-          i + 1 < points.size() ? points[i + 1].speed_kilometers_per_hour() : speed;
+          i + 1 < points.size() ? points[i + 1].speed_kilometres_per_hour() : speed;
       spans.emplace_back((before + speed) / 2, (speed + after) / 2);
     }
   }

@@ -39,7 +39,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 37> kUnitWor
     {"newtons", "N"},
     {"metres_per_second_squared", "m/s2"},
     {"metres_per_second", "m/s"},
-    {"kilometers_per_hour", "km/h"},
+    {"kilometres_per_hour", "km/h"},
     {"radians_per_second", "rad/s"},
     {"square_metres", "m2"},
     {"millimetres", "mm"},

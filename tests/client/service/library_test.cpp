@@ -185,7 +185,7 @@ TEST_F(Library, ASimulationIsFollowedToItsEnd) {
   v1::Simulation simulation;
   simulation.set_lubricant("lubricants/1");
   auto& study = *simulation.mutable_operating_point();
-  study.mutable_cruise()->set_speed_kilometers_per_hour(50);
+  study.mutable_cruise()->set_speed_kilometres_per_hour(50);
   study.set_model(v1::QUASI_STATIC);
   CreateOptions check;
   check.validate_only = true;
@@ -254,11 +254,11 @@ TEST(LibraryAlone, AServerThatIsNotThere) {
   }
 }
 
-v1::Simulation quick_point(double speed_kilometers_per_hour) {
+v1::Simulation quick_point(double speed_kilometres_per_hour) {
   v1::Simulation out;
   out.set_lubricant("lubricants/1");
   auto* point = out.mutable_operating_point();
-  point->mutable_cruise()->set_speed_kilometers_per_hour(speed_kilometers_per_hour);
+  point->mutable_cruise()->set_speed_kilometres_per_hour(speed_kilometres_per_hour);
   return out;
 }
 
@@ -267,9 +267,9 @@ v1::Simulation endless_curve() {
   v1::Simulation out;
   out.set_lubricant("lubricants/1");
   auto* curve = out.mutable_inefficiency_curve();
-  curve->set_first_speed_kilometers_per_hour(60);
-  curve->set_last_speed_kilometers_per_hour(80);
-  curve->set_speed_step_kilometers_per_hour(0.0201);
+  curve->set_first_speed_kilometres_per_hour(60);
+  curve->set_last_speed_kilometres_per_hour(80);
+  curve->set_speed_step_kilometres_per_hour(0.0201);
   auto* solver = out.mutable_solver_options();
   solver->set_method(v1::MARCH);
   solver->set_relative_tolerance(1e-11);
