@@ -100,12 +100,32 @@ bool take_over(const Target& place, Message& source, Message& target) {
   return changed;
 }
 
+/// The paths of an omitted mask: every field that `source` populates and a client may set, those of
+/// a message in it one by one ("measurements.densities").
+std::set<std::string> populated_paths(const Message& source) {
+  std::set<std::string> paths;
+  std::vector<const FieldDescriptor*> fields;
+  std::vector<const FieldDescriptor*> inside;
+  source.GetReflection()->ListFields(source, &fields);
+  for (const FieldDescriptor* field : fields) {
+    if (is_output_only(*field)) continue;
+    if (field->is_repeated() || field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) {
+      paths.insert(field->name());
+      continue;
+    }
+    const Message& block = source.GetReflection()->GetMessage(source, field);
+    block.GetReflection()->ListFields(block, &inside);
+    for (const FieldDescriptor* each : inside) paths.insert(field->name() + "." + each->name());
+  }
+  return paths;
+}
+
 }  // namespace
 
 void merge(const Message& source, const google::protobuf::FieldMask& mask, Message& target,
            Violations& violations) {
   const auto& paths = mask.paths();
-  if (paths.empty() || (paths.size() == 1 && paths.Get(0) == "*")) {
+  if (paths.size() == 1 && paths.Get(0) == "*") {
     target.CopyFrom(source);
     return;
   }
@@ -113,7 +133,8 @@ void merge(const Message& source, const google::protobuf::FieldMask& mask, Messa
     violations.push_back({"update_mask", too_many_text(paths.size(), kMaximumMaskPaths)});
     return;
   }
-  const std::set<std::string> distinct(paths.begin(), paths.end());
+  const std::set<std::string> distinct =
+      paths.empty() ? populated_paths(source) : std::set<std::string>(paths.begin(), paths.end());
   const bool with_provenance = distinct.contains(kProvenance);
   const std::unique_ptr<Message> copy(source.New());  // what is taken over is swapped out of it
   copy->CopyFrom(source);

@@ -141,7 +141,9 @@ TEST_F(BatchTest, ANameThatIsTakenKeepsItsCode) {
   const auto deleted = batch_update_lubricants(app_, update({fluid("new"), gone}, true));
   ASSERT_FALSE(deleted.ok());
   expect_nothing_written(deleted.error(), google::rpc::FAILED_PRECONDITION);
-  const auto missing = batch_update_lubricants(app_, update({fluid("1"), fluid("11")}));
+  auto replacements = update({fluid("1"), fluid("11")});
+  replacements.mutable_requests(0)->mutable_update_mask()->add_paths("*");
+  const auto missing = batch_update_lubricants(app_, replacements);
   ASSERT_FALSE(missing.ok());
   expect_nothing_written(missing.error(), google::rpc::NOT_FOUND);
   EXPECT_THAT(complaint_lines(missing.error()), ElementsAre(HasSubstr("did you mean")));
@@ -284,6 +286,28 @@ TEST_F(BatchTest, ThousandsOfViolationsEndInTime) {
   EXPECT_THAT(complaint_lines(unknown.error()).back(), HasSubstr("more violations"));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(60));
   EXPECT_EQ(count(), before_ + 2000);
+}
+
+TEST_F(BatchTest, AnUpdateWithoutAMaskLosesNothingThatItLeavesOut) {
+  v1::Lubricant full = fluid("full");
+  full.set_description("kept");
+  full.add_labels()->set_key("project");
+  ASSERT_TRUE(batch_create_lubricants(app_, creation({full})).ok());
+  v1::Lubricant change;
+  change.set_name(full.name());
+  change.set_display_name("renamed");
+  const auto updated = batch_update_lubricants(app_, update({change, fluid("new")}, true));
+  ASSERT_TRUE(updated.ok()) << updated.error().message();
+  const v1::Lubricant now = get("full");
+  EXPECT_EQ(now.display_name(), "renamed");
+  EXPECT_EQ(now.description(), "kept");
+  EXPECT_EQ(now.labels_size(), 1);
+  EXPECT_EQ(now.measurements().SerializeAsString(), full.measurements().SerializeAsString());
+
+  auto all = update({fluid("full")});
+  all.mutable_requests(0)->mutable_update_mask()->add_paths("*");
+  ASSERT_TRUE(batch_update_lubricants(app_, all).ok());
+  EXPECT_EQ(get("full").description(), "");
 }
 
 TEST_F(BatchTest, BatchesThatMeetDoNotMix) {

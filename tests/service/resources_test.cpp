@@ -223,6 +223,61 @@ TEST_F(ResourcesTest, AnUpdateTakesOverWhatTheMaskNamesAndNothingElse) {
   EXPECT_EQ(get("lubricants/x@3").error().code(), google::rpc::NOT_FOUND);
 }
 
+TEST_F(ResourcesTest, AnUpdateWithoutAMaskLosesNothingThatItLeavesOut) {
+  v1::Lubricant full = three_numbers();
+  full.set_display_name("before");
+  full.set_description("kept");
+  full.set_external_sample_id("S-7");
+  full.set_pressure_viscosity_coefficient_per_pascal(2e-8);
+  auto* label = full.add_labels();
+  label->set_key("project");
+  label->set_value("axle");
+  auto* entry = full.add_provenance();
+  entry->set_field("pressure_viscosity_coefficient_per_pascal");
+  entry->set_provenance(v1::PROVENANCE_MEASURED);
+  entry->set_source("report 12");
+  const auto made = create(full, "x");
+  ASSERT_TRUE(made.ok()) << complaints(made.error());
+
+  v1::Lubricant change;  // {name, parameters, display_name}
+  change.set_name("lubricants/x");
+  change.set_display_name("after");
+  change.set_thermal_conductivity_watts_per_metre_kelvin(0.16);
+  change.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
+      75);
+  const auto updated = update(change);
+  ASSERT_TRUE(updated.ok()) << complaints(updated.error());
+  const v1::Lubricant& now = updated.message();
+  EXPECT_EQ(now.display_name(), "after");
+  EXPECT_EQ(now.thermal_conductivity_watts_per_metre_kelvin(), 0.16);
+  EXPECT_EQ(now.description(), "kept");
+  EXPECT_EQ(now.external_sample_id(), "S-7");
+  ASSERT_EQ(now.labels_size(), 1);
+  EXPECT_EQ(now.pressure_viscosity_coefficient_per_pascal(), 2e-8);
+  EXPECT_EQ(
+      find_provenance(now.provenance(), "pressure_viscosity_coefficient_per_pascal")->source(),
+      "report 12");
+  v1::LubricantMeasurements measured = full.measurements();
+  measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(75);
+  EXPECT_EQ(now.measurements().SerializeAsString(), measured.SerializeAsString())
+      << "of a message only what is stated in it";
+
+  const auto same = update(change);
+  ASSERT_TRUE(same.ok());
+  EXPECT_EQ(same.message().revision(), 2) << "nothing changes";
+  v1::Lubricant nothing;
+  nothing.set_name("lubricants/x");
+  EXPECT_EQ(update(nothing).message().revision(), 2);
+
+  v1::Lubricant replacement = three_numbers();
+  replacement.set_name("lubricants/x");
+  const auto replaced = update(replacement, {"*"});
+  ASSERT_TRUE(replaced.ok()) << complaints(replaced.error());
+  EXPECT_EQ(replaced.message().description(), "");
+  EXPECT_EQ(replaced.message().labels_size(), 0);
+  EXPECT_NE(replaced.message().pressure_viscosity_coefficient_per_pascal(), 2e-8) << "estimated";
+}
+
 TEST_F(ResourcesTest, WhatWasComputedFollowsItsGrounds) {
   const v1::Lubricant first = create(three_numbers(), "x").message();
   v1::Lubricant change = first;

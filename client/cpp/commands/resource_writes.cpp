@@ -90,6 +90,7 @@ int run_update(const ResourceKind& kind, const WriteFlags& flags, const CommonOp
     update.update_mask = flags.edits.fields();
   } else {
     resource = read_one(kind, flags.file);
+    update.update_mask = {"*"};
   }
   flags.edits.apply(*resource);
   set_text(*resource, "name", name);

@@ -34,7 +34,10 @@ class TypedCalls final : public ResourceCalls {
     BatchResult<Resource> result;
     if (replace) {
       std::vector<ResourceUpdate<Resource>> updates;
-      for (const BatchEntry& each : batch) updates.push_back({typed(*each.resource), each.fields});
+      for (const BatchEntry& each : batch) {
+        updates.push_back({typed(*each.resource),
+                           each.fields.empty() ? std::vector<std::string>{"*"} : each.fields});
+      }
       result = connection.update_all(updates, true, validate_only);
     } else {
       std::vector<Resource> resources;

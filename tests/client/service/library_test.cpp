@@ -85,9 +85,16 @@ TEST_F(Library, ALubricantLivesThroughItsRevisions) {
   EXPECT_EQ(refused([&] { connection.update(fluid, options); }).status_code(), kAborted);
   EXPECT_EQ(connection.get<v1::Lubricant>("lubricants/life@1").display_name(), "");
 
+  v1::Lubricant change;
+  change.set_name("lubricants/life");
+  change.set_description("no mask");
+  const v1::Lubricant kept = connection.update(change);
+  EXPECT_EQ(kept.display_name(), "changed");
+  EXPECT_TRUE(kept.has_measurements());
+
   const auto revisions = connection.revisions<v1::Lubricant>("lubricants/life");
-  ASSERT_EQ(revisions.resources.size(), 2U);
-  EXPECT_EQ(revisions.resources.front().revision(), 2);
+  ASSERT_EQ(revisions.resources.size(), 3U);
+  EXPECT_EQ(revisions.resources.front().revision(), 3);
   EXPECT_EQ(refused([&] {
               connection.remove<v1::Lubricant>("lubricants/life", first_etag);
             }).status_code(),

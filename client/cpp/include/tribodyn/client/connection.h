@@ -51,7 +51,7 @@ struct Listing {
 template <class Resource>
 struct ResourceUpdate {
   Resource resource;
-  std::vector<std::string> update_mask;  ///< fields to take over; empty: all
+  std::vector<std::string> update_mask;  ///< as in UpdateOptions
 };
 
 /// What a batch wrote, in the order of what was sent.
@@ -64,9 +64,11 @@ struct BatchResult {
 
 /// How an update is made.
 struct UpdateOptions {
-  std::vector<std::string> update_mask;  ///< fields to take over; empty: all
-  bool allow_missing = false;            ///< create it if there is none
-  bool validate_only = false;            ///< check everything, write nothing
+  /// Fields to take over. Empty: those that the resource populates; all others stay. {"*"}: all, a
+  /// full replacement.
+  std::vector<std::string> update_mask = {};
+  bool allow_missing = false;  ///< create it if there is none
+  bool validate_only = false;  ///< check everything, write nothing
 };
 
 /// How a simulation is created.
