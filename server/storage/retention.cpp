@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "server/storage/removal.h"
+
 namespace tribodyn::server {
 namespace {
 
@@ -9,55 +11,22 @@ namespace {
 /// and their indexes, 380 for the row of the result. Measured by dbstat over 1,000 points.
 constexpr std::int64_t kBytesOfASimulation = 1000;
 
-struct Row {
-  std::int64_t id = 0;
-  std::int64_t result = 0;  ///< 0: none
-  std::int64_t ledger = 0;
-};
-
-void run(Connection& db, const char* sql, std::int64_t row) {
-  Prepared statement(db, sql);
-  statement.bind(1, row);
-  statement.exec();
-}
-
-/// Removes a result unless a simulation has it; the bytes that were freed.
-std::int64_t remove_unused_result(Connection& db, std::int64_t result) {
-  Prepared remove(db,
-                  "DELETE FROM results WHERE id = ?1 AND "
-                  "NOT EXISTS (SELECT 1 FROM simulations WHERE result = ?1) "
-                  "RETURNING stored_bytes");
-  remove.bind(1, result);
-  if (!remove.executeStep()) return 0;
-  const std::int64_t bytes = remove.getColumn(0).getInt64();
-  remove.executeStep();  // to its end: only then is it done
-  return bytes;
-}
-
 }  // namespace
 
 Removed remove_oldest(Connection& db, Microseconds ended_by, int limit) {
   Prepared query(db,
-                 "SELECT id, coalesce(result, 0), coalesce(ledger, 0) FROM simulations "
+                 "SELECT id FROM simulations "
                  "WHERE state >= 3 AND pinned = 0 AND end_time <= ? "
                  "ORDER BY end_time LIMIT ?");
   query.bind(1, ended_by);
   query.bind(2, limit);
-  std::vector<Row> rows;
-  while (query.executeStep()) {
-    rows.push_back({query.getColumn(0).getInt64(), query.getColumn(1).getInt64(),
-                    query.getColumn(2).getInt64()});
-  }
+  std::vector<std::int64_t> oldest;
+  while (query.executeStep()) oldest.push_back(query.getColumn(0).getInt64());
   query.reset();
   Removed removed;
-  for (const Row& row : rows) {
-    run(db, "DELETE FROM simulations WHERE id = ?1", row.id);
+  for (const std::int64_t id : oldest) {
     ++removed.simulations;
-    removed.bytes += kBytesOfASimulation + remove_unused_result(db, row.result);
-    run(db,
-        "DELETE FROM ledgers WHERE id = ?1 AND "
-        "NOT EXISTS (SELECT 1 FROM simulations WHERE ledger = ?1)",
-        row.ledger);
+    removed.bytes += kBytesOfASimulation + remove_simulation(db, id);
   }
   return removed;
 }

@@ -274,6 +274,43 @@ std::optional<StoredSimulation> Store::set_pinned(std::int64_t id, bool is_pinne
   return out;
 }
 
+Store::Removal Store::remove_simulation(std::int64_t id) {
+  return write([&](Connection& db) {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    Prepared query(db, "SELECT state, pinned FROM simulations WHERE id = ?");
+    query.bind(1, id);
+    if (!query.executeStep()) return Removal::kAbsent;
+    if (query.getColumn(0).getInt() < static_cast<int>(StoredState::kSucceeded)) {
+      return Removal::kUnfinished;
+    }
+    if (query.getColumn(1).getInt() != 0) return Removal::kPinned;
+    query.reset();
+    server::remove_simulation(db, id);
+    transaction.commit();
+    return Removal::kDone;
+  });
+}
+
+Store::Purge Store::purge_resource(const StoredResource& present, bool with_simulations) {
+  return write([&](Connection& db) {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    Purge out{.is_current = is_unchanged(db, present), .simulations = dependents_of(db, present)};
+    const bool may_go =
+        out.simulations.unfinished == 0 && (with_simulations || out.simulations.ended == 0);
+    if (!out.is_current || !may_go) return out;
+    out.revisions = remove_resource(db, present);
+    transaction.commit();
+    return out;
+  });
+}
+
+void Store::erase_removed() {
+  write([](Connection& db) {
+    server::erase_removed(db);
+    return true;
+  });
+}
+
 Removed Store::remove_oldest(Microseconds ended_by, int limit) {
   return write([&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);

@@ -13,6 +13,7 @@
 #include "server/storage/database_lock.h"
 #include "server/storage/group_commit.h"
 #include "server/storage/history_rows.h"
+#include "server/storage/removal.h"
 #include "server/storage/retention.h"
 #include "server/storage/store_error.h"
 #include "server/storage/stored_resource.h"
@@ -65,6 +66,22 @@ class Store {
   /// Keeps a simulation from being removed, or lets it be removed again. Returns the simulation as
   /// it is then; nullopt if there is none.
   std::optional<StoredSimulation> set_pinned(std::int64_t id, bool is_pinned);
+  /// Removes a simulation that has ended and is not pinned.
+  enum class Removal { kDone, kAbsent, kUnfinished, kPinned };
+  Removal remove_simulation(std::int64_t id);
+  /// Removes a resource with all its revisions and, if `with_simulations`, every simulation that
+  /// was computed with one of them. Changes nothing, and returns revisions 0, if the resource has
+  /// changed since it was read, if such a simulation is unfinished, or if there is one and they are
+  /// not to go. Free pages of the files still hold what was removed, until erase_removed().
+  struct Purge {
+    bool is_current = false;  ///< the resource was as it had been read
+    Dependents simulations;   ///< computed with it
+    int revisions = 0;        ///< removed
+  };
+  Purge purge_resource(const StoredResource& present, bool with_simulations);
+  /// As in removal.h. Other writers wait meanwhile.
+  void erase_removed();
+
   // As the functions of retention.h.
   Removed remove_oldest(Microseconds ended_by, int limit);
   std::int64_t used_bytes();

@@ -1,0 +1,107 @@
+#include "server/storage/removal.h"
+
+#include <SQLiteCpp/Exception.h>
+#include <sqlite3.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace tribodyn::server {
+namespace {
+
+/// Simulations that name any revision of resource ?1; each column has its own index or few rows.
+constexpr char kOfResource[] =
+    "FROM simulations WHERE lubricant IN (SELECT id FROM revisions WHERE resource = ?1) "
+    "OR gear_set IN (SELECT id FROM revisions WHERE resource = ?1) "
+    "OR surface IN (SELECT id FROM revisions WHERE resource = ?1) "
+    "OR vehicle IN (SELECT id FROM revisions WHERE resource = ?1)";
+
+int remove_rows(Connection& db, const char* sql, std::int64_t key) {
+  Prepared statement(db, sql);
+  statement.bind(1, key);
+  return statement.exec();
+}
+
+std::vector<std::int64_t> simulations_of(Connection& db, const StoredResource& resource) {
+  Prepared query(db, std::string("SELECT id ") + kOfResource);
+  query.bind(1, resource.id);
+  std::vector<std::int64_t> out;
+  while (query.executeStep()) out.push_back(query.getColumn(0).getInt64());
+  return out;
+}
+
+/// Copies the write-ahead log into the database and empties its file. Returns false if a reader is
+/// in the way.
+bool empty_log(Connection& db) {
+  SQLite::Statement checkpoint(db, "PRAGMA wal_checkpoint(TRUNCATE)");
+  checkpoint.executeStep();
+  return checkpoint.getColumn(0).getInt() == 0;
+}
+
+}  // namespace
+
+std::int64_t remove_simulation(Connection& db, std::int64_t id) {
+  std::int64_t result = 0, ledger = 0;
+  {
+    Prepared query(
+        db, "SELECT coalesce(result, 0), coalesce(ledger, 0) FROM simulations WHERE id = ?1");
+    query.bind(1, id);
+    if (!query.executeStep()) return 0;
+    result = query.getColumn(0).getInt64();
+    ledger = query.getColumn(1).getInt64();
+  }
+  remove_rows(db, "DELETE FROM simulations WHERE id = ?1", id);
+  remove_rows(db,
+              "DELETE FROM ledgers WHERE id = ?1 AND "
+              "NOT EXISTS (SELECT 1 FROM simulations WHERE ledger = ?1)",
+              ledger);
+  Prepared remove(db,
+                  "DELETE FROM results WHERE id = ?1 AND "
+                  "NOT EXISTS (SELECT 1 FROM simulations WHERE result = ?1) "
+                  "RETURNING stored_bytes");
+  remove.bind(1, result);
+  if (!remove.executeStep()) return 0;
+  const std::int64_t bytes = remove.getColumn(0).getInt64();
+  remove.executeStep();  // the row is removed only when the statement has come to its end
+  return bytes;
+}
+
+Dependents dependents_of(Connection& db, const StoredResource& resource) {
+  Prepared query(db, std::string("SELECT count(*) FILTER (WHERE state < 3), "
+                                 "count(*) FILTER (WHERE state >= 3) ") +
+                         kOfResource);
+  query.bind(1, resource.id);
+  query.executeStep();
+  return {query.getColumn(0).getInt(), query.getColumn(1).getInt()};
+}
+
+int remove_resource(Connection& db, const StoredResource& resource) {
+  for (const std::int64_t id : simulations_of(db, resource)) remove_simulation(db, id);
+  remove_rows(db, "DELETE FROM properties WHERE resource = ?1", resource.id);
+  // The trigger that keeps revisions goes and comes back within the transaction.
+  const std::string trigger =
+      db.execAndGet("SELECT sql FROM sqlite_master WHERE name = 'revisions_stay'").getString();
+  db.exec("DROP TRIGGER revisions_stay");
+  const int revisions = remove_rows(db, "DELETE FROM revisions WHERE resource = ?1", resource.id);
+  db.exec(trigger);
+  remove_rows(db, "DELETE FROM resources WHERE id = ?1", resource.id);
+  return revisions;
+}
+
+void erase_removed(Connection& db) {
+  // A copy of the whole database: in a file without a name rather than in memory.
+  db.exec("PRAGMA temp_store = FILE");
+  db.exec("VACUUM");
+  db.exec("PRAGMA temp_store = MEMORY");
+  const auto begin = std::chrono::steady_clock::now();
+  while (!empty_log(db)) {
+    if (std::chrono::steady_clock::now() - begin > std::chrono::seconds(kEraseSeconds)) {
+      throw SQLite::Exception("readers keep the write-ahead log", SQLITE_BUSY);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+}  // namespace tribodyn::server

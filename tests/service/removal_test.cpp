@@ -1,0 +1,170 @@
+// Rows that are removed on purpose: simulations, and resources with all that was computed with
+// them.
+#include "server/storage/removal.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "server/storage/store.h"
+#include "tests/service/support.h"
+#include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/results.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+const std::string kMarker = "Grandmother's secret additive 4711";
+constexpr double kMarkerNumber = 1.2345678901234567e-8;
+
+std::string bytes_of(double number) {
+  std::string out(sizeof number, '\0');
+  std::memcpy(out.data(), &number, sizeof number);
+  return out;
+}
+
+class Removals : public testing::Test {
+ protected:
+  ResultKey key(char input) const { return {std::string(64, input), "model", "platform"}; }
+
+  StoredResource write_secret(int revision) {
+    v1::Lubricant body;
+    body.set_display_name(kMarker);
+    body.set_description(std::string(5000, 'd') + kMarker + std::to_string(revision));
+    body.set_pressure_viscosity_coefficient_per_pascal(kMarkerNumber);
+    const auto present = store_.resource("lubricants/secret");
+    return store_
+        .write_resources({{{"lubricants/secret", body.SerializeAsString()}, present}}, revision)
+        ->front();
+  }
+
+  std::int64_t queue(char input, int revision) {
+    v1::SimulationResult assumptions;
+    assumptions.add_assumptions()->set_value("1.2345678901234567e-8 /Pa");
+    assumptions.mutable_assumptions(0)->set_source(kMarker);
+    return store_
+        .add_simulation({.request = "request",
+                         .key = key(input),
+                         .ledger = assumptions.SerializeAsString(),
+                         .labels = {{"series", kMarker}},
+                         .lubricant_revision = "lubricants/secret@" + std::to_string(revision)},
+                        10)
+        .id;
+  }
+
+  std::int64_t finish(char input, int revision) {
+    const auto id = queue(input, revision);
+    EXPECT_TRUE(store_.mark_running(id, 11, key(input)));
+    EXPECT_TRUE(store_.mark_succeeded(
+        id, 12, {key(input), kMarker, {{"column", std::vector<double>(50, kMarkerNumber)}}}));
+    return id;
+  }
+
+  /// Files of the folder that hold a text, by name.
+  std::vector<std::string> files_with(const std::string& text) const {
+    std::vector<std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      std::ifstream in(entry.path(), std::ios::binary);
+      const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+      if (bytes.find(text) != std::string::npos) out.push_back(entry.path().filename());
+    }
+    return out;
+  }
+
+  TemporaryFolder folder_;
+  Store store_{folder_.file("tribodyn.db")};
+};
+
+TEST_F(Removals, APurgedFormulationIsInNoFile) {
+  for (int revision = 1; revision <= 3; ++revision) write_secret(revision);
+  finish('a', 1);
+  finish('b', 3);
+  const auto old = finish('c', 2);
+  ASSERT_EQ(store_.remove_simulation(old), Store::Removal::kDone);
+  store_.add_resources({{"lubricants/other", "other"}}, 20);
+  ASSERT_FALSE(files_with(kMarker).empty());
+  ASSERT_FALSE(files_with(bytes_of(kMarkerNumber)).empty());
+
+  const auto purge = store_.purge_resource(*store_.resource("lubricants/secret"), true);
+  EXPECT_EQ(purge.revisions, 3);
+  EXPECT_EQ(purge.simulations.ended, 2);
+  EXPECT_EQ(store_.resource("lubricants/secret"), std::nullopt);
+  EXPECT_EQ(store_.revision("lubricants/secret", 1), std::nullopt);
+  EXPECT_FALSE(files_with(kMarker).empty()) << "free pages are expected to hold what was removed";
+
+  store_.erase_removed();
+  EXPECT_EQ(files_with(kMarker), std::vector<std::string>());
+  EXPECT_EQ(files_with(bytes_of(kMarkerNumber)), std::vector<std::string>());
+  EXPECT_EQ(files_with("1.2345678901234567"), std::vector<std::string>());
+  EXPECT_TRUE(store_.resource("lubricants/other")) << "others stay";
+}
+
+TEST_F(Removals, ErasingLeavesTheDatabaseFitForFurtherWrites) {
+  write_secret(1);
+  store_.purge_resource(*store_.resource("lubricants/secret"), true);
+  store_.erase_removed();
+  EXPECT_EQ(write_secret(30).revision, 1) << "the name is free again";
+  EXPECT_TRUE(store_.result(finish('a', 1)));
+}
+
+TEST_F(Removals, AResourceStaysWhileASimulationOfItIsUnfinished) {
+  write_secret(1);
+  const auto id = queue('a', 1);
+  const auto purge = store_.purge_resource(*store_.resource("lubricants/secret"), true);
+  EXPECT_EQ(purge.revisions, 0);
+  EXPECT_EQ(purge.simulations.unfinished, 1);
+  EXPECT_TRUE(store_.resource("lubricants/secret"));
+  EXPECT_EQ(store_.remove_simulation(id), Store::Removal::kUnfinished);
+}
+
+TEST_F(Removals, SimulationsGoWithTheirResourceOnlyWhenAskedFor) {
+  write_secret(1);
+  const auto id = finish('a', 1);
+  const StoredResource secret = *store_.resource("lubricants/secret");
+  EXPECT_EQ(store_.purge_resource(secret, false).revisions, 0);
+  EXPECT_TRUE(store_.simulation(id));
+  EXPECT_EQ(store_.purge_resource(secret, true).revisions, 1);
+  EXPECT_FALSE(store_.simulation(id));
+}
+
+TEST_F(Removals, AResourceThatHasChangedSinceStays) {
+  const StoredResource first = write_secret(1);
+  write_secret(2);
+  const auto purge = store_.purge_resource(first, true);
+  EXPECT_FALSE(purge.is_current);
+  EXPECT_EQ(purge.revisions, 0);
+}
+
+TEST_F(Removals, AResultStaysWhileAnotherSimulationHasIt) {
+  write_secret(1);
+  const auto first = finish('a', 1);
+  const auto second = queue('a', 1);  // equal inputs: served at once
+  ASSERT_EQ(store_.simulation(second)->state, StoredState::kSucceeded);
+  EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kDone);
+  EXPECT_TRUE(store_.result(second));
+  EXPECT_EQ(store_.history_rows(second, "column", 0, 1).front(), kMarkerNumber);
+  EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kAbsent);
+}
+
+TEST_F(Removals, APinnedSimulationIsUnpinnedFirst) {
+  write_secret(1);
+  const auto id = finish('a', 1);
+  ASSERT_TRUE(store_.set_pinned(id, true));
+  EXPECT_EQ(store_.remove_simulation(id), Store::Removal::kPinned);
+  EXPECT_TRUE(store_.simulation(id));
+}
+
+TEST_F(Removals, RevisionsAreKeptAgainAfterAPurge) {
+  write_secret(1);
+  store_.purge_resource(*store_.resource("lubricants/secret"), true);
+  write_secret(2);
+  Connection db(folder_.file("tribodyn.db"), SQLite::OPEN_READWRITE);
+  EXPECT_THROW(db.exec("DELETE FROM revisions"), SQLite::Exception);
+}
+
+}  // namespace
+}  // namespace tribodyn::server
