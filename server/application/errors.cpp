@@ -1,8 +1,10 @@
 #include "server/application/errors.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/util/time_util.h>
 #include <spdlog/spdlog.h>
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 
@@ -39,9 +41,11 @@ void add_resource(const std::string& type, const std::string& name, google::rpc:
   status.add_details()->PackFrom(info);
 }
 
-void add_retry(int seconds, google::rpc::Status& status) {
+/// `seconds` are told to the millisecond, rounded up.
+void add_retry(double seconds, google::rpc::Status& status) {
   google::rpc::RetryInfo info;
-  info.mutable_retry_delay()->set_seconds(seconds);
+  *info.mutable_retry_delay() = google::protobuf::util::TimeUtil::MillisecondsToDuration(
+      static_cast<std::int64_t>(std::ceil(1e3 * seconds)));
   status.add_details()->PackFrom(info);
 }
 
@@ -130,7 +134,7 @@ google::rpc::Status store_failed(const StoreError& failure) {
   return status;
 }
 
-google::rpc::Status exhausted(const std::string& message, int retry_seconds) {
+google::rpc::Status exhausted(const std::string& message, double retry_seconds) {
   google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, "TOO_MANY_WAITING", message);
   add_retry(retry_seconds, status);
   return status;

@@ -46,7 +46,7 @@ google::rpc::Status aborted(const std::string& reason, const std::string& type,
 google::rpc::Status store_failed(const StoreError& failure);
 
 /// RESOURCE_EXHAUSTED with RetryInfo.
-google::rpc::Status exhausted(const std::string& message, int retry_seconds);
+google::rpc::Status exhausted(const std::string& message, double retry_seconds);
 
 /// DEADLINE_EXCEEDED, by the server's own limit or the client's. Only before anything is committed.
 google::rpc::Status deadline_exceeded();

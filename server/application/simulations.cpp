@@ -218,10 +218,10 @@ void log_submission(const NewSimulation& simulation, const Added& added) {
       simulation.key.input_hash, simulation.cost_seconds);
 }
 
-google::rpc::Status no_place(Application& application, int retry_seconds) {
+google::rpc::Status no_place(Application& application, double retry_seconds) {
   if (application.jobs.is_stopping()) return shutting_down();
   return exhausted(
-      fmt::format("too many simulations wait already; try again in {} s", retry_seconds),
+      fmt::format("too many simulations wait already; try again in {:.2f} s", retry_seconds),
       retry_seconds);
 }
 

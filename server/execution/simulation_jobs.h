@@ -48,7 +48,7 @@ class SimulationJobs {
   /// have to wait and has no place, says when to ask again.
   struct Submitted {
     Added added;
-    int retry_seconds = 0;
+    double retry_seconds = 0;
   };
   Submitted submit(const NewSimulation& simulation);
   /// Of a simulation that is QUEUED in the store: its request may have been written and yet been

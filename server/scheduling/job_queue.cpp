@@ -3,16 +3,13 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace tribodyn::server {
 namespace {
 
 constexpr auto kLookAround = std::chrono::milliseconds(20);
-constexpr double kShareOfOne = 0.75;  // of the limits, for one client
-constexpr double kWorthAsking = 0.1;
-constexpr double kLeastRetry = 1;         // s
-constexpr double kLongestRetry = 600;     // s
+constexpr double kShareOfOne = 0.75;      // of the limits, for one principal
+constexpr double kWorthAsking = 0.1;      // of what waits is done by then
 constexpr double kServiceSeconds = 2e-3;  // of a processor, for what is done around a small job
 
 /// Does it, whatever it throws.
@@ -54,11 +51,11 @@ void JobQueue::start() {
 
 Admission JobQueue::reserve(const QueuedJob& job) {
   const std::lock_guard lock(mutex_);
-  Reserved& own = reserved_of_[job.client];
+  Reserved& own = reserved_of_[job.principal];
   const double all_seconds = waiting_.cost_seconds() + reserved_.cost_seconds;
-  const double own_seconds = waiting_.cost_seconds_of(job.client) + own.cost_seconds;
+  const double own_seconds = waiting_.cost_seconds_of(job.principal) + own.cost_seconds;
   const std::size_t all_jobs = waiting_.size() + reserved_.jobs;
-  const std::size_t own_jobs = waiting_.size_of(job.client) + own.jobs;
+  const std::size_t own_jobs = waiting_.size_of(job.principal) + own.jobs;
   // Whoever has nothing waiting gets in however large the job is, as long as there is room at all.
   const bool has_room =
       all_jobs < limits_.jobs && all_seconds < limits_.cost_seconds &&
@@ -66,9 +63,10 @@ Admission JobQueue::reserve(const QueuedJob& job) {
        (static_cast<double>(own_jobs) < kShareOfOne * static_cast<double>(limits_.jobs) &&
         own_seconds + job.cost_seconds <= kShareOfOne * limits_.cost_seconds));
   if (stopping_ || !has_room) {
-    if (own.jobs == 0) reserved_of_.erase(job.client);
-    // Until a tenth of what waits is done.
-    return {false, turn_away(job, kWorthAsking * all_seconds / thread_count_)};
+    if (own.jobs == 0) reserved_of_.erase(job.principal);
+    return {false, turns_.next(job.principal, kWorthAsking * all_seconds / thread_count_,
+                               std::max(job.cost_seconds, kServiceSeconds) / thread_count_,
+                               std::chrono::steady_clock::now())};
   }
   for (Reserved* each : {&own, &reserved_}) {
     ++each->jobs;
@@ -77,22 +75,8 @@ Admission JobQueue::reserve(const QueuedJob& job) {
   return {true, 0};
 }
 
-/// When the next job of the client may come [s].
-int JobQueue::turn_away(const QueuedJob& job, double least_seconds) {
-  using std::chrono::duration;
-  using std::chrono::steady_clock;
-  const auto now = steady_clock::now();
-  std::erase_if(turns_, [now](const auto& each) { return each.second < now; });
-  steady_clock::time_point& turn = turns_[job.client];
-  const double seconds = std::clamp(std::max(least_seconds, duration<double>(turn - now).count()),
-                                    kLeastRetry, kLongestRetry);
-  const double work = std::max(job.cost_seconds, kServiceSeconds) / thread_count_;
-  turn = now + std::chrono::duration_cast<steady_clock::duration>(duration<double>(seconds + work));
-  return static_cast<int>(std::lround(seconds));
-}
-
 void JobQueue::give_back(const QueuedJob& job) {
-  const auto own = reserved_of_.find(job.client);
+  const auto own = reserved_of_.find(job.principal);
   for (Reserved* each : {&own->second, &reserved_}) {
     --each->jobs;
     each->cost_seconds = each->jobs == 0 ? 0 : each->cost_seconds - job.cost_seconds;
@@ -185,16 +169,16 @@ void JobQueue::join() {
   writers_.clear();
 }
 
-/// Whether all threads but one are taken by jobs that are not interactive.
-bool JobQueue::only_interactive() const {
-  return thread_count_ > 1 && computing_bulk_ >= thread_count_ - 1;
+/// The last lane that may begin: where all threads but one compute bulk jobs, these wait.
+Lane JobQueue::last_lane() const {
+  return thread_count_ > 1 && computing_bulk_ >= thread_count_ - 1 ? Lane::kSmall : Lane::kBulk;
 }
 
 /// Whether the next of the waiting may run beside those that run. Unwritten results do not heap up.
 bool JobQueue::may_begin() const {
   const std::size_t most = 2 * static_cast<std::size_t>(thread_count_);
   if (one_runs_alone_ || running_.size() >= most) return false;
-  const QueuedJob* next = waiting_.peek(only_interactive());
+  const QueuedJob* next = waiting_.peek(last_lane());
   return next != nullptr && (!next->alone || running_.empty());
 }
 
@@ -203,7 +187,7 @@ std::optional<JobQueue::Running> JobQueue::next() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return stopping_ || may_begin(); });
   if (stopping_) return std::nullopt;
-  Running out{*waiting_.pop(only_interactive()), std::make_shared<StopSignal>(), {}};
+  Running out{*waiting_.pop(last_lane()), std::make_shared<StopSignal>(), {}};
   running_[out.job.id] = out.signal;
   one_runs_alone_ = out.job.alone;
   if (!out.job.is_interactive()) ++computing_bulk_;

@@ -17,6 +17,7 @@
 
 #include "server/metrics/metrics.h"
 #include "server/scheduling/fair_queue.h"
+#include "server/scheduling/turns.h"
 
 namespace tribodyn::server {
 
@@ -37,18 +38,16 @@ class StopSignal {
   mutable std::condition_variable requested_;
 };
 
-/// What may wait; of each at most three quarters for one client, so that others still get in.
+/// What may wait; of each at most three quarters for one principal, so that others still get in.
 struct QueueLimits {
   std::size_t jobs = 20'000;
   double cost_seconds = 360'000;  ///< estimated, of one processor
 };
 
-/// Whether a job has a place, and when it is worth asking again if not: the jobs of a client that
-/// were turned away one after another are told to come one after another, as fast as they can be
-/// worked through, so that they do not all come back at once.
+/// Whether a job has a place, and when it is worth asking again if not (Turns).
 struct Admission {
   bool is_admitted = false;
-  int retry_seconds = 0;
+  double retry_seconds = 0;
 };
 
 /// Threads that work through jobs in the order of a FairQueue; a job is a number and what it means
@@ -119,8 +118,7 @@ class JobQueue {
   void join();
   void enqueue(const QueuedJob& job);
   void give_back(const QueuedJob& job);
-  int turn_away(const QueuedJob& job, double least_seconds);
-  bool only_interactive() const;
+  Lane last_lane() const;
   bool may_begin() const;
 
   const int thread_count_;
@@ -137,9 +135,9 @@ class JobQueue {
   bool all_computed_ = false;                                    // guarded by mutex_
   int computing_bulk_ = 0;                                       // guarded by mutex_
   Reserved reserved_;                                            // guarded by mutex_
-  std::map<std::string, Reserved> reserved_of_;                  // guarded by mutex_; by client
-  std::map<std::string, std::chrono::steady_clock::time_point> turns_;  // guarded by mutex_
-  bool stopping_ = false;                                               // guarded by mutex_
+  std::map<std::string, Reserved> reserved_of_;                  // guarded by mutex_; by principal
+  Turns turns_;                                                  // guarded by mutex_
+  bool stopping_ = false;                                        // guarded by mutex_
   std::vector<std::thread> threads_;
   std::vector<std::thread> writers_;
 };

@@ -438,7 +438,7 @@ bool all_end(Stub& stub) {
 }
 
 /// When a request that was turned away is to come again; nothing for any other answer.
-std::optional<std::chrono::seconds> retry_time(const grpc::Status& status) {
+std::optional<std::chrono::nanoseconds> retry_time(const grpc::Status& status) {
   google::rpc::Status details;
   if (status.error_code() != grpc::StatusCode::RESOURCE_EXHAUSTED ||
       !details.ParseFromString(status.error_details())) {
@@ -446,7 +446,10 @@ std::optional<std::chrono::seconds> retry_time(const grpc::Status& status) {
   }
   for (const auto& any : details.details()) {
     google::rpc::RetryInfo info;
-    if (any.UnpackTo(&info)) return seconds(info.retry_delay().seconds());
+    if (any.UnpackTo(&info)) {
+      return seconds(info.retry_delay().seconds()) +
+             std::chrono::nanoseconds(info.retry_delay().nanos());
+    }
   }
   return std::nullopt;
 }

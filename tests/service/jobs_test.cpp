@@ -8,6 +8,7 @@
 #include "server/execution/simulation_jobs.h"
 #include "server/scheduling/job_queue.h"
 #include "server/scheduling/progress_board.h"
+#include "server/scheduling/turns.h"
 #include "server/simulation/golden_case.h"
 #include "tests/service/support.h"
 
@@ -70,14 +71,14 @@ TEST(JobQueue, TurnsAwayWhatIsTooMuch) {
 /// Ids in the order in which they leave.
 std::vector<std::int64_t> emptied(FairQueue& queue) {
   std::vector<std::int64_t> out;
-  while (const auto job = queue.pop(false)) out.push_back(job->id);
+  while (const auto job = queue.pop(Lane::kBulk)) out.push_back(job->id);
   return out;
 }
 
-TEST(FairQueue, ServesClientsInTurnHoweverMuchOneBrings) {
+TEST(FairQueue, ServesPrincipalsInTurnHoweverMuchOneBrings) {
   FairQueue queue;
   for (int id = 1; id <= 100; ++id) queue.push({id, "bulk", 0.1});
-  for (int i = 0; i < 10; ++i) queue.pop(false);
+  for (int i = 0; i < 10; ++i) queue.pop(Lane::kBulk);
   queue.push({1000, "curve", 0.5});
   queue.push({1001, "curve", 0.5});
   const auto order = emptied(queue);
@@ -90,13 +91,13 @@ TEST(FairQueue, ServesClientsInTurnHoweverMuchOneBrings) {
   EXPECT_EQ(order.back(), 100);
 }
 
-TEST(FairQueue, SmallJobsOfAClientPassLargeOnesThatDoNotStarve) {
+TEST(FairQueue, SmallJobsOfAPrincipalPassLargeOnesThatDoNotStarve) {
   FairQueue queue;
   queue.push({1, "a", 5});
   for (int id = 2; id <= 101; ++id) queue.push({id, "a", 0.5});
-  EXPECT_EQ(queue.peek(false)->id, 2);
+  EXPECT_EQ(queue.peek(Lane::kBulk)->id, 2);
   for (int id = 102; id < 300; ++id) {
-    if (queue.pop(false)->id == 1) {
+    if (queue.pop(Lane::kBulk)->id == 1) {
       EXPECT_GT(id, 102 + 8) << "as much as it is large has passed it";
       return;
     }
@@ -109,7 +110,7 @@ TEST(FairQueue, KnowsWhatWaits) {
   FairQueue queue;
   queue.push({1, "a", 2});
   queue.push({2, "b", 3});
-  EXPECT_FALSE(queue.pop(true)) << "neither is interactive";
+  EXPECT_FALSE(queue.pop(Lane::kSmall)) << "neither is interactive";
   EXPECT_EQ(queue.cost_seconds(), 5);
   EXPECT_EQ(queue.size_of("a"), 1U);
   EXPECT_TRUE(queue.erase(1));
@@ -127,20 +128,88 @@ TEST(JobQueue, IsBoundedByCostAndLeavesRoomForOthers) {
   EXPECT_EQ(refused.retry_seconds, 250) << "a tenth of 5000 s on two processors";
   queue.release({1, "a", 5000});
   EXPECT_TRUE(queue.reserve({3, "a", 700}).is_admitted);
-  EXPECT_FALSE(queue.reserve({4, "a", 100}).is_admitted) << "three quarters are for one client";
+  EXPECT_FALSE(queue.reserve({4, "a", 100}).is_admitted) << "three quarters are for one principal";
   EXPECT_TRUE(queue.reserve({5, "b", 100}).is_admitted);
 }
 
-TEST(JobQueue, TellsThoseTurnedAwayToComeOneAfterAnother) {
-  JobQueue queue(2, {.jobs = 1, .cost_seconds = 1000},
-                 [](std::int64_t, const StopSignal&, JobQueue::Rest&) {});
-  EXPECT_TRUE(queue.reserve({1, "a", 1}).is_admitted);
-  EXPECT_EQ(queue.reserve({2, "b", 20}).retry_seconds, 1);
-  EXPECT_EQ(queue.reserve({3, "b", 20}).retry_seconds, 11) << "after that of 20 s on two";
-  EXPECT_EQ(queue.reserve({4, "b", 20}).retry_seconds, 21);
-  EXPECT_EQ(queue.reserve({5, "c", 20}).retry_seconds, 1) << "others are not held up by them";
-  for (int i = 0; i < 100; ++i) queue.reserve({6, "b", 20});
-  EXPECT_EQ(queue.reserve({6, "b", 20}).retry_seconds, 600);
+TEST(FairQueue, StatedInteractiveJobsPassAllOthersOfTheirPrincipal) {
+  FairQueue queue;
+  for (int id = 1; id <= 20; ++id) queue.push({id, "a", 1e-4});
+  queue.push({21, "a", 100, false, StatedClass::kInteractive});
+  queue.push({22, "a", 1e-4, false, StatedClass::kBulk});
+  EXPECT_EQ(queue.peek(Lane::kStated)->id, 21);
+  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 21);
+  EXPECT_FALSE(queue.peek(Lane::kStated));
+  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 1);
+  while (queue.peek(Lane::kSmall) != nullptr) queue.pop(Lane::kSmall);
+  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 22) << "stated BULK, however small";
+}
+
+TEST(FairQueue, WhoUsedMoreThanEstimatedWaitsForTheOthers) {
+  FairQueue queue;
+  queue.push({1, "hog", 0.001});
+  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 1);
+  queue.charge("hog", 10);  // while nothing of it waits
+  queue.push({2, "hog", 0.001});
+  for (int id = 3; id <= 12; ++id) queue.push({id, "other", 0.5});
+  EXPECT_EQ(emptied(queue).back(), 2) << "the others have 5 s of work";
+  EXPECT_EQ(queue.debtors(), 1U);
+  queue.push({20, "hog", 0.001});
+  queue.push({21, "late", 0.001});
+  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 21);
+  queue.charge("hog", -10);
+  queue.pop(Lane::kBulk);
+  queue.push({22, "late", 0.001});
+  queue.pop(Lane::kBulk);
+  EXPECT_LE(queue.debtors(), 2U);
+}
+
+TEST(FairQueue, RemembersABoundedNumberOfDebtors) {
+  FairQueue queue;
+  constexpr int kMost = static_cast<int>(FairQueue::kMostDebtors);
+  for (int i = 0; i < 2 * kMost; ++i) queue.charge(std::to_string(i), 1 + i);
+  EXPECT_EQ(queue.debtors(), FairQueue::kMostDebtors);
+  queue.push({1, std::to_string(2 * kMost - 1), 0.001});
+  queue.push({2, "0", 0.001});
+  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 2) << "those who owe least are forgotten";
+}
+
+TEST(FairQueue, TimeDoesNotGrowWithTheNumberOfPrincipals) {
+  const auto seconds = [](int principals) {
+    FairQueue queue;
+    for (int i = 0; i < principals; ++i) queue.push({i, std::to_string(i), 0.001});
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 2000; ++i) {
+      queue.peek(Lane::kSmall);
+      QueuedJob job = *queue.pop(Lane::kBulk);
+      queue.push(job);
+    }
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  const double few = seconds(20);
+  EXPECT_LT(seconds(20'000), 50 * few) << "1000 times as many";
+}
+
+TEST(Turns, TellsThoseTurnedAwayToComeOneAfterAnother) {
+  Turns turns;
+  const Turns::Time now;
+  EXPECT_EQ(turns.next("b", 0.001, 10, now), Turns::kLeastSeconds);
+  EXPECT_DOUBLE_EQ(turns.next("b", 0.001, 10, now), 10.02) << "after that of 10 s";
+  EXPECT_DOUBLE_EQ(turns.next("b", 0.001, 10, now), 20.02);
+  EXPECT_EQ(turns.next("c", 0.3, 10, now), 0.3) << "others are not held up by them";
+  for (int i = 0; i < 100; ++i) turns.next("b", 0.001, 10, now);
+  EXPECT_EQ(turns.next("b", 0.001, 10, now), 600);
+  const Turns::Time later = now + std::chrono::seconds(700);
+  EXPECT_EQ(turns.next("b", 0.001, 10, later), Turns::kLeastSeconds);
+  EXPECT_EQ(turns.size(), 1U) << "turns that are past are forgotten";
+}
+
+TEST(Turns, RemembersABoundedNumberOfPrincipals) {
+  Turns turns;
+  for (std::size_t i = 0; i < 2 * Turns::kMostKept; ++i) {
+    turns.next(std::to_string(i), 1 + 1e-3 * static_cast<double>(i), 10, {});
+  }
+  EXPECT_EQ(turns.size(), Turns::kMostKept);
 }
 
 TEST(JobQueue, KeepsAThreadForInteractiveJobs) {

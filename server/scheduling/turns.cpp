@@ -1,0 +1,29 @@
+#include "server/scheduling/turns.h"
+
+#include <algorithm>
+
+namespace tribodyn::server {
+
+double Turns::next(const std::string& principal, double least_seconds, double work_seconds,
+                   Time now) {
+  using std::chrono::duration;
+  double seconds = std::max(least_seconds, kLeastSeconds);
+  const auto found = turns_.find(principal);
+  if (found != turns_.end()) {
+    seconds = std::max(seconds, duration<double>(found->second - now).count());
+    by_time_.erase({found->second, principal});
+    turns_.erase(found);
+  }
+  seconds = std::min(seconds, kMostSeconds);
+  const Time turn =
+      now + std::chrono::duration_cast<Time::duration>(duration<double>(seconds + work_seconds));
+  turns_.emplace(principal, turn);
+  by_time_.emplace(turn, principal);
+  while (!by_time_.empty() && (by_time_.begin()->first < now || by_time_.size() > kMostKept)) {
+    turns_.erase(by_time_.begin()->second);
+    by_time_.erase(by_time_.begin());
+  }
+  return seconds;
+}
+
+}  // namespace tribodyn::server
