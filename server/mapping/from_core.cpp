@@ -154,9 +154,9 @@ v1::EvaluateContactResponse to_message(const ContactSolution& s) {
   out.set_oil_temperature_rise_kelvin(s.oil_temperature_rise);
   out.set_pinion_active_length_metres(s.pinion_active_length);
   out.set_gear_active_length_metres(s.gear_active_length);
-  out.set_film_thermal_resistance_kelvins_per_watt(s.film_thermal_resistance);
-  out.set_pinion_thermal_resistance_kelvins_per_watt(s.pinion_thermal_resistance);
-  out.set_gear_thermal_resistance_kelvins_per_watt(s.gear_thermal_resistance);
+  out.set_film_thermal_resistance_kelvin_per_watt(s.film_thermal_resistance);
+  out.set_pinion_thermal_resistance_kelvin_per_watt(s.pinion_thermal_resistance);
+  out.set_gear_thermal_resistance_kelvin_per_watt(s.gear_thermal_resistance);
   out.set_heat_partition(s.heat_partition);
   out.set_mean_shear_stress_pascals(s.mean_shear_stress);
   out.set_viscous_friction_newtons(s.viscous_friction);

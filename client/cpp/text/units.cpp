@@ -28,7 +28,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 37> kUnitWor
     {"kilograms", "kg"},
     {"watts_per_metre_kelvin", "W/(m K)"},
     {"joules_per_kilogram_kelvin", "J/(kg K)"},
-    {"kelvins_per_watt", "K/W"},
+    {"kelvin_per_watt", "K/W"},
     {"watts", "W"},
     {"joules", "J"},
     {"newton_metres_per_radian", "N m/rad"},
