@@ -36,7 +36,7 @@ class Chunks final : public grpc::ServerWriteReactor<v1::ReadHistoryResponse> {
   v1::ReadHistoryResponse part_;
 };
 
-class EmptySimulations final : public v1::Simulations::CallbackService {
+class EmptySimulations final : public v1::SimulationService::CallbackService {
   grpc::ServerUnaryReactor* GetSimulation(grpc::CallbackServerContext* context,
                                           const v1::GetSimulationRequest*,
                                           v1::Simulation*) override {

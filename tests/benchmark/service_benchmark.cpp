@@ -39,7 +39,7 @@ namespace tribodyn::server {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Stub = v1::Simulations::Stub;
+using Stub = v1::SimulationService::Stub;
 using std::chrono::seconds;
 
 constexpr int kRuns = 5;
@@ -62,7 +62,7 @@ class Server {
     process_ = std::make_unique<ServerProcess>(all, folder_.file("log"));
     address_ = wait_for_address(folder_.file("port"), *process_);
     if (address_.empty()) throw std::runtime_error(process_->log());
-    stub_ = v1::Simulations::NewStub(connect(address_));
+    stub_ = v1::SimulationService::NewStub(connect(address_));
   }
   void stop() {
     process_->signal(SIGTERM);
@@ -80,7 +80,9 @@ class Server {
     own.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
     return grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), own);
   }
-  std::unique_ptr<Stub> another_stub() const { return v1::Simulations::NewStub(another_channel()); }
+  std::unique_ptr<Stub> another_stub() const {
+    return v1::SimulationService::NewStub(another_channel());
+  }
 
  private:
   TemporaryFolder folder_;
@@ -99,7 +101,7 @@ class EmptyServer {
     }
     std::string address;
     std::ifstream(folder_.file("port")) >> address;
-    stub_ = v1::Simulations::NewStub(connect(address));
+    stub_ = v1::SimulationService::NewStub(connect(address));
   }
   ~EmptyServer() { pclose(pipe_); }
   EmptyServer(const EmptyServer&) = delete;

@@ -55,7 +55,7 @@ void check(const grpc::Status& status) {
 class Client {
  public:
   Client(const std::string& address, int number)
-      : stub_(v1::Simulations::NewStub(connect(address))), number_(number) {}
+      : stub_(v1::SimulationService::NewStub(connect(address))), number_(number) {}
 
   /// Requests made.
   int round() {
@@ -66,7 +66,7 @@ class Client {
     const int speed = round_ % 3 == 0 ? round_ : round_ % 7;
     point->mutable_cruise()->set_speed_kilometres_per_hour(20 + number_ + 1e-4 * speed);
     point->mutable_history()->add_columns("mesh_force_newtons");
-    const std::string name = call(create, &v1::Simulations::Stub::CreateSimulation).name();
+    const std::string name = call(create, &v1::SimulationService::Stub::CreateSimulation).name();
     {
       grpc::ClientContext context;
       v1::WatchSimulationRequest watch;
@@ -89,10 +89,10 @@ class Client {
     }
     v1::GetSimulationRequest get;
     get.set_name(name);
-    for (int i = 0; i < 5; ++i) call(get, &v1::Simulations::Stub::GetSimulation);
+    for (int i = 0; i < 5; ++i) call(get, &v1::SimulationService::Stub::GetSimulation);
     v1::ListSimulationsRequest list;
     list.set_page_size(10);
-    call(list, &v1::Simulations::Stub::ListSimulations);
+    call(list, &v1::SimulationService::Stub::ListSimulations);
     ++round_;
     return 9;
   }
@@ -100,15 +100,15 @@ class Client {
  private:
   template <class Request, class Response>
   Response call(const Request& request,
-                grpc::Status (v1::Simulations::Stub::*method)(grpc::ClientContext*, const Request&,
-                                                              Response*)) {
+                grpc::Status (v1::SimulationService::Stub::*method)(grpc::ClientContext*,
+                                                                    const Request&, Response*)) {
     grpc::ClientContext context;
     Response response;
     check((*stub_.*method)(&context, request, &response));
     return response;
   }
 
-  std::unique_ptr<v1::Simulations::Stub> stub_;
+  std::unique_ptr<v1::SimulationService::Stub> stub_;
   int number_;
   int round_ = 0;
 };

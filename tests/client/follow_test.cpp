@@ -20,7 +20,7 @@ namespace {
 using State = v1::Simulation::State;
 
 /// A server whose watch streams follow a script: what a real one does only on bad days.
-class ScriptedServer final : public v1::Simulations::Service {
+class ScriptedServer final : public v1::SimulationService::Service {
  public:
   /// How one watch goes: these states are sent, then it ends like this, or waits to be cancelled.
   struct Watch {

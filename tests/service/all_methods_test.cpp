@@ -143,10 +143,10 @@ TEST_P(EveryMethod, NamesTheNearestForAnUnknownName) {
     inner->GetReflection()->SetString(inner, descriptor, value);
   };
   static const std::map<std::string, std::string> kCollections = {
-      {"Lubricants", "lubricants/1"},
-      {"GearSets", "gearSets/A"},
-      {"Surfaces", "surfaces/run-in"},
-      {"Vehicles", "vehicles/passenger-car"}};
+      {"LubricantService", "lubricants/1"},
+      {"GearSetService", "gearSets/A"},
+      {"SurfaceService", "surfaces/run-in"},
+      {"VehicleService", "vehicles/passenger-car"}};
   const auto known = kCollections.find(GetParam()->service()->name());
   if (known == kCollections.end()) {
     if (has("name")) {

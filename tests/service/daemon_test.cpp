@@ -31,7 +31,7 @@ class DaemonTest : public GrpcTest {
     do {
       grpc::ClientContext context;
       v1::ListLubricantsResponse page;
-      const auto stub = v1::Lubricants::NewStub(channel_);
+      const auto stub = v1::LubricantService::NewStub(channel_);
       const grpc::Status status = stub->ListLubricants(&context, request, &page);
       EXPECT_TRUE(status.ok()) << status.error_message();
       count += page.lubricants_size();
@@ -74,7 +74,8 @@ TEST_F(DaemonTest, AKillInTheMiddleOfABatchLeavesNothingHalfWritten) {
     std::thread sender([&] {
       grpc::ClientContext context;
       v1::BatchCreateLubricantsResponse response;
-      status = v1::Lubricants::NewStub(channel_)->BatchCreateLubricants(&context, batch, &response);
+      status = v1::LubricantService::NewStub(channel_)->BatchCreateLubricants(&context, batch,
+                                                                              &response);
     });
     std::this_thread::sleep_for(delay);
     process_->signal(SIGKILL);
@@ -312,7 +313,7 @@ TEST_F(FileSizeLimitTest, AFileThatMayNotGrowIsAFullDisk) {
   grpc::ClientContext context;
   v1::BatchCreateLubricantsResponse response;
   const grpc::Status status =
-      v1::Lubricants::NewStub(channel_)->BatchCreateLubricants(&context, batch, &response);
+      v1::LubricantService::NewStub(channel_)->BatchCreateLubricants(&context, batch, &response);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::UNAVAILABLE) << status.error_message();
   EXPECT_TRUE(process_->running()) << process_->log();
   EXPECT_EQ(count_of_lubricants("name:batch-"), 0);

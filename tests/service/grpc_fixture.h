@@ -40,7 +40,7 @@ class GrpcTest : public testing::Test {
     address_ = wait_for_address(folder_.file("port"), *process_);
     ASSERT_FALSE(address_.empty()) << process_->log();
     channel_ = connect(address_);
-    simulations_ = v1::Simulations::NewStub(channel_);
+    simulations_ = v1::SimulationService::NewStub(channel_);
   }
 
   grpc::Status create(const v1::Simulation& simulation, v1::Simulation* out) {
@@ -90,7 +90,7 @@ class GrpcTest : public testing::Test {
   std::unique_ptr<ServerProcess> process_;
   std::string address_;
   std::shared_ptr<grpc::Channel> channel_;
-  std::unique_ptr<v1::Simulations::Stub> simulations_;
+  std::unique_ptr<v1::SimulationService::Stub> simulations_;
 };
 
 }  // namespace tribodyn::server

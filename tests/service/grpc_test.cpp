@@ -44,8 +44,8 @@ TEST_F(GrpcTest, HealthAndReflectionAnswer) {
   EXPECT_TRUE(status.ok());
   EXPECT_EQ(health, std::string("\x08\x01", 2)) << "SERVING";
   const std::string services = client.list_services();
-  for (const char* name :
-       {"Lubricants", "GearSets", "Surfaces", "Vehicles", "Contacts", "Simulations"}) {
+  for (const char* name : {"LubricantService", "GearSetService", "SurfaceService", "VehicleService",
+                           "ContactService", "SimulationService"}) {
     EXPECT_THAT(services, HasSubstr(std::string("tribodyn.v1.") + name));
   }
 }
@@ -54,13 +54,14 @@ TEST_F(GrpcTest, ResourcesAreServed) {
   {
     grpc::ClientContext context;
     v1::ListLubricantsResponse response;
-    ASSERT_TRUE(v1::Lubricants::NewStub(channel_)->ListLubricants(&context, {}, &response).ok());
+    ASSERT_TRUE(
+        v1::LubricantService::NewStub(channel_)->ListLubricants(&context, {}, &response).ok());
     EXPECT_EQ(response.lubricants_size(), 3);
   }
   {
     grpc::ClientContext context;
     v1::ListGearSetsResponse response;
-    ASSERT_TRUE(v1::GearSets::NewStub(channel_)->ListGearSets(&context, {}, &response).ok());
+    ASSERT_TRUE(v1::GearSetService::NewStub(channel_)->ListGearSets(&context, {}, &response).ok());
     EXPECT_EQ(response.gear_sets_size(), 3);
   }
   {
@@ -68,7 +69,8 @@ TEST_F(GrpcTest, ResourcesAreServed) {
     v1::GetLubricantRequest request;
     request.set_name("lubricants/1");
     v1::Lubricant response;
-    ASSERT_TRUE(v1::Lubricants::NewStub(channel_)->GetLubricant(&context, request, &response).ok());
+    ASSERT_TRUE(
+        v1::LubricantService::NewStub(channel_)->GetLubricant(&context, request, &response).ok());
     EXPECT_EQ(response.pressure_viscosity_coefficient_per_pascal(), 1.609e-8);
   }
   {
@@ -76,7 +78,8 @@ TEST_F(GrpcTest, ResourcesAreServed) {
     v1::GetGearSetRequest request;
     request.set_name("gearSets/A");
     v1::GearSet response;
-    ASSERT_TRUE(v1::GearSets::NewStub(channel_)->GetGearSet(&context, request, &response).ok());
+    ASSERT_TRUE(
+        v1::GearSetService::NewStub(channel_)->GetGearSet(&context, request, &response).ok());
     EXPECT_EQ(response.revision(), 1);
     keep_client_part(response);
     clear_units(*response.mutable_provenance());
@@ -87,12 +90,13 @@ TEST_F(GrpcTest, ResourcesAreServed) {
     v1::GetSurfaceRequest request;
     request.set_name("surfaces/run-in");
     v1::Surface response;
-    EXPECT_TRUE(v1::Surfaces::NewStub(channel_)->GetSurface(&context, request, &response).ok());
+    EXPECT_TRUE(
+        v1::SurfaceService::NewStub(channel_)->GetSurface(&context, request, &response).ok());
   }
   {
     grpc::ClientContext context;
     v1::ListSurfacesResponse response;
-    ASSERT_TRUE(v1::Surfaces::NewStub(channel_)->ListSurfaces(&context, {}, &response).ok());
+    ASSERT_TRUE(v1::SurfaceService::NewStub(channel_)->ListSurfaces(&context, {}, &response).ok());
     EXPECT_EQ(response.surfaces_size(), 1);
   }
   {
@@ -100,12 +104,13 @@ TEST_F(GrpcTest, ResourcesAreServed) {
     v1::GetVehicleRequest request;
     request.set_name("vehicles/passenger-car");
     v1::Vehicle response;
-    EXPECT_TRUE(v1::Vehicles::NewStub(channel_)->GetVehicle(&context, request, &response).ok());
+    EXPECT_TRUE(
+        v1::VehicleService::NewStub(channel_)->GetVehicle(&context, request, &response).ok());
   }
   {
     grpc::ClientContext context;
     v1::ListVehiclesResponse response;
-    ASSERT_TRUE(v1::Vehicles::NewStub(channel_)->ListVehicles(&context, {}, &response).ok());
+    ASSERT_TRUE(v1::VehicleService::NewStub(channel_)->ListVehicles(&context, {}, &response).ok());
     EXPECT_EQ(response.vehicles_size(), 1);
   }
 }
@@ -113,8 +118,8 @@ TEST_F(GrpcTest, ResourcesAreServed) {
 TEST_F(GrpcTest, AContactIsEvaluated) {
   grpc::ClientContext context;
   v1::EvaluateContactResponse response;
-  const grpc::Status status =
-      v1::Contacts::NewStub(channel_)->EvaluateContact(&context, contact_request(), &response);
+  const grpc::Status status = v1::ContactService::NewStub(channel_)->EvaluateContact(
+      &context, contact_request(), &response);
   ASSERT_TRUE(status.ok()) << status.error_message();
   EXPECT_EQ(response.status(), "OK");
   EXPECT_GT(response.friction_newtons(), 0);
@@ -137,7 +142,7 @@ TEST_F(GrpcTest, EverythingWrongWithAContactArrivesInOneAnswer) {
   grpc::ClientContext context;
   v1::EvaluateContactResponse response;
   const grpc::Status status =
-      v1::Contacts::NewStub(channel_)->EvaluateContact(&context, request, &response);
+      v1::ContactService::NewStub(channel_)->EvaluateContact(&context, request, &response);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << status.error_message();
   EXPECT_EQ(detail<google::rpc::ErrorInfo>(status)->reason(), "INVALID_FIELDS");
   const auto bad = detail<google::rpc::BadRequest>(status);
@@ -348,7 +353,7 @@ TEST_F(GrpcTest, AWatcherThatNeverReadsHoldsUpNobody) {
   streams.reserve(200);
   for (int i = 0; i < 200; ++i) {
     streams.push_back(
-        client.open("/tribodyn.v1.Simulations/WatchSimulation", request.SerializeAsString()));
+        client.open("/tribodyn.v1.SimulationService/WatchSimulation", request.SerializeAsString()));
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   EXPECT_EQ(cancel(running.name()).state(), v1::Simulation::CANCELLED);
@@ -374,9 +379,10 @@ TEST_F(GrpcTest, GarbageNeitherCrashesNorHangsIt) {
   RawClient client(channel_);
   std::mt19937 random(20261121);
   for (const char* method :
-       {"Lubricants/GetLubricant", "Lubricants/ListLubricants", "GearSets/GetGearSet",
-        "Contacts/EvaluateContact", "Simulations/CreateSimulation", "Simulations/GetSimulation",
-        "Simulations/ListSimulations", "Simulations/CancelSimulation"}) {
+       {"LubricantService/GetLubricant", "LubricantService/ListLubricants",
+        "GearSetService/GetGearSet", "ContactService/EvaluateContact",
+        "SimulationService/CreateSimulation", "SimulationService/GetSimulation",
+        "SimulationService/ListSimulations", "SimulationService/CancelSimulation"}) {
     for (int i = 0; i < 50; ++i) {
       std::string bytes(random() % 300, '\0');
       for (char& byte : bytes) byte = static_cast<char>(random());
@@ -385,9 +391,9 @@ TEST_F(GrpcTest, GarbageNeitherCrashesNorHangsIt) {
   }
   std::string huge;
   huge.resize(70'000'000, 'x');
-  EXPECT_EQ(client.call("/tribodyn.v1.Contacts/EvaluateContact", huge).first.error_code(),
+  EXPECT_EQ(client.call("/tribodyn.v1.ContactService/EvaluateContact", huge).first.error_code(),
             grpc::StatusCode::RESOURCE_EXHAUSTED);
-  const grpc::Status unknown = client.call("/tribodyn.v1.Contacts/NoSuchMethod", "").first;
+  const grpc::Status unknown = client.call("/tribodyn.v1.ContactService/NoSuchMethod", "").first;
   EXPECT_EQ(unknown.error_code(), grpc::StatusCode::UNIMPLEMENTED);
   EXPECT_EQ(detail<google::rpc::ErrorInfo>(unknown)->reason(), "UNKNOWN_METHOD");
   if (const auto port = address_.rfind(':'); port != std::string::npos) {
@@ -397,7 +403,7 @@ TEST_F(GrpcTest, GarbageNeitherCrashesNorHangsIt) {
   EXPECT_TRUE(process_->running());
   grpc::ClientContext context;
   v1::ListVehiclesResponse response;
-  EXPECT_TRUE(v1::Vehicles::NewStub(channel_)->ListVehicles(&context, {}, &response).ok());
+  EXPECT_TRUE(v1::VehicleService::NewStub(channel_)->ListVehicles(&context, {}, &response).ok());
 }
 
 class FewFilesTest : public GrpcTest {
@@ -409,7 +415,7 @@ class FewFilesTest : public GrpcTest {
   grpc::Status list_vehicles(const std::shared_ptr<grpc::Channel>& channel) {
     grpc::ClientContext context;
     v1::ListVehiclesResponse response;
-    return v1::Vehicles::NewStub(channel)->ListVehicles(&context, {}, &response);
+    return v1::VehicleService::NewStub(channel)->ListVehicles(&context, {}, &response);
   }
 };
 
@@ -433,7 +439,8 @@ TEST_F(GrpcTest, NoFormulationAppearsInTheLog) {
   request.mutable_lubricant_parameters()->set_relaxation_time_seconds(-1.23454321);
   grpc::ClientContext context;
   v1::EvaluateContactResponse response;
-  EXPECT_FALSE(v1::Contacts::NewStub(channel_)->EvaluateContact(&context, request, &response).ok());
+  EXPECT_FALSE(
+      v1::ContactService::NewStub(channel_)->EvaluateContact(&context, request, &response).ok());
   v1::Simulation simulation = point_simulation();
   simulation.set_display_name("SecretFluid");
   simulation.set_sump_temperature_celsius(12.345);

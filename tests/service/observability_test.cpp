@@ -121,7 +121,7 @@ TEST_F(ObservabilityTest, OneIdJoinsRequestJobAndResultInTheLog) {
 }
 
 TEST_F(ObservabilityTest, NoFormulationIsLogged) {
-  auto lubricants = v1::Lubricants::NewStub(channel_);
+  auto lubricants = v1::LubricantService::NewStub(channel_);
   v1::CreateLubricantRequest fresh;
   fresh.set_lubricant_id("hushed-blend");
   v1::Lubricant& fluid = *fresh.mutable_lubricant();

@@ -63,7 +63,8 @@ std::string empty_flank_slots(std::size_t bytes) {
 TEST_F(Transport, ARequestThatGrowsWhenItIsParsedIsRefusedBefore) {
   constexpr long kMebibytes = 8;
   const long before = process_->peak_memory_kibibytes();
-  const grpc::Status status = call("GearSets/CreateGearSet", empty_flank_slots(kMebibytes << 20));
+  const grpc::Status status =
+      call("GearSetService/CreateGearSet", empty_flank_slots(kMebibytes << 20));
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_THAT(all_of(status), HasSubstr("gear_set.flank_slots: 4194301 entries; legal: at most 3"));
   // Parsed, they take 348 times as much.
@@ -74,8 +75,9 @@ TEST_F(Transport, ARequestThatGrowsWhenItIsParsedIsRefusedBefore) {
 
 TEST_F(Transport, ARequestOfTooManyBytesIsRefusedByItsMethod) {
   const std::string two_mebibytes(2 << 20, '\0');
-  for (const char* method : {"Simulations/CreateSimulation", "Lubricants/ListLubricants",
-                             "Contacts/EvaluateContact", "Lubricants/UpdateLubricant"}) {
+  for (const char* method :
+       {"SimulationService/CreateSimulation", "LubricantService/ListLubricants",
+        "ContactService/EvaluateContact", "LubricantService/UpdateLubricant"}) {
     const grpc::Status status = call(method, two_mebibytes);
     EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << method;
     EXPECT_THAT(all_of(status), HasSubstr("the request has 2097152 bytes; legal: at most 1048576"));
@@ -84,8 +86,8 @@ TEST_F(Transport, ARequestOfTooManyBytesIsRefusedByItsMethod) {
 
 TEST_F(Transport, AnUnreadableRequestIsAnInvalidArgument) {
   const std::string no_utf8("\x0a\x04\xff\xfe\xfd\xfc");
-  for (const char* method :
-       {"Lubricants/GetLubricant", "Simulations/CancelSimulation", "Simulations/WatchSimulation"}) {
+  for (const char* method : {"LubricantService/GetLubricant", "SimulationService/CancelSimulation",
+                             "SimulationService/WatchSimulation"}) {
     for (const std::string& bytes : {no_utf8, std::string("\x0a\x7f"), std::string("\x0b\x0b")}) {
       const grpc::Status status = call(method, bytes);
       EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << method;
@@ -96,7 +98,7 @@ TEST_F(Transport, AnUnreadableRequestIsAnInvalidArgument) {
 }
 
 TEST_F(Transport, UnreadableRequestsDoNotFloodTheLog) {
-  for (int i = 0; i < 300; ++i) call("Lubricants/GetLubricant", "\x0a\x04\xff\xfe\xfd\xfc");
+  for (int i = 0; i < 300; ++i) call("LubricantService/GetLubricant", "\x0a\x04\xff\xfe\xfd\xfc");
   std::istringstream log(process_->log());
   const std::regex own(R"(\[\d{4}-.*\] \[tribodynd\] \[\w+\] .*)");
   int reports = 0;
@@ -114,7 +116,8 @@ std::vector<std::unique_ptr<HalfSentCall>> half_sent(int port, int count, std::s
   std::vector<std::thread> threads;
   for (auto& each : calls) {
     threads.emplace_back([&each, port, size] {
-      each = std::make_unique<HalfSentCall>(port, "/tribodyn.v1.GearSets/CreateGearSet", size);
+      each =
+          std::make_unique<HalfSentCall>(port, "/tribodyn.v1.GearSetService/CreateGearSet", size);
     });
   }
   for (std::thread& thread : threads) thread.join();
@@ -127,7 +130,8 @@ TEST_F(Transport, HalfSentRequestsShareALimitOfMemoryAndKeepNobodyOut) {
   const auto calls = half_sent(port(), kUnderSanitizer ? 1 : kCalls, kBytes);
   EXPECT_LT(process_->peak_memory_kibibytes(), 240 * 1024) << "not the sum of them";
   const auto channel = connect(address_);
-  EXPECT_TRUE(RawClient(channel).call("/tribodyn.v1.Lubricants/ListLubricants", "").first.ok());
+  EXPECT_TRUE(
+      RawClient(channel).call("/tribodyn.v1.LubricantService/ListLubricants", "").first.ok());
 }
 
 TEST_F(Transport, AHalfSentRequestHoldsUpNoShutdown) {

@@ -25,13 +25,13 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   services_->timeout = timeout;
   services_->channel =
       grpc::CreateCustomChannel(services_->address, grpc::InsecureChannelCredentials(), arguments);
-  services_->lubricants = v1::Lubricants::NewStub(services_->channel);
-  services_->gear_sets = v1::GearSets::NewStub(services_->channel);
-  services_->surfaces = v1::Surfaces::NewStub(services_->channel);
-  services_->vehicles = v1::Vehicles::NewStub(services_->channel);
-  services_->simulations = v1::Simulations::NewStub(services_->channel);
-  services_->contacts = v1::Contacts::NewStub(services_->channel);
-  services_->schemas = v1::Schemas::NewStub(services_->channel);
+  services_->lubricants = v1::LubricantService::NewStub(services_->channel);
+  services_->gear_sets = v1::GearSetService::NewStub(services_->channel);
+  services_->surfaces = v1::SurfaceService::NewStub(services_->channel);
+  services_->vehicles = v1::VehicleService::NewStub(services_->channel);
+  services_->simulations = v1::SimulationService::NewStub(services_->channel);
+  services_->contacts = v1::ContactService::NewStub(services_->channel);
+  services_->schemas = v1::SchemaService::NewStub(services_->channel);
 }
 
 Connection::~Connection() = default;
@@ -43,12 +43,12 @@ const std::string& Connection::address() const { return services_->address; }
 v1::Schema Connection::schema(const std::string& message) {
   v1::GetSchemaRequest request;
   request.set_message(message);
-  return services_->call(*services_->schemas, &v1::Schemas::Stub::GetSchema, request);
+  return services_->call(*services_->schemas, &v1::SchemaService::Stub::GetSchema, request);
 }
 
 v1::EvaluateContactResponse Connection::evaluate_contact(
     const v1::EvaluateContactRequest& request) {
-  return services_->call(*services_->contacts, &v1::Contacts::Stub::EvaluateContact, request);
+  return services_->call(*services_->contacts, &v1::ContactService::Stub::EvaluateContact, request);
 }
 
 }  // namespace tribodyn::client

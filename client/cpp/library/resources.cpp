@@ -13,7 +13,7 @@ struct Methods;
 #define TRIBODYN_METHODS(Resource, field)                                                        \
   template <>                                                                                    \
   struct Methods<v1::Resource> {                                                                 \
-    using Stub = v1::Resource##s::Stub;                                                          \
+    using Stub = v1::Resource##Service::Stub;                                                    \
     using Create = v1::Create##Resource##Request;                                                \
     using Get = v1::Get##Resource##Request;                                                      \
     using List = v1::List##Resource##sRequest;                                                   \
@@ -197,15 +197,17 @@ TRIBODYN_INSTANTIATE(Vehicle);
 #undef TRIBODYN_INSTANTIATE
 
 v1::Lubricant Connection::import_lubricant(const v1::ImportLubricantRequest& request) {
-  return services_->call(*services_->lubricants, &v1::Lubricants::Stub::ImportLubricant, request);
+  return services_->call(*services_->lubricants, &v1::LubricantService::Stub::ImportLubricant,
+                         request);
 }
 
 v1::GearSet Connection::import_gear_set(const v1::ImportGearSetRequest& request) {
-  return services_->call(*services_->gear_sets, &v1::GearSets::Stub::ImportGearSet, request);
+  return services_->call(*services_->gear_sets, &v1::GearSetService::Stub::ImportGearSet, request);
 }
 
 v1::Surface Connection::import_surface_profiles(const v1::ImportSurfaceProfilesRequest& request) {
-  return services_->call(*services_->surfaces, &v1::Surfaces::Stub::ImportSurfaceProfiles, request);
+  return services_->call(*services_->surfaces, &v1::SurfaceService::Stub::ImportSurfaceProfiles,
+                         request);
 }
 
 }  // namespace tribodyn::client

@@ -28,13 +28,13 @@ struct Connection::Services {
   std::string address;
   std::chrono::duration<double> timeout;
   std::shared_ptr<grpc::Channel> channel;
-  std::unique_ptr<v1::Lubricants::Stub> lubricants;
-  std::unique_ptr<v1::GearSets::Stub> gear_sets;
-  std::unique_ptr<v1::Surfaces::Stub> surfaces;
-  std::unique_ptr<v1::Vehicles::Stub> vehicles;
-  std::unique_ptr<v1::Simulations::Stub> simulations;
-  std::unique_ptr<v1::Contacts::Stub> contacts;
-  std::unique_ptr<v1::Schemas::Stub> schemas;
+  std::unique_ptr<v1::LubricantService::Stub> lubricants;
+  std::unique_ptr<v1::GearSetService::Stub> gear_sets;
+  std::unique_ptr<v1::SurfaceService::Stub> surfaces;
+  std::unique_ptr<v1::VehicleService::Stub> vehicles;
+  std::unique_ptr<v1::SimulationService::Stub> simulations;
+  std::unique_ptr<v1::ContactService::Stub> contacts;
+  std::unique_ptr<v1::SchemaService::Stub> schemas;
 
   /// One call within the time limit. A server that goes away or turns it away is asked again, with
   /// pauses, where that is safe.

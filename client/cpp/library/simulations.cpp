@@ -38,7 +38,7 @@ v1::Simulation Connection::create_simulation(const v1::Simulation& simulation,
   request.set_validate_only(options.validate_only);
   request.set_force(options.force);
   request.set_request_id(options.request_id.empty() ? new_request_id() : options.request_id);
-  return services_->call(*services_->simulations, &v1::Simulations::Stub::CreateSimulation,
+  return services_->call(*services_->simulations, &v1::SimulationService::Stub::CreateSimulation,
                          request);
 }
 
@@ -46,26 +46,29 @@ v1::Simulation Connection::get_simulation(const std::string& name) {
   v1::GetSimulationRequest request;
   request.set_name(name);
   request.set_view(v1::SIMULATION_VIEW_FULL);
-  return services_->call(*services_->simulations, &v1::Simulations::Stub::GetSimulation, request);
+  return services_->call(*services_->simulations, &v1::SimulationService::Stub::GetSimulation,
+                         request);
 }
 
 v1::Simulation Connection::cancel_simulation(const std::string& name) {
   v1::CancelSimulationRequest request;
   request.set_name(name);
-  return services_->call(*services_->simulations, &v1::Simulations::Stub::CancelSimulation,
+  return services_->call(*services_->simulations, &v1::SimulationService::Stub::CancelSimulation,
                          request);
 }
 
 v1::Simulation Connection::pin_simulation(const std::string& name) {
   v1::PinSimulationRequest request;
   request.set_name(name);
-  return services_->call(*services_->simulations, &v1::Simulations::Stub::PinSimulation, request);
+  return services_->call(*services_->simulations, &v1::SimulationService::Stub::PinSimulation,
+                         request);
 }
 
 v1::Simulation Connection::unpin_simulation(const std::string& name) {
   v1::UnpinSimulationRequest request;
   request.set_name(name);
-  return services_->call(*services_->simulations, &v1::Simulations::Stub::UnpinSimulation, request);
+  return services_->call(*services_->simulations, &v1::SimulationService::Stub::UnpinSimulation,
+                         request);
 }
 
 Listing<v1::Simulation> Connection::list_simulations(const ListOptions& options) {
@@ -78,8 +81,8 @@ Listing<v1::Simulation> Connection::list_simulations(const ListOptions& options)
   do {
     const int missing = limit - static_cast<int>(all.resources.size());
     request.set_page_size(limit == 0 ? kLargestPage : std::min(missing, kLargestPage));
-    const auto page =
-        services_->call(*services_->simulations, &v1::Simulations::Stub::ListSimulations, request);
+    const auto page = services_->call(*services_->simulations,
+                                      &v1::SimulationService::Stub::ListSimulations, request);
     all.resources.insert(all.resources.end(), page.simulations().begin(), page.simulations().end());
     request.set_page_token(page.next_page_token());
   } while (!request.page_token().empty() &&

@@ -217,7 +217,7 @@ class Binder {
 };
 
 std::unique_ptr<grpc::Service> lubricants(const std::shared_ptr<Serving>& serving) {
-  Binder bind(serving, *v1::Lubricant::descriptor(), "Lubricants");
+  Binder bind(serving, *v1::Lubricant::descriptor(), "LubricantService");
   bind.unary("CreateLubricant", create_lubricant);
   bind.unary("BatchCreateLubricants", batch_create_lubricants);
   bind.unary("ImportLubricant", import_lubricant);
@@ -232,7 +232,7 @@ std::unique_ptr<grpc::Service> lubricants(const std::shared_ptr<Serving>& servin
 }
 
 std::unique_ptr<grpc::Service> gear_sets(const std::shared_ptr<Serving>& serving) {
-  Binder bind(serving, *v1::GearSet::descriptor(), "GearSets");
+  Binder bind(serving, *v1::GearSet::descriptor(), "GearSetService");
   bind.unary("CreateGearSet", create_gear_set);
   bind.unary("BatchCreateGearSets", batch_create_gear_sets);
   bind.unary("ImportGearSet", import_gear_set);
@@ -247,7 +247,7 @@ std::unique_ptr<grpc::Service> gear_sets(const std::shared_ptr<Serving>& serving
 }
 
 std::unique_ptr<grpc::Service> surfaces(const std::shared_ptr<Serving>& serving) {
-  Binder bind(serving, *v1::Surface::descriptor(), "Surfaces");
+  Binder bind(serving, *v1::Surface::descriptor(), "SurfaceService");
   bind.unary("CreateSurface", create_surface);
   bind.unary("BatchCreateSurfaces", batch_create_surfaces);
   bind.unary("ImportSurfaceProfiles", import_surface_profiles);
@@ -262,7 +262,7 @@ std::unique_ptr<grpc::Service> surfaces(const std::shared_ptr<Serving>& serving)
 }
 
 std::unique_ptr<grpc::Service> vehicles(const std::shared_ptr<Serving>& serving) {
-  Binder bind(serving, *v1::Vehicle::descriptor(), "Vehicles");
+  Binder bind(serving, *v1::Vehicle::descriptor(), "VehicleService");
   bind.unary("CreateVehicle", create_vehicle);
   bind.unary("BatchCreateVehicles", batch_create_vehicles);
   bind.unary("GetVehicle", get_vehicle);
@@ -276,19 +276,19 @@ std::unique_ptr<grpc::Service> vehicles(const std::shared_ptr<Serving>& serving)
 }
 
 std::unique_ptr<grpc::Service> schemas(const std::shared_ptr<Serving>& serving) {
-  Binder bind(serving, *v1::Schema::descriptor(), "Schemas");
+  Binder bind(serving, *v1::Schema::descriptor(), "SchemaService");
   bind.unary("GetSchema", get_schema);
   return bind.service();
 }
 
 std::unique_ptr<grpc::Service> contacts(const std::shared_ptr<Serving>& serving) {
-  Binder bind(serving, *v1::EvaluateContactRequest::descriptor(), "Contacts");
+  Binder bind(serving, *v1::EvaluateContactRequest::descriptor(), "ContactService");
   bind.unary("EvaluateContact", evaluate_contact);
   return bind.service();
 }
 
 std::unique_ptr<grpc::Service> simulations(const std::shared_ptr<Serving>& serving) {
-  Binder bind(serving, *v1::Simulation::descriptor(), "Simulations");
+  Binder bind(serving, *v1::Simulation::descriptor(), "SimulationService");
   bind.unary("CreateSimulation", create_simulation, Thread::kOfAWorker);
   bind.unary("GetSimulation", get_simulation);
   bind.unary("ListSimulations", list_simulations);
