@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "proto/enum_names.h"
 #include "server/application/computed_fields.h"
 #include "server/contract/output_only.h"
 #include "server/contract/resource_names.h"
@@ -20,6 +21,7 @@ namespace tribodyn::server {
 namespace {
 
 using Comparison = Restriction::Comparison;
+using google::protobuf::FieldDescriptor;
 using google::protobuf::util::TimeUtil;
 
 constexpr std::string_view kLabels = "labels.";
@@ -125,7 +127,7 @@ std::string named_collection(const std::string& key, const std::string& collecti
   return key == "lubricant" ? kLubricants : "";
 }
 
-/// "SUCCEEDED" of "succeeded", "GROUP_III" of "group-iii": as tables and flags write an enum.
+/// Returns "GROUP_III" of "group-iii", as tables and flags write an enum.
 std::string enum_name_of(std::string word) {
   std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) {
     return c == '-' || c == ' ' ? '_' : static_cast<char>(std::toupper(c));
@@ -159,16 +161,15 @@ std::optional<PropertyValue> time_value(const std::string& text) {
   return TimeUtil::TimestampToMicroseconds(time);
 }
 
-/// A state is never unspecified; what a resource states may be.
-std::vector<std::string> enum_names(const std::string& key, const std::string& collection) {
-  const auto message = new_resource(collection);
-  const auto* field = message->GetDescriptor()->FindFieldByName(key);
-  const bool may_be_missing = !is_output_only(*field);
-  const auto* values = field->enum_type();
+/// Returns the short names of the values of a field. Zero is among them unless the server sets the
+/// field: a state is never unspecified.
+std::vector<std::string> enum_names(const FieldDescriptor& field) {
+  const bool may_be_missing = !is_output_only(field);
+  const auto* values = field.enum_type();
   std::vector<std::string> names;
   for (int i = 0; i < values->value_count(); ++i) {
     if (may_be_missing || values->value(i)->number() != 0)
-      names.push_back(values->value(i)->name());
+      names.push_back(short_name(*values->value(i)));
   }
   return names;
 }
@@ -268,8 +269,11 @@ class FilterReader {
   }
 
   void read_enum(const Token& value, Restriction& out) {
-    const std::vector<std::string> names = enum_names(out.key, collection_);
-    const std::string name = enum_name_of(value.text);
+    const auto message = new_resource(collection_);
+    const auto& field = *message->GetDescriptor()->FindFieldByName(out.key);
+    const std::vector<std::string> names = enum_names(field);
+    std::string name = enum_name_of(value.text);
+    if (const auto* found = find_value(*field.enum_type(), name)) name = short_name(*found);
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       return complain(fmt::format("{} = \"{}\" is unknown{}", out.key, plain_excerpt(value.text),
                                   meant_text(name, names)));

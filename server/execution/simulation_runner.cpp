@@ -141,7 +141,8 @@ Solved SimulationRunner::solve_timed(const SimulationInputs& inputs,
                                                            : asked.inefficiency_curve().model();
   const StopWatch watch;
   Solved solved = solve(inputs, studies_, gear_sets_, report);
-  metrics_.observe(model == v1::QUASI_STATIC ? Phase::kFriction : Phase::kOrbit, watch.seconds());
+  metrics_.observe(model == v1::POINT_MODEL_QUASI_STATIC ? Phase::kFriction : Phase::kOrbit,
+                   watch.seconds());
   return solved;
 }
 

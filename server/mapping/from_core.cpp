@@ -92,19 +92,20 @@ void set_losses(v1::PointResult* out, const PointResult& result) {
 v1::PointModel point_model(PointModel model) {
   switch (model) {
     case PointModel::kQuasiStatic:
-      return v1::QUASI_STATIC;
+      return v1::POINT_MODEL_QUASI_STATIC;
     case PointModel::kOneDegree:
-      return v1::ONE_DEGREE;
+      return v1::POINT_MODEL_ONE_DEGREE;
     default:
-      return v1::FULL;
+      return v1::POINT_MODEL_FULL;
   }
 }
 
 void set_solver(v1::PointResult* out, const PointResult& result) {
   out->set_model(point_model(result.model));
   if (result.model != PointModel::kQuasiStatic) {
-    out->set_steady_state_method(result.method == SteadyStateMethod::kShooting ? v1::SHOOTING
-                                                                               : v1::MARCH);
+    out->set_steady_state_method(result.method == SteadyStateMethod::kShooting
+                                     ? v1::STEADY_STATE_METHOD_SHOOTING
+                                     : v1::STEADY_STATE_METHOD_MARCH);
   }
   out->set_settled(result.settled);
   out->set_period_in_mesh_cycles(result.period_in_mesh_cycles);

@@ -118,9 +118,10 @@ ModelOptions to_core(const v1::ModelOptions& message) {
       .subtract_contact_point_motion = message.subtract_contact_point_motion(),
       .load_dependent_mesh_data = message.load_dependent_mesh_data(),
       .tabulated_friction_arms = message.tabulated_friction_arms(),
-      .pressure_viscosity_index = message.pressure_viscosity_index() == v1::ModelOptions::HOUPERT
-                                      ? PressureViscosityIndex::kHoupert
-                                      : PressureViscosityIndex::kReciprocalAsymptotic,
+      .pressure_viscosity_index =
+          message.pressure_viscosity_index() == v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT
+              ? PressureViscosityIndex::kHoupert
+              : PressureViscosityIndex::kReciprocalAsymptotic,
       .hertz_solution = message.exact_hertz() ? HertzSolution::kExact : HertzSolution::kSimplified,
       .hertz_load = message.hertz_from_total_load() ? HertzLoad::kTotalLoad : HertzLoad::kFilmLoad,
       .as_published = {.eq17_atan = published.eq17_atan(),

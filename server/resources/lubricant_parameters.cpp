@@ -102,19 +102,19 @@ v1::Provenance to_message(Provenance provenance) {
 
 BaseOilClass to_core(v1::Lubricant::BaseOilClass base_oil) {
   switch (base_oil) {
-    case v1::Lubricant::GROUP_I:
+    case v1::Lubricant::BASE_OIL_CLASS_GROUP_I:
       return BaseOilClass::kGroupI;
-    case v1::Lubricant::GROUP_II:
+    case v1::Lubricant::BASE_OIL_CLASS_GROUP_II:
       return BaseOilClass::kGroupII;
-    case v1::Lubricant::GROUP_III:
+    case v1::Lubricant::BASE_OIL_CLASS_GROUP_III:
       return BaseOilClass::kGroupIII;
-    case v1::Lubricant::POLYALPHAOLEFIN:
+    case v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN:
       return BaseOilClass::kPolyalphaolefin;
-    case v1::Lubricant::ESTER:
+    case v1::Lubricant::BASE_OIL_CLASS_ESTER:
       return BaseOilClass::kEster;
-    case v1::Lubricant::POLYALKYLENE_GLYCOL:
+    case v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL:
       return BaseOilClass::kPolyalkyleneGlycol;
-    case v1::Lubricant::NAPHTHENIC:
+    case v1::Lubricant::BASE_OIL_CLASS_NAPHTHENIC:
       return BaseOilClass::kNaphthenic;
     default:
       return BaseOilClass::kUnspecified;

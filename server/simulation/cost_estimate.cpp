@@ -53,9 +53,9 @@ void add_shot_point(double speed_kilometres_per_hour, const v1::SolverOptions& s
 
 void add_point(double speed_kilometres_per_hour, v1::PointModel model,
                const v1::SolverOptions& solver, v1::CostEstimate& out) {
-  if (model == v1::QUASI_STATIC) {
+  if (model == v1::POINT_MODEL_QUASI_STATIC) {
     add(kQuasiStaticPoint, std::pow(times_sharper(solver), kQuasiStaticOrder), out);
-  } else if (solver.method() == v1::MARCH) {
+  } else if (solver.method() == v1::STEADY_STATE_METHOD_MARCH) {
     add(kMarchedCycle, std::min<double>(kUsualMarchedCycles, solver.maximum_mesh_cycles()), out);
   } else {
     add_shot_point(speed_kilometres_per_hour, solver, out);
@@ -76,7 +76,7 @@ void add_curve(const v1::InefficiencyCurveStudy& curve, const v1::SolverOptions&
                v1::CostEstimate& out) {
   const auto& speeds = curve.speeds_kilometres_per_hour();
   for (const double speed : speeds) add_point(speed, curve.model(), solver, out);
-  if (curve.model() == v1::QUASI_STATIC || curve.independent_points()) return;
+  if (curve.model() == v1::POINT_MODEL_QUASI_STATIC || curve.independent_points()) return;
   out.set_processor_seconds(out.processor_seconds() + following_seconds(speeds));
 }
 
@@ -113,7 +113,8 @@ void add_study(const v1::Simulation& effective, v1::CostEstimate& out) {
   const double speed = speed_of(point);
   add_point(speed, point.model(), solver, out);
   if (point.probe_coexisting_response()) add_point(speed, point.model(), solver, out);
-  if (point.has_history()) add_history(point.history(), solver.method() == v1::MARCH, out);
+  if (point.has_history())
+    add_history(point.history(), solver.method() == v1::STEADY_STATE_METHOD_MARCH, out);
 }
 
 /// To two digits.

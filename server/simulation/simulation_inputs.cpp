@@ -18,10 +18,12 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 void fill_options(v1::ModelOptions* options) {
   if (options->as_published().eq31_32_logarithm()) {
-    options->set_pressure_viscosity_index(v1::ModelOptions::HOUPERT);  // the misprint is in eq 32
+    options->set_pressure_viscosity_index(
+        v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT);  // the misprint is in eq 32
   } else if (options->pressure_viscosity_index() ==
              v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_UNSPECIFIED) {
-    options->set_pressure_viscosity_index(v1::ModelOptions::RECIPROCAL_ASYMPTOTIC);
+    options->set_pressure_viscosity_index(
+        v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_RECIPROCAL_ASYMPTOTIC);
   }
   options->mutable_as_published();
 }
@@ -35,7 +37,8 @@ void fill_solver(v1::SolverOptions* solver) {
     solver->set_settling_tolerance(defaults.settling_tolerance);
   }
   if (solver->tolerance() == 0) solver->set_tolerance(defaults.tolerance);
-  if (solver->method() == v1::STEADY_STATE_METHOD_UNSPECIFIED) solver->set_method(v1::AUTOMATIC);
+  if (solver->method() == v1::STEADY_STATE_METHOD_UNSPECIFIED)
+    solver->set_method(v1::STEADY_STATE_METHOD_AUTOMATIC);
   if (solver->maximum_mesh_cycles() == 0) {
     solver->set_maximum_mesh_cycles(defaults.maximum_mesh_cycles);
   }
@@ -47,10 +50,10 @@ void fill_solver(v1::SolverOptions* solver) {
 template <class StudyMessage>
 void fill_model_and_start(StudyMessage* study) {
   if (study->model() == v1::POINT_MODEL_UNSPECIFIED) {
-    study->set_model(v1::AUTOMATIC_MODEL);
+    study->set_model(v1::POINT_MODEL_AUTOMATIC);
   }
   if (study->start() == v1::POINT_START_UNSPECIFIED) {
-    study->set_start(v1::QUASI_STATIC_EQUILIBRIUM);
+    study->set_start(v1::POINT_START_QUASI_STATIC_EQUILIBRIUM);
   }
 }
 
@@ -67,7 +70,7 @@ void fill_operating_point(v1::OperatingPointStudy* study) {
 void fill_curve(v1::InefficiencyCurveStudy* study) {
   fill_model_and_start(study);
   if (study->direction() == v1::SWEEP_DIRECTION_UNSPECIFIED && !study->independent_points()) {
-    study->set_direction(v1::UP);
+    study->set_direction(v1::SWEEP_DIRECTION_UP);
   }
   const std::vector<double> speeds = curve_speeds(*study);
   *study->mutable_speeds_kilometres_per_hour() = {speeds.begin(), speeds.end()};
@@ -128,11 +131,11 @@ OperatingCondition condition(const v1::OperatingPointStudy& study) {
 
 PointModel point_model(v1::PointModel model) {
   switch (model) {
-    case v1::FULL:
+    case v1::POINT_MODEL_FULL:
       return PointModel::kFull;
-    case v1::QUASI_STATIC:
+    case v1::POINT_MODEL_QUASI_STATIC:
       return PointModel::kQuasiStatic;
-    case v1::ONE_DEGREE:
+    case v1::POINT_MODEL_ONE_DEGREE:
       return PointModel::kOneDegree;
     default:
       return PointModel::kAutomatic;
@@ -141,9 +144,9 @@ PointModel point_model(v1::PointModel model) {
 
 SteadyStateMethod steady_state_method(v1::SteadyStateMethod method) {
   switch (method) {
-    case v1::SHOOTING:
+    case v1::STEADY_STATE_METHOD_SHOOTING:
       return SteadyStateMethod::kShooting;
-    case v1::MARCH:
+    case v1::STEADY_STATE_METHOD_MARCH:
       return SteadyStateMethod::kMarch;
     default:
       return SteadyStateMethod::kAutomatic;
@@ -154,7 +157,8 @@ PointOptions point_options(const v1::SolverOptions& solver, v1::PointModel model
                            v1::PointStart start) {
   PointOptions out;
   out.model = point_model(model);
-  out.start = start == v1::LARGE_VIBRATION ? PointStart::kLargeVibration : PointStart::kQuasiStatic;
+  out.start = start == v1::POINT_START_LARGE_VIBRATION ? PointStart::kLargeVibration
+                                                       : PointStart::kQuasiStatic;
   out.method = steady_state_method(solver.method());
   out.tolerance = solver.tolerance();
   out.relative_tolerance = solver.relative_tolerance();
@@ -266,7 +270,7 @@ Study study(const SimulationInputs& inputs) {
   }
   out.ascent_angle = message.ascent_angle_degrees() * kRadiansPerDegree;
   out.options.direction =
-      message.direction() == v1::DOWN ? SweepDirection::kDown : SweepDirection::kUp;
+      message.direction() == v1::SWEEP_DIRECTION_DOWN ? SweepDirection::kDown : SweepDirection::kUp;
   out.options.point = point_options(solver, message.model(), message.start());
   out.options.independent_points = message.independent_points();
   return out;

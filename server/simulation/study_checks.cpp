@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/study/history.h"
+#include "proto/enum_names.h"
 #include "server/contract/constraints.h"
 #include "server/contract/resource_names.h"
 #include "server/mapping/history_columns.h"
@@ -137,7 +138,7 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
         {join_path(path, "direction"),
          fmt::format("direction = {} together with independent_points; legal: unset, as a "
                      "direction is that in which a branch is followed from point to point",
-                     v1::SweepDirection_Name(study.direction()))});
+                     short_name(*v1::SweepDirection_descriptor(), study.direction()))});
   }
   const bool explicit_speeds = !study.speeds_kilometres_per_hour().empty();
   const std::string speeds = join_path(path, "speeds_kilometres_per_hour");

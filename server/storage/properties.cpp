@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 
+#include "proto/enum_names.h"
 #include "server/storage/resource_types.h"
 #include "tribodyn/v1/annotations.pb.h"
 #include "tribodyn/v1/labels.pb.h"
@@ -105,7 +106,7 @@ std::vector<Property> properties_of(std::string_view collection, const std::stri
       case PropertyKind::kEnum: {
         const auto* value =
             field->enum_type()->FindValueByNumber(reflection.GetEnumValue(*message, field));
-        out.push_back({property.key, value == nullptr ? std::string() : value->name()});
+        out.push_back({property.key, value == nullptr ? std::string() : short_name(*value)});
       }
     }
   }

@@ -154,7 +154,7 @@ out_has 'model used +one degree of freedom +as asked'
 out_has 'steady state by +shooting'
 out_has 'relative solver error +[0-9.]+ +%'
 expect 0 point --lubricant 1 --speed 50 --model one-degree --output json
-out_has '"model": "ONE_DEGREE"'
+out_has '"model": "POINT_MODEL_ONE_DEGREE"'
 expect 0 point --lubricant 1 --speed 72.5 --model one-degree
 out_has 'relative solver error +not estimated'
 expect 0 point --lubricant 1 --speed 1

@@ -119,7 +119,7 @@ TEST(CurvePlot, BreaksTheLineWhereABranchEnds) {
   const int broken_below = lines_of(curve);
   EXPECT_GT(broken_below, whole);
   EXPECT_NE(curve_plot({curve}, {}).find("Lines break where the branch"), std::string::npos);
-  curve.mutable_result()->set_direction(v1::DOWN);
+  curve.mutable_result()->set_direction(v1::SWEEP_DIRECTION_DOWN);
   EXPECT_EQ(lines_of(curve), broken_below);
 }
 

@@ -72,7 +72,7 @@ TEST(Edits, AFluidAsFormulatorsKnowIt) {
   EXPECT_EQ(measured.viscosities(0).dynamic_viscosity_millipascal_seconds(), 200);
   EXPECT_EQ(measured.viscosities(1).kinematic_viscosity_square_millimetres_per_second(), 31);
   EXPECT_EQ(measured.densities(0).density_kilograms_per_cubic_metre(), 815);
-  EXPECT_EQ(fluid.base_oil_class(), v1::Lubricant::POLYALPHAOLEFIN);
+  EXPECT_EQ(fluid.base_oil_class(), v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
   EXPECT_EQ(fluid.condition(), v1::Lubricant::USED);
   EXPECT_EQ(fluid.derived_from(), "lubricants/fresh");
   EXPECT_EQ(fluid.labels(0).value(), "axle=2");
@@ -212,7 +212,7 @@ TEST(JsonInput, ReadsBackWhatExportWrites) {
     fluid->set_name(name);
     fluid->set_pressure_viscosity_coefficient_per_pascal(1.0 / 3e8);
     fluid->set_havriliak_negami_beta(0);  // stated, and zero
-    fluid->set_base_oil_class(v1::Lubricant::ESTER);
+    fluid->set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_ESTER);
     fluid->add_labels()->set_key("a\"\n\u00e9");
     fluids.push_back(std::move(fluid));
   }

@@ -48,7 +48,7 @@ TEST(RowTable, TakesTheNamesOfTheTradeInAnyCase) {
   EXPECT_EQ(oil.name(), "lubricants/a");
   EXPECT_EQ(kv40(oil), 73.3);
   EXPECT_EQ(oil.measurements().density_15_celsius_kilograms_per_cubic_metre(), 870);
-  EXPECT_EQ(oil.base_oil_class(), v1::Lubricant::POLYALPHAOLEFIN);
+  EXPECT_EQ(oil.base_oil_class(), v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
   EXPECT_EQ(oil.condition(), v1::Lubricant::FRESH);
   EXPECT_DOUBLE_EQ(oil.pressure_viscosity_coefficient_per_pascal(), 20e-9);
   ASSERT_EQ(oil.measurements().brookfield_viscosities_size(), 2);
@@ -63,13 +63,18 @@ TEST(RowTable, KnowsTheSpellingsOfBaseOils) {
   const struct {
     const char* text;
     v1::Lubricant::BaseOilClass meant;
-  } kSpellings[] = {
-      {"PAO", v1::Lubricant::POLYALPHAOLEFIN},   {"Group IV", v1::Lubricant::POLYALPHAOLEFIN},
-      {"Group III", v1::Lubricant::GROUP_III},   {"Gr. III", v1::Lubricant::GROUP_III},
-      {"III", v1::Lubricant::GROUP_III},         {"Gruppe III", v1::Lubricant::GROUP_III},
-      {"group-iii", v1::Lubricant::GROUP_III},   {"GROUP_II", v1::Lubricant::GROUP_II},
-      {"API Group 1", v1::Lubricant::GROUP_I},   {"Ester", v1::Lubricant::ESTER},
-      {"Naphthenic", v1::Lubricant::NAPHTHENIC}, {"pag", v1::Lubricant::POLYALKYLENE_GLYCOL}};
+  } kSpellings[] = {{"PAO", v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN},
+                    {"Group IV", v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN},
+                    {"Group III", v1::Lubricant::BASE_OIL_CLASS_GROUP_III},
+                    {"Gr. III", v1::Lubricant::BASE_OIL_CLASS_GROUP_III},
+                    {"III", v1::Lubricant::BASE_OIL_CLASS_GROUP_III},
+                    {"Gruppe III", v1::Lubricant::BASE_OIL_CLASS_GROUP_III},
+                    {"group-iii", v1::Lubricant::BASE_OIL_CLASS_GROUP_III},
+                    {"GROUP_II", v1::Lubricant::BASE_OIL_CLASS_GROUP_II},
+                    {"API Group 1", v1::Lubricant::BASE_OIL_CLASS_GROUP_I},
+                    {"Ester", v1::Lubricant::BASE_OIL_CLASS_ESTER},
+                    {"Naphthenic", v1::Lubricant::BASE_OIL_CLASS_NAPHTHENIC},
+                    {"pag", v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL}};
   for (const auto& each : kSpellings) {
     const auto* found = find_base_oil_class(each.text);
     ASSERT_NE(found, nullptr) << each.text;
@@ -141,7 +146,7 @@ TEST(RowTable, GivesBackAllThatIsStatedAndMeasured) {
   auto oil = std::make_unique<v1::Lubricant>();
   oil->set_name("lubricants/a");
   oil->set_description("two\nlines, \"quoted\"");
-  oil->set_base_oil_class(v1::Lubricant::ESTER);
+  oil->set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_ESTER);
   v1::LubricantMeasurements& measured = *oil->mutable_measurements();
   measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(1.0 / 3);
   measured.set_sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second(8.1);
@@ -192,7 +197,7 @@ TEST(RowTable, GivesBackAllThatIsStatedAndMeasured) {
 
 TEST(RowTable, TakesWhatItDoesNotTellFromTheBase) {
   v1::Lubricant like;
-  like.set_base_oil_class(v1::Lubricant::ESTER);
+  like.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_ESTER);
   like.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73);
   like.set_thermal_conductivity_watts_per_metre_kelvin(0.15);
   like.set_pressure_viscosity_coefficient_per_pascal(2e-8);
@@ -213,7 +218,7 @@ TEST(RowTable, TakesWhatItDoesNotTellFromTheBase) {
   EXPECT_EQ(kv40(b), 80);
   EXPECT_EQ(a.pressure_viscosity_coefficient_per_pascal(), 1e-8);
   EXPECT_EQ(b.pressure_viscosity_coefficient_per_pascal(), 2e-8);
-  EXPECT_EQ(a.base_oil_class(), v1::Lubricant::ESTER);
+  EXPECT_EQ(a.base_oil_class(), v1::Lubricant::BASE_OIL_CLASS_ESTER);
   ASSERT_EQ(a.provenance_size(), 1) << "what was known of another value is void";
   EXPECT_EQ(a.provenance(0).field(), "thermal_conductivity_watts_per_metre_kelvin");
   EXPECT_EQ(b.provenance_size(), 2);

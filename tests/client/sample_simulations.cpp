@@ -38,7 +38,7 @@ void fill_result(double speed, double level, v1::PointResult& result) {
   set_extremes(*result.mutable_maximum_pressure_pascals(), 4e8, 5e8, 6.016e8);
   set_extremes(*result.mutable_dynamic_transmission_error_metres(), 7e-5, 8e-5, 9e-5);
   result.set_contact_loss(separates);
-  result.set_model(v1::FULL);
+  result.set_model(v1::POINT_MODEL_FULL);
   result.set_settled(true);
   result.set_period_in_mesh_cycles(1);
   result.mutable_power_balance()->set_input_joules(10);
@@ -65,7 +65,7 @@ v1::Simulation sample_curve(const std::string& lubricant, double level) {
   simulation.set_lubricant("lubricants/" + lubricant);
   succeed(simulation);
   auto& study = *simulation.mutable_inefficiency_curve();
-  study.set_direction(v1::UP);
+  study.set_direction(v1::SWEEP_DIRECTION_UP);
   for (int speed = 20; speed <= 140; speed += 5) {
     study.add_speeds_kilometres_per_hour(speed);
     v1::CurvePoint& point = *simulation.mutable_result()->add_points();

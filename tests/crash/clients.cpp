@@ -50,9 +50,10 @@ void set_study(int number, v1::Simulation& out) {
   }
   auto* point = out.mutable_operating_point();
   point->mutable_cruise()->set_speed_kilometres_per_hour(20 + number % 90);
-  if (number % 5 == 3) point->set_model(v1::QUASI_STATIC);
+  if (number % 5 == 3) point->set_model(v1::POINT_MODEL_QUASI_STATIC);
   if (number % 2 == 1) point->mutable_history()->add_columns("mesh_force_newtons");
-  if (number % kMarchedOneIn == 0) out.mutable_solver_options()->set_method(v1::MARCH);
+  if (number % kMarchedOneIn == 0)
+    out.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
 }
 
 /// Changes one input.
@@ -73,7 +74,7 @@ v1::Lubricant lubricant_of(const std::string& name, int content) {
   v1::Lubricant out;
   out.set_name(name);
   out.set_display_name(std::to_string(content));
-  out.set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
+  out.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
   auto* measured = out.mutable_measurements();
   measured->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73.3);
   measured->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(14.2);

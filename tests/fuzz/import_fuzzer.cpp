@@ -83,7 +83,7 @@ void import_surface_text(const std::string& text) {
 
 void import_lubricant_text(const std::string& text) {
   v1::ImportLubricantRequest request;
-  request.mutable_lubricant()->set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
+  request.mutable_lubricant()->set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
   request.set_viscosity_table_csv(text);
   Violations violations;
   const auto accepted = import_lubricant(request, "lubricants/x", lookup(), violations);

@@ -80,7 +80,8 @@ TEST(AnyContact, AnswersInFiniteNumbersOrRefuses) {
       request.mutable_model_options()->mutable_as_published()->clear_eq46_square_root_of_sum();
     }
     if (any.seldom()) {
-      request.mutable_model_options()->set_pressure_viscosity_index(v1::ModelOptions::HOUPERT);
+      request.mutable_model_options()->set_pressure_viscosity_index(
+          v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT);
     }
     const auto begin = std::chrono::steady_clock::now();
     const auto outcome = evaluate_contact(app, request);

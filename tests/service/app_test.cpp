@@ -117,7 +117,7 @@ TEST_F(AppTest, ASimulationIsAcceptedListedAndRead) {
   EXPECT_EQ(list_simulations(app_, request).message().simulations(0).name(), first);
   const v1::Simulation curve = bench_.get(second);
   EXPECT_EQ(curve.result().points_size(), 13);
-  EXPECT_EQ(curve.result().direction(), v1::UP);
+  EXPECT_EQ(curve.result().direction(), v1::SWEEP_DIRECTION_UP);
   EXPECT_TRUE(curve.has_create_time() && curve.has_start_time() && curve.has_end_time());
   EXPECT_EQ(curve.inefficiency_curve().speed_step_kilometres_per_hour(), 10) << "as requested";
 }

@@ -65,9 +65,9 @@ std::vector<v1::Simulation> scenes() {
       out.back().set_gear_set("gearSets/B");
     }
     out.push_back(point_of(lubricant, 100));
-    out.back().mutable_operating_point()->set_model(v1::QUASI_STATIC);
+    out.back().mutable_operating_point()->set_model(v1::POINT_MODEL_QUASI_STATIC);
     out.push_back(point_of(lubricant, 60));
-    out.back().mutable_operating_point()->set_model(v1::ONE_DEGREE);
+    out.back().mutable_operating_point()->set_model(v1::POINT_MODEL_ONE_DEGREE);
     out.push_back(point_of(lubricant, 60));
     out.back().mutable_model_options()->set_exact_hertz(true);
     v1::PrescribedTorque* coast = out.emplace_back(point_of(lubricant, 0))
@@ -82,7 +82,7 @@ std::vector<v1::Simulation> scenes() {
   out.back().mutable_solver_options()->set_tolerance(1e-6);
   if (!kUnderSanitizer) {
     out.push_back(point_of("lubricants/2", 72.5));
-    out.back().mutable_solver_options()->set_method(v1::MARCH);
+    out.back().mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
     out.push_back(curve_simulation());
   }
   return out;
@@ -217,7 +217,8 @@ v1::SimulationResult result_of(const v1::Simulation& simulation) {
 TEST(IndependentPoints, AreTheBitsOfSinglePointsInEveryModel) {
   // At 60 km/h flanks stay together, at 70 and 75 they part; at 2 the quasi-static model does.
   const std::vector<double> speeds = {2, 60, 70, 75, 110};
-  for (const v1::PointModel model : {v1::AUTOMATIC_MODEL, v1::FULL, v1::QUASI_STATIC}) {
+  for (const v1::PointModel model :
+       {v1::POINT_MODEL_AUTOMATIC, v1::POINT_MODEL_FULL, v1::POINT_MODEL_QUASI_STATIC}) {
     v1::Simulation asked = independent_curve(speeds);
     asked.mutable_inefficiency_curve()->set_model(model);
     const v1::SimulationResult curve = result_of(asked);
@@ -237,11 +238,11 @@ TEST(IndependentPoints, AreTheBitsOfSinglePointsInEveryModel) {
 
 TEST(IndependentPoints, StartEachFromTheStatedStart) {
   v1::Simulation asked = independent_curve({69, 75});
-  asked.mutable_inefficiency_curve()->set_start(v1::LARGE_VIBRATION);
+  asked.mutable_inefficiency_curve()->set_start(v1::POINT_START_LARGE_VIBRATION);
   const v1::SimulationResult curve = result_of(asked);
   for (const v1::CurvePoint& each : curve.points()) {
     v1::Simulation single = point_of(asked.lubricant(), each.speed_kilometres_per_hour());
-    single.mutable_operating_point()->set_start(v1::LARGE_VIBRATION);
+    single.mutable_operating_point()->set_start(v1::POINT_START_LARGE_VIBRATION);
     EXPECT_EQ(each.SerializeAsString(), result_of(single).points(0).SerializeAsString());
   }
   EXPECT_TRUE(curve.points(0).result().contact_loss()) << "the quiet branch ends at 71 km/h";
@@ -259,7 +260,7 @@ TEST(IndependentPoints, AreOtherInputsThanACurveThatFollowsABranchAndCostLess) {
 
 TEST(IndependentPoints, HaveNoDirection) {
   v1::Simulation asked = independent_curve({60, 70});
-  asked.mutable_inefficiency_curve()->set_direction(v1::DOWN);
+  asked.mutable_inefficiency_curve()->set_direction(v1::SWEEP_DIRECTION_DOWN);
   Violations violations;
   EXPECT_FALSE(read_simulation(asked, seed_lookup(), "simulation", violations));
   ASSERT_EQ(violations.size(), 1U);

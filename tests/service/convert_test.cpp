@@ -100,7 +100,7 @@ TEST(ToCore, EveryModelOptionArrives) {
   EXPECT_TRUE(with_flag("eq43_44_polynomials").as_published.eq43_44_polynomials);
   EXPECT_FALSE(with_flag("newtonian").isothermal);
   v1::ModelOptions houpert;
-  houpert.set_pressure_viscosity_index(v1::ModelOptions::HOUPERT);
+  houpert.set_pressure_viscosity_index(v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT);
   EXPECT_EQ(to_core(houpert).pressure_viscosity_index, PressureViscosityIndex::kHoupert);
   EXPECT_EQ(to_core(v1::ModelOptions()).pressure_viscosity_index,
             PressureViscosityIndex::kReciprocalAsymptotic);
@@ -228,11 +228,12 @@ TEST(FromCore, EveryModelAndHowItWasSolvedComeBack) {
     core.model = model;
     return to_message(core, 20);
   };
-  EXPECT_EQ(arrived(PointModel::kFull).model(), v1::FULL);
-  EXPECT_EQ(arrived(PointModel::kFull).steady_state_method(), v1::SHOOTING);
-  EXPECT_EQ(arrived(PointModel::kOneDegree).model(), v1::ONE_DEGREE);
-  EXPECT_EQ(arrived(PointModel::kOneDegree).steady_state_method(), v1::SHOOTING);
-  EXPECT_EQ(arrived(PointModel::kQuasiStatic).model(), v1::QUASI_STATIC);
+  EXPECT_EQ(arrived(PointModel::kFull).model(), v1::POINT_MODEL_FULL);
+  EXPECT_EQ(arrived(PointModel::kFull).steady_state_method(), v1::STEADY_STATE_METHOD_SHOOTING);
+  EXPECT_EQ(arrived(PointModel::kOneDegree).model(), v1::POINT_MODEL_ONE_DEGREE);
+  EXPECT_EQ(arrived(PointModel::kOneDegree).steady_state_method(),
+            v1::STEADY_STATE_METHOD_SHOOTING);
+  EXPECT_EQ(arrived(PointModel::kQuasiStatic).model(), v1::POINT_MODEL_QUASI_STATIC);
   EXPECT_EQ(arrived(PointModel::kQuasiStatic).steady_state_method(),
             v1::STEADY_STATE_METHOD_UNSPECIFIED);
 }

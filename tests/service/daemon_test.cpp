@@ -119,7 +119,7 @@ v1::Simulation some_seconds() {
 #endif
   v1::Simulation simulation = curve_simulation();
   simulation.mutable_inefficiency_curve()->set_speed_step_kilometres_per_hour(kStep);
-  simulation.mutable_solver_options()->set_method(v1::MARCH);
+  simulation.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
   return simulation;
 }
 

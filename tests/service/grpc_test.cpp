@@ -192,7 +192,7 @@ TEST_F(GrpcTest, ASimulationIsCreatedWatchedReadAndListed) {
 
 TEST_F(GrpcTest, ShootingAloneIsUsedOrFailsByNameWithTheValues) {
   v1::Simulation request = point_simulation();
-  request.mutable_solver_options()->set_method(v1::SHOOTING);
+  request.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_SHOOTING);
   const auto ended = [&](double speed) {
     request.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
     v1::Simulation created;
@@ -203,7 +203,8 @@ TEST_F(GrpcTest, ShootingAloneIsUsedOrFailsByNameWithTheValues) {
   };
   const v1::Simulation found = ended(100);
   ASSERT_EQ(found.state(), v1::Simulation::SUCCEEDED) << found.error().message();
-  EXPECT_EQ(found.result().points(0).result().steady_state_method(), v1::SHOOTING);
+  EXPECT_EQ(found.result().points(0).result().steady_state_method(),
+            v1::STEADY_STATE_METHOD_SHOOTING);
   const v1::Simulation refused = ended(150);  // the response of one mesh cycle repels
   ASSERT_EQ(refused.state(), v1::Simulation::FAILED);
   EXPECT_EQ(refused.error().reason(), "NOT_FOUND_BY_SHOOTING");
@@ -215,7 +216,7 @@ TEST_F(GrpcTest, ShootingAloneIsUsedOrFailsByNameWithTheValues) {
 TEST_F(GrpcTest, ACurveByShootingAloneNamesThePointsThatItLacks) {
   v1::Simulation request = curve_simulation();
   request.set_lubricant("lubricants/1");
-  request.mutable_solver_options()->set_method(v1::SHOOTING);
+  request.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_SHOOTING);
   v1::InefficiencyCurveStudy* curve = request.mutable_inefficiency_curve();
   curve->Clear();
   curve->add_speeds_kilometres_per_hour(100);

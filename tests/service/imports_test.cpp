@@ -419,9 +419,9 @@ TEST_F(ImportTest, AProfileBecomesASurfaceOfItsMoments) {
   EXPECT_TRUE(warned);
 
   request.set_surface_id("both");
-  request.mutable_profiles(0)->set_member(v1::PINION);
+  request.mutable_profiles(0)->set_member(v1::FLANK_MEMBER_PINION);
   v1::SurfaceProfile* gear = request.add_profiles();
-  gear->set_member(v1::GEAR);
+  gear->set_member(v1::FLANK_MEMBER_GEAR);
   gear->set_csv(waves(400, 50, 4001));
   const auto both = import_surface_profiles(app_, request);
   ASSERT_TRUE(both.ok()) << complaints(both.error());
@@ -498,8 +498,8 @@ TEST_F(ImportTest, Eq46AsPublishedJoinsTwoDirectionsByTheRootOfTheirSum) {
     profile->set_direction(direction);
     profile->set_csv(waves(300, wave_length, 4001));
   };
-  add(v1::AXIAL, 50);
-  add(v1::RADIAL, 80);
+  add(v1::PROFILE_DIRECTION_AXIAL, 50);
+  add(v1::PROFILE_DIRECTION_RADIAL, 80);
   const auto corrected = import_surface_profiles(app_, request);
   ASSERT_TRUE(corrected.ok()) << complaints(corrected.error());
   request.set_surface_id("printed");
@@ -540,7 +540,7 @@ TEST_F(ImportTest, RepeatsOfADirectionAreAveraged) {
   request.mutable_surface()->set_asperity_friction_coefficient(0.17);
   for (const double amplitude : {200.0, 300.0, 500.0}) {
     v1::SurfaceProfile* profile = request.add_profiles();
-    profile->set_direction(v1::AXIAL);
+    profile->set_direction(v1::PROFILE_DIRECTION_AXIAL);
     profile->set_csv(waves(amplitude, 50, 4001));
   }
   const auto axial = import_surface_profiles(app_, request);
@@ -558,7 +558,7 @@ TEST_F(ImportTest, RepeatsOfADirectionAreAveraged) {
       1, 1e-12);
   request.set_surface_id("joined");
   v1::SurfaceProfile* radial = request.add_profiles();
-  radial->set_direction(v1::RADIAL);
+  radial->set_direction(v1::PROFILE_DIRECTION_RADIAL);
   radial->set_csv(waves(300, 80, 4001));
   const auto joined = import_surface_profiles(app_, request);
   ASSERT_TRUE(joined.ok()) << complaints(joined.error());
@@ -574,10 +574,11 @@ TEST_F(ImportTest, Eq46AsPublishedNeedsTwoDirectionsOfAMember) {
   request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
   request.mutable_surface()->set_asperity_friction_coefficient(0.17);
   request.set_eq46_square_root_of_sum(true);
-  for (const v1::FlankMember member : {v1::PINION, v1::GEAR}) {
+  for (const v1::FlankMember member : {v1::FLANK_MEMBER_PINION, v1::FLANK_MEMBER_GEAR}) {
     v1::SurfaceProfile* profile = request.add_profiles();
     profile->set_member(member);
-    profile->set_direction(member == v1::PINION ? v1::AXIAL : v1::RADIAL);
+    profile->set_direction(member == v1::FLANK_MEMBER_PINION ? v1::PROFILE_DIRECTION_AXIAL
+                                                             : v1::PROFILE_DIRECTION_RADIAL);
     profile->set_csv(waves(300, 50, 4001));
   }
   EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
@@ -604,7 +605,7 @@ TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
   EXPECT_THAT(said("position_metres,height_metres\n0,0\n1,0\n2,0\n3,0\n4,0\n5,0\n"),
               HasSubstr("profiles"));
   EXPECT_THAT(said(waves(300, 50, 100)), HasSubstr("tribofilm_shear_strength_pascals is not set"));
-  request.add_profiles()->set_member(v1::PINION);
+  request.add_profiles()->set_member(v1::FLANK_MEMBER_PINION);
   EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
               HasSubstr("for all or none"));
 }
@@ -647,7 +648,7 @@ TEST_F(ImportTest, EverythingWrongWithProfilesComesAtOnce) {
 TEST_F(ImportTest, AViscosityTableBecomesALubricant) {
   v1::ImportLubricantRequest request;
   request.set_lubricant_id("table");
-  request.mutable_lubricant()->set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
+  request.mutable_lubricant()->set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
   const v1::Lubricant known = seed<v1::Lubricant>("lubricants/1");
   std::string csv =
       "temperature_kelvin,dynamic_viscosity_pascal_seconds,"

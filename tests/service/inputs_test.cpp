@@ -70,18 +70,18 @@ TEST(Inputs, EveryModelArrives) {
     simulation.mutable_operating_point()->set_model(model);
     return std::get<PointStudy>(study(inputs_of(simulation))).options.model;
   };
-  EXPECT_EQ(arrived(v1::AUTOMATIC_MODEL), PointModel::kAutomatic);
-  EXPECT_EQ(arrived(v1::FULL), PointModel::kFull);
-  EXPECT_EQ(arrived(v1::QUASI_STATIC), PointModel::kQuasiStatic);
-  EXPECT_EQ(arrived(v1::ONE_DEGREE), PointModel::kOneDegree);
+  EXPECT_EQ(arrived(v1::POINT_MODEL_AUTOMATIC), PointModel::kAutomatic);
+  EXPECT_EQ(arrived(v1::POINT_MODEL_FULL), PointModel::kFull);
+  EXPECT_EQ(arrived(v1::POINT_MODEL_QUASI_STATIC), PointModel::kQuasiStatic);
+  EXPECT_EQ(arrived(v1::POINT_MODEL_ONE_DEGREE), PointModel::kOneDegree);
 }
 
 TEST(Inputs, EveryOperatingConditionArrives) {
   v1::Simulation simulation = point_simulation();
   v1::OperatingPointStudy* asked = simulation.mutable_operating_point();
   asked->mutable_cruise()->set_ascent_angle_degrees(90 / std::numbers::pi);
-  asked->set_model(v1::QUASI_STATIC);
-  asked->set_start(v1::LARGE_VIBRATION);
+  asked->set_model(v1::POINT_MODEL_QUASI_STATIC);
+  asked->set_start(v1::POINT_START_LARGE_VIBRATION);
   asked->set_probe_coexisting_response(true);
   asked->mutable_history()->add_columns("mesh_force_newtons");
   asked->mutable_history()->set_mesh_cycles(3);
@@ -115,7 +115,7 @@ TEST(Inputs, ARangeOfSpeedsIncludesItsLast) {
   asked->set_first_speed_kilometres_per_hour(0.1);
   asked->set_last_speed_kilometres_per_hour(0.7);
   asked->set_speed_step_kilometres_per_hour(0.1);
-  asked->set_direction(v1::DOWN);
+  asked->set_direction(v1::SWEEP_DIRECTION_DOWN);
   asked->set_ascent_angle_degrees(180 / std::numbers::pi / 10);
   const auto curve = std::get<CurveStudy>(study(inputs_of(simulation)));
   ASSERT_EQ(curve.vehicle_speeds.size(), 7U);
@@ -176,7 +176,7 @@ TEST(FluidGrounds, OfThePapersFluidsAreThoseOfThePaper) {
 TEST(FluidGrounds, OfAFittedFluidAreItsOwnMeasurements) {
   v1::Lubricant stated;
   stated.set_name("lubricants/own");
-  stated.set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
+  stated.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
   v1::LubricantMeasurements* measured = stated.mutable_measurements();
   measured->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(103);
   measured->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(15.1);
@@ -249,12 +249,12 @@ TEST(Hash, StatedDefaultsEqualUnstatedOnes) {
   stated.set_sump_temperature_celsius(40);
   stated.set_inlet_temperature_rise_kelvin(20);
   stated.mutable_solver_options()->set_relative_tolerance(1e-7);
-  stated.mutable_operating_point()->set_model(v1::AUTOMATIC_MODEL);
+  stated.mutable_operating_point()->set_model(v1::POINT_MODEL_AUTOMATIC);
   stated.mutable_operating_point()->mutable_cruise()->set_ascent_angle_degrees(-0.0);
   EXPECT_EQ(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));
-  stated.mutable_operating_point()->set_model(v1::QUASI_STATIC);
+  stated.mutable_operating_point()->set_model(v1::POINT_MODEL_QUASI_STATIC);
   EXPECT_NE(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));
-  stated.mutable_operating_point()->set_model(v1::FULL);
+  stated.mutable_operating_point()->set_model(v1::POINT_MODEL_FULL);
   EXPECT_NE(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));
 }
 
@@ -272,7 +272,8 @@ TEST(Hash, CanonicalTextNamesEveryValueWithAllItsDigits) {
   EXPECT_TRUE(text.starts_with("model_version=" + std::string(kModelVersion) + "\n"));
   EXPECT_NE(text.find("\nsimulation.sump_temperature_celsius=0x1.4p+5\n"), std::string::npos);
   EXPECT_NE(text.find("\ngear_set.flank_slots[2].gear_velocity_y_metres[96]="), std::string::npos);
-  EXPECT_NE(text.find("\nsimulation.operating_point.model=AUTOMATIC_MODEL\n"), std::string::npos);
+  EXPECT_NE(text.find("\nsimulation.operating_point.model=POINT_MODEL_AUTOMATIC\n"),
+            std::string::npos);
   EXPECT_EQ(text.find("provenance"), std::string::npos);
   EXPECT_EQ(text.find("lubricants/"), std::string::npos);
 }
@@ -280,9 +281,9 @@ TEST(Hash, CanonicalTextNamesEveryValueWithAllItsDigits) {
 TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
   std::vector<v1::Simulation> ascending(5, point_simulation());
   ascending[1].mutable_solver_options()->set_tolerance(1e-6);
-  ascending[2].mutable_solver_options()->set_method(v1::MARCH);
+  ascending[2].mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
   for (const int i : {3, 4}) {
-    ascending[i].mutable_solver_options()->set_method(v1::MARCH);
+    ascending[i].mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
     auto* history = ascending[i].mutable_operating_point()->mutable_history();
     history->add_columns("mesh_force_newtons");
     history->set_mesh_cycles(i == 3 ? 20 : 100);
@@ -297,7 +298,7 @@ TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
   v1::Simulation slow = point_simulation();
   slow.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(5);
   v1::Simulation quasi_static = slow;
-  quasi_static.mutable_operating_point()->set_model(v1::QUASI_STATIC);
+  quasi_static.mutable_operating_point()->set_model(v1::POINT_MODEL_QUASI_STATIC);
   EXPECT_LT(estimate_cost(inputs_of(quasi_static).effective).processor_seconds(),
             estimate_cost(inputs_of(slow).effective).processor_seconds());
 }

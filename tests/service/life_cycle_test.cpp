@@ -351,7 +351,7 @@ TEST_F(LifeCycle, CheckingSaysHashInputsAndCostAndRunsNothing) {
   request.mutable_simulation()->mutable_solver_options()->set_tolerance(1e-6);
   const double sharper = create(bench, request).message().cost_estimate().contact_solutions();
   EXPECT_GT(sharper, 5 * solutions);
-  request.mutable_simulation()->mutable_solver_options()->set_method(v1::MARCH);
+  request.mutable_simulation()->mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
   EXPECT_GT(create(bench, request).message().cost_estimate().contact_solutions(), 5 * sharper);
   request.mutable_simulation()->clear_solver_options();
   EXPECT_TRUE(bench.store().simulations({.limit = 10, .byte_limit = 1000}).rows.empty());
@@ -484,7 +484,8 @@ TEST_F(LifeCycle, ACancelTakesEffectAtOnceAndFreesTheProcessor) {
   Bench bench(StudyFunctions(), 1);  // the core's own
   std::vector<double> usual;         // [ms]
   for (int round = 0; round < 10; ++round) {
-    v1::Simulation endless = long_simulation(round % 2 == 0 ? v1::MARCH : v1::AUTOMATIC);
+    v1::Simulation endless = long_simulation(round % 2 == 0 ? v1::STEADY_STATE_METHOD_MARCH
+                                                            : v1::STEADY_STATE_METHOD_AUTOMATIC);
     endless.set_sump_temperature_celsius(40 + round);
     const std::string name = bench.create(endless);
     ASSERT_TRUE(bench.reaches(name, State::RUNNING));

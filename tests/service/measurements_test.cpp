@@ -28,7 +28,7 @@ class MeasurementsTest : public testing::Test {
     measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(kv40);
     measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(kv100);
     measured.set_density_15_celsius_kilograms_per_cubic_metre(density);
-    out.set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
+    out.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
     return out;
   }
 

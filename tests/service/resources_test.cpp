@@ -34,7 +34,7 @@ v1::Lubricant three_numbers() {
   measured->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73.3);
   measured->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(14.2);
   measured->set_density_15_celsius_kilograms_per_cubic_metre(865);
-  out.set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
+  out.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
   return out;
 }
 
@@ -463,10 +463,11 @@ TEST_F(ListTest, NamesNeedNoCollectionAndEnumsNoCapitals) {
   EXPECT_THAT(ids("condition = fresh"), ElementsAre("o0", "o1", "o2"));
   v1::Lubricant child = three_numbers();
   child.set_derived_from("lubricants/o1");
-  child.set_base_oil_class(v1::Lubricant::GROUP_III);
+  child.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_GROUP_III);
   ASSERT_TRUE(create(child, "child").ok());
   EXPECT_THAT(ids("derived_from = o1"), ElementsAre("child"));
   EXPECT_THAT(ids("base_oil_class = group-iii"), ElementsAre("child"));
+  EXPECT_THAT(ids("base_oil_class = BASE_OIL_CLASS_GROUP_III"), ElementsAre("child"));
 }
 
 TEST_F(ListTest, EveryFluidShowsItsFigures) {
@@ -691,7 +692,7 @@ TEST_F(ResourcesTest, TheSchemaIsTheTableAndTheWordsThatAreAccepted) {
     EXPECT_THAT(each.words(), Not(IsEmpty())) << each.name();
   }
   EXPECT_THAT(words["history.columns"], testing::Contains("mesh_force_newtons"));
-  EXPECT_THAT(words["Lubricant.BaseOilClass"], testing::Contains("POLYALPHAOLEFIN"));
+  EXPECT_THAT(words["Lubricant.BaseOilClass"], testing::Contains("BASE_OIL_CLASS_POLYALPHAOLEFIN"));
   for (const std::string& field : words["lubricants.filter"]) {
     if (field.find("KEY") != std::string::npos) continue;
     EXPECT_TRUE(list_lubricants(app_,

@@ -57,7 +57,7 @@ std::vector<v1::Simulation> requests() {
     point.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
     point.mutable_operating_point()->mutable_history()->add_columns("mesh_force_newtons");
     out.push_back(point);
-    for (const v1::PointModel model : {v1::QUASI_STATIC, v1::ONE_DEGREE}) {
+    for (const v1::PointModel model : {v1::POINT_MODEL_QUASI_STATIC, v1::POINT_MODEL_ONE_DEGREE}) {
       point.mutable_operating_point()->set_model(model);
       out.push_back(point);
     }
@@ -65,11 +65,11 @@ std::vector<v1::Simulation> requests() {
   out.push_back(curve_simulation());
   out.push_back(curve_simulation());
   out.back().set_lubricant("lubricants/3");
-  out.back().mutable_inefficiency_curve()->set_direction(v1::DOWN);
+  out.back().mutable_inefficiency_curve()->set_direction(v1::SWEEP_DIRECTION_DOWN);
   out.push_back(point_simulation());
-  out.back().mutable_solver_options()->set_method(v1::MARCH);
+  out.back().mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
   out.push_back(point_simulation());
-  out.back().mutable_operating_point()->set_start(v1::LARGE_VIBRATION);
+  out.back().mutable_operating_point()->set_start(v1::POINT_START_LARGE_VIBRATION);
   return out;
 }
 

@@ -189,7 +189,8 @@ TEST(Seeds, LubricantsHoldThePublishedViscosities) {
     EXPECT_EQ(fluid.vogel_temperature_coefficient_kelvin(), row.coefficient);
     EXPECT_EQ(fluid.vogel_reference_temperature_kelvin(), row.reference);
     EXPECT_EQ(fluid.pressure_viscosity_coefficient_per_pascal(), row.alpha);
-    EXPECT_EQ(fluid.base_oil_class(), v1::Lubricant::POLYALPHAOLEFIN) << "as the paper says";
+    EXPECT_EQ(fluid.base_oil_class(), v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN)
+        << "as the paper says";
     EXPECT_EQ(
         find_provenance(fluid.provenance(), "rheology_reference_temperature_kelvin")->provenance(),
         v1::PROVENANCE_PUBLISHED)

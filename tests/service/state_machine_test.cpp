@@ -153,7 +153,7 @@ class Schedule {
     log_ += fmt::format("succeed {} {}\n", id, other_bits);
     v1::SimulationResult result;
     result.set_input_hash(job.hash);
-    if (other_bits) result.set_direction(v1::DOWN);
+    if (other_bits) result.set_direction(v1::SWEEP_DIRECTION_DOWN);
     const std::string body = result.SerializeAsString();
     const auto event = store_.mark_succeeded(id, now_, {key(job.hash), body, {{"a", {1, 2}}}});
     EXPECT_EQ(event.has_value(), job.state == StoredState::kRunning) << log_;

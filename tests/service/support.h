@@ -60,7 +60,7 @@ v1::Simulation curve_simulation();
 
 /// Minutes of work on any machine, for tests that need a simulation which runs: a curve of a
 /// thousand points, each settled far sharper than anybody needs.
-v1::Simulation long_simulation(v1::SteadyStateMethod method = v1::MARCH);
+v1::Simulation long_simulation(v1::SteadyStateMethod method = v1::STEADY_STATE_METHOD_MARCH);
 
 /// What is logged while it lives, of every level. Made before any other thread logs, and destroyed
 /// after the last one has.

@@ -105,7 +105,8 @@ TEST(Simulation, AllViolationsComeAtOnce) {
   EXPECT_THAT(found, violation("simulation.sump_temperature_celsius", "-300 C"));
   EXPECT_THAT(found, violation("simulation.solver_options.relative_tolerance", "= 1"));
   EXPECT_THAT(found,
-              violation("simulation.operating_point.model", "FULL, QUASI_STATIC, AUTOMATIC_MODEL"));
+              violation("simulation.operating_point.model",
+                        "POINT_MODEL_FULL, POINT_MODEL_QUASI_STATIC, POINT_MODEL_AUTOMATIC"));
   EXPECT_THAT(found, violation("simulation.operating_point.condition", "cruise"));
   EXPECT_THAT(found, violation("simulation.operating_point.history.columns[0]",
                                "did you mean \"mesh_force_newtons\"?"));

@@ -53,7 +53,7 @@ v1::EvaluateContactRequest request_of(const JsonValue& input) {
   options->set_newtonian(at(input, "rheology").string_value() == "newton");
   options->set_exact_hertz(at(input, "hertz").string_value() == "exact");
   if (at(input, "alpha_mode").string_value() == "houpert") {
-    options->set_pressure_viscosity_index(v1::ModelOptions::HOUPERT);
+    options->set_pressure_viscosity_index(v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT);
   }
   return out;
 }

@@ -51,7 +51,9 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
   list.choice("--direction", {"up", "down"},
               "Each point starts from the steady state before it; where two responses coexist, up "
               "and down differ. Default: up.",
-              [&](int index) { study.set_direction(index == 0 ? v1::UP : v1::DOWN); });
+              [&](int index) {
+                study.set_direction(index == 0 ? v1::SWEEP_DIRECTION_UP : v1::SWEEP_DIRECTION_DOWN);
+              });
   list.toggle("--independent-points",
               "Solve each speed alone, as `tribodyn point` does, in about a third of the time: no "
               "branch is followed from speed to speed and no jump is looked for. For comparing "

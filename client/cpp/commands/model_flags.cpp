@@ -100,9 +100,9 @@ void add_model_flags(FlagList& flags, v1::ModelOptions& options) {
                "Roelands index Z: solved from eq 33 for the measured coefficient, or from eq 32. "
                "Default: reciprocal-asymptotic.",
                [&options](int index) {
-                 options.set_pressure_viscosity_index(index == 0
-                                                          ? v1::ModelOptions::RECIPROCAL_ASYMPTOTIC
-                                                          : v1::ModelOptions::HOUPERT);
+                 options.set_pressure_viscosity_index(
+                     index == 0 ? v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_RECIPROCAL_ASYMPTOTIC
+                                : v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT);
                });
   add_as_published_flag(flags, options);
 }

@@ -34,8 +34,9 @@ void add_model_and_start_flags(FlagList& flags, Study& study) {
       "carry constant torques (never taken by automatic). Curves, histories, --start and "
       "--probe-coexisting-response take the full one unless asked. Default: automatic.",
       [&study](int index) {
-        constexpr v1::PointModel kModels[] = {v1::AUTOMATIC_MODEL, v1::FULL, v1::QUASI_STATIC,
-                                              v1::ONE_DEGREE};
+        constexpr v1::PointModel kModels[] = {v1::POINT_MODEL_AUTOMATIC, v1::POINT_MODEL_FULL,
+                                              v1::POINT_MODEL_QUASI_STATIC,
+                                              v1::POINT_MODEL_ONE_DEGREE};
         study.set_model(kModels[index]);
       });
   flags.choice(
@@ -44,7 +45,8 @@ void add_model_and_start_flags(FlagList& flags, Study& study) {
       "quasi-static: the low-amplitude one; large-vibration: vibro-impact where it exists. "
       "Default: quasi-static.",
       [&study](int index) {
-        study.set_start(index == 0 ? v1::QUASI_STATIC_EQUILIBRIUM : v1::LARGE_VIBRATION);
+        study.set_start(index == 0 ? v1::POINT_START_QUASI_STATIC_EQUILIBRIUM
+                                   : v1::POINT_START_LARGE_VIBRATION);
       });
 }
 

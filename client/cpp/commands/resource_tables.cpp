@@ -20,13 +20,13 @@ bool read_profile(const std::string& text, TableFiles::Profile& profile) {
   parts.pop_back();
   for (const std::string& part : parts) {
     if (part == "pinion") {
-      profile.member = v1::PINION;
+      profile.member = v1::FLANK_MEMBER_PINION;
     } else if (part == "gear") {
-      profile.member = v1::GEAR;
+      profile.member = v1::FLANK_MEMBER_GEAR;
     } else if (part == "axial") {
-      profile.direction = v1::AXIAL;
+      profile.direction = v1::PROFILE_DIRECTION_AXIAL;
     } else if (part == "radial") {
-      profile.direction = v1::RADIAL;
+      profile.direction = v1::PROFILE_DIRECTION_RADIAL;
     } else {
       return false;
     }
@@ -200,11 +200,13 @@ void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tabl
         }
       }
     };
-    flags.choice(
-        "--levelling", {"mean", "least-squares-line"},
-        "What is taken off a profile before its moments are formed. Default: "
-        "least-squares-line.",
-        [&](int index) { tables.levelling = index == 0 ? v1::MEAN : v1::LEAST_SQUARES_LINE; });
+    flags.choice("--levelling", {"mean", "least-squares-line"},
+                 "What is taken off a profile before its moments are formed. Default: "
+                 "least-squares-line.",
+                 [&](int index) {
+                   tables.levelling =
+                       index == 0 ? v1::LEVELLING_MEAN : v1::LEVELLING_LEAST_SQUARES_LINE;
+                 });
     add_cut_off_flag(flags, "--lambda-s", "um",
                      "Waves shorter than this, noise of the instrument, are filtered out; e.g. 2.5",
                      tables.short_wave_cut_off_metres);

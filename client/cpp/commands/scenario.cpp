@@ -16,7 +16,9 @@ void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
       "How the steady state is found: by shooting where that works and marched elsewhere, by "
       "shooting or not at all, or marched",
       [&](int index) {
-        constexpr v1::SteadyStateMethod kMethods[] = {v1::AUTOMATIC, v1::SHOOTING, v1::MARCH};
+        constexpr v1::SteadyStateMethod kMethods[] = {v1::STEADY_STATE_METHOD_AUTOMATIC,
+                                                      v1::STEADY_STATE_METHOD_SHOOTING,
+                                                      v1::STEADY_STATE_METHOD_MARCH};
         simulation.mutable_solver_options()->set_method(kMethods[index]);
       });
   flags.number(

@@ -14,7 +14,7 @@ using namespace tribodyn;
 v1::Lubricant fluid_of_a_data_sheet() {
   v1::Lubricant fluid;
   fluid.set_display_name("Data sheet: 103 and 15.1 mm2/s, 868 kg/m3");
-  fluid.set_base_oil_class(v1::Lubricant::POLYALPHAOLEFIN);
+  fluid.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
   auto& measured = *fluid.mutable_measurements();
   measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(103);
   measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(15.1);
@@ -27,7 +27,7 @@ v1::Simulation cruise(const std::string& lubricant) {
   simulation.set_lubricant(lubricant);
   auto& study = *simulation.mutable_operating_point();
   study.mutable_cruise()->set_speed_kilometres_per_hour(50);
-  study.set_model(v1::QUASI_STATIC);
+  study.set_model(v1::POINT_MODEL_QUASI_STATIC);
   return simulation;
 }
 

@@ -35,7 +35,7 @@ Series series_of(const v1::Simulation& simulation, const Look& look, Value value
   Series series;
   series.colour = look.colour;
   series.dashes = look.dashes;
-  const bool down = simulation.result().direction() == v1::DOWN;
+  const bool down = simulation.result().direction() == v1::SWEEP_DIRECTION_DOWN;
   const auto add = [&](double x, double y, bool hollow) {
     series.x.push_back(x);
     series.y.push_back(y);

@@ -95,8 +95,8 @@ void add_jumps(const v1::SimulationResult& result, Sheet& sheet) {
     if (std::exchange(is_first, false)) sheet.heading("Jumps of the response");
     const auto& end = point.branch_end();
     sheet.remark("The branch of steady states that the curve follows " +
-                 std::string(result.direction() == v1::DOWN ? "down" : "up") + " ends between " +
-                 fixed(end.followed_to_kilometres_per_hour(), 2) + " and " +
+                 std::string(result.direction() == v1::SWEEP_DIRECTION_DOWN ? "down" : "up") +
+                 " ends between " + fixed(end.followed_to_kilometres_per_hour(), 2) + " and " +
                  fixed(end.gone_at_kilometres_per_hour(), 2) + " km/h: there the response jumps.");
   }
 }
@@ -139,7 +139,7 @@ std::string codes_of(const InputWarnings& warnings) {
 std::string direction_word(const v1::Simulation& simulation) {
   if (!simulation.has_inefficiency_curve()) return "";
   if (simulation.inefficiency_curve().independent_points()) return "INDEPENDENT_POINTS";
-  return simulation.inefficiency_curve().direction() == v1::DOWN ? "DOWN" : "UP";
+  return simulation.inefficiency_curve().direction() == v1::SWEEP_DIRECTION_DOWN ? "DOWN" : "UP";
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "client/cpp/report/warnings.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
+#include "proto/enum_names.h"
 
 namespace tribodyn::client {
 namespace {
@@ -123,7 +124,7 @@ std::string inputs_text(const v1::Simulation& simulation, const char* celsius) {
 std::string model_options_text(const v1::ModelOptions& options) {
   std::string text;
   append_switches(options, "", text);
-  if (options.pressure_viscosity_index() == v1::ModelOptions::HOUPERT) {
+  if (options.pressure_viscosity_index() == v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT) {
     text += text.empty() ? "Houpert's Z" : ", Houpert's Z";
   }
   append_switches(options.as_published(), "as published ", text);
@@ -143,12 +144,11 @@ std::string study_text(const v1::Simulation& simulation) {
 
 std::string sweep_text(const v1::InefficiencyCurveStudy& study) {
   if (study.independent_points()) return "independent points";
-  return study.direction() == v1::DOWN ? "down-sweep" : "up-sweep";
+  return study.direction() == v1::SWEEP_DIRECTION_DOWN ? "down-sweep" : "up-sweep";
 }
 
 std::string provenance_word(v1::Provenance provenance) {
-  std::string word = v1::Provenance_Name(provenance);
-  word = word.substr(word.find('_') + 1);
+  std::string word = short_name(*v1::Provenance_descriptor(), provenance);
   std::transform(word.begin(), word.end(), word.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return word;

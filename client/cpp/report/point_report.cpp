@@ -187,21 +187,24 @@ void add_energy_balance(const v1::PointResult& result, const Precision& precisio
 }
 
 std::string model_name(v1::PointModel model) {
-  if (model == v1::QUASI_STATIC) return "quasi-static";
-  return model == v1::ONE_DEGREE ? "one degree of freedom" : "full (4 degrees of freedom)";
+  if (model == v1::POINT_MODEL_QUASI_STATIC) return "quasi-static";
+  return model == v1::POINT_MODEL_ONE_DEGREE ? "one degree of freedom"
+                                             : "full (4 degrees of freedom)";
 }
 
 /// Why the model is the one that was used.
 std::string model_reason(const v1::Simulation& simulation, const v1::PointResult& result) {
   const v1::OperatingPointStudy& study = simulation.operating_point();
   if (simulation.has_inefficiency_curve()) return "";
-  if (study.model() == v1::FULL || study.model() == v1::QUASI_STATIC ||
-      study.model() == v1::ONE_DEGREE) {
+  if (study.model() == v1::POINT_MODEL_FULL || study.model() == v1::POINT_MODEL_QUASI_STATIC ||
+      study.model() == v1::POINT_MODEL_ONE_DEGREE) {
     return "as asked";
   }
-  if (result.model() == v1::QUASI_STATIC) return "its estimated error is within the tolerance";
+  if (result.model() == v1::POINT_MODEL_QUASI_STATIC)
+    return "its estimated error is within the tolerance";
   if (study.probe_coexisting_response() || study.has_history() ||
-      study.start() == v1::LARGE_VIBRATION || simulation.solver_options().method() == v1::MARCH) {
+      study.start() == v1::POINT_START_LARGE_VIBRATION ||
+      simulation.solver_options().method() == v1::STEADY_STATE_METHOD_MARCH) {
     return "what was asked for needs it";
   }
   return "a cheaper one may err by more than the tolerance";
@@ -212,7 +215,7 @@ void add_solver(const v1::Simulation& simulation, const v1::PointResult& result,
   sheet.heading("Solver");
   sheet.line("model used", model_name(result.model()), "", model_reason(simulation, result));
   if (result.steady_state_method() != v1::STEADY_STATE_METHOD_UNSPECIFIED) {
-    sheet.line("steady state by", result.steady_state_method() == v1::SHOOTING
+    sheet.line("steady state by", result.steady_state_method() == v1::STEADY_STATE_METHOD_SHOOTING
                                       ? "shooting under lagged friction"
                                       : "marching");
   }

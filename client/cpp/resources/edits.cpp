@@ -10,6 +10,7 @@
 #include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
+#include "proto/enum_names.h"
 
 namespace tribodyn::client {
 namespace {
@@ -206,8 +207,8 @@ void add_class_flag(FlagList& flags, const FieldDescriptor& field, ResourceEdits
   std::iota(values.begin(), values.end(), 1);
   if (field.enum_type() == v1::Lubricant::BaseOilClass_descriptor()) {
     words.insert(words.end(), {"pao", "pag"});
-    values.insert(values.end(),
-                  {v1::Lubricant::POLYALPHAOLEFIN, v1::Lubricant::POLYALKYLENE_GLYCOL});
+    values.insert(values.end(), {v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN,
+                                 v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL});
   }
   flags.choice(flag_of_field(field.name()), words,
                sentence(wording_of(field).description, label_of_field(field.name())),
@@ -395,7 +396,7 @@ std::vector<std::string> parameter_words(const ResourceKind& kind) {
 }
 
 std::string enum_word(const google::protobuf::EnumValueDescriptor& value) {
-  return lower_kebab(value.name());
+  return lower_kebab(short_name(value));
 }
 
 std::vector<std::string> enum_words(const google::protobuf::EnumDescriptor& type) {

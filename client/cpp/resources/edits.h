@@ -74,7 +74,7 @@ void drop_provenance(google::protobuf::Message& resource, const std::string& fie
 void set_label(google::protobuf::Message& resource, const std::string& key,
                const std::string* value);
 
-/// "group-iii" of GROUP_III; the words of all values but the unspecified one.
+/// "group-iii" of BASE_OIL_CLASS_GROUP_III; the words of all values but the unspecified one.
 std::string enum_word(const google::protobuf::EnumValueDescriptor& value);
 std::vector<std::string> enum_words(const google::protobuf::EnumDescriptor& type);
 

@@ -15,6 +15,7 @@
 #include "client/cpp/text/nearest.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
+#include "proto/enum_names.h"
 
 namespace tribodyn::client {
 namespace {
@@ -172,7 +173,10 @@ bool set_class(const RowColumn& column, const std::string& text, Message& resour
   const google::protobuf::EnumValueDescriptor* value = nullptr;
   if (type == v1::Lubricant::BaseOilClass_descriptor()) value = find_base_oil_class(text);
   for (int i = 0; i < type->value_count() && value == nullptr; ++i) {
-    if (plain_word(text) == plain_word(type->value(i)->name())) value = type->value(i);
+    const std::string& name = type->value(i)->name();
+    const bool is_named = plain_word(text) == plain_word(name) ||
+                          plain_word(text) == plain_word(short_name(*type->value(i)));
+    if (is_named) value = type->value(i);
   }
   if (value == nullptr) return false;
   resource.GetReflection()->SetEnum(&resource, column.field, value);
@@ -299,24 +303,24 @@ const google::protobuf::EnumValueDescriptor* find_base_oil_class(const std::stri
     if (word.starts_with(prefix)) word = word.substr(std::string_view(prefix).size());
   }
   static const std::map<std::string, v1::Lubricant::BaseOilClass> kWords = {
-      {"i", v1::Lubricant::GROUP_I},
-      {"1", v1::Lubricant::GROUP_I},
-      {"ii", v1::Lubricant::GROUP_II},
-      {"2", v1::Lubricant::GROUP_II},
-      {"iii", v1::Lubricant::GROUP_III},
-      {"3", v1::Lubricant::GROUP_III},
-      {"iv", v1::Lubricant::POLYALPHAOLEFIN},
-      {"4", v1::Lubricant::POLYALPHAOLEFIN},
-      {"pao", v1::Lubricant::POLYALPHAOLEFIN},
-      {"polyalphaolefin", v1::Lubricant::POLYALPHAOLEFIN},
-      {"polyalphaolefine", v1::Lubricant::POLYALPHAOLEFIN},
-      {"ester", v1::Lubricant::ESTER},
-      {"pag", v1::Lubricant::POLYALKYLENE_GLYCOL},
-      {"polyalkyleneglycol", v1::Lubricant::POLYALKYLENE_GLYCOL},
-      {"polyglycol", v1::Lubricant::POLYALKYLENE_GLYCOL},
-      {"polyglykol", v1::Lubricant::POLYALKYLENE_GLYCOL},
-      {"naphthenic", v1::Lubricant::NAPHTHENIC},
-      {"naphthenisch", v1::Lubricant::NAPHTHENIC}};
+      {"i", v1::Lubricant::BASE_OIL_CLASS_GROUP_I},
+      {"1", v1::Lubricant::BASE_OIL_CLASS_GROUP_I},
+      {"ii", v1::Lubricant::BASE_OIL_CLASS_GROUP_II},
+      {"2", v1::Lubricant::BASE_OIL_CLASS_GROUP_II},
+      {"iii", v1::Lubricant::BASE_OIL_CLASS_GROUP_III},
+      {"3", v1::Lubricant::BASE_OIL_CLASS_GROUP_III},
+      {"iv", v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN},
+      {"4", v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN},
+      {"pao", v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN},
+      {"polyalphaolefin", v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN},
+      {"polyalphaolefine", v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN},
+      {"ester", v1::Lubricant::BASE_OIL_CLASS_ESTER},
+      {"pag", v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL},
+      {"polyalkyleneglycol", v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL},
+      {"polyglycol", v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL},
+      {"polyglykol", v1::Lubricant::BASE_OIL_CLASS_POLYALKYLENE_GLYCOL},
+      {"naphthenic", v1::Lubricant::BASE_OIL_CLASS_NAPHTHENIC},
+      {"naphthenisch", v1::Lubricant::BASE_OIL_CLASS_NAPHTHENIC}};
   const auto found = kWords.find(word);
   return found == kWords.end()
              ? nullptr

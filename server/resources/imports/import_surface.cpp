@@ -137,7 +137,8 @@ std::optional<v1::SurfaceMeasurement> measure(const v1::SurfaceProfile& profile,
   const double spacing =
       (positions.back() - positions.front()) / static_cast<double>(positions.size() - 1);
   try {
-    const Levelling level = levelling == v1::MEAN ? Levelling::kMean : Levelling::kLeastSquaresLine;
+    const Levelling level =
+        levelling == v1::LEVELLING_MEAN ? Levelling::kMean : Levelling::kLeastSquaresLine;
     const SpectralMoments moments = spectral_moments(
         filtered_profile(levelled_profile(heights, level), spacing, band), spacing, level);
     v1::SurfaceMeasurement out;
@@ -186,8 +187,8 @@ std::optional<SpectralMoments> member_moments(const v1::Surface& surface, v1::Fl
   }
   if (found.empty()) return std::nullopt;
   if (found.size() == 1) return mean_of(found.begin()->second);
-  return equivalent_isotropic_moments(mean_of(found[v1::AXIAL]), mean_of(found[v1::RADIAL]),
-                                      as_published);
+  return equivalent_isotropic_moments(mean_of(found[v1::PROFILE_DIRECTION_AXIAL]),
+                                      mean_of(found[v1::PROFILE_DIRECTION_RADIAL]), as_published);
 }
 
 std::string join(const std::string& a, const std::string& b) {
@@ -196,11 +197,11 @@ std::string join(const std::string& a, const std::string& b) {
 
 /// "the pinion's axial profile" of a measurement.
 std::string profile_text(const v1::SurfaceMeasurement& measurement) {
-  std::string text = measurement.member() == v1::PINION ? "the pinion's "
-                     : measurement.member() == v1::GEAR ? "the gear's "
-                                                        : "the ";
-  if (measurement.direction() == v1::AXIAL) text += "axial ";
-  if (measurement.direction() == v1::RADIAL) text += "radial ";
+  std::string text = measurement.member() == v1::FLANK_MEMBER_PINION ? "the pinion's "
+                     : measurement.member() == v1::FLANK_MEMBER_GEAR ? "the gear's "
+                                                                     : "the ";
+  if (measurement.direction() == v1::PROFILE_DIRECTION_AXIAL) text += "axial ";
+  if (measurement.direction() == v1::PROFILE_DIRECTION_RADIAL) text += "radial ";
   return text + "profile";
 }
 
@@ -242,7 +243,7 @@ std::string unmeasured_text(const v1::Surface& surface) {
     directions.emplace(each.member(), each.direction());
   }
   const bool both = members.contains(v1::FLANK_MEMBER_UNSPECIFIED);
-  if (!members.contains(v1::PINION) || !members.contains(v1::GEAR)) {
+  if (!members.contains(v1::FLANK_MEMBER_PINION) || !members.contains(v1::FLANK_MEMBER_GEAR)) {
     text = both ? "both flanks taken to be as the measured profile"
                 : "only one flank measured, the other taken to be like it";
   }
@@ -256,8 +257,8 @@ std::string unmeasured_text(const v1::Surface& surface) {
 
 void set_parameters(v1::Surface& surface, const AsPublished& as_published) {
   const auto both = member_moments(surface, v1::FLANK_MEMBER_UNSPECIFIED, as_published);
-  const auto pinion = member_moments(surface, v1::PINION, as_published);
-  const auto gear = member_moments(surface, v1::GEAR, as_published);
+  const auto pinion = member_moments(surface, v1::FLANK_MEMBER_PINION, as_published);
+  const auto gear = member_moments(surface, v1::FLANK_MEMBER_GEAR, as_published);
   const SpectralMoments one = both ? *both : pinion ? *pinion : *gear;
   const Roughness roughness =
       greenwood_tripp_roughness(composite_moments(pinion.value_or(one), gear.value_or(one)));
@@ -350,16 +351,18 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
                             "states one"});
     }
     if (!v1::FlankMember_IsValid(each.member())) {
-      violations.push_back({fmt::format("profiles[{}].member", i), "legal: PINION, GEAR or unset"});
+      violations.push_back({fmt::format("profiles[{}].member", i),
+                            "legal: FLANK_MEMBER_PINION, FLANK_MEMBER_GEAR or unset"});
     }
     if (!v1::ProfileDirection_IsValid(each.direction())) {
-      violations.push_back(
-          {fmt::format("profiles[{}].direction", i), "legal: AXIAL, RADIAL or unset"});
+      violations.push_back({fmt::format("profiles[{}].direction", i),
+                            "legal: PROFILE_DIRECTION_AXIAL, PROFILE_DIRECTION_RADIAL or unset"});
     }
   }
   const bool has_two_directions =
       std::any_of(seen.begin(), seen.end(), [&seen](const std::pair<int, int>& each) {
-        return each.second == v1::AXIAL && seen.count({each.first, v1::RADIAL}) > 0;
+        return each.second == v1::PROFILE_DIRECTION_AXIAL &&
+               seen.count({each.first, v1::PROFILE_DIRECTION_RADIAL}) > 0;
       });
   if (request.eq46_square_root_of_sum() && !has_two_directions) {
     violations.push_back({"eq46_square_root_of_sum",
@@ -367,7 +370,8 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
                           "member, and no member has both"});
   }
   if (!v1::Levelling_IsValid(request.levelling())) {
-    violations.push_back({"levelling", "legal: MEAN, LEAST_SQUARES_LINE or unset"});
+    violations.push_back(
+        {"levelling", "legal: LEVELLING_MEAN, LEVELLING_LEAST_SQUARES_LINE or unset"});
   }
 }
 
@@ -403,7 +407,7 @@ std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest
   check_not_stated(surface, violations);
   check_profiles(request, violations);
   const v1::Levelling levelling = request.levelling() == v1::LEVELLING_UNSPECIFIED
-                                      ? v1::LEAST_SQUARES_LINE
+                                      ? v1::LEVELLING_LEAST_SQUARES_LINE
                                       : request.levelling();
   const ProfileBand band{request.short_wave_cut_off_metres(), request.long_wave_cut_off_metres()};
   for (int i = 0; i < std::min(request.profiles_size(), kMaximumProfiles); ++i) {

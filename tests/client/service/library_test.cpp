@@ -193,7 +193,7 @@ TEST_F(Library, ASimulationIsFollowedToItsEnd) {
   simulation.set_lubricant("lubricants/1");
   auto& study = *simulation.mutable_operating_point();
   study.mutable_cruise()->set_speed_kilometres_per_hour(50);
-  study.set_model(v1::QUASI_STATIC);
+  study.set_model(v1::POINT_MODEL_QUASI_STATIC);
   CreateOptions check;
   check.validate_only = true;
   EXPECT_GT(connection.create_simulation(simulation, check).cost_estimate().processor_seconds(), 0);
@@ -278,7 +278,7 @@ v1::Simulation endless_curve() {
   curve->set_last_speed_kilometres_per_hour(80);
   curve->set_speed_step_kilometres_per_hour(0.0201);
   auto* solver = out.mutable_solver_options();
-  solver->set_method(v1::MARCH);
+  solver->set_method(v1::STEADY_STATE_METHOD_MARCH);
   solver->set_relative_tolerance(1e-11);
   solver->set_settling_tolerance(1e-12);
   solver->set_maximum_mesh_cycles(10'000);
