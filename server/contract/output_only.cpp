@@ -2,16 +2,10 @@
 
 #include <vector>
 
-#include "tribodyn/v1/annotations.pb.h"
-
 namespace tribodyn::server {
 
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
-
-bool is_output_only(const FieldDescriptor& field) {
-  return field.options().GetExtension(v1::output_only);
-}
 
 void keep_client_part(Message& message) {
   message.DiscardUnknownFields();

@@ -8,7 +8,7 @@ namespace tribodyn::server {
 enum class InputRole {
   kInput,         ///< the model may compute with it: part of the input hash
   kLabel,         ///< says what a thing is called, where it comes from or when it is wanted
-  kOutput,        ///< only the server sets it (option output_only)
+  kOutput,        ///< only the server sets it (OUTPUT_ONLY)
   kUnclassified,  ///< missing in the table; hashed as an input, which is safe
 };
 

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "proto/enum_names.h"
+#include "proto/field_behavior.h"
 #include "server/storage/resource_types.h"
-#include "tribodyn/v1/annotations.pb.h"
 #include "tribodyn/v1/labels.pb.h"
 
 namespace tribodyn::server {
@@ -34,8 +34,7 @@ std::vector<PropertyField> fields_of(std::string_view collection) {
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor& field = *descriptor.field(i);
     const std::string& name = field.name();
-    if (field.is_repeated() || name == "name" || name == "description" ||
-        field.options().GetExtension(v1::output_only)) {
+    if (field.is_repeated() || name == "name" || name == "description" || is_output_only(field)) {
       continue;
     }
     if (is_number(field)) out.push_back({name, PropertyKind::kNumber});

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "client/cpp/text/text.h"
-#include "tribodyn/v1/annotations.pb.h"
 
 namespace tribodyn::client {
 namespace {
@@ -163,10 +162,6 @@ void set_text(Message& resource, const char* field, const std::string& text) {
 bool is_deleted(const Message& resource) {
   return resource.GetReflection()->HasField(
       resource, resource.GetDescriptor()->FindFieldByName("delete_time"));
-}
-
-bool is_output_only(const google::protobuf::FieldDescriptor& field) {
-  return field.options().GetExtension(v1::output_only);
 }
 
 void clear_output_only(Message& resource) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "proto/field_behavior.h"
 #include "tribodyn/client/connection.h"
 
 namespace tribodyn::client {
@@ -90,6 +91,5 @@ const ProvenanceEntries& provenance_entries_of(const google::protobuf::Message& 
 
 /// Clears what only the server sets.
 void clear_output_only(google::protobuf::Message& resource);
-bool is_output_only(const google::protobuf::FieldDescriptor& field);
 
 }  // namespace tribodyn::client
