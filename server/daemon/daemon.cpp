@@ -22,6 +22,7 @@
 #include "server/storage/database_files.h"
 #include "server/storage/durable_files.h"
 #include "server/storage/maintenance.h"
+#include "server/storage/schema.h"
 #include "server/storage/seeds.h"
 #include "server/storage/store.h"
 #include "server/transport/grpc/grpc_server.h"
@@ -155,6 +156,10 @@ std::unique_ptr<MetricsListener> listen_for_metrics(const Settings& settings,
 
 int serve(const Settings& settings, const ListenAddress& address, const sigset_t& signals) {
   Store store(settings.database);
+  if (store.migration_backup()) {
+    spdlog::info("the database was brought to schema {}; {} holds it as it was before",
+                 kSchemaVersion, store.migration_backup()->string());
+  }
   store.add_resources(seed_resources(), system_time());
   const SimulationJobs::Options options = job_options(settings);
   SimulationJobs jobs(store, options);

@@ -71,20 +71,22 @@ UnfinishedFile::~UnfinishedFile() {
   if (!is_published_) std::filesystem::remove(path_, ignored);
 }
 
-bool UnfinishedFile::publish_as_new() {
+bool UnfinishedFile::publish_as_new() { return publish_as(target_); }
+
+bool UnfinishedFile::publish_as(const std::filesystem::path& name) {
   sync_file(path_);
-  if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) != 0) {
+  if (renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE) != 0) {
     if (errno == EEXIST) return false;
     // Some file systems, e.g. NFS, have no rename that refuses to replace a file.
-    if (errno != EINVAL && errno != ENOSYS) throw file_error("make", target_, errno);
-    if (!add_name(path_, target_)) return false;
+    if (errno != EINVAL && errno != ENOSYS) throw file_error("make", name, errno);
+    if (!add_name(path_, name)) return false;
     unlink(path_.c_str());
   }
   is_published_ = true;
   try {
-    sync_folder_of(target_);
+    sync_folder_of(name);
   } catch (const StoreError&) {
-    unlink(target_.c_str());
+    unlink(name.c_str());
     throw;
   }
   return true;

@@ -34,6 +34,8 @@ class UnfinishedFile {
   /// Syncs the file and renames it to `target` in one step. Returns false, and changes nothing, if
   /// a file of that name exists.
   bool publish_as_new();
+  /// As publish_as_new, under another name in the same folder.
+  bool publish_as(const std::filesystem::path& name);
   /// Syncs the file and renames it to `target` in one step; a file of that name loses the name.
   void publish_over();
 

@@ -4,6 +4,7 @@
 #include <SQLiteCpp/Statement.h>
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <new>
 
 #include "server/storage/connections.h"
@@ -20,13 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kAllPages = -1;
-
-Connection open_existing(const fs::path& path, int flags) {
-  if (!fs::exists(path)) {
-    throw StoreError(StoreError::Kind::kCannotOpen, "there is no database " + path.string());
-  }
-  return {path.string(), flags, kBusyTimeoutMilliseconds};
-}
+// What follows the path of a database in the name of a copy of it; a number may follow in turn.
+constexpr char kBeforeMigration[] = ".schema-";
+constexpr char kFormer[] = ".replaced";
 
 /// Runs an action on the database `path`; its failures become StoreError.
 template <class Action>
@@ -42,25 +39,49 @@ auto translated(const fs::path& path, const Action& action) {
   }
 }
 
+/// Files whose path begins with that of the database and `suffix`, sorted.
+std::vector<fs::path> files_beside(const fs::path& database, const std::string& suffix) {
+  return translated(database, [&] {
+    std::vector<fs::path> out;
+    const fs::path parent = database.parent_path();
+    for (const auto& entry : fs::directory_iterator(parent.empty() ? "." : parent)) {
+      if (entry.path().filename().string().starts_with(database.filename().string() + suffix)) {
+        out.push_back(entry.path());
+      }
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+  });
+}
+
+Connection open_existing(const fs::path& path, int flags) {
+  if (!fs::exists(path)) {
+    throw StoreError(StoreError::Kind::kCannotOpen, "there is no database " + path.string());
+  }
+  return {path.string(), flags, kBusyTimeoutMilliseconds};
+}
+
 StoreError in_use(const fs::path& database) {
   return {StoreError::Kind::kInUse,
           "database " + database.string() + " is in use by another program"};
 }
 
-/// Copies a database into an empty file, as it is at one moment, and returns the problems of the
-/// copy.
+/// Copies a database into an empty file, as it is at one moment.
+void copy_database(const fs::path& from, const fs::path& to) {
+  Connection source = open_existing(from, SQLite::OPEN_READONLY);
+  // Without a read transaction SQLite begins the copy anew whenever another connection commits,
+  // and under steady writes never finishes it.
+  source.exec("BEGIN");
+  check_identity(source, from);  // the first read begins the transaction
+  translated(to, [&] {
+    Connection target = open_existing(to, SQLite::OPEN_READWRITE);
+    if (SQLite::Backup(target, source).executeStep(kAllPages) != SQLITE_DONE) throw in_use(from);
+  });
+}
+
+/// As copy_database. Returns the problems of the copy.
 Problems copy_and_check(const fs::path& from, const fs::path& to) {
-  {
-    Connection source = open_existing(from, SQLite::OPEN_READONLY);
-    // Without a read transaction SQLite begins the copy anew whenever another connection commits,
-    // and under steady writes never finishes it.
-    source.exec("BEGIN");
-    check_identity(source, from);  // the first read begins the transaction
-    translated(to, [&] {
-      Connection target = open_existing(to, SQLite::OPEN_READWRITE);
-      if (SQLite::Backup(target, source).executeStep(kAllPages) != SQLITE_DONE) throw in_use(from);
-    });
-  }
+  copy_database(from, to);
   // Able to write, so that closing it removes the log file that opening it makes.
   Connection copied = open_existing(to, SQLite::OPEN_READWRITE);
   return problems_of(copied, to);
@@ -88,7 +109,7 @@ bool fold_log(const fs::path& database) {
 /// log has. Returns that name.
 fs::path kept_name(const fs::path& database) {
   for (int number = 1;; ++number) {
-    fs::path name = database.string() + ".replaced";
+    fs::path name = database.string() + kFormer;
     if (number > 1) name += "." + std::to_string(number);
     if (fs::exists(name.string() + "-wal") || fs::exists(name.string() + "-journal")) continue;
     if (!fs::exists(database)) {
@@ -135,6 +156,29 @@ void backup_database(const fs::path& database, const fs::path& copy) {
     }
     if (!unfinished.publish_as_new()) throw is_there;
   });
+}
+
+fs::path backup_before_migration(const fs::path& database, int schema) {
+  return translated(database, [&] {
+    UnfinishedFile unfinished(database);
+    copy_database(database, unfinished.path());
+    for (int number = 1;; ++number) {
+      fs::path name = database.string() + kBeforeMigration + std::to_string(schema);
+      if (number > 1) name += "." + std::to_string(number);
+      if (unfinished.publish_as(name)) return name;
+    }
+  });
+}
+
+void remove_migration_backups(const fs::path& database) {
+  translated(database, [&] {
+    for (const fs::path& each : files_beside(database, kBeforeMigration)) fs::remove(each);
+    sync_folder_of(database);
+  });
+}
+
+std::vector<fs::path> former_databases(const fs::path& database) {
+  return files_beside(database, kFormer);
 }
 
 std::optional<fs::path> restore_database(const fs::path& copy, const fs::path& database) {

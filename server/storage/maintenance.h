@@ -15,6 +15,18 @@ namespace tribodyn::server {
 /// exists, the database is damaged, or the copy cannot be written.
 void backup_database(const std::filesystem::path& database, const std::filesystem::path& copy);
 
+/// Copies a database of an older schema, as it is, to the first of "<database>.schema-4",
+/// "<database>.schema-4.2", ... that does not exist (for schema 4), and returns that path. The copy
+/// is on disk when its file appears. Throws StoreError, and leaves no file, if it cannot be
+/// written.
+std::filesystem::path backup_before_migration(const std::filesystem::path& database, int schema);
+
+/// Removes the files that backup_before_migration made for a database. Throws StoreError.
+void remove_migration_backups(const std::filesystem::path& database);
+
+/// The former databases that restore_database kept beside a database, sorted. Throws StoreError.
+std::vector<std::filesystem::path> former_databases(const std::filesystem::path& database);
+
 /// Puts a backup in the place of a database and returns the path under which the former one is
 /// kept:
 /// "<database>.replaced", or ".replaced.2" and so on where that name is taken. Returns nullopt if

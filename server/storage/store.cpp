@@ -10,6 +10,7 @@
 #include "server/storage/database_files.h"
 #include "server/storage/deadline.h"
 #include "server/storage/durable_files.h"
+#include "server/storage/maintenance.h"
 #include "server/storage/resource_queries.h"
 #include "server/storage/resource_rows.h"
 #include "server/storage/schema.h"
@@ -126,6 +127,9 @@ void Store::open_schema() {
     }
     db.exec("PRAGMA synchronous = FULL");
     db.exec("PRAGMA foreign_keys = ON");
+    if (0 < version && version < kSchemaVersion) {
+      migration_backup_ = backup_before_migration(path_, version);
+    }
     if (version < kSchemaVersion) migrate(db, version, system_time());
     return true;
   });
@@ -304,11 +308,13 @@ Store::Purge Store::purge_resource(const StoredResource& present, bool with_simu
   });
 }
 
-void Store::erase_removed() {
+std::vector<std::filesystem::path> Store::erase_removed() {
   write([](Connection& db) {
     server::erase_removed(db);
     return true;
   });
+  remove_migration_backups(path_);
+  return former_databases(path_);
 }
 
 Removed Store::remove_oldest(Microseconds ended_by, int limit) {

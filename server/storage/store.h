@@ -34,6 +34,10 @@ class Store {
   /// StoreError kMisplaced.
   std::string misplaced() const { return files_ ? files_->misplaced() : std::string(); }
 
+  /// Where the database was copied to before the constructor migrated it to the present schema;
+  /// nullopt if the constructor did not.
+  const std::optional<std::filesystem::path>& migration_backup() const { return migration_backup_; }
+
   /// Adds what is missing in one transaction; what exists, deleted or not, stays as it is.
   void add_resources(const std::vector<NewResource>& resources, Microseconds now);
   /// The present revision, of a deleted resource too.
@@ -79,8 +83,9 @@ class Store {
     int revisions = 0;        ///< removed
   };
   Purge purge_resource(const StoredResource& present, bool with_simulations);
-  /// As in removal.h. Other writers wait meanwhile.
-  void erase_removed();
+  /// As in removal.h, and removes the copies that migrations made. Other writers wait meanwhile.
+  /// Returns the former databases that restores kept, which may still hold what was removed.
+  std::vector<std::filesystem::path> erase_removed();
 
   // As the functions of retention.h.
   Removed remove_oldest(Microseconds ended_by, int limit);
@@ -145,6 +150,7 @@ class Store {
   Connection writer_;  // guarded by writer_mutex_
   GroupCommit group_commit_;
   ReaderPool readers_;
+  std::optional<std::filesystem::path> migration_backup_;
   std::optional<DatabaseFiles> files_;  // set by the constructor, once the files exist
 };
 

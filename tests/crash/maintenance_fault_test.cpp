@@ -1,5 +1,6 @@
-// Backup and restore where a system call fails or the process is killed: a backup appears complete
-// or not at all, and a restore leaves the former or the new database, complete, in its place.
+// Backup, restore, migration and purge where a system call fails or the process is killed: a backup
+// appears complete or not at all, and the database is the former or the new one, complete.
+#include <SQLiteCpp/Database.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -13,12 +14,16 @@
 #include <vector>
 
 #include "server/storage/maintenance.h"
+#include "server/storage/schema.h"
 #include "server/storage/seeds.h"
 #include "server/storage/store.h"
 #include "tests/crash/faulty_vfs.h"
 #include "tests/crash/file_call_hook.h"
 #include "tests/service/support.h"
+#include "tests/support/paths.h"
 #include "tests/support/run_length.h"
+#include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/results.pb.h"
 
 namespace tribodyn::crash {
 namespace {
@@ -222,6 +227,87 @@ TEST_F(MaintenanceOnAFaultyDisk, ARestoreLeavesTheFormerOrTheNewDatabase) {
                         place.emplace(TemporaryFolder::Kind::kMemory);
                         database = place_former(*place);
                       });
+}
+
+int schema_of(const std::string& database) {
+  SQLite::Database db(database, SQLite::OPEN_READWRITE);
+  return db.execAndGet("PRAGMA user_version").getInt();
+}
+
+TEST_F(MaintenanceOnAFaultyDisk, AMigrationLeavesTheOldDatabaseOrTheNewOneWithABackup) {
+  std::optional<TemporaryFolder> place;
+  std::string database;
+  const auto renew = [&] {
+    place.emplace(TemporaryFolder::Kind::kMemory);
+    database = place->file("db");
+    std::filesystem::copy_file(test_data_file("schemas/schema_4.sqlite"), database);
+    std::filesystem::permissions(database, std::filesystem::perms::owner_all);
+    // As a server leaves it; the stored file was copied without its mode.
+    SQLite::Database(database, SQLite::OPEN_READWRITE).exec("PRAGMA journal_mode = WAL");
+  };
+  renew();
+  fail_each_operation([&] { Store store(database); },
+                      [&](bool is_done, const std::string& trace) {
+                        EXPECT_THAT(check_database(database), IsEmpty()) << trace;
+                        const int schema = schema_of(database);
+                        EXPECT_TRUE(schema == server::kSchemaVersion || (!is_done && schema == 4))
+                            << trace;
+                        if (schema != 4) {
+                          EXPECT_EQ(schema_of(database + ".schema-4"), 4) << trace;
+                          EXPECT_THAT(check_database(database + ".schema-4"), IsEmpty()) << trace;
+                        }
+                        EXPECT_THAT(files_with(*place, ".new-"), IsEmpty()) << trace;
+                        renew();
+                      });
+}
+
+TEST_F(MaintenanceOnAFaultyDisk, APurgeRemovesAResourceWithItsSimulationsOrNothing) {
+  const std::string marker = "a formulation by mistake";
+  std::optional<TemporaryFolder> place;
+  std::string database;
+  const auto renew = [&] {
+    place.emplace(TemporaryFolder::Kind::kMemory);
+    database = place->file("db");
+    Store store(database);
+    tribodyn::v1::Lubricant lubricant;
+    lubricant.set_name("lubricants/secret");
+    lubricant.set_display_name(marker);
+    store.add_resources({{"lubricants/secret", lubricant.SerializeAsString()}}, 1);
+    const server::ResultKey key{std::string(64, 'a'), "model", "platform"};
+    const auto id =
+        store
+            .add_simulation(
+                {.request = "", .key = key, .lubricant_revision = "lubricants/secret@1"}, 2)
+            .id;
+    store.mark_running(id, 3, key);
+    tribodyn::v1::SimulationResult result;
+    result.set_input_hash(key.input_hash);
+    result.add_input_warnings()->set_message(marker);
+    store.mark_succeeded(id, 4, {key, result.SerializeAsString()});
+  };
+  const auto purge = [&] {
+    Store store(database);
+    if (const auto present = store.resource("lubricants/secret")) {
+      store.purge_resource(*present, true);
+    }
+    store.erase_removed();
+  };
+  renew();
+  fail_each_operation(purge, [&](bool is_done, const std::string& trace) {
+    bool is_there = false;
+    {
+      Store store(database);
+      is_there = store.resource("lubricants/secret").has_value();
+      EXPECT_EQ(store.simulation(1).has_value(), is_there) << trace;
+    }
+    EXPECT_THAT(check_database(database), IsEmpty()) << trace;
+    EXPECT_FALSE(is_done && is_there) << trace;
+    purge();  // again, on a sound disk
+    for (const char* suffix : {"", "-wal"}) {
+      EXPECT_EQ(text_of(database + suffix).find(marker), std::string::npos) << suffix << trace;
+    }
+    renew();
+  });
 }
 
 TEST_F(MaintenanceFault, AFileHasItsNameOnlyOnceItIsOnDiskAndTheNameIsWrittenToo) {

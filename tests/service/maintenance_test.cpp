@@ -91,6 +91,9 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   const auto before = stored_resources(file, GetParam());
   Store store(file);
   EXPECT_THAT(check_database(file), IsEmpty());
+  ASSERT_EQ(store.migration_backup(), file + ".schema-" + std::to_string(GetParam()));
+  EXPECT_EQ(stored_resources(*store.migration_backup(), GetParam()), before);
+  EXPECT_THAT(check_database(*store.migration_backup()), IsEmpty());
   for (const NewResource& seed : seed_resources()) EXPECT_EQ(before.count(seed.name), 1U);
   for (const auto& [name, resource] : before) {
     const auto stored = store.resource(name);
@@ -122,6 +125,16 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   for (const char* damaged : {"result 1: its content", "result 2: its history"}) {
     EXPECT_THAT(check_database(file), Contains(HasSubstr(damaged)));
   }
+}
+
+TEST_F(MaintenanceTest, AnEarlierBackupBeforeAMigrationStays) {
+  const std::string old = test_data_file("schemas/schema_4.sqlite"), file = folder_.file("old.db");
+  for (const char* suffix : {"", ".schema-4"}) {
+    std::filesystem::copy_file(old, file + suffix);
+    std::filesystem::permissions(file + suffix, std::filesystem::perms::owner_all);
+  }
+  EXPECT_EQ(Store(file).migration_backup(), file + ".schema-4.2");
+  EXPECT_EQ(Store(file).migration_backup(), std::nullopt) << "migrated already";
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemas, OldSchema, testing::Range(1, kSchemaVersion));

@@ -103,6 +103,14 @@ TEST_F(Removals, APurgedFormulationIsInNoFile) {
   EXPECT_TRUE(store_.resource("lubricants/other")) << "others stay";
 }
 
+TEST_F(Removals, ErasingRemovesCopiesOfMigrationsAndNamesFormerDatabases) {
+  const std::string migration = folder_.file("tribodyn.db.schema-4");
+  const std::string former = folder_.file("tribodyn.db.replaced.2");
+  for (const std::string& each : {migration, former}) std::ofstream(each) << "a database";
+  EXPECT_EQ(store_.erase_removed(), std::vector<std::filesystem::path>{former});
+  EXPECT_FALSE(std::filesystem::exists(migration));
+}
+
 TEST_F(Removals, ErasingLeavesTheDatabaseFitForFurtherWrites) {
   write_secret(1);
   store_.purge_resource(*store_.resource("lubricants/secret"), true);
