@@ -7,11 +7,13 @@
 namespace tribodyn::server {
 
 Outcome<v1::EvaluateContactResponse> evaluate_contact(Application& application,
-                                                      const v1::EvaluateContactRequest& request) {
+                                                      const v1::EvaluateContactRequest& request,
+                                                      const CallContext& call) {
   using Result = Outcome<v1::EvaluateContactResponse>;
   return guarded<v1::EvaluateContactResponse>([&]() -> Result {
     Violations violations;
-    const auto lubricant = read_contact(request, resource_lookup(application.store), violations);
+    const auto lubricant =
+        read_contact(request, resource_lookup(application.store, call.limits), violations);
     if (!lubricant) return invalid(violations);
     return evaluate_contact(request, *lubricant);
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/application/application.h"
+#include "server/application/call_context.h"
 #include "server/application/outcome.h"
 #include "tribodyn/v1/contacts.pb.h"
 
@@ -8,6 +9,7 @@ namespace tribodyn::server {
 
 /// Solves one contact, at once and without a trace.
 Outcome<v1::EvaluateContactResponse> evaluate_contact(Application& application,
-                                                      const v1::EvaluateContactRequest& request);
+                                                      const v1::EvaluateContactRequest& request,
+                                                      const CallContext& call = {});
 
 }  // namespace tribodyn::server

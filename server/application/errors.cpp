@@ -116,6 +116,7 @@ google::rpc::Status aborted(const std::string& reason, const std::string& type,
 
 google::rpc::Status store_failed(const StoreError& failure) {
   if (failure.kind() == StoreError::Kind::kDeadline) return deadline_exceeded();
+  if (failure.kind() == StoreError::Kind::kCancelled) return cancelled();
   if (failure.kind() == StoreError::Kind::kDataLoss ||
       failure.kind() == StoreError::Kind::kCorrupt) {
     return error(google::rpc::DATA_LOSS, "STORED_DATA_DAMAGED",
@@ -143,6 +144,15 @@ google::rpc::Status exhausted(const std::string& message, double retry_seconds) 
 google::rpc::Status deadline_exceeded() {
   return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
                "the deadline passed before the request was applied; nothing has changed");
+}
+
+google::rpc::Status cancelled() {
+  return error(google::rpc::CANCELLED, "CANCELLED",
+               "the client cancelled before the request was applied; nothing has changed");
+}
+
+google::rpc::Status call_over(const CallLimits& limits) {
+  return limits.is_cancelled() ? cancelled() : deadline_exceeded();
 }
 
 google::rpc::Status stream_deadline_exceeded() {

@@ -6,6 +6,7 @@
 #include "google/rpc/code.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/contract/violations.h"
+#include "server/storage/call_limits.h"
 #include "server/storage/store_error.h"
 
 namespace tribodyn::server {
@@ -41,8 +42,8 @@ google::rpc::Status not_possible(const std::string& reason, const std::string& t
 google::rpc::Status aborted(const std::string& reason, const std::string& type,
                             const std::string& name, const std::string& message, bool may_retry);
 
-/// What a client is told of a failure of the database: DEADLINE_EXCEEDED, DATA_LOSS, or UNAVAILABLE
-/// with RetryInfo. It names no file of the server.
+/// What a client is told of a failure of the database: DEADLINE_EXCEEDED, CANCELLED, DATA_LOSS, or
+/// UNAVAILABLE with RetryInfo. It names no file of the server.
 google::rpc::Status store_failed(const StoreError& failure);
 
 /// RESOURCE_EXHAUSTED with RetryInfo.
@@ -50,6 +51,10 @@ google::rpc::Status exhausted(const std::string& message, double retry_seconds);
 
 /// DEADLINE_EXCEEDED, by the server's own limit or the client's. Only before anything is committed.
 google::rpc::Status deadline_exceeded();
+/// CANCELLED: the client gave up. Only before anything is committed.
+google::rpc::Status cancelled();
+/// deadline_exceeded() or cancelled(), whichever limit is over.
+google::rpc::Status call_over(const CallLimits& limits);
 /// DEADLINE_EXCEEDED for a stream that was open for as long as it may be.
 google::rpc::Status stream_deadline_exceeded();
 

@@ -12,6 +12,12 @@
 
 namespace tribodyn::server {
 
+/// Whether the caller, and not the database, is why a call of the store failed.
+inline bool is_of_the_caller(const StoreError& failure) {
+  return failure.kind() == StoreError::Kind::kDeadline ||
+         failure.kind() == StoreError::Kind::kCancelled;
+}
+
 /// Runs the body of an RPC and turns every exception into an error. Of an unexpected exception only
 /// what() is logged.
 template <class Message, class Body>
@@ -21,7 +27,7 @@ Outcome<Message> guarded(const Body& body) {
   } catch (const Refusal& refusal) {
     return error(google::rpc::INVALID_ARGUMENT, refusal.reason(), refusal.what());
   } catch (const StoreError& failure) {
-    if (failure.kind() != StoreError::Kind::kDeadline) spdlog::error("{}", failure.what());
+    if (!is_of_the_caller(failure)) spdlog::error("{}", failure.what());
     return store_failed(failure);
   } catch (const std::bad_alloc&) {
     return out_of_memory();

@@ -201,17 +201,18 @@ std::optional<Window> window(const v1::ReadHistoryRequest& request, const Histor
 }  // namespace
 
 StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
-                                                    const v1::ReadHistoryRequest& request) {
+                                                    const v1::ReadHistoryRequest& request,
+                                                    const CallContext& call) {
   using Source = std::shared_ptr<MessageSource<v1::ReadHistoryResponse>>;
   return guarded<Source>([&]() -> Outcome<Source> {
-    const auto found = find_simulation(application, request.name());
+    const auto found = find_simulation(application, request.name(), call);
     if (!found.ok()) return found.error();
     const StoredSimulation& stored = found.message();
     if (stored.state != StoredState::kSucceeded) {
       return not_possible("NO_RESULT_YET", "tribodyn.v1.Simulation", request.name(),
                           request.name() + " has not succeeded, so it has no history");
     }
-    HistoryShape shape = application.store.history_shape(stored.id);
+    HistoryShape shape = application.store.history_shape(stored.id, call.limits);
     if (shape.names.empty()) {
       return not_found("tribodyn.v1.HistoryChunk", request.name(),
                        request.name() + " was run without history");
@@ -220,7 +221,7 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
     auto rows = window(request, shape, violations);
     if (!rows) return invalid(violations);
     v1::SimulationResult result;
-    result.ParseFromString(application.store.result(stored.id).value_or(""));
+    result.ParseFromString(application.store.result(stored.id, call.limits).value_or(""));
     return Source(
         std::make_shared<HistorySource>(application, std::move(shape), std::move(*rows), result));
   });

@@ -12,44 +12,51 @@ namespace {
 /// `read` makes the resource of the request, or violations.
 template <class Resource, class Request, class Read>
 Outcome<Resource> import_resource(Application& application, const Request& request,
-                                  const Read& read) {
+                                  const Read& read, const CallContext& call) {
   return guarded<Resource>([&]() -> Outcome<Resource> {
     Violations violations;
     const std::string name = new_name<Resource>(Kind<Resource>::id(request),
                                                 Kind<Resource>::of(request).name(), violations);
-    const auto accepted = read(request, name, resource_lookup(application.store), violations);
+    const auto accepted =
+        read(request, name, resource_lookup(application.store, call.limits), violations);
     if (!violations.empty() || !accepted) return invalid(violations);
-    return store_new(application, *accepted, request.validate_only());
+    return store_new(application, *accepted, request.validate_only(), call);
   });
 }
 
 }  // namespace
 
 Outcome<v1::Lubricant> import_lubricant(Application& application,
-                                        const v1::ImportLubricantRequest& request) {
+                                        const v1::ImportLubricantRequest& request,
+                                        const CallContext& call) {
   return import_resource<v1::Lubricant>(
       application, request,
       [](const v1::ImportLubricantRequest& stated, const std::string& name,
          const ResourceLookup& lookup,
-         Violations& violations) { return import_lubricant(stated, name, lookup, violations); });
+         Violations& violations) { return import_lubricant(stated, name, lookup, violations); },
+      call);
 }
 
 Outcome<v1::GearSet> import_gear_set(Application& application,
-                                     const v1::ImportGearSetRequest& request) {
+                                     const v1::ImportGearSetRequest& request,
+                                     const CallContext& call) {
   return import_resource<v1::GearSet>(
       application, request,
       [](const v1::ImportGearSetRequest& stated, const std::string& name,
          const ResourceLookup& lookup,
-         Violations& violations) { return import_gear_set(stated, name, lookup, violations); });
+         Violations& violations) { return import_gear_set(stated, name, lookup, violations); },
+      call);
 }
 
 Outcome<v1::Surface> import_surface_profiles(Application& application,
-                                             const v1::ImportSurfaceProfilesRequest& request) {
+                                             const v1::ImportSurfaceProfilesRequest& request,
+                                             const CallContext& call) {
   return import_resource<v1::Surface>(
       application, request,
       [](const v1::ImportSurfaceProfilesRequest& stated, const std::string& name,
          const ResourceLookup& lookup,
-         Violations& violations) { return import_surface(stated, name, lookup, violations); });
+         Violations& violations) { return import_surface(stated, name, lookup, violations); },
+      call);
 }
 
 }  // namespace tribodyn::server

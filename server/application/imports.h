@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/application/application.h"
+#include "server/application/call_context.h"
 #include "server/application/outcome.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
@@ -11,10 +12,13 @@ namespace tribodyn::server {
 // New resources from tables that clients send as text. What is refused leaves nothing behind.
 
 Outcome<v1::Lubricant> import_lubricant(Application& application,
-                                        const v1::ImportLubricantRequest& request);
+                                        const v1::ImportLubricantRequest& request,
+                                        const CallContext& call = {});
 Outcome<v1::GearSet> import_gear_set(Application& application,
-                                     const v1::ImportGearSetRequest& request);
+                                     const v1::ImportGearSetRequest& request,
+                                     const CallContext& call = {});
 Outcome<v1::Surface> import_surface_profiles(Application& application,
-                                             const v1::ImportSurfaceProfilesRequest& request);
+                                             const v1::ImportSurfaceProfilesRequest& request,
+                                             const CallContext& call = {});
 
 }  // namespace tribodyn::server

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "server/application/application.h"
+#include "server/application/call_context.h"
 #include "server/application/computed_fields.h"
 #include "server/application/guard.h"
 #include "server/application/list_filter.h"
@@ -77,12 +78,13 @@ Outcome<Resource> answer(const StoredResource& stored) {
 
 /// What is wrong with a name, whether there is such a resource or not; empty: nothing.
 template <class Resource>
-std::string name_problem(Application& application, const std::string& name,
-                         bool revisions_allowed) {
+std::string name_problem(Application& application, const std::string& name, bool revisions_allowed,
+                         const CallContext& call) {
   const std::string collection = Kind<Resource>::kCollection;
   const auto parsed = parse_revision_name(name, collection);
   if (!parsed) {
-    return unknown_name_text(name, collection, application.store.resource_names(collection));
+    return unknown_name_text(name, collection,
+                             application.store.resource_names(collection, call.limits));
   }
   if (parsed->revision == 0 || revisions_allowed) return {};
   return plain_excerpt(name) + " is a revision; legal: the name without it";
@@ -90,43 +92,48 @@ std::string name_problem(Application& application, const std::string& name,
 
 /// The stored revision that a name without problems means; nullopt if there is none.
 template <class Resource>
-std::optional<StoredResource> find_named(Application& application, const std::string& name) {
+std::optional<StoredResource> find_named(Application& application, const std::string& name,
+                                         const CallContext& call) {
   const RevisionName parsed = *parse_revision_name(name, Kind<Resource>::kCollection);
-  return parsed.revision == 0 ? application.store.resource(parsed.name)
-                              : application.store.revision(parsed.name, parsed.revision);
+  return parsed.revision == 0
+             ? application.store.resource(parsed.name, call.limits)
+             : application.store.revision(parsed.name, parsed.revision, call.limits);
 }
 
 /// NOT_FOUND with the name that may be meant. Compares the name with all of its collection.
 template <class Resource>
-google::rpc::Status unknown_name(Application& application, const std::string& name) {
+google::rpc::Status unknown_name(Application& application, const std::string& name,
+                                 const CallContext& call) {
   const std::string collection = Kind<Resource>::kCollection;
-  return not_found(
-      Resource::descriptor()->full_name(), name,
-      unknown_name_text(name, collection, application.store.resource_names(collection)));
+  return not_found(Resource::descriptor()->full_name(), name,
+                   unknown_name_text(name, collection,
+                                     application.store.resource_names(collection, call.limits)));
 }
 
 /// The stored revision that a name means; INVALID_ARGUMENT for what is no name, or NOT_FOUND.
 template <class Resource>
 Outcome<StoredResource> find_stored(Application& application, const std::string& name,
-                                    bool revisions_allowed) {
-  const std::string problem = name_problem<Resource>(application, name, revisions_allowed);
+                                    bool revisions_allowed, const CallContext& call) {
+  const std::string problem = name_problem<Resource>(application, name, revisions_allowed, call);
   if (!problem.empty()) return invalid({{"name", problem}});
-  if (auto found = find_named<Resource>(application, name)) return *std::move(found);
-  return unknown_name<Resource>(application, name);
+  if (auto found = find_named<Resource>(application, name, call)) return *std::move(found);
+  return unknown_name<Resource>(application, name, call);
 }
 
 template <class Resource>
-Outcome<Resource> get_resource(Application& application, const std::string& name) {
-  const auto found = find_stored<Resource>(application, name, true);
+Outcome<Resource> get_resource(Application& application, const std::string& name,
+                               const CallContext& call) {
+  const auto found = find_stored<Resource>(application, name, true, call);
   if (!found.ok()) return found.error();
   return answer<Resource>(found.message());
 }
 
 /// Deletes or undeletes; what is so already stays as it is.
 template <class Resource, class Request>
-Outcome<Resource> set_deleted(Application& application, const Request& request, bool deleted) {
+Outcome<Resource> set_deleted(Application& application, const Request& request, bool deleted,
+                              const CallContext& call) {
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
-    const auto found = find_stored<Resource>(application, request.name(), false);
+    const auto found = find_stored<Resource>(application, request.name(), false, call);
     if (!found.ok()) return found.error();
     StoredResource present = found.message();
     if (!request.etag().empty() && request.etag() != etag_of(present)) {
@@ -134,8 +141,8 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
     }
     if (present.delete_time.has_value() == deleted) return answer<Resource>(present);
     const Microseconds now = system_time();
-    if (deleted ? application.store.delete_resource(present, now)
-                : application.store.undelete_resource(present)) {
+    if (deleted ? application.store.delete_resource(present, now, call.limits)
+                : application.store.undelete_resource(present, call.limits)) {
       present.delete_time = deleted ? std::optional(now) : std::nullopt;
       return answer<Resource>(present);
     }
@@ -156,7 +163,8 @@ google::rpc::Status append(const Page<StoredResource>& page, Response& response)
 }
 
 template <class Resource, class Response, class Request>
-Outcome<Response> list_resources(Application& application, const Request& request) {
+Outcome<Response> list_resources(Application& application, const Request& request,
+                                 const CallContext& call) {
   Violations violations;
   ResourceQuery query;
   query.collection = Kind<Resource>::kCollection;
@@ -175,7 +183,7 @@ Outcome<Response> list_resources(Application& application, const Request& reques
   }
   if (!violations.empty()) return invalid(violations);
   const auto read_page = [&](const ResourceQuery& stored) {
-    return application.store.resources(stored);
+    return application.store.resources(stored, call.limits);
   };
   const Page<StoredResource> page =
       needs_computed_fields(query) ? query_by_computed_fields(query, read_page) : read_page(query);
@@ -189,7 +197,8 @@ Outcome<Response> list_resources(Application& application, const Request& reques
 }
 
 template <class Resource, class Response, class Request>
-Outcome<Response> list_revisions(Application& application, const Request& request) {
+Outcome<Response> list_revisions(Application& application, const Request& request,
+                                 const CallContext& call) {
   Violations violations;
   const int size = page_size(request.page_size(), kDefaultResourcePageSize, violations);
   const std::string scope = "revisions of " + request.name();
@@ -201,11 +210,11 @@ Outcome<Response> list_revisions(Application& application, const Request& reques
     }
   }
   if (!violations.empty()) return invalid(violations);
-  const auto found = find_stored<Resource>(application, request.name(), false);
+  const auto found = find_stored<Resource>(application, request.name(), false, call);
   if (!found.ok()) return found.error();
   const int before = after ? static_cast<int>(std::get<std::int64_t>(after->value)) : 0;
   Page<StoredResource> page =
-      application.store.revisions(request.name(), before, size, kMaximumPageBytes);
+      application.store.revisions(request.name(), before, size, kMaximumPageBytes, call.limits);
   for (StoredResource& row : page.rows) row.is_present = false;  // all names with their revision
   Response response;
   if (const auto failed = append<Resource>(page, response); failed.code() != 0) return failed;

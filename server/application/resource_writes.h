@@ -15,7 +15,6 @@
 #include "server/contract/constraints.h"
 #include "server/execution/simulation_runner.h"
 #include "server/resources/accept_resource.h"
-#include "server/storage/deadline.h"
 #include "server/storage/resource_lookup.h"
 
 namespace tribodyn::server {
@@ -54,16 +53,16 @@ std::string new_name(const std::string& id, const std::string& stated, Violation
 
 /// Stores a new resource that has been accepted.
 template <class Resource>
-Outcome<Resource> store_new(Application& application, const Resource& accepted,
-                            bool validate_only) {
+Outcome<Resource> store_new(Application& application, const Resource& accepted, bool validate_only,
+                            const CallContext& call) {
   const std::string& name = accepted.name();
-  if (const auto taken = application.store.resource(name)) {
+  if (const auto taken = application.store.resource(name, call.limits)) {
     return name_taken<Resource>(name, taken->delete_time.has_value());
   }
   const std::string body = accepted.SerializeAsString();
   if (validate_only) return preview<Resource>(body);
   const auto stored =
-      application.store.write_resources({{{name, body}, std::nullopt}}, system_time());
+      application.store.write_resources({{{name, body}, std::nullopt}}, system_time(), call.limits);
   if (!stored) return name_taken<Resource>(name, false);
   return answer<Resource>(stored->front());
 }
@@ -88,30 +87,32 @@ struct Draft {
 };
 
 template <class Resource, class Request>
-void draft_create(Application& application, const Request& request, Draft<Resource>& draft) {
+void draft_create(Application& application, const Request& request, Draft<Resource>& draft,
+                  const CallContext& call) {
   draft.stated = Kind<Resource>::of(request);
   draft.name =
       new_name<Resource>(Kind<Resource>::id(request), draft.stated->name(), draft.violations);
   draft.stated->set_name(draft.name);
   if (draft.name.empty()) return;
-  if (const auto taken = application.store.resource(draft.name)) {
+  if (const auto taken = application.store.resource(draft.name, call.limits)) {
     draft.refuse(name_taken<Resource>(draft.name, taken->delete_time.has_value()), "name");
   }
 }
 
 template <class Resource, class Request>
-void draft_update(Application& application, const Request& request, Draft<Resource>& draft) {
+void draft_update(Application& application, const Request& request, Draft<Resource>& draft,
+                  const CallContext& call) {
   const Resource& stated = Kind<Resource>::of(request);
-  const std::string problem = name_problem<Resource>(application, stated.name(), false);
+  const std::string problem = name_problem<Resource>(application, stated.name(), false, call);
   if (!problem.empty()) {
     draft.violations.push_back({join_path(Kind<Resource>::kField, "name"), problem});
     return;
   }
   draft.name = stated.name();
-  const auto found = find_named<Resource>(application, stated.name());
+  const auto found = find_named<Resource>(application, stated.name(), call);
   if (!found) {
     if (!request.allow_missing()) {
-      return draft.refuse(unknown_name<Resource>(application, stated.name()), "name");
+      return draft.refuse(unknown_name<Resource>(application, stated.name(), call), "name");
     }
     draft.stated = stated;
     return;
@@ -138,14 +139,15 @@ void draft_update(Application& application, const Request& request, Draft<Resour
 
 /// The draft of a Create...Request or an Update...Request.
 template <class Resource, class Request>
-Draft<Resource> draft_of(Application& application, const Request& request) {
+Draft<Resource> draft_of(Application& application, const Request& request,
+                         const CallContext& call) {
   Draft<Resource> draft;
   if (!Kind<Resource>::is_in(request)) {
     draft.violations.push_back({Kind<Resource>::kField, "not set"});
   } else if constexpr (requires { request.update_mask(); }) {
-    draft_update(application, request, draft);
+    draft_update(application, request, draft, call);
   } else {
-    draft_create(application, request, draft);
+    draft_create(application, request, draft, call);
   }
   return draft;
 }
@@ -166,7 +168,8 @@ void accept_draft(const ResourceLookup& lookup, Draft<Resource>& draft) {
 /// makes no revision. Nothing when somebody else has been faster.
 template <class Resource>
 std::optional<std::vector<StoredResource>> store_drafts(Application& application,
-                                                        std::vector<Draft<Resource>> drafts) {
+                                                        std::vector<Draft<Resource>> drafts,
+                                                        const CallContext& call) {
   std::vector<StoredResource> all(drafts.size());
   std::vector<ResourceWrite> writes;
   std::vector<std::size_t> places;  // of the writes
@@ -180,7 +183,7 @@ std::optional<std::vector<StoredResource>> store_drafts(Application& application
     }
   }
   if (writes.empty()) return all;
-  auto written = application.store.write_resources(writes, system_time());
+  auto written = application.store.write_resources(writes, system_time(), call.limits);
   if (!written) return std::nullopt;
   for (std::size_t i = 0; i < places.size(); ++i) all[places[i]] = std::move((*written)[i]);
   return all;
@@ -188,15 +191,16 @@ std::optional<std::vector<StoredResource>> store_drafts(Application& application
 
 /// Creates or updates one resource.
 template <class Resource, class Request>
-Outcome<Resource> write_resource(Application& application, const Request& request) {
+Outcome<Resource> write_resource(Application& application, const Request& request,
+                                 const CallContext& call) {
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
     std::vector<Draft<Resource>> drafts;
-    Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request));
-    accept_draft(resource_lookup(application.store), draft);
+    Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request, call));
+    accept_draft(resource_lookup(application.store, call.limits), draft);
     if (!draft.violations.empty()) return invalid(draft.violations);
     if (draft.refusal) return *draft.refusal;
     if (request.validate_only()) return preview<Resource>(draft.body);
-    if (const auto stored = store_drafts(application, std::move(drafts))) {
+    if (const auto stored = store_drafts(application, std::move(drafts), call)) {
       return answer<Resource>(stored->front());
     }
   }
@@ -264,11 +268,12 @@ std::optional<google::rpc::Status> refusal_of(const std::vector<Draft<Resource>>
 /// Drafts of all requests, accepted or with what is wrong with them; of a batch in which much is
 /// wrong perhaps not all. Throws StoreError.
 template <class Resource, class Batch>
-std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& batch) {
+std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& batch,
+                                       const CallContext& call) {
   std::vector<Draft<Resource>> drafts;
   std::size_t bad = 0;
   for (const auto& request : batch.requests()) {
-    Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request));
+    Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request, call));
     if (request.validate_only() && !batch.validate_only()) {
       draft.violations.push_back(
           {"validate_only", "set for one of a batch; legal: for the whole batch"});
@@ -276,10 +281,11 @@ std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& ba
     if (draft.is_bad() && ++bad >= kMaximumBatchViolations) return drafts;
   }
   const auto places = places_of(drafts);
-  const ResourceLookup lookup = lookup_with(drafts, places, resource_lookup(application.store));
+  const ResourceLookup lookup =
+      lookup_with(drafts, places, resource_lookup(application.store, call.limits));
   bad = 0;
   for (Draft<Resource>& draft : drafts) {
-    if (DeadlineScope::has_passed()) return drafts;
+    if (call.limits.are_over()) return drafts;
     accept_draft(lookup, draft);
     if (draft.is_bad() && ++bad >= kMaximumBatchViolations) return drafts;
   }
@@ -311,20 +317,22 @@ Outcome<Response> answer_all(std::size_t count, const ResourceAt& resource_at) {
 
 /// Creates or updates all resources of a batch, or none.
 template <class Resource, class Response, class Batch>
-Outcome<Response> write_batch(Application& application, const Batch& batch) {
+Outcome<Response> write_batch(Application& application, const Batch& batch,
+                              const CallContext& call) {
   Violations violations;
   check_size(batch, "requests", violations);
   if (!violations.empty()) return invalid(violations);
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
-    std::vector<Draft<Resource>> drafts = drafts_of<Resource>(application, batch);
-    if (DeadlineScope::has_passed()) return deadline_exceeded();
+    std::vector<Draft<Resource>> drafts = drafts_of<Resource>(application, batch, call);
+    if (call.limits.are_over()) return call_over(call.limits);
     if (const auto refusal = refusal_of(drafts)) return *refusal;
     if (batch.validate_only()) {
       return answer_all<Resource, Response>(drafts.size(), [&](std::size_t i) {
-        return Outcome<Resource>(preview<Resource>(drafts[i].body));
+        return call.limits.are_over() ? Outcome<Resource>(call_over(call.limits))
+                                      : Outcome<Resource>(preview<Resource>(drafts[i].body));
       });
     }
-    if (const auto stored = store_drafts(application, std::move(drafts))) {
+    if (const auto stored = store_drafts(application, std::move(drafts), call)) {
       return answer_all<Resource, Response>(
           stored->size(), [&](std::size_t i) { return answer<Resource>((*stored)[i]); });
     }

@@ -81,7 +81,8 @@ std::vector<std::string> known_messages() {
 
 }  // namespace
 
-Outcome<v1::Schema> get_schema(Application&, const v1::GetSchemaRequest& request) {
+Outcome<v1::Schema> get_schema(Application&, const v1::GetSchemaRequest& request,
+                               const CallContext&) {
   return guarded<v1::Schema>([&]() -> Outcome<v1::Schema> {
     v1::Schema out;
     out.set_model_version(kModelVersion);

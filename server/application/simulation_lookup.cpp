@@ -7,12 +7,13 @@
 
 namespace tribodyn::server {
 
-Outcome<StoredSimulation> find_simulation(Application& application, const std::string& name) {
+Outcome<StoredSimulation> find_simulation(Application& application, const std::string& name,
+                                          const CallContext& call) {
   const std::optional<std::int64_t> id = simulation_id(name);
   if (!id) {
     return invalid({{"name", "not a name of the form \"simulations/{id}\", id a number"}});
   }
-  std::optional<StoredSimulation> stored = application.store.simulation(*id);
+  std::optional<StoredSimulation> stored = application.store.simulation(*id, call.limits);
   if (!stored) return does_not_exist(name);
   return std::move(*stored);
 }

@@ -51,7 +51,7 @@ std::optional<Microseconds> deadline_time(const v1::Simulation& requested, Micro
 
 NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
                              const SimulationInputs& inputs, const std::string& request_hash,
-                             const Caller& caller) {
+                             const CallContext& call) {
   const v1::Simulation& effective = inputs.effective;
   std::vector<std::pair<std::string, std::string>> labels;
   for (const v1::Label& each : inputs.requested.labels()) {
@@ -64,7 +64,7 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
           .request_hash = request_hash,
           .is_forced = request.force(),
           .deadline_time = deadline_time(inputs.requested, system_time()),
-          .client = caller.client,
+          .client = call.client,
           .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
           .labels = std::move(labels),
           .lubricant_revision = effective.lubricant_revision(),
@@ -144,11 +144,12 @@ google::rpc::Status request_id_taken(const StoredSimulation& stored,
 /// The simulation that an earlier request of the same id made, or that it was another request.
 std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
                                                       const v1::CreateSimulationRequest& request,
-                                                      const std::string& text) {
+                                                      const std::string& text,
+                                                      const CallContext& call) {
   if (request.request_id().empty()) return std::nullopt;
-  const auto id = application.store.simulation_of_request(request.request_id());
+  const auto id = application.store.simulation_of_request(request.request_id(), call.limits);
   if (!id) return std::nullopt;
-  const auto stored = application.store.simulation(*id);
+  const auto stored = application.store.simulation(*id, call.limits);
   if (!stored) return std::nullopt;
   if (stored->request_hash != sha256(text)) return request_id_taken(*stored, request, text);
   if (stored->state == StoredState::kQueued) application.jobs.ensure_queued(*stored);
@@ -157,10 +158,10 @@ std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
 
 /// As much of its result as the view asks for, if it has one.
 void set_result(Application& application, v1::SimulationView view, v1::SimulationView otherwise,
-                std::int64_t id, v1::Simulation& out) {
+                std::int64_t id, v1::Simulation& out, const CallContext& call) {
   const v1::SimulationView meant = view == v1::SIMULATION_VIEW_UNSPECIFIED ? otherwise : view;
   if (meant == v1::SIMULATION_VIEW_BASIC) return;
-  const auto result = application.store.result(id);
+  const auto result = application.store.result(id, call.limits);
   if (!result) return;
   out.mutable_result()->ParseFromString(*result);
   if (meant == v1::SIMULATION_VIEW_SUMMARY) abridge(*out.mutable_result());
@@ -208,14 +209,15 @@ std::optional<SimulationQuery::Place> place(const std::string& scope, const std:
 }
 
 /// Joins what the client calls the request, the job and its result. Names only, no inputs.
-void log_submission(const NewSimulation& simulation, const Added& added) {
+void log_submission(const CallContext& call, const NewSimulation& simulation, const Added& added) {
   spdlog::info(
-      "event=simulation_{} simulation={} request_id={} client={} input_hash={} cost_seconds={:.6f}",
+      "event=simulation_{} simulation={} request_id={} client={} input_hash={} cost_seconds={:.6f} "
+      "call={}",
       added.kind == Added::Kind::kQueued   ? "queued"
       : added.kind == Added::Kind::kServed ? "served"
                                            : "not_added",
       added.id == 0 ? "-" : simulation_name(added.id), simulation.request_id, simulation.client,
-      simulation.key.input_hash, simulation.cost_seconds);
+      simulation.key.input_hash, simulation.cost_seconds, call.request_id);
 }
 
 google::rpc::Status no_place(Application& application, double retry_seconds) {
@@ -229,7 +231,7 @@ google::rpc::Status no_place(Application& application, double retry_seconds) {
 
 Outcome<v1::Simulation> create_simulation(Application& application,
                                           const v1::CreateSimulationRequest& request,
-                                          const Caller& caller) {
+                                          const CallContext& call) {
   return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
     Violations violations;
     check_request_id(request.request_id(), violations);
@@ -238,20 +240,21 @@ Outcome<v1::Simulation> create_simulation(Application& application,
     if (!violations.empty()) return invalid(violations);
     const std::string text = request_text(client_part(request.simulation()), request.force());
     // Before anything else, as what it rests on may have changed since.
-    auto earlier = earlier_answer(application, request, text);
+    auto earlier = earlier_answer(application, request, text, call);
     if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
     const StopWatch watch;
-    const auto inputs = read_simulation(request.simulation(), resource_lookup(application.store),
-                                        "simulation", violations);
+    const auto inputs =
+        read_simulation(request.simulation(), resource_lookup(application.store, call.limits),
+                        "simulation", violations);
     application.jobs.metrics().observe(Phase::kValidation, watch.seconds());
     if (!inputs) {
       application.jobs.metrics().count(Submission::kInvalid);
       return invalid(violations);
     }
-    const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), caller);
+    const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), call);
     if (request.validate_only()) return preview(*inputs, simulation);
-    const auto [added, retry_seconds] = application.jobs.submit(simulation);
-    log_submission(simulation, added);
+    const auto [added, retry_seconds] = application.jobs.submit(simulation, call.limits);
+    log_submission(call, simulation, added);
     if (added.kind == Added::Kind::kNoPlace) return no_place(application, retry_seconds);
     if (added.kind == Added::Kind::kRequestIdTaken) {
       return request_id_taken(added.stored, request, text);
@@ -261,18 +264,21 @@ Outcome<v1::Simulation> create_simulation(Application& application,
 }
 
 Outcome<v1::Simulation> get_simulation(Application& application,
-                                       const v1::GetSimulationRequest& request) {
+                                       const v1::GetSimulationRequest& request,
+                                       const CallContext& call) {
   return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    const auto found = find_simulation(application, request.name());
+    const auto found = find_simulation(application, request.name(), call);
     if (!found.ok()) return found.error();
     v1::Simulation out = to_message(application, found.message());
-    set_result(application, request.view(), v1::SIMULATION_VIEW_SUMMARY, found.message().id, out);
+    set_result(application, request.view(), v1::SIMULATION_VIEW_SUMMARY, found.message().id, out,
+               call);
     return out;
   });
 }
 
 Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
-                                                      const v1::ListSimulationsRequest& request) {
+                                                      const v1::ListSimulationsRequest& request,
+                                                      const CallContext& call) {
   return guarded<v1::ListSimulationsResponse>([&]() -> Outcome<v1::ListSimulationsResponse> {
     Violations violations;
     SimulationQuery query;
@@ -287,13 +293,13 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
       if (!query.after) add_bad_page_token(violations);
     }
     if (!violations.empty()) return invalid(violations);
-    const Page<StoredSimulation> page = application.store.simulations(query);
+    const Page<StoredSimulation> page = application.store.simulations(query, call.limits);
     v1::ListSimulationsResponse response;
     std::size_t bytes = 0;
     bool is_cut = false;
     for (const StoredSimulation& row : page.rows) {
       v1::Simulation next = to_message(application, row);
-      set_result(application, request.view(), v1::SIMULATION_VIEW_BASIC, row.id, next);
+      set_result(application, request.view(), v1::SIMULATION_VIEW_BASIC, row.id, next, call);
       bytes += next.ByteSizeLong();
       is_cut = response.simulations_size() > 0 && bytes > kMaximumPageBytes;
       if (is_cut) break;
@@ -310,15 +316,15 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
 namespace {
 
 Outcome<v1::Simulation> set_pinned(Application& application, const std::string& name,
-                                   bool is_pinned) {
+                                   bool is_pinned, const CallContext& call) {
   return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    const auto found = find_simulation(application, name);
+    const auto found = find_simulation(application, name, call);
     if (!found.ok()) return found.error();
     // All reads come before the write: once the write is committed, nothing may fail any more.
     v1::Simulation before;
     set_result(application, v1::SIMULATION_VIEW_SUMMARY, v1::SIMULATION_VIEW_SUMMARY,
-               found.message().id, before);
-    const auto pinned = application.store.set_pinned(found.message().id, is_pinned);
+               found.message().id, before, call);
+    const auto pinned = application.store.set_pinned(found.message().id, is_pinned, call.limits);
     if (!pinned) return does_not_exist(name);
     v1::Simulation out = to_message(application, *pinned);
     if (before.has_result()) *out.mutable_result() = std::move(*before.mutable_result());
@@ -329,26 +335,29 @@ Outcome<v1::Simulation> set_pinned(Application& application, const std::string& 
 }  // namespace
 
 Outcome<v1::Simulation> pin_simulation(Application& application,
-                                       const v1::PinSimulationRequest& request) {
-  return set_pinned(application, request.name(), true);
+                                       const v1::PinSimulationRequest& request,
+                                       const CallContext& call) {
+  return set_pinned(application, request.name(), true, call);
 }
 
 Outcome<v1::Simulation> unpin_simulation(Application& application,
-                                         const v1::UnpinSimulationRequest& request) {
-  return set_pinned(application, request.name(), false);
+                                         const v1::UnpinSimulationRequest& request,
+                                         const CallContext& call) {
+  return set_pinned(application, request.name(), false, call);
 }
 
 Outcome<v1::Simulation> cancel_simulation(Application& application,
-                                          const v1::CancelSimulationRequest& request) {
+                                          const v1::CancelSimulationRequest& request,
+                                          const CallContext& call) {
   return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    auto found = find_simulation(application, request.name());
+    auto found = find_simulation(application, request.name(), call);
     if (!found.ok()) return found.error();
     StoredSimulation& stored = found.message();
-    const auto event = application.jobs.cancel(stored.id);
+    const auto event = application.jobs.cancel(stored.id, call.limits);
     if (!event) {
       v1::GetSimulationRequest now;
       now.set_name(request.name());
-      return get_simulation(application, now);
+      return get_simulation(application, now, call);
     }
     // The answer is not read back: a read after the deadline would report a failure of a committed
     // call.

@@ -1,36 +1,35 @@
 #pragma once
 
-#include <string>
-
 #include "server/application/application.h"
+#include "server/application/call_context.h"
 #include "server/application/outcome.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::server {
 
-/// Who calls.
-struct Caller {
-  std::string client = {};  ///< shares the processors with the others
-};
-
 /// Accepts a simulation: checked, on disk and QUEUED when this returns.
 Outcome<v1::Simulation> create_simulation(Application& application,
                                           const v1::CreateSimulationRequest& request,
-                                          const Caller& caller = {});
+                                          const CallContext& call = {});
 /// With its result when it has succeeded.
 Outcome<v1::Simulation> get_simulation(Application& application,
-                                       const v1::GetSimulationRequest& request);
+                                       const v1::GetSimulationRequest& request,
+                                       const CallContext& call = {});
 /// A page, by default newest first and without results.
 Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
-                                                      const v1::ListSimulationsRequest& request);
+                                                      const v1::ListSimulationsRequest& request,
+                                                      const CallContext& call = {});
 /// CANCELLED on disk when this returns, unless it had ended before.
 Outcome<v1::Simulation> cancel_simulation(Application& application,
-                                          const v1::CancelSimulationRequest& request);
+                                          const v1::CancelSimulationRequest& request,
+                                          const CallContext& call = {});
 
 /// Keeps it for good, and gives it up again.
 Outcome<v1::Simulation> pin_simulation(Application& application,
-                                       const v1::PinSimulationRequest& request);
+                                       const v1::PinSimulationRequest& request,
+                                       const CallContext& call = {});
 Outcome<v1::Simulation> unpin_simulation(Application& application,
-                                         const v1::UnpinSimulationRequest& request);
+                                         const v1::UnpinSimulationRequest& request,
+                                         const CallContext& call = {});
 
 }  // namespace tribodyn::server

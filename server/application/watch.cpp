@@ -110,12 +110,13 @@ class Watch : public MessageSource<v1::SimulationEvent> {
 }  // namespace
 
 StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
-                                                    const v1::WatchSimulationRequest& request) {
+                                                    const v1::WatchSimulationRequest& request,
+                                                    const CallContext& call) {
   using Source = std::shared_ptr<MessageSource<v1::SimulationEvent>>;
   return guarded<Source>([&]() -> Outcome<Source> {
-    const auto found = find_simulation(application, request.name());
+    const auto found = find_simulation(application, request.name(), call);
     if (!found.ok()) return found.error();
-    auto watched = application.jobs.watch(found.message().id);
+    auto watched = application.jobs.watch(found.message().id, call.limits);
     if (!watched) return does_not_exist(request.name());
     const std::int64_t after = request.after_sequence();
     if (after < 0 || after > watched->simulation.sequence) {

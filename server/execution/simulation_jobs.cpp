@@ -65,14 +65,15 @@ void SimulationJobs::start() {
   janitor_.start();
 }
 
-SimulationJobs::Submitted SimulationJobs::submit(const NewSimulation& simulation) {
+SimulationJobs::Submitted SimulationJobs::submit(const NewSimulation& simulation,
+                                                 const CallLimits& limits) {
   QueuedJob job{0, simulation.client, simulation.cost_seconds};
   const Admission admission = queue_.reserve(job);
   const bool has_place = admission.is_admitted;
   Added added;
   const StopWatch watch;
   try {
-    added = store_.add_simulation(simulation, clock_(), has_place);
+    added = store_.add_simulation(simulation, clock_(), has_place, limits);
   } catch (...) {
     if (has_place) queue_.release(job);
     throw;
@@ -96,8 +97,8 @@ void SimulationJobs::ensure_queued(const StoredSimulation& simulation) {
   }
 }
 
-std::optional<StoredEvent> SimulationJobs::cancel(std::int64_t id) {
-  auto event = store_.mark_cancelled(id, clock_());
+std::optional<StoredEvent> SimulationJobs::cancel(std::int64_t id, const CallLimits& limits) {
+  auto event = store_.mark_cancelled(id, clock_(), limits);
   if (event) metrics_.count(Ending::kCancelled);
   end(id, event);
   return event;
@@ -135,11 +136,12 @@ std::optional<Progress> SimulationJobs::progress(std::int64_t id) const {
   return channel->latest().progress;
 }
 
-std::optional<SimulationJobs::Watched> SimulationJobs::watch(std::int64_t id) {
-  if (!store_.simulation(id)) return std::nullopt;
+std::optional<SimulationJobs::Watched> SimulationJobs::watch(std::int64_t id,
+                                                             const CallLimits& limits) {
+  if (!store_.simulation(id, limits)) return std::nullopt;
   // The channel first, the state after: what the state does not show yet will be heard.
   std::shared_ptr<ProgressChannel> channel = board_.open(id);
-  std::optional<StoredSimulation> stored = store_.simulation(id);
+  std::optional<StoredSimulation> stored = store_.simulation(id, limits);
   if (!stored) return std::nullopt;
   if (has_ended(stored->state)) board_.finish(id, stored->sequence);
   return Watched{std::move(channel), std::move(*stored)};

@@ -50,14 +50,14 @@ class SimulationJobs {
     Added added;
     double retry_seconds = 0;
   };
-  Submitted submit(const NewSimulation& simulation);
+  Submitted submit(const NewSimulation& simulation, const CallLimits& limits = {});
   /// Of a simulation that is QUEUED in the store: its request may have been written and yet been
   /// answered with an error, before it came into the queue.
   void ensure_queued(const StoredSimulation& simulation);
 
   /// At once CANCELLED in the store; a worker on it stops at its next step. Returns the change of
   /// state; nullopt, and changes nothing, if the simulation has ended before.
-  std::optional<StoredEvent> cancel(std::int64_t id);
+  std::optional<StoredEvent> cancel(std::int64_t id, const CallLimits& limits = {});
 
   /// Latest progress of a simulation that runs.
   std::optional<Progress> progress(std::int64_t id) const;
@@ -69,7 +69,7 @@ class SimulationJobs {
     StoredSimulation simulation;
   };
   /// Nothing when there is no such simulation.
-  std::optional<Watched> watch(std::int64_t id);
+  std::optional<Watched> watch(std::int64_t id, const CallLimits& limits = {});
   /// Wakes the observer often enough for heartbeats.
   void wake(const std::weak_ptr<ProgressObserver>& observer) { timekeeper_.observe(observer); }
   const Retention& retention() const { return retention_; }

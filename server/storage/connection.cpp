@@ -1,6 +1,19 @@
 #include "server/storage/connection.h"
 
+#include <sqlite3.h>
+
 namespace tribodyn::server {
+
+void Connection::heed_limits() {
+  constexpr int kInstructions = 1000;  // about 10 us between looks at the clock
+  sqlite3_progress_handler(
+      getHandle(), kInstructions,
+      [](void* limits) {
+        const auto* present = *static_cast<const CallLimits**>(limits);
+        return present != nullptr && present->are_over() ? 1 : 0;
+      },
+      &limits_);
+}
 
 Prepared::Prepared(Connection& connection, std::string_view sql)
     : idle_([&]() -> Connection::Statements& {

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/storage/call_limits.h"
+
 namespace tribodyn::server {
 
 /// A connection that keeps the statements it has prepared, as preparing one takes longer than most
@@ -19,9 +21,28 @@ class Connection : public SQLite::Database {
  public:
   using SQLite::Database::Database;
 
+  /// Makes statements fail with SQLITE_INTERRUPT while the limits that an Under set are over. Once,
+  /// before the first of them.
+  void heed_limits();
+
+  /// While it lives, statements of the connection end when `limits` are over. One at a time.
+  class Under {
+   public:
+    Under(Connection& connection, const CallLimits& limits) : connection_(connection) {
+      connection_.limits_ = &limits;
+    }
+    ~Under() { connection_.limits_ = nullptr; }
+    Under(const Under&) = delete;
+    Under& operator=(const Under&) = delete;
+
+   private:
+    Connection& connection_;
+  };
+
  private:
   friend class Prepared;
   using Statements = std::vector<std::unique_ptr<SQLite::Statement>>;
+  const CallLimits* limits_ = nullptr;                   // null: none
   std::map<std::string, Statements, std::less<>> idle_;  // by their text; gone before the base
 };
 

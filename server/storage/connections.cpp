@@ -2,21 +2,20 @@
 
 #include <sqlite3.h>
 
-#include "server/storage/deadline.h"
+#include <chrono>
 
 namespace tribodyn::server {
+namespace {
+
+/// Between two looks at the limits of a caller who waits for a connection.
+constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
+
+}  // namespace
 
 void configure_sqlite() {
   // Without effect where SQLite is in use already, e.g. in a test.
   sqlite3_config(SQLITE_CONFIG_MULTITHREAD);
   sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
-}
-
-void heed_deadlines(Connection& connection) {
-  constexpr int kInstructions = 1000;  // about 10 us between looks at the clock
-  sqlite3_progress_handler(
-      connection.getHandle(), kInstructions,
-      [](void*) { return DeadlineScope::has_passed() ? 1 : 0; }, nullptr);
 }
 
 void ReaderPool::open(const std::filesystem::path& database, int connections) {
@@ -29,14 +28,17 @@ void ReaderPool::open(const std::filesystem::path& database, int connections) {
     // In KiB: what many readers of histories share comes from the system's cache.
     connection->exec("PRAGMA cache_size = -256");
     connection->execAndGet("SELECT count(*) FROM sqlite_master");  // opens the log too
-    heed_deadlines(*connection);
+    connection->heed_limits();
     give_back(std::move(connection));
   }
 }
 
-ReaderPool::Loan ReaderPool::borrow() {
+ReaderPool::Loan ReaderPool::borrow(const CallLimits& limits) {
   std::unique_lock lock(mutex_);
-  returned_.wait(lock, [this] { return !idle_.empty(); });
+  const auto is_there = [this] { return !idle_.empty(); };
+  while (!returned_.wait_for(lock, kBetweenLooks, is_there)) {
+    if (limits.are_over()) return Loan(*this, nullptr);
+  }
   auto connection = std::move(idle_.back());
   idle_.pop_back();
   return Loan(*this, std::move(connection));

@@ -23,9 +23,12 @@ class ReaderPool {
    public:
     Loan(ReaderPool& pool, std::unique_ptr<Connection> connection)
         : pool_(pool), connection_(std::move(connection)) {}
-    ~Loan() { pool_.give_back(std::move(connection_)); }
+    ~Loan() {
+      if (connection_) pool_.give_back(std::move(connection_));
+    }
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
+    explicit operator bool() const { return connection_ != nullptr; }
     Connection& operator*() { return *connection_; }
 
    private:
@@ -33,7 +36,8 @@ class ReaderPool {
     std::unique_ptr<Connection> connection_;
   };
 
-  Loan borrow();
+  /// Waits for a connection; the loan is empty if `limits` were over before one came back.
+  Loan borrow(const CallLimits& limits);
 
  private:
   void give_back(std::unique_ptr<Connection> connection);
@@ -46,9 +50,6 @@ class ReaderPool {
 /// Before the first connection of the process: ours are used by one thread at a time, and nobody
 /// asks for SQLite's account of its memory, so that it needs no locks around either.
 void configure_sqlite();
-
-/// Makes statements of a connection end when the deadline of their thread passes (deadline.h).
-void heed_deadlines(Connection& connection);
 
 /// How long a statement waits for another connection before it fails [ms].
 inline constexpr int kBusyTimeoutMilliseconds = 5000;

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "server/storage/connections.h"
-
 namespace tribodyn::server {
 namespace {
 
@@ -17,24 +15,14 @@ void roll_back(Connection& db) {
   if (is_in_transaction(db)) db.tryExec("ROLLBACK");
 }
 
-/// While it lives, statements do not end at the deadline of this thread, which is not theirs.
-class WithoutDeadlines {
- public:
-  explicit WithoutDeadlines(Connection& db) : db_(db) {
-    sqlite3_progress_handler(db_.getHandle(), 0, nullptr, nullptr);
-  }
-  ~WithoutDeadlines() { heed_deadlines(db_); }
-  WithoutDeadlines(const WithoutDeadlines&) = delete;
-  WithoutDeadlines& operator=(const WithoutDeadlines&) = delete;
-
- private:
-  Connection& db_;
-};
+void require_caller(const CallLimits& limits) {
+  if (limits.are_over()) throw SQLite::Exception("nobody waits any more", SQLITE_INTERRUPT);
+}
 
 }  // namespace
 
-void GroupCommit::run(const Action& action) {
-  Pending own{&action};
+void GroupCommit::run(const Action& action, const CallLimits& limits) {
+  Pending own{&action, &limits};
   std::unique_lock lock(mutex_);
   pending_.push_back(&own);
   while (!own.is_done) {
@@ -62,10 +50,9 @@ void GroupCommit::run(const Action& action) {
 
 void GroupCommit::commit(const Group& group, bool is_own) {
   const std::lock_guard lock(writer_mutex_);
-  if (is_own) return commit_alone(*group.front());
-  const WithoutDeadlines without_deadlines(writer_);
+  if (is_own) return commit_alone(*group.front(), *group.front()->limits);
   if (group.size() > 1 && commit_together(group)) return;
-  for (Pending* each : group) commit_alone(*each);
+  for (Pending* each : group) commit_alone(*each, {});
 }
 
 /// False when nothing of it has changed anything.
@@ -75,6 +62,7 @@ bool GroupCommit::commit_together(const Group& group) {
     for (Pending* each : group) {
       Prepared(writer_, "SAVEPOINT one").exec();
       try {
+        require_caller(*each->limits);
         (*each->action)(writer_);
       } catch (...) {
         each->error = std::current_exception();
@@ -92,9 +80,12 @@ bool GroupCommit::commit_together(const Group& group) {
   }
 }
 
-void GroupCommit::commit_alone(Pending& pending) {
+/// The limits hold for every statement, up to the commit.
+void GroupCommit::commit_alone(Pending& pending, const CallLimits& limits) {
   pending.error = nullptr;
+  const Connection::Under under(writer_, limits);
   try {
+    require_caller(*pending.limits);
     Prepared(writer_, "BEGIN IMMEDIATE").exec();
     (*pending.action)(writer_);
     Prepared(writer_, "COMMIT").exec();

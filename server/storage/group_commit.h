@@ -24,12 +24,14 @@ class GroupCommit {
       : writer_(writer), writer_mutex_(writer_mutex) {}
 
   /// Throws what the action throws, or SQLite::Exception where it cannot be committed; nothing has
-  /// changed then. Deadlines of the thread hold only for an action that goes alone.
-  void run(const Action& action);
+  /// changed then: with SQLITE_INTERRUPT if `limits` were over before the action began or, where it
+  /// goes alone, before it ended.
+  void run(const Action& action, const CallLimits& limits);
 
  private:
   struct Pending {
     const Action* action = nullptr;
+    const CallLimits* limits = nullptr;
     std::exception_ptr error = nullptr;
     bool is_done = false;
     std::condition_variable changed = {};  // done, or its turn to commit for the others
@@ -38,7 +40,7 @@ class GroupCommit {
 
   void commit(const Group& group, bool is_own);
   bool commit_together(const Group& group);
-  void commit_alone(Pending& pending);
+  void commit_alone(Pending& pending, const CallLimits& limits);
 
   Connection& writer_;
   std::mutex& writer_mutex_;

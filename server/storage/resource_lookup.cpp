@@ -7,15 +7,17 @@
 
 namespace tribodyn::server {
 
-ResourceLookup resource_lookup(Store& store) {
-  return {[&store](const RevisionName& name) -> std::optional<FoundResource> {
-            auto found = name.revision == 0 ? store.resource(name.name)
-                                            : store.revision(name.name, name.revision);
+ResourceLookup resource_lookup(Store& store, const CallLimits& limits) {
+  return {[&store, limits](const RevisionName& name) -> std::optional<FoundResource> {
+            auto found = name.revision == 0 ? store.resource(name.name, limits)
+                                            : store.revision(name.name, name.revision, limits);
             if (!found) return std::nullopt;
             return FoundResource{found->revision, found->delete_time.has_value(),
                                  std::move(found->body)};
           },
-          [&store](const std::string& collection) { return store.resource_names(collection); }};
+          [&store, limits](const std::string& collection) {
+            return store.resource_names(collection, limits);
+          }};
 }
 
 ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation) {

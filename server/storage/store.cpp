@@ -8,7 +8,6 @@
 
 #include "server/storage/database_check.h"
 #include "server/storage/database_files.h"
-#include "server/storage/deadline.h"
 #include "server/storage/durable_files.h"
 #include "server/storage/maintenance.h"
 #include "server/storage/resource_queries.h"
@@ -29,11 +28,20 @@ std::filesystem::path usable_path(const std::filesystem::path& database) {
   return path;
 }
 
-void check_deadline(const std::filesystem::path& path) {
-  if (DeadlineScope::has_passed()) {
-    throw StoreError(StoreError::Kind::kDeadline,
-                     "database " + path.string() + ": the deadline has passed");
-  }
+StoreError limits_over(const CallLimits& limits) {
+  return limits.is_cancelled()
+             ? StoreError(StoreError::Kind::kCancelled, "the caller gave up")
+             : StoreError(StoreError::Kind::kDeadline, "the caller's deadline has passed");
+}
+
+void check(const CallLimits& limits) {
+  if (limits.are_over()) throw limits_over(limits);
+}
+
+StoreError translate(const SQLite::Exception& error, const std::filesystem::path& path,
+                     const CallLimits& limits) {
+  return error.getErrorCode() == SQLITE_INTERRUPT ? limits_over(limits)
+                                                  : translate_error(error, path);
 }
 
 Connection open_writer(const std::filesystem::path& path) try {
@@ -56,40 +64,43 @@ void Store::require_place() const {
 /// The files are looked for before the action, so that nothing is written in vain, and after it, so
 /// that nothing is acknowledged that went into a file which lost its name meanwhile.
 template <class Action>
-auto Store::write(const Action& action) {
+auto Store::write(const CallLimits& limits, const Action& action) {
   const std::lock_guard lock(writer_mutex_);
-  check_deadline(path_);
+  check(limits);
   require_place();
   try {
+    const Connection::Under under(writer_, limits);
     auto out = action(writer_);
     require_place();
     return out;
   } catch (const SQLite::Exception& error) {
-    throw translate_error(error, path_);
+    throw translate(error, path_, limits);
   }
 }
 
-void Store::write_together(const GroupCommit::Action& action) {
-  check_deadline(path_);
+void Store::write_together(const CallLimits& limits, const GroupCommit::Action& action) {
+  check(limits);
   require_place();
   try {
-    group_commit_.run(action);
+    group_commit_.run(action, limits);
     require_place();
   } catch (const Undone&) {
     return;
   } catch (const SQLite::Exception& error) {
-    throw translate_error(error, path_);
+    throw translate(error, path_, limits);
   }
 }
 
 template <class Action>
-auto Store::read(const Action& action) {
-  check_deadline(path_);
+auto Store::read(const CallLimits& limits, const Action& action) {
+  check(limits);
   try {
-    ReaderPool::Loan loan = readers_.borrow();
+    ReaderPool::Loan loan = readers_.borrow(limits);
+    if (!loan) throw limits_over(limits);
+    const Connection::Under under(*loan, limits);
     return action(*loan);
   } catch (const SQLite::Exception& error) {
-    throw translate_error(error, path_);
+    throw translate(error, path_, limits);
   }
 }
 
@@ -99,7 +110,7 @@ Store::Store(const std::filesystem::path& database)
       writer_(open_writer(path_)),
       group_commit_(writer_, writer_mutex_) {
   open_schema();
-  heed_deadlines(writer_);
+  writer_.heed_limits();
   try {
     // What a writer would undo stays in memory (pages that were there before, a few hundred KiB),
     // so that no file is opened now and then.
@@ -113,7 +124,7 @@ Store::Store(const std::filesystem::path& database)
 }
 
 void Store::open_schema() {
-  write([this](Connection& db) {
+  write({}, [this](Connection& db) {
     require_servable(db, path_);
     const int version = db.execAndGet("PRAGMA user_version").getInt();
     if (sqlite3_db_readonly(db.getHandle(), "main") == 1) {
@@ -136,7 +147,7 @@ void Store::open_schema() {
 }
 
 void Store::add_resources(const std::vector<NewResource>& resources, Microseconds now) {
-  write([&](Connection& db) {
+  write({}, [&](Connection& db) {
     SQLite::Transaction transaction(db);
     for (const NewResource& each : resources) {
       if (!is_taken(db, each.name)) insert_resource(db, each, now);
@@ -146,8 +157,8 @@ void Store::add_resources(const std::vector<NewResource>& resources, Microsecond
   });
 }
 
-std::optional<StoredResource> Store::resource(const std::string& name) {
-  return read([&](Connection& db) -> std::optional<StoredResource> {
+std::optional<StoredResource> Store::resource(const std::string& name, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) -> std::optional<StoredResource> {
     Prepared query(db,
                    std::string(kResourceColumns) +
                        "FROM resources r JOIN revisions v ON v.id = r.present WHERE r.name = ?");
@@ -157,8 +168,9 @@ std::optional<StoredResource> Store::resource(const std::string& name) {
   });
 }
 
-std::optional<StoredResource> Store::revision(const std::string& name, int revision) {
-  return read([&](Connection& db) -> std::optional<StoredResource> {
+std::optional<StoredResource> Store::revision(const std::string& name, int revision,
+                                              const CallLimits& limits) {
+  return read(limits, [&](Connection& db) -> std::optional<StoredResource> {
     Prepared query(db, std::string(kResourceColumns) +
                            "FROM resources r JOIN revisions v ON v.resource = r.id "
                            "WHERE r.name = ? AND v.revision = ?");
@@ -169,13 +181,13 @@ std::optional<StoredResource> Store::revision(const std::string& name, int revis
   });
 }
 
-Page<StoredResource> Store::resources(const ResourceQuery& query) {
-  return read([&](Connection& db) { return query_resources(db, query); });
+Page<StoredResource> Store::resources(const ResourceQuery& query, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_resources(db, query); });
 }
 
 Page<StoredResource> Store::revisions(const std::string& name, int before, int limit,
-                                      std::size_t byte_limit) {
-  return read([&](Connection& db) {
+                                      std::size_t byte_limit, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) {
     Prepared query(db, std::string(kResourceColumns) +
                            "FROM resources r JOIN revisions v ON v.resource = r.id "
                            "WHERE r.name = ? AND v.revision < ? "
@@ -187,8 +199,9 @@ Page<StoredResource> Store::revisions(const std::string& name, int before, int l
   });
 }
 
-std::vector<std::string> Store::resource_names(const std::string& collection) {
-  return read([&](Connection& db) {
+std::vector<std::string> Store::resource_names(const std::string& collection,
+                                               const CallLimits& limits) {
+  return read(limits, [&](Connection& db) {
     Prepared query(
         db,
         "SELECT name FROM resources WHERE collection = ? AND delete_time IS NULL ORDER BY name");
@@ -200,8 +213,8 @@ std::vector<std::string> Store::resource_names(const std::string& collection) {
 }
 
 std::optional<std::vector<StoredResource>> Store::write_resources(
-    const std::vector<ResourceWrite>& writes, Microseconds now) {
-  return write([&](Connection& db) -> std::optional<std::vector<StoredResource>> {
+    const std::vector<ResourceWrite>& writes, Microseconds now, const CallLimits& limits) {
+  return write(limits, [&](Connection& db) -> std::optional<std::vector<StoredResource>> {
     SQLite::Transaction transaction(db);
     std::vector<StoredResource> written;
     written.reserve(writes.size());
@@ -216,8 +229,8 @@ std::optional<std::vector<StoredResource>> Store::write_resources(
 }
 
 template <class Change>
-bool Store::change(const StoredResource& present, const Change& change) {
-  return write([&](Connection& db) {
+bool Store::change(const CallLimits& limits, const StoredResource& present, const Change& change) {
+  return write(limits, [&](Connection& db) {
     SQLite::Transaction transaction(db);
     if (!is_unchanged(db, present)) return false;
     change(db);
@@ -226,8 +239,9 @@ bool Store::change(const StoredResource& present, const Change& change) {
   });
 }
 
-bool Store::delete_resource(const StoredResource& present, Microseconds now) {
-  return change(present, [&](Connection& db) {
+bool Store::delete_resource(const StoredResource& present, Microseconds now,
+                            const CallLimits& limits) {
+  return change(limits, present, [&](Connection& db) {
     Prepared mark(db, "UPDATE resources SET delete_time = ? WHERE id = ?");
     mark.bind(1, now);
     mark.bind(2, present.id);
@@ -235,26 +249,29 @@ bool Store::delete_resource(const StoredResource& present, Microseconds now) {
   });
 }
 
-bool Store::undelete_resource(const StoredResource& present) {
-  return change(present, [&](Connection& db) {
+bool Store::undelete_resource(const StoredResource& present, const CallLimits& limits) {
+  return change(limits, present, [&](Connection& db) {
     Prepared mark(db, "UPDATE resources SET delete_time = NULL WHERE id = ?");
     mark.bind(1, present.id);
     mark.exec();
   });
 }
 
-Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait) {
+Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait,
+                            const CallLimits& limits) {
   Added added;
-  write_together([&](Connection& db) { added = insert_simulation(db, simulation, now, may_wait); });
+  write_together(limits,
+                 [&](Connection& db) { added = insert_simulation(db, simulation, now, may_wait); });
   return added;
 }
 
-std::optional<StoredSimulation> Store::simulation(std::int64_t id) {
-  return read([&](Connection& db) { return query_simulation(db, id); });
+std::optional<StoredSimulation> Store::simulation(std::int64_t id, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_simulation(db, id); });
 }
 
-std::optional<std::int64_t> Store::simulation_of_request(const std::string& request_id) {
-  return read([&](Connection& db) -> std::optional<std::int64_t> {
+std::optional<std::int64_t> Store::simulation_of_request(const std::string& request_id,
+                                                         const CallLimits& limits) {
+  return read(limits, [&](Connection& db) -> std::optional<std::int64_t> {
     Prepared query(db, "SELECT id FROM simulations WHERE request_id = ?");
     query.bind(1, request_id);
     if (!query.executeStep()) return std::nullopt;
@@ -262,13 +279,14 @@ std::optional<std::int64_t> Store::simulation_of_request(const std::string& requ
   });
 }
 
-Page<StoredSimulation> Store::simulations(const SimulationQuery& query) {
-  return read([&](Connection& db) { return query_simulations(db, query); });
+Page<StoredSimulation> Store::simulations(const SimulationQuery& query, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_simulations(db, query); });
 }
 
-std::optional<StoredSimulation> Store::set_pinned(std::int64_t id, bool is_pinned) {
+std::optional<StoredSimulation> Store::set_pinned(std::int64_t id, bool is_pinned,
+                                                  const CallLimits& limits) {
   std::optional<StoredSimulation> out;
-  write_together([&](Connection& db) {
+  write_together(limits, [&](Connection& db) {
     Prepared update(db, "UPDATE simulations SET pinned = ? WHERE id = ?");
     update.bind(1, is_pinned ? 1 : 0);
     update.bind(2, id);
@@ -278,8 +296,8 @@ std::optional<StoredSimulation> Store::set_pinned(std::int64_t id, bool is_pinne
   return out;
 }
 
-Store::Removal Store::remove_simulation(std::int64_t id) {
-  return write([&](Connection& db) {
+Store::Removal Store::remove_simulation(std::int64_t id, const CallLimits& limits) {
+  return write(limits, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     Prepared query(db, "SELECT state, pinned FROM simulations WHERE id = ?");
     query.bind(1, id);
@@ -295,8 +313,9 @@ Store::Removal Store::remove_simulation(std::int64_t id) {
   });
 }
 
-Store::Purge Store::purge_resource(const StoredResource& present, bool with_simulations) {
-  return write([&](Connection& db) {
+Store::Purge Store::purge_resource(const StoredResource& present, bool with_simulations,
+                                   const CallLimits& limits) {
+  return write(limits, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     Purge out{.is_current = is_unchanged(db, present), .simulations = dependents_of(db, present)};
     const bool may_go =
@@ -309,7 +328,7 @@ Store::Purge Store::purge_resource(const StoredResource& present, bool with_simu
 }
 
 std::vector<std::filesystem::path> Store::erase_removed() {
-  write([](Connection& db) {
+  write({}, [](Connection& db) {
     server::erase_removed(db);
     return true;
   });
@@ -318,7 +337,7 @@ std::vector<std::filesystem::path> Store::erase_removed() {
 }
 
 Removed Store::remove_oldest(Microseconds ended_by, int limit) {
-  return write([&](Connection& db) {
+  return write({}, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     const Removed removed = server::remove_oldest(db, ended_by, limit);
     transaction.commit();
@@ -327,21 +346,23 @@ Removed Store::remove_oldest(Microseconds ended_by, int limit) {
 }
 
 std::int64_t Store::used_bytes() {
-  return read([](Connection& db) { return server::used_bytes(db); });
+  return read({}, [](Connection& db) { return server::used_bytes(db); });
 }
 
 std::int64_t Store::removable_bytes() {
-  return read([](Connection& db) { return server::removable_bytes(db); });
+  return read({}, [](Connection& db) { return server::removable_bytes(db); });
 }
 
-std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after_sequence) {
-  return read([&](Connection& db) { return query_next_event(db, id, after_sequence); });
+std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after_sequence,
+                                             const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_next_event(db, id, after_sequence); });
 }
 
 template <class Change>
-std::optional<StoredEvent> Store::change_simulation(const Change& change) {
+std::optional<StoredEvent> Store::change_simulation(const CallLimits& limits,
+                                                    const Change& change) {
   std::optional<StoredEvent> event;
-  write_together([&](Connection& db) {
+  write_together(limits, [&](Connection& db) {
     event = change(db);
     if (!event) throw Undone();
   });
@@ -350,18 +371,19 @@ std::optional<StoredEvent> Store::change_simulation(const Change& change) {
 
 std::optional<StoredEvent> Store::mark_running(std::int64_t id, Microseconds now,
                                                const ResultKey& key) {
-  return change_simulation([&](Connection& db) { return start_simulation(db, id, now, key); });
+  return change_simulation({}, [&](Connection& db) { return start_simulation(db, id, now, key); });
 }
 
 std::optional<StoredEvent> Store::mark_queued(std::int64_t id, Microseconds now,
                                               const std::string& reason) {
-  return change_simulation([&](Connection& db) {
+  return change_simulation({}, [&](Connection& db) {
     return change_state(db, {.id = id, .to = StoredState::kQueued, .time = now, .reason = reason});
   });
 }
 
-std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds now) {
-  return change_simulation([&](Connection& db) {
+std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds now,
+                                                 const CallLimits& limits) {
+  return change_simulation(limits, [&](Connection& db) {
     return change_state(db, {.id = id, .to = StoredState::kCancelled, .time = now});
   });
 }
@@ -369,7 +391,7 @@ std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds n
 std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
                                               const std::string& reason,
                                               const std::string& message) {
-  return change_simulation([&](Connection& db) {
+  return change_simulation({}, [&](Connection& db) {
     return change_state(db, {.id = id,
                              .to = StoredState::kFailed,
                              .time = now,
@@ -384,11 +406,11 @@ std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds n
   std::vector<CompressedColumn> history;
   for (const StoredColumn& each : result.history) history.push_back(compress(each));
   return change_simulation(
-      [&](Connection& db) { return finish_simulation(db, id, now, result, history); });
+      {}, [&](Connection& db) { return finish_simulation(db, id, now, result, history); });
 }
 
 std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
-  return write([&](Connection& db) {
+  return write({}, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     std::vector<Waiting> waiting = requeue_lost(db, now);
     transaction.commit();
@@ -396,12 +418,12 @@ std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
   });
 }
 
-std::optional<std::string> Store::result(std::int64_t id) {
-  return read([&](Connection& db) { return query_result(db, id); });
+std::optional<std::string> Store::result(std::int64_t id, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_result(db, id); });
 }
 
-HistoryShape Store::history_shape(std::int64_t id) {
-  return read([&](Connection& db) {
+HistoryShape Store::history_shape(std::int64_t id, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) {
     Prepared query(db, "SELECT result FROM simulations WHERE id = ?");
     query.bind(1, id);
     const bool has_result = query.executeStep() && !query.getColumn(0).isNull();
@@ -410,8 +432,9 @@ HistoryShape Store::history_shape(std::int64_t id) {
 }
 
 bool Store::read_history(std::int64_t column, int level, std::int64_t start,
-                         std::span<double> values) {
-  return read([&](Connection& db) { return query_history(db, column, level, start, values); });
+                         std::span<double> values, const CallLimits& limits) {
+  return read(limits,
+              [&](Connection& db) { return query_history(db, column, level, start, values); });
 }
 
 std::vector<double> Store::history_rows(std::int64_t id, const std::string& column,

@@ -18,7 +18,8 @@ class StoreError : public std::runtime_error {
     kReadOnly,
     kDataLoss,   ///< stored bytes are not what was written
     kMisplaced,  ///< its file was deleted, renamed or replaced while the server has it open
-    kDeadline,   ///< took longer than the caller had (deadline.h); nothing has changed
+    kDeadline,   ///< the caller's deadline passed (call_limits.h); nothing has changed
+    kCancelled,  ///< the caller gave up (call_limits.h); nothing has changed
     kFailed,     ///< a statement failed: disk full, I/O error
   };
   StoreError(Kind kind, const std::string& sentence) : std::runtime_error(sentence), kind_(kind) {}

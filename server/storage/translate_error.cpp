@@ -17,8 +17,6 @@ StoreError translate_error(const SQLite::Exception& error, const std::filesystem
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return {StoreError::Kind::kInUse, name + " is locked by another program: " + error.what()};
-    case SQLITE_INTERRUPT:
-      return {StoreError::Kind::kDeadline, name + ": the deadline has passed"};
     case SQLITE_CANTOPEN:
       return {StoreError::Kind::kCannotOpen, name + " cannot be opened: " + error.what()};
     default:

@@ -14,8 +14,8 @@
 #include <random>
 #include <thread>
 
+#include "server/application/call_context.h"
 #include "server/application/simulations.h"
-#include "server/storage/deadline.h"
 #include "server/storage/maintenance.h"
 #include "server/storage/seeds.h"
 #include "server/storage/store.h"
@@ -377,15 +377,11 @@ class SlowCommits : public StorageFault {
   /// What the call answers; its deadline passes while its change is being committed.
   template <class Body>
   auto answer(const Body& body) {
-    using Clock = server::DeadlineScope::Clock;
-    const Clock::time_point end = Clock::now() + std::chrono::milliseconds(300);
+    const auto end = server::CallLimits::Clock::now() + std::chrono::milliseconds(300);
     vfs_.after_sync([end] { std::this_thread::sleep_until(end); });
-    auto outcome = [&] {
-      const server::DeadlineScope deadline(end);
-      auto out = body();
-      EXPECT_TRUE(server::DeadlineScope::has_passed()) << "the commit was not slow";
-      return out;
-    }();
+    const server::CallContext call{.limits = {.deadline = end}};
+    auto outcome = body(call);
+    EXPECT_TRUE(call.limits.are_over()) << "the commit was not slow";
     vfs_.recover();
     return outcome;
   }
@@ -402,7 +398,8 @@ class SlowCommits : public StorageFault {
 TEST_F(SlowCommits, ACreationThatIsCommittedIsAnsweredAfterTheDeadline) {
   v1::CreateSimulationRequest request;
   *request.mutable_simulation() = server::point_simulation();
-  const auto created = answer([&] { return create_simulation(app_, request); });
+  const auto created = answer(
+      [&](const server::CallContext& call) { return create_simulation(app_, request, call); });
   ASSERT_TRUE(created.ok()) << created.error().message();
   EXPECT_EQ(created.message().state(), v1::Simulation::QUEUED);
   EXPECT_EQ(created.message().event_sequence(), 1);
@@ -415,7 +412,8 @@ TEST_F(SlowCommits, ACancellationThatIsCommittedIsAnsweredAfterTheDeadline) {
   ASSERT_TRUE(bench_.reaches(name, v1::Simulation::RUNNING));
   v1::CancelSimulationRequest request;
   request.set_name(name);
-  const auto cancelled = answer([&] { return cancel_simulation(app_, request); });
+  const auto cancelled = answer(
+      [&](const server::CallContext& call) { return cancel_simulation(app_, request, call); });
   ASSERT_TRUE(cancelled.ok()) << cancelled.error().message();
   EXPECT_EQ(cancelled.message().state(), v1::Simulation::CANCELLED);
   EXPECT_EQ(cancelled.message().DebugString(), bench_.get(name).DebugString());
@@ -426,7 +424,8 @@ TEST_F(SlowCommits, APinThatIsCommittedIsAnsweredAfterTheDeadline) {
   ASSERT_TRUE(bench_.reaches(name, v1::Simulation::RUNNING));
   v1::PinSimulationRequest request;
   request.set_name(name);
-  const auto pinned = answer([&] { return pin_simulation(app_, request); });
+  const auto pinned =
+      answer([&](const server::CallContext& call) { return pin_simulation(app_, request, call); });
   ASSERT_TRUE(pinned.ok()) << pinned.error().message();
   EXPECT_TRUE(pinned.message().pinned());
   EXPECT_TRUE(bench_.get(name).pinned());

@@ -115,10 +115,11 @@ struct Method {
 };
 
 template <class Request, class Answer>
-Method method(Outcome<Answer> (*function)(Application&, const Request&), bool writes = false) {
+Method method(Outcome<Answer> (*function)(Application&, const Request&, const CallContext&),
+              bool writes = false) {
   return {&Request::default_instance(),
           [function](Application& application, const Message& request) {
-            return judge(function(application, static_cast<const Request&>(request)));
+            return judge(function(application, static_cast<const Request&>(request), {}));
           },
           writes};
 }
@@ -129,7 +130,8 @@ const std::map<std::string, Method>& methods() {
         &v1::CreateSimulationRequest::default_instance(),
         [](Application& application, const Message& request) {
           return judge(server::create_simulation(
-              application, static_cast<const v1::CreateSimulationRequest&>(request), {"fuzzer"}));
+              application, static_cast<const v1::CreateSimulationRequest&>(request),
+              {.client = "fuzzer"}));
         },
         true};
     return std::map<std::string, Method>{
@@ -162,7 +164,7 @@ void read_everything(Application& application) {
   const auto all_pages = [&](auto list, auto request) {
     request.set_page_size(2);
     for (int pages = 0; pages < 1000; ++pages) {
-      const auto outcome = list(application, request);
+      const auto outcome = list(application, request, CallContext());
       require(outcome.ok());
       request.set_page_token(outcome.message().next_page_token());
       if (request.page_token().empty()) return;

@@ -8,10 +8,10 @@
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
+#include "server/application/call_context.h"
 #include "server/application/resources.h"
 #include "server/contract/constraints.h"
 #include "server/resources/accept_resource.h"
-#include "server/storage/deadline.h"
 #include "server/storage/maintenance.h"
 #include "tests/service/support.h"
 
@@ -230,10 +230,8 @@ TEST_F(BatchTest, ADeadlineInTheMiddleLeavesNothing) {
   // From a limit that the batch cannot meet to one that it does: the time runs out in every phase.
   for (std::chrono::milliseconds limit(1); limit < std::chrono::hours(1);
        limit += limit / 4 + std::chrono::milliseconds(1)) {
-    const auto outcome = [&] {
-      const DeadlineScope scope(DeadlineScope::Clock::now() + limit);
-      return batch_create_lubricants(app_, batch);
-    }();
+    const CallContext call{.limits = {.deadline = CallLimits::Clock::now() + limit}};
+    const auto outcome = batch_create_lubricants(app_, batch, call);
     if (outcome.ok()) break;
     ASSERT_EQ(outcome.error().code(), google::rpc::DEADLINE_EXCEEDED) << outcome.error().message();
     ASSERT_EQ(count(), before_);

@@ -236,23 +236,23 @@ void operate(Application& app, const Resource& resource, Revisions& revisions) {
       Kind::of(request)->set_name(name);
       request.set_allow_missing(*rc::gen::inRange(0, 4) != 0);
       if (*rc::gen::arbitrary<bool>()) request.mutable_update_mask()->add_paths("display_name");
-      return judge(Kind::kUpdate(app, request));
+      return judge(Kind::kUpdate(app, request, {}));
     }
     case 2: {
       typename Kind::Create request;
       *Kind::of(request) = resource;
       Kind::of(request)->set_name(name);
-      return judge(Kind::kCreate(app, request));
+      return judge(Kind::kCreate(app, request, {}));
     }
     case 3: {
       typename Kind::Delete request;
       request.set_name(name);
-      return judge(Kind::kDelete(app, request));
+      return judge(Kind::kDelete(app, request, {}));
     }
     default: {
       typename Kind::Undelete request;
       request.set_name(name);
-      return judge(Kind::kUndelete(app, request));
+      return judge(Kind::kUndelete(app, request, {}));
     }
   }
 }
@@ -270,7 +270,7 @@ void operate_on_several(Application& app, const Resource& resource, Revisions& r
     Kind::of(*request)->set_name(Kind::kCollection + std::to_string(i));
     request->set_allow_missing(*rc::gen::inRange(0, 8) != 0);
   }
-  const auto outcome = Kind::kBatchUpdate(app, batch);
+  const auto outcome = Kind::kBatchUpdate(app, batch, {});
   if (!outcome.ok()) {
     const int code = outcome.error().code();
     RC_ASSERT(code == google::rpc::NOT_FOUND || code == google::rpc::FAILED_PRECONDITION ||
@@ -295,7 +295,7 @@ std::map<std::string, std::string> exported(Application& app) {
   request.set_page_size(3);
   request.set_show_deleted(true);
   do {
-    const auto page = Methods<Resource>::kList(app, request);
+    const auto page = Methods<Resource>::kList(app, request, {});
     RC_ASSERT(page.ok());
     for (const Resource& each : Methods<Resource>::all(page.message())) all[each.name()] = each;
     request.set_page_token(page.message().next_page_token());
@@ -320,7 +320,7 @@ void imported(Application& app, const std::map<std::string, std::string>& all) {
   for (const auto& [name, json] : all) {
     RC_ASSERT(JsonStringToMessage(json, Methods<Resource>::of(*batch.add_requests())).ok());
   }
-  const auto outcome = Methods<Resource>::kBatchCreate(app, batch);
+  const auto outcome = Methods<Resource>::kBatchCreate(app, batch, {});
   if (!outcome.ok()) RC_FAIL(outcome.error().message());
 }
 

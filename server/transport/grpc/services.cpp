@@ -5,12 +5,15 @@
 #include <grpcpp/support/server_callback.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "server/application/call_context.h"
 #include "server/application/contacts.h"
 #include "server/application/guard.h"
 #include "server/application/imports.h"
@@ -20,7 +23,6 @@
 #include "server/application/schemas.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
-#include "server/storage/deadline.h"
 #include "server/transport/byte_budget.h"
 #include "server/transport/grpc/contract_service.h"
 #include "server/transport/grpc/grpc_status.h"
@@ -39,8 +41,9 @@ using google::protobuf::ServiceDescriptor;
 using std::chrono::system_clock;
 
 constexpr char kClientMetadata[] = "tribodyn-client";
-constexpr std::size_t kLongestClient = 100;
-constexpr int kWorkers = 8;  // more only wait for the processors
+constexpr char kRequestIdMetadata[] = "tribodyn-request-id";
+constexpr std::size_t kLongestWord = 100;  // of the client and the request id [bytes]
+constexpr int kWorkers = 8;                // more only wait for the processors
 /// Bytes of requests, of those above kUsualRequestBytes, that are worked on at a time: two of the
 /// largest.
 constexpr std::size_t kRequestBytesAtATime = 2 * kMaximumRequestBytes;
@@ -64,14 +67,21 @@ system_clock::duration time_left(const Context& context, std::chrono::millisecon
   return std::min<system_clock::duration>(context.deadline() - system_clock::now(), limit);
 }
 
-/// The client that the call names, else its connection.
-Caller caller(const Context& context) {
-  const auto named = context.client_metadata().find(kClientMetadata);
-  if (named == context.client_metadata().end()) {
-    // Of a Unix socket the peer is a path that the client chose.
-    return {log_word(context.peer(), kLongestClient)};
-  }
-  return {log_word({named->second.data(), named->second.size()}, kLongestClient)};
+/// The value of a header as one word; empty: not there.
+std::string word_of(const Context& context, const char* header) {
+  const auto found = context.client_metadata().find(header);
+  if (found == context.client_metadata().end()) return {};
+  return log_word({found->second.data(), found->second.size()}, kLongestWord);
+}
+
+CallContext call_context(const Context& context, std::chrono::milliseconds limit) {
+  static std::atomic<std::uint64_t> count = 0;
+  const std::string client = word_of(context, kClientMetadata);
+  const std::string id = word_of(context, kRequestIdMetadata);
+  return {// Of a Unix socket the peer is a path that the client chose.
+          .client = client.empty() ? log_word(context.peer(), kLongestWord) : client,
+          .request_id = id.empty() ? std::to_string(++count) : id,
+          .limits = {.deadline = CallLimits::Clock::now() + time_left(context, limit)}};
 }
 
 /// Which thread answers.
@@ -83,21 +93,20 @@ enum class Thread {
 struct UnaryMethod {
   const MethodDescriptor& descriptor;
   Thread thread;
-  std::function<Outcome<Bytes>(Bytes& request, const Context& context)> answer;
+  std::function<Outcome<Bytes>(Bytes& request, const CallContext& call)> answer;
 };
 
 /// Answers a call under its deadline and within the budget for large requests.
 void finish(const UnaryMethod& method, Serving& serving, const Context& context, Unary& reactor,
             Bytes& request, Bytes& response) {
-  const DeadlineScope deadline(DeadlineScope::Clock::now() +
-                               time_left(context, serving.limits.call));
+  const CallContext call = call_context(context, serving.limits.call);
   Outcome<Bytes> outcome = guarded<Bytes>([&]() -> Outcome<Bytes> {
-    if (DeadlineScope::has_passed()) return deadline_exceeded();
+    if (call.limits.are_over()) return call_over(call.limits);
     const auto lease = serving.budget.take(request.Length());
     if (!lease) {
       return exhausted("other large requests are being worked on; try again in 2 s", kBusySeconds);
     }
-    return method.answer(request, context);
+    return method.answer(request, call);
   });
   request.Clear();
   if (!outcome.ok()) return reactor.Finish(to_grpc(outcome.error()));
@@ -129,43 +138,35 @@ class Binder {
         service_(std::make_unique<ContractService>()) {}
 
   template <class Request, class Response>
-  void unary(const char* name, Outcome<Response> (*body)(Application&, const Request&),
+  void unary(const char* name,
+             Outcome<Response> (*body)(Application&, const Request&, const CallContext&),
              Thread thread = Thread::kOfGrpc) {
     const MethodDescriptor& method = checked<Request, Response>(name);
-    add({method, thread, [serving = serving_.get(), &method, body](Bytes& bytes, const Context&) {
-           return answer_bytes<Request, Response>(method, bytes, [&](const Request& request) {
-             return body(serving->application, request);
-           });
-         }});
-  }
-
-  template <class Request, class Response>
-  void unary(const char* name,
-             Outcome<Response> (*body)(Application&, const Request&, const Caller&),
-             Thread thread) {
-    const MethodDescriptor& method = checked<Request, Response>(name);
     add({method, thread,
-         [serving = serving_.get(), &method, body](Bytes& bytes, const Context& context) {
+         [serving = serving_.get(), &method, body](Bytes& bytes, const CallContext& call) {
            return answer_bytes<Request, Response>(method, bytes, [&](const Request& request) {
-             return body(serving->application, request, caller(context));
+             return body(serving->application, request, call);
            });
          }});
   }
 
   template <class Message, class Request>
-  void stream(const char* name, StreamOutcome<Message> (*open)(Application&, const Request&)) {
+  void stream(const char* name,
+              StreamOutcome<Message> (*open)(Application&, const Request&, const CallContext&)) {
     const MethodDescriptor& method = checked<Request, Message>(name);
-    const auto open_bytes = [serving = serving_.get(), &method,
-                             open](Bytes& bytes) -> StreamOutcome<Message> {
+    const auto open_bytes = [serving = serving_.get(), &method, open](
+                                Bytes& bytes, const CallContext& call) -> StreamOutcome<Message> {
       Request request;
       if (auto refused = read_request(method, bytes, request)) return *std::move(refused);
-      return open(serving->application, request);
+      return open(serving->application, request, call);
     };
     service_->add_stream(
         method, [serving = serving_, open_bytes](Context* context, const Bytes* request) {
-          const auto open_request = [&] {
+          const CallContext call = call_context(*context, serving->limits.stream);
+          const auto open_request = [&]() -> StreamOutcome<Message> {
+            if (call.limits.are_over()) return call_over(call.limits);
             return guarded<typename StreamReactor<Message>::Source>(
-                [&] { return open_bytes(const_cast<Bytes&>(*request)); });
+                [&] { return open_bytes(const_cast<Bytes&>(*request), call); });
           };
           return StreamReactor<Message>::start(serving->live, *context,
                                                time_left(*context, serving->limits.stream),

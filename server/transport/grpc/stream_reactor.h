@@ -15,7 +15,6 @@
 #include "server/application/errors.h"
 #include "server/application/message_source.h"
 #include "server/application/outcome.h"
-#include "server/storage/deadline.h"
 #include "server/transport/grpc/grpc_status.h"
 #include "server/transport/grpc/live_streams.h"
 
@@ -53,10 +52,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
     auto reactor = std::make_shared<StreamReactor>(live, context, unread);
     reactor->self_ = reactor;
     std::optional<google::rpc::Status> refused;
-    Outcome<Source> outcome = [&] {
-      const DeadlineScope deadline(DeadlineScope::Clock::now() + left);
-      return DeadlineScope::has_passed() ? Outcome<Source>(deadline_exceeded()) : open();
-    }();
+    Outcome<Source> outcome = open();
     if (outcome.ok()) {
       refused = live.add(reactor);
     } else {
