@@ -128,7 +128,7 @@ std::string contradiction(const MeasuredViscosity& each, double law, const Gross
                           const char* which) {
   return millipascals(each.point.viscosity) + " at " + celsius_text(each.point.temperature) +
          " lies " + per_cent(each.point.viscosity / law) + " " + which + ", " +
-         number_text(1e3 * law, 4) + " mPa s; legal: within " + limit.bound + ".";
+         number_text(1e3 * law, 4) + " mPa s; allowed: within " + limit.bound + ".";
 }
 
 /// Against the law that was fitted to them, or the one that was stated.
@@ -175,7 +175,7 @@ void check_viscosity_index(const FluidMeasurements& fluid, std::vector<GrossErro
         {limit.code, Measurement::kKinematicViscosity40, 0,
          "KV40 = " + number_text(kv40) + " and KV100 = " + number_text(kv100) +
              " mm2/s make a viscosity index of " + number_text(index, 3) +
-             "; legal: " + limit.bound +
+             "; allowed: " + limit.bound +
              (index > limit.most ? ". Is one viscosity given twice, or measured at another "
                                    "temperature?"
                                  : ". Is a digit missing or one too many?")});
@@ -192,7 +192,7 @@ void check_sheared(const FluidMeasurements& fluid, std::vector<GrossError>& erro
                     number_text(1e6 * *fluid.sheared_kinematic_viscosity_100) +
                         " mm2/s at 100 C after the shear test lies " + per_cent(ratio) +
                         " the fresh oil's " + number_text(1e6 * *fluid.kinematic_viscosity_100) +
-                        "; legal: above it by at most " + limit.bound +
+                        "; allowed: above it by at most " + limit.bound +
                         ". Are the two exchanged?"});
 }
 

@@ -14,7 +14,7 @@ struct NamedMember {
   std::optional<KnownParameter> Stated::*stated;
   KnownParameter LubricantParameters<KnownParameter>::*known;
   double Lubricant::*value;
-  double least;  // legal range of a stated value; strict where it is 0 and `positive`
+  double least;  // allowed range of a stated value; strict where it is 0 and `positive`
   double most;
   bool positive;
 };
@@ -64,15 +64,15 @@ void check_stated_parameters(const LubricantParameters<std::optional<KnownParame
     const std::optional<KnownParameter>& stated = parameters.*member.stated;
     if (!stated) continue;
     const double value = stated->value;
-    const bool legal =
+    const bool allowed =
         value >= member.least && value <= member.most && !(member.positive && value <= 0);
     const double uncertainty = stated->standard_uncertainty.value_or(0);
-    if (legal && uncertainty >= 0 && std::isfinite(uncertainty)) continue;
+    if (allowed && uncertainty >= 0 && std::isfinite(uncertainty)) continue;
     throw Refusal("PARAMETER_OUT_OF_RANGE",
                   std::string("stated.") + member.name + " of " + number_text(value) +
-                      (legal ? " has a standard uncertainty that is not finite and positive."
-                             : " is outside " + number_text(member.least) + " to " +
-                                   number_text(member.most) + " (SI units)."));
+                      (allowed ? " has a standard uncertainty that is not finite and positive."
+                               : " is outside " + number_text(member.least) + " to " +
+                                     number_text(member.most) + " (SI units)."));
   }
 }
 

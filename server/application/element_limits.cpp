@@ -103,7 +103,7 @@ std::optional<int> maximum_elements(const FieldDescriptor& field) {
 }
 
 std::string too_many_text(std::int64_t count, std::int64_t maximum) {
-  return fmt::format("{} entries; legal: at most {}", count, maximum);
+  return fmt::format("{} entries; allowed: at most {}", count, maximum);
 }
 
 void check_counts(const Message& message, const std::string& path, Violations& violations) {

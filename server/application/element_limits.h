@@ -16,7 +16,7 @@ namespace tribodyn::server {
 /// std::logic_error if a row names no list of the contract.
 std::optional<int> maximum_elements(const google::protobuf::FieldDescriptor& field);
 
-/// "65 entries; legal: at most 64".
+/// "65 entries; allowed: at most 64".
 std::string too_many_text(std::int64_t count, std::int64_t maximum);
 
 /// Adds a violation for every list in `message`, at any depth, that has more elements than its row

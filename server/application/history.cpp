@@ -167,7 +167,7 @@ std::optional<Window> window(const v1::ReadHistoryRequest& request, const Histor
     }
   }
   if (request.columns_size() > kMaximumHistoryColumns) {
-    violations.push_back({"columns", fmt::format("{} columns; legal: at most {}",
+    violations.push_back({"columns", fmt::format("{} columns; allowed: at most {}",
                                                  request.columns_size(), kMaximumHistoryColumns)});
   }
   if (request.columns().empty()) {
@@ -177,17 +177,18 @@ std::optional<Window> window(const v1::ReadHistoryRequest& request, const Histor
   const std::int64_t start = request.start_row();
   if (start < 0 || start > shape.rows) {
     violations.push_back(
-        {"start_row", fmt::format("start_row = {}; legal: 0 to {}", start, shape.rows)});
+        {"start_row", fmt::format("start_row = {}; allowed: 0 to {}", start, shape.rows)});
   }
   if (request.row_count() < 0) {
-    violations.push_back({"row_count", fmt::format("row_count = {}; legal: 0 (to the end) or more",
-                                                   request.row_count())});
+    violations.push_back(
+        {"row_count",
+         fmt::format("row_count = {}; allowed: 0 (to the end) or more", request.row_count())});
   }
   if (request.max_points() != 0 && (request.max_points() < kLeastMaximumPoints ||
                                     request.max_points() > kLargestMaximumPoints)) {
     violations.push_back(
         {"max_points",
-         fmt::format("max_points = {}; legal: {} to {}, or 0 (all rows)", request.max_points(),
+         fmt::format("max_points = {}; allowed: {} to {}, or 0 (all rows)", request.max_points(),
                      kLeastMaximumPoints, kLargestMaximumPoints)});
   }
   if (!violations.empty()) return std::nullopt;

@@ -208,7 +208,7 @@ class FilterReader {
     out.key = scanner_.field().text;
     const std::string comparison = scanner_.comparison();
     if (out.key.empty() || comparison.empty()) {
-      complain("legal: field, one of = != < <= > >= :, value; e.g. condition = USED");
+      complain("allowed: field, one of = != < <= > >= :, value; e.g. condition = USED");
       return std::nullopt;
     }
     const std::optional<Token> value = scanner_.value();
@@ -247,12 +247,13 @@ class FilterReader {
     }
   }
 
-  void set(const std::optional<PropertyValue>& read, const Token& value, const char* legal,
+  void set(const std::optional<PropertyValue>& read, const Token& value, const char* allowed,
            Restriction& out) {
     if (read) {
       out.value = *read;
     } else {
-      complain(fmt::format("{} = \"{}\"; legal: {}", out.key, plain_excerpt(value.text), legal));
+      complain(
+          fmt::format("{} = \"{}\"; allowed: {}", out.key, plain_excerpt(value.text), allowed));
     }
   }
 
@@ -291,7 +292,7 @@ class FilterReader {
 std::vector<Restriction> parse_filter(std::string_view filter, const std::string& collection,
                                       Violations& violations) {
   if (filter.size() > kMaximumFilterLength) {
-    violations.push_back({"filter", fmt::format("{} bytes; legal: at most {}", filter.size(),
+    violations.push_back({"filter", fmt::format("{} bytes; allowed: at most {}", filter.size(),
                                                 kMaximumFilterLength)});
     return {};
   }
@@ -315,7 +316,7 @@ Order parse_order(std::string_view order_by, const std::string& collection,
                                  collection, meant_text(out.key, fields))});
   }
   if (!scanner.at_end() || (!direction.empty() && direction != "asc" && direction != "desc")) {
-    violations.push_back({"order_by", "legal: one field, then nothing, asc or desc"});
+    violations.push_back({"order_by", "allowed: one field, then nothing, asc or desc"});
   }
   out.descending = direction == "desc";
   out.key = out.key == "name" ? "" : full_key(out.key, collection);

@@ -16,7 +16,7 @@ inline constexpr std::size_t kMaximumPageBytes = 2'000'000;  // clients accept 4
 /// The page size that a request means (AIP-158): 0 is the default, too many are cut.
 inline int page_size(int requested, int otherwise, Violations& violations) {
   if (requested < 0) {
-    violations.push_back({"page_size", fmt::format("page_size = {}; legal: 0 (means {}) to {}",
+    violations.push_back({"page_size", fmt::format("page_size = {}; allowed: 0 (means {}) to {}",
                                                    requested, otherwise, kMaximumPageSize)});
   }
   return requested == 0 ? otherwise : std::min(requested, kMaximumPageSize);

@@ -37,7 +37,7 @@ void check_request_id(const std::string& request_id, Violations& violations) {
       std::all_of(request_id.begin(), request_id.end(), [](char c) { return c > ' ' && c <= '~'; });
   if (is_printable && request_id.size() <= kMaximumRequestIdLength) return;
   violations.push_back(
-      {"request_id", fmt::format("request_id has {} bytes; legal: at most {}, printable ASCII "
+      {"request_id", fmt::format("request_id has {} bytes; allowed: at most {}, printable ASCII "
                                  "without spaces",
                                  request_id.size(), kMaximumRequestIdLength)});
 }

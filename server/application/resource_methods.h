@@ -87,7 +87,7 @@ std::string name_problem(Application& application, const std::string& name, bool
                              application.store.resource_names(collection, call.limits));
   }
   if (parsed->revision == 0 || revisions_allowed) return {};
-  return plain_excerpt(name) + " is a revision; legal: the name without it";
+  return plain_excerpt(name) + " is a revision; allowed: the name without it";
 }
 
 /// The stored revision that a name without problems means; nullopt if there is none.

@@ -44,8 +44,8 @@ std::string new_name(const std::string& id, const std::string& stated, Violation
   violations.push_back(
       {field,
        id.empty() && stated.empty()
-           ? field + " is not set; legal: letters, digits, '-', '_' and '.'"
-           : fmt::format("\"{}\"; legal: letters, digits, '-', '_' and '.', at most {} bytes",
+           ? field + " is not set; allowed: letters, digits, '-', '_' and '.'"
+           : fmt::format("\"{}\"; allowed: letters, digits, '-', '_' and '.', at most {} bytes",
                          plain_excerpt(id.empty() ? stated : id),
                          kMaximumTextLength - collection.size() - 1)});
   return {};
@@ -218,7 +218,7 @@ std::map<std::string, std::size_t> places_of(std::vector<Draft<Resource>>& draft
     if (is_new) continue;
     drafts[i].violations.push_back(
         {join_path(Kind<Resource>::kField, "name"),
-         fmt::format("{} stands in requests[{}] too; legal: once", name, first->second)});
+         fmt::format("{} stands in requests[{}] too; allowed: once", name, first->second)});
   }
   return places;
 }
@@ -276,7 +276,7 @@ std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& ba
     Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request, call));
     if (request.validate_only() && !batch.validate_only()) {
       draft.violations.push_back(
-          {"validate_only", "set for one of a batch; legal: for the whole batch"});
+          {"validate_only", "set for one of a batch; allowed: for the whole batch"});
     }
     if (draft.is_bad() && ++bad >= kMaximumBatchViolations) return drafts;
   }

@@ -179,7 +179,7 @@ std::vector<Restriction> restrictions(const std::string& filter, Violations& vio
       violations.push_back({"filter", "a name is not filtered by; get the simulation"});
     } else if (!has_order && !is_equality &&
                !(is_label && each.comparison == Restriction::Comparison::kPresent)) {
-      violations.push_back({"filter", each.key + ": legal: = or !=, of labels also :*"});
+      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*"});
     }
     const std::string* word = std::get_if<std::string>(&each.value);
     v1::Simulation::State state = v1::Simulation::STATE_UNSPECIFIED;
@@ -193,7 +193,7 @@ std::vector<Restriction> restrictions(const std::string& filter, Violations& vio
 bool is_ascending(const std::string& order_by, Violations& violations) {
   if (order_by == "create_time" || order_by == "create_time asc") return true;
   if (!order_by.empty() && order_by != "create_time desc") {
-    violations.push_back({"order_by", "legal: create_time, followed by nothing, asc or desc"});
+    violations.push_back({"order_by", "allowed: create_time, followed by nothing, asc or desc"});
   }
   return false;
 }

@@ -120,7 +120,7 @@ StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
     if (!watched) return does_not_exist(request.name());
     const std::int64_t after = request.after_sequence();
     if (after < 0 || after > watched->simulation.sequence) {
-      return invalid({{"after_sequence", fmt::format("after_sequence = {}; legal: 0 to {}", after,
+      return invalid({{"after_sequence", fmt::format("after_sequence = {}; allowed: 0 to {}", after,
                                                      watched->simulation.sequence)}});
     }
     return Source(std::make_shared<Watch>(application, std::move(*watched), after));

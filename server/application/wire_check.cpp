@@ -54,7 +54,7 @@ class WireScan {
     report(type, counts);
     if (violations_.empty() && total_ > kMaximumRequestElements) {
       violations_.push_back(
-          {"", fmt::format("the request holds {} messages and texts in all; legal: at most {}; "
+          {"", fmt::format("the request holds {} messages and texts in all; allowed: at most {}; "
                            "send it in parts",
                            total_, kMaximumRequestElements)});
     }
@@ -167,7 +167,7 @@ class WireScan {
     }
     if (counts.unknown_fields > kMaximumUnknownFields) {
       violations_.push_back(
-          {path(), fmt::format("{} fields that {} does not have; legal: at most {}",
+          {path(), fmt::format("{} fields that {} does not have; allowed: at most {}",
                                counts.unknown_fields, type.name(), kMaximumUnknownFields)});
     }
     for (std::size_t i = 0; i < counts.messages.size(); ++i) {

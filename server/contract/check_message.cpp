@@ -49,7 +49,7 @@ void check_enum(const Place& place, int value) {
     names += (i == 0 ? "" : ", ") + place.field.enum_type()->value(i)->name();
   }
   place.violations.push_back(
-      {place.path, fmt::format("{} = {}; legal: {}", place.field.name(), value, names)});
+      {place.path, fmt::format("{} = {}; allowed: {}", place.field.name(), value, names)});
 }
 
 void check_text(const Place& place, const std::string& value) {
@@ -58,8 +58,8 @@ void check_text(const Place& place, const std::string& value) {
                           ? kMaximumProseLength
                           : kMaximumTextLength;
   if (value.size() <= static_cast<std::size_t>(longest)) return;
-  place.violations.push_back(
-      {place.path, fmt::format("{} has {} bytes; legal: at most {}", name, value.size(), longest)});
+  place.violations.push_back({place.path, fmt::format("{} has {} bytes; allowed: at most {}", name,
+                                                      value.size(), longest)});
 }
 
 /// An unset field that could have been set.

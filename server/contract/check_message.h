@@ -15,7 +15,7 @@ enum class Missing {
 };
 
 /// Checks every number, enum and text inside a message, nested messages too, against the table of
-/// constraints: finite, inside its legal range, a value the enum has, a text of sensible length.
+/// constraints: finite, inside its allowed range, a value the enum has, a text of sensible length.
 /// Adds all violations, in field order. A number without a row in the table is only checked to be
 /// finite; other unset optional fields, unset messages and what only the server sets are left
 /// alone.

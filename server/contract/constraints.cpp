@@ -206,7 +206,7 @@ constexpr Constraint kConstraints[] = {
 };
 
 /// A unit that people write in place of the contract's, and the range of the usual: a number that
-/// is not legal but is usual in that unit was probably written in it.
+/// is not allowed but is usual in that unit was probably written in it.
 struct UnitSlip {
   std::string_view message;  ///< whose fields it concerns; empty: all
   std::string_view unit;     ///< of the contract
@@ -247,9 +247,9 @@ std::string slip_text(const Constraint& row, double value) {
   return "";
 }
 
-/// "legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".
-std::string legal_text(const Constraint& row) {
-  return fmt::format("legal: {} to {} ({}{}{})", number_text(row.minimum),
+/// "allowed: 1e-05 to 10000 m (eq 15, R_zx: ...)".
+std::string allowed_text(const Constraint& row) {
+  return fmt::format("allowed: {} to {} ({}{}{})", number_text(row.minimum),
                      quantity_text(row.maximum, row.unit), row.equation,
                      row.equation.empty() || row.reason.empty() ? "" : ": ", row.reason);
 }
@@ -277,12 +277,12 @@ std::string quantity_text(double value, std::string_view unit) {
 }
 
 std::string out_of_range_text(const Constraint& row, double value) {
-  return fmt::format("{} = {}; {}{}", row.field, quantity_text(value, row.unit), legal_text(row),
+  return fmt::format("{} = {}; {}{}", row.field, quantity_text(value, row.unit), allowed_text(row),
                      slip_text(row, value));
 }
 
 std::string not_set_text(const Constraint& row) {
-  return fmt::format("{} is not set; {}", row.field, legal_text(row));
+  return fmt::format("{} is not set; {}", row.field, allowed_text(row));
 }
 
 }  // namespace tribodyn::server

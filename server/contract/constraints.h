@@ -8,7 +8,7 @@ namespace tribodyn::server {
 
 /// What a zero in a field without presence stands for.
 enum class Zero {
-  kValue,  ///< the number zero; legal when inside the range
+  kValue,  ///< the number zero; allowed when inside the range
   kUnset,  ///< "take the default" or "not stated"; never checked against the range
 };
 
@@ -40,11 +40,11 @@ std::string number_text(double value);
 /// "0.3", "46 W/(m K)".
 std::string quantity_text(double value, std::string_view unit);
 
-/// "radius_x_metres = -1 m; legal: 1e-05 to 10000 m (eq 15, R_zx: ...)". Where the value would be
+/// "radius_x_metres = -1 m; allowed: 1e-05 to 10000 m (eq 15, R_zx: ...)". Where the value would be
 /// usual in another unit, also that: "; 0.895 looks like g/cm3: did you mean 895 kg/m3?".
 std::string out_of_range_text(const Constraint& constraint, double value);
 
-/// "radius_x_metres is not set; legal: 1e-05 to 10000 m (eq 15, R_zx: ...)".
+/// "radius_x_metres is not set; allowed: 1e-05 to 10000 m (eq 15, R_zx: ...)".
 std::string not_set_text(const Constraint& constraint);
 
 // Limits on counts, so that no request can starve the server.

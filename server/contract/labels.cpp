@@ -25,7 +25,7 @@ void check_labels(const Labels& labels, const std::string& path, Violations& vio
     const std::string& key = labels.Get(i).key();
     const std::string here = fmt::format("{}[{}].key", path, i);
     if (!is_key(key)) {
-      violations.push_back({here, fmt::format("\"{}\"; legal: letters, digits, '-', '_' and '.'",
+      violations.push_back({here, fmt::format("\"{}\"; allowed: letters, digits, '-', '_' and '.'",
                                               plain_excerpt(key))});
     } else if (!keys.insert(key).second) {
       violations.push_back({here, fmt::format("\"{}\" is named twice", key)});

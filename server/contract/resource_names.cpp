@@ -115,7 +115,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 std::string meant_text(std::string_view name, const std::vector<std::string>& known) {
   const std::string nearest = nearest_name(name, known);
   if (!nearest.empty()) return fmt::format("; did you mean \"{}\"?", nearest);
-  return fmt::format("; legal: {}", fmt::join(known, ", "));
+  return fmt::format("; allowed: {}", fmt::join(known, ", "));
 }
 
 std::string unknown_name_text(std::string_view name, std::string_view collection,

@@ -71,7 +71,7 @@ std::string plain_excerpt(std::string_view text);
 /// unit of a field) left out where that helps. Empty when none is near.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing);
 
-/// "; did you mean \"lims_id\"?", or where nothing is near "; legal: " and all of `known`.
+/// "; did you mean \"lims_id\"?", or where nothing is near "; allowed: " and all of `known`.
 std::string meant_text(std::string_view name, const std::vector<std::string>& known);
 
 /// "lubricants/7 does not exist; did you mean lubricants/1?", or what a name must look like.

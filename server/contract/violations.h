@@ -9,7 +9,7 @@
 namespace tribodyn::server {
 
 /// One thing wrong with a request: the path of the field, and a sentence that names value, unit,
-/// legal range and the equation that needs it. Becomes a google.rpc.BadRequest.FieldViolation.
+/// allowed range and the equation that needs it. Becomes a google.rpc.BadRequest.FieldViolation.
 struct Violation {
   std::string field;
   std::string description;

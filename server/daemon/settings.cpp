@@ -39,14 +39,14 @@ void add_commands(CLI::App& app, Settings& settings) {
       false);
 }
 
-/// The legal range of a number with a decimal point. CLI::Range lets NaN pass.
+/// The allowed range of a number with a decimal point. CLI::Range lets NaN pass.
 CLI::Validator between(double least, double most) {
   const std::string range = fmt::format("{} to {}", least, most);
   return {[=](std::string& text) {
             double value = 0;
-            const bool is_legal =
+            const bool is_allowed =
                 CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
-            return is_legal ? std::string() : text + " is no number from " + range;
+            return is_allowed ? std::string() : text + " is no number from " + range;
           },
           range};
 }

@@ -25,7 +25,8 @@ template <class Repeated>
 bool check_count(const Repeated& list, int maximum, const std::string& path,
                  Violations& violations) {
   if (list.size() <= maximum) return true;
-  violations.push_back({path, fmt::format("{} entries; legal: at most {}", list.size(), maximum)});
+  violations.push_back(
+      {path, fmt::format("{} entries; allowed: at most {}", list.size(), maximum)});
   return false;
 }
 
@@ -143,7 +144,7 @@ void check_measurements(const v1::LubricantMeasurements& measurements, const std
       continue;
     }
     violations.push_back({fmt::format("{}[{}].viscosity", viscosities, i),
-                          "not set; legal: a kinematic or a dynamic viscosity (eq 34)"});
+                          "not set; allowed: a kinematic or a dynamic viscosity (eq 34)"});
   }
 }
 
@@ -199,7 +200,7 @@ void check_provenance_of_computed(const v1::Lubricant& lubricant, const v1::Lubr
           {fmt::format("{}[{}].{}", path, i,
                        entry.standard_uncertainty() != 0 ? "standard_uncertainty" : "provenance"),
            fmt::format("{} is computed, not stated, and its uncertainty and provenance with it; "
-                       "legal: both together with the value",
+                       "allowed: both together with the value",
                        entry.field())});
     }
   }

@@ -57,12 +57,12 @@ bool check_sizes(const v1::GearSet& set, const std::string& path, Violations& vi
   const std::string slots = join_path(path, "flank_slots");
   if (set.flank_slots_size() != kFlankPairs) {
     violations.push_back(
-        {slots, fmt::format("{} slots; legal: {} (eq 29)", set.flank_slots_size(), kFlankPairs)});
+        {slots, fmt::format("{} slots; allowed: {} (eq 29)", set.flank_slots_size(), kFlankPairs)});
     return false;
   }
   const int samples = set.flank_slots(0).load_share_size();
   if (samples < 2 || samples > kMaximumFlankSamples) {
-    violations.push_back({slots + "[0].load_share", fmt::format("{} samples; legal: 2 to {}",
+    violations.push_back({slots + "[0].load_share", fmt::format("{} samples; allowed: 2 to {}",
                                                                 samples, kMaximumFlankSamples)});
     return false;
   }
@@ -73,7 +73,7 @@ bool check_sizes(const v1::GearSet& set, const std::string& path, Violations& vi
       if (size == samples) continue;
       violations.push_back(
           {fmt::format("{}[{}].{}", slots, k, descriptor.field(i)->name()),
-           fmt::format("{} samples; legal: {}, as in the load share of the first slot", size,
+           fmt::format("{} samples; allowed: {}, as in the load share of the first slot", size,
                        samples)});
     }
   }
@@ -104,12 +104,13 @@ void check_shares(const v1::GearSet& set, const LocateSample& locate, TableCompl
     double sum = 0;
     for (const v1::FlankSlot& slot : set.flank_slots()) sum += slot.load_share(j);
     if (std::abs(sum - 1) <= kShareTolerance) continue;
-    complaints.add([&] { return locate(0, j, "load_share"); },
-                   [&] {
-                     return fmt::format(
-                         "load shares of the three pairs add up to {}; legal: 1 within {} (eq 29)",
-                         sum, kShareTolerance);
-                   });
+    complaints.add(
+        [&] { return locate(0, j, "load_share"); },
+        [&] {
+          return fmt::format(
+              "load shares of the three pairs add up to {}; allowed: 1 within {} (eq 29)", sum,
+              kShareTolerance);
+        });
   }
 }
 
@@ -126,7 +127,7 @@ void check_continuity(const v1::GearSet& set, const LocateSample& locate,
       complaints.add([&] { return locate(k, here.size() - 1, field.name()); },
                      [&] {
                        return fmt::format(
-                           "{} = {}, but {} where the next pair takes over ({}); legal: equal",
+                           "{} = {}, but {} where the next pair takes over ({}); allowed: equal",
                            field.name(), last, first, locate(k + 1, 0, field.name()));
                      });
     }
@@ -150,7 +151,7 @@ void check_power(const v1::GearSet& set, const LocateSample& locate, TableCompla
           [&] { return locate(k, j, "pinion_friction_arm_metres"); },
           [&] {
             return fmt::format(
-                "r_fr,p + r_fr,g N_p/N_g = {} m, sliding speed A = {} m per rad/s; legal: the "
+                "r_fr,p + r_fr,g N_p/N_g = {} m, sliding speed A = {} m per rad/s; allowed: the "
                 "negative of one another (power in = power lost)",
                 arms, sliding);
           });
@@ -169,7 +170,7 @@ void check_fourier(const v1::FourierSeries& series, const std::string& path,
                    Violations& violations) {
   if (series.sine_size() != series.cosine_size() || series.sine_size() > kMaximumHarmonics) {
     violations.push_back(
-        {path, fmt::format("{} sine and {} cosine terms; legal: as many of each, at most {}",
+        {path, fmt::format("{} sine and {} cosine terms; allowed: as many of each, at most {}",
                            series.sine_size(), series.cosine_size(), kMaximumHarmonics)});
   }
   check_range("FourierSeries", "mean", series.mean(), join_path(path, "mean"), violations);
@@ -187,7 +188,7 @@ template <class Entries>
 void check_torques(const Entries& entries, const std::string& path, Violations& violations) {
   if (entries.size() > kMaximumTorques) {
     violations.push_back(
-        {path, fmt::format("{} torques; legal: at most {}", entries.size(), kMaximumTorques)});
+        {path, fmt::format("{} torques; allowed: at most {}", entries.size(), kMaximumTorques)});
   }
   for (int i = 0; i < std::min(entries.size(), kMaximumTorques); ++i) {
     check_range("LoadShareAtTorque", "pinion_torque_newton_metres",
@@ -199,7 +200,7 @@ void check_torques(const Entries& entries, const std::string& path, Violations& 
     const double torque = entries.Get(i).pinion_torque_newton_metres();
     if (torque > before) continue;
     violations.push_back({fmt::format("{}[{}].pinion_torque_newton_metres", path, i),
-                          fmt::format("{} N m after {} N m; legal: ascending", torque, before)});
+                          fmt::format("{} N m after {} N m; allowed: ascending", torque, before)});
   }
 }
 
@@ -216,7 +217,7 @@ void check_shares_by_torque(const v1::GearSet& set, const std::string& path,
     bool whole = entry.slots_size() == kFlankPairs;
     for (const auto& slot : entry.slots()) whole = whole && slot.load_share_size() == samples;
     if (!whole) {
-      violations.push_back({here + ".slots", fmt::format("legal: {} slots of {} samples, as in "
+      violations.push_back({here + ".slots", fmt::format("allowed: {} slots of {} samples, as in "
                                                          "flank_slots",
                                                          kFlankPairs, samples)});
       continue;
@@ -270,7 +271,7 @@ void check_series(const v1::MeshSeries& series, const v1::GearSet& gear_set,
   if (std::abs(gear - expected) <= kRatioTolerance * std::abs(expected)) return;
   violations.push_back(
       {join_path(path, "gear_contact_radius_metres.mean"),
-       fmt::format("R_g0 = {} m; legal: R_p0 N_g/N_p = {} m within {}, or the transmission error "
+       fmt::format("R_g0 = {} m; allowed: R_p0 N_g/N_p = {} m within {}, or the transmission error "
                    "winds up (eqs 8, 9)",
                    gear, expected, kRatioTolerance)});
 }

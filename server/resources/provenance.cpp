@@ -106,7 +106,7 @@ void check_provenance(const Descriptor& resource, const Provenances& all, const 
     const std::string unit = unit_of(resource, entry.field());
     if (!entry.unit().empty() && entry.unit() != unit) {
       violations.push_back(
-          {here + ".unit", fmt::format("unit = \"{}\"; legal: \"{}\", that of {}, or empty",
+          {here + ".unit", fmt::format("unit = \"{}\"; allowed: \"{}\", that of {}, or empty",
                                        plain_excerpt(entry.unit()), unit, entry.field())});
     }
   }

@@ -28,7 +28,7 @@ std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& requ
         find_resource<v1::Lubricant>(lookup, request.lubricant(), kLubricants, path, violations);
     if (found) lubricant = *found->resource;
   } else {
-    violations.push_back({"fluid", "not set; legal: lubricant or lubricant_parameters"});
+    violations.push_back({"fluid", "not set; allowed: lubricant or lubricant_parameters"});
   }
   if (lubricant) {
     check_fluid_at_inlet(*lubricant, request.sump_temperature_celsius(),

@@ -105,7 +105,7 @@ void check_study(const v1::Simulation& request, const std::string& path, Violati
                 join_path(path, "inefficiency_curve"), violations);
   } else {
     violations.push_back(
-        {join_path(path, "study"), "not set; legal: operating_point or inefficiency_curve"});
+        {join_path(path, "study"), "not set; allowed: operating_point or inefficiency_curve"});
   }
 }
 

@@ -49,7 +49,7 @@ void check_speed_range(const v1::InefficiencyCurveStudy& study, const std::strin
   if (first != 0 && last != 0 && last < first) {
     violations.push_back(
         {join_path(path, "last_speed_kilometres_per_hour"),
-         fmt::format("last_speed_kilometres_per_hour = {} km/h; legal: at least the first speed, "
+         fmt::format("last_speed_kilometres_per_hour = {} km/h; allowed: at least the first speed, "
                      "{} km/h; for a sweep downwards set direction",
                      last, first)});
   }
@@ -89,8 +89,9 @@ void check_history(const v1::HistoryRequest& history, const std::string& path,
   const double values = cycles * samples * columns;
   if (values > kMaximumHistoryValues) {
     violations.push_back(
-        {path, fmt::format("{} cycles of {} samples in {} columns are {} values; legal: at most {}",
-                           cycles, samples, columns, values, kMaximumHistoryValues)});
+        {path,
+         fmt::format("{} cycles of {} samples in {} columns are {} values; allowed: at most {}",
+                     cycles, samples, columns, values, kMaximumHistoryValues)});
   }
 }
 
@@ -104,12 +105,12 @@ void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperatur
   const double measured = lubricant.pressure_viscosity_temperature_kelvin();
   if (inlet <= reference) {
     violations.push_back(
-        {path, fmt::format("T_0,ref = {} K; legal: below the inlet temperature, {:.6g} K (eq 34)",
+        {path, fmt::format("T_0,ref = {} K; allowed: below the inlet temperature, {:.6g} K (eq 34)",
                            reference, inlet)});
   }
   if (measured <= reference) {
     violations.push_back(
-        {path, fmt::format("T_0,ref = {} K; legal: below the temperature of alpha*, {} K (eq 33)",
+        {path, fmt::format("T_0,ref = {} K; allowed: below the temperature of alpha*, {} K (eq 33)",
                            reference, measured)});
   }
   const double density = lubricant.density_at_zero_kelvin_kilograms_per_cubic_metre() +
@@ -117,7 +118,7 @@ void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperatur
   if (density <= 0) {
     violations.push_back(
         {path, fmt::format("density at the inlet temperature {:.6g} K is {:.6g} kg/m3; "
-                           "legal: positive (eq 26)",
+                           "allowed: positive (eq 26)",
                            inlet, density)});
   }
 }
@@ -126,7 +127,7 @@ void check_operating_point(const v1::OperatingPointStudy& study, const std::stri
                            Violations& violations) {
   if (study.condition_case() == v1::OperatingPointStudy::CONDITION_NOT_SET) {
     violations.push_back({join_path(path, "condition"),
-                          "not set; legal: cruise, drive_cycle_snapshot or prescribed_torque"});
+                          "not set; allowed: cruise, drive_cycle_snapshot or prescribed_torque"});
   }
   if (study.has_history()) check_history(study.history(), join_path(path, "history"), violations);
 }
@@ -136,18 +137,19 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
   if (study.independent_points() && study.direction() != v1::SWEEP_DIRECTION_UNSPECIFIED) {
     violations.push_back(
         {join_path(path, "direction"),
-         fmt::format("direction = {} together with independent_points; legal: unset, as a "
+         fmt::format("direction = {} together with independent_points; allowed: unset, as a "
                      "direction is that in which a branch is followed from point to point",
                      short_name(*v1::SweepDirection_descriptor(), study.direction()))});
   }
   const bool explicit_speeds = !study.speeds_kilometres_per_hour().empty();
   const std::string speeds = join_path(path, "speeds_kilometres_per_hour");
   if (explicit_speeds && has_range(study)) {
-    violations.push_back({speeds, "set together with first, last and step; legal: one of the two"});
+    violations.push_back(
+        {speeds, "set together with first, last and step; allowed: one of the two"});
     return;
   }
   if (!explicit_speeds && !has_range(study)) {
-    violations.push_back({speeds, "not set; legal: explicit speeds, or first, last and step"});
+    violations.push_back({speeds, "not set; allowed: explicit speeds, or first, last and step"});
     return;
   }
   if (!explicit_speeds) check_speed_range(study, path, violations);
@@ -156,7 +158,7 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
   if (points > kMaximumCurvePoints) {
     violations.push_back(
         {explicit_speeds ? speeds : join_path(path, "speed_step_kilometres_per_hour"),
-         fmt::format("{} points; legal: at most {} (work limit)", points, kMaximumCurvePoints)});
+         fmt::format("{} points; allowed: at most {} (work limit)", points, kMaximumCurvePoints)});
     return;
   }
   if (explicit_speeds) {
@@ -173,7 +175,7 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
       options.maximum_mesh_cycles() == 0 ? kDefaultMaximumCycles : options.maximum_mesh_cycles();
   if (points * cycles > kMaximumCurveMeshCycles) {
     violations.push_back(
-        {path, fmt::format("{} points of up to {} mesh cycles; legal: a product of at most {} "
+        {path, fmt::format("{} points of up to {} mesh cycles; allowed: a product of at most {} "
                            "(work limit)",
                            points, cycles, kMaximumCurveMeshCycles)});
   }
@@ -184,7 +186,7 @@ void check_model_options(const v1::ModelOptions& options, const std::string& pat
   if (!options.as_published().eq46_square_root_of_sum()) return;
   violations.push_back(
       {join_path(path, "as_published.eq46_square_root_of_sum"),
-       "true; legal: false, as eq 46 acts where measured profiles become a surface: set "
+       "true; allowed: false, as eq 46 acts where measured profiles become a surface: set "
        "eq46_square_root_of_sum of ImportSurfaceProfilesRequest and use that surface here"});
 }
 
@@ -192,9 +194,10 @@ void check_mesh_data(const v1::GearSet& gear_set, const v1::ModelOptions& option
                      const std::string& path, Violations& violations) {
   if (!options.load_dependent_mesh_data()) return;
   if (gear_set.series_by_torque().empty() || gear_set.load_share_by_torque().empty()) {
-    violations.push_back({path, fmt::format("load_dependent_mesh_data = true; legal: false, as {} "
-                                            "holds no data by torque (eqs 8-11)",
-                                            gear_set.name())});
+    violations.push_back(
+        {path, fmt::format("load_dependent_mesh_data = true; allowed: false, as {} "
+                           "holds no data by torque (eqs 8-11)",
+                           gear_set.name())});
   }
 }
 

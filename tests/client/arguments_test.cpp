@@ -105,7 +105,7 @@ TEST(Help, EveryNumberHasARangeAndEveryCommandAnExample) {
     EXPECT_NE(help.find(command.examples.front()), std::string::npos);
     for (const Flag& flag : command.flags.flags()) {
       EXPECT_FALSE(flag.description.empty()) << flag.names;
-      EXPECT_EQ(flag.description.find("Legal:  "), std::string::npos) << flag.names;
+      EXPECT_EQ(flag.description.find("Allowed:  "), std::string::npos) << flag.names;
     }
   }
 }
@@ -222,7 +222,7 @@ std::string told(const std::vector<std::string>& arguments, const FieldViolation
   const std::vector<Command> commands = all_commands();
   const Parsed parsed = parse_arguments(arguments, commands, common_flags);
   EXPECT_TRUE(parsed.complaints.empty()) << parsed.complaints.front();
-  const ServiceError error("1 illegal field [INVALID_FIELDS]\n  " + violation.description, 3,
+  const ServiceError error("1 invalid field [INVALID_FIELDS]\n  " + violation.description, 3,
                            "INVALID_FIELDS", {violation}, std::nullopt);
   const std::string text = with_flag_names(error, parsed.typed_flags).what();
   return text.substr(text.find('\n') + 3);
@@ -231,25 +231,26 @@ std::string told(const std::vector<std::string>& arguments, const FieldViolation
 TEST(Refusals, NameTheFlagThatWasTypedAndTheCure) {
   const FieldViolation density = {
       "lubricant.measurements.density_15_celsius_kilograms_per_cubic_metre",
-      "density_15_celsius_kilograms_per_cubic_metre = 0.895 kg/m3; legal: 500 to 2000 kg/m3 (eq "
+      "density_15_celsius_kilograms_per_cubic_metre = 0.895 kg/m3; allowed: 500 to 2000 kg/m3 (eq "
       "26)"};
-  EXPECT_EQ(told({"lubricants", "create", "x", "--density15", "0.895"}, density),
-            "--density15 = 0.895 kg/m3; legal: 500 to 2000 kg/m3 (eq 26); 0.895 looks like g/cm3: "
-            "write 0.895g/cm3 or 895");
+  EXPECT_EQ(
+      told({"lubricants", "create", "x", "--density15", "0.895"}, density),
+      "--density15 = 0.895 kg/m3; allowed: 500 to 2000 kg/m3 (eq 26); 0.895 looks like g/cm3: "
+      "write 0.895g/cm3 or 895");
   EXPECT_EQ(told({"lubricants", "create", "x", "--kv40", "100"}, density), density.description);
   EXPECT_EQ(told({"point", "-l", "1", "--speed=-5"},
                  {"simulation.operating_point.cruise.speed_kilometres_per_hour",
-                  "speed_kilometres_per_hour = -5 km/h; legal: 0.1 to 400 km/h (eq 7)"}),
-            "--speed = -5 km/h; legal: 0.1 to 400 km/h (eq 7)");
+                  "speed_kilometres_per_hour = -5 km/h; allowed: 0.1 to 400 km/h (eq 7)"}),
+            "--speed = -5 km/h; allowed: 0.1 to 400 km/h (eq 7)");
   EXPECT_EQ(told({"curve", "-l", "1", "--speed", "20,900"},
                  {"simulation.inefficiency_curve.speeds_kilometres_per_hour[1]",
-                  "speeds_kilometres_per_hour = 900 km/h; legal: 0.1 to 400 km/h (eq 7)"}),
-            "--speed = 900 km/h; legal: 0.1 to 400 km/h (eq 7)");
+                  "speeds_kilometres_per_hour = 900 km/h; allowed: 0.1 to 400 km/h (eq 7)"}),
+            "--speed = 900 km/h; allowed: 0.1 to 400 km/h (eq 7)");
   EXPECT_EQ(told({"lubricants", "create", "x", "--kv40", "1", "--brookfield", "-40=9",
                   "--brookfield", "-400=9"},
                  {"lubricant.measurements.brookfield_viscosities[1].temperature_celsius",
-                  "temperature_celsius = -400 C; legal: -70 to 200 C (eq 34)"}),
-            "--brookfield -400=9: temperature_celsius = -400 C; legal: -70 to 200 C (eq 34)");
+                  "temperature_celsius = -400 C; allowed: -70 to 200 C (eq 34)"}),
+            "--brookfield -400=9: temperature_celsius = -400 C; allowed: -70 to 200 C (eq 34)");
 }
 
 TEST(ResultFiles, AreRefusedBeforeAnythingIsComputed) {
@@ -267,7 +268,7 @@ TEST(ResultFiles, AreRefusedBeforeAnythingIsComputed) {
   EXPECT_TRUE(Outcome({"curve", "-l", "1", "--csv", "/tmp"}).complains_of("is a folder"));
   std::vector<std::string> many = {"curve", "--plot", "x.svg"};
   for (int i = 0; i < 25; ++i) many.insert(many.end(), {"-l", std::to_string(i)});
-  EXPECT_TRUE(Outcome(many).complains_of("25 lubricants; legal: at most 24"));
+  EXPECT_TRUE(Outcome(many).complains_of("25 lubricants; allowed: at most 24"));
 }
 
 TEST(Help, IsShortUnlessAllIsAskedFor) {

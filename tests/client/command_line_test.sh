@@ -40,8 +40,8 @@ done
 echo "--- refusals: every violation at once"
 expect 1 point --lubricant 7 --speed -5 --sump-temperature-celsius 900 \
   --relative-tolerance 1 --gear-set Z
-for part in '--speed = -5 km/h; legal: 0\.1 to 400' \
-  '--sump-temperature-celsius = 900 C; legal: -70 to 200' '--relative-tolerance = 1; legal' \
+for part in '--speed = -5 km/h; allowed: 0\.1 to 400' \
+  '--sump-temperature-celsius = 900 C; allowed: -70 to 200' '--relative-tolerance = 1; allowed' \
   'lubricants/7' 'gearSets/Z'; do
   err_has "$part"
 done
@@ -62,11 +62,11 @@ expect 1 jobs get none
 expect 1 jobs cancel none
 expect 1 jobs watch none
 
-echo "--- legal ranges in the help are those of the server"
+echo "--- allowed ranges in the help are those of the server"
 # Each number flag with a range: a value above it is refused, by name, with the same range.
 ranges() {  # the help wraps its lines anywhere: the text of a flag is joined first
   "$client" "$1" --help-all | awk '
-    function show() { if (match(text, /Legal: [^ ]+ to [^ ]+/)) {
+    function show() { if (match(text, /Allowed: [^ ]+ to [^ ]+/)) {
       split(substr(text, RSTART, RLENGTH), word); print flag, word[2], word[4] } text = "" }
     /^  --/ { show(); flag = $1; sub(/,$/, "", flag); next }
     /^ / { sub(/^ +/, ""); text = text " " $0; next }
@@ -91,7 +91,7 @@ for command in point contact history curve; do
     esac
     expect 1 "$command" "${given[@]}" "$flag" "$value"
     read -r server_lowest server_highest < <(
-      sed -n "s/^ *$flag = .*; legal: \\([^ ]*\\) to \\([^ ]*\\).*/\\1 \\2/p" "$folder/err")
+      sed -n "s/^ *$flag = .*; allowed: \\([^ ]*\\) to \\([^ ]*\\).*/\\1 \\2/p" "$folder/err")
     same_numbers "$lowest" "$highest" "${server_lowest:-none}" "${server_highest:-none}" ||
       fail "$command $flag: help says $lowest to $highest"
     checked=$((checked + 1))

@@ -25,19 +25,18 @@ grpc::Status refusal_with_violations() {
   google::rpc::BadRequest bad;
   auto* violation = bad.add_field_violations();
   violation->set_field("simulation.sump_temperature_celsius");
-  violation->set_description("sump_temperature_celsius = 900 C; legal: -70 to 200 C (eq 14)");
+  violation->set_description("sump_temperature_celsius = 900 C; allowed: -70 to 200 C (eq 14)");
   violation = bad.add_field_violations();
   violation->set_field("simulation.lubricant");
   violation->set_description("lubricants/7 does not exist");
   details.add_details()->PackFrom(bad);
-  return {grpc::StatusCode::INVALID_ARGUMENT, "2 fields are not legal",
-          details.SerializeAsString()};
+  return {grpc::StatusCode::INVALID_ARGUMENT, "2 fields are invalid", details.SerializeAsString()};
 }
 
 TEST(Errors, ListEveryViolation) {
   EXPECT_EQ(readable_error(refusal_with_violations()),
-            "2 illegal fields [INVALID_INPUTS]\n"
-            "  sump_temperature_celsius = 900 C; legal: -70 to 200 C (eq 14)\n"
+            "2 invalid fields [INVALID_INPUTS]\n"
+            "  sump_temperature_celsius = 900 C; allowed: -70 to 200 C (eq 14)\n"
             "  simulation.lubricant: lubricants/7 does not exist");
   EXPECT_EQ(to_failure(refusal_with_violations(), "here").exit_code(), kExitFailed);
 }

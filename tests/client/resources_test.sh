@@ -69,9 +69,9 @@ expect 2 lubricants create x --density 868
 err_has 'did you mean --density15'
 ! grep -q 'nothing is said' "$folder/err" || fail "a misread flag counts as none"
 expect 1 lubricants create x --kv40 0.1 --density15 0.87 --pressure-viscosity 1e6/GPa
-for part in '--kv40 = 0.1 mm2/s; legal: 1 to' \
-  '--density15 = 0.87 kg/m3; legal: 500 to .*0.87 looks like g/cm3: write 0.87g/cm3 or 870' \
-  '--pressure-viscosity 1e6/GPa = .* legal'; do
+for part in '--kv40 = 0.1 mm2/s; allowed: 1 to' \
+  '--density15 = 0.87 kg/m3; allowed: 500 to .*0.87 looks like g/cm3: write 0.87g/cm3 or 870' \
+  '--pressure-viscosity 1e6/GPa = .* allowed'; do
   err_has "$part"
 done
 expect 1 lubricants get my-oill
@@ -181,7 +181,7 @@ echo "--- a simulation that is only checked"
 expect 0 curve --lubricant 1 --lubricant my-oil --validate-only
 out_has '^valid, not run: lubricants/my-oil  about .* of a processor; inputs [0-9a-f]{64}$'
 expect 1 point --lubricant 1 --speed 4000 --validate-only
-err_has 'legal: 0.1 to 400 km/h'
+err_has 'allowed: 0.1 to 400 km/h'
 expect 0 jobs list --output csv
 jobs_before=$(cat "$folder/out")
 expect 0 point --lubricant 1 --speed 40 --validate-only
@@ -218,7 +218,7 @@ err_has 'row 3 column kinematic_viscosity_40_.* = 1000000000 mm2/s'
 err_has 'Nothing was written'
 sed 's/;labels.project;/;labels.pro ject;/' rows.csv >rows-bad.csv
 expect 1 lubricants import rows-bad.csv
-err_has 'row 2 column labels.pro ject: "pro ject"; legal: letters'
+err_has 'row 2 column labels.pro ject: "pro ject"; allowed: letters'
 expect 1 lubricants import rows.csv
 err_has 'row 2 column name: lubricants/row-used exists already'
 err_has 'Nothing was written. --replace makes new revisions'
@@ -370,7 +370,7 @@ out_has '^Surface,asperity_radius_metres,'
 expect 1 schema lubrcant
 err_has 'did you mean "Lubricant"'
 expect 0 lubricants create --help-all
-out_has 'Legal: 0.1 to( 1000 1/GPa)?'
+out_has 'Allowed: 0.1 to( 1000 1/GPa)?'
 out_has '1/GPa \(eq 33'
 TRIBODYN_SERVER=127.0.0.1:9 expect 0 lubricants create --help
 out_has 'No server answers'

@@ -73,7 +73,7 @@ TEST(Retry, PausesGrowAreDrawnAtRandomAndHeedTheServer) {
   EXPECT_GT(seen.size(), 10U) << "clients come back one by one";
 }
 
-TEST(Retry, RequestIdsAreUniqueAndLegal) {
+TEST(Retry, RequestIdsAreUniqueAndValid) {
   std::set<std::string> seen;
   for (int i = 0; i < 1000; ++i) {
     const std::string id = new_request_id();

@@ -220,7 +220,7 @@ TEST_P(EveryMethod, RefusesAPageOfNegativeSize) {
   const auto message = request();
   message->GetReflection()->SetInt32(message.get(),
                                      message->GetDescriptor()->FindFieldByName("page_size"), -1);
-  expect_refused(*message, "page_size = -1; legal: 0");
+  expect_refused(*message, "page_size = -1; allowed: 0");
 }
 
 INSTANTIATE_TEST_SUITE_P(Contract, EveryMethod, testing::ValuesIn(all_methods()), method_name);

@@ -1,4 +1,4 @@
-// Whatever legal contact a client sends: an answer of finite numbers or a reason, and soon.
+// Whatever allowed contact a client sends: an answer of finite numbers or a reason, and soon.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -19,7 +19,7 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// Numbers from the whole legal range: by magnitude, at its ends, or as in the typical request.
+/// Numbers from the whole allowed range: by magnitude, at its ends, or as in the typical request.
 class AnyNumber {
  public:
   double operator()(const Constraint& row, double typical) {

@@ -213,7 +213,7 @@ TEST_F(AppTest, SimulationsAreFoundByStateLubricantTimeAndLabel) {
   }
   bad.set_filter("state = DONE");
   const std::string said = list_simulations(app_, bad).error().message();
-  EXPECT_THAT(said, testing::HasSubstr("legal: QUEUED, RUNNING"));
+  EXPECT_THAT(said, testing::HasSubstr("allowed: QUEUED, RUNNING"));
   EXPECT_THAT(said, testing::Not(testing::HasSubstr("UNSPECIFIED")));
   bad.set_filter("");
   bad.set_order_by("end_time");

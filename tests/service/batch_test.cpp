@@ -95,7 +95,7 @@ TEST_F(BatchTest, AViolationInTheLastLeavesNothing) {
   expect_nothing_written(refused.error(), google::rpc::INVALID_ARGUMENT);
   EXPECT_THAT(complaint_lines(refused.error()),
               ElementsAre(StartsWith("requests[299].lubricant.relaxation_time_seconds: "
-                                     "relaxation_time_seconds = -1 s; legal: 0 to 10 s")));
+                                     "relaxation_time_seconds = -1 s; allowed: 0 to 10 s")));
 }
 
 TEST_F(BatchTest, AllViolationsOfAllComeAtOnce) {
@@ -116,13 +116,13 @@ TEST_F(BatchTest, AllViolationsOfAllComeAtOnce) {
               ElementsAre(HasSubstr("requests[0].lubricant.name: lubricants/1 exists already"),
                           StartsWith("requests[1].lubricant.limiting_shear_stress_coefficient: "),
                           StartsWith("requests[1].lubricant.thermal_conductivity_"),
-                          StartsWith("requests[2].lubricant_id: \"a b\"; legal: "),
+                          StartsWith("requests[2].lubricant_id: \"a b\"; allowed: "),
                           StartsWith("requests[3].validate_only: "),
                           HasSubstr("requests[4].lubricant.derived_from: \"lubricants/11\" does "
                                     "not exist; did you mean \"lubricants/1\"?"),
                           "requests[5].lubricant: not set",
                           HasSubstr("requests[6].lubricant.name: lubricants/1 stands in "
-                                    "requests[0] too; legal: once"),
+                                    "requests[0] too; allowed: once"),
                           HasSubstr("requests[6].lubricant.name: lubricants/1 exists already")));
 }
 
@@ -248,7 +248,7 @@ TEST_F(BatchTest, TheSizeIsLimitedAndAVeryLargeAnswerIsBrief) {
     expect_nothing_written(refused.error(), google::rpc::INVALID_ARGUMENT);
     EXPECT_THAT(complaint_lines(refused.error()),
                 ElementsAre(StartsWith("requests: requests = " + std::to_string(size) +
-                                       "; legal: 1 to 20000")));
+                                       "; allowed: 1 to 20000")));
   }
   const auto made = batch_create_lubricants(app_, many(2000));
   ASSERT_TRUE(made.ok()) << made.error().message();

@@ -266,7 +266,7 @@ TEST(IndependentPoints, HaveNoDirection) {
   ASSERT_EQ(violations.size(), 1U);
   EXPECT_EQ(violations[0].field, "simulation.inefficiency_curve.direction");
   EXPECT_EQ(violations[0].description,
-            "direction = DOWN together with independent_points; legal: unset, as a direction is "
+            "direction = DOWN together with independent_points; allowed: unset, as a direction is "
             "that in which a branch is followed from point to point");
 }
 

@@ -234,7 +234,7 @@ TEST_P(ConstraintRow, NamesUnitRangeAndEquation) {
   const Constraint& row = GetParam();
   const Violations found = with(above());
   ASSERT_THAT(found, violation(path(), quantity_text(row.maximum, row.unit)));
-  EXPECT_THAT(found, violation(path(), "legal: " + number_text(row.minimum) + " to "));
+  EXPECT_THAT(found, violation(path(), "allowed: " + number_text(row.minimum) + " to "));
   EXPECT_THAT(found, violation(path(), std::string(row.equation)));
 }
 

@@ -34,7 +34,7 @@ constexpr int kRequests = 30;  // to each method
 constexpr int kMostChanges = 5;
 
 /// Acceptable requests of a method, in text format; an empty one where the corpus has none.
-std::vector<std::string> legal_requests(const MethodDescriptor& method) {
+std::vector<std::string> valid_requests(const MethodDescriptor& method) {
   std::vector<std::string> out;
   for (const auto& entry : std::filesystem::directory_iterator(request_corpus_folder())) {
     std::ifstream file(entry.path());
@@ -91,7 +91,7 @@ class HostileRequestsTest : public GrpcTest {
 
 TEST_F(HostileRequestsTest, AreMadeFromRequestsThatAreAccepted) {
   for (const MethodDescriptor* method : all_methods()) {
-    for (const std::string& text : legal_requests(*method)) {
+    for (const std::string& text : valid_requests(*method)) {
       const std::unique_ptr<Message> request = new_request(*method);
       ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(text, request.get())) << text;
       if (text.empty()) continue;  // the corpus has none
@@ -106,10 +106,10 @@ TEST_F(HostileRequestsTest, AreAnsweredOrRefusedWithAReason) {
   HostileMessages hostile(20261122);
   for (const MethodDescriptor* method : all_methods()) {
     if (method->server_streaming()) continue;  // a watch may last as long as a simulation
-    const std::vector<std::string> legal = legal_requests(*method);
+    const std::vector<std::string> valid = valid_requests(*method);
     const std::unique_ptr<Message> request = new_request(*method);
     for (int i = 0; i < kRequests; ++i) {
-      const std::string& text = legal[static_cast<std::size_t>(i) % legal.size()];
+      const std::string& text = valid[static_cast<std::size_t>(i) % valid.size()];
       ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(text, request.get())) << text;
       for (int change = 0; change < i % (kMostChanges + 1); ++change) hostile.mutate(*request);
       send(*method, *request);

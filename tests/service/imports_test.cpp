@@ -325,7 +325,7 @@ TEST_F(GearSetImportTest, TextsThatAreNoSuchTableAreRefused) {
   EXPECT_THAT(said(good, "quantity,harmonic,sine,cosine\nmesh_stiffness,0,,1\n"),
               HasSubstr("did you mean \"mesh_stiffness_newtons_per_metre\"?"));
   EXPECT_THAT(said(good, "quantity,harmonic,sine,cosine\nmesh_stiffness_newtons_per_metre,1,0,1\n"),
-              HasSubstr("series_csv row 2 column harmonic: 1; legal: 0"));
+              HasSubstr("series_csv row 2 column harmonic: 1; allowed: 0"));
 }
 
 TEST_F(GearSetImportTest, CellsThatAreNoNumberHideNoOtherViolation) {
@@ -345,7 +345,7 @@ TEST_F(GearSetImportTest, CellsThatAreNoNumberHideNoOtherViolation) {
   asked.mutable_gear_set()->set_youngs_modulus_pascals(1);
   asked.mutable_gear_set()->mutable_series()->mutable_gear_contact_radius_metres()->set_mean(1);
   const std::string said = refused(asked);
-  EXPECT_THAT(said, HasSubstr("row 2 column load_share: \"half\"; legal: a finite number"));
+  EXPECT_THAT(said, HasSubstr("row 2 column load_share: \"half\"; allowed: a finite number"));
   EXPECT_THAT(said, HasSubstr("row 2 column radius_x_metres: radius_x_metres = -1"));
   EXPECT_THAT(said, HasSubstr("youngs_modulus_pascals = 1 Pa"));
   EXPECT_THAT(said, HasSubstr("R_p0 N_g/N_p"));
@@ -474,7 +474,7 @@ TEST_F(ImportTest, AnUnfilteredProfileIsToldAtOnceAndWithEveryResult) {
   request.set_surface_id("wrong");
   request.set_short_wave_cut_off_metres(-1);
   EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
-              HasSubstr("short_wave_cut_off_metres = -1 m; legal: 1e-09 to 0.01 m"));
+              HasSubstr("short_wave_cut_off_metres = -1 m; allowed: 1e-09 to 0.01 m"));
   request.set_short_wave_cut_off_metres(0.6e-6);
   EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
               HasSubstr("must be two sample spacings or more, 1e-06 m"));
@@ -581,9 +581,10 @@ TEST_F(ImportTest, Eq46AsPublishedNeedsTwoDirectionsOfAMember) {
                                                              : v1::PROFILE_DIRECTION_RADIAL);
     profile->set_csv(waves(300, 50, 4001));
   }
-  EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
-              HasSubstr("eq46_square_root_of_sum: true; legal: false, as eq 46 joins an AXIAL and "
-                        "a RADIAL profile of one member"));
+  EXPECT_THAT(
+      complaints(import_surface_profiles(app_, request).error()),
+      HasSubstr("eq46_square_root_of_sum: true; allowed: false, as eq 46 joins an AXIAL and "
+                "a RADIAL profile of one member"));
 }
 
 TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
@@ -601,7 +602,7 @@ TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
   EXPECT_THAT(said("position_metres,height_metres\n0,0\n"), HasSubstr("profiles[0].csv"));
   EXPECT_THAT(said(waves(0, 50, 100)), HasSubstr("profiles[0].csv.mean_square_slope"));
   EXPECT_THAT(said("position_metres,height_metres\n0,0\n2,1\n4,0\n6,1\n8,0\n"),
-              HasSubstr("profiles[0].csv: spacing_metres = 2 m; legal: 1e-10 to 0.01 m"));
+              HasSubstr("profiles[0].csv: spacing_metres = 2 m; allowed: 1e-10 to 0.01 m"));
   EXPECT_THAT(said("position_metres,height_metres\n0,0\n1,0\n2,0\n3,0\n4,0\n5,0\n"),
               HasSubstr("profiles"));
   EXPECT_THAT(said(waves(300, 50, 100)), HasSubstr("tribofilm_shear_strength_pascals is not set"));
@@ -625,15 +626,15 @@ TEST_F(ImportTest, EverythingWrongWithProfilesComesAtOnce) {
   for (const char* each :
        {"surface.composite_rms_height_metres: composite_rms_height_metres follows",
         "profiles: two of one member without a direction",
-        "profiles[0].csv row 6: 3 cells; legal: 2",
+        "profiles[0].csv row 6: 3 cells; allowed: 2",
         "profiles[0].csv row 4 column position_micrometres: \"x\"",
         "profiles[0].csv row 8 column height_nanometres: is empty",
         "profiles[0].csv row 10 column position_micrometres: a step of -5e-07 m",
-        "profiles[0].csv row 12 column position_micrometres: a step of 3e-06 m; legal: 1e-06 m",
+        "profiles[0].csv row 12 column position_micrometres: a step of 3e-06 m; allowed: 1e-06 m",
         "profiles[1].csv column 2: \"height_metre\" is no known header",
-        "profiles[1].csv: samples = 3; legal: 5 to 1000000",
-        "profiles[1].csv row 3 column position_metres: a step of -1 m; legal: above 0",
-        "profiles[1].csv row 4 column position_metres: a step of -1 m; legal: above 0",
+        "profiles[1].csv: samples = 3; allowed: 5 to 1000000",
+        "profiles[1].csv row 3 column position_metres: a step of -1 m; allowed: above 0",
+        "profiles[1].csv row 4 column position_metres: a step of -1 m; allowed: above 0",
         "surface.asperity_friction_coefficient: asperity_friction_coefficient = -1",
         "surface.tribofilm_shear_strength_pascals: tribofilm_shear_strength_pascals is not set",
         "surface.derived_from: \"surfaces/run-im\" does not exist"}) {

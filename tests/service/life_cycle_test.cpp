@@ -115,8 +115,8 @@ TEST_F(LifeCycle, ARequestOfTooManyElementsIsRefusedBeforeAnythingElseIsDoneWith
   EXPECT_EQ(status.code(), google::rpc::INVALID_ARGUMENT) << "not that the request_id is taken";
   EXPECT_THAT(complaint_lines(status),
               testing::ElementsAre(
-                  "simulation.operating_point.history.columns: 101 entries; legal: at most 100",
-                  "simulation.labels: 100000 entries; legal: at most 64"));
+                  "simulation.operating_point.history.columns: 101 entries; allowed: at most 100",
+                  "simulation.labels: 100000 entries; allowed: at most 64"));
 }
 
 TEST_F(LifeCycle, AnotherRequestUnderTheSameIdIsRefusedAndSaysWhatDiffers) {
@@ -373,7 +373,7 @@ TEST_F(LifeCycle, AWatchGoesOnBehindWhatWasSeen) {
     const auto refused = watch(bench, name, bad);
     ASSERT_FALSE(refused.ok());
     EXPECT_THAT(refused.error().message(), HasSubstr("after_sequence"));
-    EXPECT_THAT(refused.error().message(), HasSubstr("legal: 0 to 3"));
+    EXPECT_THAT(refused.error().message(), HasSubstr("allowed: 0 to 3"));
   }
 }
 

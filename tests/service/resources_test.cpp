@@ -535,10 +535,10 @@ TEST_F(ListTest, UnknownWordsNameTheNearest) {
   EXPECT_THAT(said("conditon = USED", ""), HasSubstr("did you mean \"condition\"?"));
   EXPECT_THAT(said("pressure_viscosty > 1", ""),
               HasSubstr("did you mean \"pressure_viscosity_coefficient_per_pascal\"?"));
-  EXPECT_THAT(said("colour = red", ""), HasSubstr("legal: base_oil_class, condition"));
+  EXPECT_THAT(said("colour = red", ""), HasSubstr("allowed: base_oil_class, condition"));
   EXPECT_THAT(said("colour = red", ""), Not(HasSubstr("did you mean")));
   EXPECT_THAT(said("condition = USD", ""), HasSubstr("did you mean \"USED\"?"));
-  EXPECT_THAT(said("condition = old", ""), HasSubstr("legal: CONDITION_UNSPECIFIED, FRESH"));
+  EXPECT_THAT(said("condition = old", ""), HasSubstr("allowed: CONDITION_UNSPECIFIED, FRESH"));
   v1::ListLubricantsRequest unstated;
   unstated.set_filter("condition = CONDITION_UNSPECIFIED");
   EXPECT_TRUE(list_lubricants(app_, unstated).ok()) << "many do not state theirs";
@@ -547,7 +547,7 @@ TEST_F(ListTest, UnknownWordsNameTheNearest) {
   EXPECT_THAT(said("create_time > yesterday", ""), HasSubstr("2026-01-31T12:00:00Z"));
   EXPECT_THAT(said("condition = USED OR condition = FRESH", ""), HasSubstr("joined by AND"));
   EXPECT_THAT(said("condition = \"USED", ""), HasSubstr("quotes"));
-  EXPECT_THAT(said("condition", ""), HasSubstr("legal: field"));
+  EXPECT_THAT(said("condition", ""), HasSubstr("allowed: field"));
   EXPECT_THAT(said("", "lims"), HasSubstr("did you mean \"lims_id\"?"));
   EXPECT_THAT(said("", "name backwards"), HasSubstr("asc or desc"));
   EXPECT_THAT(said(std::string(3000, 'x'), ""), HasSubstr("at most 2000"));
@@ -564,7 +564,7 @@ TEST_F(ResourcesTest, RefusesAMaskOfTooManyPaths) {
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code(), google::rpc::INVALID_ARGUMENT);
   EXPECT_THAT(complaint_lines(refused.error()),
-              testing::ElementsAre("update_mask: 5000 entries; legal: at most 200"));
+              testing::ElementsAre("update_mask: 5000 entries; allowed: at most 200"));
 }
 
 TEST_F(ListTest, ACallEndsAtItsDeadlineAndHasChangedNothing) {
@@ -662,7 +662,7 @@ TEST_F(ResourcesTest, EveryKindGoesTheSameWay) {
   vehicle.mutable_vehicle()->clear_gravity_metres_per_second_squared();
   vehicle.set_vehicle_id("moon");
   EXPECT_THAT(complaints(create_vehicle(app_, vehicle).error()),
-              HasSubstr("gravity_metres_per_second_squared is not set; legal: 0 to 100 m/s2"));
+              HasSubstr("gravity_metres_per_second_squared is not set; allowed: 0 to 100 m/s2"));
   v1::CreateSurfaceRequest surface;
   *surface.mutable_surface() = seed<v1::Surface>("surfaces/run-in");
   surface.set_surface_id("copy");

@@ -37,7 +37,7 @@ struct Place {
 };
 
 /// A number inside the range of its row, with the ends.
-rc::Gen<double> legal_number(const Constraint& row) {
+rc::Gen<double> allowed_number(const Constraint& row) {
   return rc::gen::map(rc::gen::inRange(0, 1001), [row](int step) {
     const double t = step / 1000.0;
     if (step == 0) return row.minimum;
@@ -49,7 +49,7 @@ rc::Gen<double> legal_number(const Constraint& row) {
 
 std::string any_text() { return *rc::gen::container<std::string>(rc::gen::inRange(' ', '~')); }
 
-/// Some of the numbers with rows in the table take other legal values.
+/// Some of the numbers with rows in the table take other allowed values.
 void vary_numbers(Message& message) {
   const auto& descriptor = *message.GetDescriptor();
   for (int i = 0; i < descriptor.field_count(); ++i) {
@@ -57,7 +57,7 @@ void vary_numbers(Message& message) {
     const Constraint* row = find_constraint(descriptor.name(), field->name());
     if (row == nullptr || field->is_repeated() || *rc::gen::inRange(0, 3) != 0) continue;
     if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) {
-      message.GetReflection()->SetDouble(&message, field, *legal_number(*row));
+      message.GetReflection()->SetDouble(&message, field, *allowed_number(*row));
     }
   }
 }

@@ -219,7 +219,7 @@ TEST_F(StoreTest, TheSchemaKeepsOutWhatMakesNoSense) {
   const auto id = store.add_simulation({.request = "r", .key = kKey}, 1).id;
   EXPECT_THROW(raw.exec("INSERT INTO history VALUES (1, 77, 0, 'a', x'00')"), SQLite::Exception);
   store.add_resources({{"a/1", "body"}}, 1);
-  for (const char* illegal :
+  for (const char* invalid :
        {"INSERT INTO revisions VALUES (9, 1, 2, 1, printf('%064d', 0), 'text is no blob')",
         "INSERT INTO revisions VALUES (9, 1, 3, 1, printf('%064d', 0), x'00')",
         "INSERT INTO revisions VALUES (9, 7, 1, 1, printf('%064d', 0), x'00')",
@@ -230,7 +230,7 @@ TEST_F(StoreTest, TheSchemaKeepsOutWhatMakesNoSense) {
         "UPDATE simulations SET state = 3, sequence = 2, end_time = 1 WHERE id = 1",
         "UPDATE events SET time = 7", "INSERT INTO events VALUES (1, 3, 1, 2, 1, '')",
         "INSERT INTO events VALUES (77, 1, 1, 1, 1, '')"}) {
-    EXPECT_THROW(raw.exec(illegal), SQLite::Exception) << illegal;
+    EXPECT_THROW(raw.exec(invalid), SQLite::Exception) << invalid;
   }
   EXPECT_THROW(raw.exec("UPDATE simulations SET state = 9 WHERE id = " + std::to_string(id)),
                SQLite::Exception);

@@ -66,7 +66,8 @@ TEST_F(Transport, ARequestThatGrowsWhenItIsParsedIsRefusedBefore) {
   const grpc::Status status =
       call("GearSetService/CreateGearSet", empty_flank_slots(kMebibytes << 20));
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_THAT(all_of(status), HasSubstr("gear_set.flank_slots: 4194301 entries; legal: at most 3"));
+  EXPECT_THAT(all_of(status),
+              HasSubstr("gear_set.flank_slots: 4194301 entries; allowed: at most 3"));
   // Parsed, they take 348 times as much.
   if (!kUnderSanitizer) {
     EXPECT_LT(process_->peak_memory_kibibytes() - before, 12 * kMebibytes * 1024);
@@ -80,7 +81,8 @@ TEST_F(Transport, ARequestOfTooManyBytesIsRefusedByItsMethod) {
         "ContactService/EvaluateContact", "LubricantService/UpdateLubricant"}) {
     const grpc::Status status = call(method, two_mebibytes);
     EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << method;
-    EXPECT_THAT(all_of(status), HasSubstr("the request has 2097152 bytes; legal: at most 1048576"));
+    EXPECT_THAT(all_of(status),
+                HasSubstr("the request has 2097152 bytes; allowed: at most 1048576"));
   }
 }
 

@@ -189,7 +189,7 @@ TEST(Curve, PointsAndWorkAreLimited) {
   curve->set_speed_step_kilometres_per_hour(0.1);
   EXPECT_THAT(check(simulation),
               violation("simulation.inefficiency_curve.speed_step_kilometres_per_hour",
-                        "1201 points; legal: at most 1000"));
+                        "1201 points; allowed: at most 1000"));
   curve->set_speed_step_kilometres_per_hour(0.125);
   EXPECT_THAT(check(simulation), IsEmpty());
   simulation.mutable_solver_options()->set_maximum_mesh_cycles(100000);
@@ -206,7 +206,7 @@ TEST(Curve, ManyBadSpeedsAreCountedNotListed) {
   EXPECT_THAT(found,
               violation("simulation.inefficiency_curve.speeds_kilometres_per_hour", "990 more"));
   EXPECT_THAT(found, violation("simulation.inefficiency_curve.speeds_kilometres_per_hour",
-                               "200000 points; legal: at most 1000"));
+                               "200000 points; allowed: at most 1000"));
 }
 
 TEST(History, ColumnsAreKnownDistinctAndNotTooMany) {
@@ -223,7 +223,7 @@ TEST(History, ColumnsAreKnownDistinctAndNotTooMany) {
   history->set_mesh_cycles(1000);
   history->set_samples_per_mesh_cycle(6667);
   EXPECT_THAT(check(simulation), violation("simulation.operating_point.history",
-                                           "20001000 values; legal: at most 20000000"))
+                                           "20001000 values; allowed: at most 20000000"))
       << "a flank column counts three times";
   for (int i = 0; i < 10'000; ++i) history->add_columns("x");
   EXPECT_LT(check(simulation).size(), 120U);

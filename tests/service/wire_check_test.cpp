@@ -86,14 +86,14 @@ TEST(WireCheck, NamesTheListItsElementsAndItsLimit) {
   v1::CreateGearSetRequest request;
   const std::string slots = wire_field(1, repeated(std::string("\x3a\x00", 2), 5000));
   EXPECT_THAT(judge_bytes(slots, *request.GetDescriptor()),
-              ElementsAre("gear_set.flank_slots: 5000 entries; legal: at most 3"));
+              ElementsAre("gear_set.flank_slots: 5000 entries; allowed: at most 3"));
   v1::BatchUpdateLubricantsRequest batch;
   for (int i = 0; i < 3; ++i) batch.add_requests();
   for (int i = 0; i < 201; ++i) batch.mutable_requests(1)->mutable_update_mask()->add_paths("");
   for (int i = 0; i < 65; ++i) batch.mutable_requests(2)->mutable_lubricant()->add_labels();
   EXPECT_THAT(judge_bytes(batch),
-              ElementsAre("requests[1].update_mask.paths: 201 entries; legal: at most 200",
-                          "requests[2].lubricant.labels: 65 entries; legal: at most 64"));
+              ElementsAre("requests[1].update_mask.paths: 201 entries; allowed: at most 200",
+                          "requests[2].lubricant.labels: 65 entries; allowed: at most 64"));
 }
 
 TEST(WireCheck, CountsNumbersPackedAndSingle) {
@@ -105,8 +105,9 @@ TEST(WireCheck, CountsNumbersPackedAndSingle) {
   const std::string more = request.SerializeAsString() + wire_field(1, wire_field(12, single));
   EXPECT_THAT(
       judge_bytes(more, *request.GetDescriptor()),
-      ElementsAre("simulation.inefficiency_curve.speeds_kilometres_per_hour: 1001 entries; legal: "
-                  "at most 1000"));
+      ElementsAre(
+          "simulation.inefficiency_curve.speeds_kilometres_per_hour: 1001 entries; allowed: "
+          "at most 1000"));
 }
 
 TEST(WireCheck, AddsUpTheListsOfAMessageThatComesInParts) {
@@ -114,7 +115,7 @@ TEST(WireCheck, AddsUpTheListsOfAMessageThatComesInParts) {
   for (int i = 0; i < 40; ++i) request.mutable_simulation()->add_labels()->set_key("k");
   EXPECT_THAT(judge_bytes(request), IsEmpty());
   EXPECT_THAT(judge_bytes(repeated(request.SerializeAsString(), 2), *request.GetDescriptor()),
-              ElementsAre("simulation.labels: 80 entries; legal: at most 64"));
+              ElementsAre("simulation.labels: 80 entries; allowed: at most 64"));
 }
 
 TEST(WireCheck, LimitsFieldsThatItDoesNotKnow) {
@@ -124,7 +125,7 @@ TEST(WireCheck, LimitsFieldsThatItDoesNotKnow) {
               IsEmpty());
   EXPECT_THAT(
       judge_bytes(wire_field(1, repeated(unknown, 101)), *request.GetDescriptor()),
-      ElementsAre("lubricant: 101 fields that Lubricant does not have; legal: at most 100"));
+      ElementsAre("lubricant: 101 fields that Lubricant does not have; allowed: at most 100"));
   // A known field of another wire type is an unknown one to the parser, and to the check.
   EXPECT_THAT(judge_bytes(wire_field(1, repeated(std::string("\x20\x01", 2), 101)),
                           *request.GetDescriptor()),
@@ -138,8 +139,9 @@ TEST(WireCheck, LimitsElementsInAll) {
   for (int i = 0; i < 200; ++i) lubricant->add_provenance();
   const std::string one = batch.SerializeAsString();
   EXPECT_THAT(judge_bytes(repeated(one, 3000), *batch.GetDescriptor()), IsEmpty());
-  EXPECT_THAT(judge_bytes(repeated(one, 4000), *batch.GetDescriptor()),
-              ElementsAre(HasSubstr("1064000 messages and texts in all; legal: at most 1000000")));
+  EXPECT_THAT(
+      judge_bytes(repeated(one, 4000), *batch.GetDescriptor()),
+      ElementsAre(HasSubstr("1064000 messages and texts in all; allowed: at most 1000000")));
 }
 
 TEST(WireCheck, RefusesBytesThatAreNoMessage) {

@@ -13,7 +13,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// A number of the request: its field, unit, legal range, the default, and what it is.
+/// A number of the request: its field, unit, allowed range, the default, and what it is.
 struct ContactInput {
   const char* field;
   const char* unit;

@@ -121,7 +121,7 @@ Command curve_command() {
     }
     const std::size_t count = flags->scenario.lubricants.size();
     if (!flags->plot_path.empty() && count > kDistinctLooks) {
-      complaints.push_back("--plot: " + std::to_string(count) + " lubricants; legal: at most " +
+      complaints.push_back("--plot: " + std::to_string(count) + " lubricants; allowed: at most " +
                            std::to_string(kDistinctLooks) +
                            ", for which colours and dashes differ. Draw them in several pictures");
     }

@@ -10,7 +10,7 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr char kLegal[] = "legal: ";
+constexpr char kAllowed[] = "allowed: ";
 
 /// A field's path, split into the flag that sets it and the place among that flag's values.
 struct Place {
@@ -36,21 +36,21 @@ Place place_of(const std::string& path, const TypedFlags& typed) {
   return {};
 }
 
-struct LegalRange {
+struct AllowedRange {
   double low, high;
 };
 
-/// The numbers of "...; legal: 500 to 2000 kg/m3 (eq 26)".
-std::optional<LegalRange> legal_range_of(const std::string& description) {
-  const std::size_t start = description.find(kLegal);
+/// The numbers of "...; allowed: 500 to 2000 kg/m3 (eq 26)".
+std::optional<AllowedRange> allowed_range_of(const std::string& description) {
+  const std::size_t start = description.find(kAllowed);
   if (start == std::string::npos) return std::nullopt;
-  const auto words = split(description.substr(start + sizeof(kLegal) - 1), ' ');
+  const auto words = split(description.substr(start + sizeof(kAllowed) - 1), ' ');
   if (words.size() < 3 || words[1] != "to") return std::nullopt;
   std::string wrong;
   const auto low = read_quantity(words[0], "", "", false, wrong);
   const auto high = read_quantity(words[2], "", "", false, wrong);
   if (!low || !high) return std::nullopt;
-  return LegalRange{*low, *high};
+  return AllowedRange{*low, *high};
 }
 
 /// What a violation says, in terms of the command line.
@@ -73,7 +73,7 @@ std::string described_by_flag(const FieldViolation& violation, const Place& plac
   if (!unit.empty() && !typed.empty() && !(same_unit && is_bare)) text += " " + typed;
   const bool names_field = violation.description.rfind(leaf + " ", 0) == 0;
   text += names_field ? violation.description.substr(leaf.size()) : ": " + violation.description;
-  const auto range = legal_range_of(violation.description);
+  const auto range = allowed_range_of(violation.description);
   if (!range || typed.empty()) return text;
   const std::string cure = unit_slip(typed, unit, flag.bare_unit, range->low, range->high);
   if (cure.empty()) return text;

@@ -20,8 +20,8 @@ struct TypedFlag {
 using TypedFlags = std::map<std::string, TypedFlag>;
 
 /// The refusal with the flags that were typed in place of the fields that they set. Where the
-/// number is legal in another unit of its kind, it says how to write it: "--density15 = 0.895
-/// kg/m3; legal: 500 to 2000 kg/m3 (eq 26); 0.895 looks like g/cm3: write 0.895g/cm3 or 895".
+/// number is allowed in another unit of its kind, it says how to write it: "--density15 = 0.895
+/// kg/m3; allowed: 500 to 2000 kg/m3 (eq 26); 0.895 looks like g/cm3: write 0.895g/cm3 or 895".
 ServiceError with_flag_names(const ServiceError& error, const TypedFlags& typed);
 
 /// The complaints with each flag as it was typed.

@@ -10,10 +10,10 @@
 namespace tribodyn::client {
 namespace {
 
-/// "Oil bath temperature. Legal: -70 to 200 C. Default: 40 C."
+/// "Oil bath temperature. Allowed: -70 to 200 C. Default: 40 C."
 std::string described(const std::string& description, const NumberText& text) {
   const std::string unit = text.unit == "-" ? "" : " " + text.unit;
-  return description + ". Legal: " + text.range + unit +
+  return description + ". Allowed: " + text.range + unit +
          (text.standard.empty() ? "." : ". Default: " + text.standard + unit + ".");
 }
 

@@ -14,7 +14,7 @@ using Complaints = std::vector<std::string>;
 struct Flag {
   std::string names;        ///< "--speed-kilometres-per-hour,--speed"; "name" for a positional
   std::string value_name;   ///< "KM/H", "NAME", "FILE"; empty for a switch
-  std::string description;  ///< with legal range and default
+  std::string description;  ///< with allowed range and default
   std::string group;        ///< heading in the help
   bool is_switch = false;
   bool is_repeatable = false;
@@ -39,7 +39,7 @@ struct Flag {
   std::string field_name() const;
 };
 
-/// How a number is described: unit, legal range and default are always shown together.
+/// How a number is described: unit, allowed range and default are always shown together.
 struct NumberText {
   std::string unit;           ///< "km/h", "-" for a pure number
   std::string range;          ///< as the server checks it: "0 to 250"

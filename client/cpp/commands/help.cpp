@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::chrono::milliseconds kSchemaTimeout(500);
 
-/// " Legal: 0.1 to 1000 1/GPa (eq 33, alpha*)." as the server's table has it; empty when unknown.
-std::string legal_range(const Flag& flag, const v1::Schema* schema) {
+/// " Allowed: 0.1 to 1000 1/GPa (eq 33, alpha*)." as the server's table has it; empty when unknown.
+std::string allowed_range(const Flag& flag, const v1::Schema* schema) {
   if (schema == nullptr || flag.constraint_field.empty()) return "";
   for (const v1::Constraint& row : schema->constraints()) {
     if (row.message() != flag.constraint_message || row.field() != flag.constraint_field) continue;
     const std::string unit = trade_unit_of_field(row.field());
-    return " Legal: " + significant(in_trade_unit(row.field(), row.minimum()), 6) + " to " +
+    return " Allowed: " + significant(in_trade_unit(row.field(), row.minimum()), 6) + " to " +
            significant(in_trade_unit(row.field(), row.maximum()), 6) +
            (unit.empty() ? "" : " " + unit) +
            (row.equation().empty() ? "" : " (" + row.equation() + ")") + ".";
@@ -39,7 +39,7 @@ std::string flag_text(const Flag& flag, const v1::Schema* schema) {
   } else if (!flag.is_switch) {
     names += " <" + flag.value_name + ">";
   }
-  return "  " + names + "\n" + wrapped(flag.description + legal_range(flag, schema), 6);
+  return "  " + names + "\n" + wrapped(flag.description + allowed_range(flag, schema), 6);
 }
 
 std::string flags_text(const std::vector<const Flag*>& flags, const v1::Schema* schema) {
@@ -209,7 +209,7 @@ std::string help_text(const Command& command, const FlagList& common_flags,
         return !flag->constraint_field.empty();
       });
   if (lacks_ranges) {
-    text += "\nNo server answers: with one, legal ranges stand here too (tribodyn schema).\n";
+    text += "\nNo server answers: with one, allowed ranges stand here too (tribodyn schema).\n";
   }
   if (length == HelpLength::kShort) {
     const std::size_t more = own_flags - flags.size();

@@ -19,7 +19,7 @@ enum class HelpLength {
   kAll,    ///< every flag, those of every command too
 };
 
-/// `tribodyn COMMAND --help` or `--help-all`: examples, then flags with unit, legal range and
+/// `tribodyn COMMAND --help` or `--help-all`: examples, then flags with unit, allowed range and
 /// default. Ranges of parameters come from `schema`; without it (no server) the help says where to
 /// find them.
 std::string help_text(const Command& command, const FlagList& common_flags,

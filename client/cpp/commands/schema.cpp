@@ -76,9 +76,9 @@ int run(const std::string& word, const CommonOptions& options) {
 Command schema_command() {
   const auto message = std::make_shared<std::string>();
   Command command{"schema",
-                  "what the server accepts: every number with unit and legal range",
+                  "what the server accepts: every number with unit and allowed range",
                   "Prints the server's table of constraints, which every check comes from: field, "
-                  "legal range, unit and the equation that needs it.",
+                  "allowed range, unit and the equation that needs it.",
                   {"tribodyn schema lubricants", "tribodyn schema --output csv"},
                   {},
                   {},

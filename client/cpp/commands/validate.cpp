@@ -56,7 +56,7 @@ void validate(Connection& connection, const std::string& path, std::vector<std::
     }
     TableFiles tables;
     add_table(*kind, path, tables);
-    // The table alone is to be judged: what it does not tell is as in hardware that is legal.
+    // The table alone is to be judged: what it does not tell is as in hardware that is allowed.
     const ResourcePointer rest = kind->word == "lubricants"
                                      ? kind->make()
                                      : copy_of(connection, *kind, kind->example, tables);
@@ -108,7 +108,7 @@ Command validate_command() {
       "validate",
       "check files against everything the server checks, and write nothing",
       "Checks files as an import would: lubricants, gear sets, surfaces and vehicles as JSON, and "
-      "tables as CSV. Every violation is named, with value, unit and legal range.",
+      "tables as CSV. Every violation is named, with value, unit and allowed range.",
       {"tribodyn validate fluids.json", "tribodyn validate my-oil.csv"},
       {},
       {},

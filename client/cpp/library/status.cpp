@@ -73,7 +73,7 @@ ServiceError refusal(const grpc::Status& status) {
   // The server's message repeats the first violation, which follows anyway.
   if (!violations.empty()) {
     text = std::to_string(violations.size()) +
-           (violations.size() == 1 ? " illegal field" : " illegal fields");
+           (violations.size() == 1 ? " invalid field" : " invalid fields");
   } else if (text.empty()) {
     text = "no message";
   }

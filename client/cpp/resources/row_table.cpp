@@ -200,7 +200,7 @@ class RowReader {
         std::to_string(count) + (count == 1 ? " cell has" : " cells have") + " a decimal comma";
     if (separator_ == ',') {
       wrong_.add(cells + " (the first: " + first +
-                 "); legal: a decimal point, or semicolons between the cells");
+                 "); allowed: a decimal point, or semicolons between the cells");
       for_each_number([](const CsvLine&, std::size_t, std::string& cell) {
         if (has_decimal_comma(cell)) cell.clear();
       });
@@ -211,7 +211,7 @@ class RowReader {
       if (may_be_thousands(cell)) {
         wrong_.add(row_text(line), column_text(k),
                    "'" + printable(cell.substr(0, 60)) +
-                       "' has a point in a table of decimal commas; legal: one of the two, and "
+                       "' has a point in a table of decimal commas; allowed: one of the two, and "
                        "nothing between thousands");
         cell.clear();
       } else if (has_decimal_comma(cell)) {

@@ -101,7 +101,7 @@ class TableReader {
     if (!cells) return complaints_.add(place, "a cell in quotes does not end properly");
     if (table_.columns.empty()) return read_header(std::move(*cells), place);
     if (cells->size() != table_.columns.size()) {
-      return complaints_.add(place, fmt::format("{} cells; legal: {}, as in the header",
+      return complaints_.add(place, fmt::format("{} cells; allowed: {}, as in the header",
                                                 cells->size(), table_.columns.size()));
     }
     table_.rows.push_back({number, std::move(*cells)});
@@ -191,18 +191,18 @@ std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name
                                   std::size_t maximum_bytes, Violations& violations) {
   if (text.size() > maximum_bytes) {
     violations.push_back(
-        {name, fmt::format("{} bytes; legal: at most {}", text.size(), maximum_bytes)});
+        {name, fmt::format("{} bytes; allowed: at most {}", text.size(), maximum_bytes)});
     return std::nullopt;
   }
   const std::size_t before = violations.size();
   if (text.starts_with("PK\x03\x04") || text.starts_with("\xd0\xcf\x11\xe0")) {
-    violations.push_back({name, "is an Excel workbook; legal: text, saved as \"CSV UTF-8\""});
+    violations.push_back({name, "is an Excel workbook; allowed: text, saved as \"CSV UTF-8\""});
     return std::nullopt;
   }
   if (text.find('\0') != std::string_view::npos) {
     const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") ||
                           (text.size() > 1 && (text[0] == '\0') != (text[1] == '\0'));
-    violations.push_back({name, is_utf16 ? "is UTF-16; legal: UTF-8, saved as \"CSV UTF-8\""
+    violations.push_back({name, is_utf16 ? "is UTF-16; allowed: UTF-8, saved as \"CSV UTF-8\""
                                          : "is no text: it holds zero bytes"});
     return std::nullopt;
   }
@@ -217,7 +217,7 @@ std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name
   }
   if (!table.rows.empty()) return table;
   if (violations.size() == before) {
-    violations.push_back({name, "has no rows; legal: a header and at least one row"});
+    violations.push_back({name, "has no rows; allowed: a header and at least one row"});
   }
   return std::nullopt;
 }
@@ -270,8 +270,9 @@ void check_units_row(CsvTable& table, const std::vector<CsvColumn>& columns,
   if (!holds_units) return;
   violations.push_back(
       {fmt::format("{} row {}", table.name, row.line),
-       fmt::format("looks like units (\"{}\"); legal: numbers. Delete the row, or begin it with #",
-                   plain_excerpt(row.cells[columns.front().index]))});
+       fmt::format(
+           "looks like units (\"{}\"); allowed: numbers. Delete the row, or begin it with #",
+           plain_excerpt(row.cells[columns.front().index]))});
   table.rows.erase(table.rows.begin());
 }
 
@@ -303,10 +304,10 @@ std::vector<double> numbers(const CsvTable& table, const CsvColumn& column, Empt
                         : std::numeric_limits<double>::quiet_NaN());
     if (value || (cell.empty() && empty == EmptyCells::kAreNaN)) continue;
     if (cell.empty()) {
-      complain(cell, row.line, "is empty; legal: a finite number");
+      complain(cell, row.line, "is empty; allowed: a finite number");
     } else {
       complain(comma ? kComma : cell, row.line,
-               fmt::format("\"{}\"; legal: a finite number with a decimal point{}",
+               fmt::format("\"{}\"; allowed: a finite number with a decimal point{}",
                            plain_excerpt(cell), comma ? ", or semicolons between the cells" : ""));
     }
   }

@@ -114,7 +114,7 @@ class ToothContactReader {
     const int rolls = (has(kRoll) ? 1 : 0) + (has(kRollAngle) ? 1 : 0) + (has(kPhase) ? 1 : 0);
     if (rolls != 1) {
       complain(
-          "legal: exactly one of roll_pitches, pinion_roll_radians (or _degrees) and "
+          "allowed: exactly one of roll_pitches, pinion_roll_radians (or _degrees) and "
           "mesh_phase");
     }
     if (has(kPhase) != has(kSlot)) complain("mesh_phase and slot go together");
@@ -171,7 +171,7 @@ class ToothContactReader {
     const std::size_t rows = roll.size();
     if (rows < 4 || (rows - 1) % kFlankPairs != 0) {
       return complain(
-          fmt::format("{} rows; legal: 3 n + 1 from roll -1.5 to 1.5 pitches, n "
+          fmt::format("{} rows; allowed: 3 n + 1 from roll -1.5 to 1.5 pitches, n "
                       "intervals a pitch",
                       rows));
     }
@@ -182,7 +182,7 @@ class ToothContactReader {
       const double expected = -1.5 + step * static_cast<double>(i);
       if (std::isnan(roll[i]) || near(roll[i], expected, kPitchSpacingTolerance)) continue;
       violations_.push_back({csv_place(table_, table_.rows[i].line, header.form.header),
-                             fmt::format("roll {} pitches; legal: {}, evenly spaced from -1.5 to "
+                             fmt::format("roll {} pitches; allowed: {}, evenly spaced from -1.5 to "
                                          "1.5",
                                          roll[i], expected)});
       if (violations_.size() > kMaximumCsvViolations) return;
@@ -208,7 +208,7 @@ class ToothContactReader {
         rows[static_cast<std::size_t>(slot[i])].push_back(i);
       } else {
         violations_.push_back({csv_place(table_, table_.rows[i].line, kSlot),
-                               fmt::format("{}; legal: 0, 1 or 2", slot[i])});
+                               fmt::format("{}; allowed: 0, 1 or 2", slot[i])});
         if (violations_.size() > kMaximumCsvViolations) return;
       }
     }
@@ -216,7 +216,7 @@ class ToothContactReader {
     if (!all_known) return;
     if (samples < 2 || rows[1].size() != samples || rows[2].size() != samples) {
       return complain(
-          fmt::format("slots of {}, {} and {} rows; legal: as many in each, two or more",
+          fmt::format("slots of {}, {} and {} rows; allowed: as many in each, two or more",
                       rows[0].size(), rows[1].size(), rows[2].size()));
     }
     layout_.samples = static_cast<int>(samples);
@@ -228,9 +228,9 @@ class ToothContactReader {
             near(phase[of_slot[j]], expected, kPitchSpacingTolerance)) {
           continue;
         }
-        violations_.push_back(
-            {csv_place(table_, table_.rows[of_slot[j]].line, kPhase),
-             fmt::format("{}; legal: {}, evenly spaced from 0 to 1", phase[of_slot[j]], expected)});
+        violations_.push_back({csv_place(table_, table_.rows[of_slot[j]].line, kPhase),
+                               fmt::format("{}; allowed: {}, evenly spaced from 0 to 1",
+                                           phase[of_slot[j]], expected)});
         if (violations_.size() > kMaximumCsvViolations) return;
       }
     }
@@ -352,7 +352,7 @@ void read_series(const CsvTable& table, v1::GearSet& gear_set, Violations& viola
     if (harmonic[i] != expected) {
       violations.push_back(
           {csv_place(table, row.line, "harmonic"),
-           fmt::format("{}; legal: {}, the next one of {}", harmonic[i], expected, quantity)});
+           fmt::format("{}; allowed: {}, the next one of {}", harmonic[i], expected, quantity)});
       continue;
     }
     auto* target =
@@ -361,12 +361,12 @@ void read_series(const CsvTable& table, v1::GearSet& gear_set, Violations& viola
       target->set_mean(cosine[i]);
       if (std::isnan(sine[i]) || sine[i] == 0) continue;
       violations.push_back(
-          {csv_place(table, row.line, "sine"), "legal: empty or 0 for harmonic 0"});
+          {csv_place(table, row.line, "sine"), "allowed: empty or 0 for harmonic 0"});
     } else {
       target->add_cosine(cosine[i]);
       target->add_sine(sine[i]);
       if (!std::isnan(sine[i])) continue;
-      violations.push_back({csv_place(table, row.line, "sine"), "is empty; legal: a number"});
+      violations.push_back({csv_place(table, row.line, "sine"), "is empty; allowed: a number"});
     }
   }
   for (const std::string& quantity : series_quantities()) {

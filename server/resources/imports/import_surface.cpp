@@ -93,10 +93,11 @@ void check_spacing(const CsvTable& table, const CsvColumn& column, const std::ve
     violations.push_back(
         {csv_place(table, table.rows[each.row].line, column.form.header),
          spacing > 0
-             ? fmt::format("a step of {:.6g} m; legal: {:.6g} m within {} of it, positions evenly "
-                           "spaced and rising (eq 45)",
-                           each.per_sample, spacing, kProfileSpacingTolerance)
-             : fmt::format("a step of {:.6g} m; legal: above 0, positions evenly spaced and "
+             ? fmt::format(
+                   "a step of {:.6g} m; allowed: {:.6g} m within {} of it, positions evenly "
+                   "spaced and rising (eq 45)",
+                   each.per_sample, spacing, kProfileSpacingTolerance)
+             : fmt::format("a step of {:.6g} m; allowed: above 0, positions evenly spaced and "
                            "rising (eq 45)",
                            each.per_sample)});
   }
@@ -118,7 +119,7 @@ std::optional<v1::SurfaceMeasurement> measure(const v1::SurfaceProfile& profile,
   const CsvColumn* position = find_column(columns, kPosition);
   const CsvColumn* height = find_column(columns, kHeight);
   if (position == nullptr || height == nullptr) {
-    violations.push_back({name, "legal: a column position_... and a column height_..."});
+    violations.push_back({name, "allowed: a column position_... and a column height_..."});
   }
   check_units_row(*table, columns, violations);
   const Constraint& samples = *find_constraint("SurfaceMeasurement", "samples");
@@ -284,7 +285,8 @@ void set_parameters(v1::Surface& surface, const AsPublished& as_published) {
 /// What the profiles tell must not be stated as well.
 void check_not_stated(const v1::Surface& surface, Violations& violations) {
   const auto refuse = [&](const std::string& name) {
-    violations.push_back({"surface." + name, name + " follows from the profiles; legal: not set"});
+    violations.push_back(
+        {"surface." + name, name + " follows from the profiles; allowed: not set"});
   };
   for (const char* name : kFromProfiles) {
     const auto* field = v1::Surface::descriptor()->FindFieldByName(name);
@@ -315,7 +317,7 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
     violations.push_back({field, out_of_range_text(row, value)});
   }
   if (request.profiles().empty() || request.profiles_size() > kMaximumProfiles) {
-    violations.push_back({"profiles", fmt::format("{} profiles; legal: 1 to {}",
+    violations.push_back({"profiles", fmt::format("{} profiles; allowed: 1 to {}",
                                                   request.profiles_size(), kMaximumProfiles)});
     return;
   }
@@ -327,16 +329,16 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
     (profile.member() == v1::FLANK_MEMBER_UNSPECIFIED ? both : single) = true;
     if (seen.emplace(profile.member(), profile.direction()).second) continue;
     if (profile.direction() != v1::PROFILE_DIRECTION_UNSPECIFIED) continue;  // repeats
-    violations.push_back(
-        {"profiles",
-         "two of one member without a direction; legal: one, or the direction, AXIAL or RADIAL, of "
-         "each (repeats of a direction are averaged)"});
+    violations.push_back({"profiles",
+                          "two of one member without a direction; allowed: one, or the direction, "
+                          "AXIAL or RADIAL, of "
+                          "each (repeats of a direction are averaged)"});
   }
   if (both && single) {
-    violations.push_back({"profiles", "the member is stated for some; legal: for all or none"});
+    violations.push_back({"profiles", "the member is stated for some; allowed: for all or none"});
   }
   if (bytes > kMaximumProfileBytes) {
-    violations.push_back({"profiles", fmt::format("{} bytes together; legal: at most {}", bytes,
+    violations.push_back({"profiles", fmt::format("{} bytes together; allowed: at most {}", bytes,
                                                   kMaximumProfileBytes)});
   }
   for (int i = 0; i < request.profiles_size(); ++i) {
@@ -347,16 +349,16 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
                          other.direction() != v1::PROFILE_DIRECTION_UNSPECIFIED;
       if (!mixed) continue;
       violations.push_back({fmt::format("profiles[{}].direction", i),
-                            "not set; legal: AXIAL or RADIAL, as another profile of this member "
+                            "not set; allowed: AXIAL or RADIAL, as another profile of this member "
                             "states one"});
     }
     if (!v1::FlankMember_IsValid(each.member())) {
       violations.push_back({fmt::format("profiles[{}].member", i),
-                            "legal: FLANK_MEMBER_PINION, FLANK_MEMBER_GEAR or unset"});
+                            "allowed: FLANK_MEMBER_PINION, FLANK_MEMBER_GEAR or unset"});
     }
     if (!v1::ProfileDirection_IsValid(each.direction())) {
       violations.push_back({fmt::format("profiles[{}].direction", i),
-                            "legal: PROFILE_DIRECTION_AXIAL, PROFILE_DIRECTION_RADIAL or unset"});
+                            "allowed: PROFILE_DIRECTION_AXIAL, PROFILE_DIRECTION_RADIAL or unset"});
     }
   }
   const bool has_two_directions =
@@ -365,13 +367,14 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
                seen.count({each.first, v1::PROFILE_DIRECTION_RADIAL}) > 0;
       });
   if (request.eq46_square_root_of_sum() && !has_two_directions) {
-    violations.push_back({"eq46_square_root_of_sum",
-                          "true; legal: false, as eq 46 joins an AXIAL and a RADIAL profile of one "
-                          "member, and no member has both"});
+    violations.push_back(
+        {"eq46_square_root_of_sum",
+         "true; allowed: false, as eq 46 joins an AXIAL and a RADIAL profile of one "
+         "member, and no member has both"});
   }
   if (!v1::Levelling_IsValid(request.levelling())) {
     violations.push_back(
-        {"levelling", "legal: LEVELLING_MEAN, LEVELLING_LEAST_SQUARES_LINE or unset"});
+        {"levelling", "allowed: LEVELLING_MEAN, LEVELLING_LEAST_SQUARES_LINE or unset"});
   }
 }
 

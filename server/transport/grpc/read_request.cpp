@@ -15,7 +15,7 @@ std::optional<google::rpc::Status> read_request(const google::protobuf::MethodDe
   const std::size_t size = bytes.Length();
   const std::size_t maximum = maximum_request_bytes(method);
   if (size > maximum) {
-    return invalid({{"", fmt::format("the request has {} bytes; legal: at most {} for {}", size,
+    return invalid({{"", fmt::format("the request has {} bytes; allowed: at most {} for {}", size,
                                      maximum, method.name())}});
   }
   Violations violations;

@@ -11,8 +11,8 @@ namespace tribodyn::client {
 /// One thing that the server found wrong with a request.
 struct FieldViolation {
   std::string field;  ///< path in the request, e.g. "lubricant.measurements.densities[2]"
-  /// Value, unit, legal range and the equation that needs it, e.g. "sump_temperature_celsius = 900
-  /// C; legal: -70 to 200 C (eq 14)".
+  /// Value, unit, allowed range and the equation that needs it, e.g. "sump_temperature_celsius =
+  /// 900 C; allowed: -70 to 200 C (eq 14)".
   std::string description;
 };
 
