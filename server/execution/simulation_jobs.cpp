@@ -99,7 +99,7 @@ void SimulationJobs::ensure_queued(const StoredSimulation& simulation) {
 
 std::optional<StoredEvent> SimulationJobs::cancel(std::int64_t id, const CallLimits& limits) {
   auto event = store_.mark_cancelled(id, clock_(), limits);
-  if (event) metrics_.count(Ending::kCancelled);
+  if (event) metrics_.count(SimulationOutcome::kCancelled);
   end(id, event);
   return event;
 }
@@ -108,7 +108,7 @@ void SimulationJobs::expire(std::int64_t id) {
   try {
     const auto event = store_.mark_failed(id, clock_(), "DEADLINE_EXCEEDED",
                                           "it had not ended when its deadline_seconds were over");
-    if (event) metrics_.count(Ending::kFailed);
+    if (event) metrics_.count(SimulationOutcome::kFailed);
     end(id, event);
   } catch (const StoreError& error) {
     spdlog::error("simulations/{}: {}", id, error.what());

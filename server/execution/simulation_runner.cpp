@@ -166,7 +166,8 @@ std::shared_ptr<SimulationRunner::Unwritten> SimulationRunner::compute(
   wait_until_written(key, stop);
   const auto started = insist(id, stop, [&] { return store_.mark_running(id, clock_(), key); });
   metrics_.observe(Phase::kQueue, std::max(0.0, waited));
-  if (started && started->state == StoredState::kSucceeded) metrics_.count(Ending::kServedByCache);
+  if (started && started->state == StoredState::kSucceeded)
+    metrics_.count(SimulationOutcome::kServedByCache);
   publish(id, started);
   if (!started || started->state != StoredState::kRunning) return nullptr;
   const std::shared_ptr<ProgressChannel> channel = board_.open(id);
@@ -192,7 +193,8 @@ void SimulationRunner::save(Unwritten& unwritten, const StopSignal& stop) const 
   const auto ended = insist(id, stop, [&] { return store_.mark_succeeded(id, clock_(), result); });
   metrics_.observe(Phase::kStore, storing.seconds());
   if (ended) {
-    metrics_.count(ended->state == StoredState::kSucceeded ? Ending::kSucceeded : Ending::kFailed);
+    metrics_.count(ended->state == StoredState::kSucceeded ? SimulationOutcome::kSucceeded
+                                                           : SimulationOutcome::kFailed);
   }
   publish(id, ended);
   spdlog::info(
@@ -253,7 +255,7 @@ void SimulationRunner::fail(std::int64_t id, const StopSignal& stop, const std::
       id, reason);
   const auto event =
       insist(id, stop, [&] { return store_.mark_failed(id, clock_(), reason, message); });
-  if (event) metrics_.count(Ending::kFailed);
+  if (event) metrics_.count(SimulationOutcome::kFailed);
   publish(id, event);
 }
 

@@ -12,7 +12,7 @@
 namespace tribodyn::server {
 namespace {
 
-/// From 0.1 ms to 17 minutes, each three times the one before.
+/// Returns upper bounds from 0.1 ms to 17 minutes; each is three times the previous one.
 prometheus::Histogram::BucketBoundaries boundaries() {
   prometheus::Histogram::BucketBoundaries out;
   for (double bound = 1e-4; bound < 2000; bound *= 3) out.push_back(bound);
@@ -34,7 +34,7 @@ struct Metrics::Families {
   prometheus::Registry registry;
   std::map<Phase, prometheus::Histogram*> phases;
   std::map<Submission, prometheus::Counter*> submissions;
-  std::map<Ending, prometheus::Counter*> endings;
+  std::map<SimulationOutcome, prometheus::Counter*> outcomes;
   prometheus::Gauge* waiting = nullptr;
   prometheus::Gauge* running = nullptr;
   prometheus::Gauge* waiting_seconds = nullptr;
@@ -44,14 +44,14 @@ Metrics::Metrics() : families_(std::make_unique<Families>()) {
   prometheus::Registry& registry = families_->registry;
   auto& phases = prometheus::BuildHistogram()
                      .Name("tribodyn_phase_seconds")
-                     .Help("What simulations spend their time on")
+                     .Help("Duration of each phase of a simulation")
                      .Register(registry);
   for (const auto& [phase, name] : phase_names()) {
     families_->phases[phase] = &phases.Add({{"phase", name}}, boundaries());
   }
   auto& submissions = prometheus::BuildCounter()
                           .Name("tribodyn_submissions_total")
-                          .Help("Requests to simulate, by what became of them")
+                          .Help("CreateSimulation requests by outcome")
                           .Register(registry);
   for (const auto& [submission, name] : {std::pair{Submission::kQueued, "queued"},
                                          {Submission::kCacheHit, "cache_hit"},
@@ -60,23 +60,23 @@ Metrics::Metrics() : families_(std::make_unique<Families>()) {
                                          {Submission::kInvalid, "invalid"}}) {
     families_->submissions[submission] = &submissions.Add({{"outcome", name}});
   }
-  auto& endings = prometheus::BuildCounter()
-                      .Name("tribodyn_simulations_ended_total")
-                      .Help("Simulations that were queued, by how they ended")
-                      .Register(registry);
-  for (const auto& [ending, name] : {std::pair{Ending::kSucceeded, "succeeded"},
-                                     {Ending::kFailed, "failed"},
-                                     {Ending::kCancelled, "cancelled"},
-                                     {Ending::kServedByCache, "cache_hit"}}) {
-    families_->endings[ending] = &endings.Add({{"outcome", name}});
+  auto& outcomes = prometheus::BuildCounter()
+                       .Name("tribodyn_simulations_ended_total")
+                       .Help("Queued simulations that ended, by outcome")
+                       .Register(registry);
+  for (const auto& [outcome, name] : {std::pair{SimulationOutcome::kSucceeded, "succeeded"},
+                                      {SimulationOutcome::kFailed, "failed"},
+                                      {SimulationOutcome::kCancelled, "cancelled"},
+                                      {SimulationOutcome::kServedByCache, "cache_hit"}}) {
+    families_->outcomes[outcome] = &outcomes.Add({{"outcome", name}});
   }
   const auto gauge = [&registry](const char* name, const char* help) {
     return &prometheus::BuildGauge().Name(name).Help(help).Register(registry).Add({});
   };
-  families_->waiting = gauge("tribodyn_simulations_waiting", "Simulations that wait");
-  families_->running = gauge("tribodyn_simulations_running", "Simulations that run");
+  families_->waiting = gauge("tribodyn_simulations_waiting", "Simulations in the queue");
+  families_->running = gauge("tribodyn_simulations_running", "Simulations in computation");
   families_->waiting_seconds = gauge("tribodyn_waiting_processor_seconds",
-                                     "Estimate of what waits, in seconds of one processor");
+                                     "Estimated cost of the queue, in seconds of one processor");
 }
 
 Metrics::~Metrics() = default;
@@ -87,13 +87,13 @@ void Metrics::observe(Phase phase, double seconds) {
 
 void Metrics::count(Submission submission) { families_->submissions.at(submission)->Increment(); }
 
-void Metrics::count(Ending ending) { families_->endings.at(ending)->Increment(); }
+void Metrics::count(SimulationOutcome outcome) { families_->outcomes.at(outcome)->Increment(); }
 
 void Metrics::set_build(const std::string& version, const std::string& model_version,
                         const std::string& platform) {
   prometheus::BuildGauge()
       .Name("tribodyn_build_info")
-      .Help("Always 1; what runs is in the labels")
+      .Help("Always 1; the labels hold the versions")
       .Register(families_->registry)
       .Add({{"version", version}, {"model_version", model_version}, {"platform", platform}})
       .Set(1);

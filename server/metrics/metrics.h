@@ -7,29 +7,29 @@
 
 namespace tribodyn::server {
 
-/// What a simulation spends its time on.
+/// Part of a simulation's life whose duration a histogram records.
 enum class Phase {
-  kQueue,       ///< from its creation until a worker takes it
-  kValidation,  ///< its request and what it rests on are read and checked
-  kOrbit,       ///< steady states of the full or one-degree model
-  kFriction,    ///< contacts alone: the quasi-static model
-  kStore,       ///< made a message and written down, until it is on disk
+  kQueue,       ///< from the creation of the simulation until a worker takes it
+  kValidation,  ///< reading and checking the request and its resources
+  kOrbit,       ///< solving the full or the one-degree model
+  kFriction,    ///< solving the quasi-static model
+  kStore,       ///< converting the result to a message and committing it to disk
 };
 
-/// What became of a request to simulate.
+/// Outcome of a CreateSimulation request.
 enum class Submission { kQueued, kCacheHit, kRepeated, kTurnedAway, kInvalid };
 
-/// How simulations end.
-enum class Ending { kSucceeded, kFailed, kCancelled, kServedByCache };
+/// Outcome of a queued simulation.
+enum class SimulationOutcome { kSucceeded, kFailed, kCancelled, kServedByCache };
 
-/// What waits and runs at the moment.
+/// Number of simulations in the queue and in computation.
 struct Occupancy {
   std::size_t waiting = 0;
   std::size_t running = 0;
-  double waiting_seconds = 0;  ///< estimated, of one processor
+  double waiting_seconds = 0;  ///< sum of the estimates, in seconds of one processor
 };
 
-/// Time since it was made.
+/// Measures the time since its construction.
 class StopWatch {
  public:
   double seconds() const {
@@ -40,7 +40,7 @@ class StopWatch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// Counts and histograms for Prometheus. Safe for concurrent access without external
+/// Counters and histograms for Prometheus. Safe for concurrent access without external
 /// synchronization.
 class Metrics {
  public:
@@ -51,11 +51,11 @@ class Metrics {
 
   void observe(Phase phase, double seconds);
   void count(Submission submission);
-  void count(Ending ending);
+  void count(SimulationOutcome outcome);
   void set_build(const std::string& version, const std::string& model_version,
                  const std::string& platform);
 
-  /// Everything in Prometheus' text format.
+  /// Returns all metrics in the Prometheus text format.
   std::string text(const Occupancy& occupancy) const;
 
  private:

@@ -8,34 +8,35 @@
 
 namespace tribodyn::server {
 
-/// An LRU cache of kMostKept values. Safe for concurrent access; two threads that miss the same key
-/// at once both make the value.
+/// Cache of at most kCapacity values; it drops the least recently used one. Safe for concurrent
+/// access. Two threads that miss the same key at the same time both call `make`.
 template <class Key, class Value>
 class LruCache {
  public:
+  /// Returns the cached value of `key`, or stores and returns `make()`.
   template <class Make>
   Value get(const Key& key, const Make& make) {
     {
       const std::lock_guard lock(mutex_);
-      const auto found = std::find_if(kept_.begin(), kept_.end(),
+      const auto found = std::find_if(entries_.begin(), entries_.end(),
                                       [&](const auto& each) { return each.first == key; });
-      if (found != kept_.end()) {
-        kept_.splice(kept_.begin(), kept_, found);
-        return kept_.front().second;
+      if (found != entries_.end()) {
+        entries_.splice(entries_.begin(), entries_, found);
+        return entries_.front().second;
       }
     }
     Value value = make();
     const std::lock_guard lock(mutex_);
-    kept_.emplace_front(key, value);
-    if (kept_.size() > kMostKept) kept_.pop_back();
+    entries_.emplace_front(key, value);
+    if (entries_.size() > kCapacity) entries_.pop_back();
     return value;
   }
 
  private:
-  static constexpr std::size_t kMostKept = 16;
+  static constexpr std::size_t kCapacity = 16;
 
   std::mutex mutex_;
-  std::list<std::pair<Key, Value>> kept_;  // guarded by mutex_; latest first
+  std::list<std::pair<Key, Value>> entries_;  // guarded by mutex_; most recently used first
 };
 
 }  // namespace tribodyn::server

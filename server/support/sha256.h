@@ -6,8 +6,8 @@
 
 namespace tribodyn::server {
 
-/// A hash in the making. A copy goes on from where the original stands. Not safe for concurrent
-/// access.
+/// Computes a SHA-256 hash piece by piece. A copy continues from the state of the original. Not
+/// safe for concurrent access.
 class Sha256 {
  public:
   Sha256();
@@ -15,8 +15,10 @@ class Sha256 {
   Sha256(const Sha256& other);
   Sha256& operator=(const Sha256&) = delete;
 
+  /// Appends bytes to the hashed data.
   void add(std::string_view bytes);
-  /// Of all that was added, as 64 hex digits; the end of the object's use.
+  /// Returns the hash of all added bytes as 64 hexadecimal digits. The object must not be used
+  /// afterwards.
   std::string finish();
 
  private:
@@ -24,7 +26,7 @@ class Sha256 {
   std::unique_ptr<Context> context_;
 };
 
-/// SHA-256 of bytes, as 64 hex digits.
+/// Returns the SHA-256 hash of `bytes` as 64 hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
 }  // namespace tribodyn::server
