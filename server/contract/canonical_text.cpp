@@ -21,7 +21,7 @@ void add_line(std::string& text, const std::string& path, std::string_view value
   text += '\n';
 }
 
-/// On one line, so that no value can pass for two.
+/// Escapes line feeds, so that no value can look like two lines.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -36,9 +36,9 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// As printf's %a, in a tenth of its time: a gear set has thousands of numbers.
+/// Appends the text of printf's %a in a tenth of its time: a gear set has thousands of numbers.
 void add_number(std::string& text, const std::string& path, double value) {
-  value += 0.0;  // minus zero is zero
+  value += 0.0;  // turns -0 into 0
   if (!std::isnormal(value) && value != 0) return add_line(text, path, fmt::format("{:a}", value));
   std::array<char, 32> digits{'0', 'x'};
   const auto end = std::to_chars(digits.data() + 2, digits.data() + digits.size(), std::abs(value),
@@ -78,7 +78,7 @@ void add_field(const Message& message, const FieldDescriptor& field, int index,
                                   : reflection.GetMessage(message, &field),
                          path, is_left_out, text);
     default:
-      throw std::logic_error("canonical text: no form for " + field.full_name());
+      throw std::logic_error("canonical text: unsupported type of field " + field.full_name());
   }
 }
 

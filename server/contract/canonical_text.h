@@ -10,9 +10,10 @@ namespace tribodyn::server {
 
 using IsLeftOut = std::function<bool(const google::protobuf::FieldDescriptor&)>;
 
-/// Adds the values of a message as text, one "path=value" line each in field order: numbers as
-/// hexadecimal doubles, enums by name. Equal values make equal text, whatever the bytes of the
-/// message. Throws std::logic_error for a type of field that has no form yet.
+/// Appends the values of a message to `text`, one line "path=value" for each in field order.
+/// Numbers are hexadecimal doubles, enum values are names. Messages with equal values get equal
+/// text, whatever their serialised bytes. Throws std::logic_error for a field of an unsupported
+/// type.
 void add_canonical_text(const google::protobuf::Message& message, const std::string& path,
                         const IsLeftOut& is_left_out, std::string& text);
 

@@ -15,7 +15,7 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::Reflection;
 
-/// One field of one message under check.
+/// One field of one message, with the arguments of its check.
 struct Place {
   const FieldDescriptor& field;
   std::string path;
@@ -62,7 +62,7 @@ void check_text(const Place& place, const std::string& value) {
                                                       value.size(), longest)});
 }
 
-/// An unset field that could have been set.
+/// Adds a violation if an unset field is required.
 void check_missing(const Place& place) {
   const Constraint* row =
       find_constraint(place.field.containing_type()->name(), place.field.name());
@@ -70,7 +70,7 @@ void check_missing(const Place& place) {
   place.violations.push_back({place.path, not_set_text(*row)});
 }
 
-/// Tables of a gear set have checks that name row and column: gear_set_checks.h.
+/// Returns true for the tables of a gear set, which gear_set_checks.h checks by row and column.
 bool is_table(const FieldDescriptor& field) {
   if (field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) return false;
   const std::string& type = field.message_type()->name();
@@ -110,7 +110,7 @@ void check_element(const Message& message, const Reflection& reflection, int ind
   }
 }
 
-/// Elements up to the longest list the service accepts, and a limited number of complaints.
+/// Checks the elements of a list, and adds at most kMaximumReportedElements violations.
 void check_repeated(const Message& message, const Reflection& reflection, const Place& place) {
   const FieldDescriptor& field = place.field;
   const std::string& path = place.path;
@@ -126,7 +126,7 @@ void check_repeated(const Message& message, const Reflection& reflection, const 
   for (std::size_t i = 0; i < reported; ++i) violations.push_back(found[i]);
   if (found.size() > reported) {
     violations.push_back(
-        {path, fmt::format("{} more of its elements are not acceptable", found.size() - reported)});
+        {path, fmt::format("{} more of its elements are invalid", found.size() - reported)});
   }
 }
 

@@ -8,27 +8,28 @@
 
 namespace tribodyn::server {
 
-/// What an unset parameter that the model needs is.
+/// Meaning of an unset parameter that the model needs.
 enum class Missing {
   kViolation,
-  kAllowed,  ///< something else will fill it in
+  kAllowed,  ///< the server computes it later
 };
 
-/// Checks every number, enum and text inside a message, nested messages too, against the table of
-/// constraints: finite, inside its allowed range, a value the enum has, a text of sensible length.
-/// Adds all violations, in field order. A number without a row in the table is only checked to be
-/// finite; other unset optional fields, unset messages and what only the server sets are left
-/// alone.
+/// Checks every number, enum and text in a message and its nested messages against the table of
+/// constraints. A number must be finite and inside its allowed range, an enum value must exist, and
+/// a text must not be too long. Adds all violations in field order. A number without a row in the
+/// table must only be finite. Other unset optional fields, unset messages and output-only fields
+/// are not checked.
 void check_message(const google::protobuf::Message& message, const std::string& path,
                    Violations& violations, Missing missing = Missing::kViolation);
 
-/// Checks how many elements a list at the top of a request has against its row in the table.
+/// Checks the number of elements of a top-level list of a request against its row in the table of
+/// constraints.
 void check_size(const google::protobuf::Message& request, const std::string& list,
                 Violations& violations);
 
-/// Path of the first number that is NaN, or infinite where that has no documented meaning; empty
-/// when there is none. A shear rate without film and the thermal resistance of a surface at rest
-/// are infinite.
+/// Returns the path of the first number that is not finite, or an empty string if there is none.
+/// Two numbers may be infinite: a shear rate without film, and the thermal resistance of a surface
+/// at rest.
 std::string first_not_finite(const google::protobuf::Message& message);
 
 }  // namespace tribodyn::server

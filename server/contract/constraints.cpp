@@ -205,11 +205,12 @@ constexpr Constraint kConstraints[] = {
      "requests of one transaction"},
 };
 
-/// A unit that people write in place of the contract's, and the range of the usual: a number that
-/// is not allowed but is usual in that unit was probably written in it.
+/// A unit that clients often use instead of the contract's unit, and the usual range of the
+/// quantity. A number outside the allowed range that is usual in this unit was probably written in
+/// it.
 struct UnitSlip {
-  std::string_view message;  ///< whose fields it concerns; empty: all
-  std::string_view unit;     ///< of the contract
+  std::string_view message;  ///< message whose fields the row applies to; empty: all messages
+  std::string_view unit;     ///< unit of the contract
   std::string_view written;
   double factor;
   double offset;
@@ -217,10 +218,10 @@ struct UnitSlip {
 };
 
 constexpr UnitSlip kUnitSlips[] = {
-    // Lubricants have 780 to 1150 kg/m3 at 15 C.
+    // The density of lubricants is 780 to 1150 kg/m3 at 15 C.
     {"", "kg/m3", "g/cm3", 1e3, 0, 700, 1300},
     {"", "kg/m3", "g/cm3 with its decimal point one place off", 1e2, 0, 700, 1300},
-    // Gear oils have 3 to 50 mm2/s at 100 C and 15 to 1000 mm2/s at 40 C.
+    // The viscosity of gear oils is 3 to 50 mm2/s at 100 C and 15 to 1000 mm2/s at 40 C.
     {"", "mm2/s", "m2/s", 1e6, 0, 2, 5000},
     {"", "mm2/s", "St", 1e2, 0, 2, 5000},
     // Brookfield viscosities are 3000 to 300 000 mPa s.
@@ -230,11 +231,11 @@ constexpr UnitSlip kUnitSlips[] = {
     {"", "1/Pa", "1/GPa", 1e-9, 0, 4e-9, 1e-7},
     {"", "1/Pa", "mm2/N", 1e-6, 0, 4e-9, 1e-7},
     {"Lubricant", "K", "C", 1, 273.15, 200, 420},
-    // Asperities are 1 to 1000 um in radius, the height of flanks is 0.05 to 5 um.
+    // The radius of asperities is 1 to 1000 um, the height of flanks 0.05 to 5 um.
     {"Surface", "m", "um", 1e-6, 0, 1e-8, 1e-3},
     {"Surface", "Pa", "MPa", 1e6, 0, 1e4, 1e9}};
 
-/// "; 0.895 looks like g/cm3: did you mean 895 kg/m3?", or nothing.
+/// Returns a hint such as "; 0.895 looks like g/cm3: did you mean 895 kg/m3?", or an empty string.
 std::string slip_text(const Constraint& row, double value) {
   for (const UnitSlip& slip : kUnitSlips) {
     if (slip.unit != row.unit || !(slip.message.empty() || slip.message == row.message)) continue;
@@ -247,7 +248,7 @@ std::string slip_text(const Constraint& row, double value) {
   return "";
 }
 
-/// "allowed: 1e-05 to 10000 m (eq 15, R_zx: ...)".
+/// Returns e.g. "allowed: 1e-05 to 10000 m (eq 15, R_zx: ...)".
 std::string allowed_text(const Constraint& row) {
   return fmt::format("allowed: {} to {} ({}{}{})", number_text(row.minimum),
                      quantity_text(row.maximum, row.unit), row.equation,

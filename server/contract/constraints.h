@@ -6,51 +6,53 @@
 
 namespace tribodyn::server {
 
-/// What a zero in a field without presence stands for.
+/// Meaning of a zero in a field without presence.
 enum class Zero {
-  kValue,  ///< the number zero; allowed when inside the range
-  kUnset,  ///< "take the default" or "not stated"; never checked against the range
+  kValue,  ///< the number zero; it must be inside the range
+  kUnset,  ///< the default, or unknown; not checked against the range
 };
 
-/// One row of the table that drives every range check and its message. The range is closed and wide
-/// enough for hard cases: it keeps out what no law of the model can mean, not what is unusual.
+/// One row of the table from which every range check and its message follow. The range is closed.
+/// It excludes values that no law of the model can use, and includes unusual ones.
 struct Constraint {
   std::string_view message;  ///< message of tribodyn.v1, e.g. "Lubricant", "LoadShareAtTorque.Slot"
-  std::string_view field;    ///< its field, e.g. "relaxation_time_seconds"
-  std::string_view unit;     ///< symbol for people, e.g. "s"; empty for a pure number
-  double minimum;            ///< of a list of messages: how many it has at least
+  std::string_view field;    ///< field of the message, e.g. "relaxation_time_seconds"
+  std::string_view unit;     ///< symbol in messages, e.g. "s"; empty for a pure number
+  double minimum;            ///< for a list of messages: the smallest number of elements
   double maximum;
-  std::string_view equation;  ///< of the paper, with the symbol
-  std::string_view reason;    ///< why a value outside makes no sense; may be empty
+  std::string_view equation;  ///< equation of the paper, with the symbol of the quantity
+  std::string_view reason;    ///< why a value outside the range is refused; may be empty
   Zero zero = Zero::kValue;
 };
 
-/// All rows, grouped by message.
+/// Returns all rows, grouped by message.
 std::span<const Constraint> constraints();
 
-/// True for a parameter that the model needs: unset, it is a violation.
+/// Returns true for a parameter that the model needs. It is a violation if such a parameter is
+/// unset.
 bool is_required(const Constraint& row);
 
-/// The row of a field, or null.
+/// Returns the row of a field, or null if the table has none.
 const Constraint* find_constraint(std::string_view message, std::string_view field);
 
-/// Shortest text that reads back as the same number.
+/// Returns the shortest text from which the same number can be read.
 std::string number_text(double value);
 
-/// "0.3", "46 W/(m K)".
+/// Returns the number with its unit, e.g. "0.3", "46 W/(m K)".
 std::string quantity_text(double value, std::string_view unit);
 
-/// "radius_x_metres = -1 m; allowed: 1e-05 to 10000 m (eq 15, R_zx: ...)". Where the value would be
-/// usual in another unit, also that: "; 0.895 looks like g/cm3: did you mean 895 kg/m3?".
+/// Returns e.g. "radius_x_metres = -1 m; allowed: 1e-05 to 10000 m (eq 15, R_zx: ...)". If the
+/// value would be usual in another unit, a hint follows: "; 0.895 looks like g/cm3: did you mean
+/// 895 kg/m3?".
 std::string out_of_range_text(const Constraint& constraint, double value);
 
-/// "radius_x_metres is not set; allowed: 1e-05 to 10000 m (eq 15, R_zx: ...)".
+/// Returns e.g. "radius_x_metres is not set; allowed: 1e-05 to 10000 m (eq 15, R_zx: ...)".
 std::string not_set_text(const Constraint& constraint);
 
-// Limits on counts, so that no request can starve the server.
+// These limits bound the work and memory of one request.
 inline constexpr int kMaximumCurvePoints = 1000;
 inline constexpr int kMaximumHistoryColumns = 100;
-inline constexpr double kMaximumHistoryValues = 2e7;    ///< rows times columns: 160 MB
+inline constexpr double kMaximumHistoryValues = 2e7;  ///< rows times columns, 8 bytes each: 160 MB
 inline constexpr double kMaximumCurveMeshCycles = 1e7;  ///< points times maximum_mesh_cycles
 inline constexpr int kMaximumBatchSize = 20'000;        ///< requests of one batch
 inline constexpr int kMaximumTextLength = 200;          ///< bytes of a name

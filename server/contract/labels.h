@@ -13,10 +13,11 @@ using Labels = google::protobuf::RepeatedPtrField<v1::Label>;
 
 inline constexpr int kMaximumSimulationLabels = 64;
 
-/// Keys of letters, digits, '-', '_' and '.', each once.
+/// Adds a violation for each key that is not made of letters, digits, '-', '_' and '.', and for
+/// each key that occurs twice.
 void check_labels(const Labels& labels, const std::string& path, Violations& violations);
 
-/// In the order of their keys.
+/// Sorts labels by key.
 void sort_labels(Labels& labels);
 
 }  // namespace tribodyn::server

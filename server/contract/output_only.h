@@ -6,8 +6,8 @@
 
 namespace tribodyn::server {
 
-/// Clears, at every depth, what only the server sets and fields of newer clients. What is left is
-/// what an export keeps and an import takes.
+/// Clears output-only fields and unknown fields (those of newer clients) at every depth. The
+/// remaining fields are those that an export writes and an import reads.
 void keep_client_part(google::protobuf::Message& message);
 
 }  // namespace tribodyn::server

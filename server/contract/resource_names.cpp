@@ -16,13 +16,13 @@ bool is_id_character(char c) {
          c == '_' || c == '.';
 }
 
-/// Edits (Levenshtein) from one text to all of another, and to that beginning of it which is next.
-struct Edits {
-  std::size_t whole = 0;
-  std::size_t beginning = 0;
+/// Levenshtein distance from a to b, and the smallest distance from a to any prefix of b.
+struct EditDistances {
+  std::size_t to_whole = 0;
+  std::size_t to_prefix = 0;
 };
 
-Edits edits(std::string_view a, std::string_view b) {
+EditDistances edit_distances(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -37,7 +37,7 @@ Edits edits(std::string_view a, std::string_view b) {
   return {row.back(), *std::min_element(row.begin(), row.end())};
 }
 
-/// The part after "lubricants/": the collection says nothing about which name is meant.
+/// Returns the part after "lubricants/". Names are compared without their collection.
 std::string_view id_of(std::string_view name) { return name.substr(name.find('/') + 1); }
 
 }  // namespace
@@ -96,17 +96,18 @@ std::string simulation_name(std::int64_t id) { return fmt::format("{}/{}", kSimu
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {
   const std::string_view compared = id_of(name).substr(0, kMaximumTextLength);
   if (compared.empty()) return {};
-  const std::size_t few = std::max<std::size_t>(2, compared.size() / 3);
-  const std::size_t few_in_beginning = compared.size() / 4;  // of one letter, any name begins so
+  const std::size_t largest_distance = std::max<std::size_t>(2, compared.size() / 3);
+  // 0 below four letters: a prefix of any name is near a short text
+  const std::size_t largest_prefix_distance = compared.size() / 4;
   std::string nearest;
-  std::size_t fewest = few + 1;
+  std::size_t smallest_distance = largest_distance + 1;
   for (const std::string& each : existing) {
-    const Edits found = edits(compared, id_of(each));
-    std::size_t count = found.whole;
+    const EditDistances found = edit_distances(compared, id_of(each));
+    std::size_t count = found.to_whole;
     if (id_of(each).starts_with(compared)) count = 0;
-    if (found.beginning <= few_in_beginning) count = std::min(count, found.beginning + 1);
-    if (count >= fewest) continue;
-    fewest = count;
+    if (found.to_prefix <= largest_prefix_distance) count = std::min(count, found.to_prefix + 1);
+    if (count >= smallest_distance) continue;
+    smallest_distance = count;
     nearest = each;
   }
   return nearest;

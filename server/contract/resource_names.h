@@ -24,83 +24,89 @@ inline constexpr char kDefaultGearSet[] = "gearSets/A";
 inline constexpr char kDefaultSurface[] = "surfaces/run-in";
 inline constexpr char kDefaultVehicle[] = "vehicles/passenger-car";
 
-/// "lubricants/1" or "lubricants/1@2".
+/// A name with or without a revision: "lubricants/1" or "lubricants/1@2".
 struct RevisionName {
   std::string name;
-  int revision = 0;  ///< 0: the newest
+  int revision = 0;  ///< 0: the latest revision
 };
 
-/// One revision of a resource.
+/// One stored revision of a resource.
 struct FoundResource {
   int revision = 0;
   bool is_deleted = false;
   std::string body;  ///< serialised message
 };
 
-/// What is known of chains of derived_from while one request looks at the store.
+/// Results of following `derived_from`, kept during one request.
 struct KnownChains {
-  std::set<std::string> in_no_ring;  ///< names that are known not to descend from themselves
-  std::set<std::string> in_ring;     ///< names that do
+  std::set<std::string> in_no_cycle;  ///< names that do not descend from themselves
+  std::set<std::string> in_cycle;     ///< names that descend from themselves
 };
 
-/// Where named resources come from: the store, or a map in a test.
+/// Finds named resources: in the store, or in a map of a test.
 struct ResourceLookup {
+  /// Returns the named revision, or nullopt if it does not exist.
   std::function<std::optional<FoundResource>(const RevisionName& name)> find;
-  /// All names of a collection that are not deleted, sorted.
+  /// Returns the names of all resources of a collection that are not deleted, sorted.
   std::function<std::vector<std::string>(const std::string& collection)> names;
-  /// Shared by the resources of a batch, whose chains would else be followed from each of them.
+  /// All resources of a batch share it, so that each step of a chain is read once.
   std::shared_ptr<KnownChains> chains = std::make_shared<KnownChains>();
 };
 
-/// True for "collection/id" with a non-empty id of letters, digits, '-', '_' and '.'.
+/// Returns true for "collection/id" whose id is not empty and consists of letters, digits, '-', '_'
+/// and '.'.
 bool is_resource_name(std::string_view name, std::string_view collection);
 
-/// "collection/id" or "collection/id@revision", or nothing when it is neither.
+/// Parses "collection/id" or "collection/id@revision". Returns nullopt if `name` has another form.
 std::optional<RevisionName> parse_revision_name(std::string_view name, std::string_view collection);
-/// "lubricants/1@2".
+/// Returns the name with its revision, e.g. "lubricants/1@2".
 std::string revision_name(std::string_view name, int revision);
 
-/// The number behind "simulations/{id}", or nothing when it is not such a name.
+/// Returns the id in "simulations/{id}", or nullopt if `name` has another form.
 std::optional<std::int64_t> simulation_id(std::string_view name);
+/// Returns "simulations/{id}".
 std::string simulation_name(std::int64_t id);
 
-/// The start of a client's text as plain ASCII: never half a UTF-8 character, never a control code.
+/// Returns the first 60 bytes of a client's text with '?' for each byte that is not printable
+/// ASCII.
 std::string plain_excerpt(std::string_view text);
 
-/// Which of `existing` may be meant by `name`: the one with the fewest edits from it, its end (the
-/// unit of a field) left out where that helps. Empty when none is near.
+/// Returns the name of `existing` that `name` is most likely a misspelling of, by edit distance to
+/// the whole name or to a prefix of it (a name without its unit). Empty if no name is near.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing);
 
-/// "; did you mean \"lims_id\"?", or where nothing is near "; allowed: " and all of `known`.
+/// Returns "; did you mean \"lims_id\"?", or "; allowed: " and all of `known` if no name is near.
 std::string meant_text(std::string_view name, const std::vector<std::string>& known);
 
-/// "lubricants/7 does not exist; did you mean lubricants/1?", or what a name must look like.
+/// Returns "lubricants/7 does not exist; did you mean lubricants/1?", or the required form of a
+/// name.
 std::string unknown_name_text(std::string_view name, std::string_view collection,
                               const std::vector<std::string>& existing);
 
-/// "lubricants/1 is deleted; undelete it to use it".
+/// Returns "lubricants/1 is deleted; undelete it to use it".
 std::string deleted_name_text(std::string_view name);
 
-/// A resource, and which revision of it this is.
+/// A resource and the name of its revision.
 template <class Resource>
 struct NamedResource {
-  std::shared_ptr<const Resource> resource;  ///< shared with others who asked for it lately
+  std::shared_ptr<const Resource> resource;  ///< shared by all recent callers
   std::string revision_name;
 };
 
-/// The message of a stored body; null when it is none. Thousands of simulations rest on the same
-/// few, and parsing them takes longer than solving a point.
+/// Parses a stored body. Returns null if the body cannot be parsed. A cache holds recent messages:
+/// thousands of simulations use the same few resources, and parsing a gear set takes longer than
+/// solving a point.
 template <class Resource>
 std::shared_ptr<const Resource> parse_resource(const std::string& body) {
-  static LruCache<std::string, std::shared_ptr<const Resource>> kept;
-  return kept.get(body, [&body]() -> std::shared_ptr<const Resource> {
+  static LruCache<std::string, std::shared_ptr<const Resource>> cache;
+  return cache.get(body, [&body]() -> std::shared_ptr<const Resource> {
     auto resource = std::make_shared<Resource>();
     return resource->ParseFromString(body) ? resource : nullptr;
   });
 }
 
-/// The resource of that name; a violation at `path` and nothing when there is none or it is
-/// deleted.
+/// Returns the named resource. Adds a violation at `path` and returns nullopt if it does not exist
+/// or is deleted.
 template <class Resource>
 std::optional<NamedResource<Resource>> find_resource(const ResourceLookup& lookup,
                                                      const std::string& name,

@@ -8,23 +8,23 @@
 
 namespace tribodyn::server {
 
-/// One thing wrong with a request: the path of the field, and a sentence that names value, unit,
-/// allowed range and the equation that needs it. Becomes a google.rpc.BadRequest.FieldViolation.
+/// One violation: the path of the field and a sentence with its value, unit, allowed range and the
+/// equation that needs it. The client receives it as google.rpc.BadRequest.FieldViolation.
 struct Violation {
   std::string field;
   std::string description;
 };
 
-/// What is wrong with a request. Keeps the first kMostKept violations and counts the rest, so that
-/// no request can fill the memory with sentences about itself: size() counts all of them, begin()
-/// to end() are those that are kept.
+/// The violations of one request. The list keeps the first kMostKept of them and counts the others,
+/// so that no request can fill the memory with violations. size() is the number of all of them;
+/// begin() to end() iterate over the kept ones.
 class Violations {
  public:
   using value_type = Violation;
   using iterator = std::vector<Violation>::iterator;
   using const_iterator = std::vector<Violation>::const_iterator;
 
-  /// Five times as many as the 5.5 kB of an answer have room for.
+  /// Number of kept violations: five times as many as fit into the 5.5 kB of an error.
   static constexpr std::size_t kMostKept = 200;
 
   Violations() = default;
@@ -36,7 +36,7 @@ class Violations {
     if (kept_.size() < kMostKept) kept_.push_back(std::move(violation));
     ++size_;
   }
-  /// The kept ones of `others` and, where it has more, their number.
+  /// Adds the kept violations of `others`, and the number of those that it did not keep.
   void append(const Violations& others) {
     for (const Violation& each : others) push_back(each);
     size_ += others.size_ - others.kept_.size();
@@ -57,7 +57,7 @@ class Violations {
   std::size_t size_ = 0;
 };
 
-/// "prefix.field", or "field" when the prefix is empty.
+/// Returns "prefix.field", or "field" if the prefix is empty.
 inline std::string join_path(const std::string& prefix, const std::string& field) {
   return prefix.empty() ? field : prefix + "." + field;
 }

@@ -8,18 +8,20 @@
 
 namespace tribodyn::server {
 
-/// Every field of a solved contact, with the model version.
+/// Converts every field of a solved contact and adds the model version.
 v1::EvaluateContactResponse to_message(const ContactSolution& solution);
 
-/// A point with at most `maximum_contact_losses` of its contact losses; the rest are counted.
+/// Converts a point with its first `maximum_contact_losses` contact losses and the number of the
+/// others.
 v1::PointResult to_message(const PointResult& result, int maximum_contact_losses);
 
-/// A single point as a curve of one.
+/// Converts a single point to a point of a curve.
 v1::CurvePoint to_curve_point(const PointResult& result);
-/// One place on a curve: speeds in km/h, result or refusal.
+/// Converts one point of a curve: its speed in km/h with its result or the reason of its refusal.
 v1::CurvePoint to_curve_point(const SweepPoint& point);
 
-/// m/s to km/h, rounded to 12 significant digits so that a stated 67.5 km/h comes back as 67.5.
+/// Converts m/s to km/h and rounds to 12 significant digits, so that 67.5 km/h in a request is 67.5
+/// km/h in the answer.
 double kilometres_per_hour(double metres_per_second);
 
 }  // namespace tribodyn::server

@@ -24,7 +24,7 @@ std::string_view history_column_unit(std::string_view name) {
     std::string_view suffix;
     std::string_view symbol;
   };
-  // A suffix stands before those that it ends in.
+  // Longest suffix first: "_metres_per_second" before "_per_second".
   static constexpr Unit kUnits[] = {
       {"_radians_per_second", "rad/s"},
       {"_metres_per_second", "m/s"},

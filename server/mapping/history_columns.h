@@ -9,14 +9,14 @@
 
 namespace tribodyn::server {
 
-/// The column of that name ("mesh_force_newtons"), or nothing.
+/// Returns the column with the name `name` ("mesh_force_newtons"), or nullopt if none exists.
 std::optional<HistoryColumn> history_column(std::string_view name);
 
-/// Names of all columns that can be asked for.
+/// Returns the names of all columns that a request may name.
 std::vector<std::string> history_column_names();
 
-/// Symbol of the unit that a stored column's name ends in, "N" of "flank_load_newtons_flank_1";
-/// empty for a pure number.
+/// Returns the symbol of the unit in the name of a stored column, e.g. "N" for
+/// "flank_load_newtons_flank_1"; empty for a pure number.
 std::string_view history_column_unit(std::string_view name);
 
 }  // namespace tribodyn::server

@@ -16,7 +16,8 @@
 
 namespace tribodyn::server {
 
-// Messages to core values, field by field. Nothing is checked here: see check_message.h.
+// These functions convert messages to core values field by field. They check nothing: see
+// check_message.h.
 Lubricant to_core(const v1::Lubricant& message);
 Roughness roughness(const v1::Surface& message);
 BoundaryFriction boundary_friction(const v1::Surface& message);
@@ -24,10 +25,10 @@ Solid solid(const v1::GearSet& message);
 Vehicle to_core(const v1::Vehicle& message);
 ModelOptions to_core(const v1::ModelOptions& message);
 
-/// Tables beyond three slots are left out; core's check() judges the rest.
+/// Converts the first three slots only; the core's check() refuses any other number.
 GearSet to_core(const v1::GearSet& message);
 
-// The parts of an explicit contact.
+// These functions convert the parts of an explicit contact.
 ContactConditions contact_conditions(const v1::EvaluateContactRequest& message);
 Roughness roughness(const v1::EvaluateContactRequest& message);
 BoundaryFriction boundary_friction(const v1::EvaluateContactRequest& message);

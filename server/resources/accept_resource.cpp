@@ -35,25 +35,26 @@ const char* collection_of(const v1::GearSet&) { return kGearSets; }
 const char* collection_of(const v1::Surface&) { return kSurfaces; }
 const char* collection_of(const v1::Vehicle&) { return kVehicles; }
 
-/// Whether what is stored under `name` descends from `ancestor`, which is derived from it. Stops at
-/// a name whose chain is known, so that a batch takes each step of a chain once.
+/// Returns true if the stored resource `name`, from which `ancestor` is derived, itself descends
+/// from `ancestor`. Stops at a name whose chain is known, so that a batch follows each step of a
+/// chain once.
 template <class Resource>
 bool descends(std::string name, const std::string& ancestor, const ResourceLookup& lookup) {
   KnownChains& known = *lookup.chains;
-  if (known.in_ring.contains(ancestor)) return true;
+  if (known.in_cycle.contains(ancestor)) return true;
   std::vector<std::string> chain;
-  std::map<std::string, std::size_t> places;  // in the chain
-  while (!name.empty() && !known.in_no_ring.contains(name) && !known.in_ring.contains(name)) {
+  std::map<std::string, std::size_t> positions;  // index in the chain by name
+  while (!name.empty() && !known.in_no_cycle.contains(name) && !known.in_cycle.contains(name)) {
     if (name == ancestor) {
-      known.in_ring.insert(chain.begin(), chain.end());
-      known.in_ring.insert(ancestor);
+      known.in_cycle.insert(chain.begin(), chain.end());
+      known.in_cycle.insert(ancestor);
       return true;
     }
-    const auto [first, is_new] = places.emplace(name, chain.size());
-    if (!is_new) {  // a ring without the ancestor
-      const auto ring = chain.begin() + static_cast<std::ptrdiff_t>(first->second);
-      known.in_ring.insert(ring, chain.end());
-      chain.erase(ring, chain.end());
+    const auto [first, is_new] = positions.emplace(name, chain.size());
+    if (!is_new) {  // a cycle without the ancestor
+      const auto cycle = chain.begin() + static_cast<std::ptrdiff_t>(first->second);
+      known.in_cycle.insert(cycle, chain.end());
+      chain.erase(cycle, chain.end());
       break;
     }
     chain.push_back(name);
@@ -62,11 +63,12 @@ bool descends(std::string name, const std::string& ancestor, const ResourceLooku
     if (!found || !resource.ParseFromString(found->body)) break;
     name = resource.derived_from().substr(0, resource.derived_from().find('@'));
   }
-  known.in_no_ring.insert(chain.begin(), chain.end());
+  known.in_no_cycle.insert(chain.begin(), chain.end());
   return false;
 }
 
-/// A resource may descend from a deleted one, never from itself or its own descendants.
+/// Adds a violation if the resource descends from itself, from one of its descendants, or from a
+/// resource that does not exist. A deleted ancestor is allowed.
 template <class Resource>
 void check_descent(const Resource& stated, const ResourceLookup& lookup, const std::string& path,
                    Violations& violations) {
@@ -76,17 +78,18 @@ void check_descent(const Resource& stated, const ResourceLookup& lookup, const s
   const auto parsed = parse_revision_name(name, collection);
   if (parsed && parsed->name == stated.name()) {
     violations.push_back({path, fmt::format("{} is the resource itself", name)});
-  } else if (!parsed || !lookup.find({parsed->name, 0})) {  // revisions number anew on import
+    // an import may renumber revisions, so the revision is not checked
+  } else if (!parsed || !lookup.find({parsed->name, 0})) {
     violations.push_back({path, unknown_name_text(name, collection, lookup.names(collection))});
   } else if (descends<Resource>(parsed->name, stated.name(), lookup)) {
     violations.push_back({path, fmt::format("{} itself descends from {}", name, stated.name())});
   }
 }
 
-/// What all kinds have in common, before what is particular to one.
+/// Copies what the client set and makes the checks that all kinds of resources have in common.
 template <class Resource>
-Resource begin(const Resource& stated, const ResourceLookup& lookup, const std::string& path,
-               Missing missing, Violations& violations) {
+Resource normalize(const Resource& stated, const ResourceLookup& lookup, const std::string& path,
+                   Missing missing, Violations& violations) {
   Resource out = stated;
   keep_client_part(out);
   if (!check_count(out.labels(), kMaximumLabels, join_path(path, "labels"), violations) ||
@@ -102,18 +105,20 @@ Resource begin(const Resource& stated, const ResourceLookup& lookup, const std::
   return out;
 }
 
+/// Brings an accepted resource into the form in which it is stored.
 template <class Resource>
-Resource end(Resource out) {
+Resource finalize(Resource out) {
   sort_labels(*out.mutable_labels());
   clear_units(*out.mutable_provenance());
   complete_provenance(out, *out.mutable_provenance());
   return out;
 }
 
-/// What a lubricant's computed parameters were computed from.
-bool has_other_grounds(const v1::Lubricant& stated, const v1::Lubricant& present) {
-  const auto grounds = [](v1::Lubricant lubricant) {
-    forget_computed(lubricant);
+/// Returns true if an update changes an input of the computed parameters: measurements, base oil
+/// class or a parameter that the client set.
+bool changes_inputs_of_computed(const v1::Lubricant& stated, const v1::Lubricant& present) {
+  const auto inputs = [](v1::Lubricant lubricant) {
+    clear_computed_parameters(lubricant);
     v1::Lubricant out;
     *out.mutable_measurements() = lubricant.measurements();
     out.set_base_oil_class(lubricant.base_oil_class());
@@ -125,7 +130,7 @@ bool has_other_grounds(const v1::Lubricant& stated, const v1::Lubricant& present
     }
     return out;
   };
-  return !MessageDifferencer::Equals(grounds(stated), grounds(present));
+  return !MessageDifferencer::Equals(inputs(stated), inputs(present));
 }
 
 void check_measurements(const v1::LubricantMeasurements& measurements, const std::string& path,
@@ -148,8 +153,9 @@ void check_measurements(const v1::LubricantMeasurements& measurements, const std
   }
 }
 
-/// A computed parameter that the client changed is the client's from then on.
-void take_over_changed(v1::Lubricant& lubricant, const v1::Lubricant& present) {
+/// Removes the provenance of computed parameters that the client changed: their values are now the
+/// client's.
+void unmark_changed_parameters(v1::Lubricant& lubricant, const v1::Lubricant& present) {
   const auto& reflection = *lubricant.GetReflection();
   auto& entries = *lubricant.mutable_provenance();
   for (int i = entries.size() - 1; i >= 0; --i) {
@@ -162,20 +168,21 @@ void take_over_changed(v1::Lubricant& lubricant, const v1::Lubricant& present) {
   }
 }
 
-bool says_the_same(const v1::ParameterProvenance& a, const v1::ParameterProvenance& b) {
+bool is_equal_provenance(const v1::ParameterProvenance& a, const v1::ParameterProvenance& b) {
   return a.standard_uncertainty() == b.standard_uncertainty() && a.provenance() == b.provenance() &&
          a.source() == b.source();
 }
 
-/// Says nothing that the server would not say of a number without provenance.
-bool says_nothing(const v1::ParameterProvenance& entry) {
+/// Returns true if the entry is equal to the one that the server adds to a number without
+/// provenance.
+bool is_default_provenance(const v1::ParameterProvenance& entry) {
   return entry.standard_uncertainty() == 0 && entry.source().empty() &&
          (entry.provenance() == v1::PROVENANCE_UNSPECIFIED ||
           entry.provenance() == v1::PROVENANCE_USER);
 }
 
-/// How a parameter is known cannot be stated without its value: the server computes the value, and
-/// with it how it is known.
+/// Adds a violation for each uncertainty or provenance that the client sets for a computed
+/// parameter without setting its value: the server computes all three.
 void check_provenance_of_computed(const v1::Lubricant& lubricant, const v1::Lubricant* present,
                                   const std::string& path, Violations& violations) {
   const auto& reflection = *lubricant.GetReflection();
@@ -189,13 +196,13 @@ void check_provenance_of_computed(const v1::Lubricant& lubricant, const v1::Lubr
         if (each.field() == entry.field()) before = &each;
       }
     }
-    if (before != nullptr && says_the_same(entry, *before)) continue;
+    if (before != nullptr && is_equal_provenance(entry, *before)) continue;
     const bool is_stated = reflection.HasField(lubricant, field);
     const bool is_changed =
         is_stated && present != nullptr &&
         reflection.GetDouble(lubricant, field) != reflection.GetDouble(*present, field);
     const bool is_computed = entry.computed() && before != nullptr && !is_changed;
-    if (is_computed || (!is_stated && !entry.computed() && !says_nothing(entry))) {
+    if (is_computed || (!is_stated && !entry.computed() && !is_default_provenance(entry))) {
       violations.push_back(
           {fmt::format("{}[{}].{}", path, i,
                        entry.standard_uncertainty() != 0 ? "standard_uncertainty" : "provenance"),
@@ -212,32 +219,34 @@ std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubri
                                     const ResourceLookup& lookup, const std::string& path,
                                     Violations& violations) {
   const std::size_t before = violations.size();
-  v1::Lubricant out = begin(stated, lookup, path, Missing::kAllowed, violations);
+  v1::Lubricant out = normalize(stated, lookup, path, Missing::kAllowed, violations);
   check_measurements(out.measurements(), join_path(path, "measurements"), violations);
   check_provenance_of_computed(out, present, join_path(path, "provenance"), violations);
   if (violations.size() > before) return std::nullopt;
-  if (present != nullptr) take_over_changed(out, *present);
-  // A copy of another lubricant may have other measurements than those it was computed from.
-  if (present == nullptr || has_other_grounds(out, *present)) forget_computed(out);
+  if (present != nullptr) unmark_changed_parameters(out, *present);
+  // A new lubricant may be a copy of another one with different measurements.
+  if (present == nullptr || changes_inputs_of_computed(out, *present)) {
+    clear_computed_parameters(out);
+  }
   complete_parameters(out, path, violations);
   if (violations.size() > before) return std::nullopt;
   check_message(out, path, violations);
   if (violations.size() > before) return std::nullopt;
-  return end(std::move(out));
+  return finalize(std::move(out));
 }
 
 std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample& locate,
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations) {
   const std::size_t before = violations.size();
-  v1::GearSet out = begin(stated, lookup, path, Missing::kViolation, violations);
+  v1::GearSet out = normalize(stated, lookup, path, Missing::kViolation, violations);
   if (locate) {
     check_gear_set(out, locate, path, violations);
   } else {
     check_gear_set(out, path, violations);
   }
   if (violations.size() > before) return std::nullopt;
-  return end(std::move(out));
+  return finalize(std::move(out));
 }
 
 std::optional<v1::GearSet> accept(const v1::GearSet& stated, const v1::GearSet*,
@@ -250,30 +259,30 @@ std::optional<v1::Surface> accept(const v1::Surface& stated, const v1::Surface*,
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations) {
   const std::size_t before = violations.size();
-  v1::Surface out = begin(stated, lookup, path, Missing::kViolation, violations);
+  v1::Surface out = normalize(stated, lookup, path, Missing::kViolation, violations);
   check_count(out.measurements(), kMaximumMeasurements, join_path(path, "measurements"),
               violations);
   if (violations.size() > before) return std::nullopt;
-  return end(std::move(out));
+  return finalize(std::move(out));
 }
 
 std::optional<v1::Vehicle> accept(const v1::Vehicle& stated, const v1::Vehicle*,
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations) {
   const std::size_t before = violations.size();
-  v1::Vehicle out = begin(stated, lookup, path, Missing::kViolation, violations);
+  v1::Vehicle out = normalize(stated, lookup, path, Missing::kViolation, violations);
   if (violations.size() > before) return std::nullopt;
-  return end(std::move(out));
+  return finalize(std::move(out));
 }
 
-void check_stated(const v1::Lubricant& stated, const ResourceLookup& lookup,
-                  const std::string& path, Violations& violations) {
-  begin(stated, lookup, path, Missing::kAllowed, violations);
+void check_client_fields(const v1::Lubricant& stated, const ResourceLookup& lookup,
+                         const std::string& path, Violations& violations) {
+  normalize(stated, lookup, path, Missing::kAllowed, violations);
 }
 
-void check_stated(const v1::GearSet& stated, const ResourceLookup& lookup, const std::string& path,
-                  Violations& violations) {
-  begin(stated, lookup, path, Missing::kViolation, violations);
+void check_client_fields(const v1::GearSet& stated, const ResourceLookup& lookup,
+                         const std::string& path, Violations& violations) {
+  normalize(stated, lookup, path, Missing::kViolation, violations);
 }
 
 }  // namespace tribodyn::server

@@ -13,14 +13,14 @@
 
 namespace tribodyn::server {
 
-// What is stored of a resource that a client states: what only the server sets left out, labels in
-// the order of keys, units of provenance left out (they follow from the fields), provenance for
-// every parameter. `stated` has its name. Nothing, and all violations at once, when it is not
-// acceptable; paths start with `path`.
+// accept() checks a resource that a client sent and returns it in the form in which it is stored:
+// without output-only fields and units of provenance (they follow from the fields), with labels
+// sorted by key and with provenance for every parameter. `stated` has its name. Returns nullopt and
+// adds all violations if a check fails; their paths start with `path`.
 
-/// `present` is the revision that an update starts from, null for a new lubricant. Parameters that
-/// are not stated are fitted or estimated (lubricant_parameters.h); those marked as computed are so
-/// again for a new lubricant, and for one whose measurements, class or other parameters changed.
+/// `present` is the revision before an update, or null for a new lubricant. Unset parameters are
+/// fitted or estimated (lubricant_parameters.h). Parameters marked as computed are computed again
+/// for a new lubricant, and if an update changes measurements, base oil class or another parameter.
 std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubricant* present,
                                     const ResourceLookup& lookup, const std::string& path,
                                     Violations& violations);
@@ -34,20 +34,21 @@ std::optional<v1::Vehicle> accept(const v1::Vehicle& stated, const v1::Vehicle* 
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations);
 
-/// Only the checks of what a client states beside a table that cannot be taken: so that all
-/// violations come at once.
-void check_stated(const v1::Lubricant& stated, const ResourceLookup& lookup,
-                  const std::string& path, Violations& violations);
-void check_stated(const v1::GearSet& stated, const ResourceLookup& lookup, const std::string& path,
-                  Violations& violations);
+/// Checks the fields beside a table that cannot be read, so that the client receives all violations
+/// at once.
+void check_client_fields(const v1::Lubricant& stated, const ResourceLookup& lookup,
+                         const std::string& path, Violations& violations);
+void check_client_fields(const v1::GearSet& stated, const ResourceLookup& lookup,
+                         const std::string& path, Violations& violations);
 
-/// A gear set whose tables a client sent as text; `locate` says where in it.
+/// Accepts a gear set whose tables were sent as text. `locate` returns the position of a sample in
+/// the text.
 std::optional<v1::GearSet> accept(const v1::GearSet& stated, const LocateSample& locate,
                                   const ResourceLookup& lookup, const std::string& path,
                                   Violations& violations);
 
 inline constexpr int kMaximumLabels = 64;
 inline constexpr int kMaximumProvenances = 200;
-inline constexpr int kMaximumMeasurements = 1000;  ///< rows of one table
+inline constexpr int kMaximumMeasurements = 1000;  ///< rows of one table of measurements
 
 }  // namespace tribodyn::server

@@ -18,24 +18,25 @@ using google::protobuf::FieldDescriptor;
 using Numbers = google::protobuf::RepeatedFieldRef<double>;
 
 constexpr double kShareTolerance = 1e-3;
-constexpr double kContinuityTolerance = 1e-6;  // of the value, or of a thousandth
-constexpr double kPowerTolerance = 1e-6;       // of the speeds that make it up
+// relative to 1e-3 + |value|
+constexpr double kContinuityTolerance = 1e-6;
+constexpr double kPowerTolerance = 1e-6;  // relative to the larger of rolling and sliding speed
 
-/// Adds violations up to a limit and counts the rest.
-class TableComplaints {
+/// Adds at most kMaximumTableViolations violations, then the number of the others.
+class TableViolations {
  public:
-  TableComplaints(const std::string& path, Violations& violations)
+  TableViolations(const std::string& path, Violations& violations)
       : path_(path), violations_(violations) {}
-  ~TableComplaints() {
+  ~TableViolations() {
     if (count_ <= kMaximumTableViolations) return;
     violations_.push_back(
         {path_, fmt::format("{} more violations", count_ - kMaximumTableViolations)});
   }
-  TableComplaints(const TableComplaints&) = delete;
-  TableComplaints& operator=(const TableComplaints&) = delete;
+  TableViolations(const TableViolations&) = delete;
+  TableViolations& operator=(const TableViolations&) = delete;
 
   bool any() const { return count_ > 0; }
-  /// `place` and `text` are made only when they are kept.
+  /// Calls `place` and `text` only for violations that are kept.
   template <class Place, class Text>
   void add(const Place& place, const Text& text) {
     if (++count_ <= kMaximumTableViolations) violations_.push_back({place(), text()});
@@ -51,7 +52,7 @@ Numbers column(const v1::FlankSlot& slot, const FieldDescriptor& field) {
   return slot.GetReflection()->GetRepeatedFieldRef<double>(slot, &field);
 }
 
-/// Every column of every slot has the samples of the first one; false when not.
+/// Returns true if every column of every slot has as many samples as the first one.
 bool check_sizes(const v1::GearSet& set, const std::string& path, Violations& violations) {
   const std::size_t before = violations.size();
   const std::string slots = join_path(path, "flank_slots");
@@ -73,15 +74,14 @@ bool check_sizes(const v1::GearSet& set, const std::string& path, Violations& vi
       if (size == samples) continue;
       violations.push_back(
           {fmt::format("{}[{}].{}", slots, k, descriptor.field(i)->name()),
-           fmt::format("{} samples; allowed: {}, as in the load share of the first slot", size,
+           fmt::format("{} samples; allowed: {}, the number of the first slot's load share", size,
                        samples)});
     }
   }
   return violations.size() == before;
 }
 
-void check_numbers(const v1::GearSet& set, const LocateSample& locate,
-                   TableComplaints& complaints) {
+void check_numbers(const v1::GearSet& set, const LocateSample& locate, TableViolations& limited) {
   const auto& descriptor = *v1::FlankSlot::descriptor();
   for (int k = 0; k < kFlankPairs; ++k) {
     for (int i = 0; i < descriptor.field_count(); ++i) {
@@ -91,31 +91,30 @@ void check_numbers(const v1::GearSet& set, const LocateSample& locate,
       for (int j = 0; j < values.size(); ++j) {
         const double value = values.Get(j);
         if (value >= row->minimum && value <= row->maximum) continue;  // false for NaN
-        complaints.add([&] { return locate(k, j, field.name()); },
-                       [&] { return out_of_range_text(*row, value); });
+        limited.add([&] { return locate(k, j, field.name()); },
+                    [&] { return out_of_range_text(*row, value); });
       }
     }
   }
 }
 
-void check_shares(const v1::GearSet& set, const LocateSample& locate, TableComplaints& complaints) {
+void check_shares(const v1::GearSet& set, const LocateSample& locate, TableViolations& limited) {
   const int samples = set.flank_slots(0).load_share_size();
   for (int j = 0; j < samples; ++j) {
     double sum = 0;
     for (const v1::FlankSlot& slot : set.flank_slots()) sum += slot.load_share(j);
     if (std::abs(sum - 1) <= kShareTolerance) continue;
-    complaints.add(
-        [&] { return locate(0, j, "load_share"); },
-        [&] {
-          return fmt::format(
-              "load shares of the three pairs add up to {}; allowed: 1 within {} (eq 29)", sum,
-              kShareTolerance);
-        });
+    limited.add([&] { return locate(0, j, "load_share"); },
+                [&] {
+                  return fmt::format(
+                      "load shares of the three pairs add up to {}; allowed: 1 within {} (eq 29)",
+                      sum, kShareTolerance);
+                });
   }
 }
 
 void check_continuity(const v1::GearSet& set, const LocateSample& locate,
-                      TableComplaints& complaints) {
+                      TableViolations& limited) {
   const auto& descriptor = *v1::FlankSlot::descriptor();
   for (int k = 0; k + 1 < kFlankPairs; ++k) {
     for (int i = 0; i < descriptor.field_count(); ++i) {
@@ -124,17 +123,17 @@ void check_continuity(const v1::GearSet& set, const LocateSample& locate,
       const double last = here.Get(here.size() - 1);
       const double first = column(set.flank_slots(k + 1), field).Get(0);
       if (std::abs(last - first) <= kContinuityTolerance * (1e-3 + std::abs(last))) continue;
-      complaints.add([&] { return locate(k, here.size() - 1, field.name()); },
-                     [&] {
-                       return fmt::format(
-                           "{} = {}, but {} where the next pair takes over ({}); allowed: equal",
-                           field.name(), last, first, locate(k + 1, 0, field.name()));
-                     });
+      limited.add([&] { return locate(k, here.size() - 1, field.name()); },
+                  [&] {
+                    return fmt::format(
+                        "{} = {}, but {} at the first sample of the next slot ({}); allowed: equal",
+                        field.name(), last, first, locate(k + 1, 0, field.name()));
+                  });
     }
   }
 }
 
-void check_power(const v1::GearSet& set, const LocateSample& locate, TableComplaints& complaints) {
+void check_power(const v1::GearSet& set, const LocateSample& locate, TableViolations& limited) {
   const double ratio = static_cast<double>(set.pinion_teeth()) / set.gear_teeth();
   for (int k = 0; k < kFlankPairs; ++k) {
     const v1::FlankSlot& slot = set.flank_slots(k);
@@ -147,14 +146,13 @@ void check_power(const v1::GearSet& set, const LocateSample& locate, TableCompla
       const double arms =
           slot.pinion_friction_arm_metres(j) + ratio * slot.gear_friction_arm_metres(j);
       if (std::abs(arms + sliding) <= kPowerTolerance * std::max(pinion, sliding)) continue;
-      complaints.add(
-          [&] { return locate(k, j, "pinion_friction_arm_metres"); },
-          [&] {
-            return fmt::format(
-                "r_fr,p + r_fr,g N_p/N_g = {} m, sliding speed A = {} m per rad/s; allowed: the "
-                "negative of one another (power in = power lost)",
-                arms, sliding);
-          });
+      limited.add([&] { return locate(k, j, "pinion_friction_arm_metres"); },
+                  [&] {
+                    return fmt::format(
+                        "r_fr,p + r_fr,g N_p/N_g = {} m, sliding speed A = {} m per rad/s; "
+                        "allowed: a sum equal to -A (power in = power lost)",
+                        arms, sliding);
+                  });
     }
   }
 }
@@ -183,7 +181,7 @@ void check_fourier(const v1::FourierSeries& series, const std::string& path,
   }
 }
 
-/// Entries of ascending torque.
+/// Adds a violation if the torques do not ascend or are out of range.
 template <class Entries>
 void check_torques(const Entries& entries, const std::string& path, Violations& violations) {
   if (entries.size() > kMaximumTorques) {
@@ -222,8 +220,8 @@ void check_shares_by_torque(const v1::GearSet& set, const std::string& path,
                                                          kFlankPairs, samples)});
       continue;
     }
-    v1::GearSet shares;  // the slots in the form that the checks want
-    TableComplaints complaints(here, violations);
+    v1::GearSet shares;  // holds the slots as the checks below expect them
+    TableViolations limited(here, violations);
     for (const auto& slot : entry.slots()) {
       *shares.add_flank_slots()->mutable_load_share() = slot.load_share();
     }
@@ -231,11 +229,11 @@ void check_shares_by_torque(const v1::GearSet& set, const std::string& path,
       for (int j = 0; j < samples; ++j) {
         const double share = shares.flank_slots(k).load_share(j);
         if (share >= row->minimum && share <= row->maximum) continue;
-        complaints.add([&] { return locate(k, j, "load_share"); },
-                       [&] { return out_of_range_text(*row, share); });
+        limited.add([&] { return locate(k, j, "load_share"); },
+                    [&] { return out_of_range_text(*row, share); });
       }
     }
-    if (!complaints.any()) check_shares(shares, locate, complaints);
+    if (!limited.any()) check_shares(shares, locate, limited);
   }
 }
 
@@ -244,12 +242,12 @@ void check_shares_by_torque(const v1::GearSet& set, const std::string& path,
 void check_flank_slots(const v1::GearSet& gear_set, const LocateSample& locate,
                        const std::string& path, Violations& violations) {
   if (!check_sizes(gear_set, path, violations)) return;
-  TableComplaints complaints(path, violations);
-  check_numbers(gear_set, locate, complaints);
-  if (complaints.any()) return;
-  check_shares(gear_set, locate, complaints);
-  check_continuity(gear_set, locate, complaints);
-  if (gear_set.gear_teeth() > 0) check_power(gear_set, locate, complaints);
+  TableViolations limited(path, violations);
+  check_numbers(gear_set, locate, limited);
+  if (limited.any()) return;
+  check_shares(gear_set, locate, limited);
+  check_continuity(gear_set, locate, limited);
+  if (gear_set.gear_teeth() > 0) check_power(gear_set, locate, limited);
 }
 
 void check_series(const v1::MeshSeries& series, const v1::GearSet& gear_set,
@@ -269,11 +267,10 @@ void check_series(const v1::MeshSeries& series, const v1::GearSet& gear_set,
   const double gear = series.gear_contact_radius_metres().mean();
   const double expected = pinion * gear_set.gear_teeth() / gear_set.pinion_teeth();
   if (std::abs(gear - expected) <= kRatioTolerance * std::abs(expected)) return;
-  violations.push_back(
-      {join_path(path, "gear_contact_radius_metres.mean"),
-       fmt::format("R_g0 = {} m; allowed: R_p0 N_g/N_p = {} m within {}, or the transmission error "
-                   "winds up (eqs 8, 9)",
-                   gear, expected, kRatioTolerance)});
+  violations.push_back({join_path(path, "gear_contact_radius_metres.mean"),
+                        fmt::format("R_g0 = {} m; allowed: R_p0 N_g/N_p = {} m within {}, or the "
+                                    "transmission error grows without bound (eqs 8, 9)",
+                                    gear, expected, kRatioTolerance)});
 }
 
 void check_gear_set(const v1::GearSet& gear_set, const LocateSample& locate,

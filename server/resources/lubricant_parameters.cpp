@@ -30,7 +30,7 @@ constexpr double kFifteenCelsius = 15 + kZeroCelsius;
 constexpr double kSquareMillimetres = 1e-6;
 constexpr double kMillipascals = 1e-3;
 
-/// A parameter's name in the contract and in the core.
+/// The names of a parameter in the contract and in the core.
 struct Member {
   const char* field;
   const char* name;
@@ -125,8 +125,8 @@ std::optional<double> stated_number(double value, double factor) {
   return value == 0 ? std::nullopt : std::optional<double>(value * factor);
 }
 
-/// The density law that turns kinematic viscosities of a table into dynamic ones: as stated,
-/// measured, or typical of the class.
+/// Returns the density law that converts kinematic viscosities to dynamic ones. It comes from the
+/// client's parameters, from measured densities, or from the class of the base oil, in this order.
 DensityLaw density_law_of(const FluidMeasurements& fluid) {
   const Stated& stated = fluid.stated;
   if (stated.density_at_zero_kelvin && stated.density_temperature_slope) {
@@ -149,12 +149,13 @@ ViscosityPoint to_core(const v1::ViscosityMeasurement& row, const DensityLaw* la
   return {temperature, viscosity, row.relative_standard_uncertainty()};
 }
 
-/// What was entered, and the field of LubricantMeasurements that each viscosity comes from.
+/// Measurements and parameters that the client entered, in the core's types, and the field of
+/// LubricantMeasurements that each viscosity comes from.
 struct Entered {
   FluidMeasurements fluid;
   std::string kinematic_viscosity_40_field = kKinematic40;
   std::string kinematic_viscosity_100_field = kKinematic100;
-  std::vector<std::string> viscosity_fields;  ///< one a row of fluid.viscosities
+  std::vector<std::string> viscosity_fields;  ///< one for each row of fluid.viscosities
 
   std::string field(const GrossError& error) const {
     switch (error.measurement) {
@@ -181,10 +182,10 @@ std::string field_of(const v1::ViscosityMeasurement& row, int index) {
                          : "dynamic_viscosity_millipascal_seconds");
 }
 
-/// A row of the table that is KV40 or KV100, which no single number states, is taken for it. False
-/// for every other row.
-bool take_trade_viscosity(const v1::ViscosityMeasurement& row, int index, Entered& out) {
-  constexpr double kBathTolerance = 0.01;  // K, that of ASTM D445
+/// Uses a row of the table as KV40 or KV100 if it was measured at that temperature and the field
+/// for that viscosity is unset. Returns false for all other rows.
+bool take_as_standard_viscosity(const v1::ViscosityMeasurement& row, int index, Entered& out) {
+  constexpr double kBathTolerance = 0.01;  // [K], tolerance of the bath temperature in ASTM D445
   if (!row.has_kinematic_viscosity_square_millimetres_per_second()) return false;
   if (row.relative_standard_uncertainty() != 0) return false;
   const auto take = [&](double celsius, std::optional<double>& viscosity, std::string& field) {
@@ -197,7 +198,7 @@ bool take_trade_viscosity(const v1::ViscosityMeasurement& row, int index, Entere
          take(100, out.fluid.kinematic_viscosity_100, out.kinematic_viscosity_100_field);
 }
 
-/// Everything that was entered, in the core's terms; what the server computed before is left out.
+/// Returns everything that the client entered in the core's types, without computed parameters.
 /// Throws Refusal.
 Entered entered(const v1::Lubricant& lubricant) {
   const v1::LubricantMeasurements& measured = lubricant.measurements();
@@ -237,7 +238,7 @@ Entered entered(const v1::Lubricant& lubricant) {
   std::optional<DensityLaw> law;
   for (int i = 0; i < measured.viscosities_size(); ++i) {
     const v1::ViscosityMeasurement& row = measured.viscosities(i);
-    if (take_trade_viscosity(row, i, result)) continue;
+    if (take_as_standard_viscosity(row, i, result)) continue;
     if (row.has_kinematic_viscosity_square_millimetres_per_second() && !law) {
       law = density_law_of(out);
     }
@@ -247,7 +248,7 @@ Entered entered(const v1::Lubricant& lubricant) {
   return result;
 }
 
-/// "lubricant.field", or nothing for what is no parameter.
+/// Returns "lubricant.field", or an empty string if `name` is not a parameter.
 std::string field_of_parameter(const std::string& name) {
   for (const Member& member : kMembers) {
     if (name == member.name) return member.field;
@@ -255,7 +256,7 @@ std::string field_of_parameter(const std::string& name) {
   return {};
 }
 
-/// The entry of one field, made when there is none.
+/// Returns the entry of a field; adds one if there is none.
 v1::ParameterProvenance* entry_of(v1::Lubricant& lubricant, const std::string& field) {
   for (v1::ParameterProvenance& entry : *lubricant.mutable_provenance()) {
     if (entry.field() == field) return &entry;
@@ -290,7 +291,7 @@ void add_residual(double temperature, double measured, const Lubricant& lubrican
   row->set_residual(std::log(measured / fitted));
 }
 
-/// What the stored law leaves of each measured viscosity.
+/// Adds the difference between each measured viscosity and the stored law.
 void add_residuals(const FluidMeasurements& fluid, const Lubricant& lubricant,
                    v1::LubricantCharacterisation& out) {
   const auto add_kinematic = [&](const std::optional<double>& viscosity, double temperature) {
@@ -337,7 +338,8 @@ void add_figures(const CharacterisedFluid& fluid, v1::LubricantCharacterisation&
     row->set_field(field_of_parameter(each.parameter));
     row->set_sentence(each.sentence);
   }
-  for (const GrossError& each : fluid.gross_errors) {  // stored before they were refused
+  // Lubricants stored by a version without this check may have gross errors.
+  for (const GrossError& each : fluid.gross_errors) {
     v1::CharacterisationWarning* row = out.add_warnings();
     row->set_code(each.code);
     row->set_sentence(each.sentence);
@@ -396,12 +398,13 @@ void complete_parameters(v1::Lubricant& lubricant, const std::string& path,
     for (const Member& member : kMembers) {
       if (!is_set(lubricant, member)) set_computed(lubricant, member, fluid);
     }
-  } catch (const Refusal& refusal) {  // of a fluid that is complete, the measurements alone
+    // The measurements of a complete lubricant may allow no fit.
+  } catch (const Refusal& refusal) {
     if (!complete) violations.push_back({path, refusal.what()});
   }
 }
 
-void forget_computed(v1::Lubricant& lubricant) {
+void clear_computed_parameters(v1::Lubricant& lubricant) {
   auto& entries = *lubricant.mutable_provenance();
   for (int i = entries.size() - 1; i >= 0; --i) {
     if (!entries.Get(i).computed()) continue;
@@ -431,8 +434,8 @@ v1::LubricantCharacterisation characterisation(const v1::Lubricant& lubricant) {
 }
 
 std::vector<v1::RangeWarning> fluid_warnings(const v1::Lubricant& lubricant) {
-  static LruCache<std::string, std::vector<v1::RangeWarning>> kept;
-  return kept.get(lubricant.SerializeAsString(), [&] { return make_fluid_warnings(lubricant); });
+  static LruCache<std::string, std::vector<v1::RangeWarning>> cache;
+  return cache.get(lubricant.SerializeAsString(), [&] { return make_fluid_warnings(lubricant); });
 }
 
 v1::LubricantCharacterisation brief_characterisation(const v1::Lubricant& lubricant) {

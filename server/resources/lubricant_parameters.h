@@ -9,21 +9,24 @@
 
 namespace tribodyn::server {
 
-/// Sets every parameter that is not stated: fitted to the measurements or estimated from the class
-/// of the base oil (core/lubricant/characterisation.h), marked `computed`, with its uncertainty and
-/// a warning in the provenance. `lubricant` has passed check_message. What cannot be told is a
-/// violation, and so is a measurement that cannot be right (core/lubricant/gross_errors.h).
+/// Sets every unset parameter. A value is fitted to the measurements or estimated from the class of
+/// the base oil (core/lubricant/characterisation.h), and its provenance is marked `computed` with
+/// an uncertainty and a warning. Requires that `lubricant` passed check_message. Adds a violation
+/// for a parameter that cannot be computed and for a measurement with a gross error
+/// (core/lubricant/gross_errors.h).
 void complete_parameters(v1::Lubricant& lubricant, const std::string& path, Violations& violations);
 
-/// Unsets what the server had computed, with its provenance, so that it is computed again.
-void forget_computed(v1::Lubricant& lubricant);
+/// Clears computed parameters and their provenance, so that complete_parameters computes them
+/// again.
+void clear_computed_parameters(v1::Lubricant& lubricant);
 
-/// What the parameters amount to and how well they fit the measurements. `lubricant` is complete.
+/// Returns figures that follow from the parameters (viscosities, grades), residuals of the
+/// measurements, and warnings. Requires a complete lubricant.
 v1::LubricantCharacterisation characterisation(const v1::Lubricant& lubricant);
-/// What to know of the fluid before relying on a result: its characterisation's warnings, one for
-/// all estimated parameters together. `lubricant` is complete.
+/// Returns the warnings of the characterisation that concern every result, with one warning for all
+/// estimated parameters together. Requires a complete lubricant.
 std::vector<v1::RangeWarning> fluid_warnings(const v1::Lubricant& lubricant);
-/// Only the figures that a list shows: viscosities, index, density and grades.
+/// Returns only the figures for lists: viscosities, index, density and grades.
 v1::LubricantCharacterisation brief_characterisation(const v1::Lubricant& lubricant);
 
 }  // namespace tribodyn::server

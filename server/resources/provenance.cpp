@@ -15,9 +15,9 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 
-constexpr char kUnstated[] = "stated without a source";
+constexpr char kSourceOfUser[] = "stated without a source";
 
-/// Fields of a resource that are no parameters of the model.
+/// Returns true for a message field that holds parameters of the model.
 bool is_block(const FieldDescriptor& field) {
   static const std::set<std::string> kOther = {"provenance", "measurements", "labels"};
   return field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE && !is_output_only(field) &&
@@ -33,13 +33,14 @@ bool contains(const std::vector<std::string>& list, const std::string& word) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-bool is_there(const google::protobuf::Message& resource, const FieldDescriptor& block) {
+bool is_set_in(const google::protobuf::Message& resource, const FieldDescriptor& block) {
   const auto& reflection = *resource.GetReflection();
   return block.is_repeated() ? reflection.FieldSize(resource, &block) > 0
                              : reflection.HasField(resource, &block);
 }
 
-/// Symbol of the unit of "half_backlash_metres" or "dynamics.half_backlash_metres".
+/// Returns the symbol of the unit of a field such as "half_backlash_metres" or
+/// "dynamics.half_backlash_metres".
 std::string unit_of(const Descriptor& resource, const std::string& field) {
   const std::size_t dot = field.find('.');
   if (dot == std::string::npos) {
@@ -91,7 +92,7 @@ void check_provenance(const Descriptor& resource, const Provenances& all, const 
     const std::string here = fmt::format("{}[{}]", path, i);
     if (!contains(known, entry.field())) {
       violations.push_back(
-          {here + ".field", fmt::format("\"{}\" is no parameter{}", plain_excerpt(entry.field()),
+          {here + ".field", fmt::format("\"{}\" is not a parameter{}", plain_excerpt(entry.field()),
                                         meant_text(entry.field(), known))});
       continue;
     }
@@ -101,12 +102,12 @@ void check_provenance(const Descriptor& resource, const Provenances& all, const 
     const bool is_number = contains(paths.numbers, entry.field());
     if (entry.standard_uncertainty() != 0 && !is_number) {
       violations.push_back({here + ".standard_uncertainty",
-                            fmt::format("\"{}\" is no single number", entry.field())});
+                            fmt::format("\"{}\" is not a single number", entry.field())});
     }
     const std::string unit = unit_of(resource, entry.field());
     if (!entry.unit().empty() && entry.unit() != unit) {
       violations.push_back(
-          {here + ".unit", fmt::format("unit = \"{}\"; allowed: \"{}\", that of {}, or empty",
+          {here + ".unit", fmt::format("unit = \"{}\"; allowed: \"{}\", the unit of {}, or empty",
                                        plain_excerpt(entry.unit()), unit, entry.field())});
     }
   }
@@ -124,7 +125,7 @@ void complete_provenance(const google::protobuf::Message& resource, Provenances&
   const ParameterPaths paths = parameter_paths(*resource.GetDescriptor());
   std::vector<std::string> needed;
   for (const std::string& block : paths.blocks) {
-    if (is_there(resource, *resource.GetDescriptor()->FindFieldByName(block))) {
+    if (is_set_in(resource, *resource.GetDescriptor()->FindFieldByName(block))) {
       needed.push_back(block);
     }
   }
@@ -136,7 +137,7 @@ void complete_provenance(const google::protobuf::Message& resource, Provenances&
     v1::ParameterProvenance* entry = all.Add();
     entry->set_field(field);
     entry->set_provenance(v1::PROVENANCE_USER);
-    entry->set_source(kUnstated);
+    entry->set_source(kSourceOfUser);
   }
   if (!paths.blocks.empty()) return;
   const auto place = [&](const v1::ParameterProvenance& entry) {

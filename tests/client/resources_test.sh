@@ -351,7 +351,7 @@ expect 0 surfaces create joined --like run-in --profile axial,profile.csv \
   --profile radial,profile.csv --as-published eq46
 out_has 'eq 46 as published'
 expect 1 surfaces create one --like run-in --profile profile.csv --as-published eq46
-err_has 'as eq 46 joins an AXIAL and a RADIAL profile'
+err_has 'because eq 46 combines an AXIAL and a RADIAL profile'
 expect 2 surfaces create none --like run-in --as-published eq46
 err_has '--as-published acts on profiles'
 expect 2 point --lubricant 1 --speed 50 --as-published eq46

@@ -450,7 +450,7 @@ TEST_F(ImportTest, AnUnfilteredProfileIsToldAtOnceAndWithEveryResult) {
   const auto made = import_surface_profiles(app_, request);
   ASSERT_TRUE(made.ok()) << complaints(made.error());
   EXPECT_THAT(warning_of(made.message()),
-              testing::AllOf(HasSubstr("the profile has waves of 3 sample spacings"),
+              testing::AllOf(HasSubstr("the waves of the profile are 3 sample spacings"),
                              HasSubstr("was not filtered"), HasSubstr("eta_G beta_G sigma_G is 0."),
                              HasSubstr("filter them")));
   v1::Simulation simulation = point_simulation();
@@ -583,8 +583,9 @@ TEST_F(ImportTest, Eq46AsPublishedNeedsTwoDirectionsOfAMember) {
   }
   EXPECT_THAT(
       complaints(import_surface_profiles(app_, request).error()),
-      HasSubstr("eq46_square_root_of_sum: true; allowed: false, as eq 46 joins an AXIAL and "
-                "a RADIAL profile of one member"));
+      HasSubstr(
+          "eq46_square_root_of_sum: true; allowed: false, because eq 46 combines an AXIAL and "
+          "a RADIAL profile of one member"));
 }
 
 TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
@@ -608,7 +609,7 @@ TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
   EXPECT_THAT(said(waves(300, 50, 100)), HasSubstr("tribofilm_shear_strength_pascals is not set"));
   request.add_profiles()->set_member(v1::FLANK_MEMBER_PINION);
   EXPECT_THAT(complaints(import_surface_profiles(app_, request).error()),
-              HasSubstr("for all or none"));
+              HasSubstr("in all or none"));
 }
 
 TEST_F(ImportTest, EverythingWrongWithProfilesComesAtOnce) {
@@ -631,7 +632,7 @@ TEST_F(ImportTest, EverythingWrongWithProfilesComesAtOnce) {
         "profiles[0].csv row 8 column height_nanometres: is empty",
         "profiles[0].csv row 10 column position_micrometres: a step of -5e-07 m",
         "profiles[0].csv row 12 column position_micrometres: a step of 3e-06 m; allowed: 1e-06 m",
-        "profiles[1].csv column 2: \"height_metre\" is no known header",
+        "profiles[1].csv column 2: \"height_metre\" is not a known header",
         "profiles[1].csv: samples = 3; allowed: 5 to 1000000",
         "profiles[1].csv row 3 column position_metres: a step of -1 m; allowed: above 0",
         "profiles[1].csv row 4 column position_metres: a step of -1 m; allowed: above 0",

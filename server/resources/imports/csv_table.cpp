@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(kSpace) - begin + 1);
 }
 
-/// The separator that a header uses most.
+/// Returns the separator that occurs most often in the header.
 char separator_of(std::string_view header) {
   char best = ',';
   std::ptrdiff_t most = 0;
@@ -37,7 +37,7 @@ char separator_of(std::string_view header) {
   return best;
 }
 
-/// The cells of a line; nothing when a quoted cell does not end or something follows it.
+/// Returns the cells of a line, or nullopt if a quoted cell does not end or is followed by text.
 std::optional<std::vector<std::string>> split(std::string_view line, char separator) {
   std::vector<std::string> cells;
   while (cells.size() <= kMaximumCsvColumns) {
@@ -69,10 +69,10 @@ std::optional<std::vector<std::string>> split(std::string_view line, char separa
   return cells;
 }
 
-/// Limits how much is said about one text.
-class CsvComplaints {
+/// Adds at most kMaximumCsvViolations violations for one text.
+class CsvViolations {
  public:
-  explicit CsvComplaints(Violations& violations) : violations_(violations) {}
+  explicit CsvViolations(Violations& violations) : violations_(violations) {}
   bool full() const { return count_ >= kMaximumCsvViolations; }
   void add(std::string place, std::string text) {
     if (count_++ < kMaximumCsvViolations) {
@@ -85,12 +85,12 @@ class CsvComplaints {
   std::size_t count_ = 0;
 };
 
-/// Reads one line after the other into a table.
+/// Reads a table line by line.
 class TableReader {
  public:
-  TableReader(CsvTable& table, Violations& violations) : table_(table), complaints_(violations) {}
+  TableReader(CsvTable& table, Violations& violations) : table_(table), limited_(violations) {}
 
-  bool full() const { return complaints_.full(); }
+  bool full() const { return limited_.full(); }
 
   void read(std::string_view line, int number) {
     const std::string_view text = trimmed(line);
@@ -98,11 +98,11 @@ class TableReader {
     if (separator_ == '\0') table_.separator = separator_ = separator_of(text);
     auto cells = split(separator_ == '\t' ? line : text, separator_);
     const std::string place = fmt::format("{} row {}", table_.name, number);
-    if (!cells) return complaints_.add(place, "a cell in quotes does not end properly");
+    if (!cells) return limited_.add(place, "a quoted cell has no end, or text follows its end");
     if (table_.columns.empty()) return read_header(std::move(*cells), place);
     if (cells->size() != table_.columns.size()) {
-      return complaints_.add(place, fmt::format("{} cells; allowed: {}, as in the header",
-                                                cells->size(), table_.columns.size()));
+      return limited_.add(place, fmt::format("{} cells; allowed: {}, the number in the header",
+                                             cells->size(), table_.columns.size()));
     }
     table_.rows.push_back({number, std::move(*cells)});
   }
@@ -110,17 +110,17 @@ class TableReader {
  private:
   void read_header(std::vector<std::string> cells, const std::string& place) {
     if (cells.size() > kMaximumCsvColumns) {
-      complaints_.add(place, fmt::format("more than {} columns", kMaximumCsvColumns));
+      limited_.add(place, fmt::format("more than {} columns", kMaximumCsvColumns));
     }
     table_.columns = std::move(cells);
   }
 
   CsvTable& table_;
-  CsvComplaints complaints_;
+  CsvViolations limited_;
   char separator_ = '\0';
 };
 
-/// In lower case, blanks and dashes as underscores.
+/// Returns the header in lower case with blanks and dashes as underscores.
 std::string plain_header(std::string_view header) {
   std::string out;
   for (const char c : header) {
@@ -135,8 +135,8 @@ std::string plain_header(std::string_view header) {
   return out;
 }
 
-/// Whether a list with bars between its parts holds the word.
-bool holds(std::string_view list, std::string_view word) {
+/// Returns true if a list with the separator '|' contains the word.
+bool list_contains(std::string_view list, std::string_view word) {
   while (!list.empty()) {
     const std::size_t end = std::min(list.find('|'), list.size());
     if (list.substr(0, end) == word) return true;
@@ -145,15 +145,16 @@ bool holds(std::string_view list, std::string_view word) {
   return false;
 }
 
-/// "X (mm)" or "Z [\u00b5m]" is one of the names with one of the units.
-bool has_form(const std::string& header, const CsvColumnForm& form) {
+/// Returns true if the header is that of the form, or one of its names with one of its units: "X
+/// (mm)", "Z [\u00b5m]".
+bool matches_form(const std::string& header, const CsvColumnForm& form) {
   if (plain_header(header) == form.header) return true;
   const char close = header.empty() ? '\0' : header.back();
   if (close != ')' && close != ']') return false;
   const std::size_t open = header.rfind(close == ')' ? '(' : '[');
   if (open == std::string::npos) return false;
   std::string unit = header.substr(open + 1, header.size() - open - 2);
-  for (const std::string_view micro : {"\u00b5", "\u03bc", "\xb5"}) {  // the last in Latin-1
+  for (const std::string_view micro : {"\u00b5", "\u03bc", "\xb5"}) {  // the last one is Latin-1
     if (unit.starts_with(micro)) unit.replace(0, micro.size(), "u");
   }
   for (const std::string_view square : {"\u00b2", "\u00b3"}) {
@@ -162,7 +163,8 @@ bool has_form(const std::string& header, const CsvColumnForm& form) {
     }
   }
   if (unit.starts_with("\u00b0")) unit.erase(0, 2);
-  return holds(form.names, plain_header(header.substr(0, open))) && holds(form.units, unit);
+  return list_contains(form.names, plain_header(header.substr(0, open))) &&
+         list_contains(form.units, unit);
 }
 
 bool has_decimal_comma(std::string_view cell) {
@@ -203,7 +205,7 @@ std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name
     const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff") ||
                           (text.size() > 1 && (text[0] == '\0') != (text[1] == '\0'));
     violations.push_back({name, is_utf16 ? "is UTF-16; allowed: UTF-8, saved as \"CSV UTF-8\""
-                                         : "is no text: it holds zero bytes"});
+                                         : "is not text: it contains zero bytes"});
     return std::nullopt;
   }
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
@@ -234,11 +236,11 @@ std::vector<CsvColumn> match_columns(const CsvTable& table, std::span<const CsvC
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     const std::string& header = table.columns[i];
     const auto form = std::find_if(forms.begin(), forms.end(), [&](const CsvColumnForm& each) {
-      return has_form(header, each);
+      return matches_form(header, each);
     });
     if (form == forms.end()) {
       violations.push_back({fmt::format("{} column {}", table.name, i + 1),
-                            fmt::format("\"{}\" is no known header{}", plain_excerpt(header),
+                            fmt::format("\"{}\" is not a known header{}", plain_excerpt(header),
                                         meant_text(header, known))});
     } else if (find_column(out, form->quantity) != nullptr) {
       violations.push_back({fmt::format("{} column {}", table.name, header),
@@ -278,20 +280,20 @@ void check_units_row(CsvTable& table, const std::vector<CsvColumn>& columns,
 
 std::vector<double> numbers(const CsvTable& table, const CsvColumn& column, EmptyCells empty,
                             Violations& violations) {
-  /// A cell that is no number, and how many rows have it.
-  struct Wrong {
+  /// A text that is not a number, and the rows that contain it.
+  struct InvalidCell {
     int first_line = 0, last_line = 0;
     std::size_t count = 0;
     std::string text;
   };
   constexpr char kComma[] = ",";
-  std::vector<Wrong> wrong;
+  std::vector<InvalidCell> invalid_cells;
   std::map<std::string, std::size_t> index;
-  const auto complain = [&](const std::string& key, int line, std::string text) {
-    const auto [at, is_new] = index.emplace(key, wrong.size());
-    if (is_new) wrong.push_back({line, line, 0, std::move(text)});
-    wrong[at->second].last_line = line;
-    ++wrong[at->second].count;
+  const auto add_invalid = [&](const std::string& key, int line, std::string text) {
+    const auto [at, is_new] = index.emplace(key, invalid_cells.size());
+    if (is_new) invalid_cells.push_back({line, line, 0, std::move(text)});
+    invalid_cells[at->second].last_line = line;
+    ++invalid_cells[at->second].count;
   };
   std::vector<double> out;
   out.reserve(table.rows.size());
@@ -304,20 +306,21 @@ std::vector<double> numbers(const CsvTable& table, const CsvColumn& column, Empt
                         : std::numeric_limits<double>::quiet_NaN());
     if (value || (cell.empty() && empty == EmptyCells::kAreNaN)) continue;
     if (cell.empty()) {
-      complain(cell, row.line, "is empty; allowed: a finite number");
+      add_invalid(cell, row.line, "is empty; allowed: a finite number");
     } else {
-      complain(comma ? kComma : cell, row.line,
-               fmt::format("\"{}\"; allowed: a finite number with a decimal point{}",
-                           plain_excerpt(cell), comma ? ", or semicolons between the cells" : ""));
+      add_invalid(
+          comma ? kComma : cell, row.line,
+          fmt::format("\"{}\"; allowed: a finite number with a decimal point{}",
+                      plain_excerpt(cell), comma ? ", or semicolons between the cells" : ""));
     }
   }
-  CsvComplaints complaints(violations);
-  for (Wrong& each : wrong) {
+  CsvViolations limited(violations);
+  for (InvalidCell& each : invalid_cells) {
     if (each.count > 1) {
       each.text +=
           fmt::format(" (and in {} more rows, the last row {})", each.count - 1, each.last_line);
     }
-    complaints.add(csv_place(table, each.first_line, column.form.header), std::move(each.text));
+    limited.add(csv_place(table, each.first_line, column.form.header), std::move(each.text));
   }
   return out;
 }

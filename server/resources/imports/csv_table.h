@@ -10,70 +10,74 @@
 
 namespace tribodyn::server {
 
-/// A table that a client sent as text: a header line, then rows of as many cells, separated by
-/// commas, semicolons or tabs (whichever the header uses), cells in double quotes where they hold
-/// one. Empty lines and lines that begin with '#' are skipped; a byte order mark and CRLF are fine.
+/// A table that a client sent as text: a header line, then rows with the same number of cells.
+/// Commas, semicolons or tabs separate cells; the separator is the one that the header uses. A cell
+/// that contains the separator is in double quotes. Empty lines and lines that begin with '#' are
+/// skipped; a byte order mark and CRLF are accepted.
 struct CsvTable {
-  std::string name;  ///< of the field it came in, for messages
+  std::string name;  ///< field of the request, for violations
   char separator = ',';
   std::vector<std::string> columns;
   struct Row {
-    int line = 0;  ///< in the text, counted from 1 as editors and spreadsheets do
+    int line = 0;  ///< line of the text, counted from 1
     std::vector<std::string> cells;
   };
   std::vector<Row> rows;
 };
 
 inline constexpr std::size_t kMaximumCsvBytes = 1 << 20;
-inline constexpr std::size_t kMaximumProfileBytes = 3 << 20;  ///< of all profiles of a surface
+inline constexpr std::size_t kMaximumProfileBytes = 3 << 20;  ///< profiles of a surface
 inline constexpr std::size_t kMaximumCsvColumns = 64;
 inline constexpr std::size_t kMaximumCsvViolations = 100;
 
-/// Reads a table; violations name the rows that are left out of it because they cannot be read.
-/// Nothing when none can; an Excel workbook and UTF-16 are told in one sentence.
+/// Parses a table. Adds a violation for each row that cannot be read and leaves it out. Returns
+/// nullopt if no row can be read. Excel workbooks and UTF-16 are refused with one violation.
 std::optional<CsvTable> parse_csv(std::string_view text, const std::string& name,
                                   std::size_t maximum_bytes, Violations& violations);
 
-/// "tooth_contact_csv row 19 column load_share".
+/// Returns the position of a cell, e.g. "tooth_contact_csv row 19 column load_share".
 std::string csv_place(const CsvTable& table, int line, std::string_view column);
 
-/// A header that stands for a quantity: in SI it is factor * cell + offset.
+/// A header and its quantity. The quantity in SI units is factor * cell + offset.
 struct CsvColumnForm {
   std::string_view header;
   std::string_view quantity;
   double factor = 1;
   double offset = 0;
-  /// Other headers, a list with a bar between two: "x|position", each with a unit behind it in
-  /// brackets out of `units`: "X (mm)".
+  /// Other names, separated by bars: "x|position". A header consists of one of these names and one
+  /// of `units` in brackets: "X (mm)".
   std::string_view names = {};
   std::string_view units = {};
 };
 
-/// Which column of a table holds a quantity, and how.
+/// The column of a table that holds a quantity, and its form.
 struct CsvColumn {
   std::size_t index = 0;
   CsvColumnForm form;
 };
 
-/// The columns of a table among the forms it may have, in any case. A header that is none of them
-/// is a violation that names the nearest; so is a quantity given twice.
+/// Returns the columns of a table that have one of `forms`; upper and lower case are equal. Adds a
+/// violation for an unknown header, with the nearest known one, and for a quantity that occurs
+/// twice.
 std::vector<CsvColumn> match_columns(const CsvTable& table, std::span<const CsvColumnForm> forms,
                                      Violations& violations);
 
-/// The column of a quantity, or null.
+/// Returns the column of a quantity, or null if there is none.
 const CsvColumn* find_column(const std::vector<CsvColumn>& columns, std::string_view quantity);
 
+/// Meaning of an empty cell.
 enum class EmptyCells {
   kViolation,
   kAreNaN,
 };
 
-/// Takes a first row out that holds units and not numbers, with a violation that says so.
+/// Removes a first row that contains units, and adds a violation.
 void check_units_row(CsvTable& table, const std::vector<CsvColumn>& columns,
                      Violations& violations);
 
-/// The cells of a column in SI units, NaN for what is no number (and a violation; one for all rows
-/// with the same cell). A decimal comma is a point where commas do not separate the cells.
+/// Returns the cells of a column in SI units. A cell that is not a number becomes NaN and a
+/// violation; rows with the same text share one violation. Unless commas separate cells, a decimal
+/// comma is read as a point.
 std::vector<double> numbers(const CsvTable& table, const CsvColumn& column, EmptyCells empty,
                             Violations& violations);
 

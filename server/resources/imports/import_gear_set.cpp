@@ -20,7 +20,7 @@ using google::protobuf::FieldDescriptor;
 
 constexpr double kMillimetre = 1e-3;
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kPitchSpacingTolerance = 1e-6;  // of a pitch
+constexpr double kPitchSpacingTolerance = 1e-6;  // in pitches
 constexpr double kSnapTolerance = 1e-6;
 
 constexpr char kRoll[] = "roll_pitches";
@@ -62,18 +62,19 @@ constexpr CsvColumnForm kSeriesForms[] = {
 
 bool near(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
 
-/// The rows of a tooth contact table in the order of slots and samples.
-struct Layout {
-  int samples = 0;               ///< of each slot
-  std::vector<std::size_t> row;  ///< of the table, [slot * samples + sample]
+/// The rows of a tooth contact table, ordered by slot and sample.
+struct RowOrder {
+  int samples = 0;               ///< samples of each slot
+  std::vector<std::size_t> row;  ///< row of the table at [slot * samples + sample]
 };
 
+/// Reads a tooth contact table into the flank slots of a gear set.
 class ToothContactReader {
  public:
   ToothContactReader(const CsvTable& table, v1::GearSet& gear_set, Violations& violations)
       : table_(table), gear_set_(gear_set), violations_(violations) {}
 
-  /// False when the table cannot be laid out.
+  /// Returns false if columns or rows are missing or in an unknown order.
   bool read() {
     const std::size_t before = violations_.size();
     columns_ = match_columns(table_, kToothContactForms, violations_);
@@ -81,9 +82,9 @@ class ToothContactReader {
     if (violations_.size() > before) return false;
     read_cells();
     if (find_column(columns_, kPhase) != nullptr) {
-      lay_out_by_phase();
+      order_by_phase();
     } else {
-      lay_out_by_roll();
+      order_by_roll();
     }
     if (violations_.size() > before) {
       check_cells();
@@ -95,40 +96,40 @@ class ToothContactReader {
 
   std::string locate(int slot, int sample, std::string_view column) const {
     const std::size_t at = index(slot, sample);
-    const int line = at < layout_.row.size() ? table_.rows[layout_.row[at]].line : 0;
+    const int line = at < row_order_.row.size() ? table_.rows[row_order_.row[at]].line : 0;
     const CsvColumn* found = find_column(columns_, column);
     return csv_place(table_, line, found == nullptr ? column : found->form.header);
   }
 
  private:
   std::size_t index(int slot, int sample) const {
-    return static_cast<std::size_t>(slot) * static_cast<std::size_t>(layout_.samples) +
+    return static_cast<std::size_t>(slot) * static_cast<std::size_t>(row_order_.samples) +
            static_cast<std::size_t>(sample);
   }
 
   bool has(std::string_view quantity) const { return find_column(columns_, quantity) != nullptr; }
 
-  void complain(const std::string& text) { violations_.push_back({table_.name, text}); }
+  void add_violation(const std::string& text) { violations_.push_back({table_.name, text}); }
 
   void check_columns() {
     const int rolls = (has(kRoll) ? 1 : 0) + (has(kRollAngle) ? 1 : 0) + (has(kPhase) ? 1 : 0);
     if (rolls != 1) {
-      complain(
+      add_violation(
           "allowed: exactly one of roll_pitches, pinion_roll_radians (or _degrees) and "
           "mesh_phase");
     }
-    if (has(kPhase) != has(kSlot)) complain("mesh_phase and slot go together");
+    if (has(kPhase) != has(kSlot)) add_violation("mesh_phase and slot need each other");
     const auto& descriptor = *v1::FlankSlot::descriptor();
     for (int i = 0; i < descriptor.field_count(); ++i) {
       const std::string& name = descriptor.field(i)->name();
       const bool optional = name.starts_with("contact_point") || name.ends_with("arm_metres");
-      if (!optional && !has(name)) complain("has no column " + name);
+      if (!optional && !has(name)) add_violation("has no column " + name);
     }
     if (has("pinion_friction_arm_metres") != has("gear_friction_arm_metres")) {
-      complain("friction arms of pinion and gear go together");
+      add_violation("friction arms of pinion and gear need each other");
     }
     if (has("contact_point_velocity_x_metres") != has("contact_point_velocity_y_metres")) {
-      complain("contact point velocities x and y go together");
+      add_violation("contact point velocities x and y need each other");
     }
   }
 
@@ -144,8 +145,8 @@ class ToothContactReader {
     }
   }
 
-  /// Names numbers out of range by row, as the checks of the finished gear set do where a table can
-  /// be laid out.
+  /// Adds violations for numbers out of range, by row. Only needed if the rows are in no known
+  /// order: otherwise accept() makes this check.
   void check_cells() {
     std::size_t count = 0;
     for (const auto& [name, values] : cells_) {
@@ -161,8 +162,9 @@ class ToothContactReader {
     }
   }
 
-  /// One pair from roll -1.5 to 1.5: the last sample of a slot is the first of the next.
-  void lay_out_by_roll() {
+  /// Orders rows by roll: one pair from roll -1.5 to 1.5 pitches. The last sample of a slot is the
+  /// first of the next one.
+  void order_by_roll() {
     const bool by_angle = has(kRollAngle);
     std::vector<double> roll = column(by_angle ? kRollAngle : kRoll);
     if (by_angle) {
@@ -170,12 +172,12 @@ class ToothContactReader {
     }
     const std::size_t rows = roll.size();
     if (rows < 4 || (rows - 1) % kFlankPairs != 0) {
-      return complain(
+      return add_violation(
           fmt::format("{} rows; allowed: 3 n + 1 from roll -1.5 to 1.5 pitches, n "
                       "intervals a pitch",
                       rows));
     }
-    layout_.samples = static_cast<int>((rows - 1) / kFlankPairs) + 1;
+    row_order_.samples = static_cast<int>((rows - 1) / kFlankPairs) + 1;
     const double step = 3.0 / static_cast<double>(rows - 1);
     const CsvColumn& header = *find_column(columns_, by_angle ? kRollAngle : kRoll);
     for (std::size_t i = 0; i < rows; ++i) {
@@ -188,15 +190,15 @@ class ToothContactReader {
       if (violations_.size() > kMaximumCsvViolations) return;
     }
     for (int k = 0; k < kFlankPairs; ++k) {
-      for (int j = 0; j < layout_.samples; ++j) {
-        layout_.row.push_back(static_cast<std::size_t>(k) *
-                                  static_cast<std::size_t>(layout_.samples - 1) +
-                              static_cast<std::size_t>(j));
+      for (int j = 0; j < row_order_.samples; ++j) {
+        row_order_.row.push_back(static_cast<std::size_t>(k) *
+                                     static_cast<std::size_t>(row_order_.samples - 1) +
+                                 static_cast<std::size_t>(j));
       }
     }
   }
 
-  void lay_out_by_phase() {
+  void order_by_phase() {
     const std::vector<double> phase = column(kPhase);
     const std::vector<double> slot = column(kSlot);
     std::array<std::vector<std::size_t>, kFlankPairs> rows;
@@ -215,15 +217,15 @@ class ToothContactReader {
     const std::size_t samples = rows[0].size();
     if (!all_known) return;
     if (samples < 2 || rows[1].size() != samples || rows[2].size() != samples) {
-      return complain(
-          fmt::format("slots of {}, {} and {} rows; allowed: as many in each, two or more",
+      return add_violation(
+          fmt::format("slots of {}, {} and {} rows; allowed: equal numbers, two or more",
                       rows[0].size(), rows[1].size(), rows[2].size()));
     }
-    layout_.samples = static_cast<int>(samples);
+    row_order_.samples = static_cast<int>(samples);
     for (const auto& of_slot : rows) {
       for (std::size_t j = 0; j < samples; ++j) {
         const double expected = static_cast<double>(j) / static_cast<double>(samples - 1);
-        layout_.row.push_back(of_slot[j]);
+        row_order_.row.push_back(of_slot[j]);
         if (std::isnan(phase[of_slot[j]]) ||
             near(phase[of_slot[j]], expected, kPitchSpacingTolerance)) {
           continue;
@@ -247,8 +249,8 @@ class ToothContactReader {
           known != cells_.end() ? known->second : std::vector<double>(table_.rows.size(), 0.0);
       for (int k = 0; k < kFlankPairs; ++k) {
         v1::FlankSlot* slot = gear_set_.mutable_flank_slots(k);
-        for (int j = 0; j < layout_.samples; ++j) {
-          slot->GetReflection()->AddDouble(slot, &field, values[layout_.row[index(k, j)]]);
+        for (int j = 0; j < row_order_.samples; ++j) {
+          slot->GetReflection()->AddDouble(slot, &field, values[row_order_.row[index(k, j)]]);
         }
       }
     }
@@ -259,7 +261,7 @@ class ToothContactReader {
   void fill_friction_arms() {
     const double ratio = static_cast<double>(gear_set_.pinion_teeth()) / gear_set_.gear_teeth();
     for (v1::FlankSlot& slot : *gear_set_.mutable_flank_slots()) {
-      for (int j = 0; j < layout_.samples; ++j) {
+      for (int j = 0; j < row_order_.samples; ++j) {
         const double px = slot.pinion_velocity_x_metres(j), py = slot.pinion_velocity_y_metres(j);
         const double gx = slot.gear_velocity_x_metres(j), gy = slot.gear_velocity_y_metres(j);
         const double x = px - ratio * gx, y = py - ratio * gy;
@@ -296,8 +298,8 @@ class ToothContactReader {
   v1::GearSet& gear_set_;
   Violations& violations_;
   std::vector<CsvColumn> columns_;
-  std::map<std::string, std::vector<double>> cells_;  ///< by field of FlankSlot
-  Layout layout_;
+  std::map<std::string, std::vector<double>> cells_;  ///< cells by field of FlankSlot
+  RowOrder row_order_;
 };
 
 const FieldDescriptor* series_field(const std::string& quantity) {
@@ -317,7 +319,7 @@ std::vector<std::string> series_quantities() {
   return out;
 }
 
-/// Harmonics of each quantity in rising order without gaps.
+/// Reads a table of Fourier series. The harmonics of each quantity must ascend without gaps.
 void read_series(const CsvTable& table, v1::GearSet& gear_set, Violations& violations) {
   const std::size_t before = violations.size();
   const std::vector<CsvColumn> columns = match_columns(table, kSeriesForms, violations);
@@ -428,7 +430,7 @@ std::optional<v1::GearSet> import_gear_set(const v1::ImportGearSetRequest& reque
   const auto table =
       parse_csv(request.tooth_contact_csv(), "tooth_contact_csv", kMaximumCsvBytes, violations);
   const auto refuse = [&]() -> std::optional<v1::GearSet> {
-    check_stated(gear_set, lookup, "gear_set", violations);
+    check_client_fields(gear_set, lookup, "gear_set", violations);
     if (gear_set.has_series()) {
       check_series(gear_set.series(), gear_set, "gear_set.series", violations);
     }

@@ -21,7 +21,7 @@ constexpr char kTemperatureNames[] = "temperature|temp|t";
 constexpr char kDynamicNames[] = "dynamic_viscosity|viscosity";
 constexpr char kDensityNames[] = "density|rho";
 
-// In the units of the contract's measurements.
+// Factors and offsets convert to the units of the contract's measurements.
 constexpr CsvColumnForm kViscosityForms[] = {
     {"temperature_celsius", kTemperature, 1, 0, kTemperatureNames, "C"},
     {"temperature_kelvin", kTemperature, 1, -kZeroCelsius, kTemperatureNames, "K"},
@@ -33,7 +33,7 @@ constexpr CsvColumnForm kViscosityForms[] = {
     {"density_kilograms_per_cubic_metre", kDensity, 1, 0, kDensityNames, "kg/m3"},
     {"density_grams_per_cubic_centimetre", kDensity, 1e3, 0, kDensityNames, "g/cm3|g/ml|kg/l"}};
 
-/// The cells of a quantity, NaN where there is none.
+/// Returns the cells of a quantity; all are NaN if the table has no such column.
 std::vector<double> cells(const CsvTable& table, const std::vector<CsvColumn>& columns,
                           std::string_view quantity, Violations& violations) {
   const CsvColumn* column = find_column(columns, quantity);
@@ -43,7 +43,7 @@ std::vector<double> cells(const CsvTable& table, const std::vector<CsvColumn>& c
                  violations);
 }
 
-/// Checks one row against the table of constraints; its violations stand at row and column.
+/// Checks one row against the table of constraints. The path of a violation is row and column.
 void check_row(const google::protobuf::Message& row, const CsvTable& table, int line,
                const std::vector<CsvColumn>& columns, Violations& violations) {
   Violations found;
@@ -55,10 +55,10 @@ void check_row(const google::protobuf::Message& row, const CsvTable& table, int 
   }
 }
 
-/// The place in the table of each viscosity that was read from it, in their order.
-using Places = std::vector<std::string>;
+/// The position in the table of each viscosity, in the order of the rows.
+using Positions = std::vector<std::string>;
 
-void read_table(CsvTable& table, v1::LubricantMeasurements& out, Places& places,
+void read_table(CsvTable& table, v1::LubricantMeasurements& out, Positions& positions,
                 Violations& violations) {
   const std::size_t before = violations.size();
   const std::vector<CsvColumn> columns = match_columns(table, kViscosityForms, violations);
@@ -72,7 +72,8 @@ void read_table(CsvTable& table, v1::LubricantMeasurements& out, Places& places,
   const auto dynamic = cells(table, columns, kDynamic, violations);
   const auto uncertainty = cells(table, columns, kUncertainty, violations);
   const auto density = cells(table, columns, kDensity, violations);
-  // A cell that is no number has been named; the rest of its row is still checked.
+  // cells() added a violation for a cell that is not a number; the rest of its row is still
+  // checked.
   const auto set_temperature = [&](auto& row, std::size_t i) {
     if (!std::isnan(temperature[i])) row.set_temperature_celsius(temperature[i]);
   };
@@ -87,7 +88,7 @@ void read_table(CsvTable& table, v1::LubricantMeasurements& out, Places& places,
     if (!std::isnan(uncertainty[i])) row->set_relative_standard_uncertainty(uncertainty[i]);
     check_row(*row, table, table.rows[i].line, columns, violations);
     const CsvColumn* column = find_column(columns, is_kinematic ? kKinematic : kDynamic);
-    places.push_back(csv_place(table, table.rows[i].line, column->form.header));
+    positions.push_back(csv_place(table, table.rows[i].line, column->form.header));
   };
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (!std::isnan(kinematic[i])) add_viscosity(i, true);
@@ -100,9 +101,10 @@ void read_table(CsvTable& table, v1::LubricantMeasurements& out, Places& places,
   }
 }
 
-/// Violations of viscosities of the table are named by their place in it; `stated` ones stood
-/// before them.
-void name_places(const Places& places, int stated, std::size_t begin, Violations& violations) {
+/// Replaces the paths of violations of the table's viscosities by their positions in the table.
+/// `stated`: number of viscosities before the table's.
+void replace_paths(const Positions& positions, int stated, std::size_t begin,
+                   Violations& violations) {
   constexpr std::string_view kPath = "lubricant.measurements.viscosities[";
   std::size_t i = 0;
   for (Violation& each : violations) {
@@ -110,8 +112,8 @@ void name_places(const Places& places, int stated, std::size_t begin, Violations
     std::string& field = each.field;
     if (!field.starts_with(kPath)) continue;
     const int index = std::atoi(field.c_str() + kPath.size()) - stated;
-    if (index >= 0 && index < static_cast<int>(places.size())) {
-      field = places[static_cast<std::size_t>(index)];
+    if (index >= 0 && index < static_cast<int>(positions.size())) {
+      field = positions[static_cast<std::size_t>(index)];
     }
   }
 }
@@ -132,16 +134,16 @@ std::optional<v1::Lubricant> import_lubricant(const v1::ImportLubricantRequest& 
   lubricant.set_name(name);
   auto table =
       parse_csv(request.viscosity_table_csv(), "viscosity_table_csv", kMaximumCsvBytes, violations);
-  Places places;
+  Positions positions;
   const int stated = lubricant.measurements().viscosities_size();
-  if (table) read_table(*table, *lubricant.mutable_measurements(), places, violations);
+  if (table) read_table(*table, *lubricant.mutable_measurements(), positions, violations);
   if (violations.size() > before) {
-    check_stated(request.lubricant(), lookup, "lubricant", violations);
+    check_client_fields(request.lubricant(), lookup, "lubricant", violations);
     return std::nullopt;
   }
   auto accepted = accept(lubricant, static_cast<const v1::Lubricant*>(nullptr), lookup, "lubricant",
                          violations);
-  name_places(places, stated, before, violations);
+  replace_paths(positions, stated, before, violations);
   return accepted;
 }
 

@@ -10,13 +10,14 @@
 
 namespace tribodyn::server {
 
-/// The lubricant of a request with the rows of its viscosity table added to its measurements,
-/// accepted (accept_resource.h). Columns: lubricants.proto. Violations name row and column.
+/// Adds the rows of the viscosity table to the measurements of the request's lubricant and returns
+/// the accepted lubricant (accept_resource.h) with the name `name`. lubricants.proto documents
+/// columns. Violations name row and column. Returns nullopt if there is a violation.
 std::optional<v1::Lubricant> import_lubricant(const v1::ImportLubricantRequest& request,
                                               const std::string& name, const ResourceLookup& lookup,
                                               Violations& violations);
 
-/// Headers that a viscosity table may have.
+/// Returns the allowed headers of a viscosity table.
 std::vector<std::string> viscosity_headers();
 
 }  // namespace tribodyn::server

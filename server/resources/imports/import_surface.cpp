@@ -23,12 +23,12 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr double kProfileSpacingTolerance = 1e-3;  // of the spacing
+constexpr double kProfileSpacingTolerance = 1e-3;  // relative to the spacing
 
 constexpr char kPosition[] = "position";
 constexpr char kHeight[] = "height";
 
-// As instruments head their columns: "X (mm)", "Profile [um]".
+// Names and units in the headers of instruments: "X (mm)", "Profile [um]".
 constexpr char kPositionNames[] = "x|position|distance|length";
 constexpr char kHeightNames[] = "z|height|profile";
 
@@ -44,13 +44,14 @@ constexpr CsvColumnForm kProfileForms[] = {
 constexpr const char* kFromProfiles[] = {"asperity_density_per_square_metre",
                                          "asperity_radius_metres", "composite_rms_height_metres"};
 
-/// From one readable position of a profile to the next one.
+/// Distance from one readable position of a profile to the next one.
 struct Step {
-  std::size_t row = 0;    ///< where it ends
-  double per_sample = 0;  ///< [m]
+  std::size_t row = 0;    ///< row of the later position
+  double per_sample = 0;  ///< distance divided by the number of rows [m]
 };
 
-/// Steps over which the number of samples is known: none over rows that could not be read at all.
+/// Returns the steps between readable positions. If rows are missing, their number is unknown: then
+/// a step across them is left out.
 std::vector<Step> steps_of(const CsvTable& table, const std::vector<double>& positions,
                            bool rows_are_missing) {
   std::vector<Step> out;
@@ -78,7 +79,8 @@ double median(const std::vector<Step>& steps) {
   return *middle;
 }
 
-/// Names each position that does not rise, or does not lie as far from the one before as most do.
+/// Adds a violation for each position that does not rise, or whose step differs from the median
+/// step.
 void check_spacing(const CsvTable& table, const CsvColumn& column, const std::vector<Step>& steps,
                    Violations& violations) {
   if (steps.empty()) return;
@@ -107,7 +109,7 @@ void check_spacing(const CsvTable& table, const CsvColumn& column, const std::ve
   }
 }
 
-/// What a profile measures; nothing, and everything that is wrong with it, when it is not usable.
+/// Returns the moments of a profile, or nullopt with all violations if it is not usable.
 std::optional<v1::SurfaceMeasurement> measure(const v1::SurfaceProfile& profile,
                                               v1::Levelling levelling, const ProfileBand& band,
                                               const std::string& name, Violations& violations) {
@@ -178,8 +180,8 @@ SpectralMoments mean_of(const std::vector<SpectralMoments>& repeats) {
   return out;
 }
 
-/// The isotropic surface of one member: repeats of a direction averaged, two directions joined by
-/// eq 46. Nothing when the member was not measured.
+/// Returns the moments of one member's isotropic surface: repeats of a direction are averaged, two
+/// directions are combined by eq 46. Returns nullopt if the member was not measured.
 std::optional<SpectralMoments> member_moments(const v1::Surface& surface, v1::FlankMember member,
                                               const AsPublished& as_published) {
   std::map<v1::ProfileDirection, std::vector<SpectralMoments>> found;
@@ -196,7 +198,7 @@ std::string join(const std::string& a, const std::string& b) {
   return a.empty() ? b : a + "; " + b;
 }
 
-/// "the pinion's axial profile" of a measurement.
+/// Returns e.g. "the pinion's axial profile".
 std::string profile_text(const v1::SurfaceMeasurement& measurement) {
   std::string text = measurement.member() == v1::FLANK_MEMBER_PINION ? "the pinion's "
                      : measurement.member() == v1::FLANK_MEMBER_GEAR ? "the gear's "
@@ -206,35 +208,34 @@ std::string profile_text(const v1::SurfaceMeasurement& measurement) {
   return text + "profile";
 }
 
-/// What is wrong with the sampling of the profiles that a surface was made of.
+/// Returns a sentence for each profile whose sampling is too coarse for its waves.
 std::string unresolved_text(const v1::Surface& surface) {
   std::string out;
   for (const v1::SurfaceMeasurement& each : surface.measurements()) {
     const double waves = wave_length_in_spacings(moments_of(each), each.spacing_metres());
     if (!(waves < kLeastSpacingsPerWave)) continue;
-    out = join(out, fmt::format("{} has waves of {:.2g} sample spacings, white noise 3: it holds "
-                                "the instrument's noise or was not filtered (ISO 3274 wants a "
-                                "cut-off lambda_s of 5 spacings or more)",
-                                profile_text(each), waves));
+    out =
+        join(out, fmt::format("the waves of {} are {:.2g} sample spacings long (white noise: "
+                              "3): the profile contains the instrument's noise or was not filtered "
+                              "(ISO 3274 requires a cut-off lambda_s of at least 5 spacings)",
+                              profile_text(each), waves));
   }
   return out;
 }
 
-/// Of a product of Greenwood and Tripp's parameters that no steel surface has.
+/// Returns a sentence if no steel surface has this product of Greenwood and Tripp's parameters.
 std::string product_text(const Roughness& roughness) {
   const double product = roughness_product(roughness);
   if (product >= kLeastRoughnessProduct && product <= kMostRoughnessProduct) return "";
   return fmt::format(
-      "eta_G beta_G sigma_G is {:.3g}; Greenwood and Tripp expect {} to {} for steel "
-      "on steel{}",
+      "eta_G beta_G sigma_G is {:.3g}; Greenwood and Tripp give {} to {} for steel on steel{}",
       product, kLeastRoughnessProduct, kMostRoughnessProduct,
       product > kMostRoughnessProduct
-          ? ": the profiles reach over too wide a band of wave lengths; "
-            "filter them"
+          ? ": the band of wave lengths of the profiles is too wide; filter them"
           : "");
 }
 
-/// Which flanks and directions no profile tells of.
+/// Returns the flanks and directions without a profile.
 std::string unmeasured_text(const v1::Surface& surface) {
   std::string text;
   std::set<v1::FlankMember> members;
@@ -282,8 +283,8 @@ void set_parameters(v1::Surface& surface, const AsPublished& as_published) {
   }
 }
 
-/// What the profiles tell must not be stated as well.
-void check_not_stated(const v1::Surface& surface, Violations& violations) {
+/// Adds a violation for each set field that follows from the profiles.
+void check_fields_of_profiles_unset(const v1::Surface& surface, Violations& violations) {
   const auto refuse = [&](const std::string& name) {
     violations.push_back(
         {"surface." + name, name + " follows from the profiles; allowed: not set"});
@@ -295,9 +296,9 @@ void check_not_stated(const v1::Surface& surface, Violations& violations) {
   if (surface.measurements_size() > 0) refuse("measurements");
 }
 
-/// What is wrong with all that the profiles do not tell.
-void check_rest(const v1::Surface& stated, const std::string& name, const ResourceLookup& lookup,
-                Violations& violations) {
+/// Checks the fields that do not follow from the profiles.
+void check_other_fields(const v1::Surface& stated, const std::string& name,
+                        const ResourceLookup& lookup, Violations& violations) {
   v1::Surface rest = stated;
   rest.set_name(name);
   rest.clear_measurements();
@@ -328,14 +329,14 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
     bytes += profile.csv().size();
     (profile.member() == v1::FLANK_MEMBER_UNSPECIFIED ? both : single) = true;
     if (seen.emplace(profile.member(), profile.direction()).second) continue;
-    if (profile.direction() != v1::PROFILE_DIRECTION_UNSPECIFIED) continue;  // repeats
+    // Profiles with a direction may be repeats.
+    if (profile.direction() != v1::PROFILE_DIRECTION_UNSPECIFIED) continue;
     violations.push_back({"profiles",
-                          "two of one member without a direction; allowed: one, or the direction, "
-                          "AXIAL or RADIAL, of "
-                          "each (repeats of a direction are averaged)"});
+                          "two of one member without a direction; allowed: one, or each with its "
+                          "direction, AXIAL or RADIAL (repeats of a direction are averaged)"});
   }
   if (both && single) {
-    violations.push_back({"profiles", "the member is stated for some; allowed: for all or none"});
+    violations.push_back({"profiles", "the member is set in some; allowed: in all or none"});
   }
   if (bytes > kMaximumProfileBytes) {
     violations.push_back({"profiles", fmt::format("{} bytes together; allowed: at most {}", bytes,
@@ -349,8 +350,8 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
                          other.direction() != v1::PROFILE_DIRECTION_UNSPECIFIED;
       if (!mixed) continue;
       violations.push_back({fmt::format("profiles[{}].direction", i),
-                            "not set; allowed: AXIAL or RADIAL, as another profile of this member "
-                            "states one"});
+                            "not set; allowed: AXIAL or RADIAL, because another profile of this "
+                            "member has a direction"});
     }
     if (!v1::FlankMember_IsValid(each.member())) {
       violations.push_back({fmt::format("profiles[{}].member", i),
@@ -367,10 +368,9 @@ void check_profiles(const v1::ImportSurfaceProfilesRequest& request, Violations&
                seen.count({each.first, v1::PROFILE_DIRECTION_RADIAL}) > 0;
       });
   if (request.eq46_square_root_of_sum() && !has_two_directions) {
-    violations.push_back(
-        {"eq46_square_root_of_sum",
-         "true; allowed: false, as eq 46 joins an AXIAL and a RADIAL profile of one "
-         "member, and no member has both"});
+    violations.push_back({"eq46_square_root_of_sum",
+                          "true; allowed: false, because eq 46 combines an AXIAL and a RADIAL "
+                          "profile of one member, and no member has both"});
   }
   if (!v1::Levelling_IsValid(request.levelling())) {
     violations.push_back(
@@ -407,7 +407,7 @@ std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest
   const std::size_t before = violations.size();
   v1::Surface surface = request.surface();
   surface.set_name(name);
-  check_not_stated(surface, violations);
+  check_fields_of_profiles_unset(surface, violations);
   check_profiles(request, violations);
   const v1::Levelling levelling = request.levelling() == v1::LEVELLING_UNSPECIFIED
                                       ? v1::LEVELLING_LEAST_SQUARES_LINE
@@ -419,7 +419,7 @@ std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest
     if (measured) *surface.add_measurements() = std::move(*measured);
   }
   if (violations.size() > before) {
-    check_rest(request.surface(), name, lookup, violations);
+    check_other_fields(request.surface(), name, lookup, violations);
     return std::nullopt;
   }
   try {

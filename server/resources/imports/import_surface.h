@@ -11,20 +11,21 @@
 
 namespace tribodyn::server {
 
-/// The surface that measured profiles mean, accepted (accept_resource.h): moments of each profile
-/// (eq 45), repeats of a direction averaged, two directions of a member made isotropic (eq 46),
-/// members added (eq 47), Greenwood-Tripp parameters (eq 48). A member that was not measured is
-/// taken to be like the other one and a single direction to be isotropic, with a warning in the
-/// provenance. Violations name the profile, the row (line of its text) and the column.
+/// Computes a surface from measured profiles and returns it accepted (accept_resource.h) with the
+/// name `name`. Steps: moments of each profile (eq 45), mean of the repeats of a direction,
+/// isotropic surface of two directions of a member (eq 46), sum of both members (eq 47),
+/// Greenwood-Tripp parameters (eq 48). If only one member was measured, the other is assumed to be
+/// equal; if only one direction was measured, the surface is assumed to be isotropic; both with a
+/// warning in the provenance. Violations name the profile, the row (line of its text) and the
+/// column. Returns nullopt if there is a violation.
 std::optional<v1::Surface> import_surface(const v1::ImportSurfaceProfilesRequest& request,
                                           const std::string& name, const ResourceLookup& lookup,
                                           Violations& violations);
 
-/// What to know of a surface made of profiles before relying on a result; nothing for one whose
-/// parameters were stated.
+/// Returns warnings about the profiles of a surface; none if the client set its parameters.
 std::vector<v1::RangeWarning> surface_warnings(const v1::Surface& surface);
 
-/// Headers that a profile may have.
+/// Returns the allowed headers of a profile.
 std::vector<std::string> profile_headers();
 
 inline constexpr int kMaximumProfiles = 24;  ///< two members, two directions, six repeats
