@@ -59,7 +59,7 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
   }
   return {.request = inputs.requested.SerializeAsString(),
           .key = result_key(inputs),
-          .ledger = ledger(inputs),
+          .ledger = serialised_assumptions(inputs),
           .request_id = request.request_id(),
           .request_hash = request_hash,
           .is_forced = request.force(),

@@ -41,32 +41,33 @@ milliseconds to_milliseconds(double value) {
   return milliseconds(static_cast<std::int64_t>(1000 * value));
 }
 
-/// Written under another name first: who sees the file sees all of it.
+/// Writes the address under another name and renames the file, so that a reader never sees a part
+/// of it.
 void write_port_file(const std::string& path, const std::string& address) {
   const std::string unfinished = path + ".new";
   std::ofstream(unfinished) << address << '\n';
   std::filesystem::rename(unfinished, path);
 }
 
-/// The signal that came, or -1 after the time.
+/// Waits for a signal. Returns its number, or -1 after `limit`.
 int wait_for_signal(const sigset_t& signals, seconds limit) {
   const timespec time{limit.count(), 0};
   return sigtimedwait(&signals, nullptr, &time);
 }
 
-/// Compares the database's files with those at its path. Tells the log and the health checks when a
-/// file has gone from its place, and when it is back.
-class PlaceWatch {
+/// Compares the open database files with those at their path. Logs when a file is missing or
+/// replaced, and when it is back, and sets the health status accordingly.
+class DatabaseFileWatch {
  public:
-  PlaceWatch(const Store& store, GrpcServer& server) : store_(store), server_(server) {}
+  DatabaseFileWatch(const Store& store, GrpcServer& server) : store_(store), server_(server) {}
 
-  void look() {
+  void check() {
     const std::string misplaced = store_.misplaced();
     if (misplaced.empty() == is_in_place_) return;
     is_in_place_ = misplaced.empty();
     server_.set_serving(is_in_place_);
     if (is_in_place_) {
-      spdlog::warn("the database is back in its place; changes are accepted again");
+      spdlog::warn("the database is back at its path; changes are accepted again");
     } else {
       spdlog::critical("{}", misplaced);
     }
@@ -78,28 +79,30 @@ class PlaceWatch {
   bool is_in_place_ = true;
 };
 
-/// The signal that came. Until then the freed memory of the heaps is given back to the system every
-/// ten seconds: left alone, heaps that a busy moment has filled grow by some 2 MB an hour.
-int wait_for_stop(const sigset_t& signals, PlaceWatch& place) {
-  constexpr seconds kBetweenLooks(1);
-  constexpr int kLooksBetweenTrims = 10;
-  for (int looks = 1;; ++looks) {
-    const int signal = wait_for_signal(signals, kBetweenLooks);
+/// Waits for a signal and returns its number. Checks the database files once a second, and returns
+/// free heap memory to the system every ten seconds: without that the process grew by about 2 MB an
+/// hour after a busy period.
+int wait_for_stop(const sigset_t& signals, DatabaseFileWatch& file_watch) {
+  constexpr seconds kCheckInterval(1);
+  constexpr int kChecksPerTrim = 10;
+  for (int checks = 1;; ++checks) {
+    const int signal = wait_for_signal(signals, kCheckInterval);
     if (signal > 0) return signal;
-    place.look();
-    if (looks % kLooksBetweenTrims == 0) malloc_trim(0);
+    file_watch.check();
+    if (checks % kChecksPerTrim == 0) malloc_trim(0);
   }
 }
 
-/// Ends the process if the orderly way takes too long; what runs then is requeued at the next
-/// start. A further signal ends the waiting for running simulations, and a third one everything.
+/// Starts a thread that ends the process if the shutdown takes longer than kShutdownLimit;
+/// unfinished simulations then run again after the next start. A second signal cancels the wait for
+/// running simulations, a third one ends the process.
 void start_watchdog(const sigset_t& signals, std::atomic<bool>& hurry) {
   std::thread([&signals, &hurry] {
     if (wait_for_signal(signals, kShutdownLimit) > 0) {
       hurry = true;
       wait_for_signal(signals, kHurriedLimit);
     }
-    spdlog::critical("the shutdown takes too long; ending at once");
+    spdlog::critical("the shutdown takes too long; the process ends now");
     spdlog::shutdown();
     _exit(kExitFailed);
   }).detach();
@@ -122,13 +125,14 @@ SimulationJobs::Options job_options(const Settings& settings) {
 
 void shut_down(const Settings& settings, const sigset_t& signals, GrpcServer& server,
                SimulationJobs& jobs) {
-  static std::atomic<bool> hurry = false;  // outlives this function, as the watchdog does
+  // static, because the watchdog thread outlives this function
+  static std::atomic<bool> hurry = false;
   start_watchdog(signals, hurry);
   notify_service_manager("STOPPING=1");
   server.set_serving(false);
   if (!settings.port_file.empty()) std::filesystem::remove(settings.port_file);
   if (!jobs.drain(to_milliseconds(settings.drain_seconds), [] { return hurry.load(); })) {
-    spdlog::info("simulations that still run go back to the queue");
+    spdlog::info("running simulations are queued again");
   }
   jobs.stop();
   server.shutdown();
@@ -140,7 +144,7 @@ int complain(int code, const std::string& sentence) {
   return code;
 }
 
-/// Nothing when none are asked for.
+/// Starts the metrics listener. Returns null if no address is set.
 std::unique_ptr<MetricsListener> listen_for_metrics(const Settings& settings,
                                                     SimulationJobs& jobs) {
   if (settings.metrics_listen.empty()) return nullptr;
@@ -164,7 +168,7 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
   const SimulationJobs::Options options = job_options(settings);
   SimulationJobs jobs(store, options);
   Application application{store, jobs};
-  const std::size_t resumed = jobs.resume();  // before a client can add to the queue
+  const std::size_t resumed = jobs.resume();  // before clients can submit
   if (resumed > 0) spdlog::info("{} unfinished simulations are queued again", resumed);
   GrpcServer server(
       application, address,
@@ -180,8 +184,8 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
   if (!settings.port_file.empty()) write_port_file(settings.port_file, server.address());
   notify_service_manager("READY=1");
 
-  PlaceWatch place(store, server);
-  const int signal = wait_for_stop(signals, place);
+  DatabaseFileWatch file_watch(store, server);
+  const int signal = wait_for_stop(signals, file_watch);
   spdlog::info("signal {}: stopping", signal);
   shut_down(settings, signals, server, jobs);
   spdlog::info("stopped");
@@ -198,7 +202,8 @@ int check(const Settings& settings) {
     require_usable_path(canonical_path(settings.database));
     const std::filesystem::path folder = std::filesystem::absolute(settings.database).parent_path();
     if (access(folder.c_str(), W_OK) != 0) {
-      return complain(kExitBadDatabase, "database " + settings.database + " cannot be made there");
+      return complain(kExitBadDatabase,
+                      "database " + settings.database + ": its folder is not writable");
     }
   }
   const std::string wrong = check_golden_case();

@@ -7,12 +7,12 @@
 
 namespace tribodyn::server {
 
-/// Serves until one of the signals, which every thread must have blocked, tells it to stop. The
-/// exit code. Throws StoreError and ListenError.
+/// Serves until one of `signals` arrives. Every thread must have blocked them. Returns the exit
+/// code. Throws StoreError and ListenError.
 int serve(const Settings& settings, const ListenAddress& address, const sigset_t& signals);
 
-/// Says on standard error what would keep a server from starting; the exit code that it would end
-/// with.
+/// Checks settings, database and golden case. Prints everything that would prevent a start to
+/// standard error. Returns the exit code that the server would return.
 int check(const Settings& settings);
 
 }  // namespace tribodyn::server

@@ -4,8 +4,8 @@
 
 namespace tribodyn::server {
 
-/// Tells the service manager that started this process how things stand, e.g. "READY=1" (sd_notify
-/// protocol: a datagram to $NOTIFY_SOCKET). Without such a manager nothing happens.
+/// Sends a state such as "READY=1" to the service manager that started this process (sd_notify
+/// protocol: a datagram to $NOTIFY_SOCKET). Does nothing without a service manager.
 void notify_service_manager(const std::string& state);
 
 }  // namespace tribodyn::server

@@ -13,53 +13,50 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr double kLongestDrainSeconds = 25;              // of the 30 s that a shutdown may take
-constexpr std::uintmax_t kLargestConfigBytes = 1 << 20;  // a line for each flag takes 1 KiB
+constexpr double kLongestDrainSeconds = 25;              // [s], of the 30 s of a shutdown
+constexpr std::uintmax_t kLargestConfigBytes = 1 << 20;  // one line for each flag takes 1 KiB
 
-/// Subcommands take the place of serving; each needs --database.
+/// Adds the subcommands, which run instead of the server; each requires --database.
 void add_commands(CLI::App& app, Settings& settings) {
   app.require_subcommand(0, 1);
   const auto add = [&](const char* name, const char* description, bool with_file) {
     CLI::App* command = app.add_subcommand(name, description);
     command->add_option("--database", settings.database, "SQLite file")->required();
-    if (with_file) command->add_option("FILE", settings.file, "The backup")->required();
+    if (with_file) command->add_option("FILE", settings.file, "Backup file")->required();
   };
-  add("backup",
-      "Copies a database to FILE, also while a server runs on it; refuses a FILE that exists",
+  add("backup", "Copy a database to FILE, also while a server uses it. An existing FILE is refused",
       true);
   add("restore",
-      "Puts the backup FILE in the place of a database and prints the name under which it keeps "
-      "the "
-      "former one (DATABASE.replaced); refuses a database on which a server runs, and a damaged "
-      "FILE",
+      "Replace a database by the backup FILE and print the name of the replaced database "
+      "(DATABASE.replaced). A database in use by a server and a damaged FILE are refused",
       true);
   add("check",
-      "Says what is wrong with a database: damage, broken references, gaps in revisions and "
-      "events, contents that are not what was written. Exit code 3 when something is",
+      "Print every problem of a database: damage, broken references, gaps in revisions and events, "
+      "contents that differ from their checksum. The exit code is 3 if there is a problem",
       false);
 }
 
-/// The allowed range of a number with a decimal point. CLI::Range lets NaN pass.
+/// Returns a check of the range of a number with a decimal point. CLI::Range accepts NaN.
 CLI::Validator between(double least, double most) {
   const std::string range = fmt::format("{} to {}", least, most);
   return {[=](std::string& text) {
             double value = 0;
             const bool is_allowed =
                 CLI::detail::lexical_cast(text, value) && value >= least && value <= most;
-            return is_allowed ? std::string() : text + " is no number from " + range;
+            return is_allowed ? std::string() : text + " is not a number from " + range;
           },
           range};
 }
 
-/// Refuses what would be read without end, such as a device, and what is surely another file.
+/// Returns a check that refuses devices, folders, missing and too large files.
 CLI::Validator settings_file() {
   return {[](std::string& path) {
             std::error_code missing;
             const auto status = std::filesystem::status(path, missing);
             if (!std::filesystem::exists(status)) return path + " does not exist";
-            if (!std::filesystem::is_regular_file(status)) return path + " is no regular file";
+            if (!std::filesystem::is_regular_file(status)) return path + " is not a regular file";
             if (std::filesystem::file_size(path, missing) > kLargestConfigBytes) {
-              return path + " is larger than 1 MiB, so it is no file of settings";
+              return path + " is larger than 1 MiB and so is not a settings file";
             }
             return std::string();
           },
@@ -76,69 +73,69 @@ void add_flags(CLI::App& app, Settings& settings) {
                        std::string("tribodynd " TRIBODYN_VERSION " (") + kModelVersion + ")");
   app.add_flag(
       "--check", settings.check_only,
-      "Check settings, database and a computed case, and end: 0 when a server would start");
+      "Check settings, database and a computed case, then exit: 0 if the server would start");
   app.add_option("--listen", settings.listen,
                  "Loopback address and port (0: any free one), or unix:PATH")
       ->capture_default_str();
   app.add_option("--database", settings.database,
-                 "SQLite file; made when missing. Keep it on a local "
-                 "disk");
+                 "SQLite file; created if missing. Use a local disk");
   app.add_option("--threads", settings.threads,
-                 "Simulations computed at a time; 0: one per processor. Recommended: 0")
+                 "Simulations computed at the same time; 0: one per processor. Recommended: 0")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   add_seconds(app, "--call-limit-seconds", settings.call_limit_seconds, 86400,
-              "A call ends after this long, whatever its client allows. Recommended: 30");
+              "Longest duration of a call, whatever deadline its client sets. Recommended: 30");
   add_seconds(app, "--stream-limit-seconds", settings.stream_limit_seconds, 86400,
-              "So does a watch or the reading of a history; clients watch on. Recommended: 3600");
+              "Longest duration of a WatchSimulation or ReadHistory stream; clients resume by "
+              "themselves. Recommended: 3600");
   app.add_option("--unread-limit-seconds", settings.unread_limit_seconds,
-                 "A stream whose client takes nothing for this long is cut off. Recommended: 60")
+                 "A stream ends if its client reads nothing for this time. Recommended: 60")
       ->check(between(0.01, 86400))
       ->capture_default_str();
   add_seconds(app, "--heartbeat-seconds", settings.heartbeat_seconds, 3600,
-              "A watch that has nothing to tell sends a sign of life so often. Recommended: 15");
+              "Interval of the heartbeats of a watch without events. Recommended: 15");
   add_seconds(app, "--drain-seconds", settings.drain_seconds, kLongestDrainSeconds,
-              "On SIGTERM running simulations may go on for so long; those that have not ended run "
-              "again after the next start. A second SIGTERM ends the wait. Recommended: 20");
+              "Time that running simulations have to end after SIGTERM; the others run again after "
+              "the next start. A second SIGTERM ends the wait. Recommended: 20");
   app.add_option("--waiting-simulations", settings.waiting_simulations,
-                 "More than these do not wait; further ones are told when to come again, and one "
-                 "client may take three quarters. Recommended: 20000")
+                 "Capacity of the queue. Further submissions are refused with a retry delay. One "
+                 "client may use at most 75 %. Recommended: 20000")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   app.add_option("--waiting-processor-hours", settings.waiting_processor_hours,
-                 "The same for the sum of their estimates. Recommended: 100")
+                 "Capacity of the queue by estimated cost, in processor hours. Recommended: 100")
       ->check(between(0.001, 1e6))
       ->capture_default_str();
   app.add_option("--keep-days", settings.keep_days,
-                 "Simulations that have ended are removed after so long, unless pinned; 0: never. "
+                 "Ended simulations are removed after this time, unless they are pinned; 0: never. "
                  "Recommended: 0")
       ->check(between(0, 36500))
       ->capture_default_str();
   app.add_option("--disk-budget-megabytes", settings.disk_budget_megabytes,
-                 "Space for simulations that have ended and their results; beyond it those that "
-                 "ended first "
-                 "are removed. Pinned ones, lubricants and other resources are kept and do not "
-                 "count. 0: no "
-                 "budget. Recommended: half of the disk")
+                 "Disk space for ended simulations and their results. Above it those that ended "
+                 "first are removed; pinned simulations, lubricants and other resources do not "
+                 "count. 0: no limit. Recommended: half of the disk")
       ->check(between(0, 1e9))
       ->capture_default_str();
-  app.add_option("--port-file", settings.port_file,
-                 "Write the address here once the server answers; removed at the end");
+  app.add_option(
+      "--port-file", settings.port_file,
+      "File for the address, written when the server accepts calls and removed at its end");
   app.add_option("--metrics-listen", settings.metrics_listen,
-                 "Loopback address and port that answer GET /metrics for Prometheus; none by "
-                 "default. Recommended: 127.0.0.1:50652");
+                 "Loopback address and port of GET /metrics for Prometheus; none by default. "
+                 "Recommended: 127.0.0.1:50652");
   app.add_option("--log-level", settings.log_level, "Recommended: info")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
       ->capture_default_str();
-  app.set_config("--config", "", "File with lines such as `threads = 4`, named as the flags are")
+  app.set_config("--config", "",
+                 "File with lines such as `threads = 4`; names are those of the flags")
       ->check(settings_file());
   app.allow_config_extras(false);
   app.footer(
-      "Each flag may also stand in the environment, --listen as TRIBODYND_LISTEN, and in the file "
-      "that --config names. Flags come before the environment, the environment before the file.");
+      "Each flag can also be set in the environment (--listen as TRIBODYND_LISTEN) and in the file "
+      "of --config. A flag overrides the environment, the environment overrides the file.");
 }
 
-/// "--drain-seconds" is TRIBODYND_DRAIN_SECONDS.
+/// Returns the environment variable of a flag: TRIBODYND_DRAIN_SECONDS of "--drain-seconds".
 std::string variable_of(const std::string& flag) {
   std::string out = "TRIBODYND_" + flag;
   std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) {
@@ -147,7 +144,8 @@ std::string variable_of(const std::string& flag) {
   return out;
 }
 
-/// What the environment says, as flags; the last of several wins, and these come first.
+/// Returns the settings of the environment as flags. The caller puts them before the arguments,
+/// because the last value of a flag wins.
 std::vector<std::string> from_environment(const CLI::App& app) {
   std::vector<std::string> out;
   for (const CLI::Option* option : app.get_options()) {
@@ -169,7 +167,7 @@ std::optional<Settings> read_settings(const std::vector<std::string>& arguments,
   add_commands(app, settings);
   std::vector<std::string> words = from_environment(app);
   words.insert(words.end(), arguments.begin(), arguments.end());
-  std::reverse(words.begin(), words.end());  // as CLI11 wants them
+  std::reverse(words.begin(), words.end());  // CLI11 expects the last argument first
   try {
     app.parse(std::move(words));
     if (settings.database.empty()) throw CLI::RequiredError("--database");

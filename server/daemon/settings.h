@@ -6,7 +6,7 @@
 
 namespace tribodyn::server {
 
-// Exit codes, also for scripts that start the server.
+// Exit codes; scripts that start the server use them.
 inline constexpr int kExitStopped = 0;
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitBadSettings = 2;
@@ -14,11 +14,12 @@ inline constexpr int kExitBadDatabase = 3;
 inline constexpr int kExitCannotListen = 4;
 inline constexpr int kExitWrongResults = 5;
 
-/// How the server runs. Each comes from its flag, else from the environment (TRIBODYND_LISTEN for
-/// --listen), else from the file that --config names, else it is the default.
+/// Settings of the server. A value comes from its flag, or else from the environment
+/// (TRIBODYND_LISTEN for --listen), or else from the file of --config, or else it is the default
+/// below.
 struct Settings {
   std::string command;  ///< empty: serve; "backup", "restore", "check"
-  std::string file;     ///< of backup and restore
+  std::string file;     ///< argument of backup and restore
   bool check_only = false;
   std::string listen = "127.0.0.1:50651";
   std::string database;
@@ -31,14 +32,14 @@ struct Settings {
   double unread_limit_seconds = 60;
   double heartbeat_seconds = 15;
   double drain_seconds = 20;
-  double keep_days = 0;              ///< 0: for good
-  double disk_budget_megabytes = 0;  ///< of what may be removed; 0: none
+  double keep_days = 0;              ///< 0: no limit
+  double disk_budget_megabytes = 0;  ///< for simulations that may be removed; 0: no limit
   double waiting_processor_hours = 100;
   int waiting_simulations = 20'000;
 };
 
-/// Nothing when the process is to end with `exit_code`: help was shown, or a sentence said what is
-/// wrong.
+/// Reads settings. Returns nullopt if the process must end with `exit_code`: help or an error was
+/// printed.
 std::optional<Settings> read_settings(const std::vector<std::string>& arguments, int* exit_code);
 
 }  // namespace tribodyn::server

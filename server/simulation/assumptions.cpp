@@ -18,9 +18,9 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
-using Ledger = std::vector<v1::Assumption>;
+using Assumptions = std::vector<v1::Assumption>;
 
-void add(Ledger& ledger, const std::string& resource, const std::string& field,
+void add(Assumptions& out, const std::string& resource, const std::string& field,
          const std::string& value, v1::Provenance provenance, const std::string& source) {
   v1::Assumption entry;
   entry.set_resource(resource);
@@ -28,19 +28,19 @@ void add(Ledger& ledger, const std::string& resource, const std::string& field,
   entry.set_value(value);
   entry.set_provenance(provenance);
   entry.set_source(source);
-  ledger.push_back(std::move(entry));
+  out.push_back(std::move(entry));
 }
 
-void add(Ledger& ledger, const std::string& resource, const Provenances& all,
+void add(Assumptions& out, const std::string& resource, const Provenances& all,
          const std::string& field, const std::string& value) {
   const v1::ParameterProvenance* entry = find_provenance(all, field);
-  add(ledger, resource, field, value,
+  add(out, resource, field, value,
       entry == nullptr ? v1::PROVENANCE_UNSPECIFIED : entry->provenance(),
       entry == nullptr ? "" : entry->source());
 }
 
-/// Every plain number of a message.
-void add_numbers(Ledger& ledger, const std::string& resource, const Provenances& all,
+/// Adds every number of a message that is not nested.
+void add_numbers(Assumptions& out, const std::string& resource, const Provenances& all,
                  const Message& message, const std::string& prefix) {
   const auto& descriptor = *message.GetDescriptor();
   const auto& reflection = *message.GetReflection();
@@ -51,7 +51,7 @@ void add_numbers(Ledger& ledger, const std::string& resource, const Provenances&
     const double value = field.cpp_type() == FieldDescriptor::CPPTYPE_INT32
                              ? reflection.GetInt32(message, &field)
                              : reflection.GetDouble(message, &field);
-    add(ledger, resource, all, prefix + field.name(), quantity_text(value, row->unit));
+    add(out, resource, all, prefix + field.name(), quantity_text(value, row->unit));
   }
 }
 
@@ -63,62 +63,61 @@ std::string torques(const v1::GearSet& set) {
   return text + " N m";
 }
 
-void add_gear_set(Ledger& ledger, const v1::GearSet& set, bool load_dependent) {
+void add_gear_set(Assumptions& out, const v1::GearSet& set, bool load_dependent) {
   const Provenances& all = set.provenance();
-  add_numbers(ledger, set.name(), all, set, "");
-  add(ledger, set.name(), all, "series",
+  add_numbers(out, set.name(), all, set, "");
+  add(out, set.name(), all, "series",
       fmt::format("{} harmonics at {}", set.series().mesh_stiffness_newtons_per_metre().sine_size(),
                   quantity_text(set.series().pinion_torque_newton_metres(), "N m")));
   const int samples = set.flank_slots().empty() ? 0 : set.flank_slots(0).load_share_size();
-  add(ledger, set.name(), all, "flank_slots",
+  add(out, set.name(), all, "flank_slots",
       fmt::format("{} slots of {} samples", set.flank_slots_size(), samples));
-  add_numbers(ledger, set.name(), all, set.dynamics(), "dynamics.");
+  add_numbers(out, set.name(), all, set.dynamics(), "dynamics.");
   if (load_dependent) {
-    add(ledger, set.name(), all, "series_by_torque", torques(set));
-    add(ledger, set.name(), all, "load_share_by_torque", torques(set));
+    add(out, set.name(), all, "series_by_torque", torques(set));
+    add(out, set.name(), all, "load_share_by_torque", torques(set));
   }
 }
 
-void add_choice(Ledger& ledger, const char* field, const std::string& stated,
+void add_choice(Assumptions& out, const char* field, const std::string& stated,
                 const std::string& effective) {
-  add(ledger, "request", field, effective,
+  add(out, "request", field, effective,
       stated.empty() ? v1::PROVENANCE_ASSUMED : v1::PROVENANCE_USER,
-      stated.empty() ? "default: the request does not state it" : "stated in the request");
+      stated.empty() ? "default: not set in the request" : "set in the request");
 }
 
-void add_request(Ledger& ledger, const SimulationInputs& inputs) {
+void add_request(Assumptions& out, const SimulationInputs& inputs) {
   const v1::Simulation& asked = inputs.requested;
   const v1::Simulation& effective = inputs.effective;
-  add_choice(ledger, "lubricant", asked.lubricant(), effective.lubricant());
-  add_choice(ledger, "gear_set", asked.gear_set(), effective.gear_set());
-  add_choice(ledger, "surface", asked.surface(), effective.surface());
-  add_choice(ledger, "vehicle", asked.vehicle(), effective.vehicle());
+  add_choice(out, "lubricant", asked.lubricant(), effective.lubricant());
+  add_choice(out, "gear_set", asked.gear_set(), effective.gear_set());
+  add_choice(out, "surface", asked.surface(), effective.surface());
+  add_choice(out, "vehicle", asked.vehicle(), effective.vehicle());
   const bool sump = asked.has_sump_temperature_celsius();
-  add(ledger, "request", "sump_temperature_celsius",
+  add(out, "request", "sump_temperature_celsius",
       quantity_text(effective.sump_temperature_celsius(), "C"),
       sump ? v1::PROVENANCE_USER : v1::PROVENANCE_ASSUMED,
-      sump ? "stated in the request" : "default: the request does not state it");
+      sump ? "set in the request" : "default: not set in the request");
   const bool rise = asked.has_inlet_temperature_rise_kelvin();
-  add(ledger, "request", "inlet_temperature_rise_kelvin",
+  add(out, "request", "inlet_temperature_rise_kelvin",
       quantity_text(effective.inlet_temperature_rise_kelvin(), "K"),
       rise ? v1::PROVENANCE_USER : v1::PROVENANCE_PUBLISHED,
-      rise ? "stated in the request" : "default: the value published with eq 14");
+      rise ? "set in the request" : "default: the value published with eq 14");
 }
 
-void add_resources(Ledger& ledger, const SimulationInputs& inputs) {
-  const auto add_all = [&ledger](const auto& resource) {
-    add_numbers(ledger, resource.name(), resource.provenance(), resource, "");
+void add_resources(Assumptions& out, const SimulationInputs& inputs) {
+  const auto add_all = [&out](const auto& resource) {
+    add_numbers(out, resource.name(), resource.provenance(), resource, "");
   };
   add_all(*inputs.lubricant);
-  add_gear_set(ledger, *inputs.gear_set,
-               inputs.effective.model_options().load_dependent_mesh_data());
+  add_gear_set(out, *inputs.gear_set, inputs.effective.model_options().load_dependent_mesh_data());
   add_all(*inputs.surface);
   add_all(*inputs.vehicle);
 }
 
-std::string serialised(Ledger ledger, std::vector<v1::RangeWarning> warnings) {
+std::string serialised(Assumptions assumptions, std::vector<v1::RangeWarning> warnings) {
   v1::SimulationResult out;
-  for (v1::Assumption& each : ledger) *out.add_assumptions() = std::move(each);
+  for (v1::Assumption& each : assumptions) *out.add_assumptions() = std::move(each);
   for (v1::RangeWarning& each : warnings) *out.add_input_warnings() = std::move(each);
   return out.SerializeAsString();
 }
@@ -126,10 +125,10 @@ std::string serialised(Ledger ledger, std::vector<v1::RangeWarning> warnings) {
 }  // namespace
 
 std::vector<v1::Assumption> assumptions(const SimulationInputs& inputs) {
-  Ledger ledger;
-  add_request(ledger, inputs);
-  add_resources(ledger, inputs);
-  return ledger;
+  Assumptions out;
+  add_request(out, inputs);
+  add_resources(out, inputs);
+  return out;
 }
 
 std::vector<v1::RangeWarning> input_warnings(const SimulationInputs& inputs) {
@@ -138,15 +137,15 @@ std::vector<v1::RangeWarning> input_warnings(const SimulationInputs& inputs) {
   return out;
 }
 
-std::string ledger(const SimulationInputs& inputs) {
-  static LruCache<std::pair<Resources, bool>, std::string> kept;
+std::string serialised_assumptions(const SimulationInputs& inputs) {
+  static LruCache<std::pair<Resources, bool>, std::string> cache;
   const bool load_dependent = inputs.effective.model_options().load_dependent_mesh_data();
-  Ledger of_request;
+  Assumptions of_request;
   add_request(of_request, inputs);
-  // The bytes of two messages in a row are those of both merged.
+  // Concatenated serialised messages parse as one merged message.
   return serialised(std::move(of_request), {}) +
-         kept.get({resources(inputs), load_dependent}, [&inputs] {
-           Ledger of_resources;
+         cache.get({resources(inputs), load_dependent}, [&inputs] {
+           Assumptions of_resources;
            add_resources(of_resources, inputs);
            return serialised(std::move(of_resources), input_warnings(inputs));
          });

@@ -8,15 +8,16 @@
 
 namespace tribodyn::server {
 
-/// Every assumption a result rests on: each parameter of fluid, gear set (its series and tables by
-/// block), surface and vehicle with value, unit, provenance and source, and what the request left
-/// to defaults.
+/// Returns every assumption of a result: each parameter of lubricant, gear set (series and tables
+/// as blocks), surface and vehicle with value, unit, provenance and source, and each default that
+/// the request left unset.
 std::vector<v1::Assumption> assumptions(const SimulationInputs& inputs);
 
-/// How lubricant and surface are known: what to know before relying on any result of these inputs.
+/// Returns warnings about lubricant and surface that concern every result of these inputs.
 std::vector<v1::RangeWarning> input_warnings(const SimulationInputs& inputs);
 
-/// Both as a serialised v1::SimulationResult that holds nothing else.
-std::string ledger(const SimulationInputs& inputs);
+/// Returns assumptions and input warnings as a serialised v1::SimulationResult without other
+/// fields.
+std::string serialised_assumptions(const SimulationInputs& inputs);
 
 }  // namespace tribodyn::server

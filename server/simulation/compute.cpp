@@ -22,14 +22,15 @@ std::string stage_of(const OperatingCondition& condition) {
   return fmt::format("settling at {} km/h", kilometres_per_hour(condition.vehicle_speed));
 }
 
-/// No number of a history may be NaN, and only a shear rate infinite (no film under sliding).
+/// Throws Refusal if a number of a history is not finite. A shear rate may be infinite (sliding
+/// without a film).
 void check_finite(const History& history) {
   for (std::size_t c = 0; c < history.values.size(); ++c) {
     const bool infinite_allowed = history.names[c].starts_with(kShearRate);
     for (const double value : history.values[c]) {
       if (std::isnan(value) || (std::isinf(value) && !infinite_allowed)) {
-        throw Refusal("RESULT_NOT_FINITE",
-                      "history column " + history.names[c] + " holds a number that is not finite");
+        throw Refusal("RESULT_NOT_FINITE", "history column " + history.names[c] +
+                                               " contains a number that is not finite");
       }
     }
   }
@@ -95,7 +96,7 @@ Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
   } else {
     out = solve_curve(std::get<CurveStudy>(asked), physical, gear_set, studies, report);
   }
-  // Not after an exception, which may have left something half made.
+  // An exception may leave the gear set half prepared: then it is not given back.
   gear_sets.give_back(revision, physical.options, gear_set);
   return out;
 }
@@ -108,7 +109,7 @@ Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved 
     add_curve(inputs, std::get<std::vector<SweepPoint>>(solved), out);
   }
   const std::string bad = first_not_finite(out.result);
-  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
+  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " is not finite");
   out.result.set_model_version(key.model_version);
   out.result.set_input_hash(key.input_hash);
   out.result.set_platform(key.platform);

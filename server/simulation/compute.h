@@ -13,7 +13,7 @@
 
 namespace tribodyn::server {
 
-/// The core's studies; tests put their own in place.
+/// The studies of the core. Tests replace them.
 struct StudyFunctions {
   std::function<PointResult(const Scene&, const OperatingCondition&, const PointOptions&,
                             std::shared_ptr<PreparedGearSet>)>
@@ -24,32 +24,33 @@ struct StudyFunctions {
       sweep_speed = tribodyn::sweep_speed;
 };
 
-/// What a simulation leaves behind.
+/// Result and history of a computed simulation.
 struct Computed {
   v1::SimulationResult result;
   std::vector<StoredColumn> history;
 };
 
-/// The stage in words, made where they are wanted: a point takes a tenth of a millisecond and
-/// reports ten times.
+/// Returns the stage as text. It is a function because most reports are not shown: a point takes a
+/// tenth of a millisecond and makes ten reports.
 using StageText = std::function<std::string()>;
 
-/// Told the fraction done in [0, 1] and the stage; false asks to stop.
+/// Receives the completed fraction in [0, 1] and the stage. Returns false to cancel the study.
 using ReportProgress = std::function<bool(double fraction, const StageText& stage)>;
 
-/// What the core answers: a point, or a curve in ascending speed.
+/// Answer of the core: a point, or a curve in ascending order of speed.
 using Solved = std::variant<PointResult, std::vector<SweepPoint>>;
 
-/// Runs the study with a gear set of `gear_sets`. Throws Refusal, Cancelled, or what the core
-/// throws.
+/// Runs the study with a prepared gear set of `gear_sets`. Throws Refusal, Cancelled, and
+/// exceptions of the core.
 Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
              PreparedGearSets& gear_sets, const ReportProgress& report);
 
-/// Makes the result: points, hash (`key`: of the inputs), versions, but no assumptions, which
-/// belong to the simulation and not to its numbers. Throws Refusal where a number is not finite.
+/// Converts the answer of the core to a result with the hash of `key` and the versions. Assumptions
+/// are not included: they belong to the simulation, while several simulations may share a result.
+/// Throws Refusal if a number is not finite.
 Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved solved);
 
-/// Both in one, with a gear set that is prepared for it.
+/// Calls solve() with a newly prepared gear set, then to_result().
 Computed compute(const SimulationInputs& inputs, const ResultKey& key,
                  const StudyFunctions& studies, const ReportProgress& report);
 

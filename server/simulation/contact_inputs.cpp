@@ -50,7 +50,7 @@ v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& r
   }
   if (solution.contact_temperature > kHottestContact) {
     throw Refusal("CONTACT_TOO_HOT",
-                  fmt::format("the contact would be at {:.4g} K, and the model means nothing above "
+                  fmt::format("the contact would have {:.4g} K, and the model is not valid above "
                               "{} K, where steel melts; check the units of the fluid's parameters "
                               "(eq 23, eq 34), of the velocities and of the load",
                               solution.contact_temperature, kHottestContact));
@@ -60,7 +60,7 @@ v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& r
     *response.add_input_warnings() = std::move(each);
   }
   const std::string bad = first_not_finite(response);
-  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " came out as no finite number");
+  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " is not finite");
   return response;
 }
 

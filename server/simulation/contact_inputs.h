@@ -8,17 +8,17 @@
 
 namespace tribodyn::server {
 
-/// Checks an explicit contact and resolves its fluid. Nothing, and all violations at once, when the
-/// request is not acceptable.
+/// Checks an explicit contact and finds its lubricant. Returns nullopt and adds all violations if
+/// the request is invalid.
 std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& request,
                                           const ResourceLookup& lookup, Violations& violations);
 
-/// Contact temperature beyond which an answer means nothing [K]: steel melts at about 1800 K, and
-/// no oil is left at half of that.
+/// Highest contact temperature of an answer [K]: steel melts at about 1800 K, and oil decomposes
+/// far below.
 inline constexpr double kHottestContact = 1800;
 
-/// Solves the contact with the core's kernel. Throws Refusal, also for a refused status and for a
-/// contact hotter than kHottestContact.
+/// Solves the contact with the core's kernel. Throws Refusal if the kernel refuses the contact or
+/// if it is hotter than kHottestContact.
 v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request,
                                              const v1::Lubricant& lubricant);
 

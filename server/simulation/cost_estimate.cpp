@@ -6,33 +6,35 @@
 namespace tribodyn::server {
 namespace {
 
-/// Contact solutions, and what one takes with all that is computed around it.
+/// Number of contact solutions, and processor time of one with all computation around it.
 struct Work {
   double contact_solutions = 0;
   double seconds_each = 0;
 };
 
-constexpr double kPreparationSeconds = 0.26e-3;  // of a scene, whatever is studied
+constexpr double kPreparationSeconds = 0.26e-3;  // [s] for each scene
 constexpr double kUsualTolerance = 1e-3;
 constexpr Work kQuasiStaticPoint{340, 0.25e-6};  // at the usual tolerance
-constexpr double kQuasiStaticOrder = 0.4;        // contact solutions grow so with a sharper one
-// A shot point: as many steps as the mesh cycle is long, and what a sharper tolerance takes.
+constexpr double kQuasiStaticOrder = 0.4;        // exponent of their growth with 1 / tolerance
+// A point by shooting: the first term grows with 1 / tolerance, the second with the duration of a
+// mesh cycle.
 constexpr double kShotSolutions = 130;  // at the usual tolerance
 constexpr double kShotOrder = 0.48;
 constexpr double kShotSolutionsAtOneKilometrePerHour = 12'800;
 constexpr double kShotSecondsEach = 0.21e-6;
-constexpr double kPinionSpeedAtOneKilometrePerHour = 3.2;  // of the paper's axle [rad/s]
-// A curve that follows a branch, over speeds up to e times the least: what its points take far from
-// one another, and the
-// halvings on the way to a branch's end, the likelier the wider the curve.
+constexpr double kPinionSpeedAtOneKilometrePerHour = 3.2;  // [rad/s], paper's axle
+// Extra cost per e-fold of the speed range of a curve that follows a branch: distant points
+// converge more slowly, and a wide curve is more likely to need step halving to locate the end of a
+// branch.
 constexpr double kSpreadSeconds = 0.7e-3;
 constexpr double kHalvingSeconds = 0.13e-3;
 constexpr double kEndInterval = 0.04;  // [km/h]
 constexpr Work kMarchedCycle{2300, 0.8e-6};
 constexpr double kUsualMarchedCycles = 35;
-constexpr Work kOrbitSample{3, 2.3e-6};  // of a history, three flanks
+constexpr Work kOrbitSample{3, 2.3e-6};  // one sample of a history, three flanks
 constexpr Work kMarchedSample{3, 1.3e-6};
-constexpr double kValueSeconds = 3e-9;  // of a history, repeated from the first period
+// [s] for each value of a history, copied from the first period
+constexpr double kValueSeconds = 3e-9;
 
 void add(const Work& work, double count, v1::CostEstimate& out) {
   const double solutions = count * work.contact_solutions;
@@ -62,8 +64,8 @@ void add_point(double speed_kilometres_per_hour, v1::PointModel model,
   }
 }
 
-/// What a curve takes besides its points; its speeds are ascending.
-double following_seconds(const google::protobuf::RepeatedField<double>& speeds) {
+/// Returns the time [s] that a curve needs in addition to its points. Requires ascending speeds.
+double branch_following_seconds(const google::protobuf::RepeatedField<double>& speeds) {
   if (speeds.size() < 2) return 0;
   const double first = *speeds.begin();
   const double last = *speeds.rbegin();
@@ -77,11 +79,11 @@ void add_curve(const v1::InefficiencyCurveStudy& curve, const v1::SolverOptions&
   const auto& speeds = curve.speeds_kilometres_per_hour();
   for (const double speed : speeds) add_point(speed, curve.model(), solver, out);
   if (curve.model() == v1::POINT_MODEL_QUASI_STATIC || curve.independent_points()) return;
-  out.set_processor_seconds(out.processor_seconds() + following_seconds(speeds));
+  out.set_processor_seconds(out.processor_seconds() + branch_following_seconds(speeds));
 }
 
-/// The vehicle speed of a point, or one at which the pinion of the paper's axle turns as fast
-/// [km/h].
+/// Returns the vehicle speed of a point [km/h]. For a prescribed pinion speed it is that of the
+/// paper's axle.
 double speed_of(const v1::OperatingPointStudy& point) {
   if (point.has_cruise()) return point.cruise().speed_kilometres_per_hour();
   if (point.has_drive_cycle_snapshot()) {
@@ -91,7 +93,7 @@ double speed_of(const v1::OperatingPointStudy& point) {
          kPinionSpeedAtOneKilometrePerHour;
 }
 
-/// Only a march works out every sample: an orbit repeats.
+/// Adds the cost of a history. A march computes every sample; an orbit repeats its first period.
 void add_history(const v1::HistoryRequest& history, bool is_marched, v1::CostEstimate& out) {
   const double samples = history.samples_per_mesh_cycle();
   const double rows = history.mesh_cycles() * samples;
@@ -100,7 +102,7 @@ void add_history(const v1::HistoryRequest& history, bool is_marched, v1::CostEst
   } else {
     add(kOrbitSample, samples, out);
   }
-  const int columns = history.columns_size() + 1;  // and time
+  const int columns = history.columns_size() + 1;  // the columns and time
   out.set_processor_seconds(out.processor_seconds() + rows * columns * kValueSeconds);
 }
 
@@ -117,7 +119,7 @@ void add_study(const v1::Simulation& effective, v1::CostEstimate& out) {
     add_history(point.history(), solver.method() == v1::STEADY_STATE_METHOD_MARCH, out);
 }
 
-/// To two digits.
+/// Rounds to two digits.
 double rounded(double value) {
   const double scale = std::pow(10.0, 1 - std::floor(std::log10(value)));
   return std::round(value * scale) / scale;
@@ -129,7 +131,7 @@ v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
   v1::CostEstimate out;
   out.set_processor_seconds(kPreparationSeconds);
   add_study(effective, out);
-  // What is alike is to come in the order of its arrival, not by a difference that means nothing.
+  // Round, so that jobs of practically equal cost are served first in, first out.
   out.set_processor_seconds(rounded(out.processor_seconds()));
   return out;
 }

@@ -4,10 +4,10 @@
 
 namespace tribodyn::server {
 
-/// What a simulation with every default written out will take, from its study alone: typical
-/// figures of the solver by speed, tolerance and spread of a curve, measured on the paper's axle.
-/// Within a factor of three there (a part of service_benchmark); where shooting finds no attracting
-/// response and the march takes over, it is more.
+/// Estimates the cost of a simulation whose defaults are written out, from its study alone. The
+/// figures by speed, tolerance and range of a curve were measured on the paper's axle, where the
+/// estimate is correct within a factor of three (measured by service_benchmark). It is too low if
+/// shooting finds no attracting response and the march takes over.
 v1::CostEstimate estimate_cost(const v1::Simulation& effective);
 
 }  // namespace tribodyn::server

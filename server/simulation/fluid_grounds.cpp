@@ -11,7 +11,7 @@
 namespace tribodyn::server {
 namespace {
 
-/// The paper measured its fluids from 10 to 140 C (section 2.3).
+/// Range of the paper's measurements: 10 to 140 C (section 2.3).
 constexpr FluidGrounds::TemperatureRange kMeasuredInThePaper = {10 + kZeroCelsius,
                                                                 140 + kZeroCelsius};
 

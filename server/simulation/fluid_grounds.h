@@ -7,11 +7,11 @@
 
 namespace tribodyn::server {
 
-/// What the laws of a lubricant rest on, by provenance and measurements.
+/// Returns the origin of a lubricant's laws, from its provenance and measurements.
 FluidGrounds fluid_grounds(const v1::Lubricant& lubricant);
 
-/// The same as a line for the input hash: two lubricants of equal numbers that were measured in
-/// different ranges are warned of different things.
+/// Returns the grounds as a line of the hashed inputs: lubricants with equal numbers that were
+/// measured in different ranges have different warnings.
 std::string text_of(const FluidGrounds& grounds);
 
 }  // namespace tribodyn::server

@@ -12,7 +12,7 @@ namespace tribodyn::server {
 namespace {
 
 constexpr double kSolverTolerance = 1e-6;
-/// Far above what that and round-off leave open, far below what a wrong law does.
+/// Relative. Far above round-off and the error of the march, far below the effect of a wrong law.
 constexpr double kRelativeTolerance = 1e-4;
 
 struct Figure {
@@ -21,9 +21,9 @@ struct Figure {
   double (*value)(const v1::PointResult&);
 };
 
-/// Lubricant 1 in gear set A with the run-in surface at 72.5 km/h, the first resonance, where the
-/// teeth part: dynamics, film, heat and friction all take part. By the march of
-/// tribodyn-model-2.
+/// Lubricant 1 in gear set A with the run-in surface at 72.5 km/h. At this speed, the first
+/// resonance, the teeth separate, so that dynamics, film, heat and friction all matter. The values
+/// are those of tribodyn-model-2 by the march, which is independent of shooting.
 constexpr Figure kFigures[] = {
     {"pinion_torque_newton_metres", 33.15439064,
      [](const v1::PointResult& point) { return point.pinion_torque_newton_metres(); }},
@@ -66,8 +66,7 @@ std::string check_golden_case(const StudyFunctions& studies) {
     for (const Figure& figure : kFigures) {
       const double value = figure.value(point);
       if (std::abs(value - figure.expected) <= kRelativeTolerance * figure.expected) continue;
-      return fmt::format("golden case: {} came out as {}; {} is right", figure.name, value,
-                         figure.expected);
+      return fmt::format("golden case: {} is {}; expected {}", figure.name, value, figure.expected);
     }
   } catch (const std::exception& error) {
     return std::string("golden case: ") + error.what();

@@ -6,9 +6,9 @@
 
 namespace tribodyn::server {
 
-/// Recomputes an operating point whose figures are known and compares: a processor, a library or a
-/// build that computes something else must not serve. About 0.1 s. Empty when all agree, else a
-/// sentence that says which does not.
+/// Computes an operating point with known figures and compares. A processor, library or build that
+/// computes other figures must not serve. Takes about 0.1 s. Returns an empty string if all figures
+/// agree, else a sentence that names the one that differs.
 std::string check_golden_case(const StudyFunctions& studies = {});
 
 }  // namespace tribodyn::server

@@ -15,12 +15,12 @@ using google::protobuf::FieldDescriptor;
 
 struct InputFields {
   std::string_view message;  ///< of tribodyn.v1
-  std::string_view inputs;   ///< fields, separated by spaces
-  std::string_view labels;
+  std::string_view inputs;   ///< fields that are inputs, separated by spaces
+  std::string_view labels;   ///< fields that are labels, separated by spaces
 };
 
-// A result is found by the hash of its inputs: a field that the model computes with but that stands
-// among the labels would make different inputs equal. The fields of a label are not listed.
+// Results are cached by the hash of their inputs: an input listed as a label would make different
+// inputs equal. The fields of a message listed as a label are not listed themselves.
 constexpr InputFields kInputFields[] = {
     {"Lubricant",
      "vogel_viscosity_prefactor_pascal_seconds vogel_temperature_coefficient_kelvin "
@@ -76,8 +76,8 @@ constexpr InputFields kInputFields[] = {
      "wheel_radius_metres gravity_metres_per_second_squared",
      "name display_name description provenance derived_from external_sample_id lims_id "
      "labels"},
-    // "state" and "progress_fraction" are constant lines in the text of every simulation; without
-    // them the hashes of stored results would change.
+    // The lines of "state" and "progress_fraction" are constant in every simulation. They stay so
+    // that the hashes of stored results stay valid.
     {"Simulation",
      "sump_temperature_celsius inlet_temperature_rise_kelvin model_options "
      "solver_options operating_point inefficiency_curve state progress_fraction",

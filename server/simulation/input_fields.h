@@ -4,16 +4,16 @@
 
 namespace tribodyn::server {
 
-/// What a field of a resource or of a simulation is to a result.
+/// Role of a field of a resource or simulation for a result.
 enum class InputRole {
-  kInput,         ///< the model may compute with it: part of the input hash
-  kLabel,         ///< says what a thing is called, where it comes from or when it is wanted
-  kOutput,        ///< only the server sets it (OUTPUT_ONLY)
+  kInput,         ///< the model may use it: part of the input hash
+  kLabel,         ///< name, origin or schedule: not part of the input hash
+  kOutput,        ///< only the server sets it (option output_only)
   kUnclassified,  ///< missing in the table; hashed as an input, which is safe
 };
 
-/// The role of a field by the table in input_fields.cpp, which has a row for every message that
-/// input hashes cover.
+/// Returns the role of a field from the table in input_fields.cpp, which has a row for every
+/// message that input hashes cover.
 InputRole input_role(const google::protobuf::FieldDescriptor& field);
 
 }  // namespace tribodyn::server

@@ -38,9 +38,9 @@ std::string canonical_inputs(const SimulationInputs& inputs) {
 }
 
 std::string input_hash(const SimulationInputs& inputs) {
-  // The resources' text is most of the work, and many simulations rest on the same ones.
-  static LruCache<Resources, Sha256> kept;
-  Sha256 hash = kept.get(resources(inputs), [&inputs] {
+  // The text of the resources takes most of the time, and many simulations share resources.
+  static LruCache<Resources, Sha256> cache;
+  Sha256 hash = cache.get(resources(inputs), [&inputs] {
     Sha256 begun;
     begun.add(resources_text(inputs));
     return begun;

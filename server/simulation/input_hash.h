@@ -6,12 +6,13 @@
 
 namespace tribodyn::server {
 
-/// The canonical text of all values that a result can depend on, one "path=value" line each in
-/// field order: numbers as hexadecimal doubles, enums by name, defaults written out, model version
-/// first. Names, descriptions and provenance are left out: equal values make equal text.
+/// Returns the canonical text of all values that a result can depend on: the model version, then
+/// one line "path=value" for each value in field order. Numbers are hexadecimal doubles, enum
+/// values are names, defaults are written out. Names, descriptions and provenance are left out, so
+/// that equal values have equal texts.
 std::string canonical_inputs(const SimulationInputs& inputs);
 
-/// SHA-256 of canonical_inputs, 64 hex digits.
+/// Returns the SHA-256 hash of canonical_inputs() as 64 hexadecimal digits.
 std::string input_hash(const SimulationInputs& inputs);
 
 }  // namespace tribodyn::server

@@ -10,12 +10,12 @@ std::shared_ptr<PreparedGearSet> PreparedGearSets::take(const std::string& revis
                                                         const Scene& scene) {
   {
     const std::lock_guard lock(mutex_);
-    const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& each) {
+    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& each) {
       return each.revision == revision && each.options == scene.options;
     });
-    if (found != kept_.end()) {
+    if (found != entries_.end()) {
       std::shared_ptr<PreparedGearSet> out = std::move(found->gear_set);
-      kept_.erase(found);
+      entries_.erase(found);
       return out;
     }
   }
@@ -25,15 +25,16 @@ std::shared_ptr<PreparedGearSet> PreparedGearSets::take(const std::string& revis
 void PreparedGearSets::give_back(const std::string& revision, const ModelOptions& options,
                                  std::shared_ptr<PreparedGearSet> gear_set) {
   if (gear_set->grids().steps_kept() > kMostSteps) return;
-  std::list<Kept> dropped;  // freed after the lock
+  std::list<Entry> dropped;  // freed after the mutex is released
   const std::lock_guard lock(mutex_);
-  kept_.push_front({revision, options, std::move(gear_set)});
-  if (kept_.size() > kMostKept) dropped.splice(dropped.end(), kept_, std::prev(kept_.end()));
+  entries_.push_front({revision, options, std::move(gear_set)});
+  if (entries_.size() > kMostKept)
+    dropped.splice(dropped.end(), entries_, std::prev(entries_.end()));
 }
 
 std::size_t PreparedGearSets::size() const {
   const std::lock_guard lock(mutex_);
-  return kept_.size();
+  return entries_.size();
 }
 
 }  // namespace tribodyn::server

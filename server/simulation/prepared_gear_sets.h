@@ -11,41 +11,41 @@
 
 namespace tribodyn::server {
 
-/// Prepared gear sets between the studies that use them. Preparing one takes longer than solving a
-/// point. A study takes the prepared gear set that it needs and gives it back, so that no two
-/// threads use one at the same time. Safe for concurrent access without external synchronization.
+/// Cache of prepared gear sets: preparing one takes longer than solving a point. A study takes a
+/// gear set out and gives it back, so that no two threads use one at the same time. Safe for
+/// concurrent access without external synchronization.
 class PreparedGearSets {
  public:
-  /// The gear set of the scene, prepared for the caller alone. `revision`: the name of the gear set
-  /// with its revision, "gearSets/A@1", which determines gear set and solid. Throws Refusal as
-  /// PreparedGearSet does.
+  /// Returns the prepared gear set of the scene for the caller alone. `revision` is the name of the
+  /// gear set with its revision, "gearSets/A@1"; it determines gear set and solid. Throws Refusal
+  /// as PreparedGearSet does.
   std::shared_ptr<PreparedGearSet> take(const std::string& revision, const Scene& scene);
 
-  /// Keeps a prepared gear set for the next study. The caller must not use it any more. A gear set
-  /// whose grids have more than kMostSteps steps is dropped.
+  /// Stores a prepared gear set for the next study. The caller must not use it afterwards. A gear
+  /// set whose grids have more than kMostSteps steps is dropped.
   void give_back(const std::string& revision, const ModelOptions& options,
                  std::shared_ptr<PreparedGearSet> gear_set);
 
-  /// How many are kept at present.
+  /// Returns the number of stored gear sets.
   std::size_t size() const;
 
-  /// The one used longest ago is dropped beyond it: as many as the threads of a usual server need
-  /// for two gear sets or models at a time.
+  /// Capacity. Above it the least recently used gear set is dropped. Enough for the threads of a
+  /// usual server with two gear sets or models at a time.
   static constexpr std::size_t kMostKept = 8;
-  /// Steps of all grids of one gear set, of 2.6 kB each: 5 MB. All points from 20 to 140 km/h at
-  /// the usual tolerance need 500 together, a point at 1e-6 at most 1500, a point at 1e-8 up to
-  /// 6000.
+  /// Largest number of steps of all grids of a stored gear set; 2.6 kB each, 5 MB together.
+  /// Measured: all points from 20 to 140 km/h at the usual tolerance need 500 together, a point at
+  /// 1e-6 at most 1500, a point at 1e-8 up to 6000.
   static constexpr long kMostSteps = 2000;
 
  private:
-  struct Kept {
+  struct Entry {
     std::string revision;
     ModelOptions options;
     std::shared_ptr<PreparedGearSet> gear_set;
   };
 
   mutable std::mutex mutex_;
-  std::list<Kept> kept_;  // guarded by mutex_; the one used last comes first
+  std::list<Entry> entries_;  // guarded by mutex_; most recently used first
 };
 
 }  // namespace tribodyn::server

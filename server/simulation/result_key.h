@@ -7,12 +7,12 @@
 
 namespace tribodyn::server {
 
-/// What decides the last bits of a result beside its inputs and the model: the instruction set and
-/// the C library, whose functions pick their variant when the program starts. E.g.
-/// "x86-64 avx2 fma, glibc 2.36".
+/// Returns what decides the last bits of a result besides its inputs and the model: the instruction
+/// set and the C library, which chooses its functions when the program starts. E.g. "x86-64 avx2
+/// fma, glibc 2.36".
 const std::string& platform();
 
-/// Of the present model on this processor.
+/// Returns the key of a result that this process would compute.
 ResultKey result_key(const SimulationInputs& inputs);
 
 }  // namespace tribodyn::server

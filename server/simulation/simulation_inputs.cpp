@@ -204,9 +204,9 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
   }
 
   const auto find = [&]<class Resource>(std::shared_ptr<const Resource>* out,
-                                        const std::string& name, const std::string& otherwise,
+                                        const std::string& name, const std::string& fallback,
                                         const char* collection, const char* field) {
-    auto found = find_resource<Resource>(lookup, name.empty() ? otherwise : name, collection,
+    auto found = find_resource<Resource>(lookup, name.empty() ? fallback : name, collection,
                                          join_path(path, field), violations);
     if (!found) return std::string();
     *out = found->resource;

@@ -20,9 +20,9 @@
 
 namespace tribodyn::server {
 
-/// All that a simulation rests on: the request as it came, the same with every default written out
-/// (explicit speeds in ascending order, no zero that means a default) and the revisions that names
-/// mean, and these resources, shared with other simulations (see parse_resource).
+/// Inputs of a simulation: the request, the request with every default written out (explicit speeds
+/// in ascending order, no zero that means a default, names with revisions), and the resources,
+/// which other simulations share (see parse_resource).
 struct SimulationInputs {
   v1::Simulation requested;
   v1::Simulation effective;
@@ -32,7 +32,7 @@ struct SimulationInputs {
   std::shared_ptr<const v1::Vehicle> vehicle;
 };
 
-/// What a simulation shares with others; equal when these are the same objects.
+/// Resources of a simulation. Two tuples are equal if they hold the same objects.
 using Resources =
     std::tuple<std::shared_ptr<const v1::Lubricant>, std::shared_ptr<const v1::GearSet>,
                std::shared_ptr<const v1::Surface>, std::shared_ptr<const v1::Vehicle>>;
@@ -40,16 +40,16 @@ inline Resources resources(const SimulationInputs& inputs) {
   return {inputs.lubricant, inputs.gear_set, inputs.surface, inputs.vehicle};
 }
 
-/// The request without what only the server sets, and without fields of newer clients.
+/// Returns the request without output-only and unknown fields.
 v1::Simulation client_part(const v1::Simulation& simulation);
 
-/// Checks everything and resolves names and defaults. Nothing, and all violations at once, when the
-/// request is not acceptable; paths start with `path`.
+/// Checks the request, finds its resources and fills in defaults. Returns nullopt and adds all
+/// violations if the request is invalid; their paths start with `path`.
 std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
                                                 const ResourceLookup& lookup,
                                                 const std::string& path, Violations& violations);
 
-/// The physical inputs for the core.
+/// Returns the physical inputs for the core.
 Scene scene(const SimulationInputs& inputs);
 
 struct PointStudy {
@@ -65,7 +65,7 @@ struct CurveStudy {
 
 using Study = std::variant<PointStudy, CurveStudy>;
 
-/// What the core is asked to do; progress callbacks are left to the caller.
+/// Returns the study for the core, without progress callbacks.
 Study study(const SimulationInputs& inputs);
 
 }  // namespace tribodyn::server

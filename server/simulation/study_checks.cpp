@@ -18,7 +18,7 @@
 namespace tribodyn::server {
 namespace {
 
-/// How many speeds first, last and step make; 0 when they make none.
+/// Returns the number of speeds that first, last and step define; 0 if they define none.
 double grid_size(const v1::InefficiencyCurveStudy& study) {
   const double first = study.first_speed_kilometres_per_hour();
   const double last = study.last_speed_kilometres_per_hour();
@@ -39,8 +39,9 @@ void check_speed_range(const v1::InefficiencyCurveStudy& study, const std::strin
   const double step = study.speed_step_kilometres_per_hour();
   const auto missing = [&](const char* field, double value) {
     if (value == 0) {
-      violations.push_back({join_path(path, field),
-                            fmt::format("{} is not set; first, last and step go together", field)});
+      violations.push_back(
+          {join_path(path, field),
+           fmt::format("{} is not set; first, last and step need each other", field)});
     }
   };
   missing("first_speed_kilometres_per_hour", first);
@@ -68,7 +69,7 @@ void check_columns(const v1::HistoryRequest& history, const std::string& path,
     const std::string& name = history.columns(i);
     const std::string element = fmt::format("{}.columns[{}]", path, i);
     if (!history_column(name)) {
-      violations.push_back({element, fmt::format("no such column{}", meant_text(name, known))});
+      violations.push_back({element, fmt::format("unknown column{}", meant_text(name, known))});
     } else if (!seen.insert(name).second) {
       violations.push_back({element, fmt::format("\"{}\" is named twice", name)});
     }

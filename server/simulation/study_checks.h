@@ -10,33 +10,34 @@
 
 namespace tribodyn::server {
 
-// Rules between fields and limits on work: what the table of constraints cannot say. Each adds all
-// it finds.
+// These functions check rules between fields and limits on work, which the table of constraints
+// cannot express. Each adds all violations that it finds.
 
-/// The fluid's laws hold at the inlet: T_0,ref below T_in (eq 34), density positive there (eq 26),
-/// and alpha* measured above T_0,ref (eq 33).
+/// Checks that the lubricant's laws are valid at the inlet: T_0,ref below T_in (eq 34), positive
+/// density (eq 26), alpha* measured above T_0,ref (eq 33).
 void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperature_celsius,
                           double inlet_temperature_rise_kelvin, const std::string& path,
                           Violations& violations);
 
-/// Condition stated, history columns known and distinct, rows times columns within the limit.
+/// Checks that the condition is set, that history columns exist and differ, and that rows times
+/// columns are within the limit.
 void check_operating_point(const v1::OperatingPointStudy& study, const std::string& path,
                            Violations& violations);
 
-/// Speeds stated in exactly one way, distinct, not too many; work within the limit; no direction of
-/// independent points.
+/// Checks that speeds are set in exactly one way, differ and are not too many, that the work is
+/// within the limit, and that independent points have no direction.
 void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOptions& options,
                  const std::string& path, Violations& violations);
 
-/// No switch that acts elsewhere than in a contact.
+/// Refuses switches that have no effect in a contact.
 void check_model_options(const v1::ModelOptions& options, const std::string& path,
                          Violations& violations);
 
-/// Data by torque are there when the option asks for them.
+/// Checks that the gear set has data by torque if the option needs them.
 void check_mesh_data(const v1::GearSet& gear_set, const v1::ModelOptions& options,
                      const std::string& path, Violations& violations);
 
-/// The speeds of a curve in ascending order [km/h]; empty when they are not stated properly.
+/// Returns the speeds of a curve in ascending order [km/h]; empty if they are not set correctly.
 std::vector<double> curve_speeds(const v1::InefficiencyCurveStudy& study);
 
 }  // namespace tribodyn::server

@@ -236,7 +236,7 @@ TEST_F(DaemonTest, NothingIsAcknowledgedWhileTheDatabaseIsNotInItsPlace) {
     }
   }
   EXPECT_THAT(process_->log(), HasSubstr(database + " was deleted or renamed while"));
-  EXPECT_THAT(process_->log(), HasSubstr("the database is back in its place"));
+  EXPECT_THAT(process_->log(), HasSubstr("the database is back at its path"));
   process_->signal(SIGKILL);
   process_->wait();
   start();
@@ -454,10 +454,10 @@ TEST(Flags, MistakesAreExplained) {
   EXPECT_THAT(log, HasSubstr("--database"));
   EXPECT_EQ(run_briefly({"--database", "x", "--threads", "many"}, &log), 2);
   EXPECT_EQ(run_briefly({"--database", "x", "--call-limit-seconds", "nan"}, &log), 2);
-  EXPECT_THAT(log, HasSubstr("nan is no number from 0 to 86400"));
+  EXPECT_THAT(log, HasSubstr("nan is not a number from 0 to 86400"));
   EXPECT_EQ(run_briefly({"--database", "x", "--disk-budget-megabytes", "-1"}, &log), 2);
   EXPECT_EQ(run_briefly({"--config", "/dev/zero"}, &log), 2);
-  EXPECT_THAT(log, HasSubstr("/dev/zero is no regular file"));
+  EXPECT_THAT(log, HasSubstr("/dev/zero is not a regular file"));
   EXPECT_EQ(run_briefly({"--database", "/no/such/folder/x.db"}, &log), 3);
   EXPECT_THAT(log, HasSubstr("/no/such/folder/x.db"));
   EXPECT_EQ(run_briefly({"--version"}, &log), 0);

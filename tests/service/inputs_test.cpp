@@ -332,7 +332,7 @@ TEST(Ledger, IsTheSameSerialisedWhateverIsKeptOfIt) {
     v1::SimulationResult expected;
     for (const v1::Assumption& entry : assumptions(inputs)) *expected.add_assumptions() = entry;
     for (const auto& warning : input_warnings(inputs)) *expected.add_input_warnings() = warning;
-    EXPECT_EQ(ledger(inputs), expected.SerializeAsString());
+    EXPECT_EQ(serialised_assumptions(inputs), expected.SerializeAsString());
   }
 }
 

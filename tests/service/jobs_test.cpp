@@ -512,7 +512,7 @@ TEST(SimulationJobs, WatchingAnEndedSimulationShowsItsEnd) {
 TEST(GoldenCase, ComesOutAsItShouldAndAWrongOneIsNamed) {
   EXPECT_EQ(check_golden_case(), "");
   EXPECT_THAT(check_golden_case(quick_studies()),
-              testing::AllOf(testing::HasSubstr("pinion_torque_newton_metres came out as 0"),
+              testing::AllOf(testing::HasSubstr("pinion_torque_newton_metres is 0"),
                              testing::HasSubstr("33.15")));
   EXPECT_THAT(check_golden_case(throwing(Refusal("X", "no answer"))),
               testing::HasSubstr("no answer"));

@@ -159,10 +159,10 @@ TEST(Curve, SpeedsAreStatedInExactlyOneWay) {
   simulation.mutable_inefficiency_curve()->set_first_speed_kilometres_per_hour(10);
   EXPECT_THAT(
       check(simulation),
-      violation("simulation.inefficiency_curve.last_speed_kilometres_per_hour", "go together"));
+      violation("simulation.inefficiency_curve.last_speed_kilometres_per_hour", "need each other"));
   EXPECT_THAT(
       check(simulation),
-      violation("simulation.inefficiency_curve.speed_step_kilometres_per_hour", "go together"));
+      violation("simulation.inefficiency_curve.speed_step_kilometres_per_hour", "need each other"));
 }
 
 TEST(Curve, LastIsNotBelowFirst) {
