@@ -5,7 +5,7 @@
 namespace tribodyn::server {
 
 void Connection::heed_limits() {
-  constexpr int kInstructions = 1000;  // about 10 us between looks at the clock
+  constexpr int kInstructions = 1000;  // instructions between two checks, about 10 us
   sqlite3_progress_handler(
       getHandle(), kInstructions,
       [](void* limits) {
@@ -30,7 +30,7 @@ Prepared::Prepared(Connection& connection, std::string_view sql)
 }
 
 Prepared::~Prepared() {
-  statement_->tryReset();  // an error of the last step was thrown then
+  statement_->tryReset();  // tryReset: an error of the last step was already thrown
   statement_->clearBindings();
   idle_.push_back(std::move(statement_));
 }

@@ -15,17 +15,18 @@
 
 namespace tribodyn::server {
 
-/// A connection that keeps the statements it has prepared, as preparing one takes longer than most
-/// take to run. Not safe for concurrent access.
+/// A connection with a cache of prepared statements: preparing a statement takes longer than most
+/// statements run. Not safe for concurrent access.
 class Connection : public SQLite::Database {
  public:
   using SQLite::Database::Database;
 
-  /// Makes statements fail with SQLITE_INTERRUPT while the limits that an Under set are over. Once,
-  /// before the first of them.
+  /// Makes statements fail with SQLITE_INTERRUPT when the limits of an Under object are over. Call
+  /// it once, before the first Under object.
   void heed_limits();
 
-  /// While it lives, statements of the connection end when `limits` are over. One at a time.
+  /// Ends statements of the connection when `limits` are over, while the object exists. Only one
+  /// object at a time.
   class Under {
    public:
     Under(Connection& connection, const CallLimits& limits) : connection_(connection) {
@@ -42,12 +43,13 @@ class Connection : public SQLite::Database {
  private:
   friend class Prepared;
   using Statements = std::vector<std::unique_ptr<SQLite::Statement>>;
-  const CallLimits* limits_ = nullptr;                   // null: none
-  std::map<std::string, Statements, std::less<>> idle_;  // by their text; gone before the base
+  const CallLimits* limits_ = nullptr;  // null: no limits
+  // by SQL text; destroyed before the base class
+  std::map<std::string, Statements, std::less<>> idle_;
 };
 
-/// A statement of a connection for the time of a scope, at the end of which it is reset and its
-/// values are forgotten. For fixed texts only: nothing ever drops them. Throws SQLite::Exception.
+/// A prepared statement of a connection. The destructor resets it and clears its values. Use it for
+/// fixed texts only: statements are never removed from the cache. Throws SQLite::Exception.
 class Prepared {
  public:
   Prepared(Connection& connection, std::string_view sql);
@@ -66,7 +68,7 @@ class Prepared {
   int exec() { return statement_->exec(); }
   void reset() { statement_->reset(); }
   SQLite::Column getColumn(int index) const { return statement_->getColumn(index); }
-  operator SQLite::Statement&() { return *statement_; }              // NOLINT: stands for it
+  operator SQLite::Statement&() { return *statement_; }              // NOLINT: converts implicitly
   operator const SQLite::Statement&() const { return *statement_; }  // NOLINT
 
  private:

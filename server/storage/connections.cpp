@@ -7,27 +7,27 @@
 namespace tribodyn::server {
 namespace {
 
-/// Between two looks at the limits of a caller who waits for a connection.
+/// Interval between two checks of the limits of a caller who waits for a connection.
 constexpr auto kBetweenLooks = std::chrono::milliseconds(20);
 
 }  // namespace
 
 void configure_sqlite() {
-  // Without effect where SQLite is in use already, e.g. in a test.
+  // Has no effect if SQLite is already in use, e.g. in a test.
   sqlite3_config(SQLITE_CONFIG_MULTITHREAD);
   sqlite3_config(SQLITE_CONFIG_MEMSTATUS, 0);
 }
 
 void ReaderPool::open(const std::filesystem::path& database, int connections) {
   for (int i = 0; i < connections; ++i) {
-    // Read-write at the file level, as a WAL reader may have to rebuild the index; query_only bars
-    // it from changing anything.
+    // The file is opened for writing because a WAL reader may have to rebuild the index; query_only
+    // prevents changes.
     auto connection = std::make_unique<Connection>(database.string(), SQLite::OPEN_READWRITE,
                                                    kBusyTimeoutMilliseconds);
     connection->exec("PRAGMA query_only = ON");
-    // In KiB: what many readers of histories share comes from the system's cache.
+    // In KiB. Readers of histories share the system's cache, so a small one suffices.
     connection->exec("PRAGMA cache_size = -256");
-    connection->execAndGet("SELECT count(*) FROM sqlite_master");  // opens the log too
+    connection->execAndGet("SELECT count(*) FROM sqlite_master");  // opens the write-ahead log too
     connection->heed_limits();
     give_back(std::move(connection));
   }

@@ -10,15 +10,15 @@
 
 namespace tribodyn::server {
 
-/// Read-only connections to one database, lent to one thread at a time; readers wait for one.
-/// Safe for concurrent access without external synchronization, once open.
+/// A pool of read-only connections to one database. Each is lent to one thread at a time; readers
+/// wait for a free one. Once open, safe for concurrent access without external synchronization.
 class ReaderPool {
  public:
-  /// All of them at once, so that later nothing is left to fail or to be opened. The database must
-  /// be there. Throws SQLite::Exception.
+  /// Opens all connections at once, so that no later call can fail for want of one. Requires that
+  /// the database exists. Throws SQLite::Exception.
   void open(const std::filesystem::path& database, int connections);
 
-  /// A connection on loan; goes back when the loan ends.
+  /// A lent connection. The destructor returns it to the pool.
   class Loan {
    public:
     Loan(ReaderPool& pool, std::unique_ptr<Connection> connection)
@@ -36,7 +36,7 @@ class ReaderPool {
     std::unique_ptr<Connection> connection_;
   };
 
-  /// Waits for a connection; the loan is empty if `limits` were over before one came back.
+  /// Waits for a free connection. The loan is empty if `limits` were over before.
   Loan borrow(const CallLimits& limits);
 
  private:
@@ -47,11 +47,12 @@ class ReaderPool {
   std::vector<std::unique_ptr<Connection>> idle_;  // guarded by mutex_
 };
 
-/// Before the first connection of the process: ours are used by one thread at a time, and nobody
-/// asks for SQLite's account of its memory, so that it needs no locks around either.
+/// Configures SQLite. Requires that the process has no connection yet. Each connection is used by
+/// one thread at a time and SQLite's memory statistics are not used, so SQLite needs no locks for
+/// either.
 void configure_sqlite();
 
-/// How long a statement waits for another connection before it fails [ms].
+/// Longest wait of a statement for another connection [ms].
 inline constexpr int kBusyTimeoutMilliseconds = 5000;
 
 }  // namespace tribodyn::server

@@ -24,13 +24,13 @@ int pragma(Connection& db, const std::string& name) {
   return db.execAndGet("PRAGMA " + name).getInt();
 }
 
-/// Whether a database holds nothing yet, so that a server would make its tables.
+/// Returns true if the database is empty, so that a server would create its tables.
 bool is_new(Connection& db) {
   return db.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0 &&
          pragma(db, "user_version") == 0 && pragma(db, "application_id") == 0;
 }
 
-/// Runs a query that selects what must not be; each row is a sentence.
+/// Runs a query whose rows are problems: each row is a sentence.
 void find_rows(Connection& db, const char* sql, Problems& problems) {
   SQLite::Statement query(db, sql);
   while (problems.size() < kMaximumProblems && query.executeStep()) {
@@ -46,8 +46,8 @@ void check_file(Connection& db, Problems& problems) {
   }
   SQLite::Statement keys(db, "PRAGMA foreign_key_check");
   while (problems.size() < kMaximumProblems && keys.executeStep()) {
-    problems.push_back("a row of " + keys.getColumn(0).getString() + " points at a row of " +
-                       keys.getColumn(2).getString() + " that is not there");
+    problems.push_back("a row of " + keys.getColumn(0).getString() + " refers to a row of " +
+                       keys.getColumn(2).getString() + " that does not exist");
   }
 }
 
@@ -56,23 +56,23 @@ void check_rows(Connection& db, Problems& problems) {
            "SELECT r.name || ': revisions have gaps' FROM resources r JOIN revisions v "
            "ON v.resource = r.id GROUP BY r.id "
            "HAVING count(*) <> max(v.revision) OR min(v.revision) <> 1",
-           "SELECT r.name || ': its present revision is not its last' FROM resources r "
+           "SELECT r.name || ': its current revision is not its last one' FROM resources r "
            "LEFT JOIN revisions v ON v.id = r.present AND v.resource = r.id "
            "WHERE v.revision IS NOT "
            "(SELECT max(revision) FROM revisions WHERE resource = r.id)",
-           "SELECT name || ': no known kind of resource' FROM resources "
+           "SELECT name || ': unknown kind of resource' FROM resources "
            "WHERE collection NOT IN ('lubricants', 'gearSets', 'surfaces', 'vehicles')",
            "SELECT 'simulations/' || s.id || ': its events have gaps' FROM simulations s "
            "WHERE (SELECT count(*) FROM events WHERE simulation = s.id) <> s.sequence OR "
            "(SELECT coalesce(max(sequence), 0) FROM events WHERE simulation = s.id) <> s.sequence",
-           "SELECT 'simulations/' || s.id || ': its last event is of another state' "
+           "SELECT 'simulations/' || s.id || ': its last event has another state' "
            "FROM simulations s JOIN events e ON e.simulation = s.id AND e.sequence = s.sequence "
            "WHERE e.state <> s.state OR e.attempt <> s.attempt",
            "SELECT 'simulations/' || a.simulation || ': its states move backwards' "
            "FROM events a JOIN events b ON b.simulation = a.simulation "
            "AND b.sequence = a.sequence + 1 WHERE a.state > 2 OR b.attempt < a.attempt OR "
            "(b.attempt = a.attempt AND b.state <= a.state)",
-           "SELECT 'result ' || id || ': its content is not what was written' FROM results "
+           "SELECT 'result ' || id || ': its content differs from its checksum' FROM results "
            "WHERE checksum <> checksum(body)",
            "SELECT 'simulations/' || s.id || ': columns of its history differ in length' "
            "FROM simulations s JOIN history_columns h ON h.result = s.result GROUP BY s.id "
@@ -95,7 +95,7 @@ void check_ledgers(Connection& db, Problems& problems) {
   while (problems.size() < kMaximumProblems && query.executeStep()) {
     if (sha256(bytes_of(query.getColumn(2))) == query.getColumn(1).getString()) continue;
     problems.push_back("ledger " + query.getColumn(0).getString() +
-                       ": its content is not what was written");
+                       ": its content differs from its checksum");
   }
 }
 
@@ -113,14 +113,14 @@ void check_bodies(Connection& db, Problems& problems) {
     const std::string revision = name + "@" + query.getColumn(1).getString();
     const std::string body = query.getColumn(3).getString();
     if (sha256(body) != query.getColumn(2).getString()) {
-      problems.push_back(revision + ": its content is not what was written");
+      problems.push_back(revision + ": its content differs from its checksum");
       continue;
     }
     const auto message = new_resource(collection_of(name));
     if (!message || !message->ParseFromString(body)) {
       problems.push_back(revision + ": cannot be read");
     } else if (!bears_name(*message, name)) {
-      problems.push_back(revision + ": holds another resource");
+      problems.push_back(revision + ": contains another resource");
     }
   }
 }
@@ -152,7 +152,7 @@ void check_properties(Connection& db, Problems& problems) {
     }
     if (stored_properties(db, query.getColumn(0).getInt64()) == expected) continue;
     problems.push_back(query.getColumn(1).getString() +
-                       ": what it is found by is not what it holds");
+                       ": the search index does not match the stored resource");
   }
 }
 
@@ -190,7 +190,7 @@ void check_simulations(Connection& db, const HashInputs& hash_inputs, Problems& 
     if (!result.ParseFromString(query.getColumn(3).getString())) {
       problems.push_back(name + ": its result cannot be read");
     } else if (result.input_hash() != hash) {
-      problems.push_back(name + ": its result is of other inputs");
+      problems.push_back(name + ": its result belongs to other inputs");
     } else if (hash_inputs) {
       request.set_lubricant(query.getColumn(4).getString());
       request.set_gear_set(query.getColumn(5).getString());
@@ -215,7 +215,7 @@ void check_identity(Connection& db, const std::filesystem::path& path) {
   if (version > kSchemaVersion) {
     throw StoreError(StoreError::Kind::kNewerSchema,
                      name + " has schema " + std::to_string(version) +
-                         ", written by a newer tribodynd; this one knows schemas up to " +
+                         ", written by a newer tribodynd; this one supports schemas up to " +
                          std::to_string(kSchemaVersion));
   }
 }
@@ -228,7 +228,7 @@ void require_servable(Connection& db, const std::filesystem::path& path) {
   const std::size_t more = differences.size() - 1;
   throw StoreError(StoreError::Kind::kCorrupt,
                    "database " + path.string() +
-                       " is not as tribodynd makes it: " + differences.front() +
+                       " has another schema than that of tribodynd: " + differences.front() +
                        (more > 0 ? " (and " + std::to_string(more) + " more)" : ""));
 }
 
@@ -241,9 +241,10 @@ Problems problems_of(Connection& db, const std::filesystem::path& path,
   if (!problems.empty()) return problems;
   problems = schema_differences(db);
   if (!problems.empty()) return problems;
-  if (pragma(db, "user_version") < kSchemaVersion) return problems;  // the next start migrates it
+  // the next start of a server migrates it
+  if (pragma(db, "user_version") < kSchemaVersion) return problems;
   add_checksum_function(db);
-  db.exec("BEGIN");  // one moment of a database in use
+  db.exec("BEGIN");  // a snapshot: a server may write meanwhile
   check_rows(db, problems);
   check_histories(db, problems);
   check_ledgers(db, problems);

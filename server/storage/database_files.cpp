@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What to do about a file beside a missing database, by name; nothing for files that do not
+/// Returns advice about a file beside a missing database, or an empty string if the file does not
 /// matter.
 std::string advice_on(const std::string& file, const std::string& database) {
   if (file.starts_with(database + ".replaced")) {
@@ -25,16 +25,16 @@ std::string advice_on(const std::string& file, const std::string& database) {
   }
   if (file == database + "-wal" && fs::file_size(file) > 0) {
     return "its write-ahead log " + file +
-           " is still there: bring the database file back, or restore a backup";
+           " still exists: move the database file back, or restore a backup";
   }
   return {};
 }
 
-/// Advice by file, sorted by name.
+/// Returns the advice for each file, sorted by name.
 std::map<std::string, std::string> leftovers_of(const fs::path& database) {
   std::map<std::string, std::string> out;
   const fs::path parent = database.parent_path();
-  std::error_code ignored;  // a folder that cannot be read is complained about where it is opened
+  std::error_code ignored;  // opening the database reports an unreadable folder
   for (const auto& entry : fs::directory_iterator(parent.empty() ? "." : parent, ignored)) {
     const fs::path file = parent / entry.path().filename();
     std::string advice = advice_on(file.string(), database.string());
@@ -46,11 +46,11 @@ std::map<std::string, std::string> leftovers_of(const fs::path& database) {
 }  // namespace
 
 void require_usable_path(const fs::path& database) {
-  std::error_code unknown;  // a path that cannot be reached is complained about where it is opened
+  std::error_code unknown;  // opening the database reports an unreachable path
   const fs::file_status status = fs::status(database, unknown);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     throw StoreError(StoreError::Kind::kCannotOpen,
-                     "database " + database.string() + " is no regular file");
+                     "database " + database.string() + " is not a regular file");
   }
   std::error_code missing;
   if (fs::file_size(database, missing) > 0 && !missing) return;
@@ -59,7 +59,7 @@ void require_usable_path(const fs::path& database) {
   const auto& [file, advice] = *leftovers.begin();
   throw StoreError(StoreError::Kind::kCannotOpen,
                    "there is no database " + database.string() + ", but " + advice +
-                       "; to begin with an empty database, move " + file + " elsewhere");
+                       "; to start with an empty database, move " + file + " elsewhere");
 }
 
 DatabaseFiles::DatabaseFiles(const fs::path& database) {

@@ -8,20 +8,21 @@
 
 namespace tribodyn::server {
 
-/// Throws StoreError kCannotOpen if a server must not open or make a database at the path: it holds
-/// something else than a file, or no database although a file beside it shows that there was one (a
+/// Throws StoreError kCannotOpen if a server must not open or create a database at the path: it is
+/// not a file, or it does not exist although a file beside it shows that a database existed (a
 /// write-ahead log, a database that a restore kept, the unfinished copy of a restore). A new
-/// database in that place would hide the loss.
+/// database would hide the loss.
 void require_usable_path(const std::filesystem::path& database);
 
-/// The database file and its write-ahead log as a server opened them. Safe for concurrent access.
+/// The database file and its write-ahead log at the time when a server opened them. Safe for
+/// concurrent access.
 class DatabaseFiles {
  public:
   /// Requires that both files exist. Throws StoreError kFailed.
   explicit DatabaseFiles(const std::filesystem::path& database);
 
-  /// A sentence for the person who runs the server if one of the paths holds another file by now,
-  /// or none: whatever is written to the open files then would be lost. Empty otherwise.
+  /// Returns a sentence for the operator if one of the paths now has another file or none: writes
+  /// to the open files would be lost. Returns an empty string otherwise.
   std::string misplaced() const;
 
  private:

@@ -14,7 +14,8 @@
 namespace tribodyn::server {
 namespace {
 
-/// " (process 123)" from the contents of a lock file; empty if it holds none.
+/// Returns " (process 123)" from the contents of a lock file, or an empty string if the file has
+/// none.
 std::string holder(const std::filesystem::path& lock_file) {
   const int descriptor = open(lock_file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return {};
@@ -43,7 +44,7 @@ DatabaseLock::DatabaseLock(const std::filesystem::path& database) : database_(da
   const std::string pid = std::to_string(getpid()) + "\n";
   if (ftruncate(lock_file_, 0) != 0 ||
       pwrite(lock_file_, pid.data(), pid.size(), 0) != static_cast<ssize_t>(pid.size())) {
-    // The number only completes the message that a second server shows.
+    // A failure is ignored: the number only appears in the error of a second server.
   }
 }
 

@@ -19,7 +19,7 @@ StoreError file_error(const std::string& what, const std::filesystem::path& file
           "cannot " + what + " " + file.string() + ": " + std::generic_category().message(reason)};
 }
 
-/// Writes a file or a folder to disk; 0, or the reason why that failed.
+/// Syncs a file or a folder. Returns 0 or the error number.
 int sync_path(const std::filesystem::path& path, int flags) {
   const int descriptor = open(path.c_str(), flags | O_CLOEXEC);
   if (descriptor < 0) return errno;
@@ -45,7 +45,7 @@ void sync_folder_of(const std::filesystem::path& file) {
   const std::filesystem::path parent = file.parent_path();
   const std::filesystem::path folder = parent.empty() ? "." : parent;
   const int reason = sync_path(folder, O_RDONLY | O_DIRECTORY);
-  // EINVAL: the file system writes folders at its own time and offers no way to wait for it.
+  // EINVAL: the file system cannot sync folders.
   if (reason != 0 && reason != EINVAL) throw file_error("write folder", folder, reason);
 }
 

@@ -4,24 +4,25 @@
 
 namespace tribodyn::server {
 
-// File operations of backup and restore, whose effect outlasts a loss of power. All of them throw
+// File operations of backup and restore. Their effects survive a loss of power. All throw
 // StoreError kFailed with a sentence that names the file.
 
-/// The path of a file with all symbolic links resolved, so that two spellings of one path agree.
+/// Returns the path of a file with all symbolic links resolved, so that two spellings of one path
+/// are equal.
 std::filesystem::path canonical_path(const std::filesystem::path& path);
 
-/// Writes the contents of a file to disk.
+/// Syncs the contents of a file.
 void sync_file(const std::filesystem::path& file);
 
-/// Writes to disk which names the folder of `file` holds.
+/// Syncs the folder of `file`, and thus the names of its files.
 void sync_folder_of(const std::filesystem::path& file);
 
 /// Gives a file a second name (a hard link). Returns false if that name is taken.
 bool add_name(const std::filesystem::path& file, const std::filesystem::path& name);
 
-/// A file under construction that is to become `target`. It starts empty, beside `target`, under a
-/// name that no file had ("<target>.new-XXXXXX"), and the destructor removes it, unless one of the
-/// publishing functions has renamed it, and what SQLite left beside it.
+/// A new file that will become `target`. The constructor creates it empty beside `target` under an
+/// unused name ("<target>.new-XXXXXX"). The destructor removes it, unless it was published, and the
+/// files that SQLite left beside it.
 class UnfinishedFile {
  public:
   explicit UnfinishedFile(const std::filesystem::path& target);
@@ -31,12 +32,12 @@ class UnfinishedFile {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Syncs the file and renames it to `target` in one step. Returns false, and changes nothing, if
-  /// a file of that name exists.
+  /// Syncs the file and renames it to `target` atomically. Returns false, and changes nothing, if
+  /// `target` exists.
   bool publish_as_new();
-  /// As publish_as_new, under another name in the same folder.
+  /// Like publish_as_new(), with another name in the same folder.
   bool publish_as(const std::filesystem::path& name);
-  /// Syncs the file and renames it to `target` in one step; a file of that name loses the name.
+  /// Syncs the file and renames it to `target` atomically, over an existing file.
   void publish_over();
 
  private:

@@ -5,9 +5,9 @@
 
 namespace tribodyn::server {
 
-/// One file of server/seeds, as the build read it (embed_seeds.cmake).
+/// One file of server/seeds, embedded at build time (embed_seeds.cmake).
 struct EmbeddedSeed {
-  std::string_view file;  ///< name without folder
+  std::string_view file;  ///< file name without folder
   std::string_view json;
 };
 

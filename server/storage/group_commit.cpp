@@ -55,7 +55,7 @@ void GroupCommit::commit(const Group& group, bool is_own) {
   for (Pending* each : group) commit_alone(*each, {});
 }
 
-/// False when nothing of it has changed anything.
+/// Commits all actions in one transaction. Returns false if it failed and nothing was changed.
 bool GroupCommit::commit_together(const Group& group) {
   try {
     Prepared(writer_, "BEGIN IMMEDIATE").exec();
@@ -66,7 +66,7 @@ bool GroupCommit::commit_together(const Group& group) {
         (*each->action)(writer_);
       } catch (...) {
         each->error = std::current_exception();
-        // Some failures undo everything, e.g. a full disk.
+        // Some errors, e.g. a full disk, roll back the whole transaction.
         if (!is_in_transaction(writer_)) return false;
         Prepared(writer_, "ROLLBACK TO one").exec();
       }
@@ -80,7 +80,7 @@ bool GroupCommit::commit_together(const Group& group) {
   }
 }
 
-/// The limits hold for every statement, up to the commit.
+/// The limits apply to every statement up to the commit.
 void GroupCommit::commit_alone(Pending& pending, const CallLimits& limits) {
   pending.error = nullptr;
   const Connection::Under under(writer_, limits);

@@ -11,21 +11,21 @@
 
 namespace tribodyn::server {
 
-/// Lets writers share a transaction: those who come while a commit is on its way to disk wait for
-/// it and then go together, so that many of them cost little more than one. Each is undone alone
-/// when it throws, and all return when theirs is on disk. Safe for concurrent access.
+/// Combines the transactions of several writers: those that arrive during a commit wait for it and
+/// are then committed together, at little more than the cost of one. If an action throws, only that
+/// action is rolled back. run() returns when the action is on disk. Safe for concurrent access.
 class GroupCommit {
  public:
-  /// Changes rows, and nothing else: it runs again, alone, when a group fails as a whole.
+  /// Must only change rows: if a group fails as a whole, each action runs again alone.
   using Action = std::function<void(Connection&)>;
 
-  /// `writer` is used under `writer_mutex` only; both must outlive the object.
+  /// Both arguments must outlive the object. `writer` is used with `writer_mutex` locked.
   GroupCommit(Connection& writer, std::mutex& writer_mutex)
       : writer_(writer), writer_mutex_(writer_mutex) {}
 
-  /// Throws what the action throws, or SQLite::Exception where it cannot be committed; nothing has
-  /// changed then: with SQLITE_INTERRUPT if `limits` were over before the action began or, where it
-  /// goes alone, before it ended.
+  /// Runs and commits an action. Throws what the action throws, or SQLite::Exception if it cannot
+  /// be committed; then nothing has changed. Throws SQLITE_INTERRUPT if `limits` were over before
+  /// the action began, or before its end if it is committed alone.
   void run(const Action& action, const CallLimits& limits);
 
  private:
@@ -34,7 +34,8 @@ class GroupCommit {
     const CallLimits* limits = nullptr;
     std::exception_ptr error = nullptr;
     bool is_done = false;
-    std::condition_variable changed = {};  // done, or its turn to commit for the others
+    // signalled when done, and when this thread must commit the next group
+    std::condition_variable changed = {};
   };
   using Group = std::vector<Pending*>;
 
@@ -46,7 +47,7 @@ class GroupCommit {
   std::mutex& writer_mutex_;
   std::mutex mutex_;
   std::deque<Pending*> pending_;  // guarded by mutex_
-  bool is_led_ = false;           // guarded by mutex_; somebody commits for the others
+  bool is_led_ = false;           // guarded by mutex_; true while a thread commits a group
 };
 
 }  // namespace tribodyn::server

@@ -22,8 +22,8 @@ std::vector<std::string> compressed_blocks(std::span<const double> values) {
   return out;
 }
 
-/// Requires a row of data and checksum. Throws StoreError kDataLoss unless it holds as many values
-/// as were written.
+/// Decompresses a block. Requires a row of data and checksum. Throws StoreError kDataLoss if the
+/// block differs from its checksum or has another number of values.
 void decompress(SQLite::Statement& block, std::span<double> values) {
   const std::string_view bytes = bytes_of(block.getColumn(0));
   const StoreError damaged(StoreError::Kind::kDataLoss, "a block of a stored history is damaged");

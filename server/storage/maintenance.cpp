@@ -21,11 +21,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kAllPages = -1;
-// What follows the path of a database in the name of a copy of it; a number may follow in turn.
+// Suffixes of copies of a database; a number may follow.
 constexpr char kBeforeMigration[] = ".schema-";
 constexpr char kFormer[] = ".replaced";
 
-/// Runs an action on the database `path`; its failures become StoreError.
+/// Runs an action on the database `path` and converts its exceptions to StoreError.
 template <class Action>
 auto translated(const fs::path& path, const Action& action) {
   try {
@@ -39,7 +39,7 @@ auto translated(const fs::path& path, const Action& action) {
   }
 }
 
-/// Files whose path begins with that of the database and `suffix`, sorted.
+/// Returns the files whose path begins with that of the database and `suffix`, sorted.
 std::vector<fs::path> files_beside(const fs::path& database, const std::string& suffix) {
   return translated(database, [&] {
     std::vector<fs::path> out;
@@ -66,11 +66,11 @@ StoreError in_use(const fs::path& database) {
           "database " + database.string() + " is in use by another program"};
 }
 
-/// Copies a database into an empty file, as it is at one moment.
+/// Copies a snapshot of a database into an empty file.
 void copy_database(const fs::path& from, const fs::path& to) {
   Connection source = open_existing(from, SQLite::OPEN_READONLY);
-  // Without a read transaction SQLite begins the copy anew whenever another connection commits,
-  // and under steady writes never finishes it.
+  // Without a read transaction SQLite restarts the copy whenever another connection commits, and
+  // never finishes it under steady writes.
   source.exec("BEGIN");
   check_identity(source, from);  // the first read begins the transaction
   translated(to, [&] {
@@ -79,16 +79,16 @@ void copy_database(const fs::path& from, const fs::path& to) {
   });
 }
 
-/// As copy_database. Returns the problems of the copy.
+/// Copies a snapshot of a database into an empty file. Returns the problems of the copy.
 Problems copy_and_check(const fs::path& from, const fs::path& to) {
   copy_database(from, to);
-  // Able to write, so that closing it removes the log file that opening it makes.
+  // Writable, so that closing it removes the write-ahead log that opening it creates.
   Connection copied = open_existing(to, SQLite::OPEN_READWRITE);
   return problems_of(copied, to);
 }
 
 /// Moves the contents of a database's write-ahead log into the database file. Returns false if the
-/// file is no SQLite database, or a damaged one.
+/// file is not a SQLite database or is damaged.
 bool fold_log(const fs::path& database) {
   if (fs::file_size(database) == 0) return false;
   try {
@@ -105,8 +105,8 @@ bool fold_log(const fs::path& database) {
   }
 }
 
-/// Gives the database a second name, the first of X.replaced, X.replaced.2, ... that no file and no
-/// log has. Returns that name.
+/// Gives the database a second name: the first of X.replaced, X.replaced.2, ... that neither a file
+/// nor a log has. Returns that name.
 fs::path kept_name(const fs::path& database) {
   for (int number = 1;; ++number) {
     fs::path name = database.string() + kFormer;
@@ -115,13 +115,13 @@ fs::path kept_name(const fs::path& database) {
     if (!fs::exists(database)) {
       if (!fs::exists(name)) return name;
     } else if (add_name(database, name) || fs::equivalent(database, name)) {
-      return name;  // equivalent: a restore that was killed has done this before
+      return name;  // equivalent: a killed restore has already added the name
     }
   }
 }
 
-/// Prepares for another file to take the name of the database: keeps the old one under a second
-/// name, and leaves no log that SQLite would apply to the new one. Returns the second name.
+/// Prepares the replacement of the database: keeps the old one under a second name, and removes
+/// every log that SQLite would apply to the new one. Returns the second name.
 fs::path keep_old(const fs::path& database) {
   const bool is_folded = fs::exists(database) && fold_log(database);
   fs::path kept = kept_name(database);
@@ -145,7 +145,7 @@ fs::path keep_old(const fs::path& database) {
 
 void backup_database(const fs::path& database, const fs::path& copy) {
   const StoreError is_there(StoreError::Kind::kFailed,
-                            copy.string() + " exists; name a file that does not");
+                            copy.string() + " exists; use the name of a new file");
   translated(database, [&] {
     if (fs::exists(copy)) throw is_there;
     UnfinishedFile unfinished(copy);

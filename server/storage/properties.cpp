@@ -100,7 +100,7 @@ std::vector<Property> properties_of(std::string_view collection, const std::stri
       case PropertyKind::kText:
         out.push_back({property.key, reflection.GetString(*message, field)});
         break;
-      case PropertyKind::kFlag:  // only simulations have one, and these have no properties
+      case PropertyKind::kFlag:  // only simulations have flags, and they have no rows of properties
         break;
       case PropertyKind::kEnum: {
         const auto* value =

@@ -10,10 +10,11 @@
 
 namespace tribodyn::server {
 
-/// Compared within its kind: whole numbers are times [us since 1970].
+/// Value of a property. Integers are times [us since 1970]. Values are compared only with values of
+/// the same kind.
 using PropertyValue = std::variant<std::int64_t, double, std::string>;
 
-/// One value that lists can be filtered and ordered by.
+/// A value by which lists can be filtered and ordered.
 struct Property {
   std::string key;
   PropertyValue value;
@@ -25,22 +26,23 @@ enum class PropertyKind {
   kNumber,
   kEnum,
   kTime,
-  kFlag,  ///< stored as the whole numbers 0 and 1
+  kFlag,  ///< stored as the integers 0 and 1
 };
 
-/// What a collection can be filtered and ordered by, besides "name" and "labels.KEY".
+/// A field by which a collection can be filtered and ordered. Every collection also has "name" and
+/// "labels.KEY".
 struct PropertyField {
   std::string key;
   PropertyKind kind;
 };
 
-/// create_time and update_time, and every singular text but the description, enum and number of the
-/// collection's message that a client may set. Empty for an unknown collection.
+/// Returns create_time, update_time, and every singular text (except the description), enum and
+/// number of the collection's message that a client may set. Empty for an unknown collection.
 const std::vector<PropertyField>& property_fields(std::string_view collection);
 
-/// The values of a serialised resource: one for every field above, texts empty and enums by name
-/// when unset (unset numbers are left out), and "labels.KEY" for every label. Empty for an unknown
-/// collection or what does not parse.
+/// Returns the properties of a serialised resource: one for each field of property_fields(), and
+/// "labels.KEY" for each label. An unset text is empty, an unset enum is the name of its zero, an
+/// unset number is left out. Empty if the collection is unknown or the body cannot be parsed.
 std::vector<Property> properties_of(std::string_view collection, const std::string& body,
                                     Microseconds create_time, Microseconds update_time);
 

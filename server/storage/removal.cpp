@@ -11,7 +11,8 @@
 namespace tribodyn::server {
 namespace {
 
-/// Simulations that name any revision of resource ?1; each column has its own index or few rows.
+/// Selects simulations that name a revision of resource ?1. Each of these columns has an index or
+/// few rows.
 constexpr char kOfResource[] =
     "FROM simulations WHERE lubricant IN (SELECT id FROM revisions WHERE resource = ?1) "
     "OR gear_set IN (SELECT id FROM revisions WHERE resource = ?1) "
@@ -32,8 +33,8 @@ std::vector<std::int64_t> simulations_of(Connection& db, const StoredResource& r
   return out;
 }
 
-/// Copies the write-ahead log into the database and empties its file. Returns false if a reader is
-/// in the way.
+/// Copies the write-ahead log into the database and truncates the log. Returns false if a reader
+/// still needs it.
 bool empty_log(Connection& db) {
   SQLite::Statement checkpoint(db, "PRAGMA wal_checkpoint(TRUNCATE)");
   checkpoint.executeStep();
@@ -64,7 +65,7 @@ std::int64_t remove_simulation(Connection& db, std::int64_t id) {
   remove.bind(1, result);
   if (!remove.executeStep()) return 0;
   const std::int64_t bytes = remove.getColumn(0).getInt64();
-  remove.executeStep();  // the row is removed only when the statement has come to its end
+  remove.executeStep();  // the row is removed only when the statement is finished
   return bytes;
 }
 
@@ -80,7 +81,7 @@ Dependents dependents_of(Connection& db, const StoredResource& resource) {
 int remove_resource(Connection& db, const StoredResource& resource) {
   for (const std::int64_t id : simulations_of(db, resource)) remove_simulation(db, id);
   remove_rows(db, "DELETE FROM properties WHERE resource = ?1", resource.id);
-  // The trigger that keeps revisions goes and comes back within the transaction.
+  // The trigger that protects revisions is dropped and created again within the transaction.
   const std::string trigger =
       db.execAndGet("SELECT sql FROM sqlite_master WHERE name = 'revisions_stay'").getString();
   db.exec("DROP TRIGGER revisions_stay");
@@ -91,14 +92,14 @@ int remove_resource(Connection& db, const StoredResource& resource) {
 }
 
 void erase_removed(Connection& db) {
-  // A copy of the whole database: in a file without a name rather than in memory.
+  // VACUUM copies the whole database: into a temporary file rather than memory.
   db.exec("PRAGMA temp_store = FILE");
   db.exec("VACUUM");
   db.exec("PRAGMA temp_store = MEMORY");
   const auto begin = std::chrono::steady_clock::now();
   while (!empty_log(db)) {
     if (std::chrono::steady_clock::now() - begin > std::chrono::seconds(kEraseSeconds)) {
-      throw SQLite::Exception("readers keep the write-ahead log", SQLITE_BUSY);
+      throw SQLite::Exception("readers still use the write-ahead log", SQLITE_BUSY);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

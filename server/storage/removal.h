@@ -8,7 +8,7 @@
 namespace tribodyn::server {
 
 /// Removes a simulation with its events and labels, and its result and assumptions unless another
-/// simulation has them. Returns the bytes of the result that this freed. Inside the caller's
+/// simulation uses them. Returns the freed bytes of the result. Works inside the caller's
 /// transaction. Throws SQLite::Exception.
 std::int64_t remove_simulation(Connection& db, std::int64_t id);
 
@@ -18,19 +18,20 @@ struct Dependents {
   int ended = 0;
 };
 
-/// Throws SQLite::Exception.
+/// Returns the number of simulations that used a revision of the resource. Throws
+/// SQLite::Exception.
 Dependents dependents_of(Connection& db, const StoredResource& resource);
 
-/// Removes a resource with all its revisions, and every simulation that was computed with one of
-/// them, pinned or not. Requires that none of these is QUEUED or RUNNING. Returns the number of
-/// revisions. Inside the caller's transaction. Throws SQLite::Exception.
+/// Removes a resource with all its revisions, and every simulation, pinned or not, that used one of
+/// them. Requires that none of these is QUEUED or RUNNING. Returns the number of revisions. Works
+/// inside the caller's transaction. Throws SQLite::Exception.
 int remove_resource(Connection& db, const StoredResource& resource);
 
-/// Rewrites the database, so that neither its file nor its write-ahead log holds bytes of removed
-/// rows. Takes time and disk space in proportion to the database: about 1.4 s for each 100 MB
-/// (measured), and twice its size, for a temporary copy and for the log. Requires that no
-/// transaction is open on the connection. Throws SQLite::Exception, e.g. if the disk is full or
-/// another connection goes on reading for kEraseSeconds; calling again finishes the work.
+/// Rewrites the database, so that neither its file nor its write-ahead log contains bytes of
+/// removed rows. Time and disk space are proportional to the size of the database: about 1.4 s for
+/// each 100 MB (measured), and twice its size for a temporary copy and for the log. Requires that
+/// the connection has no open transaction. Throws SQLite::Exception, e.g. if the disk is full or
+/// another connection reads for longer than kEraseSeconds; another call finishes the work.
 void erase_removed(Connection& db);
 inline constexpr int kEraseSeconds = 60;
 

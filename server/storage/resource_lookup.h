@@ -5,11 +5,12 @@
 
 namespace tribodyn::server {
 
-/// Finds resources in the store, which must outlive the lookup, for a caller who waits for so long.
+/// Returns a lookup of resources in the store, which must outlive the lookup, within the limits of
+/// the call.
 ResourceLookup resource_lookup(Store& store, const CallLimits& limits = {});
 
-/// As resource_lookup(), but finds the four resources of `simulation` in the revisions that the
-/// simulation was accepted with, even if a resource has been deleted since.
+/// Like resource_lookup(), but finds the four resources of `simulation` in the revisions with which
+/// it was accepted, even if a resource has been deleted since.
 ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation);
 
 }  // namespace tribodyn::server

@@ -11,9 +11,9 @@ namespace {
 
 using Comparison = Restriction::Comparison;
 
-constexpr int kFewRows = 500;  ///< so many rows are sorted in no time
+constexpr int kSelectiveRowLimit = 500;  ///< rows; sorting them takes less than a millisecond
 
-/// SQL with the values for its question marks, in their order.
+/// A part of an SQL statement and the values of its parameters, in their order.
 struct Clause {
   std::string sql;
   std::vector<PropertyValue> values;
@@ -29,11 +29,11 @@ void bind_all(SQLite::Statement& statement, const std::vector<PropertyValue>& va
   for (const PropertyValue& value : values) bind_value(statement, ++index, value);
 }
 
-/// The comparison of a column with the value of a restriction.
+/// Returns the comparison of a column with the value of a restriction.
 Clause compared(const std::string& column, const Restriction& restriction) {
   switch (restriction.comparison) {
     case Comparison::kEqual:
-    case Comparison::kNotEqual:  // by its caller
+    case Comparison::kNotEqual:  // the caller negates it
       return {column + " = ?", {restriction.value}};
     case Comparison::kLess:
       return {column + " < ?", {restriction.value}};
@@ -51,7 +51,7 @@ Clause compared(const std::string& column, const Restriction& restriction) {
   return {"FALSE", {}};
 }
 
-/// A condition on the resource r alone, whatever leads the query.
+/// Returns a restriction as a condition on the resource r, which works in any query.
 Clause condition(const Restriction& restriction) {
   Clause out;
   const bool negated = restriction.comparison == Comparison::kNotEqual;
@@ -68,7 +68,7 @@ Clause condition(const Restriction& restriction) {
   return out;
 }
 
-/// "FROM" and "WHERE" of the rows of the index that a restriction selects, as d.
+/// Returns the condition on the rows d of the index that a restriction selects.
 Clause selected(const std::string& collection, const Restriction& restriction) {
   const Clause test = compared("d.value", restriction);
   Clause out{" d.collection = ? AND d.key = ? AND ", {collection, restriction.key}};
@@ -81,23 +81,25 @@ bool has_index(const Restriction& restriction) {
          restriction.comparison != Comparison::kContains;
 }
 
-/// How many rows a restriction selects; kFewRows stands for more.
-int count_up_to_few(Connection& db, const std::string& collection, const Restriction& restriction) {
+/// Returns the number of rows that a restriction selects, at most kSelectiveRowLimit.
+int count_up_to_limit(Connection& db, const std::string& collection,
+                      const Restriction& restriction) {
   const Clause rows = selected(collection, restriction);
   SQLite::Statement query(db, "SELECT count(*) FROM (SELECT 1 FROM properties d WHERE" + rows.sql +
-                                  " LIMIT " + std::to_string(kFewRows) + ")");
+                                  " LIMIT " + std::to_string(kSelectiveRowLimit) + ")");
   bind_all(query, rows.values);
   query.executeStep();
   return query.getColumn(0).getInt();
 }
 
-/// The restriction that selects the fewest rows if those are few, else null.
+/// Returns the restriction that selects the fewest rows, or null if each selects kSelectiveRowLimit
+/// or more.
 const Restriction* most_selective(Connection& db, const ResourceQuery& query) {
   const Restriction* best = nullptr;
-  int fewest = kFewRows;
+  int fewest = kSelectiveRowLimit;
   for (const Restriction& each : query.restrictions) {
     if (!has_index(each)) continue;
-    const int count = count_up_to_few(db, query.collection, each);
+    const int count = count_up_to_limit(db, query.collection, each);
     if (count < fewest) {
       fewest = count;
       best = &each;
@@ -109,7 +111,7 @@ const Restriction* most_selective(Connection& db, const ResourceQuery& query) {
 constexpr char kJoined[] =
     " CROSS JOIN resources r ON r.id = d.resource CROSS JOIN revisions v ON v.id = r.present";
 
-/// Where a page that is ordered by `columns` goes on.
+/// Adds the start of a page and its order.
 void add_start_and_order(Clause& sql, const ResourceQuery& query, const std::string& value_column,
                          const std::string& name_column) {
   const std::string beyond = query.descending ? " < " : " > ";
@@ -155,7 +157,7 @@ Clause statement(Connection& db, const ResourceQuery& query) {
     }
     sql.add(" WHERE" + rows.sql, rows.values);
     add_conditions(sql, query, leading);
-    // A sorted name is written so that no index is taken for its order.
+    // "+" prevents SQLite from using an index for the order of names.
     add_start_and_order(sql, query, "o.value", sorted ? "+d.name" : "d.name");
     return sql;
   }

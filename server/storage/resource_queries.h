@@ -5,10 +5,10 @@
 
 namespace tribodyn::server {
 
-/// The page of resources that a query means, by indices at any number of resources: ordered by name
-/// or a property it goes on where the last page ended; a restriction that few resources meet leads,
-/// and what it finds is sorted. Only "contains" and "not equal" have to look at resources one by
-/// one. Throws SQLite::Exception.
+/// Returns a page of resources. It uses indexes for any number of resources: a page in the order of
+/// the name or of a property starts where the previous page ended; if a restriction selects few
+/// resources, its index comes first and its rows are sorted. Only "contains" and "not equal" read
+/// resources one by one. Throws SQLite::Exception.
 Page<StoredResource> query_resources(Connection& db, const ResourceQuery& query);
 
 }  // namespace tribodyn::server

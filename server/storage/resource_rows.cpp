@@ -23,7 +23,7 @@ void insert_properties(Connection& db, const StoredResource& resource) {
   }
 }
 
-/// Adds the row and makes it the present one.
+/// Inserts a revision and makes it the current one.
 void add_revision(Connection& db, const StoredResource& added) {
   Prepared insert(db,
                   "INSERT INTO revisions (resource, revision, create_time, content_hash, body) "
@@ -91,7 +91,7 @@ StoredResource insert_revision(Connection& db, const StoredResource& present,
                                const std::string& body, Microseconds now) {
   StoredResource added = present;
   added.revision = present.revision + 1;
-  // The wall clock may have been set back since the former revision.
+  // The wall clock may have been set back since the previous revision.
   added.revision_create_time = std::max(now, present.revision_create_time);
   added.content_hash = sha256(body);
   added.body = body;

@@ -10,35 +10,36 @@
 
 namespace tribodyn::server {
 
-// Rows of resources, revisions and properties on an open connection, inside the caller's
-// transaction. All throw SQLite::Exception.
+// Functions for rows of resources, revisions and properties on an open connection, inside the
+// caller's transaction. All throw SQLite::Exception.
 
 void bind_blob(SQLite::Statement& statement, int index, const std::string& bytes);
 void bind_value(SQLite::Statement& statement, int index, const PropertyValue& value);
 
-/// Whether there is a resource of that name, deleted or not.
+/// Returns true if a resource, deleted or not, has this name.
 bool is_taken(Connection& db, const std::string& name);
 
-/// Whether a resource is still as it was read.
+/// Returns true if the resource has not changed since `present` was read.
 bool is_unchanged(Connection& db, const StoredResource& present);
 
-/// A new resource with its first revision, as it is stored then.
+/// Inserts a resource and its first revision. Returns the stored resource.
 StoredResource insert_resource(Connection& db, const NewResource& resource, Microseconds now);
 
-/// A further revision, which becomes the present one, as it is stored then: at `now`, or at the
-/// time of the former revision if that is later.
+/// Inserts a revision and makes it the current one. Its time is `now`, or that of the previous
+/// revision if that is later. Returns the stored resource.
 StoredResource insert_revision(Connection& db, const StoredResource& present,
                                const std::string& body, Microseconds now);
 
-/// Columns of stored_resource, to be followed by the rest of a SELECT over r (resources) and v
-/// (revisions).
+/// Columns that stored_resource() reads. The caller appends the rest of a SELECT over r (resources)
+/// and v (revisions).
 inline constexpr char kResourceColumns[] =
     "SELECT r.id, r.name, v.revision, r.present = v.id, r.create_time, v.create_time, "
     "r.delete_time, v.content_hash, v.body ";
 inline constexpr int kBodyColumn = 8;
 StoredResource stored_resource(const SQLite::Statement& query);
 
-/// Reads rows until `limit` of them or `byte_limit` bytes of the column that is large.
+/// Reads at most `limit` rows, and at most `byte_limit` bytes of column `large_column` but at least
+/// one row.
 template <class Row, class Read>
 Page<Row> read_page(SQLite::Statement& query, int limit, std::size_t byte_limit, int large_column,
                     const Read& read_row) {

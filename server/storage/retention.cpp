@@ -7,7 +7,7 @@
 namespace tribodyn::server {
 namespace {
 
-/// Bytes that a simulation takes beside the stored_bytes of its result: 620 for its row, its events
+/// Bytes of a simulation in addition to the stored_bytes of its result: 620 for its row, its events
 /// and their indexes, 380 for the row of the result. Measured by dbstat over 1,000 points.
 constexpr std::int64_t kBytesOfASimulation = 1000;
 
@@ -32,7 +32,7 @@ Removed remove_oldest(Connection& db, Microseconds ended_by, int limit) {
 }
 
 std::int64_t removable_bytes(Connection& db) {
-  // The index saves the way through the bodies, behind which the size is stored.
+  // The index avoids reading the bodies, which precede the size in a row.
   constexpr char kBytesOfResults[] =
       "SELECT coalesce(sum(stored_bytes), 0) FROM results INDEXED BY results_by_size";
   constexpr char kBytesOfPinned[] =

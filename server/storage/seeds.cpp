@@ -30,7 +30,7 @@ NewResource parse(std::string_view file, std::string_view json) {
   if (file.starts_with("gear_set_")) return parse<v1::GearSet>(file, json);
   if (file.starts_with("surface_")) return parse<v1::Surface>(file, json);
   if (file.starts_with("vehicle_")) return parse<v1::Vehicle>(file, json);
-  throw std::logic_error("seed " + std::string(file) + " is of no known kind");
+  throw std::logic_error("seed " + std::string(file) + " has an unknown kind");
 }
 
 }  // namespace

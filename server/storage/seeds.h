@@ -6,9 +6,9 @@
 
 namespace tribodyn::server {
 
-/// The resources every database starts with (server/seeds/*.json, in the protos' JSON form,
-/// embedded in the binary): names and serialised messages. Throws std::logic_error when a seed does
-/// not parse, which a test rules out.
+/// Returns the resources of a new database (server/seeds/*.json in the JSON form of the protos,
+/// embedded in the program): names and serialised messages. Throws std::logic_error if a seed
+/// cannot be parsed; a test excludes that.
 std::vector<NewResource> seed_resources();
 
 }  // namespace tribodyn::server

@@ -14,10 +14,11 @@ namespace {
 
 using Comparison = Restriction::Comparison;
 
-constexpr int kFewLabels = 1000;
+/// Simulations; a label with fewer is looked up before the other conditions.
+constexpr int kSelectiveLabelLimit = 1000;
 constexpr std::string_view kLabels = "labels.";
 
-/// A condition of a statement and what its question marks stand for.
+/// A condition of an SQL statement and the values of its parameters.
 struct Condition {
   std::string sql;
   std::vector<PropertyValue> values;
@@ -40,15 +41,15 @@ std::string operator_of(Comparison comparison) {
   }
 }
 
-/// Whether at most a few simulations bear a label.
+/// Returns true if fewer than kSelectiveLabelLimit simulations have a label.
 bool is_rare(Connection& db, const std::string& where, const std::vector<PropertyValue>& values) {
   SQLite::Statement count(
       db, "SELECT count(*) FROM (SELECT 1 FROM simulation_labels WHERE " + where + " LIMIT ?)");
   int index = 0;
   for (const PropertyValue& value : values) bind_value(count, ++index, value);
-  count.bind(++index, kFewLabels);
+  count.bind(++index, kSelectiveLabelLimit);
   count.executeStep();
-  return count.getColumn(0).getInt() < kFewLabels;
+  return count.getColumn(0).getInt() < kSelectiveLabelLimit;
 }
 
 Condition label_condition(Connection& db, const Restriction& restriction) {
@@ -71,7 +72,8 @@ Condition label_condition(Connection& db, const Restriction& restriction) {
           values};
 }
 
-/// The column of a key. A key comes from a client's filter: nothing else of it enters a statement.
+/// Returns the column of a key. Keys come from a client's filter, so only these constants enter a
+/// statement.
 std::string column_of(const std::string& key) {
   for (const char* column : {"state", "create_time", "pinned"}) {
     if (key == column) return column;

@@ -6,9 +6,9 @@
 
 namespace tribodyn::server {
 
-/// The page of simulations that a query means. Without restrictions, and by state or lubricant, it
-/// goes along an index from where the last page ended; a label that few have leads. Throws
-/// SQLite::Exception.
+/// Returns a page of simulations. Without restrictions, and with those on state or lubricant, it
+/// reads an index from the end of the previous page. A label that few simulations have is looked up
+/// first. Throws SQLite::Exception.
 Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& query);
 
 }  // namespace tribodyn::server

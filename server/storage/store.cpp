@@ -51,8 +51,8 @@ Connection open_writer(const std::filesystem::path& path) try {
   throw translate_error(error, path);
 }
 
-/// Thrown by a change that is not to be.
-struct Undone {};
+/// Thrown inside an action to roll back its change.
+struct RollBack {};
 
 }  // namespace
 
@@ -61,8 +61,8 @@ void Store::require_place() const {
   if (!misplaced.empty()) throw StoreError(StoreError::Kind::kMisplaced, misplaced);
 }
 
-/// The files are looked for before the action, so that nothing is written in vain, and after it, so
-/// that nothing is acknowledged that went into a file which lost its name meanwhile.
+/// Checks the files before the action, so that nothing is written in vain, and after it, so that no
+/// change is acknowledged whose file has lost its name meanwhile.
 template <class Action>
 auto Store::write(const CallLimits& limits, const Action& action) {
   const std::lock_guard lock(writer_mutex_);
@@ -84,7 +84,7 @@ void Store::write_together(const CallLimits& limits, const GroupCommit::Action& 
   try {
     group_commit_.run(action, limits);
     require_place();
-  } catch (const Undone&) {
+  } catch (const RollBack&) {
     return;
   } catch (const SQLite::Exception& error) {
     throw translate(error, path_, limits);
@@ -112,8 +112,8 @@ Store::Store(const std::filesystem::path& database)
   open_schema();
   writer_.heed_limits();
   try {
-    // What a writer would undo stays in memory (pages that were there before, a few hundred KiB),
-    // so that no file is opened now and then.
+    // The writer keeps its statement journal (old pages, a few hundred KiB) in memory, so that it
+    // opens no file later.
     writer_.exec("PRAGMA temp_store = MEMORY");
     readers_.open(path_, kReaderConnections);
     lock_.lock_new_file();
@@ -131,10 +131,10 @@ void Store::open_schema() {
       throw StoreError(StoreError::Kind::kReadOnly,
                        "database " + path_.string() + " cannot be written: it is read-only");
     }
-    // SQLite reports some failures only as another mode.
+    // SQLite reports some errors only by another mode.
     if (db.execAndGet("PRAGMA journal_mode = WAL").getString() != "wal") {
       throw StoreError(StoreError::Kind::kFailed,
-                       "database " + path_.string() + ": cannot make its write-ahead log");
+                       "database " + path_.string() + ": cannot create its write-ahead log");
     }
     db.exec("PRAGMA synchronous = FULL");
     db.exec("PRAGMA foreign_keys = ON");
@@ -364,7 +364,7 @@ std::optional<StoredEvent> Store::change_simulation(const CallLimits& limits,
   std::optional<StoredEvent> event;
   write_together(limits, [&](Connection& db) {
     event = change(db);
-    if (!event) throw Undone();
+    if (!event) throw RollBack();
   });
   return event;
 }
@@ -402,7 +402,7 @@ std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
 
 std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds now,
                                                  const NewResult& result) {
-  // Before anybody has to wait for it.
+  // Compresses before the transaction, so that other writers do not wait.
   std::vector<CompressedColumn> history;
   for (const StoredColumn& each : result.history) history.push_back(compress(each));
   return change_simulation(
@@ -444,7 +444,7 @@ std::vector<double> Store::history_rows(std::int64_t id, const std::string& colu
   std::vector<double> values(static_cast<std::size_t>(count));
   if (found == shape.names.end() ||
       !read_history(shape.columns[found - shape.names.begin()], 0, start, values)) {
-    throw StoreError(StoreError::Kind::kFailed, "no such history column");
+    throw StoreError(StoreError::Kind::kFailed, "the history has no such column");
   }
   return values;
 }

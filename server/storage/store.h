@@ -22,135 +22,140 @@
 
 namespace tribodyn::server {
 
-/// Safe for concurrent access without external synchronization: one writer at a time, readers
-/// beside it. The only truth about resources, simulations and results (schema.h). A call that
-/// changes something returns when the change is on disk, in the file at the path. A call that is
-/// made for a client takes how long the client waits. Throws StoreError.
+/// Stores resources, simulations and results in one database (schema.h), which is the only source
+/// of truth. Safe for concurrent access without external synchronization: one writer at a time,
+/// several readers beside it. A call that changes something returns when the change is on disk in
+/// the file at the path. A call on behalf of a client takes the limits of its call. Throws
+/// StoreError.
 class Store {
  public:
-  /// Opens or creates the database and keeps other servers away from it.
+  /// Opens or creates the database and locks it against other servers.
   explicit Store(const std::filesystem::path& database);
 
-  /// As DatabaseFiles::misplaced. While it tells something, calls that would change something throw
-  /// StoreError kMisplaced.
+  /// Like DatabaseFiles::misplaced(). While the result is not empty, calls that change something
+  /// throw StoreError kMisplaced.
   std::string misplaced() const { return files_ ? files_->misplaced() : std::string(); }
 
-  /// Where the database was copied to before the constructor migrated it to the present schema;
-  /// nullopt if the constructor did not.
+  /// Returns the path of the copy that the constructor made before a migration; nullopt if it did
+  /// not migrate the database.
   const std::optional<std::filesystem::path>& migration_backup() const { return migration_backup_; }
 
-  /// Adds what is missing in one transaction; what exists, deleted or not, stays as it is.
+  /// Adds the resources whose names do not exist, in one transaction. Existing ones, deleted or
+  /// not, do not change.
   void add_resources(const std::vector<NewResource>& resources, Microseconds now);
-  /// The present revision, of a deleted resource too.
+  /// Returns the current revision of a resource, also of a deleted one.
   std::optional<StoredResource> resource(const std::string& name, const CallLimits& limits = {});
   std::optional<StoredResource> revision(const std::string& name, int revision,
                                          const CallLimits& limits = {});
   Page<StoredResource> resources(const ResourceQuery& query, const CallLimits& limits = {});
-  /// Newest first, those before `before` (0: from the newest): `limit` rows, or fewer so that they
-  /// stay within `byte_limit`, but at least one.
+  /// Returns revisions, latest first, that are older than `before` (0: all). A page has at most
+  /// `limit` rows and `byte_limit` bytes, but at least one row.
   Page<StoredResource> revisions(const std::string& name, int before, int limit,
                                  std::size_t byte_limit, const CallLimits& limits = {});
-  /// All that are not deleted, sorted.
+  /// Returns the names of all resources of a collection that are not deleted, sorted.
   std::vector<std::string> resource_names(const std::string& collection,
                                           const CallLimits& limits = {});
 
-  /// All of them in one transaction; what they are then. Nothing, and nothing is changed, when the
-  /// name of a new one is taken, if only by a deleted resource, or a present one has changed since
-  /// it was read.
+  /// Writes all resources in one transaction and returns them as stored. Returns nullopt, and
+  /// changes nothing, if the name of a new resource exists (even deleted), or if another resource
+  /// has changed since it was read.
   std::optional<std::vector<StoredResource>> write_resources(
       const std::vector<ResourceWrite>& writes, Microseconds now, const CallLimits& limits = {});
-  // Changes of `present`, as it was read. Each returns false, and changes nothing, when the
-  // resource has changed since.
+  // These functions change the resource `present`. They return false, and change nothing, if the
+  // resource has changed since it was read.
   bool delete_resource(const StoredResource& present, Microseconds now,
                        const CallLimits& limits = {});
   bool undelete_resource(const StoredResource& present, const CallLimits& limits = {});
 
-  /// A new simulation, or the one that an earlier request of its request_id made. Without
-  /// `may_wait` only where a result for it is there already.
+  /// Adds a simulation, or returns the one that an earlier request with the same request_id added.
+  /// If not `may_wait`, adds it only if its result exists.
   Added add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait = true,
                        const CallLimits& limits = {});
   std::optional<StoredSimulation> simulation(std::int64_t id, const CallLimits& limits = {});
   std::optional<std::int64_t> simulation_of_request(const std::string& request_id,
                                                     const CallLimits& limits = {});
   Page<StoredSimulation> simulations(const SimulationQuery& query, const CallLimits& limits = {});
-  /// Keeps a simulation from being removed, or lets it be removed again. Returns the simulation as
-  /// it is then; nullopt if there is none.
+  /// Protects a simulation from removal, or ends the protection. Returns the changed simulation;
+  /// nullopt if it does not exist.
   std::optional<StoredSimulation> set_pinned(std::int64_t id, bool is_pinned,
                                              const CallLimits& limits = {});
-  /// Removes a simulation that has ended and is not pinned.
+  /// Removes an ended simulation that is not pinned.
   enum class Removal { kDone, kAbsent, kUnfinished, kPinned };
   Removal remove_simulation(std::int64_t id, const CallLimits& limits = {});
   /// Removes a resource with all its revisions and, if `with_simulations`, every simulation that
-  /// was computed with one of them. Changes nothing, and returns revisions 0, if the resource has
-  /// changed since it was read, if such a simulation is unfinished, or if there is one and they are
-  /// not to go. Free pages of the files still hold what was removed, until erase_removed().
+  /// used one of them. Changes nothing, and returns revisions 0, if the resource has changed since
+  /// it was read, if such a simulation is unfinished, or if there is one and `with_simulations` is
+  /// false. Free pages of the files still contain the removed bytes until erase_removed().
   struct Purge {
-    bool is_current = false;  ///< the resource was as it had been read
-    Dependents simulations;   ///< computed with it
-    int revisions = 0;        ///< removed
+    bool is_current = false;  ///< the resource has not changed since it was read
+    Dependents simulations;   ///< simulations that used the resource
+    int revisions = 0;        ///< removed revisions
   };
   Purge purge_resource(const StoredResource& present, bool with_simulations,
                        const CallLimits& limits = {});
-  /// As in removal.h, and removes the copies that migrations made. Other writers wait meanwhile.
-  /// Returns the former databases that restores kept, which may still hold what was removed.
+  /// Like erase_removed() of removal.h, and removes the copies that migrations made. Other writers
+  /// wait meanwhile. Returns the old databases that restores kept, which may still contain removed
+  /// rows.
   std::vector<std::filesystem::path> erase_removed();
 
-  // As the functions of retention.h.
+  // Like the functions of retention.h.
   Removed remove_oldest(Microseconds ended_by, int limit);
   std::int64_t used_bytes();
   std::int64_t removable_bytes();
-  /// The change of state that follows the one of that number (0: the first).
+  /// Returns the event after number `after_sequence` (0: the first event); nullopt if there is
+  /// none.
   std::optional<StoredEvent> next_event(std::int64_t id, std::int64_t after_sequence,
                                         const CallLimits& limits = {});
 
-  // Changes of state, each with its event in one transaction. They return the event, or nothing,
-  // and then change nothing, when the simulation is not in a state that allows it: of two that
-  // race, the first wins.
+  // These functions change the state of a simulation and add the event in one transaction. They
+  // return the event. They return nullopt, and change nothing, if the simulation is not in a state
+  // that allows the change: of two concurrent changes the first wins.
 
-  /// From QUEUED to RUNNING, or to SUCCEEDED where equal inputs have a result by now.
+  /// Changes QUEUED to RUNNING, or to SUCCEEDED if equal inputs have a result by now.
   std::optional<StoredEvent> mark_running(std::int64_t id, Microseconds now, const ResultKey& key);
-  /// From RUNNING, as a further attempt.
+  /// Changes RUNNING to QUEUED for a further attempt.
   std::optional<StoredEvent> mark_queued(std::int64_t id, Microseconds now,
                                          const std::string& reason);
   std::optional<StoredEvent> mark_cancelled(std::int64_t id, Microseconds now,
                                             const CallLimits& limits = {});
   std::optional<StoredEvent> mark_failed(std::int64_t id, Microseconds now,
                                          const std::string& reason, const std::string& message);
-  /// From RUNNING. Equal inputs may have a result by now; if it is another one, then this
-  /// simulation is FAILED, unless that one is damaged: then this one takes its place.
+  /// Changes RUNNING to SUCCEEDED and stores the result. If equal inputs have another result by
+  /// now, the simulation becomes FAILED, unless that result is damaged: then the new one replaces
+  /// it.
   std::optional<StoredEvent> mark_succeeded(std::int64_t id, Microseconds now,
                                             const NewResult& result);
 
-  /// After a crash: RUNNING becomes QUEUED, or FAILED after kMaximumLostAttempts of them. All that
-  /// are QUEUED then, oldest first.
+  /// Changes every RUNNING simulation to QUEUED after a crash, or to FAILED after
+  /// kMaximumLostAttempts crashes. Returns all QUEUED ones, oldest first.
   std::vector<Waiting> requeue_unfinished(Microseconds now);
 
-  // Results and histories are compared with their checksums: the calls that read them throw
-  // StoreError kDataLoss if stored bytes are not what was written.
+  // These functions compare stored bytes with their checksums and throw StoreError kDataLoss if
+  // they differ.
 
-  /// Serialised SimulationResult with the assumptions of this simulation.
+  /// Returns the serialised SimulationResult with the assumptions of this simulation.
   std::optional<std::string> result(std::int64_t id, const CallLimits& limits = {});
   HistoryShape history_shape(std::int64_t id, const CallLimits& limits = {});
-  /// Doubles [start, start + values.size()) of a level (pyramid.h) of a column; false when the
-  /// column is gone.
+  /// Reads doubles [start, start + values.size()) of a level (pyramid.h) of a column. Returns false
+  /// if the column no longer exists.
   bool read_history(std::int64_t column, int level, std::int64_t start, std::span<double> values,
                     const CallLimits& limits = {});
-  /// Rows [start, start + count) of one column.
+  /// Returns rows [start, start + count) of one column.
   std::vector<double> history_rows(std::int64_t id, const std::string& column, std::int64_t start,
                                    std::int64_t count);
 
  private:
   void open_schema();
   void require_place() const;
-  /// Changes the row of resources only if `present` is what is there.
+  /// Changes a row of resources if the stored resource is still `present`.
   template <class Change>
   bool change(const CallLimits& limits, const StoredResource& present, const Change& change);
-  /// In one transaction, which an empty event undoes.
+  /// Runs a change in one transaction, and rolls it back if it returns no event.
   template <class Change>
   std::optional<StoredEvent> change_simulation(const CallLimits& limits, const Change& change);
   template <class Action>
   auto write(const CallLimits& limits, const Action& action);
-  /// In a transaction that it may share with others.
+  /// Runs an action in a transaction that it may share with others.
   void write_together(const CallLimits& limits, const GroupCommit::Action& action);
   template <class Action>
   auto read(const CallLimits& limits, const Action& action);
@@ -162,7 +167,7 @@ class Store {
   GroupCommit group_commit_;
   ReaderPool readers_;
   std::optional<std::filesystem::path> migration_backup_;
-  std::optional<DatabaseFiles> files_;  // set by the constructor, once the files exist
+  std::optional<DatabaseFiles> files_;  // set by the constructor when the files exist
 };
 
 }  // namespace tribodyn::server

@@ -5,21 +5,21 @@
 
 namespace tribodyn::server {
 
-/// The database cannot be used, or not any more. what() is a sentence for the person who runs the
-/// server; it names the file and never holds what is stored in it.
+/// Error of the store: the database cannot be used. what() is a sentence for the operator; it names
+/// the file and never contains stored data.
 class StoreError : public std::runtime_error {
  public:
   enum class Kind {
     kCannotOpen,
-    kInUse,        ///< another server has it
+    kInUse,        ///< another server uses it
     kNewerSchema,  ///< written by a newer tribodynd
     kForeign,      ///< a database of another program
     kCorrupt,
     kReadOnly,
-    kDataLoss,   ///< stored bytes are not what was written
-    kMisplaced,  ///< its file was deleted, renamed or replaced while the server has it open
-    kDeadline,   ///< the caller's deadline passed (call_limits.h); nothing has changed
-    kCancelled,  ///< the caller gave up (call_limits.h); nothing has changed
+    kDataLoss,   ///< stored bytes differ from their checksum
+    kMisplaced,  ///< its file was deleted, renamed or replaced while a server uses it
+    kDeadline,   ///< the deadline of the caller passed (call_limits.h); nothing has changed
+    kCancelled,  ///< the caller cancelled (call_limits.h); nothing has changed
     kFailed,     ///< a statement failed: disk full, I/O error
   };
   StoreError(Kind kind, const std::string& sentence) : std::runtime_error(sentence), kind_(kind) {}

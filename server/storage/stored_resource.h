@@ -10,14 +10,14 @@
 
 namespace tribodyn::server {
 
-/// Part of a list, and whether there is more after it.
+/// A page of a list; `more` is true if the list continues after it.
 template <class Row>
 struct Page {
   std::vector<Row> rows;
   bool more = false;
 };
 
-/// A resource to be stored.
+/// A resource before it is stored.
 struct NewResource {
   std::string name;
   std::string body;  ///< serialised message
@@ -25,10 +25,10 @@ struct NewResource {
 
 /// One revision of a resource.
 struct StoredResource {
-  std::int64_t id = 0;  ///< of the resource
+  std::int64_t id = 0;  ///< id of the resource
   std::string name;
   int revision = 0;
-  bool is_present = true;  ///< the newest revision
+  bool is_present = true;  ///< true for the latest revision
   Microseconds create_time = 0;
   Microseconds revision_create_time = 0;
   std::optional<Microseconds> delete_time;
@@ -39,28 +39,29 @@ struct StoredResource {
 /// A new resource, or the next revision of one.
 struct ResourceWrite {
   NewResource resource;
-  std::optional<StoredResource> present;  ///< as it was read; none: the resource is new
+  std::optional<StoredResource> present;  ///< resource as it was read; nullopt: the resource is new
 };
 
-/// One condition of a filter. Text is compared as bytes, "contains" without regard to the case of
-/// ASCII letters.
+/// One condition of a filter. Texts are compared as bytes; "contains" ignores the case of ASCII
+/// letters.
 struct Restriction {
   enum class Comparison {
     kEqual,
-    kNotEqual,  ///< also true of a resource that has no such property
+    kNotEqual,  ///< also true for a resource without the property
     kLess,
     kLessOrEqual,
     kGreater,
     kGreaterOrEqual,
     kContains,
-    kPresent,  ///< has the property, whatever its value
+    kPresent,  ///< true for every value of the property
   };
-  std::string key;  ///< "name", or of Property
+  std::string key;  ///< "name" or the key of a Property
   Comparison comparison = Comparison::kEqual;
   PropertyValue value;
 };
 
-/// Where a page begins: after the resource of this name and, when ordered by a property, value.
+/// Start of a page: after the resource with this name and, if ordered by a property, with this
+/// value.
 struct PageStart {
   PropertyValue value;
   std::string name;
@@ -68,13 +69,13 @@ struct PageStart {
 
 struct ResourceQuery {
   std::string collection;
-  std::vector<Restriction> restrictions;  ///< all of them hold
-  std::string order_key;                  ///< empty: by name
+  std::vector<Restriction> restrictions;  ///< all must be true
+  std::string order_key;                  ///< empty: order by name
   bool descending = false;
   bool show_deleted = false;
   std::optional<PageStart> after;
   int limit = 0;
-  std::size_t byte_limit = 0;  ///< of bodies; a page holds at least one row
+  std::size_t byte_limit = 0;  ///< bytes of bodies; a page has at least one row
 };
 
 }  // namespace tribodyn::server

@@ -5,9 +5,9 @@
 
 namespace tribodyn::server {
 
-using Microseconds = std::int64_t;  ///< since 1970, UTC
+using Microseconds = std::int64_t;  ///< microseconds since 1970, UTC
 
-/// The wall clock.
+/// Returns the time of the wall clock.
 inline Microseconds system_time() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
              std::chrono::system_clock::now().time_since_epoch())

@@ -10,7 +10,7 @@ StoreError translate_error(const SQLite::Exception& error, const std::filesystem
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:
       return {StoreError::Kind::kCorrupt,
-              name + " is damaged or no SQLite database: " + error.what()};
+              name + " is damaged or not a SQLite database: " + error.what()};
     case SQLITE_READONLY:
     case SQLITE_PERM:
       return {StoreError::Kind::kReadOnly, name + " cannot be written: " + error.what()};

@@ -8,7 +8,7 @@
 
 namespace tribodyn::server {
 
-/// A failure of SQLite as a sentence for the person who runs the server.
+/// Converts an error of SQLite to a StoreError whose sentence is for the operator.
 StoreError translate_error(const SQLite::Exception& error, const std::filesystem::path& path);
 
 }  // namespace tribodyn::server

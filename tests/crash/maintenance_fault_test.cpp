@@ -1,5 +1,5 @@
-// Backup, restore, migration and purge where a system call fails or the process is killed: a backup
-// appears complete or not at all, and the database is the former or the new one, complete.
+// Tests of backup, restore, migration and purge when a system call fails or the process is killed:
+// a backup appears complete or not at all, and the database is the old or the new one, complete.
 #include <SQLiteCpp/Database.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -242,7 +242,7 @@ TEST_F(MaintenanceOnAFaultyDisk, AMigrationLeavesTheOldDatabaseOrTheNewOneWithAB
     database = place->file("db");
     std::filesystem::copy_file(test_data_file("schemas/schema_4.sqlite"), database);
     std::filesystem::permissions(database, std::filesystem::perms::owner_all);
-    // As a server leaves it; the stored file was copied without its mode.
+    // Permissions as a server sets them; the stored file was copied without its mode.
     SQLite::Database(database, SQLite::OPEN_READWRITE).exec("PRAGMA journal_mode = WAL");
   };
   renew();

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kBytes = sizeof(double);
 constexpr int kFastest = 1;
 
-/// Swaps rows and columns of an 8 x 8 matrix of bytes, row 0 in words[0], column 0 lowest.
+/// Transposes an 8 x 8 matrix of bytes: row 0 in words[0], column 0 in the lowest byte.
 void transpose(std::uint64_t (&words)[kBytes]) {
   const auto swap = [](std::uint64_t& a, std::uint64_t& b, int shift, std::uint64_t mask) {
     const std::uint64_t moved = ((a >> shift) ^ b) & mask;
@@ -32,7 +32,7 @@ void transpose(std::uint64_t (&words)[kBytes]) {
   for (const std::size_t i : {0, 2, 4, 6}) swap(words[i], words[i + 1], 8, 0x00FF00FF00FF00FFULL);
 }
 
-/// Plane k holds byte k of every value.
+/// Writes the bytes of all values in planes: plane k holds byte k of every value.
 void split_planes(std::span<const double> values, char* planes) {
   const std::size_t count = values.size();
   const std::size_t whole = count - count % kBytes;
@@ -69,14 +69,15 @@ struct FreeContext {
   void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
 };
 
-/// What decompressing a block takes besides the block.
+/// Memory for decompressing one block.
 struct Workspace {
   std::unique_ptr<ZSTD_DCtx, FreeContext> context{ZSTD_createDCtx()};
   std::vector<char> planes;
 };
 
-/// A few of them, lent to one thread at a time, as making one takes longer than a block and one for
-/// every thread that ever reads a history takes megabytes. Safe for concurrent access.
+/// A pool of workspaces, each lent to one thread at a time. Creating one takes longer than
+/// decompressing a block, and one for every thread that ever reads a history would take megabytes.
+/// Safe for concurrent access.
 class Workspaces {
  public:
   std::unique_ptr<Workspace> borrow() {

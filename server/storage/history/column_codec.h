@@ -6,13 +6,13 @@
 
 namespace tribodyn::server {
 
-/// Doubles as they are kept on disk: their bytes in planes, first bytes first, and these by zstd.
-/// Neighbours share sign, exponent and leading digits, so the planes of these shrink to little and
-/// the planes of trailing digits pass through at the speed of memory. The same bits come back.
+/// Compresses doubles for the disk: their bytes are ordered in planes, first bytes first, and
+/// compressed by zstd. Neighbours share sign, exponent and leading digits, so their planes become
+/// small; planes of trailing digits are copied at the speed of memory. Lossless.
 std::string compress_column(std::span<const double> values);
 
-/// Fills `values` with what was compressed. Throws std::runtime_error when it is damaged or was not
-/// as many.
+/// Decompresses a column into `values`. Throws std::runtime_error if the data is damaged or has
+/// another number of values.
 void decompress_column(std::string_view compressed, std::span<double> values);
 
 }  // namespace tribodyn::server

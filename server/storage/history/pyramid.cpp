@@ -18,7 +18,7 @@ struct Pair {
 
 std::int64_t divide_up(std::int64_t a, std::int64_t b) { return (a + b - 1) / b; }
 
-/// Adds what `read` gives of entries [first, last) of a level.
+/// Includes entries [first, last) of a level in `out`.
 void add_entries(int level, std::int64_t first, std::int64_t last, const ReadLevel& read,
                  Pair& out) {
   if (first >= last) return;
@@ -30,7 +30,8 @@ void add_entries(int level, std::int64_t first, std::int64_t last, const ReadLev
   for (std::size_t i = 0; i < entries.size(); i += 2) out.add(entries[i], entries[i + 1]);
 }
 
-/// Adds rows [start, end): whole entries of the level, their surroundings from the finer ones.
+/// Includes rows [start, end) in `out`: whole entries of the level, and at both ends entries of
+/// finer levels.
 void add_rows(int level, std::int64_t start, std::int64_t end, const ReadLevel& read, Pair& out) {
   if (start >= end) return;
   if (level == 0) return add_entries(0, start, end, read, out);
@@ -43,8 +44,8 @@ void add_rows(int level, std::int64_t start, std::int64_t end, const ReadLevel& 
   add_rows(level - 1, last * stride, end, read, out);
 }
 
-/// The coarsest level whose entries are no longer than a run, and that a column of so many rows
-/// has.
+/// Returns the coarsest level whose entries are not longer than a run and that exists in a column
+/// of `total` rows.
 int level_for(std::int64_t run, std::int64_t total) {
   int level = 0;
   while (level + 1 < kPyramidLevels && kPyramidStrides[level + 1] <= run &&
@@ -58,7 +59,7 @@ int level_for(std::int64_t run, std::int64_t total) {
 
 std::int64_t level_size(int level, std::int64_t rows) {
   if (level == 0) return rows;
-  // A level that would be a single entry says nothing that the one below does not say as fast.
+  // A level of a single entry would save nothing over the level below.
   const std::int64_t entries = divide_up(rows, kPyramidStrides[level]);
   return entries > 1 ? 2 * entries : 0;
 }
@@ -69,7 +70,7 @@ std::vector<std::vector<double>> build_pyramid(std::span<const double> column) {
   for (int level = 1; level < kPyramidLevels && level_size(level, rows) > 0; ++level) {
     std::vector<double> entries;
     entries.reserve(static_cast<std::size_t>(level_size(level, rows)));
-    const std::int64_t finer = level == 1 ? 1 : 2;  // doubles of an entry of the level below
+    const std::int64_t finer = level == 1 ? 1 : 2;  // doubles in an entry of the level below
     const std::int64_t ratio = kPyramidStrides[level] / kPyramidStrides[level - 1];
     const std::span<const double> below = level == 1 ? column : levels.back();
     const auto size = static_cast<std::int64_t>(below.size());
@@ -92,7 +93,7 @@ std::int64_t Overview::pairs() const {
 
 Overview overview(std::int64_t start, std::int64_t end, std::int64_t total,
                   std::int64_t maximum_points) {
-  // One run less than there is room for, as the ends of the range may cut two.
+  // Leave room for one more run: the ends of the range may cut two runs.
   const std::int64_t least = divide_up(end - start, maximum_points / 2 - 1);
   const std::int64_t stride = kPyramidStrides[level_for(least, total)];
   return {start, end, total, divide_up(least, stride) * stride};
@@ -103,7 +104,7 @@ std::vector<double> overview_pairs(const Overview& overview, std::int64_t first,
   const std::int64_t run = overview.rows_per_pair;
   const int level = level_for(run, overview.total);
   const std::int64_t stride = kPyramidStrides[level];
-  const std::int64_t base = overview.start / run;  // in runs
+  const std::int64_t base = overview.start / run;  // number of the first run
   std::vector<double> out;
   out.reserve(static_cast<std::size_t>(2 * count));
   const auto push = [&out](const Pair& pair) {
@@ -120,7 +121,7 @@ std::vector<double> overview_pairs(const Overview& overview, std::int64_t first,
   }
   const std::int64_t whole = std::min(last, overview.end / run);
   if (k < whole) {
-    const std::int64_t width = (level == 0 ? 1 : 2) * (run / stride);  // doubles of a run
+    const std::int64_t width = (level == 0 ? 1 : 2) * (run / stride);  // doubles in a run
     const std::vector<double> entries = read(level, k * width, (whole - k) * width);
     for (std::int64_t i = 0; i < static_cast<std::int64_t>(entries.size()); i += width) {
       const std::int64_t step = level == 0 ? 1 : 2;
