@@ -1,12 +1,12 @@
-# Compiles a target's sources a few at a time: most of a compilation goes into headers, which
-# neighbours share. Unlike CMAKE_UNITY_BUILD this names sources relative to the project's folder, so
-# that a compiler cache serves a checkout elsewhere, and names the files so that clang's analyzer
-# follows the paths through what they include ("UnifiedSource").
+# Compiles several sources of a target together: most of the time goes into headers, which
+# neighbours share. Unlike CMAKE_UNITY_BUILD it names sources relative to the project's folder, so
+# that the compiler cache works for every checkout, and names the files so that clang's analyzer
+# follows the paths through included sources ("UnifiedSource").
 #
-# Left alone are sources with options of their own, and what UNITY_BUILD (of a target) or
-# SKIP_UNITY_BUILD_INCLUSION (of a source) excludes.
+# Sources with options of their own are compiled alone, and so are those that UNITY_BUILD (of a
+# target) or SKIP_UNITY_BUILD_INCLUSION (of a source) excludes.
 
-set(TRIBODYN_UNIFIED_SOURCES 12 CACHE STRING "Sources compiled together; 1: each alone")
+set(TRIBODYN_UNIFIED_SOURCES 12 CACHE STRING "Number of sources compiled together; 1: each alone")
 
 function(tribodyn_unify_target target)
   get_target_property(unity ${target} UNITY_BUILD)
@@ -59,7 +59,7 @@ function(tribodyn_unify_target target)
   set_target_properties(${target} PROPERTIES SOURCES "${alone}")
 endfunction()
 
-# Every program and library that the folders add.
+# Unifies the sources of every program and library of a folder and its subfolders.
 function(tribodyn_unify folder)
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target ${targets})
