@@ -15,12 +15,12 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr auto kCallLimit = std::chrono::seconds(3);
-constexpr int kFavourites = 6;  // scenes that are asked for again and again
+constexpr int kFavourites = 6;  // scenes that clients request repeatedly
 constexpr int kScenes = 800;
-// Marched, a point takes a tenth of a second, under sanitizers some: long enough for a crash to
+// A marched point takes a tenth of a second, under sanitizers several: long enough for a crash to
 // interrupt it.
 constexpr int kMarchedOneIn = kUnderSanitizer ? 8 : 2;
-constexpr int kFirstSubmissions = 8;  // of each client until the first crash
+constexpr int kFirstSubmissions = 8;  // for each client until the first crash
 constexpr double kUrgentSeconds = 1;
 constexpr int kBatchSize = 3;
 
@@ -28,8 +28,8 @@ SeenEvent seen(const v1::SimulationEvent& event) {
   return {event.sequence(), event.state(), event.attempt()};
 }
 
-/// Whether the server refuses the request itself. Returns false if the server is dead, slow or
-/// busy: the same request may succeed later.
+/// Returns true if the server refuses the request itself. Returns false if the server is dead, slow
+/// or busy, so that the same request may succeed later.
 bool is_refusal(const client::ServiceError& error) {
   switch (error.status_code()) {
     case grpc::StatusCode::DEADLINE_EXCEEDED:
@@ -125,8 +125,8 @@ Client::Client(std::string address, int number, std::uint64_t seed, Recorder& re
 void Client::run(const std::atomic<bool>& stop, const std::atomic<int>& crashes) {
   while (!stop) {
     try {
-      // The number of submissions follows the crashes, not the time: a server that starts slowly
-      // would otherwise have ever more work left at the end.
+      // The number of submissions depends on the number of crashes and not on time: otherwise a
+      // server that starts slowly would have more and more work left at the end.
       act(std::ssize(sent_) < kFirstSubmissions + crashes);
     } catch (const client::ServiceError& error) {
       if (is_refusal(error)) {
@@ -150,7 +150,7 @@ void Client::act(bool may_submit) {
     submit(sent_.back());
     const int next = draw(4);
     if (next == 0) note_end(connection_.cancel_simulation(sent_.back().name));
-    if (next > 1) watch(sent_.back().name);  // most crashes meet somebody who watches what runs
+    if (next > 1) watch(sent_.back().name);  // so that most crashes interrupt a watch
     return;
   }
   if (kind == 9 || kind == 10) return update_lubricant();

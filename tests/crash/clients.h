@@ -13,20 +13,21 @@
 
 namespace tribodyn::crash {
 
-/// The inputs of a scene, which is named by its number: a point or a short curve. Scenes 2 k and
-/// 2 k + 1 differ in a single input, so that a result key that leaves an input out is noticed.
+/// Returns the inputs of a scene, whose name is a number: a point or a short curve. Scenes 2 k and
+/// 2 k + 1 differ in a single input, so that the test detects a result key that leaves an input
+/// out.
 v1::Simulation simulation_of(const std::string& scene);
 
-/// The bytes of a simulation's history; empty if it has none. Throws client::ServiceError.
+/// Returns the bytes of a simulation's history; empty if it has none. Throws client::ServiceError.
 std::string history_bytes(client::Connection& connection, const v1::Simulation& simulation);
 
-/// Watches a simulation until it ends, or for `patience`, and returns it. Appends the changes of
-/// state to `events` as they arrive. Throws client::ServiceError.
+/// Watches a simulation until it ends or for `patience`. Returns the simulation and appends its
+/// changes of state to `events` as they arrive. Throws client::ServiceError.
 v1::Simulation follow(client::Connection& connection, const std::string& name,
                       std::chrono::milliseconds patience, std::vector<SeenEvent>& events);
 
-/// One client: submits, submits again under the same request_id, watches, cancels, reads, updates a
-/// lubricant and creates batches of lubricants, at random, and records what the server answers.
+/// One client. At random it submits, submits again under the same request_id, watches, cancels,
+/// reads, updates a lubricant and creates batches of lubricants, and records the answers.
 class Client {
  public:
   Client(std::string address, int number, std::uint64_t seed, Recorder& recorder);
@@ -39,7 +40,7 @@ class Client {
     std::string request_id;
     std::string scene;
     bool force = false;
-    bool is_urgent = false;  ///< has a deadline, which it may miss
+    bool is_urgent = false;  ///< has a deadline that it may miss
     std::string name;        ///< empty until the server acknowledges it
   };
 

@@ -16,15 +16,15 @@ namespace tribodyn::crash {
 /// A server that is killed again and again while clients use it.
 class CrashRun {
  public:
-  /// `command`: the server's program and the arguments that precede those of this class.
-  /// `patience`: a simulation whose state has not changed for so long never ends.
+  /// `command`: the server's program and the arguments before those of this class. `patience`: a
+  /// simulation whose state does not change for this time counts as never ending.
   CrashRun(std::vector<std::string> command, std::chrono::milliseconds patience);
 
-  /// Lets `clients` clients work, kills the server `crashes` times, stops the clients, starts the
-  /// server once more, reads everything that it holds, and stops it. Reports a fatal failure of the
-  /// running test if the server does not start, or does not die or stop as told.
+  /// Runs `clients` clients, kills the server `crashes` times, stops the clients, starts the server
+  /// once more, reads all its data, and stops it. Reports a fatal failure of the running test if
+  /// the server does not start, die or stop as expected.
   void play(int clients, int crashes);
-  /// Computes every submitted scene on a tribodynd that nobody kills.
+  /// Computes every submitted scene on a tribodynd that is not killed.
   void compute_undisturbed();
 
   const History& history() { return recorder_.finished(); }

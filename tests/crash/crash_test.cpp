@@ -1,5 +1,5 @@
-// Clients at work while the server is killed again and again: afterwards the server must keep every
-// promise that violations() lists. seeded_bugs_test.cpp shows that broken promises are noticed.
+// Clients work while the server is killed repeatedly: afterwards the server must keep every promise
+// that violations() lists. seeded_bugs_test.cpp shows that broken promises are detected.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using testing::IsEmpty;
 constexpr int kClients = 8;
 constexpr auto kPatience = std::chrono::minutes(1);
 
-/// How often the server is killed; TRIBODYN_CRASHES=200 is the full mode.
+/// Returns the number of kills; TRIBODYN_CRASHES=200 is the full mode.
 int crashes() {
   const char* chosen = std::getenv("TRIBODYN_CRASHES");
   if (chosen != nullptr) return std::atoi(chosen);

@@ -8,7 +8,7 @@
 
 namespace tribodyn::crash {
 
-/// SQLite allocates it together with the file of the real file system, which lies behind it.
+/// SQLite allocates it together with the file of the real file system, which follows it in memory.
 struct FaultyFile {
   sqlite3_file file;
   FaultyVfs* vfs;
@@ -276,7 +276,7 @@ void FaultyVfs::drop_unsynced(std::mt19937_64& random) {
         if (random() % 2 == 0) apply(each.offset, each.bytes, contents.durable);
         continue;
       }
-      const auto kind = random() % 3;  // none of it, all of it, or some of its sectors
+      const auto kind = random() % 3;  // nothing, everything, or some of its sectors
       const auto size = static_cast<std::int64_t>(each.bytes.size());
       for (std::int64_t at = 0; at < size; at += kSector) {
         if (kind == 0 || (kind == 2 && random() % 2 == 0)) continue;

@@ -13,10 +13,10 @@
 
 namespace tribodyn::crash {
 
-/// SQLite's default file system for as long as the object lives: the real one, with faults on
-/// demand. It remembers which writes have been synced, so that a loss of power can take back the
-/// others. Only databases and write-ahead logs are tampered with. Safe for concurrent access; made
-/// and destroyed while no database is open.
+/// Replaces SQLite's default file system while the object exists: the real one with faults on
+/// demand. It records which writes were synced, so that a loss of power can undo the others. Only
+/// databases and write-ahead logs have faults. Safe for concurrent access. Create and destroy it
+/// while no database is open.
 class FaultyVfs {
  public:
   enum class Operation { kOpen, kWrite, kSync };
@@ -27,32 +27,32 @@ class FaultyVfs {
   FaultyVfs(const FaultyVfs&) = delete;
   FaultyVfs& operator=(const FaultyVfs&) = delete;
 
-  /// The n-th operation of this kind from now on fails, and, when lasting, all after it.
+  /// Makes the n-th operation of this kind from now on fail, and if `lasting` all later ones.
   void fail(Operation operation, int n, bool lasting);
-  /// From the n-th operation of any kind on everything fails: the power is off.
+  /// Makes every operation fail from the n-th one on: the power is off.
   void lose_power_at(int n);
-  /// So many bytes may be written from now on; beyond them the disk is full.
+  /// Allows `bytes` bytes of writes from now on; then the disk is full.
   void limit_space(std::int64_t bytes);
-  /// Until the end a sync says that it is done and does nothing.
+  /// Makes every later sync report success and do nothing.
   void ignore_syncs();
   /// Calls `action` after each sync that succeeds, until recover().
   void after_sync(std::function<void()> action);
-  /// No more faults.
+  /// Ends all faults.
   void recover();
 
-  /// Operations since the last of the calls above.
+  /// Returns the number of operations since the last of the calls above.
   int count(Operation operation) const;
   int count() const;
   std::int64_t written_bytes() const;
 
-  /// With all databases closed: puts on disk what a loss of power leaves, every synced write and of
-  /// the others some, in whole or in part, per 512-byte sector.
+  /// Leaves on disk what a loss of power leaves: every synced write, and of the others some, in
+  /// whole or in part, in 512-byte sectors. Requires that all databases are closed.
   void drop_unsynced(std::mt19937_64& random);
 
  private:
   friend struct FaultyFile;
 
-  /// A write, or a truncation when there are no bytes.
+  /// A write, or a truncation if there are no bytes.
   struct Change {
     std::int64_t offset = 0;
     std::vector<char> bytes;
@@ -66,7 +66,7 @@ class FaultyVfs {
                   int* out_flags);
   static int remove(sqlite3_vfs* vfs, const char* name, int sync_folder);
 
-  /// SQLITE_OK, or the error that is due.
+  /// Returns SQLITE_OK, or `error` if the operation must fail.
   int attempt(Operation operation, int error, std::int64_t bytes = 0);
   std::function<void()> sync_action() const;
   void begin_plan();

@@ -16,7 +16,7 @@ namespace {
 
 FileCallHook::Hook installed;
 
-/// 0, or the errno with which the call is to fail.
+/// Returns 0, or the errno with which the call must fail.
 int reason_to_fail(const std::string& call) { return installed ? installed(call) : 0; }
 
 std::string path_of(int descriptor) {
@@ -57,8 +57,7 @@ int run_in_child(const std::function<void()>& action) {
 
 }  // namespace tribodyn::crash
 
-// The definitions of a program come before those of the C library, for every library of the
-// process.
+// For all libraries of the process, definitions in the program precede those of the C library.
 
 extern "C" {
 

@@ -39,7 +39,7 @@ void check_acknowledged(const History& history, Problems& problems) {
   }
 }
 
-/// Whether a simulation died with the server too often, or its deadline was over.
+/// Returns true if a simulation was lost in too many crashes or missed its deadline.
 bool may_fail(const v1::Simulation& simulation) {
   const std::string& reason = simulation.error().reason();
   return reason == "WORKER_LOST" ||
@@ -62,7 +62,7 @@ void check_ends(const History& history, Problems& problems) {
   }
 }
 
-/// result_bits() with the bytes of the history.
+/// Returns result_bits() and the bytes of the history.
 std::string all_bits(const History& history, const std::string& name,
                      const v1::Simulation& simulation) {
   const auto found = history.histories.find(name);
@@ -94,8 +94,8 @@ void check_results(const History& history, Problems& problems) {
   }
 }
 
-/// Checks that events are numbered one by one from `after`, move forward in (attempt, state), and
-/// that none follows an end.
+/// Checks that events are numbered without gaps after `after`, that (attempt, state) only moves
+/// forward, and that no event follows a final state.
 void check_order(const std::string& name, std::int64_t after, const std::vector<SeenEvent>& events,
                  Problems& problems) {
   const SeenEvent* before = nullptr;

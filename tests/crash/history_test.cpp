@@ -1,5 +1,5 @@
-// The checker of the crash test, against histories in which exactly one thing is wrong: it must
-// make exactly the complaint that fits, and none about a history in which nothing is wrong.
+// Tests the checker of the crash test with histories that have exactly one fault: it must make
+// exactly the fitting complaint, and none about a history without faults.
 #include "tests/crash/history.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ constexpr State kSucceeded = v1::Simulation::SUCCEEDED;
 constexpr State kFailed = v1::Simulation::FAILED;
 constexpr State kCancelled = v1::Simulation::CANCELLED;
 
-/// Adds a simulation that is in the state of its last event.
+/// Adds a simulation in the state of its last event.
 v1::Simulation& add(History& history, const std::string& name, const std::string& request_id,
                     std::vector<SeenEvent> events) {
   v1::Simulation& simulation = history.simulations[name];
@@ -41,9 +41,10 @@ void set_result(v1::Simulation& simulation, const std::string& hash, double spee
   simulation.mutable_result()->add_points()->set_speed_kilometres_per_hour(speed);
 }
 
-/// A history with everything that may happen. A simulation runs again after a crash, is served from
-/// the cache, is cancelled, fails after too many crashes or at its deadline, is asked for twice,
-/// and is never acknowledged; so is an update of a resource. A batch has an effect or none.
+/// Returns a history with everything that may happen without a fault: a simulation runs again after
+/// a crash, is served from the cache, is cancelled, fails after too many crashes or at its
+/// deadline, is requested twice, is never acknowledged; an update is not acknowledged; a batch has
+/// an effect or none.
 History faultless() {
   History history;
   const std::vector<SeenEvent> run_again = {
@@ -58,7 +59,7 @@ History faultless() {
   set_result(
       add(history, "simulations/5", "1-2", {{1, kQueued, 1}, {2, kRunning, 1}, {3, kSucceeded, 1}}),
       "hash of 8", 66);
-  ++history.requests;  // one that the server never received
+  ++history.requests;  // a request that the server never received
   history.submissions = {{"0-0", "simulations/1", "7"},
                          {"0-0", "simulations/1", "7"},
                          {"0-1", "simulations/2", "7"},
@@ -87,7 +88,7 @@ History faultless() {
   return history;
 }
 
-TEST(CrashHistory, WithoutAFaultIsNotComplainedAbout) {
+TEST(CrashHistory, WithoutAFaultCausesNoComplaint) {
   EXPECT_THAT(violations(faultless()), IsEmpty());
 }
 
@@ -101,13 +102,13 @@ void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.complaint; }
 
 class CrashHistoryFault : public testing::TestWithParam<Fault> {};
 
-TEST_P(CrashHistoryFault, IsTheOneComplaint) {
+TEST_P(CrashHistoryFault, CausesExactlyItsComplaint) {
   History history = faultless();
   GetParam().plant(history);
   EXPECT_THAT(violations(history), ElementsAre(GetParam().complaint));
 }
 
-/// Replaces the events of a simulation and moves it to the state of the last one.
+/// Replaces the events of a simulation and sets its state to that of the last one.
 void set_events(History& history, const std::string& name, std::vector<SeenEvent> events) {
   v1::Simulation& simulation = history.simulations[name];
   simulation.set_state(events.back().state);

@@ -42,7 +42,7 @@ constexpr int kInBackup = 2;
 constexpr int kInDatabase = 3;
 constexpr int kMostCalls = 100;  // far more than a backup or a restore makes
 
-/// Adds simulations; the process ends without closing the store, so that a log is left behind.
+/// Adds simulations. The process ends without closing the store, so that a write-ahead log remains.
 void fill(const std::string& database, int simulations) {
   const int code = run_in_child([&] {
     Store store(database);
@@ -64,7 +64,7 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// Files whose name holds `part`.
+/// Returns the files whose names contain `part`.
 std::vector<std::string> files_with(const TemporaryFolder& folder, const std::string& part) {
   std::vector<std::string> out;
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
@@ -83,8 +83,8 @@ class MaintenanceFault : public testing::Test {
     ASSERT_GT(std::filesystem::file_size(folder_.file("former-wal")), 0U);
   }
 
-  /// Puts the former database, with commits that only its log holds, where a restore is to replace
-  /// it.
+  /// Writes the old database, which a restore will replace, with commits that only its write-ahead
+  /// log has.
   std::string place_former(const TemporaryFolder& place) const {
     for (const char* suffix : {"", "-wal"}) {
       std::filesystem::copy_file(folder_.file(std::string("former") + suffix),
@@ -93,7 +93,7 @@ class MaintenanceFault : public testing::Test {
     return place.file("db");
   }
 
-  /// A restore that ended, or was interrupted, left one of two databases.
+  /// Checks that a finished or interrupted restore left one of the two databases.
   void expect_former_or_new(const std::string& database, bool is_restored,
                             const std::string& trace) const {
     ASSERT_TRUE(std::filesystem::exists(database)) << trace;
@@ -106,8 +106,8 @@ class MaintenanceFault : public testing::Test {
     }
   }
 
-  /// Restores the backup over a database with a log, whose n-th call `hook` meets, for each n. The
-  /// hook returns an errno or does not return.
+  /// Restores the backup over a database with a log, once for each n; `hook` handles the n-th call.
+  /// The hook returns an errno or does not return.
   template <class Meet>
   void restore_with_a_fault_at_each_call(const Meet& meet) {
     int n = 1;
@@ -119,7 +119,7 @@ class MaintenanceFault : public testing::Test {
             int calls = 0;
             const FileCallHook hook([&](const std::string&) { return ++calls == n ? meet() : 0; });
             restore_database(backup_, database);
-            if (calls >= n) _exit(2);  // e.g. SQLite ignores a folder that cannot be synced
+            if (calls >= n) _exit(2);  // e.g. SQLite ignores the error of syncing a folder
           }) != 0;
       expect_former_or_new(database, !was_met, "call " + std::to_string(n));
     }
@@ -147,7 +147,7 @@ TEST_F(MaintenanceFault, ABackupWhoseCallsFailLeavesNoFile) {
     bool is_done = false;
     try {
       const FileCallHook hook([&](const std::string& call) {
-        // A failure leads to the removal of the unfinished file.
+        // After a failure the unfinished file is removed.
         if (call.starts_with("remove ")) return 0;
         return ++calls == n ? EIO : 0;
       });
@@ -166,11 +166,11 @@ TEST_F(MaintenanceFault, ABackupWhoseCallsFailLeavesNoFile) {
   EXPECT_LT(n, kMostCalls);
 }
 
-/// Faults of SQLite's own file operations.
+/// Tests with faults of SQLite's own file operations.
 class MaintenanceOnAFaultyDisk : public MaintenanceFault {
  protected:
-  /// Carries out `action` with each operation of each kind failing in turn, once and for good;
-  /// tells `check` whether the action succeeded.
+  /// Runs `action` with each operation of each kind failing in turn, once or from then on, and
+  /// calls `check` with the success of the action.
   template <class Action, class Check>
   void fail_each_operation(const Action& action, const Check& check) {
     using Operation = FaultyVfs::Operation;

@@ -1,5 +1,5 @@
-// A server with a bug, killed while clients use it: the crash test must complain about each of the
-// bugs of seeded_bugs/*.patch. Without one of them the same server must pass.
+// Kills a server that has a bug while clients use it: the crash test must complain about each bug
+// of seeded_bugs/*.patch. Without a chosen bug the same server must pass.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,17 +21,17 @@ using testing::IsEmpty;
 
 constexpr int kClientsOfABug = 8;
 constexpr int kCrashesOfABug = 2;
-constexpr int kRounds = 20;  // after which a bug counts as missed; most need one
+constexpr int kRounds = 20;  // after them a bug counts as not found; most need one
 constexpr auto kShortPatience = std::chrono::seconds(2);
 
 struct Bug {
   std::string name;
-  std::string complaint;  ///< that the crash test must make of it
+  std::string complaint;  ///< complaint that the crash test must make
 };
 
 void PrintTo(const Bug& bug, std::ostream* out) { *out << bug.name; }
 
-/// The bugs by their patches. A patch without a complaint only prepares the others.
+/// Returns the bugs of the patches. A patch without a complaint only prepares the others.
 std::vector<Bug> bugs() {
   std::vector<Bug> out;
   for (const auto& entry : std::filesystem::directory_iterator(seeded_bugs_folder())) {

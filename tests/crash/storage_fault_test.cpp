@@ -1,6 +1,6 @@
-// The store on a file system that fails: every open, write and sync of a session in turn, a full
-// disk, and power that goes at any moment and takes with it what was not synced. Whatever was
-// acknowledged must be there afterwards, and the database whole.
+// Tests of the store on a file system with faults: every open, write and sync of a session fails in
+// turn, the disk is full, and power fails at any moment and takes unsynced writes with it.
+// Afterwards all acknowledged changes must exist and the database must be sound.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,20 +49,19 @@ std::string body(char input) {
 
 std::vector<double> rows(char input) { return std::vector<double>(700, input); }
 
-/// Resources that one batch writes.
+/// Resources of one batch.
 constexpr std::array<const char*, 3> kBatch = {"surfaces/1", "surfaces/2", "surfaces/3"};
 
-/// What a client was told.
+/// Acknowledged changes.
 struct Acknowledged {
   std::map<std::string, std::int64_t> simulations;          ///< by request_id
   std::map<std::int64_t, std::vector<StoredEvent>> events;  ///< changes of state, in order
-  std::map<std::int64_t, char> results;                     ///< inputs of what has succeeded
-  std::map<std::string, int> revisions;                     ///< of resources
-  std::map<std::int64_t, bool>
-      pins;  ///< pinned or not; left out where the last answer was an error
+  std::map<std::int64_t, char> results;                     ///< inputs of succeeded simulations
+  std::map<std::string, int> revisions;                     ///< latest revision by resource
+  std::map<std::int64_t, bool> pins;  ///< pinned or not; left out after an error
 };
 
-/// A session with a store: each step is acknowledged, or fails with a sentence.
+/// A session with a store. Each step is acknowledged or fails with a sentence.
 class Session {
  public:
   explicit Session(std::string path) : path_(std::move(path)) {}
@@ -202,7 +201,7 @@ bool is_kept(Store& store, std::int64_t id, char input) {
          store.result(id) == body(input) && store.history_rows(id, "a", 0, 700) == rows(input);
 }
 
-/// What was acknowledged and is not there, and what is wrong with the database.
+/// Returns the acknowledged changes that are missing, and the problems of the database.
 std::vector<std::string> lost(const std::string& path, const Acknowledged& told) try {
   std::vector<std::string> out;
   Store store(path);
@@ -241,8 +240,8 @@ int number_from(const char* variable, int otherwise) {
 
 class StorageFault : public testing::Test {
  protected:
-  /// Plays the session under a fault in a folder of its own; false once the fault comes too late to
-  /// meet it.
+  /// Runs the session under a fault in its own folder. Returns false if the session ended before
+  /// the fault.
   bool survives(const std::function<void()>& plan, const std::function<bool()>& was_met,
                 const std::string& trace) {
     const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);
@@ -260,7 +259,7 @@ class StorageFault : public testing::Test {
   }
 
   void fail_every(FaultyVfs::Operation operation, const std::string& name) {
-    // A session for each operation: of writes, under sanitizers, minutes of them.
+    // There is one session for each operation; under sanitizers all writes would take minutes.
     const int slowed = kUnderThreadSanitizer ? 12 : kUnderAddressSanitizer ? 4 : 1;
     const int stride = operation == FaultyVfs::Operation::kWrite ? slowed : 1;
     for (const bool lasting : {false, true}) {
@@ -277,7 +276,7 @@ class StorageFault : public testing::Test {
     }
   }
 
-  /// Sessions that end with a loss of power at a random moment; what they lost.
+  /// Runs sessions that end with a loss of power at a random moment. Returns what they lost.
   std::vector<std::string> lose_power(int losses) {
     const auto seed = static_cast<std::uint64_t>(
         number_from("TRIBODYN_TEST_SEED", static_cast<int>(std::random_device()() % 1'000'000)));
@@ -371,10 +370,10 @@ TEST_F(StorageFault, AResultWaitsForADiskThatIsFull) {
   EXPECT_TRUE(bench.reaches(bench.create(server::curve_simulation()), v1::Simulation::SUCCEEDED));
 }
 
-/// A disk on which each commit takes until the deadline of the call has passed.
+/// A disk on which each commit takes longer than the deadline of the call.
 class SlowCommits : public StorageFault {
  protected:
-  /// What the call answers; its deadline passes while its change is being committed.
+  /// Makes a call whose deadline passes during the commit of its change. Returns the answer.
   template <class Body>
   auto answer(const Body& body) {
     const auto end = server::CallLimits::Clock::now() + std::chrono::milliseconds(300);

@@ -1,5 +1,5 @@
-// libFuzzer: whatever a client sends to an import is accepted or refused, never a crash, a hang or
-// an answer without bounds; what is accepted once is accepted again, unchanged.
+// libFuzzer: an import accepts or refuses any bytes without a crash, a hang or an unlimited answer.
+// An accepted resource is accepted again unchanged.
 #include <google/protobuf/util/json_util.h>
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostViolations = 1000;
 
-/// Resources of the seeds.
+/// Returns a lookup of the seeds.
 const ResourceLookup& lookup() {
   static const std::vector<NewResource> kSeeds = seed_resources();
   static const ResourceLookup kLookup = {
@@ -42,7 +42,8 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// What was accepted stands a second time, byte for byte; what was not says why.
+/// Checks that an accepted resource is accepted a second time, byte for byte, and that a refusal
+/// has a reason.
 template <class Resource>
 void judge(const std::optional<Resource>& accepted, const Violations& violations) {
   require(accepted.has_value() == violations.empty());

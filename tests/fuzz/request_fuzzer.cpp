@@ -1,8 +1,8 @@
-// libFuzzer: requests that parse and are hostile, through the application layer over a database
-// with the seeds. Each is answered or refused with a reason; none crashes, hangs, ends in INTERNAL
-// or leaves a database that cannot be read. An input is text: the method's name, then the request
-// in protobuf's text format. Requests are changed field by field (HostileMessages), not byte by
-// byte. Most are only validated: a server with a fresh database takes longer than many requests.
+// libFuzzer: sends hostile requests that parse through the application layer over a database with
+// the seeds. Each must be answered or refused with a reason; none may crash, hang, end in INTERNAL
+// or leave a database that cannot be read. An input is text: the method's name, then the request in
+// protobuf's text format. Requests are changed field by field (HostileMessages), not byte by byte.
+// Most are only validated, because a server with a new database takes longer than many requests.
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 #include <spdlog/spdlog.h>
@@ -35,16 +35,16 @@ namespace {
 using google::protobuf::Message;
 using google::protobuf::TextFormat;
 
-constexpr std::size_t kWrittenOneIn = 8;           // of requests that would write
-constexpr std::size_t kMostChanges = 4;            // of one mutation
-constexpr std::size_t kLargestRefusal = 8 * 1024;  // gRPC clients take no longer header [bytes]
-constexpr std::size_t kLargestAnswer = 16 * 1024 * 1024;  // GrpcServer sends no larger one [bytes]
+constexpr std::size_t kWrittenOneIn = 8;           // one in so many writing requests really writes
+constexpr std::size_t kMostChanges = 4;            // changes of one mutation
+constexpr std::size_t kLargestRefusal = 8 * 1024;  // [bytes], limit of headers in gRPC clients
+constexpr std::size_t kLargestAnswer = 16 * 1024 * 1024;  // [bytes], limit of GrpcServer
 
 void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// The application over a database that holds the seeds. Nothing runs: simulations stay queued.
+/// The application over a database with the seeds. Nothing runs: simulations stay queued.
 class Server {
  public:
   Server()
@@ -80,7 +80,8 @@ class Server {
   Application application_;
 };
 
-/// The server in its first state: writes of earlier inputs must not decide what an input finds.
+/// Returns the server in its initial state, so that an input does not depend on writes of earlier
+/// ones.
 std::unique_ptr<Server>& server() {
   static std::unique_ptr<Server> kServer;
   if (!kServer) {
@@ -107,7 +108,8 @@ bool judge(const Outcome<Answer>& outcome) {
   return true;
 }
 
-/// A method: its request, and a call that judges the answer and says whether it was accepted.
+/// A method: its request, and a call that checks the answer and returns true if the request was
+/// accepted.
 struct Method {
   const Message* prototype;
   std::function<bool(Application&, const Message&)> call;
@@ -159,7 +161,7 @@ const std::map<std::string, Method>& methods() {
   return kMethods;
 }
 
-/// Everything that a client may list, page by page, is still readable.
+/// Checks that every list can still be read, page by page.
 void read_everything(Application& application) {
   const auto all_pages = [&](auto list, auto request) {
     request.set_page_size(2);
@@ -169,7 +171,7 @@ void read_everything(Application& application) {
       request.set_page_token(outcome.message().next_page_token());
       if (request.page_token().empty()) return;
     }
-    std::abort();  // pages without end
+    std::abort();  // endless pages
   };
   v1::ListLubricantsRequest lubricants;
   lubricants.set_show_deleted(true);
@@ -186,7 +188,7 @@ class NoComplaints : public google::protobuf::io::ErrorCollector {
   void AddError(int, google::protobuf::io::ColumnNumber, const std::string&) override {}
 };
 
-/// An input taken apart.
+/// A parsed input.
 struct Input {
   std::string name;
   const Method* method = nullptr;
@@ -199,7 +201,8 @@ struct Input {
   }
 };
 
-/// Returns an input without a request if the text names no method or is no request of it.
+/// Parses an input. The result has no request if the text names no method or is not a request of
+/// the method.
 Input parse(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   Input out;
@@ -218,7 +221,7 @@ Input parse(const std::uint8_t* data, std::size_t size) {
   return out;
 }
 
-/// Sets the field by which a request is only validated; returns false if it has none.
+/// Sets the field that makes a request only validate. Returns false if it has no such field.
 bool only_validate(Message& request) {
   const auto* field = request.GetDescriptor()->FindFieldByName("validate_only");
   if (field != nullptr) request.GetReflection()->SetBool(&request, field, true);
@@ -228,7 +231,7 @@ bool only_validate(Message& request) {
 std::size_t copy_out(const Input& input, std::uint8_t* data, std::size_t size,
                      std::size_t maximum_size) {
   const std::string text = input.text();
-  if (text.size() > maximum_size) return size;  // as it was
+  if (text.size() > maximum_size) return size;  // unchanged
   std::memcpy(data, text.data(), text.size());
   return text.size();
 }
@@ -241,7 +244,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Input input = parse(data, size);
   if (!input.request) return 0;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  // Chosen by the input, so that a crash can be repeated.
+  // The choice depends on the input, so that a crash can be repeated.
   const bool is_chosen = std::hash<std::string_view>()(text) % kWrittenOneIn == 0;
   const bool writes = input.method->writes && (is_chosen || !only_validate(*input.request));
   const bool accepted = input.method->call(server()->application(), *input.request);

@@ -55,7 +55,7 @@ void read_filter(std::string_view text) {
 void read_page_token(std::string_view text) {
   const std::string scope = "lubricants";
   server::parse_page_token(scope, std::string(text));
-  // Behind the hash of its scope, which is no secret.
+  // The token follows the hash of its scope, which is not secret.
   const std::string hash = server::page_token(scope, {}).substr(0, 16);
   const auto start = server::parse_page_token(scope, hash + std::string(text));
   if (!start) return;
@@ -98,14 +98,14 @@ void read_quantity(std::string_view text) {
   client::label_of_field(lines[1]);
 }
 
-/// Writes rows and reads them with both readers; the header is a program's own.
+/// Writes rows and reads them with both readers; the header is fixed.
 void write_and_read(const std::vector<std::vector<std::string>>& rows) {
   std::string written = "a,b,c\n";
   for (const auto& row : rows) written += client::csv_line(row);
   const std::vector<client::CsvLine> lines = client::read_csv(written);
   require(lines.size() == rows.size() + 1);
   for (std::size_t i = 0; i < rows.size(); ++i) require(lines[i + 1].cells == rows[i]);
-  // The server's cells hold no line breaks.
+  // Cells of the server contain no line breaks.
   if (written.find('\0') != std::string::npos || written.find('\r') != std::string::npos) return;
   for (const auto& row : rows) {
     for (const std::string& cell : row) {

@@ -9,7 +9,7 @@
 
 namespace tribodyn {
 
-/// Contacts as arrays, with room for every figure of a batch.
+/// Contacts as arrays, with memory for every figure of a batch.
 class ContactArrays {
  public:
   ContactArrays(const std::vector<ContactConditions>& conditions, const Solid& solid,
@@ -53,22 +53,22 @@ class ContactArrays {
             centre_.get() + first,
             status_.data() + first};
   }
-  /// Friction alone.
+  /// Returns the arrays for friction only.
   FlankContactBatchResults friction(std::size_t first = 0) {
     FlankContactBatchResults only;
     only.friction = out_[0].data() + first;
     return only;
   }
-  /// From now on contacts start at their last temperature, changed by a factor.
+  /// Makes contacts start at their last temperature times `factor`.
   void start_from_last_temperature(double factor) {
     start_.resize(size());
     for (std::size_t i = 0; i < size(); ++i) start_[i] = factor * out_[3][i];
   }
-  /// Solves all of them; returns how many went to the reference.
+  /// Solves all contacts. Returns the number of contacts that the reference solved.
   std::size_t solve(const FlankContactBatch& batch) {
     return batch.solve(geometries_, 0, size(), conditions(), results());
   }
-  /// What the batch found, under the names of the reference; other members are 0.
+  /// Returns the figures of one contact under the names of the reference; other members are 0.
   ContactSolution solution(std::size_t i) const {
     ContactSolution s;
     s.status = status_[i];
@@ -94,7 +94,7 @@ class ContactArrays {
   static constexpr int kInputs = 5, kFigures = 13;
   ContactGeometries geometries_;
   std::vector<double> in_[kInputs], start_, out_[kFigures];
-  std::shared_ptr<bool[]> centre_;  // std::vector<bool> has no array
+  std::shared_ptr<bool[]> centre_;  // std::vector<bool> has no data()
   std::vector<ContactStatus> status_;
 };
 

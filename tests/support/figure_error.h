@@ -7,7 +7,8 @@
 
 namespace tribodyn {
 
-/// Of what the estimate speaks of: both inefficiencies, torque, extremes of the transmission error.
+/// Returns the largest error of the figures that the estimate covers: both inefficiencies, torque,
+/// extremes of the transmission error.
 inline double true_error(const PointFigures& r, const PointResult& exact) {
   const auto relative = [](double a, double b) { return std::abs(a / b - 1); };
   const Extremes& y = exact.dynamic_transmission_error;

@@ -15,7 +15,7 @@ using google::protobuf::Message;
 using google::protobuf::Reflection;
 
 constexpr std::size_t kLongestList = 300;
-constexpr std::size_t kMostMessages = 2000;  // among which one is chosen to be changed
+constexpr std::size_t kMostMessages = 2000;  // candidates for a change
 constexpr int kWordDepth = 4;  // of paths such as "requests.lubricant.provenance.field"
 constexpr std::size_t kLongestText = 20'000;
 
@@ -98,7 +98,7 @@ void add_words(const Descriptor& descriptor, const std::string& prefix, int dept
   }
 }
 
-/// The message and all that it holds.
+/// Collects the message and all messages in it.
 void collect(Message& message, std::vector<Message*>& messages) {
   if (messages.size() >= kMostMessages) return;
   messages.push_back(&message);
@@ -171,7 +171,7 @@ void HostileMessages::mutate_list(Message& message, const Field& field) {
       reflection.SwapElements(&message, &field, any(), size - 1);
       return reflection.RemoveLast(&message, &field);
     case 4: {
-      // Many elements, of which the first is copied where it is a message.
+      // Adds many elements; if they are messages, copies the first one.
       for (std::size_t more = draw(kLongestList); more > 0; --more) {
         if (field.cpp_type() == Field::CPPTYPE_MESSAGE) {
           reflection.AddMessage(&message, &field)
@@ -270,7 +270,7 @@ int HostileMessages::enum_number(const Field& field) {
   const auto& type = *field.enum_type();
   const std::size_t place = draw(static_cast<std::size_t>(type.value_count()) + 2);
   if (place >= static_cast<std::size_t>(type.value_count())) {
-    return draw(2) == 0 ? -1 : 12345;  // proto3 keeps values that it does not know
+    return draw(2) == 0 ? -1 : 12345;  // proto3 keeps unknown values
   }
   return type.value(static_cast<int>(place))->number();
 }

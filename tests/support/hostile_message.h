@@ -9,18 +9,18 @@
 
 namespace tribodyn {
 
-/// Changes messages at random into ones that still parse and that a careless or malicious client
-/// may send: numbers at the ends of their ranges and beyond, names of resources that do not exist,
-/// texts of any length, fields left out, repeated and moved. Equal seeds make equal changes.
+/// Changes messages at random into ones that can be parsed and that a careless or malicious client
+/// may send: numbers at the ends of their ranges and beyond, names of missing resources, texts of
+/// any length, fields left out, repeated and moved. Equal seeds make equal changes.
 ///
 /// Debian 12 has no libprotobuf-mutator, which does the same.
 class HostileMessages {
  public:
   explicit HostileMessages(std::uint64_t seed) : random_(seed) {}
 
-  /// Changes one field of the message or of one that it holds.
+  /// Changes one field of the message or of a message in it.
   void mutate(google::protobuf::Message& message);
-  /// Replaces one field of `message` with that of `other`, which is of the same type.
+  /// Replaces one field of `message` by that of `other`, which has the same type.
   void graft(const google::protobuf::Message& other, google::protobuf::Message& message);
 
  private:
@@ -45,7 +45,7 @@ class HostileMessages {
   std::string filter();
 
   std::mt19937_64 random_;
-  std::vector<std::string> words_;  // paths of all fields of the message that is being changed
+  std::vector<std::string> words_;  // paths of all fields of the changed message
 };
 
 }  // namespace tribodyn

@@ -4,24 +4,24 @@
 
 namespace tribodyn {
 
-// Only paths.cpp is compiled with paths of this checkout in it: a compiler cache serves all other
-// test code to a checkout elsewhere.
+// Only paths.cpp contains paths of this checkout, so that the compiler cache works for all other
+// test code in every checkout.
 
-/// The path of a file in tests/data.
+/// Returns the path of a file in tests/data.
 std::string test_data_file(const std::string& name);
 
-/// The path of the tribodynd that this build made; empty in a build without the service.
+/// Returns the path of this build's tribodynd; empty in a build without the service.
 std::string server_program();
 
-/// The path of the tribodynd that has the bugs of tests/crash/seeded_bugs, and that folder.
+/// Returns the path of the tribodynd with the bugs of tests/crash/seeded_bugs.
 std::string seeded_server_program();
 std::string seeded_bugs_folder();
 
-/// The folder of the requests from which request_fuzzer starts: a method's name, then the request
+/// Returns the folder of the corpus of request_fuzzer. A file has a method's name, then the request
 /// in protobuf's text format.
 std::string request_corpus_folder();
 
-/// The path of the server that answers with nothing, which benchmarks compare with.
+/// Returns the path of a server whose answers are empty, the baseline of benchmarks.
 std::string empty_server_program();
 
 }  // namespace tribodyn

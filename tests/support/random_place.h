@@ -10,8 +10,8 @@
 
 namespace tribodyn {
 
-/// A scene from the ranges of the validation table and beyond: every part of the driveline and of
-/// the model changed.
+/// A random scene from the ranges of the validation table and beyond: every part of the driveline
+/// and of the model varies.
 struct RandomPlace {
   Scene scene;
   OperatingCondition condition;

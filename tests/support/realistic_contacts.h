@@ -24,9 +24,9 @@ inline FlankContactModel contact_model(const Scene& scene) {
           scene.options};
 }
 
-/// Loaded contacts of a gear set at a cruising speed: the mean mesh force by eq 7, shared as the
-/// tables say, with a dynamic part of half of it and one of a tenth in the sliding speed, at
-/// frequencies that have nothing in common with the tables.
+/// Returns loaded contacts of a gear set at a cruising speed: the mean mesh force by eq 7, shared
+/// according to the tables, with a dynamic part of half of it and one of a tenth in the sliding
+/// speed, at frequencies that are not multiples of the tables'.
 inline RealisticContacts realistic_contacts(const Scene& scene, double kilometres_per_hour,
                                             int phases) {
   const MeshData mesh(scene.gear_set);

@@ -11,7 +11,7 @@
 
 namespace tribodyn {
 
-/// Bare Infinity, -Infinity and NaN, which Python writes and JSON forbids, become null.
+/// Replaces Infinity, -Infinity and NaN, which Python writes and JSON forbids, by null.
 inline std::string without_python_numbers(const std::string& text) {
   std::string result;
   bool in_string = false;
@@ -31,7 +31,7 @@ inline std::string without_python_numbers(const std::string& text) {
   return result;
 }
 
-/// A file of tests/data.
+/// Reads a file of tests/data.
 inline nlohmann::json load_reference(const std::string& file) {
   const std::string path = test_data_file(file);
   std::ifstream stream(path);

@@ -28,7 +28,7 @@ inline DrivelineDynamics reference_dynamics(const nlohmann::json& d) {
           d.at("k_t2"), d.at("c_t1"), d.at("c_t2"), d.at("c_mesh"), d.at("b")};
 }
 
-/// Gear set A or B of reference_gear_set.json.
+/// Returns gear set A or B of reference_gear_set.json.
 inline GearSet reference_gear_set(const std::string& calibration = "A") {
   const nlohmann::json file = load_reference("reference_gear_set.json");
   GearSet out;
@@ -64,7 +64,7 @@ inline GearSet reference_gear_set(const std::string& calibration = "A") {
   return out;
 }
 
-/// Fluids 1, 2, 3 of the paper.
+/// Returns fluid 1, 2 or 3 of the paper.
 inline Lubricant reference_lubricant(int fluid = 1) {
   Lubricant oil{1.55e-4, 944.8,  159, 1.609e-8, 313.15, 4.5e-7, 0.9,
                 0.25,    343.15, 4e6, 0.029,    0.154,  1016.1, -0.6323};
@@ -82,7 +82,8 @@ inline Lubricant reference_lubricant(int fluid = 1) {
   return oil;
 }
 
-/// The default scene: a fluid on gear set A or B, passenger car, sump temperature in Celsius.
+/// Returns the default scene: a fluid on gear set A or B, passenger car, sump temperature in
+/// Celsius.
 inline Scene reference_scene(int fluid = 1, double sump_celsius = 40,
                              const std::string& calibration = "A") {
   return {reference_lubricant(fluid),

@@ -6,7 +6,7 @@
 
 namespace tribodyn {
 
-/// "REASON: sentence" of the Refusal that a call throws, or "none".
+/// Returns "REASON: sentence" of the Refusal that a call throws, or "none".
 template <class Call>
 std::string refusal_of(Call&& call) {
   try {
@@ -17,7 +17,7 @@ std::string refusal_of(Call&& call) {
   return "none";
 }
 
-/// The reason alone.
+/// Returns only the reason.
 template <class Call>
 std::string refusal_reason(Call&& call) {
   const std::string text = refusal_of(call);

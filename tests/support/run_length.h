@@ -16,11 +16,12 @@ inline constexpr bool kUnderThreadSanitizer = false;
 #endif
 inline constexpr bool kUnderSanitizer = kUnderAddressSanitizer || kUnderThreadSanitizer;
 
-/// AddressSanitizer makes the model ten times slower: sweeps take a few of their scenes there. The
-/// release stage runs all of them.
+/// AddressSanitizer slows the model ten times: sweeps use few of their scenes there. The release
+/// stage runs all of them.
 inline constexpr bool kShortRun = kUnderAddressSanitizer;
 
-/// Whether the environment has TRIBODYN_FULL=1: sweeps take more scenes than CI has time for.
+/// Returns true if the environment has TRIBODYN_FULL=1: then sweeps use more scenes than CI has
+/// time for.
 inline bool full_run() {
   const char* value = std::getenv("TRIBODYN_FULL");
   return value != nullptr && value[0] == '1';

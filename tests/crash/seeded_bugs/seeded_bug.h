@@ -5,12 +5,12 @@
 
 namespace tribodyn::server {
 
-/// The bug that the environment variable TRIBODYN_SEEDED_BUG names; null: none.
+/// Returns the bug that the environment variable TRIBODYN_SEEDED_BUG names, or null.
 inline const char* chosen_seeded_bug() {
   static const char* const kChosen = std::getenv("TRIBODYN_SEEDED_BUG");
   return kChosen;
 }
-/// Whether that is the bug of this name.
+/// Returns true if the chosen bug has this name.
 inline bool seeded_bug(std::string_view name) {
   return chosen_seeded_bug() != nullptr && name == chosen_seeded_bug();
 }
