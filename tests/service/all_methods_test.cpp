@@ -1,5 +1,4 @@
-// Every method of the contract, found by its descriptor: what one of them may have been forgotten
-// in.
+// Tests of every method of the contract, found by its descriptor, so that no method is forgotten.
 #include <gmock/gmock.h>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/dynamic_message.h>
@@ -49,7 +48,7 @@ class EveryMethod : public testing::TestWithParam<const MethodDescriptor*> {
   }
   bool is_list() const { return has("page_size"); }
 
-  /// The error as it came, and all that it says.
+  /// An error as received, and all its texts.
   struct Answer {
     grpc::Status status;
     bool has_reason = false;
@@ -68,7 +67,7 @@ class EveryMethod : public testing::TestWithParam<const MethodDescriptor*> {
   }
 
  private:
-  /// One server for all of them.
+  /// One server for all tests.
   class Server : public GrpcTest {
    public:
     explicit Server(std::vector<std::string> flags) { more_flags_ = std::move(flags); }
@@ -101,7 +100,7 @@ class EveryMethod : public testing::TestWithParam<const MethodDescriptor*> {
   }
 
   static Server* server_;
-  static Server* hasty_server_;  // allows no call any time
+  static Server* hasty_server_;  // its deadline for calls is 0 s
 };
 
 EveryMethod::Server* EveryMethod::server_ = nullptr;
@@ -121,14 +120,14 @@ TEST_P(EveryMethod, IsServedAndChecksAnEmptyRequest) {
   EXPECT_TRUE(answer.has_reason);
 }
 
-TEST_P(EveryMethod, EndsAtADeadlineOfTheServersOwn) {
+TEST_P(EveryMethod, EndsAtTheServersDeadline) {
   const Answer answer = call_hasty_server(*request());
   EXPECT_EQ(answer.status.error_code(), grpc::StatusCode::DEADLINE_EXCEEDED) << answer.text;
   EXPECT_TRUE(answer.has_reason) << "by the server, not by the client";
 }
 
-/// Text fields that name something that must exist, at the top or one message below.
-TEST_P(EveryMethod, NamesTheNearestForAnUnknownName) {
+/// Returns the text fields that name an existing resource, at the top level and one level below.
+TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
   const std::string method = GetParam()->name();
   const auto message = request();
   const auto set = [&](const std::string& field, const std::string& value) {
@@ -202,7 +201,7 @@ TEST_P(EveryMethod, NamesTheNearestForAnUnknownName) {
     return expect_refused(*message, hint);
   }
   ASSERT_TRUE(method.starts_with("Import")) << "no case for " << method;
-  // The headers of tables are the names that an import may get wrong.
+  // The names of an import are the headers of its tables.
   const auto* text = message->GetDescriptor()->FindFieldByName(
       method == "ImportLubricant" ? "viscosity_table_csv" : "tooth_contact_csv");
   if (text != nullptr) {

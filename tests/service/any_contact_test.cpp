@@ -1,4 +1,5 @@
-// Whatever allowed contact a client sends: an answer of finite numbers or a reason, and soon.
+// EvaluateContact answers every contact within the allowed ranges soon, with finite numbers or with
+// a reason.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -19,7 +20,8 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// Numbers from the whole allowed range: by magnitude, at its ends, or as in the typical request.
+/// Draws numbers from the allowed range: evenly in magnitude, at its ends, or near a typical
+/// request.
 class AnyNumber {
  public:
   double operator()(const Constraint& row, double typical) {
@@ -76,7 +78,7 @@ TEST(AnyContact, AnswersInFiniteNumbersOrRefuses) {
     randomise(request.mutable_model_options(), any);
     if (any.seldom()) {
       randomise(request.mutable_model_options()->mutable_as_published(), any);
-      // It is refused here, whatever else the request says.
+      // EvaluateContact always refuses this switch.
       request.mutable_model_options()->mutable_as_published()->clear_eq46_square_root_of_sum();
     }
     if (any.seldom()) {

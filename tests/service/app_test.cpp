@@ -1,4 +1,4 @@
-// The service end to end, without gRPC.
+// Tests of the whole service without gRPC.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -97,7 +97,7 @@ TEST_F(AppTest, ListsArePaged) {
   EXPECT_EQ(bad->field_violations_size(), 2);
 }
 
-TEST_F(AppTest, WhatDoesNotExistIsNotFoundWithTheNearestName) {
+TEST_F(AppTest, AnUnknownNameIsNotFoundAndTheNearestOneIsSuggested) {
   const auto status = get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/33")).error();
   EXPECT_EQ(status.code(), google::rpc::NOT_FOUND);
   EXPECT_THAT(status.message(), testing::HasSubstr("lubricants/3"));
@@ -122,7 +122,7 @@ TEST_F(AppTest, ASimulationIsAcceptedListedAndRead) {
   EXPECT_EQ(curve.inefficiency_curve().speed_step_kilometres_per_hour(), 10) << "as requested";
 }
 
-/// What came of a history: its schema, and the columns put together.
+/// A history that was read: its schema and its complete columns.
 struct ReadHistory {
   v1::HistorySchema schema;
   std::vector<std::vector<double>> columns;
@@ -245,7 +245,7 @@ TEST_F(AppTest, AListOfFullViewsHasResultsAndAllPagesTogetherHoldEverySimulation
       << "a token belongs to its filter";
 }
 
-TEST_F(AppTest, WhatIsPinnedOutlivesExpiryAndDiskBudget) {
+TEST_F(AppTest, APinnedSimulationSurvivesExpiryAndDiskBudget) {
   const std::string pinned = finished(with_history(10, 5000));
   const std::string served = finished(with_history(10, 5000));
   const std::string other = finished(labelled("axle", 50));
@@ -281,7 +281,7 @@ TEST_F(AppTest, WhatIsPinnedOutlivesExpiryAndDiskBudget) {
   EXPECT_TRUE(check_database(bench_.database()).empty());
 }
 
-TEST_F(AppTest, CancellingIsIdempotentAndLeavesTheEndedAlone) {
+TEST_F(AppTest, CancellingIsIdempotentAndDoesNotChangeEndedSimulations) {
   const std::string name = finished(point_simulation());
   for (int i = 0; i < 2; ++i) {
     const auto outcome = cancel_simulation(app_, named<v1::CancelSimulationRequest>(name));
@@ -297,7 +297,7 @@ TEST_F(AppTest, AnEmptyContactIsRefusedWithEveryViolation) {
   EXPECT_EQ(detail<google::rpc::BadRequest>(status)->field_violations_size(), 10);
 }
 
-TEST_F(AppTest, WhatTheModelRefusesIsAnErrorWithItsReason) {
+TEST_F(AppTest, ARefusalOfTheModelIsAnErrorWithItsReason) {
   v1::EvaluateContactRequest request = contact_request();
   request.set_gear_velocity_x_metres_per_second(-5);
   request.set_gear_velocity_y_metres_per_second(-6);
@@ -307,7 +307,7 @@ TEST_F(AppTest, WhatTheModelRefusesIsAnErrorWithItsReason) {
   EXPECT_EQ(detail<google::rpc::ErrorInfo>(status)->reason(), "UNBOUNDED_SHEAR");
 }
 
-TEST_F(AppTest, NoLoadIsAnAnswer) {
+TEST_F(AppTest, AContactWithoutLoadIsAnswered) {
   v1::EvaluateContactRequest request = contact_request();
   request.set_load_newtons(0);
   const auto outcome = evaluate_contact(app_, request);
@@ -316,7 +316,7 @@ TEST_F(AppTest, NoLoadIsAnAnswer) {
   EXPECT_EQ(outcome.message().friction_newtons(), 0);
 }
 
-TEST_F(AppTest, DetailsStaySmallEnoughForAnyClientAndCountTheRest) {
+TEST_F(AppTest, ErrorDetailsAreLimitedAndCountTheOmittedViolations) {
   Violations violations;
   for (int i = 0; i < 500; ++i) violations.push_back({"field", std::string(100, 'x')});
   const auto status = invalid(violations);
@@ -327,7 +327,7 @@ TEST_F(AppTest, DetailsStaySmallEnoughForAnyClientAndCountTheRest) {
             std::to_string(500 - (bad->field_violations_size() - 1)) + " more violations");
 }
 
-TEST_F(AppTest, EverythingWrongWithAContactAtOnceStillFits) {
+TEST_F(AppTest, AllViolationsOfAContactFitIntoOneError) {
   v1::EvaluateContactRequest request;
   const auto spoil = [](google::protobuf::Message* message) {
     const auto& descriptor = *message->GetDescriptor();
@@ -388,7 +388,7 @@ TEST_F(AppTest, TheSummaryOfTheLongestCurveIsSmall) {
   EXPECT_GT(full.ByteSizeLong(), 65'536U);
 }
 
-TEST_F(AppTest, ManyReadersGetSmallerChunks) {
+TEST_F(AppTest, ManyConcurrentReadersGetSmallerChunks) {
   const std::string name = finished(with_history(10, 5000));
   const auto request = named<v1::ReadHistoryRequest>(name);
   std::vector<StreamOutcome<v1::ReadHistoryResponse>> readers;
@@ -402,7 +402,7 @@ TEST_F(AppTest, ManyReadersGetSmallerChunks) {
   EXPECT_EQ(read_all(read_history(app_, request)).chunks.front().values().size(), 262'144U);
 }
 
-TEST_F(AppTest, AnOverviewHoldsTheExtremesOfEveryRun) {
+TEST_F(AppTest, AnOverviewHasTheExtremesOfEveryRun) {
   const std::string name = finished(with_history(10, 5000));
   auto request = named<v1::ReadHistoryRequest>(name);
   request.set_start_row(123);
@@ -457,7 +457,7 @@ TEST_F(AppTest, AHistoryNeedsAResultThatHasOne) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   bench_.restart(patient_studies(release));
   Application app = bench_.application();
-  v1::Simulation another = point_simulation();  // no result serves it
+  v1::Simulation another = point_simulation();  // no stored result has its inputs
   another.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(66);
   const std::string running = bench_.create(another);
   EXPECT_EQ(read_history(app, named<v1::ReadHistoryRequest>(running)).error().code(),
@@ -482,7 +482,7 @@ TEST_F(AppTest, AWatchShowsEveryChangeOfState) {
   EXPECT_EQ(outcome.message()->next(event), Step::kEnd);
 }
 
-TEST_F(AppTest, TooManyWaitingSimulationsAreTurnedAwayWithARetry) {
+TEST_F(AppTest, AFullQueueRefusesSimulationsWithARetryDelay) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   Bench small(patient_studies(release), 1, {.jobs = 1});
   const std::string running = small.create(point_simulation());

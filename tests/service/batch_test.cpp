@@ -1,4 +1,4 @@
-// Batches: what one of many may leave half written, overlook or report as another's.
+// Batches are written completely or not at all, and violations name the right element.
 #include <SQLiteCpp/Database.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -87,7 +87,7 @@ TEST_F(BatchTest, AllAreCreatedAndAnsweredInOrder) {
   }
 }
 
-TEST_F(BatchTest, AViolationInTheLastLeavesNothing) {
+TEST_F(BatchTest, AViolationInTheLastElementWritesNothing) {
   v1::BatchCreateLubricantsRequest batch = many(300);
   batch.mutable_requests(299)->mutable_lubricant()->set_relaxation_time_seconds(-1);
   const auto refused = batch_create_lubricants(app_, batch);
@@ -98,7 +98,7 @@ TEST_F(BatchTest, AViolationInTheLastLeavesNothing) {
                                      "relaxation_time_seconds = -1 s; allowed: 0 to 10 s")));
 }
 
-TEST_F(BatchTest, AllViolationsOfAllComeAtOnce) {
+TEST_F(BatchTest, TheViolationsOfAllElementsAreReportedTogether) {
   v1::BatchCreateLubricantsRequest batch =
       creation({fluid("1"), fluid("x"), fluid("y"), fluid("y"), fluid("z")});
   batch.mutable_requests(1)->mutable_lubricant()->set_thermal_conductivity_watts_per_metre_kelvin(
@@ -126,7 +126,7 @@ TEST_F(BatchTest, AllViolationsOfAllComeAtOnce) {
                           HasSubstr("requests[6].lubricant.name: lubricants/1 exists already")));
 }
 
-TEST_F(BatchTest, ANameThatIsTakenKeepsItsCode) {
+TEST_F(BatchTest, AnExistingNameIsRefusedWithAlreadyExists) {
   v1::Lubricant gone = fluid("gone");
   ASSERT_TRUE(batch_create_lubricants(app_, creation({gone})).ok());
   v1::DeleteLubricantRequest deletion;
@@ -171,7 +171,7 @@ TEST_F(BatchTest, OneMayDescendFromAnotherWhicheverComesFirst) {
   EXPECT_EQ(get("parent").revision(), 1);
 }
 
-TEST_F(BatchTest, AnUpdateRevisesAsASingleOneDoes) {
+TEST_F(BatchTest, ABatchUpdateMakesRevisionsLikeASingleUpdate) {
   v1::Lubricant first = get("1"), second = get("2"), third = get("3");
   first.set_display_name("renamed");
   second.set_display_name("renamed");
@@ -212,7 +212,7 @@ TEST_F(BatchTest, ValidateOnlyAnswersAsIfWrittenAndWritesNothing) {
   EXPECT_EQ(get("1").revision(), 1);
 }
 
-TEST_F(BatchTest, AStoreThatFailsAtTheLastLeavesNothing) {
+TEST_F(BatchTest, AStoreErrorAtTheLastElementWritesNothing) {
   SQLite::Database raw(bench_.database(), SQLite::OPEN_READWRITE);
   raw.exec(
       "CREATE TRIGGER fail BEFORE INSERT ON properties WHEN NEW.name = 'lubricants/many-499' "
@@ -225,9 +225,10 @@ TEST_F(BatchTest, AStoreThatFailsAtTheLastLeavesNothing) {
   EXPECT_EQ(count(), before_ + 500);
 }
 
-TEST_F(BatchTest, ADeadlineInTheMiddleLeavesNothing) {
+TEST_F(BatchTest, ADeadlineInAnyPhaseWritesNothing) {
   const v1::BatchCreateLubricantsRequest batch = many(1000);
-  // From a limit that the batch cannot meet to one that it does: the time runs out in every phase.
+  // Deadlines from one that the batch always misses to one that it meets: the deadline passes in
+  // every phase.
   for (std::chrono::milliseconds limit(1); limit < std::chrono::hours(1);
        limit += limit / 4 + std::chrono::milliseconds(1)) {
     const CallContext call{.limits = {.deadline = CallLimits::Clock::now() + limit}};
@@ -263,7 +264,7 @@ TEST_F(BatchTest, TheSizeIsLimitedAndAVeryLargeAnswerIsBrief) {
   EXPECT_FALSE(batch_create_lubricants(app_, creation({fluid("x")})).message().is_abridged());
 }
 
-TEST_F(BatchTest, ThousandsOfViolationsEndInTime) {
+TEST_F(BatchTest, ThousandsOfViolationsAreAnsweredInTime) {
   ASSERT_TRUE(batch_create_lubricants(app_, many(2000)).ok());
   v1::BatchCreateLubricantsRequest batch;
   v1::BatchUpdateLubricantsRequest updates;
@@ -308,7 +309,7 @@ TEST_F(BatchTest, AnUpdateWithoutAMaskLosesNothingThatItLeavesOut) {
   EXPECT_EQ(get("full").description(), "");
 }
 
-TEST_F(BatchTest, BatchesThatMeetDoNotMix) {
+TEST_F(BatchTest, ConcurrentBatchesDoNotMix) {
   ASSERT_TRUE(batch_create_lubricants(app_, many(10)).ok());
   std::vector<std::thread> writers;
   for (const std::string tag : {"left", "right", "middle"}) {
@@ -337,7 +338,7 @@ TEST_F(BatchTest, BatchesThatMeetDoNotMix) {
   EXPECT_THAT(check_database(bench_.database()), testing::IsEmpty());
 }
 
-TEST_F(BatchTest, EveryKindGoesTheSameWay) {
+TEST_F(BatchTest, EveryKindOfResourceHasBatches) {
   v1::BatchCreateGearSetsRequest gear_sets;
   *gear_sets.add_requests()->mutable_gear_set() = seed<v1::GearSet>("gearSets/B");
   gear_sets.mutable_requests(0)->set_gear_set_id("mine");
@@ -367,7 +368,7 @@ TEST_F(BatchTest, EveryKindGoesTheSameWay) {
               ElementsAre(HasSubstr("did you mean \"vehicles/van\"?")));
 }
 
-/// Vehicles that are derived from one another, and how often they are looked up.
+/// Vehicles with derived_from chains, and a count of look-ups.
 class DescentTest : public testing::Test {
  protected:
   void add(const std::string& id, const std::string& parent) {
@@ -396,7 +397,7 @@ class DescentTest : public testing::Test {
                                [](const std::string&) { return std::vector<std::string>(); }};
 };
 
-TEST_F(DescentTest, AChainIsFollowedOnceForAWholeBatch) {
+TEST_F(DescentTest, AChainIsReadOnceForAWholeBatch) {
   constexpr int kLength = 300;
   for (int i = 0; i < kLength; ++i) {
     add(std::to_string(i), i == 0 ? "" : std::to_string(i - 1));
@@ -405,7 +406,7 @@ TEST_F(DescentTest, AChainIsFollowedOnceForAWholeBatch) {
   EXPECT_LE(looks_, 3 * kLength) << "and not half the square of it";
 }
 
-TEST_F(DescentTest, ARingIsFoundFromEachOfItsMembersAndFromNoOther) {
+TEST_F(DescentTest, ACycleIsFoundFromItsMembersOnly) {
   add("a", "b");
   add("b", "c");
   add("c", "a");

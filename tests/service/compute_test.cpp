@@ -1,5 +1,5 @@
-// What a study computes: the same bits whichever gear sets were prepared before and however many
-// threads there are, and curves of independent points.
+// Studies have the same bits for any prepared gear set and any number of threads; curves of
+// independent points.
 #include "server/simulation/compute.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ SimulationInputs inputs_for(const v1::Simulation& simulation) {
   return *inputs;
 }
 
-/// Result and history of a study, as bytes.
+/// Returns result and history of a study as bytes.
 std::string bits_of(const v1::Simulation& simulation, PreparedGearSets& gear_sets) {
   const SimulationInputs inputs = inputs_for(simulation);
   Computed computed = to_result(inputs, {}, solve(inputs, {}, gear_sets, kGoOn));
@@ -54,7 +54,8 @@ v1::Simulation point_of(const std::string& lubricant, double speed) {
   return out;
 }
 
-/// Scenes of all seeds with points of every kind: models, methods, options, coast, histories.
+/// Returns scenes of all seeds with points of every kind: models, methods, options, coast,
+/// histories.
 std::vector<v1::Simulation> scenes() {
   std::vector<v1::Simulation> out;
   for (const char* lubricant : {"lubricants/1", "lubricants/2", "lubricants/3"}) {
@@ -88,7 +89,7 @@ std::vector<v1::Simulation> scenes() {
   return out;
 }
 
-TEST(PreparedGearSets, GiveTheBitsOfAnUnpreparedOneWhateverCameBefore) {
+TEST(PreparedGearSets, GiveTheBitsOfAnUnpreparedOneAfterAnyOtherStudy) {
   const std::vector<v1::Simulation> all = scenes();
   std::vector<std::string> alone;
   for (const v1::Simulation& each : all) alone.push_back(bits_alone(each));
@@ -125,7 +126,7 @@ TEST(PreparedGearSets, GiveTheSameBitsToManyThreads) {
   EXPECT_LE(gear_sets.size(), 4U) << "one a thread";
 }
 
-TEST(PreparedGearSets, OneStudyAtATimeHasAGearSet) {
+TEST(PreparedGearSets, AreLentToOneStudyAtATime) {
   const SimulationInputs inputs = inputs_for(point_simulation());
   const Scene physical = scene(inputs);
   PreparedGearSets gear_sets;
@@ -137,7 +138,7 @@ TEST(PreparedGearSets, OneStudyAtATimeHasAGearSet) {
   EXPECT_EQ(gear_sets.take("gearSets/A@1", physical).get(), returned);
 }
 
-TEST(PreparedGearSets, AnotherRevisionOrModelHasAnotherGearSet) {
+TEST(PreparedGearSets, DifferByRevisionAndModel) {
   Scene physical = scene(inputs_for(point_simulation()));
   PreparedGearSets gear_sets;
   const auto first = gear_sets.take("gearSets/A@1", physical);
@@ -149,7 +150,7 @@ TEST(PreparedGearSets, AnotherRevisionOrModelHasAnotherGearSet) {
   EXPECT_EQ(gear_sets.take("gearSets/A@1", physical), first);
 }
 
-TEST(PreparedGearSets, KeepTheOnesUsedLastAndNoneThatHasGrownLarge) {
+TEST(PreparedGearSets, KeepRecentlyUsedOnesAndDropLargeOnes) {
   const Scene physical = scene(inputs_for(point_simulation()));
   PreparedGearSets gear_sets;
   const auto revision = [](std::size_t number) { return "gearSets/A@" + std::to_string(number); };
@@ -173,7 +174,7 @@ TEST(PreparedGearSets, KeepTheOnesUsedLastAndNoneThatHasGrownLarge) {
   EXPECT_NE(gear_sets.take(revision(1), physical), large);
 }
 
-TEST(PreparedGearSets, SimulationsOfOneGearSetShareOneAndAFailedOneLeavesNone) {
+TEST(PreparedGearSets, AreSharedBySimulationsAndDroppedAfterAnException) {
   std::mutex mutex;
   std::vector<std::shared_ptr<PreparedGearSet>> used;
   StudyFunctions studies = quick_studies();
@@ -214,8 +215,9 @@ v1::SimulationResult result_of(const v1::Simulation& simulation) {
   return to_result(inputs, {}, solve(inputs, {}, gear_sets, kGoOn)).result;
 }
 
-TEST(IndependentPoints, AreTheBitsOfSinglePointsInEveryModel) {
-  // At 60 km/h flanks stay together, at 70 and 75 they part; at 2 the quasi-static model does.
+TEST(IndependentPoints, HaveTheBitsOfSinglePointsInEveryModel) {
+  // Flanks stay in contact at 60 km/h and separate at 70 and 75; at 2 the quasi-static model is
+  // used.
   const std::vector<double> speeds = {2, 60, 70, 75, 110};
   for (const v1::PointModel model :
        {v1::POINT_MODEL_AUTOMATIC, v1::POINT_MODEL_FULL, v1::POINT_MODEL_QUASI_STATIC}) {
@@ -236,7 +238,7 @@ TEST(IndependentPoints, AreTheBitsOfSinglePointsInEveryModel) {
   }
 }
 
-TEST(IndependentPoints, StartEachFromTheStatedStart) {
+TEST(IndependentPoints, StartFromTheRequestedState) {
   v1::Simulation asked = independent_curve({69, 75});
   asked.mutable_inefficiency_curve()->set_start(v1::POINT_START_LARGE_VIBRATION);
   const v1::SimulationResult curve = result_of(asked);
@@ -248,7 +250,7 @@ TEST(IndependentPoints, StartEachFromTheStatedStart) {
   EXPECT_TRUE(curve.points(0).result().contact_loss()) << "the quiet branch ends at 71 km/h";
 }
 
-TEST(IndependentPoints, AreOtherInputsThanACurveThatFollowsABranchAndCostLess) {
+TEST(IndependentPoints, HaveAnotherInputHashThanAFollowedBranchAndCostLess) {
   v1::Simulation independent = curve_simulation();
   independent.mutable_inefficiency_curve()->set_independent_points(true);
   const SimulationInputs followed = inputs_for(curve_simulation());

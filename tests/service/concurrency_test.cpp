@@ -1,4 +1,4 @@
-// Jobs, store and application from many threads at once; made for ThreadSanitizer.
+// Jobs, store and application are used by many threads at once; run under ThreadSanitizer.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,7 @@
 namespace tribodyn::server {
 namespace {
 
-/// Runs the action on several threads and waits for all.
+/// Runs the action on `count` threads and waits for all.
 void on_threads(int count, const std::function<void(int)>& action) {
   std::vector<std::thread> threads;
   threads.reserve(static_cast<std::size_t>(count));
@@ -28,7 +28,7 @@ v1::Simulation with_history() {
   return simulation;
 }
 
-/// Watches as the gRPC layer does: asks again whenever it is told to.
+/// Watches as the gRPC layer does: asks again at every notification.
 class Watcher : public ProgressObserver, public std::enable_shared_from_this<Watcher> {
  public:
   using Source = std::shared_ptr<MessageSource<v1::SimulationEvent>>;
@@ -117,14 +117,14 @@ TEST(Concurrency, CancellingFromManyThreadsEndsEachOnce) {
   EXPECT_TRUE(bench.reaches(next, v1::Simulation::SUCCEEDED));
 }
 
-/// Reads a watch from behind an event until there is nothing more for now; the events' numbers.
+/// Reads a watch after event `after` until no event is left. Returns the numbers of the events.
 std::vector<std::int64_t> numbers(Application& app, const std::string& name, std::int64_t after) {
   v1::WatchSimulationRequest request;
   request.set_name(name);
   request.set_after_sequence(after);
   auto outcome = watch_simulation(app, request);
   std::vector<std::int64_t> out;
-  if (!outcome.ok()) return out;  // there are not so many events yet
+  if (!outcome.ok()) return out;  // the simulation has fewer events
   v1::SimulationEvent event;
   while (outcome.message()->next(event) == MessageSource<v1::SimulationEvent>::Step::kMessage) {
     if (event.kind() == v1::SimulationEvent::STATE_CHANGE) out.push_back(event.sequence());
@@ -140,7 +140,7 @@ TEST(Concurrency, SubmitTwiceWatchCancelAndExpireAllAtOnce) {
   std::array<std::array<std::string, kRounds>, kThreads> names;
   on_threads(kThreads, [&](int thread) {
     for (int round = 0; round < kRounds; ++round) {
-      // Every request comes from two threads.
+      // Two threads send every request.
       v1::CreateSimulationRequest request;
       *request.mutable_simulation() = point_simulation();
       request.mutable_simulation()->set_sump_temperature_celsius(20 + round % 7);
@@ -231,7 +231,7 @@ TEST(Concurrency, StoppingWhileWatchedAndFed) {
       EXPECT_TRUE(watch_simulation(app, watch).ok());
       v1::CreateSimulationRequest create;
       *create.mutable_simulation() = point_simulation();
-      create_simulation(app, create);  // accepted or turned away, both are right
+      create_simulation(app, create);  // accepting and refusing are both correct
     }
   });
   stopper.join();

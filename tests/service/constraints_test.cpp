@@ -1,5 +1,5 @@
-// Every row of the table of constraints has a request that breaks it; every rule between fields
-// too.
+// For every row of the table of constraints, and for every rule between fields, a request violates
+// it.
 #include "server/contract/constraints.h"
 
 #include <gmock/gmock.h>
@@ -51,7 +51,7 @@ Violations check(const v1::EvaluateContactRequest& request) {
   return violations;
 }
 
-/// A request that holds the message of a row, the message inside it, and how it is checked.
+/// A request with the message of a row inside it, and the check that applies.
 struct Subject {
   v1::Simulation simulation = point_simulation();
   v1::EvaluateContactRequest contact = contact_request();
@@ -161,7 +161,7 @@ struct Subject {
 
 }  // namespace
 
-/// What GoogleTest shows of a row.
+/// Prints a row in the output of GoogleTest.
 void PrintTo(const Constraint& row, std::ostream* out) { *out << row.message << "." << row.field; }
 
 namespace {
@@ -198,7 +198,7 @@ class ConstraintRow : public testing::TestWithParam<Constraint> {
     return field(subject).is_repeated() && !is_list() ? name + "[0]" : name;
   }
 
-  /// Whether the row is about how many there are.
+  /// Returns true if the row limits the size of a list.
   bool is_list() const {
     return field(Subject(GetParam().message)).cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
   }
@@ -220,7 +220,7 @@ class ConstraintRow : public testing::TestWithParam<Constraint> {
   }
 };
 
-TEST_P(ConstraintRow, KeepsOutWhatIsBelowAndAboveAndNoNumber) {
+TEST_P(ConstraintRow, RefusesNumbersBelowAndAboveItsRangeAndNaN) {
   const std::string name(GetParam().field);
   EXPECT_THAT(with(below()), violation(path(), name + " = "));
   EXPECT_THAT(with(above()), violation(path(), name + " = "));
@@ -238,7 +238,7 @@ TEST_P(ConstraintRow, NamesUnitRangeAndEquation) {
   EXPECT_THAT(found, violation(path(), std::string(row.equation)));
 }
 
-TEST_P(ConstraintRow, LetsTheEndsOfItsRangePass) {
+TEST_P(ConstraintRow, AllowsTheEndsOfItsRange) {
   for (const double end : {GetParam().minimum, GetParam().maximum}) {
     for (const Violation& found : with(end)) {
       EXPECT_FALSE(found.description.starts_with(out_of_range_text(GetParam(), end)))
@@ -257,16 +257,17 @@ std::vector<Constraint> all_rows() { return {constraints().begin(), constraints(
 
 INSTANTIATE_TEST_SUITE_P(Table, ConstraintRow, testing::ValuesIn(all_rows()), row_name);
 
-/// Numbers that have no range of their own, with what checks them.
+/// Numbers without a row in the table; the comment names the test of their check.
 const std::set<std::string>& checked_elsewhere() {
   static const std::set<std::string> kNames = {
-      "page_size",                              // paging.h; every method: all_methods_test.cpp
-      "after_sequence",                         // against the events that there are: jobs_test.cpp
-      "start_row", "row_count", "max_points"};  // against the history's own length: app_test.cpp
+      "page_size",       // paging.h; all_methods_test.cpp
+      "after_sequence",  // compared with the existing events: jobs_test.cpp
+      // compared with the length of the history: app_test.cpp
+      "start_row", "row_count", "max_points"};
   return kNames;
 }
 
-/// Every number that a client can send.
+/// Collects every number that a client can send.
 void collect_numbers(const Descriptor& descriptor, std::set<std::string>& out) {
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor& field = *descriptor.field(i);
@@ -284,7 +285,7 @@ void collect_numbers(const Descriptor& descriptor, std::set<std::string>& out) {
 
 TEST(Constraints, EveryNumberThatAClientCanSendHasARow) {
   std::set<std::string> sent;
-  ASSERT_NE(v1::Schema::descriptor(), nullptr);  // else the linker leaves its file out
+  ASSERT_NE(v1::Schema::descriptor(), nullptr);  // otherwise the linker omits its file
   const auto* pool = google::protobuf::DescriptorPool::generated_pool();
   for (const char* file :
        {"simulations", "contacts", "lubricants", "gear_sets", "surfaces", "vehicles", "schemas"}) {
@@ -302,7 +303,7 @@ TEST(Constraints, EveryNumberThatAClientCanSendHasARow) {
   }
 }
 
-/// Lists of requests are work that a client can ask for.
+/// The work of a batch grows with its list of requests.
 TEST(Constraints, EveryBatchHasARowForItsSize) {
   int batches = 0;
   for (const auto* file : {v1::Lubricant::descriptor()->file(), v1::GearSet::descriptor()->file(),

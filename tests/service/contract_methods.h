@@ -15,7 +15,7 @@
 
 namespace tribodyn::server {
 
-/// Every method of the contract.
+/// Returns every method of the contract.
 inline std::vector<const google::protobuf::MethodDescriptor*> all_methods() {
   std::vector<const google::protobuf::MethodDescriptor*> out;
   for (const auto* file : {v1::Lubricant::descriptor()->file(), v1::GearSet::descriptor()->file(),

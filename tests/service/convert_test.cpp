@@ -1,4 +1,4 @@
-// Messages to core values and results back, field by field.
+// Conversion of messages to core values and of results to messages, field by field.
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// Gives every number of a message a value of its own; how many there were.
+/// Sets every number of a message to a different value. Returns their number.
 int fill(Message* message, int next = 1) {
   const auto& descriptor = *message->GetDescriptor();
   const auto& reflection = *message->GetReflection();
@@ -32,7 +32,7 @@ int fill(Message* message, int next = 1) {
   return next - 1;
 }
 
-/// The core's plain structs are nothing but doubles: as an array they show what was left out.
+/// The core's plain structs consist of doubles only: seen as an array, they show a forgotten field.
 template <class Plain>
 std::vector<double> doubles(const Plain& plain) {
   const auto* begin = reinterpret_cast<const double*>(&plain);
@@ -45,7 +45,7 @@ std::vector<double> one_to(std::size_t count) {
   return out;
 }
 
-TEST(ToCore, EveryFieldOfPlainResourcesArrivesOnce) {
+TEST(ToCore, EveryFieldOfPlainResourcesIsConvertedOnce) {
   v1::Lubricant lubricant;
   EXPECT_EQ(fill(&lubricant), 14);
   EXPECT_EQ(doubles(to_core(lubricant)), one_to(14));
@@ -63,7 +63,7 @@ TEST(ToCore, EveryFieldOfPlainResourcesArrivesOnce) {
   EXPECT_EQ(doubles(to_core(gear_set).dynamics), one_to(10));
 }
 
-TEST(ToCore, EveryFieldOfAContactArrivesOnce) {
+TEST(ToCore, EveryFieldOfAContactIsConvertedOnce) {
   v1::EvaluateContactRequest request;
   EXPECT_EQ(fill(&request), 19);
   EXPECT_EQ(doubles(contact_conditions(request)), one_to(7));
@@ -72,7 +72,7 @@ TEST(ToCore, EveryFieldOfAContactArrivesOnce) {
   EXPECT_EQ(doubles(boundary_friction(request)), (std::vector<double>{18, 19}));
 }
 
-/// Sets one flag of a message; the options that result.
+/// Sets one flag of a message and converts it.
 ModelOptions with_flag(const std::string& name) {
   v1::ModelOptions options;
   Message* message = &options;
@@ -81,7 +81,7 @@ ModelOptions with_flag(const std::string& name) {
   return to_core(options);
 }
 
-TEST(ToCore, EveryModelOptionArrives) {
+TEST(ToCore, EveryModelOptionIsConverted) {
   EXPECT_TRUE(with_flag("isothermal").isothermal);
   EXPECT_TRUE(with_flag("newtonian").newtonian);
   EXPECT_TRUE(with_flag("no_limiting_shear_stress").no_limiting_shear_stress);
@@ -106,7 +106,7 @@ TEST(ToCore, EveryModelOptionArrives) {
             PressureViscosityIndex::kReciprocalAsymptotic);
 }
 
-TEST(ToCore, GearSetTablesAndSeriesArriveWhole) {
+TEST(ToCore, GearSetTablesAndSeriesAreConvertedCompletely) {
   const auto message = seed<v1::GearSet>("gearSets/A");
   const GearSet set = to_core(message);
   EXPECT_EQ(set.pinion_teeth, 13);
@@ -124,9 +124,9 @@ TEST(ToCore, GearSetTablesAndSeriesArriveWhole) {
             message.flank_slots(1).contact_point_velocity_x_metres(96));
 }
 
-TEST(FromCore, EveryFieldOfAContactComesBackOnce) {
+TEST(FromCore, EveryFieldOfASolvedContactIsConvertedOnce) {
   using S = ContactSolution;
-  // As the fields are numbered.
+  // In the order of the field numbers.
   constexpr double S::*kNumbers[] = {&S::film_load,
                                      &S::asperity_load,
                                      &S::contact_area,
@@ -204,7 +204,7 @@ PointResult full_result() {
   return out;
 }
 
-TEST(FromCore, OptionalAndRepeatedPartsOfAPointComeBack) {
+TEST(FromCore, OptionalAndRepeatedPartsOfAPointAreConverted) {
   const v1::CurvePoint point = to_curve_point(full_result());
   EXPECT_EQ(point.speed_kilometres_per_hour(), 67.5);
   const v1::PointResult& result = point.result();
@@ -221,7 +221,7 @@ TEST(FromCore, OptionalAndRepeatedPartsOfAPointComeBack) {
   EXPECT_FALSE(to_curve_point(PointResult()).result().has_coexisting_response());
 }
 
-TEST(FromCore, EveryModelAndHowItWasSolvedComeBack) {
+TEST(FromCore, ModelAndMethodOfAPointAreConverted) {
   PointResult core = full_result();
   core.method = SteadyStateMethod::kShooting;
   const auto arrived = [&](PointModel model) {
@@ -240,7 +240,7 @@ TEST(FromCore, EveryModelAndHowItWasSolvedComeBack) {
 
 TEST(FromCore, NoFieldOfAPointIsForgotten) {
   PointResult core = full_result();
-  // Everything else gets some value that is not zero.
+  // All other fields get values other than zero.
   for (double* number :
        {&core.mean_pinion_speed, &core.mesh_frequency, &core.pinion_torque, &core.wheel_torque,
         &core.input_power, &core.mesh_loss_power, &core.mesh_loss_torque, &core.viscous_loss_power,
@@ -281,7 +281,7 @@ TEST(FromCore, NoFieldOfAPointIsForgotten) {
   expect_all(result);
 }
 
-TEST(FromCore, ACurveOfAThousandPointsFitsIntoOneAnswer) {
+TEST(FromCore, ACurveOfAThousandPointsFitsIntoOneMessage) {
   SweepPoint worst;
   worst.result = full_result();
   worst.result->contact_losses.assign(1000, {0.123456789, 1.23456789, 1e-3});
@@ -292,7 +292,7 @@ TEST(FromCore, ACurveOfAThousandPointsFitsIntoOneAnswer) {
   EXPECT_LT(result.ByteSizeLong(), 4'000'000U) << "clients accept 4 MB by default";
 }
 
-TEST(FromCore, ARefusedPointKeepsItsPlaceOnTheCurve) {
+TEST(FromCore, ARefusedPointKeepsItsPositionOnTheCurve) {
   const v1::CurvePoint point = to_curve_point(SweepPoint{.vehicle_speed = 10,
                                                          .result = {},
                                                          .refusal_reason = "WORK_LIMIT",
@@ -303,7 +303,7 @@ TEST(FromCore, ARefusedPointKeepsItsPlaceOnTheCurve) {
   EXPECT_EQ(point.refusal_reason(), "WORK_LIMIT");
 }
 
-TEST(FromCore, ABranchEndArrivesThroughBytesAndJson) {
+TEST(FromCore, ABranchEndSurvivesSerialisationAndJson) {
   SweepPoint reached;
   reached.vehicle_speed = 75 / 3.6;
   reached.result = full_result();
@@ -326,7 +326,7 @@ TEST(FromCore, ABranchEndArrivesThroughBytesAndJson) {
   }
 }
 
-TEST(FromCore, SpeedsComeBackAsTheyWereStated) {
+TEST(FromCore, SpeedsInAnswersEqualThoseOfTheRequest) {
   for (int tenths = 1; tenths <= 4000; ++tenths) {
     const double speed = tenths / 10.0;
     EXPECT_EQ(kilometres_per_hour(speed / 3.6), speed);

@@ -1,4 +1,4 @@
-// The life of the process: kill, termination, a second server, flags and addresses.
+// Tests of the process: kill, termination, a second server, flags and addresses.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -41,7 +41,7 @@ class DaemonTest : public GrpcTest {
   }
 };
 
-TEST_F(DaemonTest, ResultsSurviveAKillAndUnfinishedWorkIsTakenUpAgain) {
+TEST_F(DaemonTest, ResultsSurviveAKillAndUnfinishedSimulationsRunAgain) {
   v1::Simulation done, running;
   ASSERT_TRUE(create(point_simulation(), &done).ok());
   ASSERT_TRUE(eventually([&] { return get(done.name()).state() == v1::Simulation::SUCCEEDED; }));
@@ -60,7 +60,7 @@ TEST_F(DaemonTest, ResultsSurviveAKillAndUnfinishedWorkIsTakenUpAgain) {
   EXPECT_EQ(get(running.name()).state(), v1::Simulation::CANCELLED) << "a cancelled one stays so";
 }
 
-TEST_F(DaemonTest, AKillInTheMiddleOfABatchLeavesNothingHalfWritten) {
+TEST_F(DaemonTest, AKilledServerHasWrittenABatchCompletelyOrNotAtAll) {
   constexpr int kSize = 2000;
   v1::BatchCreateLubricantsRequest batch;
   v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
@@ -68,7 +68,7 @@ TEST_F(DaemonTest, AKillInTheMiddleOfABatchLeavesNothingHalfWritten) {
     fluid.set_name("lubricants/batch-" + std::to_string(i));
     *batch.add_requests()->mutable_lubricant() = fluid;
   }
-  // Killed ever later, until a batch has been written before.
+  // Kills the server ever later, until a batch is written before the kill.
   for (std::chrono::milliseconds delay(2);; delay += delay / 2) {
     grpc::Status status;
     std::thread sender([&] {
@@ -89,7 +89,7 @@ TEST_F(DaemonTest, AKillInTheMiddleOfABatchLeavesNothingHalfWritten) {
   }
 }
 
-TEST_F(DaemonTest, ATerminationEndsStreamsAndKeepsWorkForTheNextStart) {
+TEST_F(DaemonTest, ATerminationEndsStreamsAndUnfinishedSimulationsRunAfterTheNextStart) {
   v1::Simulation running;
   ASSERT_TRUE(create(long_simulation(), &running).ok());
   ASSERT_TRUE(eventually([&] { return get(running.name()).state() == v1::Simulation::RUNNING; }));
@@ -110,7 +110,8 @@ TEST_F(DaemonTest, ATerminationEndsStreamsAndKeepsWorkForTheNextStart) {
   cancel(running.name());
 }
 
-/// A curve of a second or two: of 13 points or, as a sanitizer slows the core, of one.
+/// Returns a curve that takes one or two seconds: 13 points, or one under a sanitizer, which slows
+/// the core.
 v1::Simulation some_seconds() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr double kStep = 130;
@@ -141,13 +142,14 @@ class EndlessDrainTest : public DrainTest {
   v1::Simulation simulation() const override { return long_simulation(); }
 };
 
-TEST_F(DrainTest, WhatRunsMayEndWhileNothingNewIsAccepted) {
+TEST_F(DrainTest, RunningSimulationsEndWhileNewOnesAreRefused) {
   RawClient client(channel_);
   grpc::Status status;
   std::vector<v1::SimulationEvent> events;
   std::thread watcher([&] { events = watch(running_.name(), &status); });
   process_->signal(SIGTERM);
-  v1::Simulation next = point_simulation();  // another one each time: one accepted is not refused
+  // different each time: an accepted one would not be refused again
+  v1::Simulation next = point_simulation();
   EXPECT_TRUE(eventually([&] {
     auto* const cruise = next.mutable_operating_point()->mutable_cruise();
     cruise->set_speed_kilometres_per_hour(cruise->speed_kilometres_per_hour() + 0.25);
@@ -179,7 +181,7 @@ TEST_F(EndlessDrainTest, ASecondSignalEndsTheWaitAndLosesNothing) {
   EXPECT_EQ(cancel(running_.name()).state(), v1::Simulation::CANCELLED);
 }
 
-TEST_F(DaemonTest, ABackupIsTakenWhileItRunsAndRestoredOnceItHasStopped) {
+TEST_F(DaemonTest, ABackupOfARunningServerIsRestoredAfterItsStop) {
   const std::string database = folder_.file("tribodyn.db");
   const auto run = [&](const std::vector<std::string>& arguments) {
     std::filesystem::remove(folder_.file("command.log"));
@@ -207,7 +209,7 @@ TEST_F(DaemonTest, ABackupIsTakenWhileItRunsAndRestoredOnceItHasStopped) {
   EXPECT_THAT(run({}), HasSubstr("--database is required"));
 }
 
-TEST_F(DaemonTest, NothingIsAcknowledgedWhileTheDatabaseIsNotInItsPlace) {
+TEST_F(DaemonTest, ChangesAreRefusedWhileTheDatabaseFileIsMoved) {
   const std::string database = folder_.file("tribodyn.db");
   RawClient client(channel_);
   const auto health = [&] {
@@ -243,7 +245,7 @@ TEST_F(DaemonTest, NothingIsAcknowledgedWhileTheDatabaseIsNotInItsPlace) {
   EXPECT_EQ(get(after.name()).name(), after.name());
 }
 
-TEST_F(DaemonTest, ADatabaseInUseIsRefusedByAnyName) {
+TEST_F(DaemonTest, ADatabaseInUseIsRefusedUnderEveryName) {
   const std::string database = folder_.file("tribodyn.db");
   const std::string linked = folder_.file("linked.db");
   std::filesystem::create_hard_link(database, linked);
@@ -264,7 +266,7 @@ TEST_F(DaemonTest, ADatabaseInUseIsRefusedByAnyName) {
   EXPECT_TRUE(create(point_simulation(), &created).ok()) << "the first one is not disturbed";
 }
 
-TEST_F(DaemonTest, ASecondServerOnTheSameDatabaseOrPortSaysSo) {
+TEST_F(DaemonTest, ASecondServerOnTheSameDatabaseOrPortIsRefused) {
   ServerProcess same_database(
       {"--listen", "127.0.0.1:0", "--database", folder_.file("tribodyn.db")},
       folder_.file("second.log"));
@@ -276,8 +278,8 @@ TEST_F(DaemonTest, ASecondServerOnTheSameDatabaseOrPortSaysSo) {
   EXPECT_THAT(same_port.log(), HasSubstr("cannot listen on " + address_));
 }
 
-/// The largest file that this process, and one that it starts meanwhile, may write; a larger one
-/// kills a process that leaves the signal at its default.
+/// Limits the size of files that this process, and one that it starts meanwhile, may write. A
+/// process that does not handle the signal is killed at the limit.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) {
@@ -302,7 +304,7 @@ class FileSizeLimitTest : public DaemonTest {
   }
 };
 
-TEST_F(FileSizeLimitTest, AFileThatMayNotGrowIsAFullDisk) {
+TEST_F(FileSizeLimitTest, AFileSizeLimitIsReportedAsAFullDisk) {
   v1::BatchCreateLubricantsRequest batch;
   v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
   fluid.set_description(std::string(4000, 'x'));
@@ -329,7 +331,7 @@ class UnixSocketTest : public GrpcTest {
   }
 };
 
-TEST_F(UnixSocketTest, ServesOnASocketOfItsOwnerAndTidiesUp) {
+TEST_F(UnixSocketTest, ServesOnASocketOfItsOwnerAndRemovesIt) {
   EXPECT_EQ(address_, listen_);
   v1::Simulation created;
   EXPECT_TRUE(create(point_simulation(), &created).ok());
@@ -342,7 +344,7 @@ TEST_F(UnixSocketTest, ServesOnASocketOfItsOwnerAndTidiesUp) {
   EXPECT_THAT(second.log(), HasSubstr("in use by another server"));
   process_->signal(SIGKILL);
   process_->wait();
-  start();  // the socket that a kill left behind is no obstacle
+  start();  // the socket of the killed server does not prevent the start
   process_->signal(SIGINT);
   EXPECT_EQ(process_->wait(), 0);
   EXPECT_FALSE(std::filesystem::exists(folder_.file("socket")));
@@ -356,7 +358,7 @@ int run_briefly(const std::vector<std::string>& arguments, std::string* log) {
   return code;
 }
 
-TEST(Flags, AnyAddressButLoopbackIsRefused) {
+TEST(Flags, AddressesOtherThanLoopbackAreRefused) {
   const TemporaryFolder folder;
   for (const char* address : {"0.0.0.0:50651", "192.168.1.5:50651", "[::]:50651", "example.com:80",
                               "10.0.0.1:0", "*:50651"}) {
@@ -367,7 +369,7 @@ TEST(Flags, AnyAddressButLoopbackIsRefused) {
   }
 }
 
-TEST(Flags, AddressesAreUnderstood) {
+TEST(Flags, AddressesOfAllFormsAreAccepted) {
   EXPECT_EQ(to_text(parse_listen_address("localhost:7")), "127.0.0.1:7");
   EXPECT_EQ(to_text(parse_listen_address("127.3.2.1:0")), "127.3.2.1:0");
   EXPECT_EQ(to_text(parse_listen_address("[::1]:50651")), "[::1]:50651");
@@ -381,7 +383,7 @@ TEST(Flags, AddressesAreUnderstood) {
   }
 }
 
-/// A variable of the environment for as long as the object lives.
+/// Sets a variable of the environment while the object exists.
 class Variable {
  public:
   Variable(const char* name, const std::string& value) : name_(name) {
@@ -395,7 +397,7 @@ class Variable {
   const char* name_;
 };
 
-TEST(Flags, ComeBeforeTheEnvironmentAndThatBeforeTheFile) {
+TEST(Flags, OverrideTheEnvironmentWhichOverridesTheFile) {
   const TemporaryFolder folder;
   const std::string file = folder.file("tribodynd.conf");
   std::ofstream(file) << "database = \"" << folder.file("db") << "\"\nlisten = \"from.file:1\"\n";
@@ -410,7 +412,7 @@ TEST(Flags, ComeBeforeTheEnvironmentAndThatBeforeTheFile) {
   EXPECT_EQ(run_briefly({"--check"}, &log), 2) << "a file that is named must be there";
 }
 
-TEST(Flags, ACheckFindsWhatIsWrongAndMakesNothing) {
+TEST(Flags, ACheckFindsProblemsAndCreatesNothing) {
   const TemporaryFolder folder;
   std::string log;
   EXPECT_EQ(run_briefly({"--database", folder.file("db"), "--check"}, &log), 0) << log;
@@ -426,7 +428,7 @@ TEST(Flags, ACheckFindsWhatIsWrongAndMakesNothing) {
   EXPECT_THAT(log, HasSubstr("thread"));
 }
 
-TEST(Flags, TheServiceManagerHearsWhenItIsReadyAndWhenItStops) {
+TEST(Flags, TheServiceManagerIsNotifiedOfStartAndStop) {
   const TemporaryFolder folder;
   const std::string path = folder.file("notify");
   const int receiver = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);

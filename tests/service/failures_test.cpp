@@ -1,4 +1,4 @@
-// What a client receives and what the log records when the server itself fails.
+// Tests of the answer and the log line when the server fails.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,13 +35,13 @@ std::string reason_of(const google::rpc::Status& status) {
   return info.reason();
 }
 
-/// The word that stands between the two parts in the text.
+/// Returns the word between `before` and `after`.
 std::string between(const std::string& text, const std::string& before, char after) {
   const std::size_t begin = text.find(before) + before.size();
   return text.substr(begin, text.find(after, begin) - begin);
 }
 
-TEST(Failures, ADefectIsLoggedWithItsCauseAndToldByAnIdOnly) {
+TEST(Failures, ADefectIsLoggedWithItsCauseAndAnsweredWithAnIdOnly) {
   const LogCapture log;
   const google::rpc::Status told = failure_of([] { throw std::logic_error(kCause); });
   EXPECT_EQ(told.code(), google::rpc::INTERNAL);
@@ -52,17 +52,17 @@ TEST(Failures, ADefectIsLoggedWithItsCauseAndToldByAnIdOnly) {
   EXPECT_THAT(log.text(), HasSubstr("cause=\"row 7 of the table?forged=1\"")) << "on one line";
 }
 
-TEST(Failures, WhatIsThrownNeedNotBeAnException) {
+TEST(Failures, AThrownValueOfAnyTypeIsHandled) {
   EXPECT_EQ(failure_of([] { throw 7; }).code(), google::rpc::INTERNAL);
 }
 
-TEST(Failures, MemoryThatIsUsedUpIsNoDefect) {
+TEST(Failures, LackOfMemoryIsNotADefect) {
   const google::rpc::Status told = failure_of([] { throw std::bad_alloc(); });
   EXPECT_EQ(told.code(), google::rpc::RESOURCE_EXHAUSTED);
   EXPECT_EQ(reason_of(told), "OUT_OF_MEMORY");
 }
 
-/// A stream whose second message fails.
+/// A stream that fails at its second message.
 class FailingSource : public MessageSource<v1::SimulationEvent> {
  public:
   explicit FailingSource(std::function<void()> fail) : fail_(std::move(fail)) {}
@@ -76,7 +76,7 @@ class FailingSource : public MessageSource<v1::SimulationEvent> {
   int asked_ = 0;
 };
 
-TEST(Failures, AStreamThatFailsIsLoggedWithItsCauseAndToldByAnIdOnly) {
+TEST(Failures, AFailedStreamIsLoggedWithItsCauseAndEndsWithAnIdOnly) {
   const LogCapture log;
   FailingSource source([] { throw std::logic_error(kCause); });
   v1::SimulationEvent event;
@@ -89,7 +89,7 @@ TEST(Failures, AStreamThatFailsIsLoggedWithItsCauseAndToldByAnIdOnly) {
   EXPECT_THAT(log.text(), HasSubstr("row 7"));
 }
 
-TEST(Failures, AStreamThatRunsOutOfMemorySaysSo) {
+TEST(Failures, AStreamWithoutMemoryEndsWithResourceExhausted) {
   FailingSource source([] { throw std::bad_alloc(); });
   v1::SimulationEvent event;
   google::rpc::Status end;
@@ -98,7 +98,7 @@ TEST(Failures, AStreamThatRunsOutOfMemorySaysSo) {
   EXPECT_EQ(end.code(), google::rpc::RESOURCE_EXHAUSTED);
 }
 
-TEST(Failures, TextOfUnknownOriginStaysOneWordOfALogLine) {
+TEST(Failures, ForeignTextIsOneWordOfALogLine) {
   EXPECT_EQ(log_word("unix:/tmp/x\n[critical] forged=1\x80", 100),
             "unix:/tmp/x_[critical]_forged_1_");
   EXPECT_EQ(log_word("abcdef", 3), "abc");

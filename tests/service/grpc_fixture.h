@@ -14,7 +14,7 @@
 
 namespace tribodyn::server {
 
-/// A tribodynd on a free port over a temporary database, and a client of it.
+/// A tribodynd on a free port over a temporary database, with a client.
 class GrpcTest : public testing::Test {
  protected:
   void SetUp() override { start(); }
@@ -84,9 +84,9 @@ class GrpcTest : public testing::Test {
   TemporaryFolder folder_;
   std::string listen_ = "127.0.0.1:0";
   std::string threads_ = "2";
-  std::string drain_seconds_ = "0.3";  // enough for a point
+  std::string drain_seconds_ = "0.3";  // long enough for a point
   std::vector<std::string> more_flags_;
-  int maximum_files_ = 0;  // no limit of its own
+  int maximum_files_ = 0;  // 0: no limit
   std::unique_ptr<ServerProcess> process_;
   std::string address_;
   std::shared_ptr<grpc::Channel> channel_;

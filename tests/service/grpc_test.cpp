@@ -1,4 +1,4 @@
-// The real tribodynd over gRPC: every method, bad input, streams that nobody reads.
+// Tests of tribodynd over gRPC: every method, invalid input, streams that nobody reads.
 #include <gmock/gmock.h>
 #include <grpcpp/client_context.h>
 #include <gtest/gtest.h>
@@ -127,7 +127,7 @@ TEST_F(GrpcTest, AContactIsEvaluated) {
   EXPECT_FALSE(response.model_version().empty());
 }
 
-TEST_F(GrpcTest, EverythingWrongWithAContactArrivesInOneAnswer) {
+TEST_F(GrpcTest, AllViolationsOfAContactAreInOneAnswer) {
   v1::EvaluateContactRequest request;
   const auto spoil = [](google::protobuf::Message* message) {
     const auto& descriptor = *message->GetDescriptor();
@@ -190,7 +190,7 @@ TEST_F(GrpcTest, ASimulationIsCreatedWatchedReadAndListed) {
   EXPECT_EQ(list.simulations_size(), 1);
 }
 
-TEST_F(GrpcTest, ShootingAloneIsUsedOrFailsByNameWithTheValues) {
+TEST_F(GrpcTest, ShootingIsUsedOrFailsWithItsReasonAndValues) {
   v1::Simulation request = point_simulation();
   request.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_SHOOTING);
   const auto ended = [&](double speed) {
@@ -205,7 +205,8 @@ TEST_F(GrpcTest, ShootingAloneIsUsedOrFailsByNameWithTheValues) {
   ASSERT_EQ(found.state(), v1::Simulation::SUCCEEDED) << found.error().message();
   EXPECT_EQ(found.result().points(0).result().steady_state_method(),
             v1::STEADY_STATE_METHOD_SHOOTING);
-  const v1::Simulation refused = ended(150);  // the response of one mesh cycle repels
+  // the response with the period of one mesh cycle is unstable
+  const v1::Simulation refused = ended(150);
   ASSERT_EQ(refused.state(), v1::Simulation::FAILED);
   EXPECT_EQ(refused.error().reason(), "NOT_FOUND_BY_SHOOTING");
   EXPECT_THAT(refused.error().message(), HasSubstr("method = SHOOTING"));
@@ -213,7 +214,7 @@ TEST_F(GrpcTest, ShootingAloneIsUsedOrFailsByNameWithTheValues) {
   EXPECT_THAT(refused.error().message(), HasSubstr("AUTOMATIC or MARCH"));
 }
 
-TEST_F(GrpcTest, ACurveByShootingAloneNamesThePointsThatItLacks) {
+TEST_F(GrpcTest, ACurveByShootingNamesItsMissingPoints) {
   v1::Simulation request = curve_simulation();
   request.set_lubricant("lubricants/1");
   request.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_SHOOTING);
@@ -231,7 +232,7 @@ TEST_F(GrpcTest, ACurveByShootingAloneNamesThePointsThatItLacks) {
   EXPECT_THAT(done.result().points(1).refusal_message(), HasSubstr("method = SHOOTING"));
 }
 
-TEST_F(GrpcTest, BadSimulationsComeBackWithAllTheirViolations) {
+TEST_F(GrpcTest, InvalidSimulationsAreRefusedWithAllViolations) {
   v1::Simulation request;
   request.set_lubricant("lubricants/4");
   request.set_sump_temperature_celsius(std::numeric_limits<double>::quiet_NaN());
@@ -272,7 +273,7 @@ class HastyStreamsTest : public GrpcTest {
   }
 };
 
-TEST_F(HastyStreamsTest, AWatchEndsAtItsDeadlineAndMayBeTakenUpAgain) {
+TEST_F(HastyStreamsTest, AWatchEndsAtItsDeadlineAndCanBeResumed) {
   v1::Simulation running;
   ASSERT_TRUE(create(long_simulation(), &running).ok());
   for (int again = 0; again < 2; ++again) {
@@ -303,7 +304,7 @@ class UnreadStreamsTest : public GrpcTest {
     request_.set_name(created.name());
   }
 
-  /// Reads to the end, each message after a pause; rows and how it ended.
+  /// Reads to the end with a pause before each message. Returns the number of rows and the status.
   std::pair<int, grpc::Status> read(std::chrono::milliseconds first_pause,
                                     std::chrono::milliseconds pause) {
     grpc::ClientContext context;
@@ -330,7 +331,7 @@ TEST_F(UnreadStreamsTest, AStreamWhoseClientReadsNothingIsCutOff) {
   EXPECT_LT(some_rows, all_rows);
 }
 
-TEST_F(UnreadStreamsTest, AWatchThatHasNothingToSayGoesOn) {
+TEST_F(UnreadStreamsTest, AWatchWithoutEventsContinues) {
   v1::Simulation running;
   ASSERT_TRUE(create(long_simulation(), &running).ok());
   std::thread canceller([&] {
@@ -344,7 +345,7 @@ TEST_F(UnreadStreamsTest, AWatchThatHasNothingToSayGoesOn) {
   EXPECT_EQ(events.back().state(), v1::Simulation::CANCELLED);
 }
 
-TEST_F(GrpcTest, AWatcherThatNeverReadsHoldsUpNobody) {
+TEST_F(GrpcTest, AWatcherThatNeverReadsDelaysNobody) {
   v1::Simulation running;
   ASSERT_TRUE(create(long_simulation(), &running).ok());
   RawClient client(channel_);
@@ -362,7 +363,7 @@ TEST_F(GrpcTest, AWatcherThatNeverReadsHoldsUpNobody) {
   EXPECT_EQ(process_->wait(std::chrono::seconds(8)), 0) << process_->log();
 }
 
-TEST_F(GrpcTest, ReflectionStreamsThatStayOpenHoldUpNobody) {
+TEST_F(GrpcTest, OpenReflectionStreamsDelayNobody) {
   RawClient client(channel_);
   std::vector<std::shared_ptr<RawClient::Stream>> streams;
   streams.reserve(60);
@@ -376,7 +377,7 @@ TEST_F(GrpcTest, ReflectionStreamsThatStayOpenHoldUpNobody) {
   EXPECT_TRUE(eventually([&] { return !client.list_services().empty(); })) << "and it recovers";
 }
 
-TEST_F(GrpcTest, GarbageNeitherCrashesNorHangsIt) {
+TEST_F(GrpcTest, RandomBytesNeitherCrashNorHangTheServer) {
   RawClient client(channel_);
   std::mt19937 random(20261121);
   for (const char* method :
@@ -420,7 +421,7 @@ class FewFilesTest : public GrpcTest {
   }
 };
 
-TEST_F(FewFilesTest, ConnectionsThatUseUpAllFilesMakeItDeafOnlyWhileTheyLast) {
+TEST_F(FewFilesTest, AfterConnectionsThatUsedAllFilesTheServerAcceptsAgain) {
   const int port = std::stoi(address_.substr(address_.rfind(':') + 1));
   EXPECT_TRUE(list_vehicles(channel_).ok());
   {

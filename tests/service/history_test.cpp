@@ -1,4 +1,4 @@
-// How histories lie on disk: the same bits come back, and overviews miss no extreme.
+// Tests of stored histories: compression is lossless, and overviews contain every extreme.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
@@ -22,25 +22,25 @@ std::vector<double> wave(std::int64_t rows) {
   return out;
 }
 
-RC_GTEST_PROP(ColumnCodec, GivesTheSameBitsBack, (const std::vector<std::uint64_t>& bits)) {
+RC_GTEST_PROP(ColumnCodec, IsLossless, (const std::vector<std::uint64_t>& bits)) {
   std::vector<double> values(bits.size());
   if (!bits.empty()) std::memcpy(values.data(), bits.data(), 8 * bits.size());
   std::vector<double> back(values.size());
   decompress_column(compress_column(values), back);
-  // Outside the macro, which evaluates both sides.
+  // Computed outside the macro, which evaluates both sides.
   const bool is_same =
       values.empty() || std::memcmp(values.data(), back.data(), 8 * values.size()) == 0;
   RC_ASSERT(is_same);
 }
 
-TEST(ColumnCodec, ShrinksWhatIsSmooth) {
+TEST(ColumnCodec, CompressesSmoothColumns) {
   std::vector<double> time;
   for (int i = 0; i < 8192; ++i) time.push_back(1e-6 * i);
   EXPECT_LT(compress_column(time).size(), 8192U * 8 * 8 / 10);
   EXPECT_LT(compress_column(std::vector<double>(8192, 350.0)).size(), 200U);
 }
 
-TEST(ColumnCodec, NoticesDamage) {
+TEST(ColumnCodec, DetectsDamage) {
   const std::vector<double> values = wave(100);
   std::string bytes = compress_column(values);
   std::vector<double> back(99);

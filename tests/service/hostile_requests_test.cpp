@@ -1,5 +1,5 @@
-// Requests that parse and are hostile, to every method of the real tribodynd. request_fuzzer sends
-// many more of them, past gRPC.
+// Sends hostile requests that parse to every method of tribodynd. request_fuzzer sends many more of
+// them without gRPC.
 #include <gmock/gmock.h>
 #include <google/protobuf/message.h>
 #include <google/protobuf/text_format.h>
@@ -30,10 +30,10 @@ using google::protobuf::MethodDescriptor;
 using testing::AllOf;
 using testing::Ne;
 
-constexpr int kRequests = 30;  // to each method
+constexpr int kRequests = 30;  // for each method
 constexpr int kMostChanges = 5;
 
-/// Acceptable requests of a method, in text format; an empty one where the corpus has none.
+/// Returns valid requests of a method in text format; an empty one if the corpus has none.
 std::vector<std::string> valid_requests(const MethodDescriptor& method) {
   std::vector<std::string> out;
   for (const auto& entry : std::filesystem::directory_iterator(request_corpus_folder())) {
@@ -105,7 +105,7 @@ TEST_F(HostileRequestsTest, AreMadeFromRequestsThatAreAccepted) {
 TEST_F(HostileRequestsTest, AreAnsweredOrRefusedWithAReason) {
   HostileMessages hostile(20261122);
   for (const MethodDescriptor* method : all_methods()) {
-    if (method->server_streaming()) continue;  // a watch may last as long as a simulation
+    if (method->server_streaming()) continue;  // a watch may last as long as its simulation
     const std::vector<std::string> valid = valid_requests(*method);
     const std::unique_ptr<Message> request = new_request(*method);
     for (int i = 0; i < kRequests; ++i) {

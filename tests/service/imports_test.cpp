@@ -1,4 +1,4 @@
-// Tables that clients send as text: what is wrong in them is named by row and column.
+// Tests of tables in text: violations name row and column.
 #include "server/application/imports.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(Csv, ReadsWhatSpreadsheetsWrite) {
+TEST(Csv, ReadsTablesOfSpreadsheets) {
   Violations violations;
   const auto table = parse_csv("\xef\xbb\xbf# note\r\n\"a b\" ; c\r\n1;\"x;\"\"y\"\r\n\r\n2; z\r\n",
                                "t", 1000, violations);
@@ -33,7 +33,7 @@ TEST(Csv, ReadsWhatSpreadsheetsWrite) {
   EXPECT_TRUE(parse_csv("a\tb\n1\t\n", "t", 1000, violations));
 }
 
-TEST(Csv, NamesTheRowsThatAreWrong) {
+TEST(Csv, NamesInvalidRows) {
   Violations violations;
   const auto rest = parse_csv("a,b\n1,2\n3\n4,5,6\n\"7,8\n", "t", 1000, violations);
   ASSERT_TRUE(rest);
@@ -96,7 +96,7 @@ TEST(Csv, ReadsDecimalCommasWhereCommasDoNotSeparate) {
   }
 }
 
-TEST(Csv, TellsOfARowOfUnitsInOneSentence) {
+TEST(Csv, ReportsARowOfUnitsInOneSentence) {
   Violations violations;
   const auto table = parse_csv("x;y\nmm;um\n1;2\n", "t", 1000, violations);
   CsvTable read = *table;
@@ -122,7 +122,7 @@ TEST(Csv, NamesWorkbooksAndUtf16) {
   EXPECT_THAT(said(std::string("x\0\n\0", 4)), HasSubstr("is UTF-16"));
 }
 
-TEST(Csv, TakesHeadersInAnyCaseAndAsInstrumentsWriteThem) {
+TEST(Csv, AcceptsHeadersInAnyCaseAndThoseOfInstruments) {
   Violations violations;
   const auto table = parse_csv("X (mm);Z [\u00b5m];Some Name\n1;2;3\n", "t", 1000, violations);
   const CsvColumnForm forms[] = {{"position_metres", "p", 1, 0, "x|position", "m"},
@@ -161,7 +161,7 @@ double value(const v1::GearSet& set, int slot, int sample, const std::string& co
       from, v1::FlankSlot::descriptor()->FindFieldByName(column), sample);
 }
 
-/// Rows by mesh phase and slot.
+/// Returns the table of a gear set by mesh phase and slot.
 std::string by_phase(const v1::GearSet& set) {
   std::string out = "mesh_phase,slot";
   for (const char* column : kColumns) out += std::string(",") + column;
@@ -175,7 +175,8 @@ std::string by_phase(const v1::GearSet& set) {
   return out + "\n";
 }
 
-/// One pair over its roll, lengths in millimetres, without what follows from the rest.
+/// Returns the table of a gear set as one pair over its roll, in millimetres, without columns that
+/// follow from the others.
 std::string by_roll(const v1::GearSet& set) {
   std::string out = "pinion_roll_degrees,load_share";
   for (int c = 1; c < 7; ++c) {
@@ -229,7 +230,7 @@ class GearSetImportTest : public ImportTest {
     EXPECT_EQ(list_gear_sets(app_, {}).message().gear_sets_size(), 3) << "nothing half-written";
     return complaints(outcome.error());
   }
-  /// The tables with one number replaced.
+  /// Returns the tables with one number replaced.
   std::string with(int slot, int sample, const std::string& column, double number) const {
     v1::GearSet set = original_;
     v1::FlankSlot* target = set.mutable_flank_slots(slot);
@@ -240,7 +241,7 @@ class GearSetImportTest : public ImportTest {
   const v1::GearSet original_ = seed<v1::GearSet>("gearSets/A");
 };
 
-TEST_F(GearSetImportTest, TablesByPhaseArriveWhole) {
+TEST_F(GearSetImportTest, TablesByPhaseAreReadCompletely) {
   v1::ImportGearSetRequest asked = request();
   asked.set_series_csv(series_text(original_));
   asked.mutable_gear_set()->clear_series();
@@ -281,7 +282,7 @@ TEST_F(GearSetImportTest, EveryViolationNamesRowAndColumn) {
   const int samples = original_.flank_slots(0).load_share_size();
   v1::ImportGearSetRequest asked = request();
   asked.set_tooth_contact_csv(with(1, 4, "load_share", 0.9));
-  // Samples of a slot begin below the header; sums are named in the first slot.
+  // The samples of a slot begin below the header; a wrong sum is reported in the first slot.
   EXPECT_THAT(refused(asked), HasSubstr("tooth_contact_csv row 6 column load_share: load shares"));
   asked.set_tooth_contact_csv(with(0, samples - 1, "radius_x_metres", 0.5));
   EXPECT_THAT(refused(asked), HasSubstr(fmt::format(
@@ -296,7 +297,7 @@ TEST_F(GearSetImportTest, EveryViolationNamesRowAndColumn) {
   EXPECT_THAT(refused(asked), HasSubstr("row 4 column radius_y_metres: \"nan\""));
 }
 
-TEST_F(GearSetImportTest, TheRatioOfTheRadiiIsThatOfTheTeeth) {
+TEST_F(GearSetImportTest, TheRatioOfTheRadiiIsSetToThatOfTheTeeth) {
   v1::ImportGearSetRequest asked = request();
   auto* radius = asked.mutable_gear_set()->mutable_series()->mutable_gear_contact_radius_metres();
   const double exact = radius->mean();
@@ -308,7 +309,7 @@ TEST_F(GearSetImportTest, TheRatioOfTheRadiiIsThatOfTheTeeth) {
   EXPECT_NEAR(made.message().series().gear_contact_radius_metres().mean(), exact, 1e-12 * exact);
 }
 
-TEST_F(GearSetImportTest, TextsThatAreNoSuchTableAreRefused) {
+TEST_F(GearSetImportTest, TextsThatAreNotTablesAreRefused) {
   const auto said = [&](const std::string& tables, const std::string& series = "") {
     v1::ImportGearSetRequest asked = request();
     asked.set_tooth_contact_csv(tables);
@@ -328,7 +329,7 @@ TEST_F(GearSetImportTest, TextsThatAreNoSuchTableAreRefused) {
               HasSubstr("series_csv row 2 column harmonic: 1; allowed: 0"));
 }
 
-TEST_F(GearSetImportTest, CellsThatAreNoNumberHideNoOtherViolation) {
+TEST_F(GearSetImportTest, InvalidCellsHideNoOtherViolation) {
   v1::ImportGearSetRequest asked = request();
   std::string text = by_phase(original_);
   const auto line_2 = text.find('\n') + 1;
@@ -351,7 +352,7 @@ TEST_F(GearSetImportTest, CellsThatAreNoNumberHideNoOtherViolation) {
   EXPECT_THAT(said, HasSubstr("R_p0 N_g/N_p"));
 }
 
-TEST_F(ImportTest, AllThatIsWrongWithAViscosityTableIsSaidAtOnce) {
+TEST_F(ImportTest, AllViolationsOfAViscosityTableAreReportedTogether) {
   v1::ImportLubricantRequest asked;
   asked.set_lubricant_id("oil");
   asked.mutable_lubricant()
@@ -390,7 +391,7 @@ std::string waves(double amplitude, double wave_length, int samples,
                   const std::string& header = "position_micrometres,height_nanometres") {
   std::string out = header + "\n";
   for (int i = 0; i < samples; ++i) {
-    const double x = 0.5 * i;  // micrometres
+    const double x = 0.5 * i;  // [um]
     out += fmt::format("{},{}\n", x,
                        amplitude * std::sin(2 * std::numbers::pi * x / wave_length) + 20 + 0.1 * x);
   }
@@ -405,7 +406,7 @@ TEST_F(ImportTest, AProfileBecomesASurfaceOfItsMoments) {
   request.add_profiles()->set_csv(waves(300, 50, 4001));
   const auto made = import_surface_profiles(app_, request);
   ASSERT_TRUE(made.ok()) << complaints(made.error());
-  // Two flanks alike: their mean squares add up.
+  // Both flanks are equal: their mean squares add up.
   EXPECT_NEAR(made.message().composite_rms_height_metres(), 300e-9, 3e-9);
   EXPECT_EQ(made.message().measurements(0).samples(), 4001);
   EXPECT_NEAR(made.message().measurements(0).spacing_metres(), 0.5e-6, 1e-15);
@@ -428,12 +429,13 @@ TEST_F(ImportTest, AProfileBecomesASurfaceOfItsMoments) {
   EXPECT_NEAR(both.message().composite_rms_height_metres(), std::sqrt(0.5) * 500e-9, 5e-9);
 }
 
-TEST_F(ImportTest, AnUnfilteredProfileIsToldAtOnceAndWithEveryResult) {
+TEST_F(ImportTest, AnUnfilteredProfileCausesAWarningAtTheImportAndWithEveryResult) {
   v1::ImportSurfaceProfilesRequest request;
   request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
   request.mutable_surface()->set_asperity_friction_coefficient(0.17);
   std::string noise = "X (um);Z (nm)\n";
-  std::uint32_t state = 1;  // a linear congruential generator: white noise, the same everywhere
+  std::uint32_t state =
+      1;  // a linear congruential generator: the same white noise on every machine
   for (int i = 0; i < 4000; ++i) {
     state = 1664525U * state + 1013904223U;
     noise += fmt::format("{};{}\n", 0.5 * i, 400 * (state / 4294967296.0 - 0.5));
@@ -488,7 +490,7 @@ TEST_F(ImportTest, AnUnfilteredProfileIsToldAtOnceAndWithEveryResult) {
   EXPECT_THAT(warning_of(smooth.message()), Not(HasSubstr("spacings")));
 }
 
-TEST_F(ImportTest, Eq46AsPublishedJoinsTwoDirectionsByTheRootOfTheirSum) {
+TEST_F(ImportTest, Eq46AsPublishedCombinesTwoDirectionsByTheRootOfTheirSum) {
   v1::ImportSurfaceProfilesRequest request;
   request.set_surface_id("corrected");
   request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
@@ -509,7 +511,7 @@ TEST_F(ImportTest, Eq46AsPublishedJoinsTwoDirectionsByTheRootOfTheirSum) {
 
   const v1::SurfaceMeasurement& axial = printed.message().measurements(0);
   const v1::SurfaceMeasurement& radial = printed.message().measurements(1);
-  // Eq 48 of two flanks alike, whose moments add up (eq 47).
+  // Eq 48 for two equal flanks, whose moments add up (eq 47).
   const auto expect = [](const v1::Surface& surface, double slope, double curvature) {
     EXPECT_NEAR(surface.asperity_density_per_square_metre() * 6 * std::numbers::pi *
                     std::sqrt(3.0) * slope / curvature,
@@ -551,7 +553,7 @@ TEST_F(ImportTest, RepeatsOfADirectionAreAveraged) {
     m0 += each.mean_square_height_square_metres() / 3;
     m4 += each.mean_square_curvature_per_square_metre() / 3;
   }
-  // Two flanks alike.
+  // Both flanks are equal.
   EXPECT_NEAR(axial.message().composite_rms_height_metres() / std::sqrt(2 * m0), 1, 1e-12);
   EXPECT_NEAR(
       axial.message().asperity_radius_metres() / (0.375 * std::sqrt(std::numbers::pi / (2 * m4))),
@@ -588,7 +590,7 @@ TEST_F(ImportTest, Eq46AsPublishedNeedsTwoDirectionsOfAMember) {
           "a RADIAL profile of one member"));
 }
 
-TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
+TEST_F(ImportTest, AnInvalidProfileIsReportedByRowAndColumn) {
   v1::ImportSurfaceProfilesRequest request;
   request.set_surface_id("measured");
   const auto said = [&](const std::string& csv) {
@@ -612,13 +614,14 @@ TEST_F(ImportTest, ABadProfileIsNamedByRowAndColumn) {
               HasSubstr("in all or none"));
 }
 
-TEST_F(ImportTest, EverythingWrongWithProfilesComesAtOnce) {
+TEST_F(ImportTest, AllViolationsOfProfilesAreReportedTogether) {
   v1::ImportSurfaceProfilesRequest request;
   request.set_surface_id("measured");
   request.mutable_surface()->set_composite_rms_height_metres(1e-6);
   request.mutable_surface()->set_asperity_friction_coefficient(-1);
   request.mutable_surface()->set_derived_from("surfaces/run-im");
-  // Row 4 has no position, row 8 no height, row 6 a cell too many; rows 10 and 12 are out of place.
+  // Row 4 has no position, row 8 no height, row 6 one cell too many; rows 10 and 12 are not evenly
+  // spaced.
   request.add_profiles()->set_csv(
       "position_micrometres,height_nanometres\n0,1\n1,2\nx,3\n3,1\n4,2,5\n5,1\n6,\n7,2\n6.5,1\n"
       "9,2\n12,3\n13,4\n");

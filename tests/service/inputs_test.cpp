@@ -1,4 +1,4 @@
-// What a simulation rests on: defaults, studies, hash and ledger.
+// Tests of a simulation's inputs: defaults, studies, hash and assumptions.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -35,7 +35,7 @@ SimulationInputs inputs_of(const v1::Simulation& simulation) {
   return *inputs;
 }
 
-/// A copy of what is shared, with a change.
+/// Returns a changed copy of a shared resource.
 template <class Resource, class Change>
 std::shared_ptr<const Resource> changed(const std::shared_ptr<const Resource>& resource,
                                         const Change& change) {
@@ -64,7 +64,7 @@ TEST(Inputs, DefaultsAreThoseOfTheContract) {
   EXPECT_TRUE(point.options.history.columns.empty());
 }
 
-TEST(Inputs, EveryModelArrives) {
+TEST(Inputs, EveryModelIsConverted) {
   v1::Simulation simulation = point_simulation();
   const auto arrived = [&](v1::PointModel model) {
     simulation.mutable_operating_point()->set_model(model);
@@ -76,7 +76,7 @@ TEST(Inputs, EveryModelArrives) {
   EXPECT_EQ(arrived(v1::POINT_MODEL_ONE_DEGREE), PointModel::kOneDegree);
 }
 
-TEST(Inputs, EveryOperatingConditionArrives) {
+TEST(Inputs, EveryOperatingConditionIsConverted) {
   v1::Simulation simulation = point_simulation();
   v1::OperatingPointStudy* asked = simulation.mutable_operating_point();
   asked->mutable_cruise()->set_ascent_angle_degrees(90 / std::numbers::pi);
@@ -125,7 +125,7 @@ TEST(Inputs, ARangeOfSpeedsIncludesItsLast) {
   EXPECT_DOUBLE_EQ(curve.ascent_angle, 0.1);
 }
 
-TEST(Hash, DependsOnValuesNotOnWhatTheyAreCalled) {
+TEST(Hash, DependsOnValuesAndNotOnNames) {
   const SimulationInputs inputs = inputs_of(point_simulation());
   const std::string hash = input_hash(inputs);
   EXPECT_EQ(hash.size(), 64U);
@@ -155,7 +155,7 @@ TEST(Hash, DependsOnValuesNotOnWhatTheyAreCalled) {
   }
 }
 
-TEST(Hash, DependsOnWhatTheLubricantWasMeasuredFor) {
+TEST(Hash, DependsOnTheRangeOfTheMeasurements) {
   const SimulationInputs paper = inputs_of(point_simulation());
   SimulationInputs stated = paper;
   stated.lubricant =
@@ -173,7 +173,7 @@ TEST(FluidGrounds, OfThePapersFluidsAreThoseOfThePaper) {
   }
 }
 
-TEST(FluidGrounds, OfAFittedFluidAreItsOwnMeasurements) {
+TEST(FluidGrounds, OfAFittedFluidAreItsMeasurements) {
   v1::Lubricant stated;
   stated.set_name("lubricants/own");
   stated.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
@@ -201,13 +201,14 @@ TEST(FluidGrounds, OfAFittedFluidAreItsOwnMeasurements) {
   EXPECT_DOUBLE_EQ(grounds.viscosity_measured->highest, 373.15);
 }
 
-TEST(FluidGrounds, OfAStatedLawAreUnknown) {
+TEST(FluidGrounds, OfAFluidWithGivenLawsAreUnknown) {
   v1::Lubricant stated = seed<v1::Lubricant>("lubricants/1");
   stated.clear_provenance();
   EXPECT_EQ(fluid_grounds(stated), FluidGrounds());
 }
 
-/// Adds the names of fields without a role, in this message and in those that are inputs of it.
+/// Adds the names of fields without a role, in this message and in the messages of its input
+/// fields.
 void find_unclassified(const google::protobuf::Descriptor& message,
                        std::vector<std::string>& unclassified) {
   for (int i = 0; i < message.field_count(); ++i) {
@@ -232,7 +233,7 @@ TEST(Hash, EveryFieldThatItReachesIsClassified) {
   }
 }
 
-TEST(Hash, AFieldIsNoLabelBecauseOneElsewhereHasItsName) {
+TEST(Hash, AFieldIsClassifiedByItsMessageAndName) {
   for (const auto* message : {v1::HistorySchema::Column::descriptor(), v1::Label::descriptor()}) {
     for (int i = 0; i < message->field_count(); ++i) {
       EXPECT_EQ(input_role(*message->field(i)), InputRole::kUnclassified)
@@ -243,7 +244,7 @@ TEST(Hash, AFieldIsNoLabelBecauseOneElsewhereHasItsName) {
   EXPECT_EQ(input_role(*v1::Simulation::descriptor()->FindFieldByName("name")), InputRole::kOutput);
 }
 
-TEST(Hash, StatedDefaultsEqualUnstatedOnes) {
+TEST(Hash, ExplicitDefaultsHaveTheHashOfImplicitOnes) {
   v1::Simulation stated = point_simulation();
   stated.set_gear_set("gearSets/A");
   stated.set_sump_temperature_celsius(40);
@@ -258,7 +259,7 @@ TEST(Hash, StatedDefaultsEqualUnstatedOnes) {
   EXPECT_NE(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));
 }
 
-TEST(Hash, EqualSpeedsHoweverStatedAreEqualInputs) {
+TEST(Hash, EqualSpeedsHaveEqualHashesHoweverTheyAreSet) {
   v1::Simulation listed = curve_simulation();
   listed.mutable_inefficiency_curve()->Clear();
   for (int speed = 140; speed >= 20; speed -= 10) {
@@ -278,7 +279,7 @@ TEST(Hash, CanonicalTextNamesEveryValueWithAllItsDigits) {
   EXPECT_EQ(text.find("lubricants/"), std::string::npos);
 }
 
-TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
+TEST(CostEstimate, OrdersStudiesByTheirDuration) {
   std::vector<v1::Simulation> ascending(5, point_simulation());
   ascending[1].mutable_solver_options()->set_tolerance(1e-6);
   ascending[2].mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
@@ -303,14 +304,14 @@ TEST(CostEstimate, OrdersStudiesAsTheyTakeTime) {
             estimate_cost(inputs_of(slow).effective).processor_seconds());
 }
 
-TEST(CostEstimate, IsTheSameForWhatIsAlike) {
+TEST(CostEstimate, IsEqualForSimilarStudies) {
   v1::Simulation other = point_simulation();
   other.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(65.01);
   EXPECT_EQ(estimate_cost(inputs_of(point_simulation()).effective).processor_seconds(),
             estimate_cost(inputs_of(other).effective).processor_seconds());
 }
 
-TEST(CostEstimate, KnowsThatSlowPointsAndWideCurvesTakeLonger) {
+TEST(CostEstimate, IsHigherForSlowPointsAndWideCurves) {
   const auto curve_seconds = [](const std::vector<double>& speeds) {
     v1::Simulation out = curve_simulation();
     out.mutable_inefficiency_curve()->Clear();
@@ -323,7 +324,7 @@ TEST(CostEstimate, KnowsThatSlowPointsAndWideCurvesTakeLonger) {
   EXPECT_GT(curve_seconds({25, 100}), 1.5 * curve_seconds({50, 100}));
 }
 
-TEST(Ledger, IsTheSameSerialisedWhateverIsKeptOfIt) {
+TEST(Assumptions, AreSerialisedIdenticallyWithAndWithoutTheCache) {
   v1::Simulation other = point_simulation();
   other.set_lubricant("lubricants/2");
   other.set_sump_temperature_celsius(90);
@@ -336,7 +337,7 @@ TEST(Ledger, IsTheSameSerialisedWhateverIsKeptOfIt) {
   }
 }
 
-std::map<std::string, v1::Assumption> ledger_of(const v1::Simulation& simulation) {
+std::map<std::string, v1::Assumption> assumptions_of(const v1::Simulation& simulation) {
   std::map<std::string, v1::Assumption> out;
   for (const v1::Assumption& entry : assumptions(inputs_of(simulation))) {
     EXPECT_TRUE(out.emplace(entry.resource() + " " + entry.field(), entry).second) << entry.field();
@@ -347,7 +348,7 @@ std::map<std::string, v1::Assumption> ledger_of(const v1::Simulation& simulation
   return out;
 }
 
-/// The canonical text of a message with one number and one name.
+/// Returns the canonical text of a message with one number and one name.
 std::string text_of(double value, const std::string& name) {
   v1::Simulation simulation;
   simulation.set_display_name(name);
@@ -362,7 +363,7 @@ std::string text_of(double value, const std::string& name) {
   return text;
 }
 
-TEST(Hash, NumbersAreWrittenAsPrintfWritesThem) {
+TEST(Hash, NumbersAreWrittenLikePrintf) {
   std::mt19937_64 random(20261121);
   const auto expect = [](double value) {
     std::array<char, 128> expected{};
@@ -380,44 +381,44 @@ TEST(Hash, NumbersAreWrittenAsPrintfWritesThem) {
   }
 }
 
-TEST(Hash, NoNamePassesForAnotherLine) {
+TEST(Hash, ALineFeedInANameIsEscaped) {
   EXPECT_EQ(text_of(1, "a\ns.x=\\n"),
             "s.display_name=a\\ns.x=\\\\n\ns.sump_temperature_celsius=0x1p+0\n");
 }
 
-TEST(Ledger, NamesEveryParameterWithValueUnitAndProvenance) {
-  auto ledger = ledger_of(point_simulation());
-  const auto& alpha = ledger.at("lubricants/1 pressure_viscosity_coefficient_per_pascal");
+TEST(Assumptions, NameEveryParameterWithValueUnitAndProvenance) {
+  auto found = assumptions_of(point_simulation());
+  const auto& alpha = found.at("lubricants/1 pressure_viscosity_coefficient_per_pascal");
   EXPECT_EQ(alpha.value(), "1.609e-08 1/Pa");
   EXPECT_EQ(alpha.provenance(), v1::PROVENANCE_PUBLISHED);
-  EXPECT_EQ(ledger.at("lubricants/1 vogel_reference_temperature_kelvin").provenance(),
+  EXPECT_EQ(found.at("lubricants/1 vogel_reference_temperature_kelvin").provenance(),
             v1::PROVENANCE_DERIVED);
-  EXPECT_EQ(ledger.at("gearSets/A dynamics.pinion_inertia_kilogram_square_metres").provenance(),
+  EXPECT_EQ(found.at("gearSets/A dynamics.pinion_inertia_kilogram_square_metres").provenance(),
             v1::PROVENANCE_CALIBRATED);
-  EXPECT_EQ(ledger.at("gearSets/A series").value(), "8 harmonics at 30 N m");
-  EXPECT_EQ(ledger.at("gearSets/A flank_slots").value(), "3 slots of 97 samples");
-  EXPECT_EQ(ledger.at("surfaces/run-in tribofilm_shear_strength_pascals").value(), "2000000 Pa");
-  EXPECT_EQ(ledger.at("vehicles/passenger-car mass_kilograms").value(), "1300 kg");
-  EXPECT_FALSE(ledger.contains("gearSets/A series_by_torque")) << "not used, so not assumed";
-  EXPECT_EQ(ledger.size(), 6U + 14 + (7 + 2 + 10) + 5 + 7);
+  EXPECT_EQ(found.at("gearSets/A series").value(), "8 harmonics at 30 N m");
+  EXPECT_EQ(found.at("gearSets/A flank_slots").value(), "3 slots of 97 samples");
+  EXPECT_EQ(found.at("surfaces/run-in tribofilm_shear_strength_pascals").value(), "2000000 Pa");
+  EXPECT_EQ(found.at("vehicles/passenger-car mass_kilograms").value(), "1300 kg");
+  EXPECT_FALSE(found.contains("gearSets/A series_by_torque")) << "not used, so not assumed";
+  EXPECT_EQ(found.size(), 6U + 14 + (7 + 2 + 10) + 5 + 7);
 }
 
-TEST(Ledger, MarksWhatTheRequestLeftToDefaults) {
-  auto ledger = ledger_of(point_simulation());
-  EXPECT_EQ(ledger.at("request sump_temperature_celsius").provenance(), v1::PROVENANCE_ASSUMED);
-  EXPECT_EQ(ledger.at("request sump_temperature_celsius").value(), "40 C");
-  EXPECT_EQ(ledger.at("request inlet_temperature_rise_kelvin").provenance(),
+TEST(Assumptions, MarkDefaultsOfTheRequest) {
+  auto found = assumptions_of(point_simulation());
+  EXPECT_EQ(found.at("request sump_temperature_celsius").provenance(), v1::PROVENANCE_ASSUMED);
+  EXPECT_EQ(found.at("request sump_temperature_celsius").value(), "40 C");
+  EXPECT_EQ(found.at("request inlet_temperature_rise_kelvin").provenance(),
             v1::PROVENANCE_PUBLISHED);
-  EXPECT_EQ(ledger.at("request gear_set").provenance(), v1::PROVENANCE_ASSUMED);
-  EXPECT_EQ(ledger.at("request lubricant").provenance(), v1::PROVENANCE_USER);
+  EXPECT_EQ(found.at("request gear_set").provenance(), v1::PROVENANCE_ASSUMED);
+  EXPECT_EQ(found.at("request lubricant").provenance(), v1::PROVENANCE_USER);
   v1::Simulation stated = point_simulation();
   stated.set_sump_temperature_celsius(90);
   stated.set_gear_set("gearSets/A");
   stated.mutable_model_options()->set_load_dependent_mesh_data(true);
-  ledger = ledger_of(stated);
-  EXPECT_EQ(ledger.at("request sump_temperature_celsius").provenance(), v1::PROVENANCE_USER);
-  EXPECT_EQ(ledger.at("request gear_set").provenance(), v1::PROVENANCE_USER);
-  EXPECT_EQ(ledger.at("gearSets/A series_by_torque").value(), "10, 20, 30, 45, 65, 100 N m");
+  found = assumptions_of(stated);
+  EXPECT_EQ(found.at("request sump_temperature_celsius").provenance(), v1::PROVENANCE_USER);
+  EXPECT_EQ(found.at("request gear_set").provenance(), v1::PROVENANCE_USER);
+  EXPECT_EQ(found.at("gearSets/A series_by_torque").value(), "10, 20, 30, 45, 65, 100 N m");
 }
 
 }  // namespace

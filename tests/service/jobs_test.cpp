@@ -15,7 +15,7 @@
 namespace tribodyn::server {
 namespace {
 
-/// A study that throws.
+/// Returns studies that throw.
 template <class Thrown>
 StudyFunctions throwing(const Thrown& thrown) {
   StudyFunctions out = quick_studies();
@@ -24,7 +24,7 @@ StudyFunctions throwing(const Thrown& thrown) {
   return out;
 }
 
-TEST(JobQueue, RunsWhatIsPushedInOrder) {
+TEST(JobQueue, RunsJobsInOrder) {
   std::mutex mutex;
   std::vector<std::int64_t> done;
   JobQueue queue(1, {.jobs = 100}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
@@ -44,7 +44,7 @@ TEST(JobQueue, RunsWhatIsPushedInOrder) {
   EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
 }
 
-TEST(JobQueue, TurnsAwayWhatIsTooMuch) {
+TEST(JobQueue, RefusesJobsAboveItsCapacity) {
   std::atomic<bool> release = false;
   JobQueue queue(1, {.jobs = 2}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest&) {
     while (!release && !stop.requested()) std::this_thread::yield();
@@ -57,7 +57,7 @@ TEST(JobQueue, TurnsAwayWhatIsTooMuch) {
   EXPECT_TRUE(queue.reserve({}).is_admitted);
   queue.push({1});
   queue.push({2});
-  EXPECT_TRUE(eventually([&] {  // one of them runs by now
+  EXPECT_TRUE(eventually([&] {  // one of them is running now
     if (!queue.reserve({}).is_admitted) return false;
     queue.release({});
     return true;
@@ -68,7 +68,7 @@ TEST(JobQueue, TurnsAwayWhatIsTooMuch) {
   release = true;
 }
 
-/// Ids in the order in which they leave.
+/// Returns the ids in the order in which the queue releases them.
 std::vector<std::int64_t> emptied(FairQueue& queue) {
   std::vector<std::int64_t> out;
   while (const auto job = queue.pop(Lane::kBulk)) out.push_back(job->id);
@@ -101,12 +101,12 @@ TEST(FairQueue, SmallJobsOfAPrincipalPassLargeOnesThatDoNotStarve) {
       EXPECT_GT(id, 102 + 8) << "as much as it is large has passed it";
       return;
     }
-    queue.push({id, "a", 0.5});  // more and more of them
+    queue.push({id, "a", 0.5});  // new jobs keep arriving
   }
   FAIL() << "the large one never came";
 }
 
-TEST(FairQueue, KnowsWhatWaits) {
+TEST(FairQueue, CountsQueuedJobs) {
   FairQueue queue;
   queue.push({1, "a", 2});
   queue.push({2, "b", 3});
@@ -145,11 +145,11 @@ TEST(FairQueue, StatedInteractiveJobsPassAllOthersOfTheirPrincipal) {
   EXPECT_EQ(queue.pop(Lane::kBulk)->id, 22) << "stated BULK, however small";
 }
 
-TEST(FairQueue, WhoUsedMoreThanEstimatedWaitsForTheOthers) {
+TEST(FairQueue, APrincipalThatUsedMoreThanEstimatedIsServedLater) {
   FairQueue queue;
   queue.push({1, "hog", 0.001});
   EXPECT_EQ(queue.pop(Lane::kBulk)->id, 1);
-  queue.charge("hog", 10);  // while nothing of it waits
+  queue.charge("hog", 10);  // while it has no job in the queue
   queue.push({2, "hog", 0.001});
   for (int id = 3; id <= 12; ++id) queue.push({id, "other", 0.5});
   EXPECT_EQ(emptied(queue).back(), 2) << "the others have 5 s of work";
@@ -190,7 +190,7 @@ TEST(FairQueue, TimeDoesNotGrowWithTheNumberOfPrincipals) {
   EXPECT_LT(seconds(20'000), 50 * few) << "1000 times as many";
 }
 
-TEST(Turns, TellsThoseTurnedAwayToComeOneAfterAnother) {
+TEST(Turns, SpreadsTheRetriesOfRefusedPrincipals) {
   Turns turns;
   const Turns::Time now;
   EXPECT_EQ(turns.next("b", 0.001, 10, now), Turns::kLeastSeconds);
@@ -259,7 +259,7 @@ TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
   EXPECT_EQ(shut_down, 2);
 }
 
-TEST(JobQueue, TheNextIsComputedWhileAResultIsWrittenDown) {
+TEST(JobQueue, TheNextJobIsComputedWhileAResultIsWritten) {
   std::atomic<int> computed = 0;
   std::atomic<int> written = 0;
   std::atomic<bool> release = false;
@@ -281,7 +281,7 @@ TEST(JobQueue, TheNextIsComputedWhileAResultIsWrittenDown) {
   EXPECT_TRUE(eventually([&] { return written == 5; }));
 }
 
-TEST(JobQueue, WhatIsComputedIsWrittenDownBeforeAStopEnds) {
+TEST(JobQueue, ComputedResultsAreWrittenBeforeAStopEnds) {
   std::atomic<int> written = 0;
   JobQueue queue(2, {}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest& rest) {
     while (!stop.requested()) std::this_thread::yield();
@@ -295,7 +295,7 @@ TEST(JobQueue, WhatIsComputedIsWrittenDownBeforeAStopEnds) {
   EXPECT_EQ(queue.occupancy().running, 0U);
 }
 
-TEST(JobQueue, AJobThatMayKillTheServerRunsAlone) {
+TEST(JobQueue, AJobThatMayCrashTheServerRunsAlone) {
   std::atomic<int> running = 0;
   std::atomic<int> done = 0;
   std::atomic<int> together = 0;
@@ -333,7 +333,7 @@ class Counter : public ProgressObserver {
   std::atomic<int> count = 0;
 };
 
-TEST(ProgressChannel, TellsObserversWhileTheyLive) {
+TEST(ProgressChannel, NotifiesObserversWhileTheyExist) {
   ProgressChannel channel;
   auto observer = std::make_shared<Counter>();
   channel.observe(observer);
@@ -406,12 +406,12 @@ TEST(SimulationJobs, ADefectBecomesAFailureAndTheNextOneRuns) {
   EXPECT_TRUE(bench.reaches(next, v1::Simulation::SUCCEEDED));
 }
 
-TEST(SimulationJobs, ThrowingSomethingElseBecomesAFailureToo) {
+TEST(SimulationJobs, AThrownValueOfAnyTypeBecomesAFailure) {
   Bench bench(throwing(42));
   EXPECT_TRUE(bench.reaches(bench.create(point_simulation()), v1::Simulation::FAILED));
 }
 
-TEST(SimulationJobs, MemoryThatRunsOutBecomesAFailure) {
+TEST(SimulationJobs, LackOfMemoryBecomesAFailure) {
   Bench bench(throwing(std::bad_alloc()));
   const std::string name = bench.create(point_simulation());
   ASSERT_TRUE(bench.reaches(name, v1::Simulation::FAILED));
@@ -460,7 +460,7 @@ TEST(SimulationJobs, AWaitingSimulationIsCancelledWithoutRunning) {
   EXPECT_FALSE(bench.get(second).has_start_time());
 }
 
-TEST(SimulationJobs, ProgressIsMonotoneAndSeldom) {
+TEST(SimulationJobs, ProgressIsMonotoneAndRateLimited) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   Bench bench(patient_studies(release), 1);
   const std::string name = bench.create(curve_simulation());
@@ -483,7 +483,7 @@ TEST(SimulationJobs, ProgressIsMonotoneAndSeldom) {
   EXPECT_TRUE(eventually([&] { return channel->latest().sequence == 3; }));
 }
 
-TEST(SimulationJobs, AStopPutsWhatRunsBackIntoTheQueue) {
+TEST(SimulationJobs, AStopQueuesRunningSimulationsAgain) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   Bench bench(patient_studies(release), 1);
   const std::string running = bench.create(point_simulation());
@@ -509,7 +509,7 @@ TEST(SimulationJobs, WatchingAnEndedSimulationShowsItsEnd) {
   EXPECT_FALSE(bench.jobs().progress(*simulation_id(name))) << "nothing is kept of the ended";
 }
 
-TEST(GoldenCase, ComesOutAsItShouldAndAWrongOneIsNamed) {
+TEST(GoldenCase, PassesAndAWrongFigureIsNamed) {
   EXPECT_EQ(check_golden_case(), "");
   EXPECT_THAT(check_golden_case(quick_studies()),
               testing::AllOf(testing::HasSubstr("pinion_torque_newton_metres is 0"),
@@ -518,7 +518,7 @@ TEST(GoldenCase, ComesOutAsItShouldAndAWrongOneIsNamed) {
               testing::HasSubstr("no answer"));
 }
 
-TEST(SimulationJobs, WhatIsBeingWrittenDownIsNotComputedAgain) {
+TEST(SimulationJobs, ASimulationWhoseResultIsBeingWrittenIsNotComputedAgain) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   Bench bench(patient_studies(release), 1);
   v1::Simulation slowly_written = point_simulation();
@@ -534,7 +534,7 @@ TEST(SimulationJobs, WhatIsBeingWrittenDownIsNotComputedAgain) {
   EXPECT_TRUE(bench.get(second).cache_hit());
 }
 
-TEST(SimulationJobs, TooManyWaitingAreTurnedAway) {
+TEST(SimulationJobs, AFullQueueRefusesSimulations) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   Bench bench(patient_studies(release), 1, {.jobs = 2});
   const std::string running = bench.create(point_simulation());

@@ -1,4 +1,4 @@
-// A simulation from its request to its end: sent twice, served from the cache, watched, cancelled,
+// A simulation from its request to its end: repeated, served from the cache, watched, cancelled,
 // too late, interrupted.
 #include <SQLiteCpp/Statement.h>
 #include <gmock/gmock.h>
@@ -60,7 +60,7 @@ class LifeCycle : public testing::Test {
     request.set_after_sequence(after);
     return watch_simulation(app, request);
   }
-  /// The changes of state that a watch tells until it has nothing more to tell.
+  /// Reads the changes of state from a watch until it has no more.
   std::vector<v1::SimulationEvent> events(Bench& bench, const std::string& name,
                                           std::int64_t after = 0) const {
     std::vector<v1::SimulationEvent> out;
@@ -79,7 +79,7 @@ class LifeCycle : public testing::Test {
   std::shared_ptr<std::atomic<bool>> release_ = std::make_shared<std::atomic<bool>>(false);
 };
 
-TEST_F(LifeCycle, ARequestThatComesAgainGivesTheSameSimulation) {
+TEST_F(LifeCycle, ARepeatedRequestReturnsTheSameSimulation) {
   Bench bench(patient_studies(release_));
   const auto request = request_of(point_simulation(), "retry-1");
   const std::string name = bench.create(request);
@@ -91,7 +91,7 @@ TEST_F(LifeCycle, ARequestThatComesAgainGivesTheSameSimulation) {
   EXPECT_EQ(bench.create(request), name) << "and once it has ended";
 }
 
-TEST_F(LifeCycle, ARequestIsTheSameByItsValuesAndNotByWhatHasChangedSince) {
+TEST_F(LifeCycle, ARepeatedRequestIsRecognisedByItsValues) {
   Bench bench;
   const auto request = request_of(point_simulation(), "retry-2");
   const std::string name = bench.create(request);
@@ -104,7 +104,7 @@ TEST_F(LifeCycle, ARequestIsTheSameByItsValuesAndNotByWhatHasChangedSince) {
   EXPECT_EQ(bench.create(with_output), name) << "what only the server sets does not count";
 }
 
-TEST_F(LifeCycle, ARequestOfTooManyElementsIsRefusedBeforeAnythingElseIsDoneWithIt) {
+TEST_F(LifeCycle, ARequestWithTooManyElementsIsRefusedFirst) {
   Bench bench;
   bench.create(request_of(point_simulation(), "taken"));
   auto large = request_of(point_simulation(), "taken");
@@ -119,7 +119,7 @@ TEST_F(LifeCycle, ARequestOfTooManyElementsIsRefusedBeforeAnythingElseIsDoneWith
                   "simulation.labels: 100000 entries; allowed: at most 64"));
 }
 
-TEST_F(LifeCycle, AnotherRequestUnderTheSameIdIsRefusedAndSaysWhatDiffers) {
+TEST_F(LifeCycle, AnotherRequestWithTheSameIdIsRefusedAndTheDifferenceNamed) {
   Bench bench;
   const std::string name = bench.create(request_of(point_simulation(), "taken"));
   auto other = request_of(point_simulation(), "taken");
@@ -159,7 +159,7 @@ TEST_F(LifeCycle, EqualInputsAreServedFromTheCacheBitForBit) {
   EXPECT_FALSE(bench.get(first).cache_hit());
   auto renamed = with_history;
   renamed.set_display_name("the same under another name");
-  renamed.set_sump_temperature_celsius(40);  // the default, stated
+  renamed.set_sump_temperature_celsius(40);  // the default value
   const auto second = create(bench, request_of(renamed));
   ASSERT_TRUE(second.ok());
   EXPECT_EQ(second.message().state(), State::SUCCEEDED) << "at once";
@@ -175,7 +175,7 @@ TEST_F(LifeCycle, EqualInputsAreServedFromTheCacheBitForBit) {
   EXPECT_THAT(states(bench, served.name()), ElementsAre(State::QUEUED, State::SUCCEEDED));
 }
 
-TEST_F(LifeCycle, ACachedResultBearsTheAssumptionsOfItsOwnResources) {
+TEST_F(LifeCycle, ACachedResultHasTheAssumptionsOfItsOwnResources) {
   Bench bench;
   v1::Lubricant copy = seed<v1::Lubricant>("lubricants/1");
   copy.set_name("lubricants/copy");
@@ -193,7 +193,7 @@ TEST_F(LifeCycle, ACachedResultBearsTheAssumptionsOfItsOwnResources) {
   EXPECT_TRUE(names_copy);
 }
 
-TEST_F(LifeCycle, AForcedRunComputesAndAgreesWithWhatIsThere) {
+TEST_F(LifeCycle, AForcedRunComputesAndAgreesWithTheStoredResult) {
   Bench bench;
   finished(bench, request_of(point_simulation()));
   auto forced = request_of(point_simulation());
@@ -221,7 +221,7 @@ TEST_F(LifeCycle, ARunThatDoesNotReproduceAResultFails) {
   EXPECT_EQ(bench.get(name).error().reason(), "RESULT_NOT_REPRODUCED");
 }
 
-/// Flips a bit of the first row of a table, behind the server's back.
+/// Flips a bit of the first row of a table without the server's knowledge.
 void flip_a_bit(const Bench& bench, const std::string& table, const std::string& column) {
   SQLite::Database raw(bench.database(), SQLite::OPEN_READWRITE);
   SQLite::Statement query(raw, "SELECT rowid, " + column + " FROM " + table + " LIMIT 1");
@@ -272,7 +272,7 @@ TEST_F(LifeCycle, ADamagedResultIsDataLossUntilAForcedRunWritesItAgain) {
     flip_a_bit(bench, table, column);
     const bool is_history = std::string(table) == "history_blocks";
     EXPECT_EQ(code_of_result(), is_history ? 0 : google::rpc::DATA_LOSS) << table;
-    // A history comes with the warnings that the result holds.
+    // A history includes the warnings of its result.
     EXPECT_EQ(code_of_history(), google::rpc::DATA_LOSS) << table;
     finished(bench, request);
   }
@@ -295,7 +295,7 @@ TEST_F(LifeCycle, ALargeImportDoesNotEvictResults) {
   EXPECT_FALSE(bench.store().simulation(1)) << "a result and its simulation take more";
 }
 
-TEST_F(LifeCycle, AResultOfAnotherModelOrPlatformServesNobody) {
+TEST_F(LifeCycle, AResultOfAnotherModelOrPlatformIsNotReused) {
   Bench bench;
   const std::string name = finished(bench, request_of(point_simulation()));
   const std::string hash = bench.get(name).input_hash();
@@ -312,7 +312,7 @@ TEST_F(LifeCycle, AResultOfAnotherModelOrPlatformServesNobody) {
       Added::Kind::kServed);
 }
 
-TEST_F(LifeCycle, WhatWaitsIsServedOnceItsTwinIsDone) {
+TEST_F(LifeCycle, AQueuedSimulationGetsTheResultOfEqualInputs) {
   Bench bench(patient_studies(release_), 1);
   const std::string first = bench.create(point_simulation());
   const std::string second = bench.create(point_simulation());
@@ -323,7 +323,7 @@ TEST_F(LifeCycle, WhatWaitsIsServedOnceItsTwinIsDone) {
   EXPECT_FALSE(bench.get(second).has_start_time());
 }
 
-TEST_F(LifeCycle, AFullQueueStillServesWhatIsKnown) {
+TEST_F(LifeCycle, AFullQueueStillServesCachedResultsAndRepeatedRequests) {
   Bench bench(quick_studies(), 1, {.jobs = 1});
   finished(bench, request_of(point_simulation()));
   bench.restart(patient_studies(release_));
@@ -336,7 +336,7 @@ TEST_F(LifeCycle, AFullQueueStillServesWhatIsKnown) {
   *release_ = true;
 }
 
-TEST_F(LifeCycle, CheckingSaysHashInputsAndCostAndRunsNothing) {
+TEST_F(LifeCycle, ValidateOnlyReturnsHashInputsAndCostAndRunsNothing) {
   Bench bench;
   auto request = request_of(curve_simulation());
   request.set_validate_only(true);
@@ -359,7 +359,7 @@ TEST_F(LifeCycle, CheckingSaysHashInputsAndCostAndRunsNothing) {
   EXPECT_EQ(create(bench, request).message().input_hash(), checked.input_hash());
 }
 
-TEST_F(LifeCycle, AWatchGoesOnBehindWhatWasSeen) {
+TEST_F(LifeCycle, AWatchResumesAfterTheLastEventSeen) {
   Bench bench;
   const std::string name = finished(bench, request_of(point_simulation()));
   for (std::int64_t after = 0; after <= 3; ++after) {
@@ -377,7 +377,7 @@ TEST_F(LifeCycle, AWatchGoesOnBehindWhatWasSeen) {
   }
 }
 
-TEST_F(LifeCycle, AWatchTellsProgressStageAndTimeLeft) {
+TEST_F(LifeCycle, AWatchReportsProgressStageAndTimeLeft) {
   Bench bench(patient_studies(release_), 1);
   const std::string name = bench.create(point_simulation());
   const auto source = watch(bench, name).message();
@@ -400,7 +400,7 @@ class Waker : public ProgressObserver {
   std::atomic<int> count = 0;
 };
 
-TEST_F(LifeCycle, AQuietWatchSendsHeartbeatsAndIsWokenForThem) {
+TEST_F(LifeCycle, AWatchWithoutEventsSendsHeartbeats) {
   Bench bench(patient_studies(release_), 1, {.jobs = 10}, std::chrono::milliseconds(40));
   ASSERT_TRUE(bench.reaches(bench.create(curve_simulation()), State::RUNNING));
   const std::string waiting = bench.create(point_simulation());
@@ -423,7 +423,7 @@ TEST_F(LifeCycle, AQuietWatchSendsHeartbeatsAndIsWokenForThem) {
   *release_ = true;
 }
 
-TEST_F(LifeCycle, WhatIsTooLateFailsWhetherItWaitsOrRuns) {
+TEST_F(LifeCycle, AMissedDeadlineFailsQueuedAndRunningSimulations) {
   Bench bench(patient_studies(release_), 1);
   auto hasty = point_simulation();
   hasty.set_deadline_seconds(0.2);
@@ -451,7 +451,7 @@ TEST_F(LifeCycle, ADeadlineIsKeptAcrossARestart) {
   EXPECT_EQ(bench.get(name).error().reason(), "DEADLINE_EXCEEDED");
 }
 
-TEST_F(LifeCycle, AStopIsAFurtherAttemptAndNoFault) {
+TEST_F(LifeCycle, AStopCausesAFurtherAttemptAndIsNotAFault) {
   Bench bench(patient_studies(release_), 1);
   const std::string name = bench.create(point_simulation());
   for (int attempt = 1; attempt <= 4; ++attempt) {
@@ -465,7 +465,7 @@ TEST_F(LifeCycle, AStopIsAFurtherAttemptAndNoFault) {
   EXPECT_EQ(events(bench, name)[2].reason(), "SERVER_STOPPED");
 }
 
-TEST_F(LifeCycle, WhatKillsItsServerThreeTimesFailsWithTheCause) {
+TEST_F(LifeCycle, ASimulationThatCrashesTheServerThreeTimesFails) {
   const TemporaryFolder folder;
   Store store(folder.file("db"));
   const ResultKey key{std::string(64, 'a'), "model", "platform"};
@@ -481,7 +481,7 @@ TEST_F(LifeCycle, WhatKillsItsServerThreeTimesFailsWithTheCause) {
 }
 
 TEST_F(LifeCycle, ACancelTakesEffectAtOnceAndFreesTheProcessor) {
-  Bench bench(StudyFunctions(), 1);  // the core's own
+  Bench bench(StudyFunctions(), 1);  // the studies of the core
   std::vector<double> usual;         // [ms]
   for (int round = 0; round < 10; ++round) {
     v1::Simulation endless = long_simulation(round % 2 == 0 ? v1::STEADY_STATE_METHOD_MARCH
@@ -494,7 +494,7 @@ TEST_F(LifeCycle, ACancelTakesEffectAtOnceAndFreesTheProcessor) {
     cancel.set_name(name);
     Application app = bench.application();
     v1::Simulation next = point_simulation();
-    next.set_sump_temperature_celsius(60 + round);  // no result serves it
+    next.set_sump_temperature_celsius(60 + round);  // no stored result has its inputs
     const std::string waiting = bench.create(next);
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_EQ(cancel_simulation(app, cancel).message().state(), State::CANCELLED);
@@ -511,7 +511,7 @@ TEST_F(LifeCycle, ACancelTakesEffectAtOnceAndFreesTheProcessor) {
     usual.push_back(std::max(answered, freed).count());
     EXPECT_EQ(cancel_simulation(app, cancel).message().state(), State::CANCELLED) << "again";
   }
-  // One of them may meet a busy machine; sanitizers slow the core some ten times.
+  // One round may be slowed by a busy machine; sanitizers slow the core about ten times.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr double kMostMilliseconds = 500;
 #else

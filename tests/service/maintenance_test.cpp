@@ -1,4 +1,4 @@
-// Old files, damaged files, backups and what restores them.
+// Tests of old files, damaged files, backup and restore.
 #include "server/storage/maintenance.h"
 
 #include <SQLiteCpp/Statement.h>
@@ -44,7 +44,7 @@ class MaintenanceTest : public testing::Test {
     result.set_input_hash(std::string(64, 'a'));
     store.mark_succeeded(id, 7, {key, result.SerializeAsString(), {{"a", {1, 2}}}});
   }
-  /// Changes the database behind the back of its triggers, which are there again afterwards.
+  /// Changes the database without its triggers and creates them again.
   void damage(const std::string& sql) const {
     SQLite::Database raw(path(), SQLite::OPEN_READWRITE);
     std::vector<std::string> triggers;
@@ -62,7 +62,7 @@ class MaintenanceTest : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Revision and body of all resources, by name, as a database of any schema holds them.
+/// Returns revision and body of all resources by name, from a database of any schema.
 std::map<std::string, std::pair<int, std::string>> stored_resources(const std::string& file,
                                                                     int schema) {
   SQLite::Database raw(file, SQLite::OPEN_READONLY);
@@ -78,7 +78,7 @@ std::map<std::string, std::pair<int, std::string>> stored_resources(const std::s
   return out;
 }
 
-/// One stored file of every schema before the present one.
+/// A stored database of each older schema.
 class OldSchema : public testing::TestWithParam<int> {};
 
 TEST_P(OldSchema, IsMigratedAndLosesNothing) {
@@ -149,7 +149,7 @@ TEST_F(MaintenanceTest, EveryTableIsStrict) {
   while (query.executeStep()) ADD_FAILURE() << query.getColumn(0).getString();
 }
 
-TEST_F(MaintenanceTest, ABackupOfARunningServerIsWholeAndComesBack) {
+TEST_F(MaintenanceTest, ABackupOfARunningServerIsCompleteAndRestored) {
   make();
   {
     Store running(path());
@@ -199,7 +199,7 @@ TEST_F(MaintenanceTest, ABackupLeavesFilesOfSimilarNamesAlone) {
   EXPECT_EQ(text, "mine");
 }
 
-TEST_F(MaintenanceTest, ADamagedDatabaseIsNotBackedUpAsIfItWereWhole) {
+TEST_F(MaintenanceTest, ADamagedDatabaseIsNotBackedUp) {
   make();
   damage("UPDATE revisions SET body = x'00' WHERE id = 1");
   const std::string copy = folder_.file("copy.db");
@@ -208,7 +208,7 @@ TEST_F(MaintenanceTest, ADamagedDatabaseIsNotBackedUpAsIfItWereWhole) {
   EXPECT_FALSE(std::filesystem::exists(copy + ".new"));
 }
 
-TEST_F(MaintenanceTest, ADatabaseWrittenWhileTheClockWentBackIsBackedUp) {
+TEST_F(MaintenanceTest, ADatabaseWrittenWhileTheClockWasSetBackIsBackedUp) {
   make();
   {
     Store store(path());
@@ -244,7 +244,7 @@ TEST_F(MaintenanceTest, ADamagedBackupIsNotRestored) {
   EXPECT_THAT(check_database(path()), IsEmpty());
 }
 
-TEST(Inputs, OfAStoredSimulationStillHaveTheirHash) {
+TEST(Inputs, OfAStoredSimulationKeepTheirHash) {
   Bench bench;
   ASSERT_TRUE(bench.reaches(bench.create(point_simulation()), v1::Simulation::SUCCEEDED));
   bench.jobs().stop();
@@ -306,7 +306,7 @@ TEST_F(MaintenanceTest, AnEmptyFileIsANewDatabaseButNoBackup) {
   EXPECT_THROW(check_database("/dev/null"), StoreError);
 }
 
-TEST_F(MaintenanceTest, ANumberOfRowsThatNoHistoryHasIsDamageAndTakesNoMemory) {
+TEST_F(MaintenanceTest, AnImpossibleNumberOfRowsIsDamageAndAllocatesNothing) {
   make();
   damage("UPDATE history_columns SET rows = 1000000000000");
   EXPECT_THAT(check_database(path()), Contains(HasSubstr("its history is damaged")));
@@ -316,7 +316,7 @@ TEST_F(MaintenanceTest, ANumberOfRowsThatNoHistoryHasIsDamageAndTakesNoMemory) {
   EXPECT_THAT(check_database(path()), Contains(HasSubstr("its history is damaged")));
 }
 
-TEST_F(MaintenanceTest, CheckFindsWhatIsWrong) {
+TEST_F(MaintenanceTest, CheckFindsEveryKindOfProblem) {
   const std::pair<const char*, const char*> cases[] = {
       {"UPDATE revisions SET body = x'00' WHERE id = 1", "differs from its checksum"},
       {"UPDATE revisions SET revision = 7 WHERE id = 1", "gaps"},

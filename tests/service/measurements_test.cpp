@@ -1,4 +1,4 @@
-// Data sheets with slips: each is refused, at its field, and the likely slip is named.
+// Data sheets with errors: each is refused at its field, and the likely error is named.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ class MeasurementsTest : public testing::Test {
     return made.ok() ? made.message() : v1::Lubricant();
   }
 
-  /// The complaints about a lubricant that must be refused.
+  /// Returns the violations of a lubricant that must be refused.
   std::string refused(const v1::Lubricant& lubricant) {
     const auto made = create(lubricant, "refused");
     EXPECT_FALSE(made.ok());
@@ -80,7 +80,7 @@ class MeasurementsTest : public testing::Test {
   }
 };
 
-TEST_F(MeasurementsTest, ANumberThatIsUsualInAnotherUnitNamesTheUnit) {
+TEST_F(MeasurementsTest, TheUnitOfANumberThatIsUsualInAnotherUnitIsSuggested) {
   EXPECT_THAT(refused(data_sheet(103, 15, 0.895)),
               HasSubstr("0.895 looks like g/cm3: did you mean 895 kg/m3?"));
   EXPECT_THAT(refused(data_sheet(103, 15, 8.7)), HasSubstr("did you mean 870 kg/m3?"));
@@ -99,7 +99,7 @@ TEST_F(MeasurementsTest, ANumberThatIsUsualInAnotherUnitNamesTheUnit) {
   EXPECT_THAT(refused(data_sheet(-1, 15)), Not(HasSubstr("looks like")));
 }
 
-TEST_F(MeasurementsTest, AMeasurementThatCannotBeRightIsRefusedAtItsField) {
+TEST_F(MeasurementsTest, AMeasurementWithAGrossErrorIsRefusedAtItsField) {
   v1::Lubricant lubricant = data_sheet();
   add_cold(lubricant, -40, 150);
   EXPECT_THAT(refused(lubricant),
@@ -115,7 +115,7 @@ TEST_F(MeasurementsTest, AMeasurementThatCannotBeRightIsRefusedAtItsField) {
   EXPECT_THAT(
       refused(lubricant),
       HasSubstr("17 mm2/s at 100 C after the shear test lies 13 % above the fresh oil's 15"));
-  // Rows of a table that are KV40 and KV100 are complained of where they stand.
+  // Violations of table rows that are KV40 or KV100 name the row.
   lubricant.clear_measurements();
   for (const auto& [celsius, viscosity] : {std::pair(100.0, 15.0), {40.0, 15.01}}) {
     auto& row = *lubricant.mutable_measurements()->add_viscosities();
@@ -133,7 +133,7 @@ TEST_F(MeasurementsTest, OneColdViscosityInPascalSecondsIsFoundAmongSeveral) {
   EXPECT_THAT(refused(lubricant), HasSubstr("Did you mean 36 Pa s (36000 mPa s) at -40 C?"));
 }
 
-TEST_F(MeasurementsTest, ALawThatIsStatedMayNotContradictKV40) {
+TEST_F(MeasurementsTest, AGivenLawMustNotContradictKV40) {
   v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
   lubricant.mutable_measurements()
       ->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(150);
@@ -141,7 +141,7 @@ TEST_F(MeasurementsTest, ALawThatIsStatedMayNotContradictKV40) {
                                         HasSubstr("leave the law unset: it is then fitted")));
 }
 
-TEST_F(MeasurementsTest, ACopyWithAnotherViscosityGetsALawOfItsOwn) {
+TEST_F(MeasurementsTest, ACopyWithAnotherViscosityGetsANewLaw) {
   const v1::Lubricant original = created(data_sheet(), "original");
   v1::Lubricant copy = original;
   copy.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
@@ -154,7 +154,7 @@ TEST_F(MeasurementsTest, ACopyWithAnotherViscosityGetsALawOfItsOwn) {
             original.vogel_temperature_coefficient_kelvin());
 }
 
-TEST_F(MeasurementsTest, AnUncertaintyOfWhatIsNotStatedIsRefused) {
+TEST_F(MeasurementsTest, AnUncertaintyWithoutAValueIsRefused) {
   constexpr char kField[] = "pressure_viscosity_coefficient_per_pascal";
   v1::Lubricant lubricant = data_sheet();
   entry(lubricant, kField).set_standard_uncertainty(1e-9);
@@ -169,7 +169,7 @@ TEST_F(MeasurementsTest, AnUncertaintyOfWhatIsNotStatedIsRefused) {
   made = created(data_sheet(), "estimated");
   entry(made, kField).set_standard_uncertainty(1e-9);
   EXPECT_THAT(complaints(update(made).error()), HasSubstr("is computed, not stated"));
-  entry(made, kField).set_computed(false);  // from now on the client's own
+  entry(made, kField).set_computed(false);  // from now on set by the client
   const auto kept = update(made);
   ASSERT_TRUE(kept.ok()) << complaints(kept.error());
   v1::Lubricant after = kept.message();
@@ -188,7 +188,7 @@ std::map<std::string, std::string> warnings_of(const Message& message) {
   return out;
 }
 
-TEST_F(MeasurementsTest, WhatIsNotMeasuredOfAFluidIsToldWithEveryResult) {
+TEST_F(MeasurementsTest, EstimatedParametersCauseAWarningWithEveryResult) {
   v1::Lubricant lubricant = data_sheet();
   lubricant.clear_base_oil_class();
   created(lubricant, "sheet");
@@ -223,7 +223,7 @@ TEST_F(MeasurementsTest, WhatIsNotMeasuredOfAFluidIsToldWithEveryResult) {
   const auto solved = evaluate_contact(app_, contact);
   ASSERT_TRUE(solved.ok()) << complaints(solved.error());
   expect_all(warnings_of(solved.message()));
-  // The paper's fluid is known whole.
+  // All parameters of the paper's fluid are known.
   const std::string known = bench_.create(point_simulation());
   ASSERT_TRUE(bench_.reaches(known, v1::Simulation::SUCCEEDED));
   EXPECT_TRUE(warnings_of(bench_.get(known).result()).empty());

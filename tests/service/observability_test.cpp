@@ -1,5 +1,4 @@
-// What the server tells of itself: metrics, and a log that joins request, job and result and holds
-// no formulation.
+// Tests of metrics, and of a log that connects request, job and result and contains no formulation.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// What comes back for a request, head and body.
+/// Returns head and body of the answer to a request.
 std::string http(const std::string& method, int port, const std::string& path) {
   const int connection = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in name{};
@@ -71,11 +70,11 @@ TEST_F(ObservabilityTest, SilentConnectionsDoNotStarveAScraper) {
   const SilentConnections silent(port_, 10);
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_THAT(http_get(port_, "/metrics"), HasSubstr("tribodyn"));
-  // Ten seconds if each could stay silent for as long as a request may take.
+  // It would be ten seconds if each connection could stay silent for the time limit of a request.
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(8));
 }
 
-TEST_F(ObservabilityTest, MetricsTellPhasesCountsCacheHitsAndTheBuild) {
+TEST_F(ObservabilityTest, MetricsCountPhasesOutcomesCacheHitsAndTheBuild) {
   v1::CreateSimulationRequest request;
   *request.mutable_simulation() = point_simulation();
   run(request);
@@ -94,7 +93,7 @@ TEST_F(ObservabilityTest, MetricsTellPhasesCountsCacheHitsAndTheBuild) {
   EXPECT_THAT(http_get(port_, "/other"), HasSubstr("404"));
 }
 
-TEST_F(ObservabilityTest, HeadOfMetricsIsThatOfGetWithoutABody) {
+TEST_F(ObservabilityTest, HeadOfMetricsEqualsGetWithoutABody) {
   const std::string head = http("HEAD", port_, "/metrics"), whole = http_get(port_, "/metrics");
   EXPECT_THAT(head, testing::StartsWith("HTTP/1.0 200 OK\r\n"));
   EXPECT_THAT(head, HasSubstr("Content-Length: "));

@@ -31,7 +31,7 @@ std::string text(const grpc::ByteBuffer& bytes) {
   return out;
 }
 
-/// Connected or not: who turns the connection away may close it at any time.
+/// Succeeds whether or not the connection is established: the server may close it at any time.
 int open_connection(int port) {
   const int descriptor = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in name{};
@@ -50,7 +50,7 @@ struct RawClient::Stream {
   grpc::CompletionQueue queue;
   std::unique_ptr<grpc::GenericClientAsyncReaderWriter> call;
 
-  /// Waits for the step just started.
+  /// Waits for the started operation.
   bool step() {
     void* tag = nullptr;
     bool ok = false;
@@ -116,19 +116,19 @@ SilentConnections::~SilentConnections() {
 
 namespace {
 
-/// A frame of HTTP/2 on stream 0 or 1.
+/// Returns an HTTP/2 frame on stream 0 or 1.
 std::string frame(char type, char flags, char stream, const std::string& body) {
   const auto byte = [&](int shift) { return static_cast<char>(body.size() >> shift); };
   return std::string{byte(16), byte(8), byte(0), type, flags, 0, 0, 0, stream} + body;
 }
 
-/// A header field without compression.
+/// Returns an uncompressed header field.
 std::string header(const std::string& name, const std::string& value) {
   return std::string(1, '\0') + static_cast<char>(name.size()) + name +
          static_cast<char>(value.size()) + value;
 }
 
-/// A whole frame from the server; false when there is none within the time limit of the socket.
+/// Reads a frame from the server; returns false after the time limit of the socket.
 bool receive_frame(int descriptor, std::string& head, std::string& body) {
   const auto receive = [&](std::string& out, std::size_t count) {
     out.resize(count);
@@ -168,7 +168,7 @@ HalfSentCall::HalfSentCall(int port, const std::string& method, std::size_t size
     return send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
            static_cast<ssize_t>(bytes.size());
   };
-  std::string message(5 + size - 1, '\x3a');  // not compressed, and its length
+  std::string message(5 + size - 1, '\x3a');  // uncompressed flag and length
   message[0] = 0;
   for (int i = 0; i < 4; ++i) message[1 + i] = static_cast<char>(size >> (24 - 8 * i));
   put("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + frame(kSettings, 0, 0, "") +
@@ -192,7 +192,7 @@ HalfSentCall::HalfSentCall(int port, const std::string& method, std::size_t size
       of_stream -= room;
       continue;
     }
-    if (!receive_frame(descriptor_, head, body)) return;  // the server takes no more
+    if (!receive_frame(descriptor_, head, body)) return;  // the server reads no more
     const bool is_answer = (head[4] & kAcknowledged) != 0;
     if (head[3] == kWindowUpdate) {
       (head[8] == 1 ? of_stream : of_connection) += number_at(body, 0);

@@ -15,21 +15,21 @@ class RawClient {
  public:
   explicit RawClient(std::shared_ptr<grpc::Channel> channel) : channel_(std::move(channel)) {}
 
-  /// A unary call; the answer as bytes.
+  /// Makes a unary call. Returns the status and the answer as bytes.
   std::pair<grpc::Status, std::string> call(const std::string& method, const std::string& request);
 
-  /// A stream on which one request is sent and nothing is ever read; open as long as the object.
+  /// A stream on which one request is sent and nothing is read. It is open while the object exists.
   struct Stream;
   std::shared_ptr<Stream> open(const std::string& method, const std::string& request);
 
-  /// What server reflection answers to "list services".
+  /// Returns the answer of server reflection to "list services".
   std::string list_services();
 
  private:
   std::shared_ptr<grpc::Channel> channel_;
 };
 
-/// Connections to a local port on which nothing is ever sent; open as long as the object.
+/// Connections to a local port on which nothing is sent. They are open while the object exists.
 class SilentConnections {
  public:
   SilentConnections(int port, int count);
@@ -41,8 +41,8 @@ class SilentConnections {
   std::vector<int> descriptors_;
 };
 
-/// A call on a connection of its own whose request of `size` bytes lacks its last byte. Sends as
-/// much as the server takes; open as long as the object.
+/// A call on its own connection whose request of `size` bytes lacks its last byte. Sends as much as
+/// the server reads. The call is open while the object exists.
 class HalfSentCall {
  public:
   HalfSentCall(int port, const std::string& method, std::size_t size);
@@ -54,7 +54,7 @@ class HalfSentCall {
   int descriptor_;
 };
 
-/// Connects to a local port, sends bytes that are no HTTP/2, and hangs up.
+/// Connects to a local port, sends bytes that are not HTTP/2, and disconnects.
 void send_raw_bytes(int port, const std::string& bytes);
 
 }  // namespace tribodyn::server

@@ -9,10 +9,10 @@ namespace tribodyn::server {
 
 using JsonValue = google::protobuf::Value;
 
-/// A file of tests/data. A bare Infinity, as Python writes it, reads as null.
+/// Reads a file of tests/data. Infinity without quotes, as Python writes it, becomes null.
 JsonValue load_reference(const std::string& name);
 
-/// "tables.Rx.0": members by name, elements by number.
+/// Returns the value at a path such as "tables.Rx.0": members by name, elements by number.
 const JsonValue& at(const JsonValue& value, const std::string& path);
 double number(const JsonValue& value, const std::string& path);
 std::vector<double> numbers(const JsonValue& list);

@@ -1,5 +1,4 @@
-// Rows that are removed on purpose: simulations, and resources with all that was computed with
-// them.
+// Tests of removed simulations, and of removed resources with their simulations.
 #include "server/storage/removal.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +63,7 @@ class Removals : public testing::Test {
     return id;
   }
 
-  /// Files of the folder that hold a text, by name.
+  /// Returns the names of the files of the folder that contain a text.
   std::vector<std::string> files_with(const std::string& text) const {
     std::vector<std::string> out;
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
@@ -111,7 +110,7 @@ TEST_F(Removals, ErasingRemovesCopiesOfMigrationsAndNamesFormerDatabases) {
   EXPECT_FALSE(std::filesystem::exists(migration));
 }
 
-TEST_F(Removals, ErasingLeavesTheDatabaseFitForFurtherWrites) {
+TEST_F(Removals, AfterErasingTheDatabaseAcceptsWrites) {
   write_secret(1);
   store_.purge_resource(*store_.resource("lubricants/secret"), true);
   store_.erase_removed();
@@ -129,7 +128,7 @@ TEST_F(Removals, AResourceStaysWhileASimulationOfItIsUnfinished) {
   EXPECT_EQ(store_.remove_simulation(id), Store::Removal::kUnfinished);
 }
 
-TEST_F(Removals, SimulationsGoWithTheirResourceOnlyWhenAskedFor) {
+TEST_F(Removals, SimulationsAreRemovedWithTheirResourceOnlyOnRequest) {
   write_secret(1);
   const auto id = finish('a', 1);
   const StoredResource secret = *store_.resource("lubricants/secret");
@@ -139,7 +138,7 @@ TEST_F(Removals, SimulationsGoWithTheirResourceOnlyWhenAskedFor) {
   EXPECT_FALSE(store_.simulation(id));
 }
 
-TEST_F(Removals, AResourceThatHasChangedSinceStays) {
+TEST_F(Removals, AChangedResourceIsNotPurged) {
   const StoredResource first = write_secret(1);
   write_secret(2);
   const auto purge = store_.purge_resource(first, true);
@@ -147,10 +146,10 @@ TEST_F(Removals, AResourceThatHasChangedSinceStays) {
   EXPECT_EQ(purge.revisions, 0);
 }
 
-TEST_F(Removals, AResultStaysWhileAnotherSimulationHasIt) {
+TEST_F(Removals, AResultIsKeptWhileAnotherSimulationUsesIt) {
   write_secret(1);
   const auto first = finish('a', 1);
-  const auto second = queue('a', 1);  // equal inputs: served at once
+  const auto second = queue('a', 1);  // equal inputs: served from the cache
   ASSERT_EQ(store_.simulation(second)->state, StoredState::kSucceeded);
   EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kDone);
   EXPECT_TRUE(store_.result(second));
@@ -158,7 +157,7 @@ TEST_F(Removals, AResultStaysWhileAnotherSimulationHasIt) {
   EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kAbsent);
 }
 
-TEST_F(Removals, APinnedSimulationIsUnpinnedFirst) {
+TEST_F(Removals, APinnedSimulationIsNotRemoved) {
   write_secret(1);
   const auto id = finish('a', 1);
   ASSERT_TRUE(store_.set_pinned(id, true));
@@ -166,7 +165,7 @@ TEST_F(Removals, APinnedSimulationIsUnpinnedFirst) {
   EXPECT_TRUE(store_.simulation(id));
 }
 
-TEST_F(Removals, RevisionsAreKeptAgainAfterAPurge) {
+TEST_F(Removals, RevisionsAreProtectedAgainAfterAPurge) {
   write_secret(1);
   store_.purge_resource(*store_.resource("lubricants/secret"), true);
   write_secret(2);

@@ -1,4 +1,4 @@
-// The standard methods: what a create, an update or a deletion may lose, mix up or leave half done.
+// Tests of the standard methods: no create, update or deletion loses or mixes up data.
 #include "server/application/resources.h"
 
 #include <gmock/gmock.h>
@@ -76,7 +76,7 @@ class ResourcesTest : public testing::Test {
     return undelete_lubricant(app_, request);
   }
 
-  /// Ids of all pages, of `size` each.
+  /// Returns the ids of all pages of size `size`.
   std::vector<std::string> ids(const std::string& filter, const std::string& order = "",
                                int size = 2, bool deleted = false) {
     v1::ListLubricantsRequest request;
@@ -102,7 +102,7 @@ class ResourcesTest : public testing::Test {
   Application app_ = bench_.application();
 };
 
-TEST_F(ResourcesTest, ThreeNumbersMakeAWholeLubricantAndEveryAssumptionShows) {
+TEST_F(ResourcesTest, ThreeNumbersMakeACompleteLubricantWithAllAssumptions) {
   const auto made = create(three_numbers(), "x");
   ASSERT_TRUE(made.ok()) << complaints(made.error());
   const v1::Lubricant& lubricant = made.message();
@@ -128,7 +128,7 @@ TEST_F(ResourcesTest, ThreeNumbersMakeAWholeLubricantAndEveryAssumptionShows) {
   EXPECT_GT(lubricant.characterisation().warnings_size(), 0);
 }
 
-TEST_F(ResourcesTest, WhatWasEnteredIsKeptAsEntered) {
+TEST_F(ResourcesTest, EnteredValuesAreKept) {
   v1::Lubricant entered = three_numbers();
   auto* row = entered.mutable_measurements()->add_viscosities();
   row->set_temperature_celsius(70);
@@ -148,7 +148,7 @@ TEST_F(ResourcesTest, WhatWasEnteredIsKeptAsEntered) {
   EXPECT_GT(made.message().characterisation().root_mean_square_residual(), 0);
 }
 
-TEST_F(ResourcesTest, AStatedParameterIsNeverReplaced) {
+TEST_F(ResourcesTest, AGivenParameterIsNeverReplaced) {
   v1::Lubricant entered = three_numbers();
   entered.set_thermal_conductivity_watts_per_metre_kelvin(0.2);
   entered.set_relaxation_time_seconds(0);
@@ -162,7 +162,7 @@ TEST_F(ResourcesTest, AStatedParameterIsNeverReplaced) {
   EXPECT_FALSE(entry->computed());
 }
 
-TEST_F(ResourcesTest, ALubricantOfWhichTooLittleIsKnownIsRefusedWhole) {
+TEST_F(ResourcesTest, ALubricantWithTooFewDataIsRefused) {
   v1::Lubricant entered;
   entered.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
       70);
@@ -204,7 +204,7 @@ TEST_F(ResourcesTest, ValidateOnlyAnswersInFullAndWritesNothing) {
   EXPECT_EQ(list_simulations(app_, {}).message().simulations_size(), 0);
 }
 
-TEST_F(ResourcesTest, AnUpdateTakesOverWhatTheMaskNamesAndNothingElse) {
+TEST_F(ResourcesTest, AnUpdateChangesOnlyTheFieldsOfItsMask) {
   v1::Lubricant first = create(three_numbers(), "x").message();
   v1::Lubricant change;
   change.set_name(first.name());
@@ -278,7 +278,7 @@ TEST_F(ResourcesTest, AnUpdateWithoutAMaskLosesNothingThatItLeavesOut) {
   EXPECT_NE(replaced.message().pressure_viscosity_coefficient_per_pascal(), 2e-8) << "estimated";
 }
 
-TEST_F(ResourcesTest, WhatWasComputedFollowsItsGrounds) {
+TEST_F(ResourcesTest, ComputedParametersFollowTheirInputs) {
   const v1::Lubricant first = create(three_numbers(), "x").message();
   v1::Lubricant change = first;
   change.mutable_measurements()->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(
@@ -299,7 +299,7 @@ TEST_F(ResourcesTest, WhatWasComputedFollowsItsGrounds) {
             second.vogel_temperature_coefficient_kelvin());
 }
 
-TEST_F(ResourcesTest, AnEtagKeepsOneClientFromUndoingAnother) {
+TEST_F(ResourcesTest, AnOldEtagIsRefused) {
   v1::Lubricant mine = create(three_numbers(), "x").message();
   v1::Lubricant yours = mine;
   yours.set_display_name("yours");
@@ -310,7 +310,7 @@ TEST_F(ResourcesTest, AnEtagKeepsOneClientFromUndoingAnother) {
   EXPECT_EQ(get("lubricants/x").message().display_name(), "yours");
 }
 
-TEST_F(ResourcesTest, ADeletedResourceIsOutOfTheWayAndComesBack) {
+TEST_F(ResourcesTest, ADeletedResourceIsHiddenAndCanBeUndeleted) {
   create(three_numbers(), "x");
   const std::string simulated = [&] {
     v1::Simulation simulation = point_simulation();
@@ -337,7 +337,7 @@ TEST_F(ResourcesTest, ADeletedResourceIsOutOfTheWayAndComesBack) {
   EXPECT_FALSE(get("lubricants/x").message().has_delete_time());
 }
 
-TEST_F(ResourcesTest, ASimulationKeepsPointingAtItsRevisions) {
+TEST_F(ResourcesTest, ASimulationKeepsItsRevisions) {
   auto release = std::make_shared<std::atomic<bool>>(false);
   bench_.restart(patient_studies(release));
   Application app = bench_.application();
@@ -403,7 +403,7 @@ class ListTest : public ResourcesTest {
   }
 };
 
-TEST_F(ListTest, FiltersFindWhatTheySayOnEveryPage) {
+TEST_F(ListTest, FiltersApplyToEveryPage) {
   EXPECT_THAT(ids("condition = FRESH"), ElementsAre("o0", "o1", "o2"));
   EXPECT_THAT(ids("condition != FRESH AND labels.project = axle"), ElementsAre("o3"));
   EXPECT_THAT(ids("lims_id = \"L2\""), ElementsAre("o4", "o5"));
@@ -420,7 +420,7 @@ TEST_F(ListTest, FiltersFindWhatTheySayOnEveryPage) {
   EXPECT_THAT(ids("create_time < 2020-01-01T00:00:00Z"), IsEmpty());
 }
 
-TEST_F(ListTest, OrdersHoldOverPages) {
+TEST_F(ListTest, OrdersContinueOverPages) {
   EXPECT_THAT(ids("", "name desc"), ElementsAre("o7", "o6", "o5", "o4", "o3", "o2", "o1", "o0"));
   EXPECT_THAT(ids("", "thermal_conductivity_watts_per_metre_kelvin"),
               ElementsAre("o3", "o7", "o2", "o6", "o1", "o5", "o0", "o4"));
@@ -442,7 +442,7 @@ TEST_F(ListTest, ComputedFiguresFilterAndOrderOverPages) {
     EXPECT_THAT(ids("name:k AND kv40 > 80 AND kv40 <= 100", "", size), ElementsAre("k100", "k85"));
     EXPECT_THAT(ids("name:k", "kv40", size), ElementsAre("k70", "k85", "k100", "k150"));
     EXPECT_THAT(ids("name:k", "kv40 desc", size), ElementsAre("k150", "k100", "k85", "k70"));
-    // The higher KV40 at the same KV100, the lower the index.
+    // At equal KV100, a higher KV40 means a lower viscosity index.
     EXPECT_THAT(ids("name:k AND vi < 160", "viscosity_index desc", size),
                 ElementsAre("k100", "k150"));
     EXPECT_THAT(ids("name:k AND condition = USED", "vi", size), ElementsAre("k150", "k100"));
@@ -451,7 +451,7 @@ TEST_F(ListTest, ComputedFiguresFilterAndOrderOverPages) {
     EXPECT_THAT(ids("name:k AND kv40 != 100", "condition desc", size),
                 ElementsAre("k150", "k85", "k70"));
   }
-  // All oils that the fixture made have the same figures: their names decide.
+  // All oils of the fixture have the same figures: then names decide the order.
   EXPECT_THAT(ids("name:o", "kv40 desc", 3),
               ElementsAre("o7", "o6", "o5", "o4", "o3", "o2", "o1", "o0"));
   EXPECT_THAT(ids("kv40:*").size(), 12U);
@@ -505,7 +505,7 @@ TEST_F(ResourcesTest, AnExportOfABodyThatEarlierVersionsWroteComesBackTheSame) {
   EXPECT_EQ(second.SerializeAsString(), first.SerializeAsString());
 }
 
-TEST_F(ResourcesTest, NothingDescendsFromWhatIsMissingOrFromItsOwnDescendants) {
+TEST_F(ResourcesTest, AResourceCannotDescendFromAMissingOneOrFromItsDescendants) {
   const auto derive = [&](const std::string& name, const std::string& parent) {
     v1::UpdateLubricantRequest request;
     request.set_allow_missing(true);
@@ -525,7 +525,7 @@ TEST_F(ResourcesTest, NothingDescendsFromWhatIsMissingOrFromItsOwnDescendants) {
   EXPECT_THAT(derive("sheared", "frehs"), HasSubstr("did you mean \"lubricants/fresh\"?"));
 }
 
-TEST_F(ListTest, UnknownWordsNameTheNearest) {
+TEST_F(ListTest, UnknownWordsSuggestTheNearest) {
   const auto said = [&](const std::string& filter, const std::string& order) {
     v1::ListLubricantsRequest request;
     request.set_filter(filter);
@@ -654,7 +654,7 @@ TEST_F(ResourcesTest, AMaskMayNameAFieldOfAMessage) {
   }
 }
 
-TEST_F(ResourcesTest, EveryKindGoesTheSameWay) {
+TEST_F(ResourcesTest, EveryKindOfResourceHasTheStandardMethods) {
   v1::CreateVehicleRequest vehicle;
   *vehicle.mutable_vehicle() = seed<v1::Vehicle>("vehicles/passenger-car");
   vehicle.set_vehicle_id("van");
@@ -707,7 +707,7 @@ TEST_F(ResourcesTest, TheSchemaIsTheTableAndTheWordsThatAreAccepted) {
   EXPECT_EQ(get_schema(app_, one).message().constraints_size(), 7);
 }
 
-TEST_F(ResourcesTest, ABadGearSetTableIsNamedByItsSample) {
+TEST_F(ResourcesTest, AnInvalidGearSetTableIsReportedBySample) {
   v1::CreateGearSetRequest request;
   request.set_gear_set_id("bad");
   v1::GearSet& set = *request.mutable_gear_set();

@@ -1,5 +1,5 @@
-// A result is a function of its inputs: whichever server computes it, on however many threads,
-// first or again, alone or beside others, from the cache or not, it is the same bits.
+// A result depends only on its inputs. It has the same bits on every server, with any number of
+// threads, first or again, alone or beside others, from the cache or not.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -14,7 +14,7 @@ class SameBitsTest : public GrpcTest {
  protected:
   void SetUp() override {}
 
-  /// A server of its own kind over a database of its own.
+  /// A server with its own settings and database.
   class Server : public GrpcTest {
    public:
     explicit Server(const std::string& threads) { threads_ = threads; }
@@ -32,7 +32,7 @@ class SameBitsTest : public GrpcTest {
       return out.name();
     }
 
-    /// Result and history, as bytes.
+    /// Returns result and history as bytes.
     std::string bits(const std::string& name, bool* cache_hit) {
       EXPECT_TRUE(eventually([&] { return get(name).state() >= v1::Simulation::SUCCEEDED; }));
       const v1::Simulation done = get(name);

@@ -1,4 +1,4 @@
-// Every number of the seeds against the files that they come from.
+// Compares every number of the seeds with the files from which they come.
 #include "server/storage/seeds.h"
 
 #include <gmock/gmock.h>
@@ -139,7 +139,7 @@ TEST(Seeds, ConformalGearSetIsItsEntryAt30NewtonMetresOnTheRestOfA) {
   expect_by_torque(set, at(variant, "torques"), at(variant, "fourier"), at(variant, "load_share"));
 }
 
-TEST(Seeds, GearSetsWindNothingUpAndPassTheCoresCheck) {
+TEST(Seeds, GearSetsHaveConsistentRadiiAndPassTheCoresCheck) {
   for (const std::string& name : seed_lookup().names(kGearSets)) {
     const auto set = seed<v1::GearSet>(name);
     const auto wind_up = [&](const v1::MeshSeries& series) {
@@ -176,7 +176,7 @@ TEST(Seeds, Lubricant1IsTheFluidOfTheWorkedOrbits) {
   EXPECT_EQ(fluid.pressure_viscosity_coefficient_per_pascal(), number(inputs, "alpha_star"));
 }
 
-TEST(Seeds, LubricantsHoldThePublishedViscosities) {
+TEST(Seeds, LubricantsHaveThePublishedViscosities) {
   struct Row {
     const char* name;
     double prefactor, coefficient, reference, alpha;
@@ -217,7 +217,7 @@ TEST(Seeds, SurfaceAndVehicleAreThoseOfTheWorkedOrbits) {
   EXPECT_EQ(vehicle.gravity_metres_per_second_squared(), number(inputs, "grav"));
 }
 
-/// Every field that holds a number, alone or in a block, has a provenance and a source.
+/// Checks that every field with a number, alone or in a block, has a provenance and a source.
 template <class Resource>
 void expect_provenance(const std::string& name) {
   const auto resource = seed<Resource>(name);
@@ -240,7 +240,7 @@ void expect_provenance(const std::string& name) {
   }
 }
 
-TEST(Seeds, EveryParameterStatesWhereItComesFrom) {
+TEST(Seeds, EveryParameterHasAProvenanceAndASource) {
   for (const auto& name : seed_lookup().names(kLubricants)) expect_provenance<v1::Lubricant>(name);
   for (const auto& name : seed_lookup().names(kGearSets)) expect_provenance<v1::GearSet>(name);
   for (const auto& name : seed_lookup().names(kSurfaces)) expect_provenance<v1::Surface>(name);
@@ -258,14 +258,14 @@ void expect_accepted_as_they_are(const char* collection) {
   }
 }
 
-TEST(Seeds, AreAsIfAClientHadCreatedThem) {
+TEST(Seeds, AreEqualToResourcesThatAClientCreates) {
   expect_accepted_as_they_are<v1::Lubricant>(kLubricants);
   expect_accepted_as_they_are<v1::GearSet>(kGearSets);
   expect_accepted_as_they_are<v1::Surface>(kSurfaces);
   expect_accepted_as_they_are<v1::Vehicle>(kVehicles);
 }
 
-TEST(Seeds, ObeyTheServersOwnConstraints) {
+TEST(Seeds, SatisfyTheConstraints) {
   Violations violations;
   for (const auto& name : seed_lookup().names(kLubricants)) {
     check_message(seed<v1::Lubricant>(name), name, violations);

@@ -12,11 +12,11 @@
 
 namespace tribodyn::server {
 
-/// A tribodynd of its own, killed when the object goes.
+/// A tribodynd process. The destructor kills it.
 class ServerProcess {
  public:
   /// Starts `program` with these arguments and appends its output to the file `log`. With
-  /// `maximum_files` the server may open no more files than that.
+  /// `maximum_files` the server cannot open more files than that.
   ServerProcess(const std::vector<std::string>& arguments, std::string log, int maximum_files = 0,
                 const std::string& program = server_program());
   ~ServerProcess();
@@ -24,11 +24,12 @@ class ServerProcess {
   ServerProcess& operator=(const ServerProcess&) = delete;
 
   void signal(int number) const;
-  /// Exit code, or 128 + signal, once it has ended; -1 after the time limit.
+  /// Waits for the end of the process. Returns its exit code, or 128 + signal; -1 after the time
+  /// limit.
   int wait(std::chrono::seconds limit = std::chrono::seconds(20));
   bool running();
   std::string log() const;
-  /// Most memory that it has held so far, in KiB.
+  /// Returns the peak memory of the process in KiB.
   long peak_memory_kibibytes() const;
 
  private:
@@ -37,7 +38,7 @@ class ServerProcess {
   std::string log_;
 };
 
-/// The first line of a file once it is there; empty when the process ends first.
+/// Waits for a file and returns its first line; empty if the process ends first.
 std::string wait_for_address(const std::string& port_file, ServerProcess& process);
 
 std::shared_ptr<grpc::Channel> connect(const std::string& address);

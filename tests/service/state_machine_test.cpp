@@ -1,4 +1,4 @@
-// The life cycle of simulations in the store against a model of it, over random schedules.
+// Compares the life cycle of simulations in the store with a model over random schedules.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace tribodyn::server {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kSchedules = 1'000;  // ten times slower, and of one thread
+constexpr int kSchedules = 1'000;  // ten times slower there, and single-threaded
 #else
 constexpr int kSchedules = 10'000;
 #endif
@@ -27,7 +27,7 @@ constexpr int kSteps = 12;
 constexpr int kInputs = 2;
 constexpr int kRequestIds = 2;
 
-/// What a simulation must be.
+/// The expected state of a simulation.
 struct Expected {
   std::string hash;
   std::string request_hash;
@@ -46,7 +46,7 @@ struct Expected {
   }
 };
 
-/// Plays one schedule on the store and on the model; says where they part.
+/// Runs one schedule on the store and on the model, and reports differences.
 class Schedule {
  public:
   Schedule(Store& store, int number, std::uint64_t seed)
@@ -58,7 +58,7 @@ class Schedule {
       compare_rows();
     }
     compare_events();
-    for (auto& [id, each] : jobs_) {  // nothing is left over for the next schedule
+    for (auto& [id, each] : jobs_) {  // leave no unfinished simulation for the next schedule
       if (!has_ended(each.state)) {
         EXPECT_TRUE(store_.mark_cancelled(id, ++now_)) << log_;
       }
@@ -239,13 +239,13 @@ class Schedule {
   std::string log_;
 };
 
-/// TRIBODYN_TEST_SEED plays the schedules of an earlier run again.
+/// TRIBODYN_TEST_SEED repeats the schedules of an earlier run.
 std::uint64_t first_seed() {
   const char* given = std::getenv("TRIBODYN_TEST_SEED");
   return given != nullptr ? std::strtoull(given, nullptr, 10) : std::random_device()();
 }
 
-TEST(StateMachine, DoesWhatItsModelDoesWhateverHappens) {
+TEST(StateMachine, AgreesWithItsModelOverRandomSchedules) {
   const std::uint64_t seed = first_seed();
   const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);
   const std::string path = folder.file("tribodyn.db");

@@ -1,5 +1,5 @@
-// Any sequence of valid operations keeps the store consistent, and an export imported elsewhere is
-// exported again the same.
+// Any sequence of valid operations keeps the store consistent, and an imported export is exported
+// unchanged.
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -23,7 +23,7 @@ using google::protobuf::Message;
 using google::protobuf::util::JsonStringToMessage;
 using google::protobuf::util::MessageToJsonString;
 
-/// A store in a folder of its own, and what its application works on.
+/// A store in its own folder with the objects of its application.
 struct Place {
   TemporaryFolder folder;
   Store store{folder.file("tribodyn.db")};
@@ -36,7 +36,7 @@ struct Place {
   Application app{store, jobs};
 };
 
-/// A number inside the range of its row, with the ends.
+/// Generates a number in the closed range of its row.
 rc::Gen<double> allowed_number(const Constraint& row) {
   return rc::gen::map(rc::gen::inRange(0, 1001), [row](int step) {
     const double t = step / 1000.0;
@@ -49,7 +49,7 @@ rc::Gen<double> allowed_number(const Constraint& row) {
 
 std::string any_text() { return *rc::gen::container<std::string>(rc::gen::inRange(' ', '~')); }
 
-/// Some of the numbers with rows in the table take other allowed values.
+/// Replaces some numbers that have rows in the table by other allowed values.
 void vary_numbers(Message& message) {
   const auto& descriptor = *message.GetDescriptor();
   for (int i = 0; i < descriptor.field_count(); ++i) {
@@ -62,7 +62,7 @@ void vary_numbers(Message& message) {
   }
 }
 
-/// The methods of one kind, for tests that go through all of them alike.
+/// The methods of one kind of resource, for tests of every kind.
 template <class Resource>
 struct Methods;
 template <>
@@ -150,7 +150,7 @@ template <class Resource>
 void vary_words(Resource& resource) {
   resource.set_display_name(any_text());
   resource.set_lims_id(any_text());
-  // Often one that is not there, or a ring: refused.
+  // Often a missing one, or a cycle: both are refused.
   const std::string parent =
       Methods<Resource>::kCollection + std::to_string(*rc::gen::inRange(0, 5));
   resource.set_derived_from(
@@ -163,7 +163,7 @@ void vary_words(Resource& resource) {
   }
 }
 
-/// A lubricant known by its parameters, or by measurements.
+/// Returns a lubricant with parameters or with measurements.
 v1::Lubricant any_lubricant() {
   v1::Lubricant out;
   if (*rc::gen::arbitrary<bool>()) {
@@ -207,11 +207,11 @@ v1::GearSet any_gear_set() {
   return out;
 }
 
-/// Revisions of every name, which may only grow.
+/// Revisions by name; they may only grow.
 using Revisions = std::map<std::string, int>;
 
-/// One operation on one of a few names; it succeeds, or is refused for a reason that a client can
-/// know.
+/// Makes one operation on one of a few names. It must succeed or be refused for a reason that
+/// clients can foresee.
 template <class Resource>
 void operate(Application& app, const Resource& resource, Revisions& revisions) {
   using Kind = Methods<Resource>;
@@ -257,7 +257,7 @@ void operate(Application& app, const Resource& resource, Revisions& revisions) {
   }
 }
 
-/// An update of several names at once: of all of them or of none.
+/// Updates several names in a batch, which must change all of them or none.
 template <class Resource>
 void operate_on_several(Application& app, const Resource& resource, Revisions& revisions) {
   using Kind = Methods<Resource>;
@@ -286,8 +286,8 @@ void operate_on_several(Application& app, const Resource& resource, Revisions& r
 
 std::string without_revision(const std::string& name) { return name.substr(0, name.find('@')); }
 
-/// JSON of everything that is not deleted, and of what that descends from, without what only the
-/// server sets; by name.
+/// Returns the exported JSON of all resources that are not deleted, and of those from which they
+/// descend, by name.
 template <class Resource>
 std::map<std::string, std::string> exported(Application& app) {
   std::map<std::string, Resource> all;
@@ -331,7 +331,7 @@ void expect_same_again(Application& from, Application& to) {
   RC_ASSERT(exported<Resource>(to) == first);
 }
 
-/// A simulation with any of the lubricants there may be.
+/// Creates a simulation with one of the existing lubricants.
 void simulate(Application& app) {
   v1::CreateSimulationRequest request;
   *request.mutable_simulation() = point_simulation();

@@ -72,7 +72,7 @@ TEST_F(StoreTest, ResourcesArePagedByNumberAndBytesWithinTheirCollection) {
   EXPECT_EQ(store.resource_names("b").size(), 3U);
 }
 
-TEST_F(StoreTest, AnUpdateMakesARevisionAndLosesNone) {
+TEST_F(StoreTest, AnUpdateAddsARevisionAndKeepsTheOthers) {
   Store store(path());
   ASSERT_TRUE(store.write_resources({{{"lubricants/x", "first"}, {}}}, 1));
   EXPECT_FALSE(store.write_resources({{{"lubricants/x", "again"}, {}}}, 2));
@@ -103,7 +103,7 @@ TEST_F(StoreTest, RevisionTimesDoNotGoBackWhenTheClockDoes) {
   EXPECT_EQ(store.resource("lubricants/x")->revision_create_time, 100);
 }
 
-TEST_F(StoreTest, ADeletedResourceIsOutOfListsAndComesBackWhole) {
+TEST_F(StoreTest, ADeletedResourceIsNotListedAndIsUndeletedUnchanged) {
   Store store(path());
   store.add_resources({{"b/1", "body"}}, 1);
   ASSERT_TRUE(store.delete_resource(*store.resource("b/1"), 5));
@@ -160,7 +160,7 @@ TEST_F(StoreTest, TheBytesThatCanBeRemovedAreThoseThatRemovalFrees) {
   };
   finish('a');
   const std::int64_t pinned = finish('b');
-  finish('b');  // has the result of the pinned one
+  finish('b');  // shares the result of the pinned one
   ASSERT_TRUE(store.set_pinned(pinned, true));
   const std::int64_t removable = store.removable_bytes();
   EXPECT_GT(removable, 500);
@@ -173,7 +173,7 @@ TEST_F(StoreTest, TheBytesThatCanBeRemovedAreThoseThatRemovalFrees) {
   EXPECT_EQ(store.remove_oldest(3, 10).bytes, unpinned);
 }
 
-TEST_F(StoreTest, WhatACrashInterruptedIsQueuedAgainAndResultsStay) {
+TEST_F(StoreTest, AfterACrashInterruptedSimulationsAreQueuedAndResultsKept) {
   std::int64_t queued = 0, running = 0, done = 0;
   {
     Store store(path());
@@ -209,7 +209,7 @@ TEST_F(StoreTest, IdsAreNeverUsedAgainAndListsAreNewestFirst) {
   EXPECT_FALSE(store.simulations({.after = {{3, 4}}, .limit = 10, .byte_limit = 1000}).more);
 }
 
-TEST_F(StoreTest, TheSchemaKeepsOutWhatMakesNoSense) {
+TEST_F(StoreTest, TheSchemaRefusesInvalidRows) {
   Store store(path());
   EXPECT_THROW(
       store.add_simulation({.request = "r", .key = {"short hash", "model", "platform"}}, 1),
@@ -256,7 +256,7 @@ TEST_F(StoreTest, RefusesANewerSchema) {
   EXPECT_NE(message_.find("schema 99"), std::string::npos) << message_;
 }
 
-TEST_F(StoreTest, RefusesADatabaseThatAnotherServerHas) {
+TEST_F(StoreTest, RefusesADatabaseInUse) {
   const Store store(path());
   EXPECT_EQ(kind_of_opening(path()), StoreError::Kind::kInUse);
   EXPECT_NE(message_.find("another tribodynd"), std::string::npos) << message_;
@@ -272,17 +272,17 @@ TEST_F(StoreTest, RefusesTheDatabaseOfAnotherProgram) {
   EXPECT_EQ(kind_of_opening(path()), StoreError::Kind::kForeign);
 }
 
-TEST_F(StoreTest, RefusesWhatIsNoDatabase) {
+TEST_F(StoreTest, RefusesAFileThatIsNotADatabase) {
   std::ofstream(path()) << std::string(8192, 'x');
   EXPECT_EQ(kind_of_opening(path()), StoreError::Kind::kCorrupt);
   EXPECT_NE(message_.find(path()), std::string::npos) << message_;
 }
 
-TEST_F(StoreTest, RefusesAFolderThatIsNotThere) {
+TEST_F(StoreTest, RefusesAMissingFolder) {
   EXPECT_EQ(kind_of_opening(folder_.file("no/such/folder.db")), StoreError::Kind::kCannotOpen);
 }
 
-TEST_F(StoreTest, RefusesToMakeAnEmptyDatabaseInPlaceOfOneThatIsLost) {
+TEST_F(StoreTest, RefusesToReplaceALostDatabaseByAnEmptyOne) {
   for (const char* suffix : {".replaced", ".replaced.2", ".new-Ab3xYz", "-wal"}) {
     const TemporaryFolder folder;
     std::ofstream(folder.file(std::string("db") + suffix)) << "something";
@@ -300,8 +300,8 @@ TEST_F(StoreTest, RefusesToMakeAnEmptyDatabaseInPlaceOfOneThatIsLost) {
   }
 }
 
-/// While it lives, this process has the rights of another user than root, who may write everything.
-/// The files of the folder are given to that user.
+/// While the object exists, this process has the rights of a user other than root, who may write
+/// everything. The files of the folder are given to that user.
 class WithoutRoot {
  public:
   explicit WithoutRoot(const TemporaryFolder& folder) {
@@ -325,7 +325,8 @@ class WithoutRoot {
 };
 
 TEST_F(StoreTest, RefusesAReadOnlyFile) {
-  const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);  // where every user may go
+  // a folder that every user may enter
+  const TemporaryFolder folder(TemporaryFolder::Kind::kMemory);
   const std::string file = folder.file("tribodyn.db");
   { const Store store(file); }
   std::filesystem::permissions(file, std::filesystem::perms::owner_read);

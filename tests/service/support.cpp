@@ -16,8 +16,9 @@
 namespace tribodyn::server {
 namespace {
 
-// Quiet tests; and spdlog's registry exists before any thread does, as in the server: made inside a
-// library that ThreadSanitizer does not see into, its first use in a thread looks like a race.
+// Silences the log. It also creates spdlog's registry before any thread starts, as in the server:
+// ThreadSanitizer does not see into the library and would report its first use in a thread as a
+// race.
 [[maybe_unused]] const bool kQuiet = [] {
   spdlog::set_level(spdlog::level::off);
   return true;
@@ -44,7 +45,7 @@ PointResult made_up_point(double vehicle_speed, const HistoryRequest& history) {
   return out;
 }
 
-/// spdlog's own logger, which writes to the terminal.
+/// Returns spdlog's default logger, which writes to the terminal.
 std::shared_ptr<spdlog::logger>& usual_logger() {
   static std::shared_ptr<spdlog::logger> logger = spdlog::default_logger();
   return logger;

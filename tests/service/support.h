@@ -19,12 +19,12 @@
 
 namespace tribodyn::server {
 
-/// A folder that goes when the object goes.
+/// A temporary folder. The destructor removes it.
 class TemporaryFolder {
  public:
   enum class Kind {
     kDisk,
-    kMemory,  ///< for thousands of commits; where there is none, on disk
+    kMemory,  ///< in memory, for thousands of commits; on disk if there is no such file system
   };
   explicit TemporaryFolder(Kind kind = Kind::kDisk);
   ~TemporaryFolder();
@@ -37,10 +37,10 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-/// The seeds as a lookup, without a database.
+/// Returns a lookup of the seeds without a database.
 ResourceLookup seed_lookup();
 
-/// The seed of that name.
+/// Returns the seed with this name.
 template <class Resource>
 Resource seed(const std::string& name) {
   Resource resource;
@@ -48,22 +48,22 @@ Resource seed(const std::string& name) {
   return resource;
 }
 
-/// The violations that a refusal lists, "path: sentence" each.
+/// Returns the violations of an error, "path: sentence" each.
 std::vector<std::string> complaint_lines(const google::rpc::Status& refusal);
-/// The same as one text, a line each.
+/// Returns the violations as one text, one for each line.
 std::string complaints(const google::rpc::Status& refusal);
 
-/// Acceptable requests, to be spoilt by tests.
+/// Return valid requests that tests change.
 v1::EvaluateContactRequest contact_request();
 v1::Simulation point_simulation();
 v1::Simulation curve_simulation();
 
-/// Minutes of work on any machine, for tests that need a simulation which runs: a curve of a
-/// thousand points, each settled far sharper than anybody needs.
+/// Returns a simulation that runs for minutes on any machine: a curve of a thousand points with a
+/// very small tolerance.
 v1::Simulation long_simulation(v1::SteadyStateMethod method = v1::STEADY_STATE_METHOD_MARCH);
 
-/// What is logged while it lives, of every level. Made before any other thread logs, and destroyed
-/// after the last one has.
+/// Records log lines of every level while the object exists. Create it before any other thread
+/// logs, and destroy it after the last one.
 class LogCapture {
  public:
   LogCapture();
@@ -76,13 +76,14 @@ class LogCapture {
   std::ostringstream text_;
 };
 
-/// Studies that answer at once with made-up numbers: speed in, speed out, 1.5 % inefficiency.
+/// Returns studies that answer at once with invented numbers: speed in, speed out, 1.5 %
+/// inefficiency.
 StudyFunctions quick_studies();
 
-/// Studies that report progress until they are stopped, or until `release` is set.
+/// Returns studies that report progress until they are cancelled or `release` is set.
 StudyFunctions patient_studies(const std::shared_ptr<std::atomic<bool>>& release);
 
-/// Polls until the condition holds; false after ten seconds.
+/// Polls until the condition is true. Returns false after ten seconds.
 bool eventually(const std::function<bool()>& condition);
 
 /// Store with seeds, jobs and application over a temporary database.
@@ -97,13 +98,13 @@ class Bench {
   SimulationJobs& jobs() { return *jobs_; }
   Application application() { return {*store_, *jobs_}; }
 
-  /// Creates a simulation that must be accepted; its name.
+  /// Creates a simulation, which must be accepted. Returns its name.
   std::string create(const v1::Simulation& simulation);
   std::string create(const v1::CreateSimulationRequest& request);
   v1::Simulation get(const std::string& name);
   bool reaches(const std::string& name, v1::Simulation::State state);
 
-  /// Stops everything and opens the same database again, as after a restart.
+  /// Stops everything and opens the same database again, like a restart.
   void restart(StudyFunctions studies);
 
  private:

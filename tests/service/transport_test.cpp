@@ -1,4 +1,4 @@
-// Requests that are too large, unreadable or never whole, over the wire.
+// Tests of requests that are too large, unreadable or incomplete, over gRPC.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -24,7 +24,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// The status and everything that its details say.
+/// Returns the status and all texts of its details.
 std::string all_of(const grpc::Status& status) {
   google::rpc::Status parsed;
   parsed.ParseFromString(status.error_details());
@@ -49,7 +49,7 @@ class Transport : public GrpcTest {
   }
 };
 
-/// CreateGearSetRequest whose gear set holds empty flank slots, in so many bytes.
+/// Returns a CreateGearSetRequest of `bytes` bytes whose gear set has empty flank slots.
 std::string empty_flank_slots(std::size_t bytes) {
   const std::size_t content = (bytes - 6) / 2 * 2;
   std::string out = "\x0a";
@@ -60,7 +60,7 @@ std::string empty_flank_slots(std::size_t bytes) {
   return out;
 }
 
-TEST_F(Transport, ARequestThatGrowsWhenItIsParsedIsRefusedBefore) {
+TEST_F(Transport, ARequestThatGrowsByParsingIsRefusedBeforeParsing) {
   constexpr long kMebibytes = 8;
   const long before = process_->peak_memory_kibibytes();
   const grpc::Status status =
@@ -68,7 +68,7 @@ TEST_F(Transport, ARequestThatGrowsWhenItIsParsedIsRefusedBefore) {
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_THAT(all_of(status),
               HasSubstr("gear_set.flank_slots: 4194301 entries; allowed: at most 3"));
-  // Parsed, they take 348 times as much.
+  // Parsed, they use 348 times as much memory.
   if (!kUnderSanitizer) {
     EXPECT_LT(process_->peak_memory_kibibytes() - before, 12 * kMebibytes * 1024);
   }
@@ -112,7 +112,7 @@ TEST_F(Transport, UnreadableRequestsDoNotFloodTheLog) {
   EXPECT_LE(reports, 20) << "one a second";
 }
 
-/// Requests that lack their last byte, sent side by side.
+/// Sends requests that lack their last byte at the same time.
 std::vector<std::unique_ptr<HalfSentCall>> half_sent(int port, int count, std::size_t size) {
   std::vector<std::unique_ptr<HalfSentCall>> calls(static_cast<std::size_t>(count));
   std::vector<std::thread> threads;
@@ -126,7 +126,7 @@ std::vector<std::unique_ptr<HalfSentCall>> half_sent(int port, int count, std::s
   return calls;
 }
 
-TEST_F(Transport, HalfSentRequestsShareALimitOfMemoryAndKeepNobodyOut) {
+TEST_F(Transport, HalfSentRequestsShareAMemoryLimitAndBlockNobody) {
   constexpr int kCalls = 6;
   constexpr std::size_t kBytes = 60 << 20;
   const auto calls = half_sent(port(), kUnderSanitizer ? 1 : kCalls, kBytes);
@@ -136,13 +136,13 @@ TEST_F(Transport, HalfSentRequestsShareALimitOfMemoryAndKeepNobodyOut) {
       RawClient(channel).call("/tribodyn.v1.LubricantService/ListLubricants", "").first.ok());
 }
 
-TEST_F(Transport, AHalfSentRequestHoldsUpNoShutdown) {
+TEST_F(Transport, AHalfSentRequestDoesNotDelayAShutdown) {
   const auto calls = half_sent(port(), 1, 100'000);
   process_->signal(SIGTERM);
   EXPECT_EQ(process_->wait(std::chrono::seconds(8)), 0) << process_->log();
 }
 
-TEST(ByteBudget, IsSharedByLargeRequestsOnly) {
+TEST(ByteBudget, LimitsLargeRequestsOnly) {
   ByteBudget budget(100, 10);
   auto first = budget.take(60);
   ASSERT_TRUE(first);
@@ -158,11 +158,11 @@ TEST(ByteBudget, IsSharedByLargeRequestsOnly) {
   EXPECT_TRUE(budget.take(100));
 }
 
-TEST(Acceptor, TurnsConnectionsAwayBeyondItsLimit) {
-  const int lowest = dup(STDIN_FILENO);  // this process has so many files open already
+TEST(Acceptor, RefusesConnectionsAboveItsLimit) {
+  const int lowest = dup(STDIN_FILENO);  // number of files that this process has open
   close(lowest);
   Acceptor acceptor({"127.0.0.1", 0, ""}, lowest + 5);
-  std::vector<int> taken;  // by the thread of the acceptor
+  std::vector<int> taken;  // written by the thread of the acceptor
   std::atomic<int> count = 0;
   acceptor.start([&](int, int connection) {
     taken.push_back(connection);

@@ -1,4 +1,5 @@
-// Rules between fields, limits on work, and names: what the table of constraints cannot say.
+// Tests of rules between fields, limits on work, and names, which the table of constraints cannot
+// express.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -45,7 +46,7 @@ TEST(Contact, ReasonableRequestsPass) {
   EXPECT_THAT(check(request), IsEmpty());
 }
 
-TEST(Contact, AllViolationsComeAtOnce) {
+TEST(Contact, AllViolationsAreReportedTogether) {
   const Violations found = check(v1::EvaluateContactRequest());
   for (const char* field : {"radius_x_metres", "radius_y_metres", "youngs_modulus_pascals",
                             "solid_thermal_conductivity_watts_per_metre_kelvin",
@@ -58,7 +59,7 @@ TEST(Contact, AllViolationsComeAtOnce) {
   EXPECT_THAT(found, violation("fluid", "lubricant or lubricant_parameters"));
 }
 
-TEST(Contact, AnUnknownFluidNamesTheNearest) {
+TEST(Contact, AnUnknownFluidSuggestsTheNearest) {
   v1::EvaluateContactRequest request = contact_request();
   request.set_lubricant("lubricants/22");
   EXPECT_THAT(check(request), violation("lubricant", "did you mean \"lubricants/2\"?"));
@@ -86,7 +87,7 @@ TEST(Simulation, ReasonableRequestsPass) {
   EXPECT_THAT(check(curve_simulation()), IsEmpty());
 }
 
-TEST(Simulation, AllViolationsComeAtOnce) {
+TEST(Simulation, AllViolationsAreReportedTogether) {
   v1::Simulation simulation;
   simulation.set_lubricant("lubricants/x");
   simulation.set_gear_set("gearSets/C");
@@ -119,14 +120,14 @@ TEST(Simulation, AStudyIsNeeded) {
   EXPECT_THAT(check(simulation), violation("simulation.study", "operating_point"));
 }
 
-TEST(Simulation, TheSumpMustLeaveTheFluidLiquid) {
+TEST(Simulation, TheLubricantMustBeLiquidAtTheSumpTemperature) {
   v1::Simulation simulation = point_simulation();
   simulation.set_sump_temperature_celsius(-70);
   simulation.set_inlet_temperature_rise_kelvin(0);
   EXPECT_THAT(check(simulation), IsEmpty()) << "203 K is above the 159 K of fluid 1";
 }
 
-TEST(Simulation, MeshDataByTorqueMustBeThere) {
+TEST(Simulation, MeshDataByTorqueMustExistIfRequested) {
   v1::Simulation simulation = point_simulation();
   simulation.mutable_model_options()->set_load_dependent_mesh_data(true);
   EXPECT_THAT(check(simulation), IsEmpty());
@@ -149,7 +150,7 @@ TEST(AsPublished, Eq46IsRefusedWhereNoProfileBecomesASurface) {
   }
 }
 
-TEST(Curve, SpeedsAreStatedInExactlyOneWay) {
+TEST(Curve, SpeedsMustBeSetInExactlyOneWay) {
   const std::string speeds = "simulation.inefficiency_curve.speeds_kilometres_per_hour";
   v1::Simulation simulation = curve_simulation();
   simulation.mutable_inefficiency_curve()->add_speeds_kilometres_per_hour(30);
@@ -229,7 +230,7 @@ TEST(History, ColumnsAreKnownDistinctAndNotTooMany) {
   EXPECT_LT(check(simulation).size(), 120U);
 }
 
-TEST(Simulation, WhatOnlyTheServerSetsIsIgnored) {
+TEST(Simulation, OutputOnlyFieldsAreIgnored) {
   v1::Simulation simulation = point_simulation();
   simulation.set_name("simulations/1");
   simulation.set_state(v1::Simulation::SUCCEEDED);
@@ -247,7 +248,7 @@ TEST(Simulation, LongTextsAreRefused) {
   EXPECT_THAT(check(simulation), violation("simulation.display_name", "201 bytes"));
 }
 
-TEST(NotFinite, IsFoundWhereverItHides) {
+TEST(NotFinite, IsFoundAtEveryDepth) {
   v1::SimulationResult result;
   auto* point = result.add_points()->mutable_result();
   EXPECT_EQ(first_not_finite(result), "");

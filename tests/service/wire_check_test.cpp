@@ -1,4 +1,4 @@
-// Requests that are judged by their bytes, before they are parsed.
+// Tests of the check of a request's bytes before it is parsed.
 #include "server/application/wire_check.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// The violations of a request as "path: description". The bytes come in blocks of a few bytes.
+/// Returns the violations of a request as "path: description". The bytes arrive in blocks of a few
+/// bytes.
 std::vector<std::string> judge_bytes(const std::string& bytes, const Descriptor& type) {
   google::protobuf::io::ArrayInputStream in(bytes.data(), static_cast<int>(bytes.size()), 7);
   Violations violations;
@@ -41,7 +42,7 @@ std::vector<std::string> judge_bytes(const Message& message) {
   return judge_bytes(message.SerializeAsString(), *message.GetDescriptor());
 }
 
-/// A field of a length, as it stands on the wire.
+/// Returns the wire format of a length-delimited field.
 std::string wire_field(int number, const std::string& content) {
   std::string out;
   google::protobuf::io::StringOutputStream stream(&out);
@@ -126,7 +127,7 @@ TEST(WireCheck, LimitsFieldsThatItDoesNotKnow) {
   EXPECT_THAT(
       judge_bytes(wire_field(1, repeated(unknown, 101)), *request.GetDescriptor()),
       ElementsAre("lubricant: 101 fields that Lubricant does not have; allowed: at most 100"));
-  // A known field of another wire type is an unknown one to the parser, and to the check.
+  // Parser and check treat a known field of another wire type as unknown.
   EXPECT_THAT(judge_bytes(wire_field(1, repeated(std::string("\x20\x01", 2), 101)),
                           *request.GetDescriptor()),
               ElementsAre(HasSubstr("101 fields")));
@@ -155,7 +156,7 @@ TEST(WireCheck, RefusesBytesThatAreNoMessage) {
   }
 }
 
-/// Fills a message with what the wire may hold, lists at and around their limits among it.
+/// Fills a message with random fields, including lists near their limits.
 void fill_lists(Message& message, std::mt19937& random, int depth) {
   const auto& reflection = *message.GetReflection();
   for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {

@@ -1,4 +1,4 @@
-// EvaluateContact against the contacts that were worked out independently in 30 digits.
+// Compares EvaluateContact with contacts that were computed independently with 30 digits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ v1::EvaluateContactRequest request_of(const JsonValue& input) {
   return out;
 }
 
-/// Names of the worked points and the fields of the response.
+/// Fields of the response by their names in the worked points.
 const std::map<std::string, std::string> kFields = {
     {"W_EHL", "film_load_newtons"},
     {"W_asp", "asperity_load_newtons"},
@@ -112,7 +112,7 @@ TEST(WorkedContacts, EveryIntermediateQuantityAgrees) {
       if (field == kFields.end()) continue;
       const double actual = response.GetReflection()->GetDouble(
           response, response.GetDescriptor()->FindFieldByName(field->second));
-      if (expected.has_null_value()) {  // infinite, or not defined: no heat to share
+      if (expected.has_null_value()) {  // infinite, or undefined because there is no heat to share
         EXPECT_FALSE(std::isnan(actual)) << name << " " << key;
         continue;
       }

@@ -1,4 +1,5 @@
-// An operating point and a curve through store, jobs and core, against independent solutions.
+// Compares an operating point and a curve, computed through store, jobs and core, with independent
+// solutions.
 #include <gtest/gtest.h>
 
 #include "tests/service/reference_data.h"
@@ -7,7 +8,7 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr double kTolerance = 1e-5;  // stated with the worked points
+constexpr double kTolerance = 1e-5;  // accuracy of the worked points
 constexpr double kSolverTolerance = 1e-7;
 
 JsonValue orbit(const std::string& name) {
@@ -33,7 +34,7 @@ void expect_orbit(const v1::CurvePoint& point, const std::string& name) {
   near(result.pinion_friction_torque_newton_metres().mean(), "Tfp_mean");
 }
 
-TEST(WorkedOrbits, AnOperatingPointArrivesThroughTheWholeService) {
+TEST(WorkedOrbits, AnOperatingPointAgreesThroughTheWholeService) {
   Bench bench{StudyFunctions()};
   v1::Simulation simulation = point_simulation();
   simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(100);
@@ -43,7 +44,7 @@ TEST(WorkedOrbits, AnOperatingPointArrivesThroughTheWholeService) {
   expect_orbit(bench.get(name).result().points(0), "L1_100_up");
 }
 
-TEST(WorkedOrbits, ACurveArrivesThroughTheWholeService) {
+TEST(WorkedOrbits, ACurveAgreesThroughTheWholeService) {
   Bench bench{StudyFunctions()};
   v1::Simulation simulation = curve_simulation();
   simulation.set_lubricant("lubricants/1");
