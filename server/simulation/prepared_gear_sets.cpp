@@ -24,11 +24,11 @@ std::shared_ptr<PreparedGearSet> PreparedGearSets::take(const std::string& revis
 
 void PreparedGearSets::give_back(const std::string& revision, const ModelOptions& options,
                                  std::shared_ptr<PreparedGearSet> gear_set) {
-  if (gear_set->grids().steps_kept() > kMostSteps) return;
+  if (gear_set->grids().steps_kept() > kMaximumSteps) return;
   std::list<Entry> dropped;  // freed after the mutex is released
   const std::lock_guard lock(mutex_);
   entries_.push_front({revision, options, std::move(gear_set)});
-  if (entries_.size() > kMostKept)
+  if (entries_.size() > kCapacity)
     dropped.splice(dropped.end(), entries_, std::prev(entries_.end()));
 }
 

@@ -22,7 +22,7 @@ class PreparedGearSets {
   std::shared_ptr<PreparedGearSet> take(const std::string& revision, const Scene& scene);
 
   /// Stores a prepared gear set for the next study. The caller must not use it afterwards. A gear
-  /// set whose grids have more than kMostSteps steps is dropped.
+  /// set whose grids have more than kMaximumSteps steps is dropped.
   void give_back(const std::string& revision, const ModelOptions& options,
                  std::shared_ptr<PreparedGearSet> gear_set);
 
@@ -31,11 +31,11 @@ class PreparedGearSets {
 
   /// Capacity. Above it the least recently used gear set is dropped. Enough for the threads of a
   /// usual server with two gear sets or models at a time.
-  static constexpr std::size_t kMostKept = 8;
+  static constexpr std::size_t kCapacity = 8;
   /// Largest number of steps of all grids of a stored gear set; 2.6 kB each, 5 MB together.
   /// Measured: all points from 20 to 140 km/h at the usual tolerance need 500 together, a point at
   /// 1e-6 at most 1500, a point at 1e-8 up to 6000.
-  static constexpr long kMostSteps = 2000;
+  static constexpr long kMaximumSteps = 2000;
 
  private:
   struct Entry {

@@ -11,7 +11,7 @@ namespace {
 
 using Comparison = Restriction::Comparison;
 
-constexpr int kSelectiveRowLimit = 500;  ///< rows; sorting them takes less than a millisecond
+constexpr int kSelectiveRowLimit = 500;  ///< rows that a query may sort
 
 /// A part of an SQL statement and the values of its parameters, in their order.
 struct Clause {

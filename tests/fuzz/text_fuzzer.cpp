@@ -1,8 +1,13 @@
-// libFuzzer: texts that users write. The first letter of an input chooses what reads the rest:
-//   f filter and order of a list (its collection in the first line)   t page token
-//   m field mask, one path a line                                      u quantity, unit, unit if
-//   bare c table of the client                                              s table of the server
-// Nothing crashes, hangs or is refused without a sentence; what was written is read back the same.
+// libFuzzer: texts that users write. The first letter of an input chooses the reader of the rest:
+// - f: filter and order of a list (its collection in the first line)
+// - t: page token
+// - m: field mask, one path in each line
+// - u: quantity, unit, unit of a bare number
+// - c: table of the client
+// - s: table of the server
+//
+// No text may cause a crash, a hang or a refusal without a sentence; a written table must be read
+// back unchanged.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -161,15 +161,15 @@ TEST(PreparedGearSets, KeepRecentlyUsedOnesAndDropLargeOnes) {
   };
   const auto first = use(1);
   const auto second = use(2);
-  for (std::size_t i = 3; i <= PreparedGearSets::kMostKept; ++i) use(i);
+  for (std::size_t i = 3; i <= PreparedGearSets::kCapacity; ++i) use(i);
   EXPECT_EQ(use(1), first);
-  use(PreparedGearSets::kMostKept + 1);
-  EXPECT_EQ(gear_sets.size(), PreparedGearSets::kMostKept);
+  use(PreparedGearSets::kCapacity + 1);
+  EXPECT_EQ(gear_sets.size(), PreparedGearSets::kCapacity);
   EXPECT_EQ(use(1), first);
   EXPECT_NE(use(2), second) << "used longest ago";
 
   const auto large = gear_sets.take(revision(1), physical);
-  large->grids().with_steps(static_cast<int>(PreparedGearSets::kMostSteps) + 1);
+  large->grids().with_steps(static_cast<int>(PreparedGearSets::kMaximumSteps) + 1);
   gear_sets.give_back(revision(1), physical.options, large);
   EXPECT_NE(gear_sets.take(revision(1), physical), large);
 }

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# The rooms of server/ are those that its README lists, include only lower ones, and are drawn as they
-# are; a tree that breaks one of these rules is refused.
+# Checks that deploy/draw-rooms --check refuses a tree whose rooms differ from server/README.md,
+# include a higher room, or differ from the drawing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 deploy/draw-rooms --check
 
 tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
-# refused CHANGE COMPLAINT: what --check says of a copy of the tree after the change.
+# refused CHANGE COMPLAINT: checks that --check makes the complaint about a changed copy of the
+# tree.
 refused() {
   rm -rf "${tree:?}"/*
   mkdir "$tree/deploy"
