@@ -11,16 +11,16 @@
 
 namespace tribodyn::server {
 
-/// Largest number of elements that a list has in any acceptable request; nullopt if the table has
-/// no row for the field. Every repeated field that a request can hold has a row. Throws
-/// std::logic_error if a row names no list of the contract.
+/// Returns the largest number of elements that a list has in any acceptable request: option
+/// max_items of the contract, kMaximumMaskPaths for a field mask. Returns nullopt if neither says;
+/// every repeated field that a request can hold says.
 std::optional<int> maximum_elements(const google::protobuf::FieldDescriptor& field);
 
 /// "65 entries; allowed: at most 64".
 std::string too_many_text(std::int64_t count, std::int64_t maximum);
 
-/// Adds a violation for every list in `message`, at any depth, that has more elements than its row
-/// allows. Does not look into such a list.
+/// Adds a violation for every list in `message`, at any depth, that has more elements than
+/// maximum_elements allows. Does not look into such a list.
 void check_counts(const google::protobuf::Message& message, const std::string& path,
                   Violations& violations);
 

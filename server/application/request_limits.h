@@ -6,8 +6,9 @@
 
 namespace tribodyn::server {
 
-/// Largest serialised request of a method [bytes]: that of its row in the table, or
-/// kUsualRequestBytes.
+/// Returns the largest serialised request of a method [bytes]: option max_request_bytes of the
+/// contract, or kUsualRequestBytes. A gear set leaves 1 MiB of kMaximumResponseBytes to what the
+/// server adds in its answer.
 std::size_t maximum_request_bytes(const google::protobuf::MethodDescriptor& method);
 
 /// A lubricant with every text at its longest takes 0.4 MB, a simulation 0.1 MB.

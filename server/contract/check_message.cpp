@@ -7,6 +7,7 @@
 
 #include "server/contract/constraints.h"
 #include "server/contract/output_only.h"
+#include "tribodyn/v1/limits.pb.h"
 
 namespace tribodyn::server {
 namespace {
@@ -54,9 +55,9 @@ void check_enum(const Place& place, int value) {
 
 void check_text(const Place& place, const std::string& value) {
   const std::string& name = place.field.name();
-  const int longest = name == "description" || name == "source" || name == "warning"
-                          ? kMaximumProseLength
-                          : kMaximumTextLength;
+  const auto& options = place.field.options();
+  const int longest = options.HasExtension(v1::max_bytes) ? options.GetExtension(v1::max_bytes)
+                                                          : kMaximumTextLength;
   if (value.size() <= static_cast<std::size_t>(longest)) return;
   place.violations.push_back({place.path, fmt::format("{} has {} bytes; allowed: at most {}", name,
                                                       value.size(), longest)});

@@ -55,8 +55,7 @@ inline constexpr int kMaximumHistoryColumns = 100;
 inline constexpr double kMaximumHistoryValues = 2e7;  ///< rows times columns, 8 bytes each: 160 MB
 inline constexpr double kMaximumCurveMeshCycles = 1e7;  ///< points times maximum_mesh_cycles
 inline constexpr int kMaximumBatchSize = 20'000;        ///< requests of one batch
-inline constexpr int kMaximumTextLength = 200;          ///< bytes of a name
-inline constexpr int kMaximumProseLength = 4000;        ///< bytes of a description or a source
+inline constexpr int kMaximumTextLength = 200;          ///< bytes of a text without max_bytes
 inline constexpr int kMaximumReportedElements = 10;     ///< violations of one repeated field
 
 }  // namespace tribodyn::server

@@ -78,8 +78,7 @@ TEST(ElementLimits, EveryListThatARequestCanHoldHasOne) {
   }
   EXPECT_GT(lists.size(), 40U);
   for (const FieldDescriptor* list : lists) {
-    EXPECT_TRUE(maximum_elements(*list))
-        << list->full_name() << ": add a row to element_limits.cpp";
+    EXPECT_TRUE(maximum_elements(*list)) << list->full_name() << ": add max_items";
   }
 }
 
