@@ -1,0 +1,155 @@
+#include <gmock/gmock.h>
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/text_format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "core/gear/gear_set.h"
+#include "proto/enum_names.h"
+#include "server/application/element_limits.h"
+#include "server/application/list_filter.h"
+#include "server/application/request_limits.h"
+#include "server/application/request_text.h"
+#include "server/contract/constraints.h"
+#include "server/contract/labels.h"
+#include "server/resources/accept_resource.h"
+#include "server/resources/gear_set_checks.h"
+#include "server/resources/imports/csv_table.h"
+#include "server/resources/imports/import_surface.h"
+#include "tests/contract/breaking_changes.h"
+#include "tests/contract/lint.h"
+#include "tribodyn/v1/limits.pb.h"
+#include "tribodyn/v1/simulations.pb.h"
+#include "tribodyn/v1/surfaces.pb.h"
+
+namespace tribodyn {
+namespace {
+
+using google::protobuf::DescriptorPool;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::FileDescriptorSet;
+using testing::IsEmpty;
+
+std::string text_of(const char* file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream out;
+  out << stream.rdbuf();
+  return out.str();
+}
+
+FileDescriptorSet present_contract() {
+  FileDescriptorSet out;
+  EXPECT_TRUE(out.ParseFromString(text_of(CONTRACT_DESCRIPTORS)));
+  EXPECT_GT(out.file_size(), 10);
+  return out;
+}
+
+TEST(Contract, BreaksNothingThatClientsAndStoredResultsRelyOn) {
+  FileDescriptorSet baseline;
+  ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(text_of(CONTRACT_BASELINE), &baseline));
+  ASSERT_GT(baseline.file_size(), 10);
+  EXPECT_THAT(breaking_changes(baseline, present_contract()), IsEmpty())
+      << "if clients and databases can bear it: deploy/renew-contract";
+}
+
+/// An addition that is no part of the baseline could change later on.
+TEST(Contract, HoldsNothingThatTheBaselineLacks) {
+  FileDescriptorSet baseline;
+  ASSERT_TRUE(google::protobuf::TextFormat::ParseFromString(text_of(CONTRACT_BASELINE), &baseline));
+  EXPECT_THAT(breaking_changes(present_contract(), baseline), IsEmpty())
+      << "run deploy/renew-contract";
+}
+
+TEST(Contract, IsNamedAndDocumentedByItsRules) { EXPECT_THAT(lint(present_contract()), IsEmpty()); }
+
+const FieldDescriptor& field(const std::string& message, const std::string& name) {
+  v1::Simulation::descriptor();  // else the linker may leave files out
+  const auto* found =
+      DescriptorPool::generated_pool()->FindFieldByName("tribodyn.v1." + message + "." + name);
+  if (found == nullptr) throw std::logic_error("no field " + message + "." + name);
+  return *found;
+}
+
+/// Checks that know more than the list, such as its row, state the limit on their own.
+TEST(Contract, StatesTheLimitsThatTheServerEnforces) {
+  const auto items = [](const std::string& message, const std::string& name) {
+    return server::maximum_elements(field(message, name)).value_or(0);
+  };
+  for (const char* each : {"Lubricant", "GearSet", "Surface", "Vehicle"}) {
+    EXPECT_EQ(items(each, "labels"), server::kMaximumLabels);
+    EXPECT_EQ(items(each, "provenance"), server::kMaximumProvenances);
+    const std::string plural = std::string(each) + "sRequest";
+    EXPECT_EQ(items("BatchCreate" + plural, "requests"), server::kMaximumBatchSize);
+    EXPECT_EQ(items("BatchUpdate" + plural, "requests"), server::kMaximumBatchSize);
+  }
+  for (const char* each : {"viscosities", "densities", "brookfield_viscosities"}) {
+    EXPECT_EQ(items("LubricantMeasurements", each), server::kMaximumMeasurements);
+  }
+  EXPECT_EQ(items("Surface", "measurements"), server::kMaximumMeasurements);
+  EXPECT_EQ(items("GearSet", "flank_slots"), kFlankPairs);
+  EXPECT_EQ(items("LoadShareAtTorque", "slots"), kFlankPairs);
+  EXPECT_EQ(items("GearSet", "series_by_torque"), server::kMaximumTorques);
+  EXPECT_EQ(items("GearSet", "load_share_by_torque"), server::kMaximumTorques);
+  EXPECT_EQ(items("FourierSeries", "sine"), server::kMaximumHarmonics);
+  EXPECT_EQ(items("FourierSeries", "cosine"), server::kMaximumHarmonics);
+  const auto* slot = field("FlankSlot", "load_share").containing_type();
+  for (int i = 0; i < slot->field_count(); ++i) {
+    EXPECT_EQ(items("FlankSlot", slot->field(i)->name()), server::kMaximumFlankSamples);
+  }
+  EXPECT_EQ(items("LoadShareAtTorque.Slot", "load_share"), server::kMaximumFlankSamples);
+  EXPECT_EQ(items("ImportSurfaceProfilesRequest", "profiles"), server::kMaximumProfiles);
+  EXPECT_EQ(items("Simulation", "labels"), server::kMaximumSimulationLabels);
+  EXPECT_EQ(items("HistoryRequest", "columns"), server::kMaximumHistoryColumns);
+  EXPECT_EQ(items("ReadHistoryRequest", "columns"), server::kMaximumHistoryColumns);
+  EXPECT_EQ(items("InefficiencyCurveStudy", "speeds_kilometres_per_hour"),
+            server::kMaximumCurvePoints);
+  EXPECT_EQ(items("SimulationResult", "points"), server::kMaximumCurvePoints);
+}
+
+TEST(Contract, StatesTheLongestTextsThatTheServerTakes) {
+  const auto bytes = [](const std::string& message, const std::string& name) {
+    return static_cast<std::size_t>(field(message, name).options().GetExtension(v1::max_bytes));
+  };
+  EXPECT_EQ(bytes("ImportLubricantRequest", "viscosity_table_csv"), server::kMaximumCsvBytes);
+  EXPECT_EQ(bytes("ImportGearSetRequest", "tooth_contact_csv"), server::kMaximumCsvBytes);
+  EXPECT_EQ(bytes("ImportGearSetRequest", "series_csv"), server::kMaximumCsvBytes);
+  EXPECT_EQ(bytes("SurfaceProfile", "csv"), server::kMaximumProfileBytes);
+  EXPECT_EQ(bytes("CreateSimulationRequest", "request_id"),
+            std::size_t{server::kMaximumRequestIdLength});
+  for (const char* each : {"Lubricants", "GearSets", "Surfaces", "Vehicles", "Simulations"}) {
+    EXPECT_EQ(bytes("List" + std::string(each) + "Request", "filter"),
+              server::kMaximumFilterLength);
+  }
+}
+
+TEST(Contract, LeavesRoomForTheAnswerThatHoldsAGearSet) {
+  for (const char* each : {"CreateGearSet", "UpdateGearSet", "ImportGearSet"}) {
+    const auto* method = DescriptorPool::generated_pool()->FindMethodByName(
+        "tribodyn.v1.GearSetService." + std::string(each));
+    ASSERT_NE(method, nullptr);
+    EXPECT_EQ(server::maximum_request_bytes(*method), server::kMaximumResponseBytes - (1 << 20));
+  }
+}
+
+TEST(EnumNames, AreShortForPeople) {
+  const auto& model = *v1::PointModel_descriptor();
+  EXPECT_EQ(short_name(model, v1::POINT_MODEL_QUASI_STATIC), "QUASI_STATIC");
+  EXPECT_EQ(short_name(model, v1::POINT_MODEL_UNSPECIFIED), "POINT_MODEL_UNSPECIFIED");
+  EXPECT_EQ(short_name(model, 99), "99");
+  EXPECT_EQ(short_name(*v1::Simulation::State_descriptor(), v1::Simulation::FAILED), "FAILED");
+}
+
+TEST(EnumNames, AreFoundWholeAndShort) {
+  const auto& member = *v1::FlankMember_descriptor();
+  for (const char* name : {"GEAR", "FLANK_MEMBER_GEAR"}) {
+    ASSERT_NE(find_value(member, name), nullptr) << name;
+    EXPECT_EQ(find_value(member, name)->number(), v1::FLANK_MEMBER_GEAR);
+  }
+  EXPECT_EQ(find_value(member, "WHEEL"), nullptr);
+  EXPECT_EQ(find_value(member, ""), nullptr);
+}
+
+}  // namespace
+}  // namespace tribodyn
