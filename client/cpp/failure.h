@@ -7,22 +7,22 @@
 
 namespace tribodyn::client {
 
-/// What the command line tells its caller.
+/// Exit codes of the command line.
 enum ExitCode {
   kExitOk = 0,
-  kExitFailed = 1,         ///< the server refused, or a simulation failed or was cancelled
-  kExitUsage = 2,          ///< the command line or a file itself is wrong
-  kExitCannotConnect = 3,  ///< no server at the address, or none that answers in time
-  kExitDiffers = 4,        ///< of diff --exit-code: the fluids differ
+  kExitFailed = 1,  ///< the server rejected the request, or a simulation failed or was cancelled
+  kExitUsage = 2,   ///< an error in the command line or in a file
+  kExitCannotConnect = 3,  ///< no server at the address, or no answer in time
+  kExitDiffers = 4,        ///< diff --exit-code: the fluids differ
   kExitInterrupted = 130,  ///< Ctrl-C; the simulation goes on
 };
 
-/// Ends a command. what() is the whole text for a person, possibly of several lines.
+/// Ends a command. what() is the whole text for the user, possibly of several lines.
 class Failure : public std::runtime_error {
  public:
   Failure(ExitCode exit_code, const std::string& text)
       : std::runtime_error(text), exit_code_(exit_code) {}
-  /// Of a call that brought no answer: with what to do about it.
+  /// Constructs the failure of a call, with advice to the user.
   explicit Failure(const ServiceError& error) : Failure(exit_code_of(error), text_of(error)) {}
   ExitCode exit_code() const { return exit_code_; }
 
@@ -35,13 +35,14 @@ class Failure : public std::runtime_error {
     switch (error.kind()) {
       case ServiceError::Kind::kCannotConnect:
         return text +
-               "\n  Start one with `tribodynd`, or name another with --server or TRIBODYN_SERVER.";
+               "\n  Start it with `tribodynd`, or name another server with --server or "
+               "TRIBODYN_SERVER.";
       case ServiceError::Kind::kNoAnswer:
-        return text + "\n  A longer wait: --timeout-seconds.";
+        return text + "\n  Use --timeout-seconds to wait longer.";
       case ServiceError::Kind::kRefused:
         break;
     }
-    return "the server refused: " + text;
+    return "the server rejected the request: " + text;
   }
 
   ExitCode exit_code_;

@@ -14,7 +14,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// `of_settings`: how many of the complaints, the first ones, are about the configuration.
+/// Prints the complaints; the first `of_settings` of them are about the configuration.
 int complain(const Parsed& parsed, std::size_t of_settings) {
   std::string command;
   if (parsed.command != nullptr) command = " " + parsed.command->path;
@@ -39,7 +39,7 @@ std::string help_of(const Parsed& parsed, const std::vector<Command>& commands,
   return parsed.group.empty() ? overview_text(commands) : group_text(parsed.group, commands);
 }
 
-/// The failure with the page of the help that explains what was refused.
+/// Returns the failure with the help topic that explains it.
 Failure with_topic(const ServiceError& error, const Failure& failure) {
   const auto& violations = error.violations();
   const bool is_of_list =

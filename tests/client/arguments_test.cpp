@@ -207,9 +207,9 @@ TEST(Arguments, NameTheFlagThatWasTyped) {
                   .complains_of("--speed-kilometres-per-hour: 'fast'"));
   const Outcome wrong({"lubricants", "create", "x", "--kv40", "73,3", "--density", "868"});
   EXPECT_TRUE(
-      wrong.complains_of("--kv40: '73,3' has a decimal comma; decimal point, please: 73.3"));
+      wrong.complains_of("--kv40: '73,3' has a decimal comma; write a decimal point: 73.3"));
   EXPECT_TRUE(
-      wrong.complains_of("--density: '868' is not TEMPERATURE=VALUE; did you mean "
+      wrong.complains_of("--density: '868' must be TEMPERATURE=VALUE; did you mean "
                          "--density15?"));
   EXPECT_EQ(wrong.complaints.size(), 2U) << "what was meant to be said counts as said";
 }
@@ -222,7 +222,7 @@ std::string told(const std::vector<std::string>& arguments, const FieldViolation
   const std::vector<Command> commands = all_commands();
   const Parsed parsed = parse_arguments(arguments, commands, common_flags);
   EXPECT_TRUE(parsed.complaints.empty()) << parsed.complaints.front();
-  const ServiceError error("1 invalid field [INVALID_FIELDS]\n  " + violation.description, 3,
+  const ServiceError error("1 invalid value [INVALID_FIELDS]\n  " + violation.description, 3,
                            "INVALID_FIELDS", {violation}, std::nullopt);
   const std::string text = with_flag_names(error, parsed.typed_flags).what();
   return text.substr(text.find('\n') + 3);

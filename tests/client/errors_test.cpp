@@ -35,7 +35,7 @@ grpc::Status refusal_with_violations() {
 
 TEST(Errors, ListEveryViolation) {
   EXPECT_EQ(readable_error(refusal_with_violations()),
-            "2 invalid fields [INVALID_INPUTS]\n"
+            "2 invalid values [INVALID_INPUTS]\n"
             "  sump_temperature_celsius = 900 C; allowed: -70 to 200 C (eq 14)\n"
             "  simulation.lubricant: lubricants/7 does not exist");
   EXPECT_EQ(to_failure(refusal_with_violations(), "here").exit_code(), kExitFailed);

@@ -118,7 +118,7 @@ TEST(CurvePlot, BreaksTheLineWhereABranchEnds) {
   end->set_gone_at_kilometres_per_hour(69.14);
   const int broken_below = lines_of(curve);
   EXPECT_GT(broken_below, whole);
-  EXPECT_NE(curve_plot({curve}, {}).find("Lines break where the branch"), std::string::npos);
+  EXPECT_NE(curve_plot({curve}, {}).find("A line breaks where its branch"), std::string::npos);
   curve.mutable_result()->set_direction(v1::SWEEP_DIRECTION_DOWN);
   EXPECT_EQ(lines_of(curve), broken_below);
 }

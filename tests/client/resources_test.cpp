@@ -149,8 +149,8 @@ TEST(Edits, ComplainOfEachMistake) {
           {"--unset", "condiction"}},
          {}, &complaints);
   ASSERT_EQ(complaints.size(), 9U);
-  EXPECT_NE(complaints[1].find("'20 s' is not in 1/Pa"), std::string::npos);
-  EXPECT_NE(complaints[2].find("more than once"), std::string::npos);
+  EXPECT_NE(complaints[1].find("'20 s' must be in 1/Pa"), std::string::npos);
+  EXPECT_NE(complaints[2].find("only once"), std::string::npos);
   EXPECT_NE(complaints[6].find("is thermal-conductivity meant?"), std::string::npos);
   EXPECT_NE(complaints[8].find("is condition meant?"), std::string::npos);
 }
@@ -200,7 +200,7 @@ TEST(JsonInput, RefusesWhatIsNoResource) {
   EXPECT_NE(refusal_of("[1, 2]").find("not a JSON object"), std::string::npos);
   EXPECT_NE(refusal_of("{").find("not a JSON object"), std::string::npos);
   EXPECT_NE(refusal_of(std::string(5000, '[')).find("not a JSON object"), std::string::npos);
-  EXPECT_NE(refusal_of("{}").find("cannot be told"), std::string::npos);
+  EXPECT_NE(refusal_of("{}").find("kind of resource is unclear"), std::string::npos);
   EXPECT_NE(refusal_of(R"({"lubricants": [7]})").find("lubricants[0]"), std::string::npos);
   EXPECT_FALSE(refusal_of(R"({"name": "lubricants/q", "labels": 7})").empty());
 }

@@ -13,14 +13,14 @@ out_lacks() { ! grep -qE -- "$1" "$folder/out" || fail "tribodyn $asked: '$1' on
 
 echo "--- from three numbers to a curve"
 expect 0 lubricants create my-oil --kv40 73.3 --kv100 8.86 --density15 870
-for part in 'viscosity index +92\.4 ' 'SAE J306 grade +80' 'Not measured but estimated' \
+for part in 'viscosity index +92\.4 ' 'SAE J306 grade +80' 'Estimated, not measured' \
   'pressure viscosity coefficient +20\.5[0-9]* +1/GPa +5\.1 +assumed' 'thermal conductivity .* assumed' \
   'T_0' 'tribodyn curve --lubricant my-oil'; do
   out_has "$part"
 done
 err_is_empty
 expect 0 curve --lubricant my-oil --first-speed 40 --last-speed 60 --speed-step 10
-out_has 'Assumed of the lubricant, not measured'
+out_has 'Parameters of the lubricant that are assumed, not measured'
 out_has 'pressure viscosity coefficient 20\.5'
 err_is_empty
 
@@ -62,8 +62,8 @@ out_has '"relaxationTimeSeconds": 4.5e-0?7'
 echo "--- mistakes: all at once, with what may be meant"
 expect 2 lubricants create x --kv40 thick --kv100 8,86 --pressure-viscosity 20s --densty15 8
 err_has "'thick' is not a number in mm2/s"
-err_has 'decimal point, please: 8.86'
-err_has "'20s' is not in 1/Pa"
+err_has 'write a decimal point: 8.86'
+err_has "'20s' must be in 1/Pa"
 err_has 'is --density15 meant'
 expect 2 lubricants create x --density 868
 err_has 'did you mean --density15'
@@ -208,7 +208,7 @@ expect 0 lubricants revisions row-used
 ! grep -q 'row-used@2' "$folder/out" || fail "an import of what is there makes a revision"
 sed -e 's/;73.3;/;thick;/; s/;used;/;usd;/; s/display_name/display_nme/' rows.csv >rows-bad.csv
 expect 2 lubricants import rows-bad.csv --replace
-err_has "row 2 column condition: 'usd' is not one of"
+err_has "row 2 column condition: 'usd' must be one of"
 err_has "row 3 column kinematic_viscosity_40.*: 'thick' is not a number"
 err_has 'is display_name meant'
 sed -e 's/;73.3;/;1e9;/; s/;8.6;/;-1;/' rows.csv >rows-bad.csv
@@ -235,18 +235,18 @@ expect 0 validate none.json
 echo "--- tables as spreadsheets write them"
 printf 'Name;KV40;kv100;Density15;Base oil class;display_name\n;mm2/s;mm2/s;g/cm3;;\nexcel;73,3;8,86;0,87;Gr. III;\326l\n' >excel.txt
 expect 0 lubricants import excel.txt
-err_has '3 cells have a decimal comma, read as a decimal point'
+err_has '3 cells have a decimal comma and were read with a decimal point'
 err_has 'read as Latin-1'
 out_has 'excel: .+l'
 out_has 'density at 15 C +870 '
-out_has 'Not measured but estimated'
+out_has 'Estimated, not measured'
 printf 'PK\003\004rest' >book.xlsx
 cp book.xlsx book.csv
 for book in book.xlsx book.csv; do
   expect 2 lubricants import $book
-  err_has "$book is an Excel workbook: save it as"
+  err_has "$book is an Excel workbook. Save it as"
   expect 2 lubricants create book --viscosity-table $book
-  err_has "$book is an Excel workbook: save it as"
+  err_has "$book is an Excel workbook. Save it as"
 done
 printf 'name,kv40,kv100,base_oil_class\ntwin,73.3,8.86,pao\nother,0.00007,8,pao\ntwin,73.3,8.86,pao\n' >twins.csv
 expect 2 lubricants import twins.csv
@@ -301,7 +301,7 @@ out_has 'SAE J306 grade +75W-90'
 expect 0 lubricants export cold --output csv --file cold.csv
 sed '2s/,103,/,110,/' cold.csv >cold-2.csv
 expect 0 lubricants import cold-2.csv --replace
-out_has 'To know before relying on it'
+out_has 'Limits of these values'
 expect 0 lubricants get cold
 out_has 'KV40 +110 '
 out_has 'thermal conductivity +0.14 .*0.01 +measured'

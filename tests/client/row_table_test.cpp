@@ -125,19 +125,19 @@ TEST(RowTable, TellsTheSameMistakeOnceWithACount) {
   for (int i = 0; i < 30; ++i)
     text += "oil-" + std::to_string(i) + ",x" + (i == 7 ? "x" : "") + ",none\n";
   const std::string said = table_refusal(text);
-  EXPECT_NE(said.find("60 mistakes of 3 kinds, each told once"), std::string::npos) << said;
+  EXPECT_NE(said.find("60 errors of 3 kinds, each listed once"), std::string::npos) << said;
   EXPECT_NE(said.find("row 2 column kv40: 'x' is not a number"), std::string::npos) << said;
   EXPECT_NE(said.find("(and in 28 more, the last row 31)"), std::string::npos) << said;
   EXPECT_NE(said.find("row 9 column kv40: 'xx'"), std::string::npos) << said;
-  EXPECT_EQ(count(said, "'none' is not one of"), 1U) << said;
+  EXPECT_EQ(count(said, "'none' must be one of"), 1U) << said;
 }
 
 TEST(RowTable, NamesHeadersThatAreUnknownTwiceOrInAWrongUnit) {
   const std::string said =
       table_refusal("name,kv4O,kv100,KV100,density15 (m),display_nme\na,1,2,3,4,5\n");
-  EXPECT_NE(said.find("column 'kv4O' is not known"), std::string::npos) << said;
-  EXPECT_NE(said.find("column KV100 is there twice"), std::string::npos) << said;
-  EXPECT_NE(said.find("has the unit m, which is not one of it (kg/m3)"), std::string::npos) << said;
+  EXPECT_NE(said.find("column 'kv4O' is unknown"), std::string::npos) << said;
+  EXPECT_NE(said.find("column KV100 occurs twice"), std::string::npos) << said;
+  EXPECT_NE(said.find("has the unit m; allowed: multiples of kg/m3"), std::string::npos) << said;
   EXPECT_NE(said.find("is display_name meant?"), std::string::npos) << said;
 }
 
@@ -248,7 +248,7 @@ TEST(TableText, RefusesWorkbooksInOneSentence) {
       FAIL() << "a workbook is no table";
     } catch (const Failure& failure) {
       EXPECT_EQ(std::string(failure.what()),
-                "oils.csv is an Excel workbook: save it as \"CSV UTF-8 (comma delimited)\" and "
+                "oils.csv is an Excel workbook. Save it as \"CSV UTF-8 (comma delimited)\" and "
                 "give that file");
     }
   }

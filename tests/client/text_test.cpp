@@ -170,10 +170,11 @@ TEST(Csv, UnsetOptionalIsEmptyNotZero) {
 TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
   const std::string text = squeezed(point_report(sample_point(), false));
   for (const char* part :
-       {"Mesh loss (conjunctional", "inefficiency, energy mean", "eq 30", "72.5 km/h", "T_s",
-        "film ratio lambda", "contact loss yes", "0.600 ms", "relative solver error 0.00012 %",
-        "abc123", "tribodyn-model-2", "isothermal, as published eq17_atan", "FILM_RATIO_LOW",
-        "Another steady state", "1 assumed (all: --assumptions)"}) {
+       {"Mesh loss (at the tooth contact", "inefficiency, energy mean", "eq 30", "72.5 km/h",
+        "pinion torque", "film ratio lambda", "contact loss yes", "0.600 ms",
+        "relative solver error 0.00012 %", "abc123", "tribodyn-model-2",
+        "isothermal, as published eq17_atan", "FILM_RATIO_LOW", "Another steady state",
+        "1 assumed (list them with --assumptions)"}) {
     EXPECT_TRUE(holds(text, part));
   }
   EXPECT_EQ(text.find("axle loss"), std::string::npos);
@@ -183,7 +184,7 @@ TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
 
 TEST(PointReport, SaysWherePowerComesIn) {
   v1::Simulation simulation = sample_point();
-  EXPECT_TRUE(holds(squeezed(point_report(simulation, false)), "kW that come in at the pinion"));
+  EXPECT_TRUE(holds(squeezed(point_report(simulation, false)), "kW input at the pinion"));
   v1::PointResult& coast = *simulation.mutable_result()->mutable_points(0)->mutable_result();
   coast.set_pinion_torque_newton_metres(-30);
   coast.set_input_power_watts(6086);
@@ -191,7 +192,7 @@ TEST(PointReport, SaysWherePowerComesIn) {
   coast.mutable_power_balance()->set_output_joules(-9);
   coast.mutable_power_balance()->set_friction_joules(1);
   const std::string text = squeezed(point_report(simulation, false));
-  EXPECT_TRUE(holds(text, "of 6.0860 kW that come in at the wheel: coast"));
+  EXPECT_TRUE(holds(text, "of 6.0860 kW input at the wheel: coast"));
   EXPECT_TRUE(holds(text, "9.0000 J in = 8.0000 out + 1.0000 friction"));
 }
 
@@ -217,10 +218,12 @@ TEST(PointReport, GivesNoMoreDigitsThanTheErrorBears) {
     return squeezed(point_report(simulation, false));
   };
   const std::map<double, std::vector<const char*>> expected = {
-      {5e-3, {"relative solver error 0.5 %", "energy mean 1.3 %", "T_s 33 N m", "1 80 90"}},
+      {5e-3,
+       {"relative solver error 0.5 %", "energy mean 1.3 %", "pinion torque 33 N m", "1 80 90"}},
       {2e-4,
-       {"relative solver error 0.02 %", "energy mean 1.325 %", "T_s 33.2 N m", "1.2 80.0 90.0"}},
-      {1e-6, {"energy mean 1.3252 %", "T_s 33.154 N m", "1.235 80.000 90.000"}}};
+       {"relative solver error 0.02 %", "energy mean 1.325 %", "pinion torque 33.2 N m",
+        "1.2 80.0 90.0"}},
+      {1e-6, {"energy mean 1.3252 %", "pinion torque 33.154 N m", "1.235 80.000 90.000"}}};
   for (const auto& [error, parts] : expected) {
     const std::string text = report(error);
     for (const char* part : parts) EXPECT_TRUE(holds(text, part)) << error;
@@ -248,13 +251,13 @@ TEST(CurveReport, HasOneLineASpeedAndSaysWhyOneIsMissing) {
 
 TEST(CurveReport, SaysWhereEachSpeedWasSolvedAlone) {
   v1::Simulation curve = sample_curve("2", 1);
-  EXPECT_FALSE(holds(curve_report(curve, false), "solved alone"));
+  EXPECT_FALSE(holds(curve_report(curve, false), "solved independently"));
   curve.mutable_inefficiency_curve()->clear_direction();
   curve.mutable_inefficiency_curve()->set_independent_points(true);
   curve.mutable_result()->set_independent_points(true);
   const std::string text = squeezed(curve_report(curve, false));
   EXPECT_TRUE(holds(text, "25 speeds, independent points"));
-  EXPECT_TRUE(holds(text, "no branch of steady states was followed"));
+  EXPECT_TRUE(holds(text, "neither followed a branch of steady states"));
   EXPECT_FALSE(holds(text, "sweep"));
   EXPECT_TRUE(holds(points_csv({curve}), ",INDEPENDENT_POINTS,"));
 }
@@ -340,9 +343,9 @@ TEST(Reports, NameAWarningInPlainWordsBeforeItsCode) {
                     "Outside the validated range Cold inlet, do not rank oils here, at 20 to 30 "
                     "km/h. At 20 km/h: inlet at 0 C. [COLD_INLET]"));
   EXPECT_TRUE(holds(text,
-                    "How it was computed Response with a period of several mesh cycles, at 65 "
+                    "Method of computation Response with a period of several mesh cycles, at 65 "
                     "km/h. At 65 km/h: repeats after 2. [PERIOD]"));
-  EXPECT_TRUE(holds(text, "Jumps of the response The branch"));
+  EXPECT_TRUE(holds(text, "Jumps of the response With rising speed the branch"));
 }
 
 /// Half a unit of the last digit of a number. Zeros at the end of a whole number may be digits or

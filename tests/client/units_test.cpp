@@ -60,21 +60,21 @@ TEST(Units, RefuseWhatTheyCannotMean) {
   std::string wrong;
   for (const auto& [text, unit, reason] : {
            std::tuple("20", "1/Pa", "needs its unit, e.g. 20/GPa"),
-           std::tuple("20 MPa", "1/Pa", "is not in 1/Pa or a multiple of it"),
-           std::tuple("7 cSt", "mPa s", "is not in mPa s or a multiple of it"),
-           std::tuple("20 C", "K", "is not in K or a multiple of it"),
+           std::tuple("20 MPa", "1/Pa", "must be in 1/Pa or a multiple of it"),
+           std::tuple("7 cSt", "mPa s", "must be in mPa s or a multiple of it"),
+           std::tuple("20 C", "K", "must be in K or a multiple of it"),
            std::tuple("fast", "K", "is not a number in K"),
            std::tuple("", "K", "is not a number in K"),
            std::tuple("1e999K", "K", "is not a number in K"),
-           std::tuple("3 (", "K", "is not in K or a multiple of it"),
-           std::tuple("3 ()()", "K", "is not in K or a multiple of it"),
-           std::tuple("3 m99999999999", "m", "is not in m or a multiple of it"),
-           std::tuple("3 km2147483647", "m", "is not in m or a multiple of it"),
-           std::tuple("3 m-2147483648", "m", "is not in m or a multiple of it"),
+           std::tuple("3 (", "K", "must be in K or a multiple of it"),
+           std::tuple("3 ()()", "K", "must be in K or a multiple of it"),
+           std::tuple("3 m99999999999", "m", "must be in m or a multiple of it"),
+           std::tuple("3 km2147483647", "m", "must be in m or a multiple of it"),
+           std::tuple("3 m-2147483648", "m", "must be in m or a multiple of it"),
            std::tuple("1e308 h", "s", "is too large"),
-           std::tuple("73,3", "K", "has a decimal comma; decimal point, please: 73.3"),
-           std::tuple("1,5 K", "K", "has a decimal comma; decimal point, please: 1.5 K"),
-           std::tuple("1,2,3", "K", "is not in K or a multiple of it"),
+           std::tuple("73,3", "K", "has a decimal comma; write a decimal point: 73.3"),
+           std::tuple("1,5 K", "K", "has a decimal comma; write a decimal point: 1.5 K"),
+           std::tuple("1,2,3", "K", "must be in K or a multiple of it"),
        }) {
     EXPECT_FALSE(read_quantity(text, unit, "", false, wrong)) << text;
     EXPECT_EQ(wrong, reason) << text;

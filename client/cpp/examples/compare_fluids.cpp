@@ -1,6 +1,5 @@
-// What two gear oils cost at one speed, and what is assumed of them: an example of the client
-// library.
-// usage: compare_fluids HOST:PORT [LUBRICANT LUBRICANT]
+// An example of the client library: prints what two gear oils cost at one speed and which
+// parameters are assumed. usage: compare_fluids HOST:PORT [LUBRICANT LUBRICANT]
 #include <tribodyn/client/connection.h>
 
 #include <cstdlib>
@@ -10,7 +9,7 @@ namespace {
 
 using namespace tribodyn;
 
-/// A fluid of which only a data sheet is known; what else the model needs, the server estimates.
+/// Returns a fluid of which only a data sheet is known; the server estimates the other parameters.
 v1::Lubricant fluid_of_a_data_sheet() {
   v1::Lubricant fluid;
   fluid.set_display_name("Data sheet: 103 and 15.1 mm2/s, 868 kg/m3");
@@ -57,7 +56,8 @@ int main(int argc, char** argv) {
       compare(connection, {argv[2], argv[3]});
       return EXIT_SUCCESS;
     }
-    // Checked as if it were created, but not written: a program that may run any number of times.
+    // validate_only: the server checks the fluid and does not store it, so that the program may run
+    // any number of times.
     const v1::Lubricant fluid = connection.create(fluid_of_a_data_sheet(), "data-sheet", true);
     std::cout << fluid.display_name() << ": viscosity index "
               << fluid.characterisation().viscosity_index() << "\n";

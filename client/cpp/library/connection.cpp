@@ -16,9 +16,9 @@ std::string server_address(const std::string& address) {
 Connection::Connection(std::string address, std::chrono::duration<double> timeout)
     : services_(std::make_unique<Services>()) {
   grpc::ChannelArguments arguments;
-  // An unread watch stream must not make the transport buffer megabytes of it.
+  // With BDP probes, gRPC would buffer megabytes of a watch stream that is not read.
   arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
-  // http_proxy is for the web; a server on loopback or in the same plant is not behind it.
+  // http_proxy is for web sites; a server on loopback or in the local network is not behind it.
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
   arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 200);
   services_->address = std::move(address);

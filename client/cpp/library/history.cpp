@@ -10,12 +10,12 @@ namespace {
 constexpr auto kBetweenReads = std::chrono::milliseconds(250);
 constexpr int kReadRetries = 20;  // about 40 s in all: long enough for a server that restarts
 
-/// Puts chunks of columns together to rows.
+/// Joins chunks of columns into rows.
 class RowJoiner {
  public:
   explicit RowJoiner(int columns) { rows_.columns.resize(columns); }
 
-  /// Rows that are whole now; nothing while a column is missing.
+  /// Returns the rows that are complete; null while a column is missing.
   const HistoryRows* add(const v1::HistoryChunk& chunk, std::int64_t offset) {
     std::vector<double>& column = rows_.columns.at(chunk.column());
     column.resize(chunk.values().size() / sizeof(double));
@@ -39,10 +39,11 @@ void Connection::stream_history(const std::string& name, const HistoryOptions& o
   *request.mutable_columns() = {options.columns.begin(), options.columns.end()};
   request.set_max_points(options.maximum_points);
   std::optional<v1::HistorySchema> schema;
-  std::int64_t done = 0;  // rows that were handed over
+  std::int64_t done = 0;  // rows that on_rows has received
   Backoff backoff;
   for (int tries_left = kReadRetries;;) {
-    // An overview is cut otherwise from another row on: it begins again, and skips.
+    // The buckets of an overview depend on its first row: a retry reads it from its start again and
+    // skips the rows that were delivered.
     const bool is_overview = schema && schema->rows_per_pair() > 0;
     const std::int64_t skipped = is_overview ? 0 : done;
     request.set_start_row(options.start_row + skipped);
@@ -60,7 +61,7 @@ void Connection::stream_history(const std::string& name, const HistoryOptions& o
         }
         continue;
       }
-      if (!joiner) break;  // not this contract
+      if (!joiner) break;  // chunks without a schema: not this contract
       const HistoryRows* rows = joiner->add(part.chunk(), skipped);
       if (rows == nullptr || rows->first_row < done) continue;
       on_rows(*rows);

@@ -5,11 +5,11 @@
 namespace tribodyn::client {
 namespace {
 
-/// What the calls of one kind of resource are made of.
+/// The types and methods of the calls of one kind of resource.
 template <class Resource>
 struct Methods;
 
-// Every kind has the same methods under names of its own; a macro spells them out once.
+// Every kind has the same methods under other names; the macro defines them.
 #define TRIBODYN_METHODS(Resource, field)                                                        \
   template <>                                                                                    \
   struct Methods<v1::Resource> {                                                                 \
@@ -56,7 +56,7 @@ template <class Request>
 void set_basic(Request&) {}
 void set_basic(v1::ListGearSetsRequest& request) { request.set_view(v1::GEAR_SET_VIEW_BASIC); }
 
-/// Pages until there are no more or `limit` is reached.
+/// Reads pages until the last one or until `limit` entries.
 template <class Resource, class Request, class Call>
 Listing<Resource> all_pages(Request request, int limit, const Call& call) {
   Listing<Resource> all;

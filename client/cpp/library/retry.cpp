@@ -63,9 +63,9 @@ std::optional<milliseconds> retry_delay(const grpc::Status& status) {
 
 Backoff::Backoff() : random_(std::random_device()()), longest_(kFirstPause) {}
 
-milliseconds Backoff::next(std::optional<milliseconds> asked) {
+milliseconds Backoff::next(std::optional<milliseconds> requested) {
   std::uniform_int_distribution<std::int64_t> draw(0, longest_.count());
-  const milliseconds pause = asked.value_or(milliseconds(0)) + milliseconds(draw(random_));
+  const milliseconds pause = requested.value_or(milliseconds(0)) + milliseconds(draw(random_));
   longest_ = std::min(2 * longest_, kLongestPause);
   return pause;
 }

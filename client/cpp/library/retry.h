@@ -10,27 +10,27 @@
 
 namespace tribodyn::client {
 
-/// Whether a request may be sent again when nobody knows what became of it: it reads, checks, or
-/// comes to the same however often it is carried out (cancel, delete, and create with a
+/// Whether a request may be sent again when the fate of the first try is unknown: it reads, checks,
+/// or has the same effect however often it is carried out (cancel, delete, and create with a
 /// request_id).
 bool may_repeat(const google::protobuf::Message& request);
 
-/// Whether the answer says that the request had no effect and may succeed later: the server shuts
-/// down, or too many wait.
+/// Whether the status guarantees that the request had no effect and may succeed later: the server
+/// shuts down or its queue is full.
 bool was_turned_away(const grpc::Status& status);
 
-/// How long the server asks to wait; nothing when it does not say.
+/// Returns the pause that the server requests; nullopt if it requests none.
 std::optional<std::chrono::milliseconds> retry_delay(const grpc::Status& status);
 
-/// Pauses between tries: doubling, and drawn at random (full jitter) so that clients that failed
-/// together do not come back together; never shorter than what the server asks for. Not safe for
+/// Pauses between tries. They double and are random (full jitter), so that clients that failed
+/// together do not all retry together, and are never shorter than the server requests. Not safe for
 /// concurrent access.
 class Backoff {
  public:
   Backoff();
-  /// Before the next try.
-  std::chrono::milliseconds next(std::optional<std::chrono::milliseconds> asked = {});
-  /// After a success.
+  /// Returns the pause before the next try. `requested` is the pause that the server requests.
+  std::chrono::milliseconds next(std::optional<std::chrono::milliseconds> requested = {});
+  /// Starts again with short pauses, after a success.
   void reset();
 
  private:
@@ -38,7 +38,7 @@ class Backoff {
   std::chrono::milliseconds longest_;
 };
 
-/// A random name for a request (UUID version 4).
+/// Returns a random id for a request (UUID version 4).
 std::string new_request_id();
 
 }  // namespace tribodyn::client

@@ -21,7 +21,7 @@
 
 namespace tribodyn::client {
 
-inline constexpr int kLargestPage = 1000;  ///< entries that the server lists at once, at most
+inline constexpr int kLargestPage = 1000;  ///< most entries that the server lists in one page
 
 /// The channel and its stubs.
 struct Connection::Services {
@@ -36,8 +36,8 @@ struct Connection::Services {
   std::unique_ptr<v1::ContactService::Stub> contacts;
   std::unique_ptr<v1::SchemaService::Stub> schemas;
 
-  /// One call within the time limit. A server that goes away or turns it away is asked again, with
-  /// pauses, where that is safe.
+  /// Makes one call within the time limit. Retries with pauses where that is safe: when the server
+  /// was lost or turned the request away.
   template <class Stub, class Request, class Response>
   Response call(Stub& stub,
                 grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
@@ -54,7 +54,7 @@ struct Connection::Services {
       const grpc::Status status = (stub.*method)(&context, request, &response);
       if (status.ok()) return response;
       if (never_connected(status) && !was_connected) {
-        // Nothing was sent. Once more, as a connection in progress may pass for a failed one.
+        // Nothing was sent. Retry once: gRPC may report a connection in progress as failed.
         if (tries == 1 && channel->WaitForConnected(
                               std::min(deadline, system_clock::now() + std::chrono::seconds(1)))) {
           continue;

@@ -15,7 +15,7 @@ constexpr milliseconds kBetweenWatches(250);
 constexpr int kWatchRetries =
     20;  // about 40 s in all: long enough for a server that drains and restarts
 
-/// False when `stop` was requested meanwhile.
+/// Waits; returns false if `stop` was requested meanwhile.
 bool pause(milliseconds time, const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any never;
@@ -98,7 +98,7 @@ v1::Simulation Connection::wait_for_end(
   v1::WatchSimulationRequest request;
   request.set_name(name);
   using std::chrono::system_clock;
-  // A watch that nobody ends is taken up again: so a connection that died silently is found.
+  // Restarts a watch that does not end, to notice a connection that died silently.
   const auto one_watch = std::chrono::duration_cast<system_clock::duration>(
       std::min(kLongestWatch, 2 * services_->timeout));
   bool ended = false;
@@ -121,8 +121,8 @@ v1::Simulation Connection::wait_for_end(
     const grpc::Status status = reader->Finish();
     if (ended || stop.stop_requested()) break;
     if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) {
-      // A watch without a message, not even a heartbeat, is either too short for one or its server
-      // is frozen. This call tells which: it throws when the server does not answer.
+      // A watch without any message, not even a heartbeat, was too short for one, or its server is
+      // frozen. This call throws if the server does not answer.
       if (was_silent && has_ended(get_simulation(name).state())) break;
     } else {
       const bool broken = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE;

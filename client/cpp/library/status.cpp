@@ -45,8 +45,8 @@ std::string code_name(grpc::StatusCode code) {
   return index < kNames.size() ? kNames[index] : "code " + std::to_string(index);
 }
 
-/// The server's sentences mostly begin with the field's own name, which is that of a flag; the path
-/// in front of it would only hide it, unless it says which of several.
+/// Returns the text of a violation. The server's sentence mostly starts with the field's own name;
+/// the path is put in front of it only where it selects one of several elements.
 std::string violation_text(const FieldViolation& violation) {
   const std::string leaf = violation.field.substr(violation.field.rfind('.') + 1);
   const bool is_one_of_several = violation.field.find('[') != std::string::npos;
@@ -70,12 +70,12 @@ ServiceError refusal(const grpc::Status& status) {
     }
   }
   std::string text = printable(status.error_message());
-  // The server's message repeats the first violation, which follows anyway.
+  // The server's message repeats the first violation, which is listed below.
   if (!violations.empty()) {
     text = std::to_string(violations.size()) +
-           (violations.size() == 1 ? " invalid field" : " invalid fields");
+           (violations.size() == 1 ? " invalid value" : " invalid values");
   } else if (text.empty()) {
-    text = "no message";
+    text = "the server sent no message";
   }
   const std::string reason = info ? printable(info->reason()) : "";
   text += " [" + (reason.empty() ? code_name(status.error_code()) : reason) + "]";
@@ -89,8 +89,8 @@ ServiceError refusal(const grpc::Status& status) {
   return {text, static_cast<int>(status.error_code()), reason, violations, delay};
 }
 
-/// "connection refused" of "failed to connect to all addresses; last error: UNKNOWN: ipv4:...:
-/// Failed to connect to remote host: Connection refused": only the cause tells a person something.
+/// Returns only the cause, e.g. "connection refused" for "failed to connect to all addresses; last
+/// error: UNKNOWN: ipv4:...: Failed to connect to remote host: Connection refused".
 std::string connection_reason(const std::string& message) {
   const std::size_t mark = message.rfind(": ");
   std::string reason = printable(mark == std::string::npos ? message : message.substr(mark + 2));

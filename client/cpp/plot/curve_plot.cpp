@@ -29,7 +29,7 @@ bool has_branch_end(const std::vector<v1::Simulation>& simulations) {
   });
 }
 
-/// The line is broken where a branch ends: the response jumps there.
+/// Breaks the line where a branch ends: the response jumps there.
 template <class Value>
 Series series_of(const v1::Simulation& simulation, const Look& look, Value value) {
   Series series;
@@ -107,7 +107,7 @@ Panel small_panel(const std::vector<v1::Simulation>& simulations, Point corner,
   return panel;
 }
 
-/// What the kinds of line mean, on one line.
+/// Draws one line that explains the kinds of line.
 void draw_key(bool has_bands, bool has_hatching, Svg& svg) {
   const double y = 72;
   const TextStyle style{12.5, "start", "#444", false, 0};
@@ -136,7 +136,7 @@ void draw_key(bool has_bands, bool has_hatching, Svg& svg) {
   }
 }
 
-/// What all curves share; what differs is left to the labels.
+/// Returns what all curves have in common; the labels show what differs.
 std::string caption(const std::vector<v1::Simulation>& simulations) {
   if (simulations.empty()) return "";
   const v1::Simulation& first = simulations.front();
@@ -149,16 +149,16 @@ std::string caption(const std::vector<v1::Simulation>& simulations) {
 std::vector<std::string> texts_below(const std::vector<v1::Simulation>& simulations) {
   std::vector<std::string> texts = {
       caption(simulations),
-      std::string("Mesh (conjunctional) loss only: bearings, churning and seals are not in it.") +
+      std::string("Mesh (conjunctional) loss only: it excludes bearings, churning and seals.") +
           (has_branch_end(simulations)
-               ? " Lines break where the branch that they follow ends: the response jumps."
+               ? " A line breaks where its branch of steady states ends: the response jumps."
                : "")};
   for (std::string& text : footer_texts(simulations)) texts.push_back(std::move(text));
   return texts;
 }
 
-/// Where figures must not be ranked, the panels are hatched from foot to head; where a law is
-/// outside its range otherwise, a strip of the main panel is.
+/// Hatches the full height of the panels at speeds where oils must not be ranked, and a strip of
+/// the main panel at speeds where a law is outside its validated range otherwise.
 struct Hatching {
   std::vector<std::pair<double, double>> bands;
   std::string note;

@@ -9,15 +9,15 @@
 
 namespace tribodyn::client {
 
-/// Inefficiency curves as a picture: inefficiency against speed (energy mean solid, RMS dashed) for
-/// every fluid, speeds at which the flanks separate shaded, below it mesh loss and contact
-/// temperature. `titles` names lubricants ("lubricants/1" -> "1 ester-olefin"); others show their
-/// id.
+/// Draws inefficiency curves: for every fluid the inefficiency against speed (energy mean solid,
+/// RMS dashed), with speeds at which flanks separate shaded; below it mesh loss and contact
+/// temperature. `titles` maps lubricants to labels ("lubricants/1" -> "1 ester-olefin"); a
+/// lubricant that is not in it is labelled with its id.
 std::string curve_plot(const std::vector<v1::Simulation>& simulations,
                        const std::map<std::string, std::string>& titles);
 
-/// Ranges of speed [km/h] in which some simulation reports contact loss, each reaching half way to
-/// the neighbouring speeds; ascending, not overlapping.
+/// Returns the ranges of speed [km/h] in which some simulation reports contact loss, ascending and
+/// without overlap. Each range reaches half way to the neighbouring speeds.
 std::vector<std::pair<double, double>> contact_loss_bands(
     const std::vector<v1::Simulation>& simulations);
 

@@ -13,11 +13,12 @@ namespace tribodyn::client {
 namespace {
 
 constexpr double kFooterSize = 11.5;
-constexpr int kLongestLabel = 20;  // characters beside the frame of a curve
+constexpr int kLongestLabel =
+    20;  // characters; longer labels do not fit beside the frame of a curve
 constexpr int kLongestNote = 30;
 constexpr std::size_t kShownHash = 12;  // hexadecimal digits, of 64
 
-/// The first characters of a text, an ellipsis in place of the rest.
+/// Returns the first characters of a text and an ellipsis in place of the rest.
 std::string elided(const std::string& text, int longest) {
   if (display_width(text) <= longest) return text;
   std::size_t end = 0;
@@ -48,12 +49,12 @@ std::string warning_text(const CurveWarning& warning, bool is_curve) {
   return text + " [" + warning.code + "].";
 }
 
-/// What is to be known of fluids and surface themselves, with the fluids concerned: they are named
-/// only where they are not all.
+/// Returns the warnings about fluids and the surface. A warning names its fluids only if it does
+/// not concern all of them.
 std::vector<std::string> input_texts(const std::vector<v1::Simulation>& simulations) {
   std::map<std::string, std::vector<std::string>> names;  // by code
   for (const v1::Simulation& simulation : simulations) {
-    std::set<std::string> codes;  // some come once for every measurement
+    std::set<std::string> codes;  // a set: some warnings repeat for every measurement
     for (const v1::RangeWarning& warning : simulation.result().input_warnings()) {
       if (codes.insert(warning.code()).second) {
         names[warning.code()].push_back(simulation.lubricant());
@@ -70,7 +71,7 @@ std::vector<std::string> input_texts(const std::vector<v1::Simulation>& simulati
   return texts;
 }
 
-/// "Model version V; inputs 1: 0123456789ab, 2: ..."
+/// Returns "Model version V; hash of inputs 1: 0123456789ab, 2: ..."
 std::string identity_text(const std::vector<v1::Simulation>& simulations) {
   std::set<std::string> versions;
   std::vector<std::string> hashes;

@@ -8,21 +8,21 @@
 
 namespace tribodyn::client {
 
-/// What stands below a picture of results so that it can be used without its table: each warning in
-/// plain words with the speeds at which it holds, then the model's version and the hash of each
-/// simulation's inputs. One entry a sentence; not yet wrapped.
+/// Returns the sentences below a plot of results that let it be used without its table: each
+/// warning in plain words with its speeds, then the model's version and the hash of each
+/// simulation's inputs. One sentence per entry, not wrapped.
 std::vector<std::string> footer_texts(const std::vector<v1::Simulation>& simulations);
 
-/// The texts wrapped to the width, a line each.
+/// Wraps the texts to `width` pixels; one line per entry.
 std::vector<std::string> footer_lines(const std::vector<std::string>& texts, double width);
 
-inline constexpr double kFooterPitch = 16;  ///< from one line of a footer to the next
+inline constexpr double kFooterPitch = 16;  ///< from one line of a footer to the next [pixels]
 
-/// Draws the lines from `first` (the base line of the first one) downwards.
+/// Draws the lines downwards; `first` is the start of the first base line.
 void draw_footer(const std::vector<std::string>& lines, Point first, Svg& svg);
 
-/// "Lubricant 1: ester-olefin copolymer" becomes a label and a note. A label that is too long is
-/// cut, with an ellipsis; the id stands for an empty title.
+/// The label and note of a fluid; "Lubricant 1: ester-olefin copolymer" is split at the colon. A
+/// long label is cut and ends in an ellipsis; without a title the label contains the id.
 struct FluidTitle {
   std::string label;
   std::string note;

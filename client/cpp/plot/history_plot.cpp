@@ -30,7 +30,7 @@ struct UnitSuffix {
   double offset = 0;
 };
 
-// Longest first where one ends in another.
+// Longest suffix first: "_metres_per_second" before "_per_second".
 constexpr UnitSuffix kUnits[] = {
     {"_radians_per_second", "rad/s", 1},
     {"_metres_per_second", "m/s", 1},
@@ -50,7 +50,7 @@ bool is_abscissa(const std::string& name) {
   return name == kTimeColumn || name.rfind("mesh_phase", 0) == 0;
 }
 
-/// Columns by quantity, in the order they came.
+/// Groups the columns by quantity, in their given order.
 std::vector<std::pair<std::string, std::vector<const v1::History::Column*>>> grouped(
     const v1::History& history) {
   std::vector<std::pair<std::string, std::vector<const v1::History::Column*>>> groups;
@@ -79,7 +79,8 @@ std::vector<double> scaled(const v1::History::Column& column, double factor, dou
   return values;
 }
 
-/// Time in ms, else mesh phase, else the row.
+/// Returns title and values of the horizontal axis: time in ms if the history has it, else mesh
+/// phase, else the row.
 std::pair<std::string, std::vector<double>> abscissa(const v1::History& history) {
   const v1::History::Column* phase = nullptr;
   for (const auto& column : history.columns()) {
@@ -107,7 +108,7 @@ ColumnTitle column_title(const std::string& column) {
       continue;
     }
     words.erase(words.size() - suffix.size());
-    if (known.offset != 0) words += "_temperature";  // a quantity, not a part of the unit
+    if (known.offset != 0) words += "_temperature";  // the suffix removed a word of the quantity
     unit = known.unit;
     title.factor = known.factor;
     title.offset = known.offset;

@@ -6,13 +6,14 @@
 
 namespace tribodyn::client {
 
-/// Small multiples of a history's columns against time, the three flank slots of one quantity in
-/// one panel. `lubricant_title` is the lubricant's display name; empty: its id stands for it.
+/// Draws a history's columns against time as small multiples; the three flank slots of one quantity
+/// share a panel. `lubricant_title` is the lubricant's display name; if it is empty, the plot shows
+/// the id.
 std::string history_plot(const v1::Simulation& simulation, const v1::History& history,
                          const std::string& lubricant_title);
 
-/// "mesh_force_newtons" as a title and the way into a readable unit: {"Mesh force, N", 1, 0}.
-/// Temperatures are drawn in degrees Celsius, as in curves.
+/// The title of a column and its conversion to the plot's unit, e.g. {"Mesh force, N", 1, 0} for
+/// "mesh_force_newtons". Temperatures are plotted in degrees Celsius.
 struct ColumnTitle {
   std::string title;
   double factor = 1;

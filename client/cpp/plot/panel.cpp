@@ -17,7 +17,7 @@ constexpr char kBandColour[] = "#9a9a9a";
 constexpr char kHatchInk[] = "#8a5a00";
 constexpr double kHatchNoteSize = 12;
 constexpr double kStripHeight = 8;
-constexpr double kSampleWidth = 26;  // of a line in front of its label
+constexpr double kSampleWidth = 26;  // of the piece of line in front of its label
 
 struct Range {
   double low = std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ struct Range {
   bool empty() const { return !(low <= high); }
 };
 
-/// Places values in the frame.
+/// Maps values to positions in the frame.
 struct Scale {
   Range x, y;
   const Panel& panel;
@@ -63,7 +63,7 @@ void draw_grid(const Panel& panel, const Scale& scale, const std::vector<double>
   svg.line({panel.corner.x, bottom}, {panel.corner.x + panel.width, bottom}, {kInkColour, 1, ""});
 }
 
-/// The vertical axis; a zigzag near its foot, or its head, says that zero lies beyond.
+/// Draws the vertical axis. A zigzag near its lower or upper end marks that zero lies beyond.
 void draw_axis(const Panel& panel, const Scale& scale, Svg& svg) {
   constexpr double kBreakStart = 6;  // from the end of the axis
   constexpr double kBreakLength = 12;
@@ -74,7 +74,7 @@ void draw_axis(const Panel& panel, const Scale& scale, Svg& svg) {
   const bool cut_below = scale.y.low > 0 && !panel.has_arbitrary_zero;
   const bool cut_above = scale.y.high < 0 && !panel.has_arbitrary_zero;
   std::vector<Point> axis = {{x, bottom}};
-  const auto add_break = [&](double start) {  // upwards from its lower end
+  const auto add_break = [&](double start) {  // upwards from `start`
     axis.push_back({x, start});
     axis.push_back({x - kBreakWidth, start - 0.25 * kBreakLength});
     axis.push_back({x + kBreakWidth, start - 0.75 * kBreakLength});
@@ -142,7 +142,7 @@ void draw_series(const Series& series, const Scale& scale, Svg& svg) {
   }
 }
 
-/// A text beside the frame and the end of the line that it names.
+/// A label beside the frame and the end of its line.
 struct EndLabel {
   double y;
   Point line_end;
@@ -165,11 +165,11 @@ std::vector<EndLabel> end_labels(const Panel& panel, const Scale& scale) {
   return labels;
 }
 
-/// Labels near the ends of their lines, pushed apart where lines end close together. A thin line
-/// leads to an end that is not beside its label.
+/// Draws labels near the ends of their lines, moved apart where lines end close together. A thin
+/// line connects a label with an end that is not beside it.
 void draw_labels(const Panel& panel, const Scale& scale, Svg& svg) {
   std::vector<EndLabel> labels = end_labels(panel, scale);
-  // Notes are left out where they would push labels out of the frame.
+  // Omits notes that would push labels out of the frame.
   const bool shows_notes =
       static_cast<double>(labels.size()) * (kLabelDistance + kNoteDistance) <= panel.height;
   const auto note_height = [&](const EndLabel& label) {
@@ -184,7 +184,7 @@ void draw_labels(const Panel& panel, const Scale& scale, Svg& svg) {
       labels[i - 1].y -= overlap / 2;
     }
   }
-  // None below the frame, where the numbers of the axis stand.
+  // Labels stay above the foot of the frame: the numbers of the axis are below it.
   double lowest = panel.corner.y + panel.height;
   for (auto label = labels.rbegin(); label != labels.rend(); ++label) {
     label->y = std::min(label->y, lowest - note_height(*label) - 4);
@@ -210,7 +210,7 @@ void draw_labels(const Panel& panel, const Scale& scale, Svg& svg) {
   }
 }
 
-/// Ranges of x behind the lines.
+/// Draws shaded ranges of x behind the lines.
 void draw_bands(const Panel& panel, const Scale& scale, Svg& svg) {
   svg.begin_clip(panel.corner, panel.width, panel.height);
   for (const auto& [from, to] : panel.bands) {
@@ -224,7 +224,8 @@ void draw_bands(const Panel& panel, const Scale& scale, Svg& svg) {
   svg.end_clip();
 }
 
-/// From the foot of the frame upwards, each with its letter at the start of its first range.
+/// Draws strips from the foot of the frame upwards, each with its letter at the start of its first
+/// range.
 void draw_strips(const Panel& panel, const Scale& scale, Svg& svg) {
   double y = panel.corner.y + panel.height - kStripHeight - 2;
   for (const Strip& strip : panel.strips) {
@@ -243,7 +244,7 @@ void draw_strips(const Panel& panel, const Scale& scale, Svg& svg) {
   }
 }
 
-/// The note on what is hatched, on white at the top of its range.
+/// Draws the note about hatching, on white, at the top of its range.
 void draw_hatch_note(const Panel& panel, const Scale& scale, Svg& svg) {
   if (panel.hatch_note.empty()) return;
   const auto& [from, to] = panel.hatch_note_range;

@@ -10,7 +10,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// Two decimals are a fiftieth of a pixel; more is only weight.
+/// Two decimals are a hundredth of a pixel; more would only enlarge the file.
 std::string number(double value) {
   std::string text = fixed(value, 2);
   text.erase(text.find_last_not_of('0') + 1);
@@ -18,12 +18,12 @@ std::string number(double value) {
   return text;
 }
 
-/// Linear-light value of a channel of sRGB, both from 0 to 1 (IEC 61966-2-1).
+/// Returns the linear-light value of a channel of sRGB, both from 0 to 1 (IEC 61966-2-1).
 double linear_light(double channel) {
   return channel <= 0.04045 ? channel / 12.92 : std::pow((channel + 0.055) / 1.055, 2.4);
 }
 
-/// Red, green and blue of "#rrggbb", each from 0 to 255.
+/// Returns red, green and blue of "#rrggbb", each from 0 to 255.
 std::array<double, 3> channels_of(const std::string& colour) {
   std::array<double, 3> channels{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -32,7 +32,7 @@ std::array<double, 3> channels_of(const std::string& colour) {
   return channels;
 }
 
-/// Contrast ratio with white as WCAG 2.1 defines it: 1 to 21.
+/// Returns the contrast ratio with white as WCAG 2.1 defines it: 1 to 21.
 double contrast_with_white(const std::array<double, 3>& channels) {
   const double luminance = 0.2126 * linear_light(channels[0] / 255) +
                            0.7152 * linear_light(channels[1] / 255) +

@@ -6,7 +6,7 @@
 
 namespace tribodyn::client {
 
-/// A place on the drawing; y grows downwards.
+/// A position in the drawing [pixels]; y increases downwards.
 struct Point {
   double x, y;
 };
@@ -25,7 +25,7 @@ struct TextStyle {
   double rotation_degrees = 0;
 };
 
-/// A self-contained SVG drawing on white, written by hand: no scripts, fonts or links.
+/// A self-contained SVG drawing on a white background, without scripts, fonts or links.
 class Svg {
  public:
   Svg(double width, double height);
@@ -35,10 +35,10 @@ class Svg {
   void polyline(const std::vector<Point>& points, const Stroke& stroke);
   void polygon(const std::vector<Point>& corners, const std::string& fill, const Stroke& stroke);
   void circle(Point centre, double radius, const std::string& fill, const Stroke& stroke);
-  /// A rectangle filled with thin oblique lines.
+  /// Draws a rectangle filled with thin oblique lines.
   void hatched_rectangle(Point corner, double width, double height, const std::string& colour);
   void text(Point at, std::string_view text, const TextStyle& style = {});
-  /// Following elements are cut at this rectangle until the clip ends.
+  /// Clips the following elements at this rectangle until end_clip().
   void begin_clip(Point corner, double width, double height);
   void end_clip();
   std::string finish() const;
@@ -50,14 +50,14 @@ class Svg {
   std::string body_;
 };
 
-/// Text with &, <, >, quotes and control characters made harmless in XML.
+/// Returns the text with &, <, > and quotes escaped for XML and without control characters.
 std::string xml_escaped(std::string_view text);
 
-/// The colour "#rrggbb" as it is, or so much darker that text in it has a contrast of 4.5 to 1 with
-/// white, which WCAG 2.1 asks of small text.
+/// Returns "#rrggbb" unchanged, or darkened until text in it has a contrast of 4.5 to 1 with white,
+/// the least that WCAG 2.1 allows for small text.
 std::string legible_on_white(const std::string& colour);
 
-/// Roughly how wide sans-serif text comes out, for placing labels.
+/// Returns the approximate width of sans-serif text [pixels].
 double text_width(std::string_view text, double size);
 
 }  // namespace tribodyn::client

@@ -23,7 +23,7 @@ std::string residual_table(const v1::LubricantCharacterisation& fluid) {
   return table.text();
 }
 
-/// Where the two laws part most, on either side.
+/// Returns the largest differences between the two laws, below and above.
 std::string comparison_text(const v1::LubricantCharacterisation& fluid) {
   double lowest = 0;
   double highest = 0;
@@ -35,15 +35,15 @@ std::string comparison_text(const v1::LubricantCharacterisation& fluid) {
     highest = std::max(highest, difference);
   }
   const auto& table = fluid.walther_comparison();
-  return wrapped("From " + significant(table.begin()->temperature_celsius()) + " to " +
+  return wrapped("Between " + significant(table.begin()->temperature_celsius()) + " and " +
                      significant(table.rbegin()->temperature_celsius()) +
-                     " C the law in use (Vogel) is " + fixed(100 * lowest, 1) + " to +" +
-                     fixed(100 * highest, 1) + " % off ASTM D341 through the same viscosities.",
+                     " C the fitted Vogel law differs from ASTM D341 (same data) by " +
+                     fixed(100 * lowest, 1) + " to +" + fixed(100 * highest, 1) + " %.",
                  2);
 }
 
-/// Estimates of single parameters share one line: each stands in the table of parameters with its
-/// uncertainty and source.
+/// Returns the warnings. Estimated parameters share one line: the table of parameters shows the
+/// uncertainty and source of each.
 std::string warnings_text(const v1::LubricantCharacterisation& fluid) {
   std::vector<std::string> estimated;
   std::string text;
@@ -58,7 +58,7 @@ std::string warnings_text(const v1::LubricantCharacterisation& fluid) {
     }
   }
   if (!estimated.empty()) {
-    add("Not measured but estimated, with the uncertainty and the source below: " +
+    add("Estimated, not measured (uncertainty and source: see the parameters): " +
         joined(estimated, ", ") + ".");
   }
   return text;
@@ -70,7 +70,7 @@ std::string characterisation_sheet(const v1::Lubricant& lubricant) {
   if (!lubricant.has_characterisation()) return "";
   const v1::LubricantCharacterisation& fluid = lubricant.characterisation();
   Sheet sheet;
-  sheet.heading("In the units of the trade");
+  sheet.heading("Data-sheet values");
   sheet.line("KV40",
              significant(fluid.kinematic_viscosity_40_celsius_square_millimetres_per_second()),
              "mm2/s");
@@ -84,15 +84,15 @@ std::string characterisation_sheet(const v1::Lubricant& lubricant) {
              "kg/m3");
   sheet.line("SAE J306 grade", fluid.sae_j306_grade().empty() ? "none" : fluid.sae_j306_grade());
   if (fluid.has_temperature_of_150_pascal_seconds_celsius()) {
-    sheet.line("150 Pa s at", significant(fluid.temperature_of_150_pascal_seconds_celsius(), 3),
-               "C",
-               "by the law; would earn " + (fluid.expected_low_temperature_grade().empty()
-                                                ? std::string("no W grade")
-                                                : fluid.expected_low_temperature_grade()));
+    sheet.line("reaches 150 Pa s at",
+               significant(fluid.temperature_of_150_pascal_seconds_celsius(), 3), "C",
+               "fitted law; consistent with " + (fluid.expected_low_temperature_grade().empty()
+                                                     ? std::string("no W grade")
+                                                     : fluid.expected_low_temperature_grade()));
   }
   if (!fluid.sae_j306_grade_note().empty()) sheet.remark("Grade: " + fluid.sae_j306_grade_note());
   std::string text = "\n" + sheet.text();
-  // A law through as many viscosities as it has parameters leaves nothing to show.
+  // A law with as many parameters as viscosities fits exactly: no residuals to show.
   if (fluid.root_mean_square_residual() > 1e-9) {
     text += "\n" + residual_table(fluid) + "  root mean square " +
             fixed(100 * fluid.root_mean_square_residual(), 2) + " %\n";
@@ -100,7 +100,7 @@ std::string characterisation_sheet(const v1::Lubricant& lubricant) {
   if (fluid.walther_comparison_size() > 0) text += comparison_text(fluid);
   const std::string warnings = warnings_text(fluid);
   return text +
-         (warnings.empty() ? "" : "\n" + heading("To know before relying on it") + "\n" + warnings);
+         (warnings.empty() ? "" : "\n" + heading("Limits of these values") + "\n" + warnings);
 }
 
 std::string characterisation_warnings(const v1::Lubricant& lubricant) {

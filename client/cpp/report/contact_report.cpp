@@ -13,7 +13,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// How one field of the response is shown: value times factor plus offset, in unit.
+/// How one field of the response is shown: value * factor + offset, in `unit`.
 struct Quantity {
   const char* field;
   const char* label;

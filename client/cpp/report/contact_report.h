@@ -6,7 +6,7 @@
 
 namespace tribodyn::client {
 
-/// Every quantity of one contact with symbol, value, unit and equation of the paper.
+/// Returns a table of every quantity of one contact: symbol, value, unit and equation of the paper.
 std::string contact_report(const v1::EvaluateContactResponse& contact);
 
 }  // namespace tribodyn::client

@@ -17,7 +17,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// Whether the losses of a curve are better read in kilowatts.
+/// Whether the losses of a curve are shown in kilowatts.
 bool is_in_kilowatts(const v1::SimulationResult& result) {
   return std::any_of(result.points().begin(), result.points().end(),
                      [](const v1::CurvePoint& point) {
@@ -30,10 +30,10 @@ Table curve_table(const v1::Simulation& simulation) {
   constexpr auto kDecimal = Table::Align::kDecimal;
   Table table({{"speed", "km/h", kDecimal},
                {"inefficiency", "energy mean %", kDecimal},
-               {"of it", "solver error", kDecimal},
+               {"inefficiency", "solver error", kDecimal},
                {"inefficiency", "RMS %", kDecimal},
                {"mesh loss", kilowatts ? "kW" : "W", kDecimal},
-               {"T_s", "N m", kDecimal},
+               {"pinion torque", "N m", kDecimal},
                {"film", "mean um", kDecimal},
                {"lambda", "min", kDecimal},
                {"lambda", "mean", kDecimal},
@@ -70,7 +70,7 @@ Table curve_table(const v1::Simulation& simulation) {
   return table;
 }
 
-/// The same refusal at many speeds is one remark.
+/// Adds the speeds without a result; speeds with the same reason share one remark.
 void add_refusals(const v1::SimulationResult& result, Sheet& sheet) {
   std::vector<std::pair<std::string, std::string>> refusals;  // why, at which speeds
   for (const v1::CurvePoint& point : result.points()) {
@@ -94,10 +94,12 @@ void add_jumps(const v1::SimulationResult& result, Sheet& sheet) {
     if (!point.has_branch_end()) continue;
     if (std::exchange(is_first, false)) sheet.heading("Jumps of the response");
     const auto& end = point.branch_end();
-    sheet.remark("The branch of steady states that the curve follows " +
-                 std::string(result.direction() == v1::SWEEP_DIRECTION_DOWN ? "down" : "up") +
-                 " ends between " + fixed(end.followed_to_kilometres_per_hour(), 2) + " and " +
-                 fixed(end.gone_at_kilometres_per_hour(), 2) + " km/h: there the response jumps.");
+    sheet.remark(
+        "With " +
+        std::string(result.direction() == v1::SWEEP_DIRECTION_DOWN ? "falling" : "rising") +
+        " speed the branch of steady states that the curve follows ends between " +
+        fixed(end.followed_to_kilometres_per_hour(), 2) + " and " +
+        fixed(end.gone_at_kilometres_per_hour(), 2) + " km/h; the response jumps there.");
   }
 }
 
@@ -114,8 +116,9 @@ void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
   }
   if (result.independent_points()) {
     sheet.remark(
-        "Each speed was solved alone: no branch of steady states was followed, and no jump between "
-        "branches was looked for.");
+        "Each speed was solved independently: the solver neither followed a branch of steady "
+        "states "
+        "nor searched for jumps between branches.");
   }
   if (without_period > 0) {
     sheet.remark(std::to_string(without_period) +
@@ -127,7 +130,7 @@ void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
   }
 }
 
-/// "BASE_OIL_UNSPECIFIED PARAMETER_ESTIMATED".
+/// Returns e.g. "BASE_OIL_UNSPECIFIED PARAMETER_ESTIMATED".
 std::string codes_of(const InputWarnings& warnings) {
   std::string text;
   for (const v1::RangeWarning& warning : warnings) {
@@ -178,7 +181,7 @@ std::string points_csv(const std::vector<v1::Simulation>& simulations) {
           {"model_options", model_options_text(simulation.model_options())},
           {"direction", direction_word(simulation)}};
       row.emplace_back("speed_kilometres_per_hour", shortest(point.speed_kilometres_per_hour()));
-      // A refused speed keeps its line, with empty cells: a gap must not pass for zeros.
+      // A speed without a result keeps its line, with empty cells instead of zeros.
       if (point.has_result()) {
         append_fields(point.result(), "", row);
       } else {

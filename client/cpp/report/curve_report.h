@@ -7,11 +7,11 @@
 
 namespace tribodyn::client {
 
-/// A curve for a person: heading, one line a speed, warnings, provenance.
+/// Returns a curve as text: heading, one line per speed, warnings, provenance.
 std::string curve_report(const v1::Simulation& simulation, bool shows_assumptions);
 
-/// Every point of every simulation (curves and single points alike), one line each, with the inputs
-/// that tell them apart and every field of the result.
+/// Returns a CSV line for every point of every simulation, of curves and of single points, with the
+/// inputs that distinguish the simulations and every field of the result.
 std::string points_csv(const std::vector<v1::Simulation>& simulations);
 
 }  // namespace tribodyn::client

@@ -22,16 +22,16 @@ namespace {
 using google::protobuf::FieldDescriptor;
 
 struct Row {
-  std::string label;  ///< for a person
+  std::string label;  ///< shown to the user
   std::string field;  ///< of Lubricant or its characterisation
   std::string unit;
-  std::string a, b;  ///< as shown; empty: not known
+  std::string a, b;  ///< formatted values; empty: not known
   std::string a_known, b_known;
   std::optional<double> relative_difference;
   bool differs = false;
 };
 
-std::string known_of(const v1::Lubricant& lubricant, const std::string& field) {
+std::string provenance_word_of(const v1::Lubricant& lubricant, const std::string& field) {
   const auto* provenance = provenance_of(lubricant, field);
   return provenance == nullptr ? "" : provenance_word(provenance->provenance());
 }
@@ -67,13 +67,13 @@ std::vector<Row> parameter_rows(const v1::Lubricant& a, const v1::Lubricant& b, 
     };
     set_values(row, shown(in_a), shown(in_b), full);
     row.differs = in_a != in_b;
-    // A share of a temperature in Celsius says nothing.
+    // A relative difference in degrees Celsius has no meaning.
     row.relative_difference = std::nullopt;
     if (row.differs && in_a && in_b && *in_a != 0 && !temperature) {
       row.relative_difference = (*in_b - *in_a) / std::abs(*in_a);
     }
-    row.a_known = known_of(a, field.name());
-    row.b_known = known_of(b, field.name());
+    row.a_known = provenance_word_of(a, field.name());
+    row.b_known = provenance_word_of(b, field.name());
     rows.push_back(std::move(row));
   }
   return rows;
@@ -139,8 +139,8 @@ std::string table_text(const std::vector<Row>& rows, const v1::Lubricant& a,
                {resource_id(a.name()), ""},
                {resource_id(b.name()), ""},
                {"Unit", "", Table::Align::kLeft},
-               {"differs by", "%"},
-               {"Known", "", Table::Align::kLeft}});
+               {"(B-A)/|A|", "%"},
+               {"Origin", "", Table::Align::kLeft}});
   for (const Row& row : rows) {
     std::string known = row.a_known;
     if (row.b_known != row.a_known) {

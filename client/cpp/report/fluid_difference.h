@@ -7,15 +7,15 @@
 
 namespace tribodyn::client {
 
-/// Two fluids side by side.
+/// The comparison of two fluids.
 struct FluidDifference {
   std::string text;
   bool differs = false;  ///< in any figure or parameter
 };
 
-/// KV40, KV100, viscosity index, density, SAE J306 grade and every parameter with its unit, how it
-/// is known and the relative difference (b - a)/a; what differs first, the rest only with
-/// `shows_equal`.
+/// Compares KV40, KV100, viscosity index, density, SAE J306 grade and every parameter: its unit,
+/// its origin and the relative difference (b - a)/|a|. Rows that differ come first; equal rows
+/// follow only with `shows_equal`.
 FluidDifference fluid_difference(const v1::Lubricant& a, const v1::Lubricant& b, bool shows_equal,
                                  OutputFormat format);
 

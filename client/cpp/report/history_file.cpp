@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t kIdentityLength = 12;
 constexpr std::size_t kNumpyAlignment = 64;
 
-/// Version 1.0 of the format: magic, length of the dictionary, the dictionary padded with spaces.
+/// Returns the header of version 1.0 of the format: magic, length of the dictionary, the dictionary
+/// padded with spaces.
 std::string numpy_header(const std::vector<std::string>& columns, std::int64_t rows) {
   std::string fields;
   for (const std::string& name : columns) fields += "('" + name + "', '<f8'), ";
@@ -44,7 +45,7 @@ std::string csv_rows(const HistoryRows& rows) {
   return out;
 }
 
-/// Row by row, as a structured array lies in memory.
+/// Returns the rows in the memory order of a structured array: row by row.
 std::string numpy_rows(const HistoryRows& rows) {
   const std::size_t width = rows.columns.size() * sizeof(double);
   std::string out(rows.columns.front().size() * width, '\0');
@@ -82,7 +83,7 @@ std::string HistoryFile::header(std::int64_t rows) const {
   return format_ == Format::kCsv ? csv_line(columns_) : numpy_header(columns_, rows);
 }
 
-/// Cuts off what is no whole row.
+/// Removes an incomplete last row and returns the number of complete rows.
 std::int64_t HistoryFile::rows_of_part(const std::string& header) const {
   std::ifstream part(target_, std::ios::binary);
   std::string begin(header.size(), '\0');

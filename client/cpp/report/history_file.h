@@ -9,25 +9,25 @@
 
 namespace tribodyn::client {
 
-/// A history on its way into a file. What came so far is kept under "<path>.<identity>.part", where
-/// a later download of the same goes on; the file itself appears when all rows are there. A pipe or
-/// a device is written to as it is.
+/// A file that receives a history. The rows so far are in "<path>.<identity>.part", where a later
+/// download of the same history resumes; finish() renames that file to `path`. A pipe or a device
+/// is written directly.
 class HistoryFile {
  public:
   enum class Format {
-    kCsv,    ///< a line a row; headers are the columns' names, which carry their units
+    kCsv,    ///< a line per row; the headers are the columns' names, with units
     kNumpy,  ///< .npy of a structured array: numpy.load(path)["mesh_force_newtons"]
   };
 
-  /// `identity` tells one history from another, e.g. the hash of its inputs. Throws Failure.
+  /// `identity` distinguishes histories, e.g. the hash of the inputs. Throws Failure.
   HistoryFile(std::string path, Format format, const std::string& identity,
               std::vector<std::string> columns, std::int64_t rows);
 
-  /// Rows that an earlier download left there.
+  /// Returns the number of rows that an earlier download left in the file.
   std::int64_t rows_there() const { return rows_there_; }
   /// Appends rows.
   void add(const HistoryRows& rows);
-  /// Puts the file in its place.
+  /// Renames the complete file to its final path.
   void finish();
 
  private:
@@ -38,7 +38,7 @@ class HistoryFile {
   const std::string path_;
   const Format format_;
   const std::vector<std::string> columns_;
-  std::string target_;  ///< what is written to
+  std::string target_;  ///< path of the file that is written
   std::int64_t rows_there_ = 0;
   std::ofstream file_;
 };

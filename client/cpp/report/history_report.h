@@ -6,19 +6,19 @@
 
 namespace tribodyn::client {
 
-inline constexpr char kTimeColumn[] = "time_seconds";  ///< a history's column
+inline constexpr char kTimeColumn[] = "time_seconds";  ///< name of a column
 
-/// Whether a zero of this column only says that the flank carries no load, so that nothing is to be
-/// drawn or averaged: the film, temperature, ... of a flank slot, but not its forces.
+/// Whether a zero in this column only means that the flank carries no load, as in film thickness or
+/// temperature of a flank slot, but not in its forces. Such zeros are neither drawn nor averaged.
 bool zero_means_no_contact(const std::string& column);
 
-/// "flank_load_newtons" from "flank_load_newtons_flank_1"; other names as they are.
+/// Returns "flank_load_newtons" for "flank_load_newtons_flank_1"; other names unchanged.
 std::string column_quantity(const std::string& column);
 
-/// Least, mean and largest value of each column; of flank slots while they carry load.
+/// Returns minimum, mean and maximum of each column; for flank slots only while they carry load.
 std::string history_summary(const v1::History& history);
 
-/// One line a sample; headers are the columns' names, which carry their units.
+/// Returns a line per sample; the headers are the columns' names, with units.
 std::string history_csv(const v1::History& history);
 
 }  // namespace tribodyn::client

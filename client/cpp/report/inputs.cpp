@@ -71,7 +71,7 @@ std::string curve_text(const v1::InefficiencyCurveStudy& study) {
          significant(study.speed_step_kilometres_per_hour()) + direction + ascent;
 }
 
-/// "20.525 1/GPa" of "2.0525e-08 1/Pa"; what cannot be read stays as it is.
+/// Returns e.g. "20.525 1/GPa" for "2.0525e-08 1/Pa"; a text without a number unchanged.
 std::string in_trade_unit_text(const v1::Assumption& assumption) {
   const std::string& field = assumption.field();
   const std::string unit = unit_of_field(field);
@@ -83,7 +83,8 @@ std::string in_trade_unit_text(const v1::Assumption& assumption) {
   return significant(in_trade_unit(field, *value)) + (trade.empty() ? "" : " " + trade);
 }
 
-/// What a result that compares fluids rests on most: never left out.
+/// Adds the assumed parameters of the lubricant, which affect a comparison of fluids most. They are
+/// always shown.
 void add_assumed_of_lubricant(const v1::SimulationResult& result, Sheet& sheet) {
   std::string text;
   for (const auto& assumption : result.assumptions()) {
@@ -95,7 +96,7 @@ void add_assumed_of_lubricant(const v1::SimulationResult& result, Sheet& sheet) 
             in_trade_unit_text(assumption);
   }
   if (text.empty()) return;
-  sheet.heading("Assumed of the lubricant, not measured");
+  sheet.heading("Parameters of the lubricant that are assumed, not measured");
   sheet.remark(text);
 }
 
@@ -166,7 +167,8 @@ void add_provenance(const v1::SimulationResult& result, bool shows_all, Sheet& s
       text += (text.empty() ? "" : ", ") + std::to_string(count) + " " +
               provenance_word(static_cast<v1::Provenance>(provenance));
     }
-    sheet.line("parameters", text.empty() ? "none stated" : text + " (all: --assumptions)");
+    sheet.line("parameters",
+               text.empty() ? "none stated" : text + " (list them with --assumptions)");
     add_assumed_of_lubricant(result, sheet);
     return;
   }
@@ -185,7 +187,7 @@ void add_provenance(const v1::SimulationResult& result, bool shows_all, Sheet& s
 }
 
 void add_input_warnings(const InputWarnings& warnings, Sheet& sheet) {
-  if (!warnings.empty()) sheet.heading("To know of lubricant and surface");
+  if (!warnings.empty()) sheet.heading("Notes on lubricant and surface");
   for (const v1::RangeWarning& warning : warnings) {
     std::string words = warning_words(warning.code());
     words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));

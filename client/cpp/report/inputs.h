@@ -17,32 +17,32 @@ struct Inputs {
 };
 Inputs inputs_of(const v1::Simulation& simulation);
 
-/// "gear set A, surface run-in, vehicle passenger-car; sump 40 C, inlet rise 20 K". A picture can
-/// take a degree sign, a terminal without UTF-8 cannot.
+/// Returns e.g. "gear set A, surface run-in, vehicle passenger-car; sump 40 C, inlet rise 20 K". A
+/// plot may pass a degree sign for `celsius`; a terminal without UTF-8 cannot show one.
 std::string inputs_text(const v1::Simulation& simulation, const char* celsius = "C");
 
-/// "isothermal, newtonian, as published eq17_atan"; "as corrected" when nothing departs from it.
+/// Returns e.g. "isothermal, newtonian, as published eq17_atan"; "as corrected" if no option is
+/// set.
 std::string model_options_text(const v1::ModelOptions& options);
 
-/// "cruise at 72.5 km/h", "inefficiency curve from 20 to 140 km/h, up-sweep", ...
+/// Returns e.g. "cruise at 72.5 km/h" or "inefficiency curve from 20 to 140 km/h, up-sweep".
 std::string study_text(const v1::Simulation& simulation);
 
-/// "up-sweep", "down-sweep" or "independent points".
+/// Returns "up-sweep", "down-sweep" or "independent points".
 std::string sweep_text(const v1::InefficiencyCurveStudy& study);
 
-/// "published" of PROVENANCE_PUBLISHED.
+/// Returns e.g. "published" for PROVENANCE_PUBLISHED.
 std::string provenance_word(v1::Provenance provenance);
 
-/// Model version, input hash, and the assumptions: how many of each provenance, or, with
-/// `shows_all`, every one.
+/// Adds model version, input hash and the assumptions: the number of each provenance, or each
+/// assumption with `shows_all`.
 void add_provenance(const v1::SimulationResult& result, bool shows_all, Sheet& sheet);
 
-/// What to know of the inputs before relying on the result, a remark a code; nothing when there is
-/// nothing.
+/// Adds the warnings about the inputs, one remark per code; no heading if there are none.
 using InputWarnings = google::protobuf::RepeatedPtrField<v1::RangeWarning>;
 void add_input_warnings(const InputWarnings& warnings, Sheet& sheet);
 
-/// Seconds from start to end; negative when either is missing.
+/// Returns the seconds from start to end; negative if either time is missing.
 double run_seconds(const v1::Simulation& simulation);
 
 }  // namespace tribodyn::client

@@ -22,21 +22,21 @@ void add_heading(const v1::Simulation& simulation, Sheet& sheet) {
   sheet.remark("model: " + model_options_text(simulation.model_options()));
 }
 
-/// The wheel drives the pinion.
+/// Whether the wheel drives the pinion.
 bool is_coast(const v1::PointResult& result) { return result.pinion_torque_newton_metres() < 0; }
 
 std::string share_of(double part, double whole) {
-  return whole > 0 ? fixed(100 * part / whole, 1) + " % of it" : "";
+  return whole > 0 ? fixed(100 * part / whole, 1) + " % of mesh loss" : "";
 }
 
 void add_losses(const v1::PointResult& result, const Precision& precision, Sheet& sheet) {
-  sheet.heading("Mesh loss (conjunctional; bearings, churning and seals are not in it)");
+  sheet.heading("Mesh loss (at the tooth contact; excludes bearings, churning and seals)");
   const double mean = result.inefficiency_energy_mean_percent();
   const bool has_mean = result.has_inefficiency_energy_mean_percent();
   sheet.line(
       "inefficiency, energy mean", has_mean ? precision.estimated(mean, 4) : "-", "%",
       (has_mean && precision.is_estimated() ? precision.error_of(mean) + " (solver); " : "") +
-          "loss energy over the energy that comes in");
+          "loss energy / input energy");
   sheet.line("inefficiency, RMS",
              result.has_inefficiency_rms_percent()
                  ? precision.estimated(result.inefficiency_rms_percent(), 4)
@@ -56,8 +56,7 @@ void add_losses(const v1::PointResult& result, const Precision& precision, Sheet
   };
   const char* unit_text = kilowatts ? "kW" : "W";
   sheet.line("mesh loss", power(loss), unit_text,
-             "of " + precision.estimated(1e-3 * result.input_power_watts(), 4) +
-                 " kW that come in " +
+             "of " + precision.estimated(1e-3 * result.input_power_watts(), 4) + " kW input " +
                  (is_coast(result) ? "at the wheel: coast" : "at the pinion"));
   sheet.line("  viscous", power(result.viscous_loss_power_watts()), unit_text,
              share_of(result.viscous_loss_power_watts(), loss));
@@ -76,7 +75,8 @@ void add_losses(const v1::PointResult& result, const Precision& precision, Sheet
              precision.other(result.boundary_to_viscous_friction_ratio(), 4), "", "of RMS forces");
 }
 
-/// One of the torques is given, or follows from the vehicle alone; the other one is solved.
+/// Adds the operating conditions. One of the torques is an input or follows from the vehicle; the
+/// solver determines the other.
 void add_operation(const v1::PointResult& result, bool is_pinion_torque_given,
                    const Precision& precision, Sheet& sheet) {
   const auto torque = [&](double value, bool is_given) {
@@ -86,10 +86,10 @@ void add_operation(const v1::PointResult& result, bool is_pinion_torque_given,
   sheet.line("vehicle speed", fixed(result.vehicle_speed_kilometres_per_hour(), 2), "km/h");
   sheet.line("pinion speed", fixed(result.mean_pinion_speed_radians_per_second(), 3), "rad/s");
   sheet.line("mesh frequency", fixed(result.mesh_frequency_hertz(), 2), "Hz");
-  sheet.line("pinion torque T_s",
-             torque(result.pinion_torque_newton_metres(), is_pinion_torque_given), "N m");
-  sheet.line("wheel torque T_w",
-             torque(result.wheel_torque_newton_metres(), !is_pinion_torque_given), "N m");
+  sheet.line("pinion torque", torque(result.pinion_torque_newton_metres(), is_pinion_torque_given),
+             "N m");
+  sheet.line("wheel torque", torque(result.wheel_torque_newton_metres(), !is_pinion_torque_given),
+             "N m");
 }
 
 template <class Cell>
@@ -127,14 +127,15 @@ std::string cycle_table(const v1::PointResult& result, const Precision& precisio
   return table.text();
 }
 
-/// Three digits of everything: what is estimated, is so of the response that was asked for.
+/// Adds the coexisting response with three digits: the error estimate applies only to the requested
+/// response.
 void add_coexisting(const v1::CoexistingResponse& other, Sheet& sheet) {
   const Precision precision({}, {});
   const auto figure = [&](double value, int decimals) { return precision.other(value, decimals); };
   sheet.heading("Another steady state exists at this point");
   sheet.line("inefficiency, energy mean", figure(other.inefficiency_energy_mean_percent(), 4), "%");
   sheet.line("inefficiency, RMS", figure(other.inefficiency_rms_percent(), 4), "%");
-  sheet.line("pinion torque T_s", figure(other.pinion_torque_newton_metres(), 3), "N m");
+  sheet.line("pinion torque", figure(other.pinion_torque_newton_metres(), 3), "N m");
   sheet.line("transmission error (DTE)",
              figure(1e6 * other.dynamic_transmission_error_minimum_metres(), 3), "um",
              "to " + figure(1e6 * other.dynamic_transmission_error_maximum_metres(), 3) + " um");
@@ -154,7 +155,7 @@ void add_contact(const v1::PointResult& result, bool probed, const Precision& pr
                      figure(loss.end_mesh_phase(), 4) + " cycles");
     }
     if (result.contact_losses_left_out() > 0) {
-      sheet.line("  and more of them", std::to_string(result.contact_losses_left_out()));
+      sheet.line("  further separations", std::to_string(result.contact_losses_left_out()));
     }
   }
   sheet.line("coast side contact", result.coast_side_contact() ? "yes" : "no");
@@ -165,7 +166,7 @@ void add_contact(const v1::PointResult& result, bool probed, const Precision& pr
   if (result.has_coexisting_response()) {
     add_coexisting(result.coexisting_response(), sheet);
   } else if (probed) {
-    sheet.line("another steady state", "none found from the other start");
+    sheet.line("another steady state", "not found from a second initial state");
   }
 }
 
@@ -192,22 +193,22 @@ std::string model_name(v1::PointModel model) {
                                              : "full (4 degrees of freedom)";
 }
 
-/// Why the model is the one that was used.
+/// Returns the reason for the model that was used.
 std::string model_reason(const v1::Simulation& simulation, const v1::PointResult& result) {
   const v1::OperatingPointStudy& study = simulation.operating_point();
   if (simulation.has_inefficiency_curve()) return "";
   if (study.model() == v1::POINT_MODEL_FULL || study.model() == v1::POINT_MODEL_QUASI_STATIC ||
       study.model() == v1::POINT_MODEL_ONE_DEGREE) {
-    return "as asked";
+    return "as requested";
   }
   if (result.model() == v1::POINT_MODEL_QUASI_STATIC)
     return "its estimated error is within the tolerance";
   if (study.probe_coexisting_response() || study.has_history() ||
       study.start() == v1::POINT_START_LARGE_VIBRATION ||
       simulation.solver_options().method() == v1::STEADY_STATE_METHOD_MARCH) {
-    return "what was asked for needs it";
+    return "required for the requested output";
   }
-  return "a cheaper one may err by more than the tolerance";
+  return "the error of a cheaper model may exceed the tolerance";
 }
 
 void add_solver(const v1::Simulation& simulation, const v1::PointResult& result,

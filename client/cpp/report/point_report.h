@@ -6,8 +6,8 @@
 
 namespace tribodyn::client {
 
-/// Everything about one operating point that has succeeded, for a person. `shows_assumptions`
-/// prints the whole ledger instead of counts.
+/// Returns everything about one operating point that has succeeded. With `shows_assumptions` it
+/// lists the assumptions instead of counting them.
 std::string point_report(const v1::Simulation& simulation, bool shows_assumptions);
 
 }  // namespace tribodyn::client

@@ -11,7 +11,7 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr double kDefaultTolerance = 1e-3;  // of the server
+constexpr double kDefaultTolerance = 1e-3;  // default of the server
 constexpr double kFineTolerance = 1e-5;
 constexpr int kUnestimatedDigits = 3;
 constexpr int kLeastDigits = 2;
@@ -22,15 +22,16 @@ std::string scientific(double value, int digits) {
   return text.data();
 }
 
-/// Places behind the decimal point of a number with so many significant digits, which rounding may
-/// carry into a further place; below zero, the last digit is one of tens, hundreds, ...
+/// Returns the number of decimals that show `digits` significant digits of the value. Rounding may
+/// carry into one more place. A negative result means that the last digit counts tens, hundreds,
+/// ...
 int decimals_of(double value, int digits) {
   const std::string text = scientific(value, digits);
   return digits - 1 - std::atoi(text.c_str() + text.find('e') + 1);
 }
 
-/// As fixed(); negative `decimals` round to tens, hundreds, ... and fill up with zeros. Nobody
-/// reads watts with an exponent.
+/// Like fixed(), but negative `decimals` round to tens, hundreds, ... and are filled with zeros:
+/// tables show no exponents.
 std::string rounded(double value, int decimals) {
   if (decimals >= 0 || value == 0) return fixed(value, std::max(decimals, 0));
   const double place = std::pow(10, -decimals);
@@ -62,11 +63,11 @@ std::string Precision::part(double value, double whole, int decimals) const {
     return rounded(value, std::min(decimals, decimals_of(whole, kUnestimatedDigits)));
   }
   const double error = relative_error_ * std::abs(whole);
-  // The place whose half unit is the error, to a hair: 0.5 of 0.5 is enough.
-  const double borne = error > 0 ? std::floor(std::log10(0.5 / error) + 1e-9) : decimals;
-  const int least = decimals_of(whole, kLeastDigits);
-  const int places = static_cast<int>(std::clamp<double>(borne, -300, decimals));
-  return rounded(value, std::min(decimals, std::max(places, least)));
+  // The place whose half unit is the error. 1e-9 allows equality: 0.5 for an error of 0.5.
+  const double justified = error > 0 ? std::floor(std::log10(0.5 / error) + 1e-9) : decimals;
+  const int minimum = decimals_of(whole, kLeastDigits);
+  const int places = static_cast<int>(std::clamp<double>(justified, -300, decimals));
+  return rounded(value, std::min(decimals, std::max(places, minimum)));
 }
 
 std::string Precision::other(double value, int decimals) const {

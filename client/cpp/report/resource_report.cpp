@@ -54,7 +54,7 @@ std::string labels_text(const Message& resource) {
   return text;
 }
 
-/// A number that the model takes from the resource.
+/// A number of the resource that the model uses.
 struct Parameter {
   const FieldDescriptor* field;
   const Message* parent;
@@ -91,7 +91,7 @@ bool is_known(const Parameter& parameter) {
          parameter.parent->GetReflection()->HasField(*parameter.parent, parameter.field);
 }
 
-/// Notes that several lines share, numbered in the order in which they come up.
+/// Notes shared by several lines, numbered in order of first use.
 class Notes {
  public:
   std::string mark(const std::string& note) {
@@ -112,15 +112,15 @@ class Notes {
   std::vector<std::string> notes_;
 };
 
-/// Two digits.
+/// Formats an uncertainty with two digits.
 std::string uncertainty_text(double uncertainty) {
   if (uncertainty <= 0) return "";
   return uncertainty >= 10 ? fixed(uncertainty, 0) : significant(uncertainty, 2);
 }
 
-/// Whether the warning, of one or several sentences, stands among those of the fluid already, or
-/// below the profiles of a surface.
-bool is_said(const Message& resource, const v1::ParameterProvenance& known) {
+/// Whether the report shows the warning elsewhere: all its sentences are among the fluid's
+/// warnings, or below the profiles of a surface.
+bool is_shown_elsewhere(const Message& resource, const v1::ParameterProvenance& known) {
   if (dynamic_cast<const v1::Surface*>(&resource) != nullptr) return known.computed();
   const auto* lubricant = dynamic_cast<const v1::Lubricant*>(&resource);
   if (lubricant == nullptr) return false;
@@ -139,7 +139,7 @@ std::string parameter_table(const Message& resource) {
                {"Value", ""},
                {"Unit", "", Table::Align::kLeft},
                {"+/-", ""},
-               {"Known", "", Table::Align::kLeft},
+               {"Origin", "", Table::Align::kLeft},
                {"Source", "", Table::Align::kLeft}});
   Notes notes;
   for (const Parameter& parameter : parameters) {
@@ -158,7 +158,7 @@ std::string parameter_table(const Message& resource) {
     }
     const double uncertainty = difference_in_trade_unit(name, known->standard_uncertainty());
     std::string note = known->source();
-    if (!known->warning().empty() && !is_said(resource, *known)) {
+    if (!known->warning().empty() && !is_shown_elsewhere(resource, *known)) {
       note += (note.empty() ? "" : ". ") + known->warning();
     }
     table.add_row({label_of_field(name), shown, unit, uncertainty_text(uncertainty),
@@ -244,10 +244,11 @@ std::string profiles_text(const v1::Surface& surface) {
   return text;
 }
 
-/// A column of a kind's table, beside name and title: a number or text, perhaps inside a block.
+/// A column of a kind's table besides name and title: a number or a text, possibly in a nested
+/// message.
 struct ListColumn {
   const char* header;
-  const char* block;  ///< null: at the top
+  const char* block;  ///< null: at the top level
   const char* field;
   int digits = 5;
 };
@@ -276,7 +277,7 @@ const std::vector<ListColumn>& list_columns(const ResourceKind& kind) {
   return kColumns.at(kind.word);
 }
 
-/// "-" where nothing is stated.
+/// Returns the cell of a column; "-" if the value is not set.
 std::string list_cell(const Message& resource, const ListColumn& column) {
   const Message* parent = &resource;
   if (column.block != nullptr) {
@@ -303,7 +304,7 @@ std::string list_json(const ResourceKind& kind, const std::vector<ResourcePointe
   return text + (resources.empty() ? "]\n}\n" : "\n ]\n}\n");
 }
 
-/// What import reads: exact, and without what was never set.
+/// Returns exact JSON that import reads, without unset fields.
 std::string import_json(const Message& resource) {
   google::protobuf::util::JsonPrintOptions options;
   options.add_whitespace = true;

@@ -8,32 +8,33 @@
 
 namespace tribodyn::client {
 
-/// One resource for a person: what it is, for a lubricant its viscosities, index and grade with
-/// how well the laws fit, every parameter with unit, uncertainty and how it is known, and what to
-/// know before relying on it.
+/// Returns one resource as text: its names, for a lubricant its viscosities, index, grade and the
+/// misfit of its laws, every parameter with unit, uncertainty and origin, and the warnings.
 std::string resource_sheet(const google::protobuf::Message& resource);
 
-/// Several in a table, a line each. `as_revisions`: of one resource, newest first.
+/// Returns a table with one line per resource. `as_revisions`: revisions of one resource, newest
+/// first.
 std::string resource_table(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,
                            bool as_revisions);
 
-/// One resource in any format.
+/// Returns one resource in any format.
 std::string resource_text(const google::protobuf::Message& resource, OutputFormat format);
-/// Several: a table, CSV with every number, or JSON as the server's list response has it.
+/// Returns resources as a table, as CSV with every number, or as JSON like the server's list
+/// response.
 std::string resources_text(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,
                            OutputFormat format, bool as_revisions);
 
-/// JSON without what only the server sets: what import reads. One resource, or an object with a
-/// list.
+/// Returns JSON that import reads: one resource, or an object with a list. Omits fields that only
+/// the server sets.
 std::string export_text(const ResourceKind& kind, const std::vector<ResourcePointer>& resources);
 
-/// How one parameter of a resource is known; null when nothing is stated.
+/// Returns the provenance of one parameter; null if the resource states none.
 const v1::ParameterProvenance* provenance_of(const google::protobuf::Message& resource,
                                              const std::string& field);
 
-/// The characterisation's figures, warnings and fits, for a lubricant.
+/// Returns figures, warnings and fits of a lubricant's characterisation.
 std::string characterisation_sheet(const v1::Lubricant& lubricant);
-/// The warnings alone, a line or more each; empty when there are none.
+/// Returns only the warnings, at least one line each; empty if there are none.
 std::string characterisation_warnings(const v1::Lubricant& lubricant);
 
 }  // namespace tribodyn::client

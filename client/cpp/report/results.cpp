@@ -11,8 +11,8 @@
 namespace tribodyn::client {
 namespace {
 
-/// The multiple of the largest torque of the data from which on a torque counts as far beyond them.
-/// A choice: no model says where data stop to hold.
+/// Ratio of torque to the largest torque of the data above which the caution is shown. A choice: no
+/// model predicts where the data cease to be valid.
 constexpr double kFarBeyond = 1.5;
 
 }  // namespace

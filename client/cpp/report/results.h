@@ -10,17 +10,18 @@
 
 namespace tribodyn::client {
 
-/// The largest pinion torque [N m] for which a gear set has data, by the name of its revision;
-/// 0: its data do not depend on the torque.
+/// The largest pinion torque [N m] for which each gear set has data, by the name of its revision; 0
+/// if its data do not depend on the torque.
 using TorqueLimits = std::map<std::string, double>;
 double largest_torque(const v1::GearSet& gear_set);
 
-/// A sentence when the pinion torque is far beyond the data of the gear set; else empty.
+/// Returns a sentence if the pinion torque is far beyond the data of the gear set, else an empty
+/// text.
 std::string torque_caution(const v1::Simulation& simulation, const TorqueLimits& limits);
 
-/// Simulations that have ended, in any format. Tables and CSV show those that succeeded; JSON shows
-/// all, as one Simulation when `alone`, else as a ListSimulationsResponse. A table begins with the
-/// caution above.
+/// Returns simulations that have ended in any format. Tables and CSV show those that succeeded;
+/// JSON shows all, as one Simulation if `alone`, else as a ListSimulationsResponse. A table begins
+/// with torque_caution().
 std::string results_text(const std::vector<v1::Simulation>& simulations, OutputFormat format,
                          bool alone, bool shows_assumptions, const TorqueLimits& limits);
 

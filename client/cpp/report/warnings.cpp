@@ -52,7 +52,7 @@ const KnownWarning* find_warning(const std::string& code) {
   return found == kKnownWarnings.end() ? nullptr : found;
 }
 
-/// "20 to 45 and 60 km/h": runs of neighbours among all speeds that the curves have.
+/// Returns e.g. "20 to 45 and 60 km/h": runs of neighbours among all speeds of the curves.
 std::string text_of_speeds(const std::set<double>& all, const std::set<double>& affected) {
   if (affected.size() == all.size()) {
     return all.size() == 1 ? significant(*all.begin()) + " km/h" : "all speeds";
@@ -86,7 +86,7 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// Of a curve, the sentence of the first speed stands for those of the others.
+/// Returns a remark. For a curve it contains the message of the first speed only.
 std::string remark_of(const CurveWarning& warning, bool is_curve) {
   const std::string words = capitalised(warning_words(warning.code));
   const std::string where = is_curve ? ", at " + warning.speeds_text + ". At " +
@@ -179,7 +179,7 @@ void add_warnings(const v1::Simulation& simulation, Sheet& sheet) {
   std::string last_heading;
   for (const CurveWarning& warning : curve_warnings({simulation})) {
     const std::string heading =
-        is_outside_range(warning.code) ? "Outside the validated range" : "How it was computed";
+        is_outside_range(warning.code) ? "Outside the validated range" : "Method of computation";
     if (heading != last_heading) sheet.heading(heading);
     last_heading = heading;
     sheet.remark(remark_of(warning, simulation.has_inefficiency_curve()));

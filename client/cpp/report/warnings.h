@@ -9,36 +9,36 @@
 
 namespace tribodyn::client {
 
-/// What the code of a warning means, in a few words: "cold inlet, do not rank oils here" of
-/// COLD_INLET. A code that this client does not know becomes words: "new code" of NEW_CODE.
+/// Returns the meaning of a warning code in a few words, e.g. "cold inlet, do not rank oils here"
+/// for COLD_INLET. For an unknown code returns the code in words, e.g. "new code" for NEW_CODE.
 std::string warning_words(const std::string& code);
 
-/// Whether a warning says that a law is used outside the range in which it was measured or
-/// checked. The others tell how the figure was computed (PERIOD, QUASI_STATIC, ...). An unknown
-/// code counts as outside.
+/// Whether a warning states that a law is used outside the range in which it was measured or
+/// checked; true for an unknown code. The other warnings describe how the figure was computed
+/// (PERIOD, QUASI_STATIC, ...).
 bool is_outside_range(const std::string& code);
 
-/// Whether figures under this warning must not be used to put fluids in an order.
+/// Whether fluids must not be ranked by figures that have this warning.
 bool forbids_ranking(const std::string& code);
 
-/// One warning of curves, with the speeds at which it holds for any of them.
+/// One warning of curves and the speeds at which at least one curve has it.
 struct CurveWarning {
   std::string code;
-  int speeds = 0;                  ///< results that have it
-  double first_speed = 0;          ///< of the first one in the order of the curve [km/h]
-  std::string first_message;       ///< of that one
+  int speeds = 0;                  ///< number of results that have it
+  double first_speed = 0;          ///< first speed in the order of the curve [km/h]
+  std::string first_message;       ///< message at that speed
   std::string speeds_text;         ///< "20 to 45 and 60 km/h", "all speeds"
-  std::vector<std::string> names;  ///< lubricants concerned; empty: all of them
-  std::string mark;                ///< "a", "b", ...: of a range that a picture marks by a strip
-  /// The same speeds as ranges, each reaching half way to its neighbours [km/h].
+  std::vector<std::string> names;  ///< lubricants that have it; empty: all
+  std::string mark;                ///< "a", "b", ...: letter of the strip in the plot
+  /// The same speeds as ranges [km/h], each half way to its neighbours.
   std::vector<std::pair<double, double>> bands;
 };
 
-/// Every warning of the curves: those outside a range first, then by code.
+/// Returns every warning of the curves: those outside a range first, then by code.
 std::vector<CurveWarning> curve_warnings(const std::vector<v1::Simulation>& simulations);
 
-/// Ranges of speed [km/h] in which `holds` is true of a result of some simulation, each reaching
-/// half way to the neighbouring speeds; ascending, not overlapping.
+/// Returns the ranges of speed [km/h] in which `holds` is true for a result of some simulation,
+/// ascending and without overlap. Each range reaches half way to the neighbouring speeds.
 template <class Holds>
 std::vector<std::pair<double, double>> speed_bands(const std::vector<v1::Simulation>& simulations,
                                                    const Holds& holds);
@@ -46,7 +46,7 @@ std::vector<std::pair<double, double>> speed_bands(const std::vector<v1::Simulat
 /// Joins ranges that touch or overlap.
 std::vector<std::pair<double, double>> merged_bands(std::vector<std::pair<double, double>> spans);
 
-/// The warnings of one point or one curve, under headings: plain words first, the code last.
+/// Adds the warnings of one point or one curve below headings: plain words first, the code last.
 void add_warnings(const v1::Simulation& simulation, Sheet& sheet);
 
 template <class Holds>

@@ -18,8 +18,8 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// What help says of a field beyond its name, and the names that the trade has for it. A number
-/// without a unit given to such a name is in `bare_unit`.
+/// The help text of a field and its data-sheet names. A number without unit that is given under
+/// such a name is in `bare_unit`.
 struct Wording {
   const char* names = "";
   const char* bare_unit = "";
@@ -59,13 +59,12 @@ const std::map<std::string, Wording>& wordings() {
        {"", "", "Density extrapolated to 0 K, e.g. 1016 kg/m3"}},
       {"density_slope_kilograms_per_cubic_metre_kelvin",
        {"", "", "Change of density with temperature, e.g. -0.63 kg/(m3 K)"}},
-      {"base_oil_class",
-       {"", "", "API group or chemistry; estimators of what is not given use it"}},
+      {"base_oil_class", {"", "", "API group or chemistry; used to estimate missing parameters"}},
       {"condition", {"", "", "Fresh, sheared in a test, or used"}},
       {"display_name", {"--title", "", "Title"}},
-      {"derived_from", {"", "", "The one that it was before, e.g. of a used oil the fresh one"}},
-      {"external_sample_id", {"--sample-id", "", "The laboratory's own sample"}},
-      {"lims_id", {"", "", "Sample in the laboratory information management system"}},
+      {"derived_from", {"", "", "The sample it came from, e.g. the fresh oil of a used one"}},
+      {"external_sample_id", {"--sample-id", "", "Sample id of the laboratory"}},
+      {"lims_id", {"", "", "Sample id in the laboratory information management system"}},
       {"composite_rms_height_metres", {"", "", "sigma_G, e.g. 0.4um"}},
       {"asperity_density_per_square_metre", {"", "", "eta_G, e.g. 2500/mm2"}},
       {"asperity_radius_metres", {"", "", "beta_G, e.g. 40um"}},
@@ -79,9 +78,9 @@ Wording wording_of(const FieldDescriptor& field) {
   return found != wordings().end() ? found->second : Wording{};
 }
 
-/// A number at the top of a resource, or in one of its blocks.
+/// A number at the top level of a resource or in one of its nested messages.
 struct Leaf {
-  const FieldDescriptor* block;  ///< null: at the top
+  const FieldDescriptor* block;  ///< null: at the top level
   const FieldDescriptor* field;
 
   std::string top() const { return block != nullptr ? block->name() : field->name(); }
@@ -106,7 +105,7 @@ void set_number(const Leaf& leaf, Message& resource, double value) {
   if (leaf.block == nullptr) set_user_provenance(resource, leaf.field->name());
 }
 
-/// The wording, or the field's name in words.
+/// Returns the help text, or the field's name in words.
 std::string sentence(const std::string& wording, std::string label) {
   if (!wording.empty()) return wording + ".";
   label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
@@ -120,19 +119,20 @@ std::string lower_kebab(std::string word) {
   return word;
 }
 
-/// "thermal-conductivity" of thermal_conductivity_watts_per_metre_kelvin.
+/// Returns e.g. "thermal-conductivity" for thermal_conductivity_watts_per_metre_kelvin.
 std::string parameter_word(const FieldDescriptor& field) {
   return lower_kebab(label_of_field(field.name()));
 }
 
-/// What a number without a unit is in: the unit that its wording names, else that of the trade.
+/// Returns the unit of a number without one: that of its data-sheet names, else the usual unit of
+/// data sheets.
 std::string bare_unit_of(const FieldDescriptor& field) {
   const Wording wording = wording_of(field);
   return *wording.bare_unit != '\0' ? wording.bare_unit : trade_unit_of_field(field.name());
 }
 
-/// One flag under its short names, whose bare numbers are in the unit of the trade, and a hidden
-/// one under the full name, which says the unit itself.
+/// Adds a flag with short names, whose bare numbers are in the unit of data sheets, and a hidden
+/// flag with the full name, which states the unit.
 void add_number_flags(FlagList& flags, const Leaf& leaf, ResourceEdits& edits) {
   const FieldDescriptor& field = *leaf.field;
   const std::string unit = unit_of_field(field.name());
@@ -158,7 +158,7 @@ void add_number_flags(FlagList& flags, const Leaf& leaf, ResourceEdits& edits) {
       } else if (!edits.add_once(leaf.field->name(), leaf.top(), [leaf, value](Message& resource) {
                    set_number(leaf, resource, *value);
                  })) {
-        complaints.push_back(name + " is given more than once");
+        complaints.push_back(name + " may be given only once");
       } else if (leaf.block == nullptr) {
         edits.touch("provenance");
       }
@@ -245,7 +245,7 @@ std::vector<const FieldDescriptor*> numbers_of(const google::protobuf::Descripto
   return numbers;
 }
 
-/// A block of numbers that flags reach into: how a fluid was measured, the driveline.
+/// Whether flags set the fields of a nested message: measurements, the driveline.
 bool is_flag_block(const FieldDescriptor& field) {
   return !field.is_repeated() && field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE &&
          (field.message_type() == v1::LubricantMeasurements::descriptor() ||
@@ -300,7 +300,7 @@ void add_edit_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& ed
     }
     if (measured) add_measurement_list_flags(flags, edits);
   }
-  flags.group("What it is");
+  flags.group("Description");
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor& field = *type.field(i);
     if (field.is_repeated() || is_output_only(field) || field.name() == "name") continue;
@@ -311,7 +311,7 @@ void add_edit_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& ed
   }
   add_label_flag(flags, edits);
   flags.group(&type == v1::Lubricant::descriptor()
-                  ? "Parameters of the model (what is left out is fitted or estimated, and shown)"
+                  ? "Parameters of the model (a missing one is fitted or estimated, and shown)"
                   : "Parameters");
   for (const FieldDescriptor* field : numbers_of(type)) {
     add_number_flags(flags, {nullptr, field}, edits);
@@ -320,11 +320,11 @@ void add_edit_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& ed
 }
 
 void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& edits) {
-  flags.group("Take away");
+  flags.group("Remove");
   Flag& unset =
       flags.raw("--unset", "FIELD",
                 "Clear a field before the other flags are applied, so that a parameter is "
-                "fitted or estimated again, or measurements are entered anew; repeatable.");
+                "fitted or estimated again, or measurements are entered again; repeatable.");
   unset.is_repeatable = true;
   const auto& type = *kind.prototype->GetDescriptor();
   for (int i = 0; i < type.field_count(); ++i) {
@@ -342,7 +342,7 @@ void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits&
       if (field == nullptr) field = find_parameter(kind, text, wrong);
       if (field == nullptr || is_output_only(*field)) {
         const std::string meant = nearest(text, words);
-        complaints.push_back("--unset: '" + printable(text) + "' is no field of a " +
+        complaints.push_back("--unset: '" + printable(text) + "' is not a field of a " +
                              kind.singular + (meant.empty() ? "" : " (is " + meant + " meant?)"));
         continue;
       }
@@ -353,7 +353,7 @@ void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits&
       if (is_single_number(*field)) edits.touch("provenance");
     }
   };
-  Flag& label = flags.raw("--remove-label", "KEY", "Take a label away; repeatable.");
+  Flag& label = flags.raw("--remove-label", "KEY", "Remove a label; repeatable.");
   label.is_repeatable = true;
   label.read = [&edits](const std::vector<std::string>& texts, Complaints&) {
     for (const std::string& key : texts) {
@@ -373,7 +373,7 @@ const FieldDescriptor* find_parameter(const ResourceKind& kind, const std::strin
     }
   }
   const std::string meant = nearest(kebab, parameter_words(kind));
-  wrong = "'" + printable(word) + "' is no parameter of a " + kind.singular +
+  wrong = "'" + printable(word) + "' is not a parameter of a " + kind.singular +
           (meant.empty() ? "" : " (is " + meant + " meant?)");
   return nullptr;
 }

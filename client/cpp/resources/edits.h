@@ -10,22 +10,22 @@
 
 namespace tribodyn::client {
 
-/// What the flags of a command change in a resource, in the order in which they were given.
+/// The changes of a resource that the flags of a command describe, in the order of the flags.
 class ResourceEdits {
  public:
   using Edit = std::function<void(google::protobuf::Message&)>;
 
-  /// `field` is the top-level field that the edit changes.
+  /// Adds an edit of the top-level field `field`.
   void add(const std::string& field, Edit edit);
-  /// As add; false when the same thing (`key`) has been set before.
+  /// Like add(), but returns false without adding the edit if `key` has been set before.
   bool add_once(const std::string& key, const std::string& field, Edit edit);
-  /// An edit that comes before all others: --unset makes room for what other flags set.
+  /// Adds an edit that is applied before all others: --unset clears what other flags then set.
   void add_removal(const std::string& field, Edit edit);
-  /// Another edit changes this top-level field too.
+  /// Records that another edit changes this top-level field too.
   void touch(const std::string& field) { fields_.insert(field); }
   bool empty() const { return edits_.empty() && removals_.empty(); }
   void apply(google::protobuf::Message& resource) const;
-  /// Top-level fields that were changed: the mask of an update.
+  /// Returns the top-level fields that were changed: the mask of an update.
   std::vector<std::string> fields() const { return {fields_.begin(), fields_.end()}; }
 
  private:
@@ -35,46 +35,49 @@ class ResourceEdits {
   std::set<std::string> keys_;
 };
 
-/// A flag for every parameter, text and class of the kind, for measurements, labels and how each
-/// parameter is known. They write to `edits`, which must outlive the flags.
+/// Adds a flag for every parameter, text and class of the kind, for measurements, labels and the
+/// origin of parameters. The flags write to `edits`, which must outlive them.
 void add_edit_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& edits);
-/// Those that only an update can mean: --unset and --remove-label.
+/// Adds the flags that only an update has: --unset and --remove-label.
 void add_removal_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& edits);
 
-// Parts of add_edit_flags.
+// Parts of add_edit_flags().
 void add_measurement_list_flags(FlagList& flags, ResourceEdits& edits);
 void add_provenance_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& edits);
 
-/// The parameter of the kind that a person means by "thermal-conductivity", its full name, or
-/// either with underscores; null and a complaint that names the nearest.
+/// Returns the parameter of the kind for a word such as "thermal-conductivity", its full name, or
+/// either with underscores. Returns null and sets `wrong` to a complaint with the nearest name if
+/// there is none.
 const google::protobuf::FieldDescriptor* find_parameter(const ResourceKind& kind,
                                                         const std::string& word,
                                                         std::string& wrong);
-/// Names of all parameters, as flags spell them, without units.
+/// Returns the names of all parameters as flags spell them, without units.
 std::vector<std::string> parameter_words(const ResourceKind& kind);
 
-/// A name that the trade has for a field, "kv40", and the unit of a bare number that is given to
-/// it; empty where the number must have a unit.
+/// A data-sheet name of a field, e.g. "kv40", and the unit of a number without unit that is given
+/// under that name; an empty unit means that the number must state one.
 struct TradeName {
   std::string word;
   std::string bare_unit;
 };
 std::vector<TradeName> trade_names(const google::protobuf::FieldDescriptor& field);
 
-/// States that the client gave the value of a parameter: what was known of another value is void.
+/// Sets the provenance of a parameter to "user" and clears its former source, uncertainty and
+/// warning, which applied to another value.
 void set_user_provenance(google::protobuf::Message& resource, const std::string& field);
 
-/// How a field is known; an entry "user" is made where there is none.
+/// Returns the provenance entry of a field; creates an entry "user" if there is none.
 v1::ParameterProvenance& provenance_entry(google::protobuf::Message& resource,
                                           const std::string& field);
 
 void drop_provenance(google::protobuf::Message& resource, const std::string& field);
 
-/// Sets a label, or takes it away when there is no value.
+/// Sets a label, or removes it if `value` is null.
 void set_label(google::protobuf::Message& resource, const std::string& key,
                const std::string* value);
 
-/// "group-iii" of BASE_OIL_CLASS_GROUP_III; the words of all values but the unspecified one.
+/// Returns e.g. "group-iii" for BASE_OIL_CLASS_GROUP_III; enum_words() returns the words of all
+/// values except the unspecified one.
 std::string enum_word(const google::protobuf::EnumValueDescriptor& value);
 std::vector<std::string> enum_words(const google::protobuf::EnumDescriptor& type);
 

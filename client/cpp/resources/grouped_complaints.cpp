@@ -23,16 +23,16 @@ std::vector<std::string> GroupedComplaints::lines() const {
   std::size_t all = 0;
   for (const Group& group : groups_) all += group.count;
   if (all > 1) {
-    out.push_back(std::to_string(all) + " mistakes" +
+    out.push_back(std::to_string(all) + " errors" +
                   (groups_.size() < all
                        ? " of " + std::to_string(groups_.size()) +
-                             (groups_.size() == 1 ? " kind" : " kinds, each told once")
+                             (groups_.size() == 1 ? " kind" : " kinds, each listed once")
                        : "") +
                   ":");
   }
   for (const Group& group : groups_) {
     if (out.size() > kMostLines) {
-      out.push_back(std::to_string(groups_.size() - kMostLines) + " more kinds of mistakes");
+      out.push_back(std::to_string(groups_.size() - kMostLines) + " more kinds of errors");
       break;
     }
     std::string line = group.place;

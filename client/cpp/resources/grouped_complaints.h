@@ -7,17 +7,18 @@
 
 namespace tribodyn::client {
 
-/// What is wrong with a table, each mistake told once however many rows make it.
+/// The errors in a table; an error that many rows share is listed once.
 class GroupedComplaints {
  public:
-  /// `place` is a row, "row 3"; `about` the column or nothing.
+  /// `place` is a row, e.g. "row 3"; `about` is the column or empty.
   void add(const std::string& place, const std::string& about, const std::string& sentence);
-  /// A mistake of the whole table.
+  /// Adds an error of the whole table.
   void add(const std::string& sentence) { add("", "", sentence); }
 
   bool empty() const { return groups_.empty(); }
-  /// A line each: "row 3 column density15: '0.895' ... (and in 29 more rows, the last row 32)". Of
-  /// several, first how many there are; of very many, the first hundred.
+  /// Returns one line per error: "row 3 column density15: '0.895' ... (and in 29 more rows, the
+  /// last row 32)". Several errors are preceded by their number; at most the first hundred are
+  /// listed.
   std::vector<std::string> lines() const;
 
  private:
@@ -26,7 +27,7 @@ class GroupedComplaints {
     std::size_t count = 0;
   };
   std::vector<Group> groups_;
-  std::map<std::pair<std::string, std::string>, std::size_t> index_;  ///< by about and sentence
+  std::map<std::pair<std::string, std::string>, std::size_t> index_;  ///< key: about and sentence
 };
 
 }  // namespace tribodyn::client

@@ -36,7 +36,7 @@ const FieldDescriptor* find_field(const Descriptor& type, const std::string& nam
   return field;
 }
 
-/// Every name in the text that is no field of its message.
+/// Adds every name in the text that is not a field of its message.
 void find_unknown(const Struct& object, const Descriptor& type, const std::string& path,
                   std::vector<std::string>& complaints) {
   const auto check_below = [&](const Value& value, const FieldDescriptor& field,
@@ -47,7 +47,7 @@ void find_unknown(const Struct& object, const Descriptor& type, const std::strin
       find_unknown(value.struct_value(), *field.message_type(), below, complaints);
     }
   };
-  // Sorted: the order of a protobuf map changes from run to run.
+  // Sorted, because the order of a protobuf map changes from run to run.
   const std::map<std::string, Value> fields(object.fields().begin(), object.fields().end());
   for (const auto& [name, value] : fields) {
     const std::string here = path_below(path, name);
@@ -79,7 +79,7 @@ void find_unknown(const Struct& object, const Descriptor& type, const std::strin
   throw Failure(kExitUsage, text);
 }
 
-/// The kind whose fields the object's names are, if there is just one.
+/// Returns the only kind that has the fields of the object; null if there is none or more than one.
 const ResourceKind* kind_by_fields(const Struct& object) {
   const ResourceKind* best = nullptr;
   int most = 0;
@@ -113,7 +113,7 @@ FileResource read_one(const Struct& object, const ResourceKind* expected,
                       const std::string& origin) {
   const ResourceKind* kind = expected != nullptr ? expected : kind_of_object(object);
   if (kind == nullptr) {
-    refuse(origin, {"it cannot be told what this describes; give it a name, e.g. "
+    refuse(origin, {"the kind of resource is unclear; give it a name, e.g. "
                     "\"name\": \"lubricants/my-oil\""});
   }
   std::vector<std::string> complaints;
@@ -127,7 +127,7 @@ void parse_into(const std::string& text, FileResource& target) {
   if (!status.ok()) refuse(target.origin, {printable(status.message().ToString())});
 }
 
-/// The list that the object holds under its kind's name, or null.
+/// Returns the list in the object and sets `kind`; null if the object holds no list.
 const google::protobuf::ListValue* list_in(const Struct& object, const ResourceKind*& kind) {
   for (const ResourceKind& each : resource_kinds()) {
     if (kind != nullptr && kind != &each) continue;
@@ -180,7 +180,7 @@ std::vector<FileResource> read_resources(const std::string& text, const std::str
     const std::string origin = path + ", " + kind->list_field + "[" + std::to_string(i) + "]";
     if (!list->values(i).has_struct_value()) refuse(origin, {"not a JSON object"});
     resources.push_back(read_one(list->values(i).struct_value(), kind, origin));
-    // Doubles pass through Struct unchanged, and so does the text that is written again from them.
+    // Struct keeps doubles exactly, as does the text that is written from it.
     std::string part;
     const auto written =
         google::protobuf::util::MessageToJsonString(list->values(i).struct_value(), &part);

@@ -91,7 +91,7 @@ ResourceKind make_kind(const char* word, const char* singular, const char* plura
           std::make_shared<TypedCalls<Resource>>()};
 }
 
-/// The visitor's answer for the resource in its own type.
+/// Returns the visitor's result for the resource in its own type.
 template <class Answer, class Resource, class Visitor>
 Answer& visit(Resource& resource, const Visitor& visitor) {
   const auto try_type = [&](auto* as) -> Answer* {
@@ -106,7 +106,7 @@ Answer& visit(Resource& resource, const Visitor& visitor) {
   if (Answer* answer = try_type(dynamic_cast<GearSet*>(&resource))) return *answer;
   if (Answer* answer = try_type(dynamic_cast<Surface*>(&resource))) return *answer;
   if (Answer* answer = try_type(dynamic_cast<Vehicle*>(&resource))) return *answer;
-  throw std::logic_error(resource.GetTypeName() + " is no resource");
+  throw std::logic_error(resource.GetTypeName() + " is not a resource");
 }
 
 }  // namespace
@@ -146,7 +146,7 @@ const ResourceKind& kind_of(const google::protobuf::Descriptor& type) {
   for (const ResourceKind& kind : resource_kinds()) {
     if (kind.prototype->GetDescriptor() == &type) return kind;
   }
-  throw std::logic_error(type.full_name() + " is no resource");
+  throw std::logic_error(type.full_name() + " is not a resource");
 }
 
 std::string text_field(const Message& resource, const std::string& field) {

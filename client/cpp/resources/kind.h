@@ -14,7 +14,7 @@ namespace tribodyn::client {
 /// A resource of any kind.
 using ResourcePointer = std::unique_ptr<google::protobuf::Message>;
 
-/// A resource of a batch, and the fields of it that an update takes over; empty: all.
+/// A resource of a batch and the fields that an update sets; empty: all.
 struct BatchEntry {
   const google::protobuf::Message* resource;
   std::vector<std::string> fields;
@@ -22,17 +22,18 @@ struct BatchEntry {
 
 struct ResourceList {
   std::vector<ResourcePointer> resources;
-  std::string next_page_token;  ///< empty: there are no more
+  std::string next_page_token;  ///< empty: this is the last page
 };
 
-/// What a batch wrote, in the order of what was sent.
+/// The result of a batch, in the order of its request.
 struct BatchWritten {
   std::vector<std::string> names;
-  std::vector<ResourcePointer> resources;  ///< empty: too many for one answer, see BatchResult
+  std::vector<ResourcePointer>
+      resources;  ///< empty if one response cannot hold all, see BatchResult
 };
 
-/// The calls of Connection for resources whose kind is known only at run time. Every message given
-/// must be of that kind.
+/// The calls of Connection for resources whose kind is known only at run time. Every message passed
+/// in must be of that kind.
 class ResourceCalls {
  public:
   virtual ~ResourceCalls() = default;
@@ -42,7 +43,7 @@ class ResourceCalls {
   virtual ResourceList list(Connection& connection, const ListOptions& options) const = 0;
   virtual ResourcePointer update(Connection& connection, const google::protobuf::Message& resource,
                                  const UpdateOptions& options) const = 0;
-  /// All or none; `replace` updates what is there already.
+  /// Writes all resources or none; `replace` updates those that exist.
   virtual BatchWritten write_all(Connection& connection, const std::vector<BatchEntry>& batch,
                                  bool replace, bool validate_only) const = 0;
   virtual ResourceList revisions(Connection& connection, const std::string& name,
@@ -53,35 +54,35 @@ class ResourceCalls {
                                    const std::string& etag) const = 0;
 };
 
-/// One of the four kinds of resource, as commands name it.
+/// One of the four kinds of resource, with its names.
 struct ResourceKind {
-  std::string word;        ///< of the command line: "gear-sets"
+  std::string word;        ///< on the command line: "gear-sets"
   std::string singular;    ///< "gear set"
   std::string plural;      ///< "gear sets"
   std::string collection;  ///< "gearSets"
-  std::string list_field;  ///< of the list responses, and so of files of several: "gear_sets"
-  std::string example;     ///< id of a resource that every server has
+  std::string list_field;  ///< in list responses and in files with several: "gear_sets"
+  std::string example;     ///< id of a resource that exists on every server
   const google::protobuf::Message* prototype;
   std::shared_ptr<const ResourceCalls> calls;
 
   ResourcePointer make() const { return ResourcePointer(prototype->New()); }
-  /// "gearSets/A" from "A" or "gearSets/A".
+  /// Returns "gearSets/A" for "A" and for "gearSets/A".
   std::string name_of(const std::string& id_or_name) const;
 };
 
 const std::vector<ResourceKind>& resource_kinds();
 const ResourceKind& kind_of(const google::protobuf::Descriptor& type);
 
-/// A text field of a resource, e.g. "name"; empty when it has none of that name.
+/// Returns a text field of a resource, e.g. "name"; empty if the resource has no such field.
 std::string text_field(const google::protobuf::Message& resource, const std::string& field);
 
-/// Sets a text field that the resource must have.
+/// Sets a text field; throws std::logic_error if the resource has no such field.
 void set_text(google::protobuf::Message& resource, const char* field, const std::string& text);
 
-/// Whether it was deleted, and not undeleted.
+/// Whether the resource is deleted.
 bool is_deleted(const google::protobuf::Message& resource);
 
-// What every kind has.
+// Fields that every kind has.
 using Labels = google::protobuf::RepeatedPtrField<v1::Label>;
 using ProvenanceEntries = google::protobuf::RepeatedPtrField<v1::ParameterProvenance>;
 Labels& labels_of(google::protobuf::Message& resource);
@@ -89,7 +90,7 @@ const Labels& labels_of(const google::protobuf::Message& resource);
 ProvenanceEntries& provenance_entries_of(google::protobuf::Message& resource);
 const ProvenanceEntries& provenance_entries_of(const google::protobuf::Message& resource);
 
-/// Clears what only the server sets.
+/// Clears the fields that only the server sets.
 void clear_output_only(google::protobuf::Message& resource);
 
 }  // namespace tribodyn::client

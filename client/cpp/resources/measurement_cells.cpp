@@ -18,7 +18,7 @@ v1::LubricantMeasurements& as_measurements(Message& message) {
   return dynamic_cast<v1::LubricantMeasurements&>(message);
 }
 
-/// "205 mm2/s at 20 C +- 0.01" in its parts.
+/// The parts of "205 mm2/s at 20 C +- 0.01".
 struct MeasurementText {
   std::string value;
   double celsius = 0;
@@ -30,7 +30,7 @@ std::optional<MeasurementText> split_measurement(const std::string& text, std::s
   MeasurementText out;
   const std::size_t at = text.find(kAt);
   if (at == std::string::npos) {
-    wrong = "is not \"VALUE UNIT at TEMPERATURE C\", several separated by semicolons";
+    wrong = "must be \"VALUE UNIT at TEMPERATURE C\"; separate several values by semicolons";
     return std::nullopt;
   }
   out.value = text.substr(0, at);
@@ -72,7 +72,7 @@ bool add_viscosity(const MeasurementText& text, v1::LubricantMeasurements& out,
   const auto kinematic = read_quantity(text.value, "mm2/s", "", false, wrong);
   const auto dynamic = read_quantity(text.value, "mPa s", "", false, wrong);
   if (!kinematic && !dynamic) {
-    wrong = "is neither a kinematic viscosity (mm2/s) nor a dynamic one (mPa s)";
+    wrong = "must be a kinematic viscosity (mm2/s) or a dynamic one (mPa s)";
     return false;
   }
   auto& row = *out.add_viscosities();

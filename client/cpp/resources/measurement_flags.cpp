@@ -13,9 +13,8 @@ v1::LubricantMeasurements& measurements_of(Message& resource) {
   return *dynamic_cast<v1::Lubricant&>(resource).mutable_measurements();
 }
 
-/// "-40C=150000mPas": a temperature and what was measured there; nothing, with a complaint, when it
-/// is not that. The second text is left as it is. `instead` names the flag of a value without a
-/// temperature.
+/// Splits "-40C=150000mPas" into a temperature and the text of the value. Returns nullopt and adds
+/// a complaint if that is not possible. `instead` names the flag for a value without temperature.
 std::optional<std::pair<double, std::string>> split_pair(const std::string& flag,
                                                          const std::string& instead,
                                                          const std::string& text,
@@ -23,7 +22,7 @@ std::optional<std::pair<double, std::string>> split_pair(const std::string& flag
   const std::size_t mark = text.find('=');
   const std::string start = flag + ": '" + printable(text) + "' ";
   if (mark == std::string::npos) {
-    complaints.push_back(start + "is not TEMPERATURE=VALUE" +
+    complaints.push_back(start + "must be TEMPERATURE=VALUE" +
                          (instead.empty() ? "" : "; did you mean " + instead + "?"));
     return std::nullopt;
   }
@@ -36,7 +35,8 @@ std::optional<std::pair<double, std::string>> split_pair(const std::string& flag
   return std::pair(*temperature, text.substr(mark + 1));
 }
 
-/// `read` takes temperature and text of one value; says whether it could, else why not.
+/// `read` receives temperature and text of one value; it returns false and sets the error if it
+/// cannot read them.
 template <class Read>
 void add_pair_flag(FlagList& flags, const std::string& name, const std::string& instead,
                    const char* field, const std::string& value_name, const std::string& description,
@@ -73,13 +73,13 @@ void add_measurement_list_flags(FlagList& flags, ResourceEdits& edits) {
                   return true;
                 });
   add_pair_flag(flags, "--viscosity", "--kv40 or --kv100", "viscosities", "T=QUANTITY",
-                "A viscosity, kinematic (20C=180mm2/s) or dynamic (20C=150mPas); repeatable, three "
-                "temperatures or more determine T_0 of Vogel's law.",
+                "A viscosity, kinematic (20C=180mm2/s) or dynamic (20C=150mPas); repeatable; three "
+                "or more temperatures determine T_0 of Vogel's law.",
                 [&edits](double celsius, const std::string& text, std::string& wrong) {
                   const auto kinematic = read_quantity(text, "mm2/s", "", false, wrong);
                   const auto dynamic = read_quantity(text, "mPa s", "", false, wrong);
                   if (!kinematic && !dynamic) {
-                    wrong = "is neither a kinematic viscosity (mm2/s) nor a dynamic one (mPa s)";
+                    wrong = "must be a kinematic viscosity (mm2/s) or a dynamic one (mPa s)";
                     return false;
                   }
                   edits.add("measurements", [celsius, kinematic, dynamic](Message& resource) {
@@ -94,8 +94,8 @@ void add_measurement_list_flags(FlagList& flags, ResourceEdits& edits) {
                   return true;
                 });
   add_pair_flag(flags, "--density", "--density15", "densities", "T=kg/m3",
-                "A density at another temperature, e.g. 100=815; repeatable, two temperatures or "
-                "more determine its slope.",
+                "A density at another temperature, e.g. 100=815; repeatable; two or more "
+                "temperatures determine its slope.",
                 [&edits](double celsius, const std::string& text, std::string& wrong) {
                   const auto value = read_quantity(text, "kg/m3", "kg/m3", false, wrong);
                   if (!value) return false;

@@ -22,7 +22,7 @@ std::vector<std::string> provenance_words() {
   return words;
 }
 
-/// The parameter before '=' and the text after it; a complaint when there is none.
+/// The parameter before '=' and the text after it.
 struct Assignment {
   const FieldDescriptor* field = nullptr;
   std::string text;
@@ -33,7 +33,7 @@ Assignment read_assignment(const ResourceKind& kind, const std::string& flag,
                            Complaints& complaints) {
   const std::size_t mark = text.find('=');
   if (mark == std::string::npos) {
-    complaints.push_back(flag + ": '" + printable(text) + "' is not " + form);
+    complaints.push_back(flag + ": '" + printable(text) + "' must be " + form);
     return {};
   }
   std::string wrong;
@@ -55,7 +55,7 @@ void read_provenance(const ResourceKind& kind, const std::string& text, Resource
   const std::vector<std::string> words = provenance_words();
   const auto found = std::find(words.begin(), words.end(), word);
   if (found == words.end()) {
-    complaints.push_back("--provenance: '" + printable(word) + "' is not one of " +
+    complaints.push_back("--provenance: '" + printable(word) + "' must be one of " +
                          joined(words, "|"));
     return;
   }
@@ -75,7 +75,7 @@ void read_uncertainty(const ResourceKind& kind, const std::string& text, Resourc
       read_assignment(kind, "--uncertainty", kUncertaintyForm, text, complaints);
   if (field == nullptr) return;
   std::string wrong;
-  // An uncertainty of a temperature is a difference, in kelvin.
+  // The uncertainty of a temperature is a difference, in kelvin.
   const std::string unit = unit_of_field(field->name());
   const std::string trade = trade_unit_of_field(field->name());
   const auto uncertainty = read_quantity(value, unit, trade == "C" ? "K" : trade, false, wrong);
@@ -83,8 +83,8 @@ void read_uncertainty(const ResourceKind& kind, const std::string& text, Resourc
     complaints.push_back("--uncertainty: '" + printable(value) + "' " + wrong);
     return;
   }
-  // An estimate whose uncertainty the user states is the user's from then on: computed again, it
-  // would have the estimator's.
+  // Marks an estimate with a stated uncertainty as stated by the user: the server would replace the
+  // uncertainty when it computes the estimate again.
   edits.add("provenance", [name = field->name(), uncertainty](Message& resource) {
     auto& entry = provenance_entry(resource, name);
     entry.set_standard_uncertainty(*uncertainty);
@@ -118,12 +118,12 @@ void set_user_provenance(Message& resource, const std::string& field) {
 }
 
 void add_provenance_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& edits) {
-  flags.group("How a parameter is known");
+  flags.group("Origin of a parameter");
   Flag& provenance = flags.raw("--provenance", kProvenanceForm,
                                "E.g. thermal-conductivity=measured:\"Laboratory X, report 12\"; "
                                "words: " +
                                    joined(provenance_words(), "|") +
-                                   ". Repeatable. Default of what is given: user.");
+                                   ". Repeatable. Default for parameters that you give: user.");
   provenance.is_repeatable = true;
   provenance.read = [&kind, &edits](const std::vector<std::string>& texts, Complaints& complaints) {
     for (const std::string& text : texts) read_provenance(kind, text, edits, complaints);

@@ -26,7 +26,7 @@ using Kind = RowColumn::Kind;
 using Part = RowColumn::Part;
 
 constexpr std::string_view kLabel = "labels.";
-/// What the server says of a parameter of which a client said nothing.
+/// The source that the server sets for a parameter that a client sent without one.
 constexpr char kUnstated[] = "stated without a source";
 
 constexpr std::pair<Part, const char*> kParts[] = {
@@ -64,7 +64,7 @@ RowColumn plain_column(const FieldDescriptor* block, const FieldDescriptor* fiel
   return column;
 }
 
-/// A name that a header may have for a column, and the unit of its bare numbers.
+/// A form of a column's header and the unit of bare numbers below it.
 struct HeaderForm {
   std::string word;
   std::string bare_unit;
@@ -83,7 +83,7 @@ std::vector<HeaderForm> forms_of(const RowColumn& column) {
   return forms;
 }
 
-/// "Density15 (g/cm3)" is "Density15" in "g/cm3".
+/// The parts of "Density15 (g/cm3)": "Density15" and "g/cm3".
 struct Header {
   std::string word;
   std::string unit;
@@ -97,7 +97,8 @@ Header split_header(const std::string& text) {
   return {plain_word(text.substr(0, open)), text.substr(open + 1, text.size() - open - 2)};
 }
 
-/// "Brookfield -40 C", "brookfield_viscosity_-26".
+/// Returns the temperature in "Brookfield -40 C" or "brookfield_viscosity_-26"; nullopt for other
+/// headers.
 std::optional<double> cold_temperature_of(const std::string& header) {
   std::string text = header;
   std::transform(text.begin(), text.end(), text.begin(),
@@ -136,7 +137,7 @@ std::optional<RowColumn> find_provenance_column(const ResourceKind& kind,
       column.key = field->name();
       column.field = field;
     }
-    return column;  // the server names columns that are no parameters
+    return column;  // the server rejects columns that are not parameters
   }
   return std::nullopt;
 }
@@ -153,7 +154,8 @@ bool set_number(const RowColumn& column, double value, Message& resource) {
                        !reflection.HasField(parent, column.field) ||
                        reflection.GetDouble(parent, column.field) != value;
   reflection.SetDouble(&parent, column.field, value);
-  // What was known of another value is void; the server says how a number without provenance is.
+  // A new value makes the former provenance invalid; the server sets the provenance of a number
+  // without one.
   if (changed && column.block == nullptr) drop_provenance(resource, column.field->name());
   return true;
 }
@@ -206,7 +208,7 @@ std::string set_provenance(const RowColumn& column, const std::string& text, Mes
       entry.set_computed(false);
       return "";
     }
-    return "is not one of " + joined(words, ", ");
+    return "must be one of " + joined(words, ", ");
   }
   auto& entry = provenance_entry(resource, column.key);
   entry.set_computed(false);
@@ -218,8 +220,8 @@ std::string set_provenance(const RowColumn& column, const std::string& text, Mes
   return "";
 }
 
-/// The server computes a lubricant's parameters anew from what a table holds; those of a surface
-/// only from its profiles.
+/// Whether the server computes all parameters of the resource from the table: those of a lubricant
+/// always, those of a surface only from profiles.
 bool provenance_is_recomputed(const Message& resource) {
   return resource.GetDescriptor() == v1::Lubricant::descriptor();
 }
@@ -406,8 +408,8 @@ std::optional<RowColumn> find_column(const ResourceKind& kind, const std::string
       std::string text;
       if (!column.is_number() ||
           !read_quantity("1", unit, split.unit, is_temperature_field(column.field->name()), text)) {
-        wrong = "has the unit " + printable(split.unit) + ", which is not one of it" +
-                (unit.empty() ? "" : " (" + unit + ")");
+        wrong = "has the unit " + printable(split.unit) +
+                (unit.empty() ? ", but takes none" : "; allowed: multiples of " + unit);
         return std::nullopt;
       }
       column.bare_unit = split.unit;
@@ -430,8 +432,8 @@ std::optional<RowColumn> find_column(const ResourceKind& kind, const std::string
     }
   }
   const std::string meant = nearest(split.word, known);
-  wrong = "is not known" + (meant.empty() ? std::string("; `tribodyn help files` names them")
-                                          : " (is " + meant + " meant?)");
+  wrong = "is unknown" + (meant.empty() ? std::string("; `tribodyn help files` lists the columns")
+                                        : " (is " + meant + " meant?)");
   return std::nullopt;
 }
 
@@ -444,7 +446,7 @@ std::string set_cell(const RowColumn& column, const std::string& text, Message& 
       return "";
     case Kind::kClass:
       if (set_class(column, text, resource)) return "";
-      return quoted + "is not one of " + joined(enum_words(*column.field->enum_type()), ", ");
+      return quoted + "must be one of " + joined(enum_words(*column.field->enum_type()), ", ");
     case Kind::kNumber:
       wrong = read_number(column, text, resource);
       break;
@@ -467,7 +469,7 @@ std::string set_cell(const RowColumn& column, const std::string& text, Message& 
 
 void clear_cell(const RowColumn& column, Message& resource) {
   if (column.kind == Kind::kLabel) return set_label(resource, column.key, nullptr);
-  if (column.kind == Kind::kProvenance) return;  // goes with the value
+  if (column.kind == Kind::kProvenance) return;  // is cleared with the value
   if (column.kind == Kind::kColdViscosity) {
     return remove_cold_viscosity(column.temperature_celsius, mutable_parent_of(column, resource));
   }

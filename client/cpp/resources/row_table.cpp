@@ -25,7 +25,7 @@ bool is_digit(const std::string& text, std::size_t at) {
   return at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0;
 }
 
-/// Whether a comma stands between digits.
+/// Whether the text has a comma between digits.
 bool has_decimal_comma(const std::string& text) {
   for (std::size_t i = 1; i + 1 < text.size(); ++i) {
     if (text[i] == ',' && is_digit(text, i - 1) && is_digit(text, i + 1)) return true;
@@ -38,7 +38,8 @@ std::string with_decimal_points(std::string text) {
   return text;
 }
 
-/// In a table of decimal commas, "1.234" may be a thousand, as "1.234,5" is.
+/// Whether the point in a number may separate thousands: in a table with decimal commas, "1.234"
+/// may mean 1234, as in "1.234,5".
 bool may_be_thousands(const std::string& text) {
   const std::size_t point = text.find('.');
   if (point == std::string::npos) return false;
@@ -88,7 +89,7 @@ class RowReader {
   static std::string row_text(const CsvLine& line) { return "row " + std::to_string(line.number); }
   std::string column_text(std::size_t k) const { return "column " + printable(header_[k]); }
 
-  /// Columns that spreadsheets leave at the end have neither a name nor cells.
+  /// Whether a column has neither a name nor cells; spreadsheets write such columns at the end.
   bool is_blank(std::size_t k) const {
     return std::all_of(lines_.begin(), lines_.end(), [&](const CsvLine& line) {
       return k >= line.cells.size() || line.cells[k].empty();
@@ -112,7 +113,7 @@ class RowReader {
       } else {
         const bool is_cold = column->kind == RowColumn::Kind::kColdViscosity;
         const std::string full = is_cold ? header_[k] : header_of(*column);
-        if (!seen.insert(full).second) wrong_.add(column_text(k) + " is there twice");
+        if (!seen.insert(full).second) wrong_.add(column_text(k) + " occurs twice");
         columns_by_name_.emplace(full, header_[k]);
         tells_provenance_ = tells_provenance_ || column->kind == RowColumn::Kind::kProvenance;
       }
@@ -131,7 +132,8 @@ class RowReader {
     std::erase_if(lines_, [&](const CsvLine& line) { return line.cells.size() != header_.size(); });
   }
 
-  /// A first row that names no resource and holds units in place of numbers.
+  /// Whether the line, the first one below the header, holds units: it has no name and units in
+  /// place of numbers.
   bool is_units_row(const CsvLine& line) const {
     bool has_unit = false;
     for (std::size_t k = 0; k < header_.size(); ++k) {
@@ -167,8 +169,8 @@ class RowReader {
       if (own.empty() || !read_quantity("1", own, unit, is_temperature_field(name), wrong)) {
         wrong_.add(row_text(line), column_text(k),
                    "'" + printable(line.cells[k].substr(0, 60)) +
-                       "' looks like a unit, but is none of it" +
-                       (own.empty() ? "" : " (" + own + ")") +
+                       "' looks like a unit, but the column takes " +
+                       (own.empty() ? "none" : "multiples of " + own) +
                        "; correct it, or begin the row with #");
         continue;
       }
@@ -176,7 +178,7 @@ class RowReader {
     }
   }
 
-  /// Every cell that should hold a number.
+  /// Calls `use` for every cell of a column of numbers.
   template <class Use>
   void for_each_number(const Use& use) {
     for (CsvLine& line : lines_) {
@@ -200,19 +202,19 @@ class RowReader {
         std::to_string(count) + (count == 1 ? " cell has" : " cells have") + " a decimal comma";
     if (separator_ == ',') {
       wrong_.add(cells + " (the first: " + first +
-                 "); allowed: a decimal point, or semicolons between the cells");
+                 "); use a decimal point, or semicolons between the cells");
       for_each_number([](const CsvLine&, std::size_t, std::string& cell) {
         if (has_decimal_comma(cell)) cell.clear();
       });
       return;
     }
-    out_.note = path_ + ": " + cells + ", read as a decimal point";
+    out_.note = path_ + ": " + cells + " and were read with a decimal point";
     for_each_number([&](const CsvLine& line, std::size_t k, std::string& cell) {
       if (may_be_thousands(cell)) {
         wrong_.add(row_text(line), column_text(k),
                    "'" + printable(cell.substr(0, 60)) +
-                       "' has a point in a table of decimal commas; allowed: one of the two, and "
-                       "nothing between thousands");
+                       "' has a point in a table of decimal commas; use one of the two and no "
+                       "separator of thousands");
         cell.clear();
       } else if (has_decimal_comma(cell)) {
         cell = with_decimal_points(cell);
@@ -241,7 +243,7 @@ class RowReader {
         clears = true;
       }
     }
-    // How a number is known comes after the number, which voids what was known of another one.
+    // Provenance cells come after the number: a new number clears its former provenance.
     for (const bool provenance : {false, true}) {
       for (std::size_t k = 0; k < header_.size(); ++k) {
         if (!columns_[k]) continue;
@@ -259,7 +261,8 @@ class RowReader {
     read.columns = columns_by_name_;
   }
 
-  /// A law that the base states is not the law of a row with viscosities of its own.
+  /// Clears a viscosity law that comes from the base if the row states viscosities: the server fits
+  /// the law to them.
   void leave_law_to_viscosities(const CsvLine& line, Message& resource) const {
     bool has_viscosity = false;
     std::set<std::string> stated;
@@ -296,8 +299,8 @@ class RowReader {
     if (!wrong.empty()) wrong_.add(row_text(line), column_text(k), wrong);
   }
 
-  /// The fields that the columns tell of, those of a block as "block.field": what else the block
-  /// holds stays.
+  /// Returns the fields that the columns set; a field of a nested message as "block.field", so that
+  /// an update keeps its other fields.
   std::vector<std::string> fields() const {
     std::set<std::string> out;
     for (const auto& column : columns_) {
@@ -313,14 +316,14 @@ class RowReader {
   std::vector<CsvLine> lines_;
   const char separator_;
   std::vector<std::string> header_;
-  std::vector<std::optional<RowColumn>> columns_;  ///< nullopt: not known
+  std::vector<std::optional<RowColumn>> columns_;  ///< nullopt: unknown
   std::map<std::string, std::string> columns_by_name_;
   bool tells_provenance_ = false;
   GroupedComplaints wrong_;
   RowTable out_;
 };
 
-/// Whether a row cannot hold all of the resource: tables other than a lubricant's measurements.
+/// Whether the resource has tables that a row cannot hold: all but a lubricant's measurements.
 bool has_other_tables(const Message& resource) {
   std::vector<const FieldDescriptor*> fields;
   resource.GetReflection()->ListFields(resource, &fields);

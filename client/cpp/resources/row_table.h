@@ -8,37 +8,37 @@
 
 namespace tribodyn::client {
 
-// Many resources in one CSV table, a row each: "name", texts and classes, every number under its
-// field's name, which ends in its unit, or under its name in the trade, the lists of measurements,
-// "FIELD.source" and so on for how a number is known, and "labels.KEY". Not for gear sets, which
-// are tables themselves.
+// A CSV table with one resource per row. Columns: "name", texts and classes; every number under its
+// field's name, which ends in the unit, or under its data-sheet name; lists of measurements;
+// "FIELD.source" and so on for the origin of a number; "labels.KEY". Gear sets have no such tables:
+// each of them is a table.
 
-/// Whether a text is such a table: its header has a column "name", in any case.
+/// Whether a text is such a table: its header has a column "name", in upper or lower case.
 bool is_row_table(const std::string& text);
 
-/// What rows start from.
+/// The resources that rows start from.
 struct RowBases {
-  /// Every row starts as this one; an empty cell leaves it as it is. Null: as nothing.
+  /// The start of every row; an empty cell leaves its value unchanged. Null: rows start empty.
   const google::protobuf::Message* like = nullptr;
-  /// For rows that replace what is there: the present resource of a name, or null. An empty cell
-  /// clears. It is asked only where the table tells how numbers are known.
+  /// For rows that replace resources: returns the current resource of a name, or null. An empty
+  /// cell clears its value. Called only if the table has provenance columns.
   std::function<ResourcePointer(const std::string& name)> present;
 };
 
 struct RowTable {
-  std::vector<FileResource> resources;  ///< each with the row that it stands in
-  std::string note;                     ///< on how cells were read; may be empty
+  std::vector<FileResource> resources;  ///< each with its row
+  std::string note;                     ///< how cells were read; may be empty
 };
 
-/// The resources of a table. An empty cell is not set, unless the row has a base. A second row of
-/// units is understood; in a table that is not separated by commas a decimal comma is, too. Throws
-/// Failure (kExitUsage) with everything that cannot be read, row and column named.
+/// Returns the resources of a table. An empty cell sets nothing, unless the row has a base. The
+/// second row may hold units. A decimal comma is accepted unless commas separate the cells. Throws
+/// Failure (kExitUsage) that lists every error with row and column.
 RowTable read_row_table(const std::string& text, const std::string& path, const ResourceKind& kind,
                         const RowBases& bases = {});
 
-/// The table of these resources: what was stated and measured, with how it is known; the cells of
-/// what the server computed from that are empty. Says in `lost` what a row cannot hold and JSON
-/// would; empty for nothing.
+/// Returns the table of these resources: values that were stated or measured, with their origin;
+/// cells of values that the server computed are empty. Sets `lost` to the data that a row cannot
+/// hold but JSON can; empty if there are none.
 std::string row_table(const ResourceKind& kind, const std::vector<ResourcePointer>& resources,
                       std::string& lost);
 

@@ -30,10 +30,10 @@ void append_series(const char* quantity, const v1::FourierSeries& series, std::s
 }  // namespace
 
 std::string read_table_file(const std::string& path, std::size_t most_bytes) {
-  static std::set<std::string> told;  // a file is read once to see what it is, then for its rows
+  static std::set<std::string> noted;  // files are read twice; prints a note once
   std::string note;
   std::string text = table_text(read_file(path, most_bytes), path, note);
-  if (!note.empty() && told.insert(path).second)
+  if (!note.empty() && noted.insert(path).second)
     std::cerr << "tribodyn: " << printable(note) << "\n";
   return text;
 }
@@ -41,7 +41,7 @@ std::string read_table_file(const std::string& path, std::size_t most_bytes) {
 std::string tooth_contact_csv(const v1::GearSet& gear_set) {
   const auto* type = v1::FlankSlot::descriptor();
   const auto& reflection = *v1::FlankSlot::GetReflection();
-  // A column that no slot has is left out.
+  // Omits columns that no slot has.
   std::vector<const FieldDescriptor*> columns;
   std::vector<std::string> header = {"mesh_phase", "slot"};
   for (int i = 0; i < type->field_count(); ++i) {

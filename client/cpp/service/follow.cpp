@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kRedraw(150);
 
-/// What the watching threads tell the displaying one. Safe for concurrent use.
+/// Progress that watching threads write and the displaying thread reads. Safe for concurrent use.
 class Watches {
  public:
   Watches(const std::vector<v1::Simulation>& simulations, const std::vector<std::string>& labels)
@@ -53,7 +53,8 @@ class Watches {
     changed_.notify_all();
   }
 
-  /// The present picture, after at most kRedraw; true while a watch is open.
+  /// Copies the current progress to `picture` after at most kRedraw; returns true while a watch is
+  /// open.
   bool wait(std::vector<JobProgress>& picture) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, kRedraw, [&] { return open_ == 0; });
@@ -84,8 +85,8 @@ std::string how_to_go_on(const std::vector<v1::Simulation>& simulations,
     if (!picture[i].ended) names += " " + resource_id(simulations[i].name());
   }
   if (names.empty()) return "";
-  return "\n  The server goes on with them. Follow again:  tribodyn jobs watch" + names +
-         "\n                              Cancel:        tribodyn jobs cancel" + names;
+  return "\n  The simulations go on. Watch them:   tribodyn jobs watch" + names +
+         "\n                         Cancel them:  tribodyn jobs cancel" + names;
 }
 
 }  // namespace

@@ -8,13 +8,13 @@
 
 namespace tribodyn::client {
 
-/// "queued", "running", "succeeded", ...
+/// Returns "queued", "running", "succeeded", ...
 std::string state_text(v1::Simulation::State state);
 
-/// Waits for simulations side by side until every one has ended, with one progress display on
-/// standard error, and returns them with their results, in the same order. Throws Failure:
-/// kExitInterrupted on Ctrl-C, kExitCannotConnect when the server is lost; either says how to
-/// resume or cancel, for the simulations themselves go on.
+/// Watches simulations in parallel until all have ended and returns them with their results, in the
+/// given order. Shows one progress display on standard error. Throws Failure: kExitInterrupted on
+/// Ctrl-C, kExitCannotConnect when the server is lost. The simulations go on in both cases; the
+/// message contains the commands that watch or cancel them.
 std::vector<v1::Simulation> follow(Connection& connection,
                                    const std::vector<v1::Simulation>& simulations,
                                    const std::vector<std::string>& labels, ProgressForm form);

@@ -9,7 +9,7 @@ volatile std::sig_atomic_t interrupt_noted = 0;
 
 void note_interrupt(int signal) {
   interrupt_noted = 1;
-  std::signal(signal, SIG_DFL);  // the next one is taken at its word
+  std::signal(signal, SIG_DFL);  // the next signal ends the process
 }
 
 }  // namespace

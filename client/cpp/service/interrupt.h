@@ -2,8 +2,8 @@
 
 namespace tribodyn::client {
 
-/// While one lives, Ctrl-C and SIGTERM are noted instead of ending the process; a second Ctrl-C
-/// ends it. One at a time.
+/// Handles Ctrl-C and SIGTERM during its lifetime: the first sets interrupted(), a second ends the
+/// process. At most one may exist at a time.
 class InterruptGuard {
  public:
   InterruptGuard();

@@ -4,22 +4,22 @@
 
 namespace tribodyn::client {
 
-/// When colours are used.
+/// When the client colours its output.
 enum class ColourChoice {
   kAuto,  ///< on a terminal, unless NO_COLOR is set (no-color.org) or TERM is "dumb"
   kAlways,
   kNever,
 };
 
-/// Decides for standard output and standard error, for the whole process. Before any output and
-/// any thread; until then there are no colours.
+/// Decides whether standard output and standard error are coloured, for the whole process. Call it
+/// before any output and before any thread starts; without a call there are no colours.
 void set_colours(ColourChoice choice);
 
-// The text, on standard output, as a heading or as something to look at twice; unchanged without
-// colours.
+// Return the text in the colour of a heading or of a warning, for standard output. They return it
+// unchanged where output is not coloured.
 std::string heading(const std::string& text);
 std::string caution(const std::string& text);
-/// The start of a complaint on standard error.
+/// Returns the word that starts an error message, coloured for standard error.
 std::string alarm(const std::string& text);
 
 }  // namespace tribodyn::client

@@ -76,8 +76,8 @@ void append_flanks(const Message& parent, const FieldDescriptor& field, const st
   }
 }
 
-/// Whether readers would take the bare cell for something else: for several cells, for one without
-/// the blanks around it, for a note, or for the line by which Excel is told the separator.
+/// Whether other programs would misread the bare cell: as several cells, without the blanks at its
+/// ends, as a comment, or as the line "sep=" that sets Excel's separator.
 bool needs_quotes(std::string_view cell) {
   if (cell.find_first_of(",;\t\"\r\n") != std::string_view::npos) return true;
   return !cell.empty() && (cell.front() == ' ' || cell.back() == ' ' || cell.front() == '#' ||
@@ -90,7 +90,8 @@ std::string csv_line(const std::vector<std::string>& cells) {
   std::string line;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (i > 0) line += ',';
-    const bool is_line = cells.size() == 1 && cells.front().empty();  // an empty line is no row
+    const bool is_line =
+        cells.size() == 1 && cells.front().empty();  // a reader drops an empty line
     if (!is_line && !needs_quotes(cells[i])) {
       line += cells[i];
       continue;
@@ -143,14 +144,14 @@ std::string csv_text(const std::vector<CsvRow>& rows) {
 
 namespace {
 
-/// An empty line, a note, or the line by which Excel is told the separator.
+/// Whether the line is empty, a comment, or the line "sep=" that sets Excel's separator.
 bool is_skipped(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \r");
   return first == std::string_view::npos || line[first] == '#' ||
-         (line.starts_with("sep=") && line.size() <= 6);  // with its carriage return
+         (line.starts_with("sep=") && line.size() <= 6);  // 6: a separator and a carriage return
 }
 
-/// The first line that is not skipped.
+/// Returns the first line that is not skipped.
 std::string_view header_line(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   while (!text.empty()) {
@@ -161,7 +162,7 @@ std::string_view header_line(std::string_view text) {
   return {};
 }
 
-/// Reads cell after cell of a text.
+/// Reads a CSV text cell by cell.
 class CsvReader {
  public:
   explicit CsvReader(std::string_view text) : rest_(text), separator_(csv_separator(text)) {
@@ -177,7 +178,7 @@ class CsvReader {
     return out;
   }
 
-  /// Skips an empty line or a note; false when there is none.
+  /// Skips an empty line or a comment; returns false if there is none.
   bool skip() {
     const std::size_t end = std::min(rest_.find('\n'), rest_.size());
     const std::string_view line = rest_.substr(0, end);
@@ -188,13 +189,13 @@ class CsvReader {
   }
 
  private:
-  /// False after the last cell of a line.
+  /// Returns false after the last cell of a line.
   bool add_cell(std::vector<std::string>& cells) {
     std::string& cell = cells.emplace_back();
     while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
     const bool quoted = !rest_.empty() && rest_.front() == '"';
     if (quoted) read_quoted(cell);
-    const std::size_t kept = cell.size();  // blanks in quotes belong to the cell
+    const std::size_t kept = cell.size();  // keeps blanks that were quoted
     const std::size_t end =
         std::min(rest_.find_first_of(std::string{separator_, '\n'}), rest_.size());
     cell += rest_.substr(0, end);

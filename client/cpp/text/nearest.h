@@ -5,7 +5,7 @@
 
 namespace tribodyn::client {
 
-/// The known name nearest to a mistyped one, if it is near enough to be meant.
+/// Returns the known name that is nearest to a mistyped one; empty if none is near enough.
 std::string nearest(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace tribodyn::client

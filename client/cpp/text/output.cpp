@@ -26,7 +26,7 @@ std::string json_text(const google::protobuf::Message& message) {
 
 void write_file(const std::string& path, const std::string& text) {
   struct stat info;
-  // A pipe or a device (/dev/stdout) is written to as it is; only a file can be replaced.
+  // Only a regular file can be replaced; a pipe or a device (/dev/stdout) is written in place.
   const bool replace = stat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode);
   const std::string target = replace ? path + ".part" + std::to_string(getpid()) : path;
   {
@@ -50,7 +50,7 @@ std::string why_not_writable(const std::string& path) {
   struct stat info;
   const bool exists = stat(path.c_str(), &info) == 0;
   if (exists && S_ISDIR(info.st_mode)) return "is a folder";
-  // A file is replaced, which takes the right to write to its folder.
+  // Replacing a file requires permission to write to its folder.
   std::string target = path;
   if (!exists || S_ISREG(info.st_mode)) {
     const std::size_t slash = path.rfind('/');

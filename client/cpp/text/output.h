@@ -8,15 +8,15 @@ namespace tribodyn::client {
 
 enum class OutputFormat { kTable, kCsv, kJson };
 
-/// The message as protobuf's JSON mapping defines it, indented, zeros written out.
+/// Returns the message in protobuf's JSON mapping, indented, with fields that are zero.
 std::string json_text(const google::protobuf::Message& message);
 
-/// Replaces the file in one step: a reader sees the old text or the new one, never half of it.
-/// Throws Failure when the file cannot be written.
+/// Replaces the file in one step: a reader sees either the old text or the new text. Throws Failure
+/// if the file cannot be written.
 void write_file(const std::string& path, const std::string& text);
 
-/// Why write_file() would fail for a path, as far as that can be told without writing; empty when
-/// nothing stands against it.
+/// Returns why write_file() would fail for a path, as far as a check without writing can find out;
+/// empty if the check finds no obstacle.
 std::string why_not_writable(const std::string& path);
 
 }  // namespace tribodyn::client

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kBarWidth = 20;
 
-/// What is left once it can be told (early guesses are worse than none), until then what has
-/// passed.
+/// Returns the estimated time left, or the elapsed time while the job has done too little for an
+/// estimate.
 std::string time_text(const JobProgress& job, double elapsed_seconds) {
   if (job.ended || job.fraction < 0.05 || elapsed_seconds < 2)
     return duration_text(elapsed_seconds);
@@ -24,7 +24,7 @@ std::string time_text(const JobProgress& job, double elapsed_seconds) {
 }
 
 int percent(const JobProgress& job) {
-  // 100 % is for what has ended.
+  // Rounded down: 100 % only for a job that has ended.
   const int value = static_cast<int>(std::floor(100 * std::clamp(job.fraction, 0.0, 1.0)));
   return job.ended ? value : std::min(value, 99);
 }
@@ -32,9 +32,9 @@ int percent(const JobProgress& job) {
 }  // namespace
 
 std::string percent_text(double fraction) {
-  // The last bits of a product must not take a percent away.
+  // 1e-9: rounding of the product must not lose a percent.
   const double percent = 100 * std::clamp(fraction, 0.0, 1.0) + 1e-9;
-  // Rounded down, so that 100 % appears only when the work is complete.
+  // Rounded down: 100 % appears only when the work is complete.
   return fraction > 0 && percent < 10 ? fixed(std::floor(10 * percent) / 10, 1)
                                       : fixed(std::floor(percent), 0);
 }
@@ -50,7 +50,7 @@ std::string progress_bar_line(const JobProgress& job, int label_width, double el
                      std::string(kBarWidth - filled, '.') + "] " + number + " %  " +
                      time_text(job, elapsed_seconds) + "  " +
                      printable(job.stage.empty() || job.ended ? job.state : job.stage);
-  // Cut at code points, so that a line never wraps: redrawing counts lines.
+  // Cut at a code point so that a line never wraps: redraw() counts lines.
   std::size_t end = 0;
   for (int columns = 0; end < line.size(); ++end) {
     const bool starts_a_character = (static_cast<unsigned char>(line[end]) & 0xC0U) != 0x80U;

@@ -7,7 +7,7 @@
 
 namespace tribodyn::client {
 
-/// How far one job is.
+/// The progress of one job.
 struct JobProgress {
   std::string label;    ///< e.g. "lubricants/1"
   std::string state;    ///< "queued", "running", ...
@@ -16,11 +16,11 @@ struct JobProgress {
   bool ended = false;
 };
 
-/// A fraction in percent: "0.4", "12". Below 10 % there is a decimal, so that a curve of a thousand
-/// points is seen to move.
+/// Returns a fraction in percent, e.g. "0.4" or "12". Below 10 % it has one decimal, so that the
+/// progress of a curve of a thousand points is visible.
 std::string percent_text(double fraction);
 
-/// One terminal line: label, bar, percent, time, stage; at most `width` columns.
+/// Returns one terminal line of at most `width` columns: label, bar, percent, time, stage.
 std::string progress_bar_line(const JobProgress& job, int label_width, double elapsed_seconds,
                               int width);
 
@@ -28,15 +28,15 @@ std::string progress_bar_line(const JobProgress& job, int label_width, double el
 enum class ProgressForm {
   kNone,
   kBars,   ///< redrawn in place: for a terminal
-  kLines,  ///< a line when a job changes state or has come another 10 %: for a log
+  kLines,  ///< a line whenever a job changes state or progresses by another 10 %: for a log
 };
 
-/// Shows several jobs. Not thread safe.
+/// Shows the progress of several jobs. Not thread safe.
 class ProgressDisplay {
  public:
   ProgressDisplay(std::ostream& out, ProgressForm form, int width);
   void show(const std::vector<JobProgress>& jobs);
-  /// Leaves the last picture standing (bars) and ends the display.
+  /// Ends the display; the last bars stay on the terminal.
   void finish();
 
  private:
@@ -52,7 +52,7 @@ class ProgressDisplay {
   std::vector<int> logged_tenths_;
 };
 
-/// Whether standard error is a terminal that can move its cursor, and its width.
+/// Whether standard error is a terminal that can move its cursor, and how many columns it has.
 bool standard_error_is_terminal();
 int standard_error_width();
 

@@ -16,7 +16,7 @@ std::string padded(const std::string& text, int width, Table::Align align) {
   return align == Table::Align::kLeft ? text + blanks : blanks + text;
 }
 
-/// How many characters of a number follow its integer part; 0 of any other text.
+/// Returns how many characters of a number follow its integer part; 0 for any other text.
 int fraction_width(const std::string& cell) {
   const std::size_t point = cell.find('.');
   const bool is_number =
@@ -24,7 +24,7 @@ int fraction_width(const std::string& cell) {
   return !is_number || point == std::string::npos ? 0 : static_cast<int>(cell.size() - point);
 }
 
-/// Blanks behind each number, so that right-aligned decimal points stand one below the other.
+/// Appends blanks to each number so that right-aligned decimal points are below one another.
 void align_decimal_points(std::size_t column, std::vector<std::vector<std::string>>& rows) {
   int widest = 0;
   for (const auto& row : rows) widest = std::max(widest, fraction_width(row[column]));
@@ -98,7 +98,7 @@ std::string Sheet::text() const {
   for (const Line& line : lines_) {
     if (line.kind != Line::Kind::kValue) continue;
     label_width = std::max(label_width, display_width(line.label));
-    // Only numbers (lines with a unit or a note) are aligned: a long name would push them away.
+    // Aligns only numbers (lines with a unit or a note): a long name would push them to the right.
     if (line.unit.empty() && line.note.empty()) continue;
     value_width = std::max(value_width, display_width(line.value));
     unit_width = std::max(unit_width, display_width(line.unit));

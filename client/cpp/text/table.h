@@ -5,23 +5,23 @@
 
 namespace tribodyn::client {
 
-/// A table for a person: every column as wide as its widest cell.
+/// A table for people to read: every column is as wide as its widest cell.
 class Table {
  public:
-  /// kDecimal: decimal points one below the other.
+  /// kDecimal puts the decimal points of a column below one another.
   enum class Align { kLeft, kRight, kDecimal };
   struct Column {
     std::string header;
-    std::string unit;  ///< second header line; left out when no column has one
+    std::string unit;  ///< second header line; omitted if no column has a unit
     Align align = Align::kRight;
   };
 
   explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
-  /// Missing cells are empty. Cells beyond the columns are a mistake of the caller
-  /// (std::logic_error).
+  /// Adds a row; missing cells are empty. Throws std::logic_error if there are more cells than
+  /// columns.
   void add_row(std::vector<std::string> cells);
   bool empty() const { return rows_.empty(); }
-  /// Header, a rule, rows; each line ends in a line feed and carries no trailing blanks.
+  /// Returns header, rule and rows. Each line ends in a line feed and has no trailing blanks.
   std::string text() const;
 
  private:
@@ -29,13 +29,13 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// Lines "  label   value unit  note" under a heading; the values of one block are aligned.
+/// Lines "  label   value unit  note" below headings; the values of one block are aligned.
 class Sheet {
  public:
   void heading(const std::string& text);
   void line(const std::string& label, const std::string& value, const std::string& unit = "",
             const std::string& note = "");
-  /// A line of running text, wrapped.
+  /// Adds running text, which is wrapped.
   void remark(const std::string& text);
   std::string text() const;
 

@@ -17,12 +17,12 @@ namespace {
 constexpr std::string_view kZipFile = "PK\x03\x04";                      // .xlsx, .ods
 constexpr std::string_view kOldOfficeFile = "\xd0\xcf\x11\xe0\xa1\xb1";  // .xls
 
-/// The bytes in another encoding; false when they are not in the encoding `from`.
+/// Converts bytes to UTF-8; returns false if they are not valid in the encoding `from`.
 bool convert(const char* from, std::string_view bytes, std::string& text) {
   const iconv_t converter = iconv_open("UTF-8", from);
   if (reinterpret_cast<std::intptr_t>(converter) == -1) return false;  // iconv_open's error
   std::string in(bytes);
-  text.assign(3 * bytes.size() + 4, '\0');  // a character of UTF-16 or Windows-1252 takes at most 3
+  text.assign(3 * bytes.size() + 4, '\0');  // 3: the longest UTF-8 of one input character
   char* source = in.data();
   char* target = text.data();
   std::size_t source_left = in.size();
@@ -34,8 +34,8 @@ bool convert(const char* from, std::string_view bytes, std::string& text) {
   return done && source_left == 0;
 }
 
-/// The UTF-16 that the bytes are in by their byte order mark, or by the zeros in the first letters
-/// of a header; null when they are not.
+/// Returns the variant of UTF-16 that the byte order mark or the zero bytes in the first letters of
+/// the header show; null if the bytes are not UTF-16.
 const char* utf16_of(std::string_view bytes) {
   if (bytes.starts_with("\xff\xfe")) return "UTF-16LE";
   if (bytes.starts_with("\xfe\xff")) return "UTF-16BE";
@@ -51,7 +51,7 @@ std::string table_text(const std::string& bytes, const std::string& path, std::s
   note.clear();
   if (bytes.starts_with(kZipFile) || bytes.starts_with(kOldOfficeFile)) {
     throw Failure(kExitUsage, path +
-                                  " is an Excel workbook: save it as \"CSV UTF-8 (comma "
+                                  " is an Excel workbook. Save it as \"CSV UTF-8 (comma "
                                   "delimited)\" and give that file");
   }
   std::string text;
@@ -59,20 +59,21 @@ std::string table_text(const std::string& bytes, const std::string& path, std::s
     std::string_view rest = bytes;
     if (rest.starts_with("\xff\xfe") || rest.starts_with("\xfe\xff")) rest.remove_prefix(2);
     if (!convert(encoding, rest, text) || text.find('\0') != std::string::npos) {
-      throw Failure(kExitUsage, path + " is neither text nor a table: save it as \"CSV UTF-8\"");
+      throw Failure(kExitUsage, path + " is not a text file. Save it as \"CSV UTF-8\"");
     }
     note = path + " was read as UTF-16";
     return text;
   }
   if (bytes.find('\0') != std::string::npos) {
-    throw Failure(kExitUsage, path + " is no text: it holds zero bytes");
+    throw Failure(kExitUsage,
+                  path + " is not a text file (Excel workbook or UTF-16?): it contains zero bytes");
   }
   if (is_utf8(bytes)) return bytes;
   if (!convert("WINDOWS-1252", bytes, text)) {
     throw Failure(kExitUsage,
-                  path + " is neither UTF-8 nor Latin-1 text: save it as \"CSV UTF-8\"");
+                  path + " is neither UTF-8 nor Latin-1 text. Save it as \"CSV UTF-8\"");
   }
-  note = path + " was read as Latin-1 (Windows-1252), which it is if its letters look right";
+  note = path + " was read as Latin-1 (Windows-1252). Check that its letters look right";
   return text;
 }
 

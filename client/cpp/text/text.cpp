@@ -40,7 +40,7 @@ std::string printable(std::string_view text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
-    // C1 controls are C2 80 .. C2 9F in UTF-8.
+    // The C1 controls are C2 80 to C2 9F in UTF-8.
     const bool is_c1 =
         byte == 0xC2U && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xA0U;
     if (text[i] == '\n' || text[i] == '\t') {

@@ -6,41 +6,42 @@
 
 namespace tribodyn::client {
 
-/// Columns that UTF-8 text takes on a terminal, one per code point.
+/// Returns the number of terminal columns of a UTF-8 text, one per code point.
 int display_width(std::string_view text);
 
-/// The text without control characters (they become '?'; line feeds become spaces), so that nothing
-/// a server or another user wrote can steer the terminal.
+/// Returns the text without control characters: line feeds become spaces, others '?'. A text from
+/// the server or from another user then cannot control the terminal.
 std::string printable(std::string_view text);
 
-/// Whether the text is UTF-8, as a server wants all texts.
+/// Whether the text is UTF-8, the only encoding that the server accepts.
 bool is_utf8(std::string_view text);
 
-/// Rounded to `decimals` places, never "-0.00"; "-" when not finite.
+/// Returns the value rounded to `decimals` places, never "-0.00"; "-" if it is not finite.
 std::string fixed(double value, int decimals);
 
-/// `digits` significant digits, e.g. 1.23e+07 or 0.0456; "-" when not finite.
+/// Returns the value with `digits` significant digits, e.g. 1.23e+07 or 0.0456; "-" if it is not
+/// finite.
 std::string significant(double value, int digits = 5);
 
-/// The shortest text that reads back as the same double; "NaN", "Infinity", "-Infinity" otherwise.
+/// Returns the shortest text that reads back as the same double, or "NaN", "Infinity", "-Infinity".
 std::string shortest(double value);
 
-/// "0.4 ms", "35 ms", "3.2 s", "2 min 05 s", "1 h 02 min".
+/// Returns e.g. "0.4 ms", "35 ms", "3.2 s", "2 min 05 s" or "1 h 02 min".
 std::string duration_text(double seconds);
 
-/// Words broken into lines of at most `width` columns, each starting with `indent` spaces.
+/// Breaks the text into lines of at most `width` columns that start with `indent` spaces.
 std::string wrapped(std::string_view text, int indent, int width = 100);
 
-/// The parts between separators; an empty text has no parts.
+/// Returns the parts between separators; none for an empty text.
 std::vector<std::string> split(std::string_view text, char separator);
 
-/// The parts with a separator between them.
+/// Returns the parts with the separator between them.
 std::string joined(const std::vector<std::string>& parts, std::string_view separator);
 
-/// "lubricants/1" from "1" or "lubricants/1".
+/// Returns "lubricants/1" for "1" and for "lubricants/1".
 std::string resource_name(std::string_view collection, std::string_view id_or_name);
 
-/// "1" from "lubricants/1".
+/// Returns "1" for "lubricants/1".
 std::string resource_id(std::string_view name);
 
 }  // namespace tribodyn::client

@@ -12,7 +12,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// The words that a field's name ends in, and the symbol they stand for.
+/// Unit words at the end of a field's name, with the symbol of the unit.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 37> kUnitWords = {{
     {"per_pascal", "1/Pa"},
     {"per_second", "1/s"},
@@ -58,7 +58,7 @@ constexpr double kDegreesPerRadian = 57.295779513082323;  // 180 / pi
 /// Kilogram, metre, second, kelvin, radian.
 using Dimensions = std::array<int, 5>;
 
-/// mantissa * 10^exponent of SI units: powers of ten are kept apart to be exact.
+/// mantissa * 10^exponent SI units. Powers of ten are kept apart because they are exact.
 struct Unit {
   double mantissa = 1;
   int exponent = 0;
@@ -129,7 +129,7 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text;
 }
 
-/// One spelling for signs that keyboards and laboratory sheets write in several ways.
+/// Replaces signs that keyboards and laboratory sheets write in several ways by one spelling.
 std::string plain_signs(std::string_view text) {
   std::string plain(text);
   for (const auto& [from, to] :
@@ -150,7 +150,7 @@ std::string plain_signs(std::string_view text) {
   return plain;
 }
 
-/// Product of powers; a slash turns the next factor or bracket over.
+/// Reads a product of powers; a slash inverts the factor or bracket that follows it.
 class UnitReader {
  public:
   explicit UnitReader(std::string text) : text_(std::move(text)) {}
@@ -214,17 +214,17 @@ class UnitReader {
     return true;
   }
 
-  // Far beyond any unit; a file may hold anything where a unit is expected.
+  // Limits far beyond any unit, for files with other text where a unit is expected.
   static constexpr int kDeepestBracket = 10;
   static constexpr int kGreatestPower = 99;
 
   std::string text_;
   std::size_t at_ = 0;
-  int depth_ = 0;  // of brackets that are open at `at_`
+  int depth_ = 0;  // number of brackets that are open at `at_`
 };
 
 std::optional<Unit> parse_unit(std::string_view text) {
-  // Sheets write mPas, Nm and W/mK; nobody means a watt per millikelvin.
+  // Data sheets write mPas, Nm and W/mK; W/mK never means a watt per millikelvin.
   std::string plain = plain_signs(text);
   for (const auto& [from, to] : {std::pair("Pas", "Pa s"), std::pair("Nm", "N m")}) {
     plain = replaced(std::move(plain), from, to);
@@ -243,7 +243,7 @@ bool is_fahrenheit(std::string_view unit) {
   return plain == "F" || plain == "degF";
 }
 
-/// The number times 10^shift, as exact as the text itself.
+/// Returns the number times 10^shift, with a single rounding.
 std::optional<double> shifted(std::string_view number, int shift) {
   if (number.size() > 1 && number[0] == '+' && number[1] != '-') number.remove_prefix(1);
   const std::size_t mark = number.find_first_of("eE");
@@ -266,7 +266,7 @@ std::optional<double> shifted(std::string_view number, int shift) {
   return value;
 }
 
-/// Where the number ends and its unit begins.
+/// Returns the position at which the number ends and its unit begins.
 std::size_t end_of_number(std::string_view text) {
   std::size_t at = 0;
   const auto digits = [&] {
@@ -291,7 +291,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// What a number in this unit is mostly written in.
+/// Returns the usual unit of data sheets for a number in `unit`.
 std::string trade_unit(const std::string& unit) {
   if (unit == "1/Pa") return "1/GPa";
   if (unit == "Pa s") return "mPa s";
@@ -300,13 +300,13 @@ std::string trade_unit(const std::string& unit) {
   return unit;
 }
 
-/// "20/GPa", "40 C".
+/// Returns e.g. "20/GPa" or "40 C".
 std::string with_unit(std::string_view number, std::string_view unit) {
   return std::string(number) + (unit.starts_with("1/") ? "" : " ") +
          std::string(unit.starts_with("1/") ? unit.substr(1) : unit);
 }
 
-/// Units that a number is mistakenly given in, by the unit that it should be in.
+/// The units that users write by mistake, by the unit in which the number should be.
 const std::map<std::string, std::vector<const char*>>& mistaken_units() {
   static const std::map<std::string, std::vector<const char*>> kUnits = {
       {"kg/m3", {"g/cm3"}},
@@ -327,7 +327,7 @@ const std::map<std::string, std::vector<const char*>>& mistaken_units() {
   return kUnits;
 }
 
-/// "73.3" of "73,3": a number whose decimal point is a comma; empty for any other text.
+/// Returns "73.3" for "73,3", a number with a decimal comma; empty for any other text.
 std::string with_decimal_point(std::string_view text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos || comma == 0 || comma + 1 == text.size()) return "";
@@ -341,7 +341,7 @@ std::string with_decimal_point(std::string_view text) {
   return is_number ? changed : "";
 }
 
-/// Celsius, Fahrenheit or kelvin, as `unit`, one of C and K.
+/// Returns a temperature in Celsius, Fahrenheit or kelvin in `unit`, which is C or K.
 std::optional<double> read_temperature(std::string_view number, std::string_view given,
                                        const std::string& unit) {
   auto value = shifted(number, 0);
@@ -403,7 +403,7 @@ std::optional<double> read_quantity(std::string_view text, const std::string& un
   const std::string_view number = text.substr(0, end);
   const std::string_view own = trimmed(text.substr(end));
   if (const std::string meant = with_decimal_point(text); !meant.empty()) {
-    wrong = "has a decimal comma; decimal point, please: " + meant;
+    wrong = "has a decimal comma; write a decimal point: " + meant;
     return std::nullopt;
   }
   if (!shifted(number, 0)) {
@@ -417,7 +417,7 @@ std::optional<double> read_quantity(std::string_view text, const std::string& un
   const std::string given = own.empty() ? bare_unit : std::string(own);
   if (temperature) {
     if (const auto value = read_temperature(number, given, unit)) return value;
-    wrong = "is not a temperature in C or K";
+    wrong = "is not a temperature in C, F or K";
     return std::nullopt;
   }
   if (given == unit) return shifted(number, 0);
@@ -427,7 +427,8 @@ std::optional<double> read_quantity(std::string_view text, const std::string& un
   const auto source = parse_unit(given);
   const auto target = parse_unit(unit);
   if (!source || !target || source->dimensions != target->dimensions) {
-    wrong = "is not in " + (unit.empty() ? "a pure number" : unit + " or a multiple of it");
+    wrong = (unit.empty() ? std::string("must be a number without a unit")
+                          : "must be in " + unit + " or a multiple of it");
     return std::nullopt;
   }
   const auto power = shifted(number, source->exponent - target->exponent);
@@ -451,7 +452,7 @@ std::string unit_slip(std::string_view text, const std::string& unit, const std:
     std::string wrong;
     const auto value = read_quantity(number, unit, candidate, temperature, wrong);
     if (candidate == given || !value || *value < low || *value > high) continue;
-    if (!meant.empty()) return "";  // two units would do: neither is likelier
+    if (!meant.empty()) return "";  // two units fit: neither is likelier
     meant = candidate;
   }
   if (meant.empty()) return "";

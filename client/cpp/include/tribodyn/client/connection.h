@@ -23,62 +23,64 @@ namespace tribodyn::client {
 inline constexpr char kDefaultServer[] = "127.0.0.1:50651";
 inline constexpr char kServerVariable[] = "TRIBODYN_SERVER";
 
-/// The address to use: `address` unless empty, else the environment variable TRIBODYN_SERVER, else
-/// 127.0.0.1:50651. "unix:PATH" is a socket.
+/// Returns the address of the server: `address` unless it is empty, else the environment variable
+/// TRIBODYN_SERVER, else 127.0.0.1:50651. "unix:PATH" is a Unix socket.
 std::string server_address(const std::string& address = "");
 
 /// Which resources to list, and in which order.
 struct ListOptions {
   /// AIP-160: restrictions joined by AND, e.g. `labels.project = "axle" AND condition = SHEARED`.
   std::string filter = {};
-  std::string order_by = {};  ///< "name", or a field of the filter; " desc" turns it round
-  bool show_deleted = false;  ///< also those that were deleted
-  int limit = 0;              ///< at most so many; 0: all
-  /// To go on where a list ended: its Listing::next_page_token, with the same filter and order.
+  std::string order_by = {};  ///< "name" or a field of the filter; " desc" reverses it
+  bool show_deleted = false;  ///< list deleted resources too
+  int limit = 0;              ///< at most this many; 0: all
+  /// Listing::next_page_token of the previous page, with the same filter and order.
   std::string page_token = {};
   bool basic = false;  ///< gear sets without their tables
 };
 
-/// Resources, over as many pages as it took.
+/// Resources from as many pages as the call read.
 template <class Resource>
 struct Listing {
   std::vector<Resource> resources;
-  bool has_more = false;             ///< `limit` ended it
-  std::string next_page_token = {};  ///< where it did; empty: there are no more
+  bool has_more = false;             ///< `limit` was reached and more exist
+  std::string next_page_token = {};  ///< token of the next page; empty if there is none
 };
 
-/// A resource of a batch of updates.
+/// One resource of a batch of updates.
 template <class Resource>
 struct ResourceUpdate {
   Resource resource;
   std::vector<std::string> update_mask;  ///< as in UpdateOptions
 };
 
-/// What a batch wrote, in the order of what was sent.
+/// The result of a batch, in the order of its request.
 template <class Resource>
 struct BatchResult {
   std::vector<v1::WrittenResource> written;
-  /// Empty if `written` is not: together they take more than 2 MB, and get() or list() has them.
+  /// Empty if `written` is not: the resources take more than 2 MB together. Read them with get() or
+  /// list().
   std::vector<Resource> resources;
 };
 
-/// How an update is made.
+/// Options of an update.
 struct UpdateOptions {
-  /// Fields to take over. Empty: those that the resource populates; all others stay. {"*"}: all, a
-  /// full replacement.
+  /// Fields that the update sets. Empty: the fields that the resource populates; the others stay.
+  /// {"*"}: all fields (a full replacement).
   std::vector<std::string> update_mask = {};
-  bool allow_missing = false;  ///< create it if there is none
+  bool allow_missing = false;  ///< create the resource if it does not exist
   bool validate_only = false;  ///< check everything, write nothing
 };
 
-/// How a simulation is created.
+/// Options of a new simulation.
 struct CreateOptions {
-  bool validate_only = false;   ///< check everything, run nothing
-  bool force = false;           ///< compute although equal inputs have a result
-  std::string request_id = {};  ///< so that a repeated request makes no second one; empty: random
+  bool validate_only = false;  ///< check everything, run nothing
+  bool force = false;          ///< compute even if equal inputs have a result
+  std::string request_id =
+      {};  ///< a repeated request with the same id starts no second simulation; empty: random
 };
 
-/// Which part of a history is read.
+/// The part of a history to read.
 struct HistoryOptions {
   std::vector<std::string> columns = {};  ///< empty: all
   std::int64_t start_row = 0;
@@ -86,19 +88,19 @@ struct HistoryOptions {
   int maximum_points = 0;      ///< 0: all rows; else an overview where there are more
 };
 
-/// A run of rows: values of each column of the schema, all as many.
+/// Consecutive rows: for each column of the schema its values, equally many.
 struct HistoryRows {
-  std::int64_t first_row = 0;  ///< counted from the first one asked for
+  std::int64_t first_row = 0;  ///< 0 is the first requested row
   std::vector<std::vector<double>> columns;
 };
 
-/// A server and its services. Safe for concurrent use. Nothing is sent before the first call; every
-/// call throws ServiceError, at last: where that is safe, a server that is lost or turns a request
-/// away is asked again within the time limit. `Resource` is v1::Lubricant, v1::GearSet, v1::Surface
-/// or v1::Vehicle.
+/// A server and its services. Safe for concurrent use. The constructor sends nothing. Every call
+/// throws ServiceError if it fails. A call retries within the time limit, where that is safe, when
+/// the server is lost or turns the request away. `Resource` is v1::Lubricant, v1::GearSet,
+/// v1::Surface or v1::Vehicle.
 class Connection {
  public:
-  /// `timeout` bounds every call but wait_for_end() and the reading of histories.
+  /// `timeout` limits every call except wait_for_end() and the reading of histories.
   explicit Connection(std::string address,
                       std::chrono::duration<double> timeout = std::chrono::seconds(30));
   ~Connection();
@@ -107,67 +109,70 @@ class Connection {
 
   const std::string& address() const;
 
-  /// Adds a resource under `id` (empty: the id in its name) and returns it as the server keeps it:
-  /// with what was fitted and estimated, each parameter with its provenance.
+  /// Creates a resource under `id` (empty: the id in its name) and returns it as stored: with
+  /// fitted and estimated parameters and the provenance of each.
   template <class Resource>
   Resource create(const Resource& resource, const std::string& id, bool validate_only = false);
-  /// "lubricants/{id}" for the newest revision, "lubricants/{id}@{revision}" for another one.
+  /// Returns the newest revision of "lubricants/{id}", or the revision
+  /// "lubricants/{id}@{revision}".
   template <class Resource>
   Resource get(const std::string& name);
   template <class Resource>
   Listing<Resource> list(const ListOptions& options = {});
-  /// Makes a new revision of the resource of that name; one that changes nothing makes none. If
-  /// `resource` has an etag that is no longer the present one, the update is refused (ABORTED).
+  /// Creates a new revision of the resource of that name, or none if nothing changes. Fails with
+  /// ABORTED if `resource` has an etag that is not the current one.
   template <class Resource>
   Resource update(const Resource& resource, const UpdateOptions& options = {});
-  // Batches: all of them or none. One may be derived from another one, in any order.
-  /// Adds resources under the ids in their names.
+  // A batch writes all of its resources or none. One of them may be derived from another, in any
+  // order.
+  /// Creates resources under the ids in their names.
   template <class Resource>
   BatchResult<Resource> create_all(const std::vector<Resource>& resources,
                                    bool validate_only = false);
-  /// Updates each as update() does; with `allow_missing` creates those that are not there.
+  /// Updates each resource as update() does; with `allow_missing` creates those that do not exist.
   template <class Resource>
   BatchResult<Resource> update_all(const std::vector<ResourceUpdate<Resource>>& updates,
                                    bool allow_missing = false, bool validate_only = false);
-  /// Newest first; limit 0: all.
+  /// Returns the revisions, newest first; limit 0: all.
   template <class Resource>
   Listing<Resource> revisions(const std::string& name, int limit = 0);
-  /// Hides it from lists and from new simulations; nothing is lost.
+  /// Deletes a resource: lists and new simulations do not find it any more. undelete() restores it.
   template <class Resource>
   Resource remove(const std::string& name, const std::string& etag = "");
   template <class Resource>
   Resource undelete(const std::string& name, const std::string& etag = "");
 
-  // From tables of numbers, given as CSV texts; see the requests for their columns.
+  // Create resources from tables of numbers as CSV texts; the requests describe the columns.
   v1::Lubricant import_lubricant(const v1::ImportLubricantRequest& request);
   v1::GearSet import_gear_set(const v1::ImportGearSetRequest& request);
   v1::Surface import_surface_profiles(const v1::ImportSurfaceProfilesRequest& request);
 
-  /// What the server accepts: the constraints of one message, e.g. "Lubricant", or everything.
+  /// Returns the constraints of one message, e.g. "Lubricant", or of all messages.
   v1::Schema schema(const std::string& message = "");
 
-  /// Returns at once. A server that is lost meanwhile is asked again under the same request_id.
+  /// Returns before the simulation has run. Retries under the same request_id if the server is lost
+  /// meanwhile.
   v1::Simulation create_simulation(const v1::Simulation& simulation,
                                    const CreateOptions& options = {});
   v1::Simulation get_simulation(const std::string& name);
   v1::Simulation cancel_simulation(const std::string& name);
-  /// Without results; newest first unless ordered otherwise. Filters by state, lubricant,
-  /// create_time and labels.
+  /// Lists simulations without results, newest first unless options.order_by is set. Filters by
+  /// state, lubricant, create_time and labels.
   Listing<v1::Simulation> list_simulations(const ListOptions& options = {});
-  /// Keeps it from expiring and from being evicted, or gives it up again.
+  /// Pin or unpin a simulation: a pinned one neither expires nor is evicted.
   v1::Simulation pin_simulation(const std::string& name);
   v1::Simulation unpin_simulation(const std::string& name);
-  /// Blocks until the simulation has ended and returns it with its result. `on_event` hears of each
-  /// change of state, once and in order, and of progress, in the calling thread. A stream that
-  /// breaks is taken up again behind what was heard, for a while. When `stop` is requested, the
-  /// simulation is returned as it stands.
+  /// Blocks until the simulation has ended and returns it with its result. Calls `on_event` in the
+  /// calling thread for each change of state, once and in order, and for progress. Resumes a broken
+  /// stream after the last event, for a limited time. When `stop` is requested, returns the
+  /// simulation in its current state.
   v1::Simulation wait_for_end(const std::string& name,
                               const std::function<void(const v1::SimulationEvent&)>& on_event = {},
                               const std::stop_token& stop = {});
-  /// A history, or an overview of it, put together.
+  /// Returns a history, or an overview of it, in one message.
   v1::History read_history(const std::string& name, const HistoryOptions& options = {});
-  /// Hands over rows as they come, each once and in order, in the calling thread. A stream that
-  /// breaks is taken up again at the first row that is missing, for a while.
+  /// Calls `on_rows` in the calling thread for rows as they arrive, once and in order. Resumes a
+  /// broken stream at the first missing row, for a limited time.
   void stream_history(const std::string& name, const HistoryOptions& options,
                       const std::function<void(const v1::HistorySchema&)>& on_schema,
                       const std::function<void(const HistoryRows&)>& on_rows);
@@ -179,7 +184,7 @@ class Connection {
   std::unique_ptr<Services> services_;
 };
 
-/// Whether nothing will change any more: succeeded, failed or cancelled.
+/// Whether the state is final: succeeded, failed or cancelled.
 bool has_ended(v1::Simulation::State state);
 
 }  // namespace tribodyn::client

@@ -8,26 +8,26 @@
 
 namespace tribodyn::client {
 
-/// One thing that the server found wrong with a request.
+/// One error that the server found in a request.
 struct FieldViolation {
   std::string field;  ///< path in the request, e.g. "lubricant.measurements.densities[2]"
-  /// Value, unit, allowed range and the equation that needs it, e.g. "sump_temperature_celsius =
+  /// Value, unit, allowed range and the equation that requires it, e.g. "sump_temperature_celsius =
   /// 900 C; allowed: -70 to 200 C (eq 14)".
   std::string description;
 };
 
-/// Why a call brought no answer, or not the one hoped for. what() is the whole text for a person,
-/// of several lines when there are several violations, free of control characters.
+/// The failure of a call. what() is the whole text for the user, without control characters; it has
+/// several lines if there are several violations.
 class ServiceError : public std::runtime_error {
  public:
   enum class Kind {
-    kCannotConnect,  ///< nothing listens at the address, or the server was lost
-    kNoAnswer,       ///< none within the time limit
-    kRefused,        ///< the server did answer: with an error
+    kCannotConnect,  ///< nothing listens at the address, or the connection was lost
+    kNoAnswer,       ///< no answer within the time limit
+    kRefused,        ///< the server answered with an error
   };
 
   ServiceError(Kind kind, const std::string& text) : std::runtime_error(text), kind_(kind) {}
-  /// A refusal.
+  /// Constructs an error of kind kRefused.
   ServiceError(const std::string& text, int status_code, std::string reason,
                std::vector<FieldViolation> violations, std::optional<double> retry_delay_seconds)
       : std::runtime_error(text),
@@ -38,13 +38,13 @@ class ServiceError : public std::runtime_error {
         retry_delay_seconds_(retry_delay_seconds) {}
 
   Kind kind() const { return kind_; }
-  /// As in grpc::StatusCode, e.g. 5 for NOT_FOUND; 0 unless refused.
+  /// The number of a grpc::StatusCode, e.g. 5 for NOT_FOUND; 0 unless kind() is kRefused.
   int status_code() const { return status_code_; }
-  /// The stable word for it, e.g. "RESOURCE_NOT_FOUND"; may be empty.
+  /// The stable reason, e.g. "RESOURCE_NOT_FOUND"; may be empty.
   const std::string& reason() const { return reason_; }
-  /// All of them at once.
+  /// All violations of the request.
   const std::vector<FieldViolation>& violations() const { return violations_; }
-  /// When to try again, where the server says so.
+  /// The pause before a retry that the server requests; nullopt if it requests none.
   std::optional<double> retry_delay_seconds() const { return retry_delay_seconds_; }
 
  private:
