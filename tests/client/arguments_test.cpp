@@ -17,7 +17,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// Parses with fresh commands; keeps what a test looks at.
+/// Parses arguments with fresh commands and keeps the results that tests read.
 struct Outcome {
   std::string path;
   Complaints complaints;
@@ -43,7 +43,7 @@ struct Outcome {
   }
 };
 
-TEST(Arguments, AcceptAWholePoint) {
+TEST(Arguments, AcceptACompletePoint) {
   const Outcome outcome({"point", "--lubricant", "1", "--speed", "72.5", "--ascent-angle-degrees",
                          "-3", "--isothermal", "--as-published", "eq17,eq20", "-o", "json"});
   EXPECT_EQ(outcome.path, "point");
@@ -51,7 +51,7 @@ TEST(Arguments, AcceptAWholePoint) {
   EXPECT_EQ(outcome.options.output_format, OutputFormat::kJson);
 }
 
-TEST(Arguments, ComplainOfEverythingAtOnce) {
+TEST(Arguments, ReportEveryErrorAtOnce) {
   const Outcome outcome({"point", "--speed", "fast", "--sump", "1e999", "--as-published", "eq99",
                          "--model", "quick", "--pinion-torque-newton-metres", "3", "--lubricnt",
                          "1", "--maximum-mesh-cycles", "2.5"});
@@ -63,35 +63,35 @@ TEST(Arguments, ComplainOfEverythingAtOnce) {
   }
 }
 
-TEST(Arguments, SayThatEq46ActsWhereProfilesBecomeASurface) {
+TEST(Arguments, RejectEq46WhereNoProfilesAreRead) {
   for (const char* command : {"point", "curve", "history", "contact"}) {
     const Outcome outcome({command, "--as-published", "eq17,eq46"});
-    EXPECT_TRUE(outcome.complains_of("'eq46' is not one of eq17|eq20|eq22|eq31|eq43")) << command;
-    EXPECT_TRUE(outcome.complains_of("eq46 acts where measured profiles become a surface"));
+    EXPECT_TRUE(outcome.complains_of("'eq46' must be one of eq17|eq20|eq22|eq31|eq43")) << command;
+    EXPECT_TRUE(outcome.complains_of("eq46 applies where measured profiles become a surface"));
   }
   const Outcome import({"surfaces", "import", "profile.csv", "--as-published", "eq46"});
   EXPECT_TRUE(import.complaints.empty());
 }
 
-TEST(Arguments, RefuseContradictions) {
+TEST(Arguments, RejectContradictions) {
   EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed", "3", "--torque", "3", "--pinion-speed", "3"})
                   .complains_of("not both"));
-  EXPECT_TRUE(Outcome({"point", "-l", "1,2", "--speed", "3"}).complains_of("one only"));
-  EXPECT_TRUE(
-      Outcome({"point", "-l", "1", "--speed", "3", "--speed", "4"}).complains_of("2 times"));
+  EXPECT_TRUE(Outcome({"point", "-l", "1,2", "--speed", "3"}).complains_of("give only one"));
+  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed", "3", "--speed", "4"})
+                  .complains_of("may be given only once"));
   EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed"}).complains_of("--speed: "));
   EXPECT_TRUE(Outcome({"jobs", "cancel"}).complains_of("NAME is missing"));
   EXPECT_TRUE(Outcome({"lubricants", "lst"}).complains_of("is lubricants list meant?"));
   EXPECT_TRUE(Outcome({"lubricants", "list", "more"}).complains_of("unknown argument more"));
 }
 
-TEST(Arguments, TakeSeveralLubricantsAndJobs) {
+TEST(Arguments, AcceptSeveralLubricantsAndJobs) {
   EXPECT_TRUE(Outcome({"curve", "-l", "1", "--lubricant", "2,3"}).complaints.empty());
   EXPECT_TRUE(Outcome({"jobs", "watch", "a", "b"}).complaints.empty());
   EXPECT_TRUE(Outcome({"jobs", "get", "a", "b"}).complains_of("unknown argument b"));
 }
 
-TEST(Arguments, HelpOfACommand) {
+TEST(Arguments, HelpIsAvailableForACommand) {
   const Outcome outcome({"jobs", "list", "--help"});
   EXPECT_TRUE(outcome.wants_help);
   EXPECT_EQ(outcome.path, "jobs list");
@@ -144,7 +144,7 @@ TEST(ModelFlags, CoverEveryFieldOfModelOptions) {
   const auto every_field_set = [](const google::protobuf::Message& message) {
     const auto* descriptor = message.GetDescriptor();
     for (int i = 0; i < descriptor->field_count(); ++i) {
-      // A flag of `surfaces import`, where it acts.
+      // A flag of `surfaces import`, where it applies.
       if (descriptor->field(i)->name() == "eq46_square_root_of_sum") continue;
       EXPECT_TRUE(message.GetReflection()->HasField(message, descriptor->field(i)))
           << descriptor->field(i)->full_name();
@@ -154,7 +154,7 @@ TEST(ModelFlags, CoverEveryFieldOfModelOptions) {
   every_field_set(options.as_published());
 }
 
-/// The value that a flag hands on; NaN when it complains.
+/// Returns the value that a flag sets; NaN if it adds a complaint.
 double read_as(const std::string& unit, const std::string& text) {
   FlagList list;
   double value = std::numeric_limits<double>::quiet_NaN();
@@ -165,7 +165,7 @@ double read_as(const std::string& unit, const std::string& text) {
   return value;
 }
 
-TEST(Numbers, TakeTheirOwnUnitOrAnyOtherOfItsKind) {
+TEST(Numbers, AcceptEveryUnitOfTheirDimension) {
   EXPECT_EQ(read_as("km/h", "-1.5e-3"), -1.5e-3);
   EXPECT_EQ(read_as("km/h", "+4"), 4);
   EXPECT_EQ(read_as("km/h", "20m/s"), 72);
@@ -176,13 +176,13 @@ TEST(Numbers, TakeTheirOwnUnitOrAnyOtherOfItsKind) {
   EXPECT_EQ(read_as("degrees", "100%"), 45);
 }
 
-TEST(Numbers, AreReadWholeOrNotAtAll) {
+TEST(Numbers, RejectTrailingText) {
   for (const char* text : {"", "1,5", "nan", "inf", "0x10", "+-3", "1e999", "3 V", "3 kg"}) {
     EXPECT_TRUE(std::isnan(read_as("km/h", text))) << text;
   }
 }
 
-TEST(Arguments, SpeedAndSumpMeanTheSameInEveryCommandThatHasOne) {
+TEST(Arguments, SpeedAndSumpHaveOneMeaningInAllCommands) {
   for (const char* command : {"point", "curve", "history"}) {
     const Outcome outcome({command, "-l", "1", "--speed", "20m/s", "--sump", "90C"});
     EXPECT_TRUE(outcome.complaints.empty()) << command << ": " << outcome.complaints.front();
@@ -201,7 +201,7 @@ TEST(Arguments, QuantitiesOfALubricantNeedNoUnit) {
   EXPECT_TRUE(outcome.complaints.empty()) << outcome.complaints.front();
 }
 
-TEST(Arguments, NameTheFlagThatWasTyped) {
+TEST(Arguments, ComplaintsNameTheTypedFlag) {
   EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed", "fast"}).complains_of("--speed: 'fast'"));
   EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed-kilometres-per-hour", "fast"})
                   .complains_of("--speed-kilometres-per-hour: 'fast'"));
@@ -211,11 +211,12 @@ TEST(Arguments, NameTheFlagThatWasTyped) {
   EXPECT_TRUE(
       wrong.complains_of("--density: '868' must be TEMPERATURE=VALUE; did you mean "
                          "--density15?"));
-  EXPECT_EQ(wrong.complaints.size(), 2U) << "what was meant to be said counts as said";
+  EXPECT_EQ(wrong.complaints.size(), 2U) << "a flag that cannot be read counts as given";
 }
 
-/// What the server's refusal of a field becomes for who typed these arguments.
-std::string told(const std::vector<std::string>& arguments, const FieldViolation& violation) {
+/// Returns the message for a violation of the server if the user typed these arguments.
+std::string message_for(const std::vector<std::string>& arguments,
+                        const FieldViolation& violation) {
   CommonOptions options;
   FlagList common_flags;
   add_common_flags(common_flags, options);
@@ -228,34 +229,35 @@ std::string told(const std::vector<std::string>& arguments, const FieldViolation
   return text.substr(text.find('\n') + 3);
 }
 
-TEST(Refusals, NameTheFlagThatWasTypedAndTheCure) {
+TEST(ServerErrors, NameTheTypedFlagAndTheCorrectSpelling) {
   const FieldViolation density = {
       "lubricant.measurements.density_15_celsius_kilograms_per_cubic_metre",
       "density_15_celsius_kilograms_per_cubic_metre = 0.895 kg/m3; allowed: 500 to 2000 kg/m3 (eq "
       "26)"};
   EXPECT_EQ(
-      told({"lubricants", "create", "x", "--density15", "0.895"}, density),
+      message_for({"lubricants", "create", "x", "--density15", "0.895"}, density),
       "--density15 = 0.895 kg/m3; allowed: 500 to 2000 kg/m3 (eq 26); 0.895 looks like g/cm3: "
       "write 0.895g/cm3 or 895");
-  EXPECT_EQ(told({"lubricants", "create", "x", "--kv40", "100"}, density), density.description);
-  EXPECT_EQ(told({"point", "-l", "1", "--speed=-5"},
-                 {"simulation.operating_point.cruise.speed_kilometres_per_hour",
-                  "speed_kilometres_per_hour = -5 km/h; allowed: 0.1 to 400 km/h (eq 7)"}),
+  EXPECT_EQ(message_for({"lubricants", "create", "x", "--kv40", "100"}, density),
+            density.description);
+  EXPECT_EQ(message_for({"point", "-l", "1", "--speed=-5"},
+                        {"simulation.operating_point.cruise.speed_kilometres_per_hour",
+                         "speed_kilometres_per_hour = -5 km/h; allowed: 0.1 to 400 km/h (eq 7)"}),
             "--speed = -5 km/h; allowed: 0.1 to 400 km/h (eq 7)");
-  EXPECT_EQ(told({"curve", "-l", "1", "--speed", "20,900"},
-                 {"simulation.inefficiency_curve.speeds_kilometres_per_hour[1]",
-                  "speeds_kilometres_per_hour = 900 km/h; allowed: 0.1 to 400 km/h (eq 7)"}),
+  EXPECT_EQ(message_for({"curve", "-l", "1", "--speed", "20,900"},
+                        {"simulation.inefficiency_curve.speeds_kilometres_per_hour[1]",
+                         "speeds_kilometres_per_hour = 900 km/h; allowed: 0.1 to 400 km/h (eq 7)"}),
             "--speed = 900 km/h; allowed: 0.1 to 400 km/h (eq 7)");
-  EXPECT_EQ(told({"lubricants", "create", "x", "--kv40", "1", "--brookfield", "-40=9",
-                  "--brookfield", "-400=9"},
-                 {"lubricant.measurements.brookfield_viscosities[1].temperature_celsius",
-                  "temperature_celsius = -400 C; allowed: -70 to 200 C (eq 34)"}),
+  EXPECT_EQ(message_for({"lubricants", "create", "x", "--kv40", "1", "--brookfield", "-40=9",
+                         "--brookfield", "-400=9"},
+                        {"lubricant.measurements.brookfield_viscosities[1].temperature_celsius",
+                         "temperature_celsius = -400 C; allowed: -70 to 200 C (eq 34)"}),
             "--brookfield -400=9: temperature_celsius = -400 C; allowed: -70 to 200 C (eq 34)");
 }
 
-TEST(ResultFiles, AreRefusedBeforeAnythingIsComputed) {
+TEST(ResultFiles, AreCheckedBeforeAnythingIsComputed) {
   EXPECT_TRUE(Outcome({"curve", "-l", "1", "--plot", "out.png"})
-                  .complains_of("--plot: 'out.png': pictures are SVG only. Write --plot out.svg"));
+                  .complains_of("--plot: 'out.png' must end in .svg. Write --plot out.svg"));
   EXPECT_TRUE(Outcome({"history", "-l", "1", "--speed", "3", "--plot", "a.b/out.PDF"})
                   .complains_of("rsvg-convert a.b/out.svg"));
   EXPECT_TRUE(Outcome({"curve", "-l", "1", "--plot", "/dev/null"}).complaints.empty());
@@ -271,7 +273,7 @@ TEST(ResultFiles, AreRefusedBeforeAnythingIsComputed) {
   EXPECT_TRUE(Outcome(many).complains_of("25 lubricants; allowed: at most 24"));
 }
 
-TEST(Help, IsShortUnlessAllIsAskedFor) {
+TEST(Help, IsShortWithoutHelpAll) {
   constexpr std::size_t kMostOptions = 15;
   FlagList common_flags;
   CommonOptions options;
@@ -292,7 +294,7 @@ TEST(Help, IsShortUnlessAllIsAskedFor) {
           << command.path << " " << flag.names;
     }
     EXPECT_NE(whole.find("\n  --server"), std::string::npos) << command.path;
-    EXPECT_EQ(brief.find("--as-published"), std::string::npos) << "of interest for the paper only";
+    EXPECT_EQ(brief.find("--as-published"), std::string::npos) << "concerns only the paper";
   }
   EXPECT_TRUE(Outcome({"curve", "--help-all"}).wants_all_help);
   EXPECT_FALSE(Outcome({"curve", "--help"}).wants_all_help);
@@ -301,7 +303,7 @@ TEST(Help, IsShortUnlessAllIsAskedFor) {
 TEST(Help, EveryMainFlagIsAFlagOfItsCommand) {
   for (const Command& command : all_commands()) {
     for (const std::string& name : command.main_flags) {
-      if (command.path.ends_with(" import")) continue;  // one list for all kinds
+      if (command.path.ends_with(" import")) continue;  // all kinds share one list
       const auto& flags = command.flags.flags();
       EXPECT_TRUE(std::any_of(flags.begin(), flags.end(),
                               [&](const Flag& flag) {

@@ -30,14 +30,14 @@ err_has 'is point meant'
 
 start_server
 
-echo "--- usage: every mistake at once"
+echo "--- usage: every error at once"
 expect 2 point --speed fast --sump hot --model quick --nonsense
-for part in "'fast' is not a number" "'hot' is not a number" "'quick' is not one of" \
+for part in "'fast' is not a number" "'hot' is not a number" "'quick' must be one of" \
   "unknown option --nonsense" "--lubricant is missing"; do
   err_has "$part"
 done
 
-echo "--- refusals: every violation at once"
+echo "--- errors of the server: every violation at once"
 expect 1 point --lubricant 7 --speed -5 --sump-temperature-celsius 900 \
   --relative-tolerance 1 --gear-set Z
 for part in '--speed = -5 km/h; allowed: 0\.1 to 400' \
@@ -62,9 +62,9 @@ expect 1 jobs get none
 expect 1 jobs cancel none
 expect 1 jobs watch none
 
-echo "--- allowed ranges in the help are those of the server"
-# Each number flag with a range: a value above it is refused, by name, with the same range.
-ranges() {  # the help wraps its lines anywhere: the text of a flag is joined first
+echo "--- allowed ranges in the help equal those of the server"
+# The server must reject a value above the range of each number flag and state the same range.
+ranges() {  # joins the wrapped lines of each flag first
   "$client" "$1" --help-all | awk '
     function show() { if (match(text, /Allowed: [^ ]+ to [^ ]+/)) {
       split(substr(text, RSTART, RLENGTH), word); print flag, word[2], word[4] } text = "" }
@@ -79,7 +79,7 @@ for command in point contact history curve; do
   while read -r flag lowest highest; do
     given=(--lubricant 1 --speed 50)
     case "$command $flag" in
-      *" --timeout-seconds") continue ;;  # the client's own
+      *" --timeout-seconds") continue ;;  # the client checks it
       contact\ *) given=() ;;
       curve\ * | *" --speed-kilometres-per-hour" | *" --speeds-kilometres-per-hour") given=(--lubricant 1) ;;
       *" --pinion-torque-newton-metres") given=(--lubricant 1 --pinion-speed 1) ;;
@@ -187,7 +187,7 @@ expect 0 curve --lubricant 1 --first-speed 60 --last-speed 80 --speed-step 20 --
 out_has 'from 60 to 80 km/h by 20, independent points'
 out_has 'Each speed was solved independently'
 expect 2 curve --lubricant 1 --independent-points --direction up
-err_has '--direction and --independent-points: one of them'
+err_has 'either --direction or --independent-points'
 expect 0 curve --lubricant 1 --first-speed 40 --last-speed 50 --speed-step 10 \
   --model quasi-static --output json
 out_is_json
@@ -245,7 +245,7 @@ out_lines 3
 expect 0 jobs list --limit 2 --output json
 out_is_json
 
-echo "--- Ctrl-C stops following, not the job"
+echo "--- Ctrl-C stops the watch, not the job"
 "$client" jobs watch "$job" --progress lines >"$folder/out" 2>"$folder/err" </dev/null &
 watcher=$!
 asked="jobs watch, then Ctrl-C"
@@ -265,7 +265,7 @@ expect 0 jobs cancel "$job"
 expect 1 jobs watch "$job"
 err_has 'cancelled'
 expect 0 jobs cancel "$job"
-err_has "simulations/$job had already ended \(cancelled\); nothing was stopped"
+err_has "simulations/$job had already ended \(cancelled\); nothing to cancel"
 expect 0 jobs list --filter 'state = cancelled AND lubricant = 1'
 out_has "^$job .*cancelled"
 expect 0 jobs pin "$job"
@@ -280,7 +280,7 @@ err_has 'See tribodyn help filters'
 expect 1 jobs wait "$job"
 expect 1 jobs rerun none
 
-echo "--- a job is computed once, and again when told to"
+echo "--- a job is computed once, and again with --force"
 point=(point --lubricant 2 --speed 50 --model quasi-static --output json)
 expect 0 "${point[@]}"
 expect 0 "${point[@]}"

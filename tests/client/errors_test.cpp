@@ -41,7 +41,7 @@ TEST(Errors, ListEveryViolation) {
   EXPECT_EQ(to_failure(refusal_with_violations(), "here").exit_code(), kExitFailed);
 }
 
-TEST(Errors, SayWhenToTryAgain) {
+TEST(Errors, StateThePauseBeforeARetry) {
   google::rpc::Status details;
   google::rpc::RetryInfo retry;
   retry.mutable_retry_delay()->set_seconds(2);
@@ -51,7 +51,7 @@ TEST(Errors, SayWhenToTryAgain) {
   EXPECT_EQ(readable_error(status), "queue full [RESOURCE_EXHAUSTED]\n  try again in 2.0 s");
 }
 
-TEST(Errors, GiveTheCauseOfALostConnectionWithoutTheWordsOfTheTransport) {
+TEST(Errors, GiveOnlyTheCauseOfALostConnection) {
   const auto said = [](const char* message) {
     return readable_error({grpc::StatusCode::UNAVAILABLE, message});
   };
@@ -63,7 +63,7 @@ TEST(Errors, GiveTheCauseOfALostConnectionWithoutTheWordsOfTheTransport) {
   EXPECT_EQ(said(""), "cannot connect to the server at x: no connection");
 }
 
-TEST(Errors, NoServerIsToldFromAServerThatRefuses) {
+TEST(Errors, DistinguishNoServerFromAnErrorOfTheServer) {
   const grpc::Status absent(grpc::StatusCode::UNAVAILABLE, "connection refused");
   EXPECT_EQ(to_failure(absent, "127.0.0.1:1").exit_code(), kExitCannotConnect);
   EXPECT_NE(std::string(to_failure(absent, "127.0.0.1:1").what()).find("127.0.0.1:1"),
@@ -78,7 +78,7 @@ TEST(Errors, SurviveDetailsThatAreNotProtobuf) {
   EXPECT_EQ(readable_error(status), "bad ?[31m [INTERNAL]");
 }
 
-TEST(Errors, FlagsAreNamedAfterFields) {
+TEST(Flags, AreNamedAfterFields) {
   EXPECT_EQ(flag_of_field("simulation.sump_temperature_celsius"), "--sump-temperature-celsius");
   EXPECT_EQ(flag_of_field("a.speeds[3]"), "--speeds");
 }

@@ -19,10 +19,11 @@ namespace {
 
 using State = v1::Simulation::State;
 
-/// A server whose watch streams follow a script: what a real one does only on bad days.
+/// A server with scripted watch streams, to reproduce failures that are rare with a real server.
 class ScriptedServer final : public v1::SimulationService::Service {
  public:
-  /// How one watch goes: these states are sent, then it ends like this, or waits to be cancelled.
+  /// The script of one watch: it sends these states, then ends with a status or waits for its
+  /// cancellation.
   struct Watch {
     std::vector<State> states;
     grpc::Status end;
@@ -42,9 +43,9 @@ class ScriptedServer final : public v1::SimulationService::Service {
   const std::string& address() const { return address_; }
   int watches() const { return watches_; }
   bool hanging() const { return hanging_; }
-  /// The n-th watch follows the n-th script, the last one for all that come after.
+  /// The n-th watch follows the n-th script; later watches follow the last one.
   std::vector<Watch> scripts;
-  int ends_at_get = 1;                  ///< the call of GetSimulation from which on it has ended
+  int ends_at_get = 1;  ///< first call of GetSimulation that returns an ended simulation
   std::atomic<bool> is_frozen = false;  ///< GetSimulation does not answer
 
   grpc::Status WatchSimulation(grpc::ServerContext* context, const v1::WatchSimulationRequest*,
@@ -91,7 +92,7 @@ std::vector<v1::Simulation> queued(const std::vector<std::string>& names) {
   return simulations;
 }
 
-TEST(Follow, ReturnsEverySimulationOnceAllHaveEnded) {
+TEST(Follow, ReturnsEverySimulationWhenAllHaveEnded) {
   ScriptedServer server;
   server.scripts = {{{v1::Simulation::RUNNING, v1::Simulation::SUCCEEDED}, grpc::Status::OK}};
   Connection connection(server.address(), std::chrono::seconds(10));
@@ -100,7 +101,7 @@ TEST(Follow, ReturnsEverySimulationOnceAllHaveEnded) {
   EXPECT_EQ(ended[1].name(), "simulations/b");
 }
 
-TEST(Follow, TakesABrokenStreamUpAgain) {
+TEST(Follow, ResumesABrokenStream) {
   ScriptedServer server;
   server.scripts = {{{v1::Simulation::RUNNING}, {grpc::StatusCode::UNAVAILABLE, "restarting"}},
                     {{}, grpc::Status::OK},
@@ -117,12 +118,12 @@ TEST(Follow, PausesBetweenWatchesThatTheServerEndsAtOnce) {
   Connection connection(server.address(), std::chrono::seconds(10));
   const auto start = std::chrono::steady_clock::now();
   EXPECT_EQ(follow(connection, queued({"a"}), {"a"}, ProgressForm::kNone).size(), 1U);
-  EXPECT_EQ(server.watches(), 3) << "each silent watch is followed by one question";
+  EXPECT_EQ(server.watches(), 3) << "one GetSimulation follows each silent watch";
   // Two pauses of 250 ms or more.
   EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(490));
 }
 
-TEST(Follow, GivesUpAServerThatIsFrozen) {
+TEST(Follow, StopsWaitingForAFrozenServer) {
   ScriptedServer server;
   server.scripts = {{{v1::Simulation::RUNNING}, grpc::Status::CANCELLED, true},
                     {{}, grpc::Status::CANCELLED, true}};
@@ -130,7 +131,7 @@ TEST(Follow, GivesUpAServerThatIsFrozen) {
   Connection connection(server.address(), std::chrono::milliseconds(200));
   try {
     follow(connection, queued({"a"}), {"a"}, ProgressForm::kNone);
-    FAIL() << "a frozen server was waited for";
+    FAIL() << "waited for a frozen server";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.exit_code(), kExitCannotConnect);
     EXPECT_NE(std::string(failure.what()).find("no answer in time"), std::string::npos);
@@ -138,20 +139,20 @@ TEST(Follow, GivesUpAServerThatIsFrozen) {
   }
 }
 
-TEST(Follow, EndsOnARefusal) {
+TEST(Follow, EndsOnAnErrorOfTheServer) {
   ScriptedServer server;
   server.scripts = {{{}, {grpc::StatusCode::NOT_FOUND, "no such simulation"}}};
   Connection connection(server.address(), std::chrono::seconds(10));
   try {
     follow(connection, queued({"a"}), {"a"}, ProgressForm::kNone);
-    FAIL() << "a refusal passed";
+    FAIL() << "an error was ignored";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.exit_code(), kExitFailed);
     EXPECT_NE(std::string(failure.what()).find("no such simulation"), std::string::npos);
   }
 }
 
-TEST(Follow, CtrlCSaysHowToGoOn) {
+TEST(Follow, CtrlCPrintsTheCommandsThatWatchAndCancel) {
   ScriptedServer server;
   server.scripts = {{{v1::Simulation::RUNNING}, grpc::Status::CANCELLED, true}};
   Connection connection(server.address(), std::chrono::seconds(10));
@@ -161,7 +162,7 @@ TEST(Follow, CtrlCSaysHowToGoOn) {
   });
   try {
     follow(connection, queued({"job1"}), {"lubricants/1"}, ProgressForm::kNone);
-    ADD_FAILURE() << "Ctrl-C passed unnoticed";
+    ADD_FAILURE() << "Ctrl-C was ignored";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.exit_code(), kExitInterrupted);
     EXPECT_NE(std::string(failure.what()).find("tribodyn jobs watch job1"), std::string::npos);

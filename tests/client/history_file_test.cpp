@@ -1,4 +1,4 @@
-// Downloads that were interrupted.
+// Tests that interrupted downloads resume.
 #include "client/cpp/report/history_file.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ class HistoryFileTest : public testing::TestWithParam<HistoryFile::Format> {
   std::filesystem::path folder_;
 };
 
-TEST_P(HistoryFileTest, GoesOnBehindItsLastWholeRow) {
+TEST_P(HistoryFileTest, ResumesAfterItsLastCompleteRow) {
   HistoryFile whole = open("whole");
   whole.add(rows(0, 4));
   whole.finish();
@@ -64,7 +64,7 @@ TEST_P(HistoryFileTest, GoesOnBehindItsLastWholeRow) {
 INSTANTIATE_TEST_SUITE_P(Formats, HistoryFileTest,
                          testing::Values(HistoryFile::Format::kCsv, HistoryFile::Format::kNumpy));
 
-TEST(NumpyFile, IsLaidOutAsNumpyReadsIt) {
+TEST(NumpyFile, HasTheLayoutThatNumpyReads) {
   const auto path = std::filesystem::temp_directory_path() / "tribodyn-numpy-test.npy";
   HistoryFile file(path.string(), HistoryFile::Format::kNumpy, "identity", {"a", "b"}, 2);
   file.add({0, {{1, 2}, {3, 4}}});

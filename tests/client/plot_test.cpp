@@ -20,7 +20,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// Whether tags nest and text holds no bare markup: enough of XML for what Svg writes.
+/// Whether tags nest and text contains no bare markup: the part of XML that Svg writes.
 testing::AssertionResult is_well_formed(const std::string& xml) {
   std::stack<std::string> open;
   for (std::size_t at = 0; at < xml.size();) {
@@ -54,7 +54,7 @@ testing::AssertionResult is_well_formed(const std::string& xml) {
   return testing::AssertionSuccess();
 }
 
-/// Keeps the picture for a look when TRIBODYN_TEST_PICTURES names a folder.
+/// Saves the picture if the environment variable TRIBODYN_TEST_PICTURES names a folder.
 void keep(const std::string& name, const std::string& svg) {
   const char* folder = std::getenv("TRIBODYN_TEST_PICTURES");
   if (folder != nullptr) std::ofstream(std::string(folder) + "/" + name) << svg;
@@ -96,7 +96,7 @@ TEST(CurvePlot, ShowsEveryFluidTheBandsAndTheCaption) {
   EXPECT_EQ(svg.find("nan"), std::string::npos);
 }
 
-TEST(CurvePlot, LeavesAGapWhereASpeedWasRefused) {
+TEST(CurvePlot, LeavesAGapAtASpeedWithoutResult) {
   v1::Simulation curve = sample_curve("1", 1);
   curve.mutable_result()->mutable_points(3)->clear_result();
   const std::string svg = curve_plot({curve}, {});
@@ -123,7 +123,7 @@ TEST(CurvePlot, BreaksTheLineWhereABranchEnds) {
   EXPECT_EQ(lines_of(curve), broken_below);
 }
 
-/// The curve with a warning from one speed to another.
+/// Returns the curve with a warning in a range of speeds.
 v1::Simulation with_warning(v1::Simulation curve, const std::string& code, double from, double to) {
   for (auto& point : *curve.mutable_result()->mutable_points()) {
     const double speed = point.speed_kilometres_per_hour();
@@ -150,7 +150,7 @@ TEST(CurvePlot, HatchesWhereALawIsOutsideItsRangeAndNamesItInTheFooter) {
   EXPECT_EQ(svg.find("do not rank"), std::string::npos);
 }
 
-TEST(CurvePlot, SaysNotToRankOilsWhereTheInletIsCold) {
+TEST(CurvePlot, WarnsAgainstRankingOilsAtAColdInlet) {
   const std::string svg =
       curve_plot({with_warning(sample_curve("1", 1), "COLD_INLET", 20, 140)}, {});
   keep("cold.svg", svg);
@@ -160,7 +160,7 @@ TEST(CurvePlot, SaysNotToRankOilsWhereTheInletIsCold) {
   EXPECT_NE(svg.find("width=\"690\" height=\"350\" fill=\"url(#hatch0)\""), std::string::npos);
 }
 
-TEST(CurvePlot, NamesARemarkOnTheMethodWithoutHatching) {
+TEST(CurvePlot, ShowsANoteOnTheMethodWithoutHatching) {
   const std::string svg = curve_plot({with_warning(sample_curve("1", 1), "PERIOD", 60, 60)}, {});
   EXPECT_NE(svg.find("Response with a period of several mesh cycles, at 60 km/h [PERIOD]."),
             std::string::npos);
@@ -180,7 +180,7 @@ TEST(CurvePlot, CutsALongTitleWithAnEllipsis) {
                                      {{"lubricants/1", "An oil with quite a long name 75W-90"}});
   EXPECT_NE(svg.find(">An oil with quite a\xE2\x80\xA6</text>"), std::string::npos);
   EXPECT_EQ(svg.find("lubricant 1"), std::string::npos);
-  // Without a title the id is the label, whole where there is room for it.
+  // Without a title the label is the id, uncut if it fits.
   const std::string untitled = curve_plot(
       {sample_curve("mineral-80w90", 1), sample_curve("a-very-long-name-of-an-oil", 1)}, {});
   EXPECT_NE(untitled.find(">mineral-80w90</text>"), std::string::npos);
@@ -223,8 +223,8 @@ TEST(CurvePlot, DrawsTwelveFluidsWithTwelveLooks) {
 
 TEST(Labels, HaveTheContrastOfSmallTextOnWhite) {
   EXPECT_EQ(legible_on_white("#000000"), "#000000");
-  EXPECT_EQ(legible_on_white("#0072b2"), "#0072b2");  // 5.2 to 1 as it is
-  EXPECT_NE(legible_on_white("#e69f00"), "#e69f00");  // 2.3 to 1
+  EXPECT_EQ(legible_on_white("#0072b2"), "#0072b2");  // contrast 5.2 to 1
+  EXPECT_NE(legible_on_white("#e69f00"), "#e69f00");  // contrast 2.3 to 1
   const std::string svg =
       curve_plot({sample_curve("1", 1), sample_curve("2", 1), sample_curve("3", 1),
                   sample_curve("4", 1), sample_curve("5", 1), sample_curve("6", 1)},
@@ -235,7 +235,7 @@ TEST(Labels, HaveTheContrastOfSmallTextOnWhite) {
             std::string::npos);
 }
 
-TEST(Panels, MarkTheBreakOfAnAxisThatLeavesZeroOut) {
+TEST(Panels, MarkTheBreakOfAnAxisWithoutZero) {
   const auto points_of_axis = [](double low, double high, bool arbitrary_zero) {
     Panel panel;
     panel.corner = {100, 50};
@@ -259,7 +259,7 @@ TEST(Panels, MarkTheBreakOfAnAxisThatLeavesZeroOut) {
   EXPECT_EQ(points_of_axis(5, 6, true), 2);
 }
 
-TEST(CurvePlot, SurvivesOnePointAndNone) {
+TEST(CurvePlot, AcceptsOnePointAndNoPoint) {
   v1::Simulation curve = sample_curve("1", 1);
   curve.mutable_result()->mutable_points()->DeleteSubrange(1, 24);
   EXPECT_TRUE(is_well_formed(curve_plot({curve}, {})));
@@ -279,7 +279,7 @@ TEST(ContactLossBands, ReachHalfWayToTheNeighboursAndMerge) {
   EXPECT_EQ(contact_loss_bands({curve}), (Bands{{20, 22.5}}));
 }
 
-TEST(HistoryPlot, PutsTheFlanksOfOneQuantityTogether) {
+TEST(HistoryPlot, DrawsTheFlanksOfOneQuantityInOnePanel) {
   const std::string svg = history_plot(sample_point(), sample_history(), "Axle oil 75W-90: PAO");
   keep("history.svg", svg);
   EXPECT_TRUE(is_well_formed(svg));
@@ -305,7 +305,7 @@ TEST(HistoryPlot, DrawsTemperaturesInDegreesCelsius) {
   EXPECT_EQ(svg.find(">380</text>"), std::string::npos);
 }
 
-TEST(HistoryPlot, LeadsALabelToALineThatEndsBeforeTheFrame) {
+TEST(HistoryPlot, ConnectsALabelWithALineThatEndsBeforeTheFrame) {
   v1::History history = sample_history();
   const auto leaders = [](const std::string& svg) {
     int count = 0;

@@ -1,4 +1,4 @@
-// What flags and files make of a resource, without a server.
+// Tests of flags and files that describe a resource, without a server.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 const ResourceKind& lubricants() { return kind_of(*v1::Lubricant::descriptor()); }
 
-/// Reads flags as a command line would; expects no complaint unless `complaints` is given.
+/// Reads flags as a command line does; expects no complaint unless `complaints` is given.
 v1::Lubricant edited(const std::vector<std::pair<std::string, std::string>>& given,
                      v1::Lubricant lubricant = {}, Complaints* complaints = nullptr) {
   ResourceEdits edits;
@@ -47,7 +47,7 @@ v1::Lubricant edited(const std::vector<std::pair<std::string, std::string>>& giv
   return lubricant;
 }
 
-TEST(Edits, AFluidAsFormulatorsKnowIt) {
+TEST(Edits, FlagsDescribeADataSheet) {
   const v1::Lubricant fluid = edited({{"--kv40", "73.3"},
                                       {"--kv100", "8.86cSt"},
                                       {"--density15", "0.87 g/cm3"},
@@ -81,7 +81,7 @@ TEST(Edits, AFluidAsFormulatorsKnowIt) {
   EXPECT_DOUBLE_EQ(fluid.vogel_reference_temperature_kelvin(), 159);
 }
 
-TEST(Edits, ANumberWithoutAUnitIsInTheUnitOfTheTrade) {
+TEST(Edits, ANumberWithoutUnitIsInTheUnitOfDataSheets) {
   const v1::Lubricant fluid = edited({{"--pressure-viscosity", "20"},
                                       {"--pressure-viscosity-temperature", "40"},
                                       {"--relaxation-time", "0.45"},
@@ -99,7 +99,7 @@ TEST(Edits, ANumberWithoutAUnitIsInTheUnitOfTheTrade) {
             2);
 }
 
-TEST(Edits, ANewValueVoidsWhatWasKnownOfTheOld) {
+TEST(Edits, ANewValueClearsTheProvenanceOfTheOldOne) {
   v1::Lubricant fluid;
   auto& entry = *fluid.add_provenance();
   entry.set_field("thermal_conductivity_watts_per_metre_kelvin");
@@ -121,7 +121,7 @@ TEST(Edits, ANewValueVoidsWhatWasKnownOfTheOld) {
   EXPECT_EQ(unset.provenance_size(), 0);
 }
 
-TEST(Edits, UnsetMakesRoomForWhatIsSet) {
+TEST(Edits, UnsetIsAppliedBeforeOtherFlags) {
   const v1::Lubricant old = edited({{"--density", "100=815"}, {"--label", "a=1"}});
   const v1::Lubricant added = edited({{"--density", "60=840"}}, old);
   EXPECT_EQ(added.measurements().densities_size(), 2);
@@ -135,7 +135,7 @@ TEST(Edits, UnsetMakesRoomForWhatIsSet) {
   EXPECT_EQ(anew.labels(0).value(), "2");
 }
 
-TEST(Edits, ComplainOfEachMistake) {
+TEST(Edits, ReportEachError) {
   Complaints complaints;
   edited({{"--kv40", "thick"},
           {"--pressure-viscosity", "20 s"},
@@ -175,7 +175,7 @@ TEST(Edits, EveryNumberOfEveryKindHasAFlag) {
   }
 }
 
-std::string refusal_of(const std::string& json) {
+std::string error_of(const std::string& json) {
   try {
     read_resources(json, "x.json", nullptr);
   } catch (const Failure& failure) {
@@ -185,8 +185,8 @@ std::string refusal_of(const std::string& json) {
   return "";
 }
 
-TEST(JsonInput, NamesEveryUnknownFieldAndTheOneMeant) {
-  const std::string text = refusal_of(
+TEST(JsonInput, NamesEveryUnknownFieldAndTheNearestOne) {
+  const std::string text = error_of(
       R"({"name": "lubricants/q", "measurments": {}, "labels": [{"ky": "a"}],
           "measurements": {"densities": [{"temperature_celcius": 3}]}})");
   EXPECT_NE(text.find("measurments is not a field of Lubricant (is measurements meant?)"),
@@ -195,14 +195,14 @@ TEST(JsonInput, NamesEveryUnknownFieldAndTheOneMeant) {
   EXPECT_NE(text.find("measurements.densities[0].temperature_celcius"), std::string::npos);
 }
 
-TEST(JsonInput, RefusesWhatIsNoResource) {
-  EXPECT_NE(refusal_of("").find("not a JSON object"), std::string::npos);
-  EXPECT_NE(refusal_of("[1, 2]").find("not a JSON object"), std::string::npos);
-  EXPECT_NE(refusal_of("{").find("not a JSON object"), std::string::npos);
-  EXPECT_NE(refusal_of(std::string(5000, '[')).find("not a JSON object"), std::string::npos);
-  EXPECT_NE(refusal_of("{}").find("kind of resource is unclear"), std::string::npos);
-  EXPECT_NE(refusal_of(R"({"lubricants": [7]})").find("lubricants[0]"), std::string::npos);
-  EXPECT_FALSE(refusal_of(R"({"name": "lubricants/q", "labels": 7})").empty());
+TEST(JsonInput, RejectsTextThatIsNotAResource) {
+  EXPECT_NE(error_of("").find("not a JSON object"), std::string::npos);
+  EXPECT_NE(error_of("[1, 2]").find("not a JSON object"), std::string::npos);
+  EXPECT_NE(error_of("{").find("not a JSON object"), std::string::npos);
+  EXPECT_NE(error_of(std::string(5000, '[')).find("not a JSON object"), std::string::npos);
+  EXPECT_NE(error_of("{}").find("kind of resource is unclear"), std::string::npos);
+  EXPECT_NE(error_of(R"({"lubricants": [7]})").find("lubricants[0]"), std::string::npos);
+  EXPECT_FALSE(error_of(R"({"name": "lubricants/q", "labels": 7})").empty());
 }
 
 TEST(JsonInput, ReadsBackWhatExportWrites) {
@@ -211,7 +211,7 @@ TEST(JsonInput, ReadsBackWhatExportWrites) {
     auto fluid = std::make_unique<v1::Lubricant>();
     fluid->set_name(name);
     fluid->set_pressure_viscosity_coefficient_per_pascal(1.0 / 3e8);
-    fluid->set_havriliak_negami_beta(0);  // stated, and zero
+    fluid->set_havriliak_negami_beta(0);  // set to zero
     fluid->set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_ESTER);
     fluid->add_labels()->set_key("a\"\n\u00e9");
     fluids.push_back(std::move(fluid));
@@ -229,7 +229,7 @@ TEST(JsonInput, ReadsBackWhatExportWrites) {
   EXPECT_EQ(alone.at(0).resource->SerializeAsString(), kept.SerializeAsString());
 }
 
-TEST(TableFiles, ListWhatWasMeasured) {
+TEST(TableFiles, ListMeasurements) {
   v1::Lubricant fluid;
   fluid.mutable_measurements()->set_kinematic_viscosity_100_celsius_square_millimetres_per_second(
       8.86);
@@ -240,7 +240,7 @@ TEST(TableFiles, ListWhatWasMeasured) {
             "100,8.86,,\n15,,,870\n");
 }
 
-TEST(Difference, PutsWhatDiffersFirst) {
+TEST(Difference, ListsDifferentValuesFirst) {
   v1::Lubricant a;
   v1::Lubricant b;
   a.set_name("lubricants/a");
@@ -273,7 +273,7 @@ std::vector<std::string> completed(const std::vector<std::string>& words) {
   return completions(words, all_commands(), common_flags, options);
 }
 
-TEST(Completion, OffersWhatMayFollow) {
+TEST(Completion, OffersCommandsFlagsAndValues) {
   using Words = std::vector<std::string>;
   EXPECT_EQ(completed({"lub"}), Words({"lubricants"}));
   EXPECT_EQ(completed({"lubricants", "un"}), Words({"undelete"}));
@@ -286,7 +286,7 @@ TEST(Completion, OffersWhatMayFollow) {
   EXPECT_EQ(completed({"curve", "--plot", ""}), Words({"\\file"}));
 }
 
-TEST(Completion, IsSilentWithoutAServer) {
+TEST(Completion, PrintsNoErrorWithoutAServer) {
   EXPECT_TRUE(completed({"lubricants", "get", ""}).empty());
   EXPECT_TRUE(completed({}).empty());
   EXPECT_TRUE(completed({"nonsense", ""}).empty());

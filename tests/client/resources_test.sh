@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What a formulator does with resources, against a real tribodynd: from a data sheet or a table to a
-# curve, revisions, files there and back, mistakes, completion, configuration.
+# Tests commands on resources with a real tribodynd: from a data sheet or a table to a curve,
+# revisions, export and import, errors, completion, configuration.
 # usage: resources_test.sh TRIBODYND TRIBODYN
 # shellcheck source=tests/client/support.sh
 . "$(dirname "${BASH_SOURCE[0]}")/support.sh"
@@ -59,7 +59,7 @@ expect 0 lubricants get units --output json
 out_has '"pressureViscosityCoefficientPerPascal": 2e-0?8'
 out_has '"relaxationTimeSeconds": 4.5e-0?7'
 
-echo "--- mistakes: all at once, with what may be meant"
+echo "--- errors: all at once, with the nearest name"
 expect 2 lubricants create x --kv40 thick --kv100 8,86 --pressure-viscosity 20s --densty15 8
 err_has "'thick' is not a number in mm2/s"
 err_has 'write a decimal point: 8.86'
@@ -67,7 +67,7 @@ err_has "'20s' must be in 1/Pa"
 err_has 'is --density15 meant'
 expect 2 lubricants create x --density 868
 err_has 'did you mean --density15'
-! grep -q 'nothing is said' "$folder/err" || fail "a misread flag counts as none"
+! grep -q 'no properties given' "$folder/err" || fail "a flag that cannot be read counts as missing"
 expect 1 lubricants create x --kv40 0.1 --density15 0.87 --pressure-viscosity 1e6/GPa
 for part in '--kv40 = 0.1 mm2/s; allowed: 1 to' \
   '--density15 = 0.87 kg/m3; allowed: 500 to .*0.87 looks like g/cm3: write 0.87g/cm3 or 870' \
@@ -177,7 +177,7 @@ expect 2 lubricants import twice.json
 err_has 'lubricants\[0\] and in .*lubricants\[1\]'
 expect 1 lubricants get twice
 
-echo "--- a simulation that is only checked"
+echo "--- validation of a simulation"
 expect 0 curve --lubricant 1 --lubricant my-oil --validate-only
 out_has '^valid, not run: lubricants/my-oil  about .* of a processor; inputs [0-9a-f]{64}$'
 expect 1 point --lubricant 1 --speed 4000 --validate-only
@@ -188,7 +188,7 @@ expect 0 point --lubricant 1 --speed 40 --validate-only
 expect 0 jobs list --output csv
 [ "$(cat "$folder/out")" = "$jobs_before" ] || fail "--validate-only runs something"
 
-echo "--- a fluid a row"
+echo "--- one fluid per row"
 cat >rows.csv <<'END'
 name;kinematic_viscosity_40_celsius_square_millimetres_per_second;kinematic_viscosity_100_celsius_square_millimetres_per_second;base_oil_class;condition;derived_from;labels.project;display_name
 row-used;70;8.6;pao;used;row-fresh;axle;
@@ -221,7 +221,7 @@ expect 1 lubricants import rows-bad.csv
 err_has 'row 2 column labels.pro ject: "pro ject"; allowed: letters'
 expect 1 lubricants import rows.csv
 err_has 'row 2 column name: lubricants/row-used exists already'
-err_has 'Nothing was written. --replace makes new revisions'
+err_has 'Nothing was written. Use --replace to create new revisions'
 expect 0 lubricants export --all --output csv --file all.csv
 expect 0 lubricants import all.csv --replace
 for fluid in table-oil table-2 row-fresh; do
@@ -250,7 +250,7 @@ for book in book.xlsx book.csv; do
 done
 printf 'name,kv40,kv100,base_oil_class\ntwin,73.3,8.86,pao\nother,0.00007,8,pao\ntwin,73.3,8.86,pao\n' >twins.csv
 expect 2 lubricants import twins.csv
-err_has 'lubricants/twin stands in twins.csv row 2 and in twins.csv row 4'
+err_has 'lubricants/twin occurs in twins.csv row 2 and in twins.csv row 4'
 err_has 'row 3 column kv40: .* looks like m2/s: did you mean 70 mm2/s'
 expect 1 lubricants get twin
 
@@ -278,9 +278,9 @@ out_has 'composite rms height +0.3 +um'
 expect 0 surfaces get var-b
 out_has 'composite rms height +0.4 +um .*assumed'
 expect 2 lubricants import units.json --like based
-err_has 'like is for tables'
+err_has 'like applies only to tables'
 
-echo "--- there and back through a spreadsheet"
+echo "--- export to a spreadsheet and import"
 expect 0 lubricants create cold --kv40 103 --kv100 15.1 --density15 868 --brookfield -40=98Pas \
   --kv100-sheared 14.2 --base-oil-class pao --density 100=815 --viscosity 20=283mm2/s \
   --thermal-conductivity 0.14W/mK --provenance 'thermal-conductivity=measured:Laboratory X' \
@@ -353,9 +353,9 @@ out_has 'eq 46 as published'
 expect 1 surfaces create one --like run-in --profile profile.csv --as-published eq46
 err_has 'because eq 46 combines an AXIAL and a RADIAL profile'
 expect 2 surfaces create none --like run-in --as-published eq46
-err_has '--as-published acts on profiles'
+err_has '--as-published applies to profiles'
 expect 2 point --lubricant 1 --speed 50 --as-published eq46
-err_has 'eq46 acts where measured profiles become a surface'
+err_has 'eq46 applies where measured profiles become a surface'
 expect 0 validate contact.csv profile.csv table-oil.csv
 expect 0 vehicles create van --like passenger-car --mass '2.1 t' --wheel-radius 0.35
 out_has 'mass +2100 +kg .*user'
@@ -373,7 +373,7 @@ expect 0 lubricants create --help-all
 out_has 'Allowed: 0.1 to( 1000 1/GPa)?'
 out_has '1/GPa \(eq 33'
 TRIBODYN_SERVER=127.0.0.1:9 expect 0 lubricants create --help
-out_has 'No server answers'
+out_has 'No server answered'
 for topic in units files filters configuration options exit-codes; do expect 0 help $topic; done
 expect 0 help lubricants create
 expect 2 lubricant list
@@ -401,7 +401,7 @@ err_has 'See tribodyn help configuration'
 rm "$XDG_CONFIG_HOME/tribodyn/config"
 TRIBODYN_CONFIG=/nonexistent expect 2 vehicles list
 
-echo "--- colours only where they are wanted"
+echo "--- colours only on terminals"
 expect 0 lubricants get my-oil --color always
 grep -q $'\x1b' out || fail "no colours with --color always"
 expect 0 lubricants get my-oil

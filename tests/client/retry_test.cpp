@@ -1,4 +1,4 @@
-// When a request may be sent again, and how long the pauses are.
+// Tests which requests may be sent again, and the pauses between tries.
 #include "client/cpp/library/retry.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ grpc::Status turned_away(const std::string& reason, int seconds) {
   return {grpc::StatusCode::UNAVAILABLE, "later", details.SerializeAsString()};
 }
 
-TEST(Retry, OnlyWhatComesToTheSameIsRepeated) {
+TEST(Retry, RepeatsOnlyIdempotentRequests) {
   EXPECT_TRUE(may_repeat(v1::GetSimulationRequest()));
   EXPECT_TRUE(may_repeat(v1::ListLubricantsRequest()));
   EXPECT_TRUE(may_repeat(v1::CancelSimulationRequest()));
@@ -41,12 +41,12 @@ TEST(Retry, OnlyWhatComesToTheSameIsRepeated) {
   check.set_validate_only(true);
   EXPECT_TRUE(may_repeat(check));
   v1::CreateSimulationRequest create;
-  EXPECT_FALSE(may_repeat(create)) << "it would make two";
+  EXPECT_FALSE(may_repeat(create)) << "it would create two";
   create.set_request_id("x");
   EXPECT_TRUE(may_repeat(create));
 }
 
-TEST(Retry, WhatTheServerTurnedAwayMayComeAgain) {
+TEST(Retry, RepeatsRequestsThatTheServerTurnedAway) {
   EXPECT_TRUE(was_turned_away(turned_away("SHUTTING_DOWN", 5)));
   EXPECT_TRUE(was_turned_away(turned_away("TOO_MANY_WAITING", 5)));
   EXPECT_FALSE(was_turned_away(turned_away("STORE_FAILED", 5))) << "it may have been written";
@@ -55,7 +55,7 @@ TEST(Retry, WhatTheServerTurnedAwayMayComeAgain) {
   EXPECT_EQ(retry_delay({grpc::StatusCode::UNAVAILABLE, "Socket closed"}), std::nullopt);
 }
 
-TEST(Retry, PausesGrowAreDrawnAtRandomAndHeedTheServer) {
+TEST(Retry, PausesGrowAreRandomAndAtLeastTheRequestedOne) {
   std::set<milliseconds> seen;
   for (int client = 0; client < 20; ++client) {
     Backoff backoff;
@@ -70,7 +70,7 @@ TEST(Retry, PausesGrowAreDrawnAtRandomAndHeedTheServer) {
     backoff.reset();
     EXPECT_LE(backoff.next(), milliseconds(100));
   }
-  EXPECT_GT(seen.size(), 10U) << "clients come back one by one";
+  EXPECT_GT(seen.size(), 10U) << "clients do not retry together";
 }
 
 TEST(Retry, RequestIdsAreUniqueAndValid) {

@@ -1,4 +1,4 @@
-// Tables of resources as people and spreadsheets write them.
+// Tests of tables of resources that people and spreadsheets write.
 #include "client/cpp/resources/row_table.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ const v1::Lubricant& as_lubricant(const FileResource& read) {
   return dynamic_cast<const v1::Lubricant&>(*read.resource);
 }
 
-std::string table_refusal(const std::string& text) {
+std::string table_error(const std::string& text) {
   try {
     read_row_table(text, "t.csv", oil_kind());
   } catch (const Failure& failure) {
@@ -38,7 +38,7 @@ double kv40(const v1::Lubricant& oil) {
   return oil.measurements().kinematic_viscosity_40_celsius_square_millimetres_per_second();
 }
 
-TEST(RowTable, TakesTheNamesOfTheTradeInAnyCase) {
+TEST(RowTable, AcceptsDataSheetNamesInAnyCase) {
   const RowTable table = read_row_table(
       "Name,KV40,kv100,Density15 (g/cm3),Base Oil Class,Condition,Pressure-Viscosity "
       "[1/GPa],Brookfield -40 C,brookfield_-26\n"
@@ -59,7 +59,7 @@ TEST(RowTable, TakesTheNamesOfTheTradeInAnyCase) {
   EXPECT_EQ(table.note, "");
 }
 
-TEST(RowTable, KnowsTheSpellingsOfBaseOils) {
+TEST(RowTable, AcceptsTheUsualSpellingsOfBaseOils) {
   const struct {
     const char* text;
     v1::Lubricant::BaseOilClass meant;
@@ -94,18 +94,17 @@ TEST(RowTable, ReadsDecimalCommasWhereCommasDoNotSeparate) {
     EXPECT_EQ(kv40(as_lubricant(table.resources.at(1))), 100);
     EXPECT_NE(table.note.find("3 cells have a decimal comma"), std::string::npos) << table.note;
   }
-  const std::string said = table_refusal("name,kv40,kv100\na,\"73,3\",\"8,86\"\nb,\"100,1\",14\n");
+  const std::string said = table_error("name,kv40,kv100\na,\"73,3\",\"8,86\"\nb,\"100,1\",14\n");
   EXPECT_NE(said.find("3 cells have a decimal comma (the first: row 2 column kv40: '73,3')"),
             std::string::npos)
       << said;
   EXPECT_EQ(count(said, "row "), 1U) << said;
-  EXPECT_NE(table_refusal("name;kv40;kv100\na;1.103;8,86\n").find("decimal commas"),
+  EXPECT_NE(table_error("name;kv40;kv100\na;1.103;8,86\n").find("decimal commas"),
             std::string::npos);
-  EXPECT_NE(table_refusal("name;kv40;kv100\na;1.103,5;8,86\n").find("thousands"),
-            std::string::npos);
+  EXPECT_NE(table_error("name;kv40;kv100\na;1.103,5;8,86\n").find("thousands"), std::string::npos);
 }
 
-TEST(RowTable, UnderstandsARowOfUnits) {
+TEST(RowTable, AcceptsARowOfUnits) {
   const RowTable table = read_row_table(
       "name;kv40;density15;pressure_viscosity_coefficient_per_pascal\n"
       ";cSt;g/cm3;1/GPa\na;73.3;0.87;20\n",
@@ -115,16 +114,16 @@ TEST(RowTable, UnderstandsARowOfUnits) {
   EXPECT_EQ(kv40(oil), 73.3);
   EXPECT_EQ(oil.measurements().density_15_celsius_kilograms_per_cubic_metre(), 870);
   EXPECT_DOUBLE_EQ(oil.pressure_viscosity_coefficient_per_pascal(), 20e-9);
-  const std::string said = table_refusal("name,kv40,density15\nUnits,furlong,kg\na,1,2\n");
+  const std::string said = table_error("name,kv40,density15\nUnits,furlong,kg\na,1,2\n");
   EXPECT_NE(said.find("row 2 column kv40: 'furlong' looks like a unit"), std::string::npos) << said;
   EXPECT_NE(said.find("begin the row with #"), std::string::npos) << said;
 }
 
-TEST(RowTable, TellsTheSameMistakeOnceWithACount) {
+TEST(RowTable, ListsAnErrorOfManyRowsOnce) {
   std::string text = "name,kv40,base_oil_class\n";
   for (int i = 0; i < 30; ++i)
     text += "oil-" + std::to_string(i) + ",x" + (i == 7 ? "x" : "") + ",none\n";
-  const std::string said = table_refusal(text);
+  const std::string said = table_error(text);
   EXPECT_NE(said.find("60 errors of 3 kinds, each listed once"), std::string::npos) << said;
   EXPECT_NE(said.find("row 2 column kv40: 'x' is not a number"), std::string::npos) << said;
   EXPECT_NE(said.find("(and in 28 more, the last row 31)"), std::string::npos) << said;
@@ -132,16 +131,16 @@ TEST(RowTable, TellsTheSameMistakeOnceWithACount) {
   EXPECT_EQ(count(said, "'none' must be one of"), 1U) << said;
 }
 
-TEST(RowTable, NamesHeadersThatAreUnknownTwiceOrInAWrongUnit) {
+TEST(RowTable, NamesHeadersThatAreUnknownRepeatedOrInAWrongUnit) {
   const std::string said =
-      table_refusal("name,kv4O,kv100,KV100,density15 (m),display_nme\na,1,2,3,4,5\n");
+      table_error("name,kv4O,kv100,KV100,density15 (m),display_nme\na,1,2,3,4,5\n");
   EXPECT_NE(said.find("column 'kv4O' is unknown"), std::string::npos) << said;
   EXPECT_NE(said.find("column KV100 occurs twice"), std::string::npos) << said;
   EXPECT_NE(said.find("has the unit m; allowed: multiples of kg/m3"), std::string::npos) << said;
   EXPECT_NE(said.find("is display_name meant?"), std::string::npos) << said;
 }
 
-TEST(RowTable, GivesBackAllThatIsStatedAndMeasured) {
+TEST(RowTable, RestoresStatedAndMeasuredValues) {
   std::vector<ResourcePointer> oils;
   auto oil = std::make_unique<v1::Lubricant>();
   oil->set_name("lubricants/a");
@@ -177,7 +176,7 @@ TEST(RowTable, GivesBackAllThatIsStatedAndMeasured) {
   label->set_key("project");
   label->set_value("axle");
   v1::Lubricant kept = *oil;
-  // The cell of what the server computed is empty.
+  // The cell of a computed value is empty.
   oil->set_thermal_conductivity_watts_per_metre_kelvin(0.15);
   known = oil->add_provenance();
   known->set_field("thermal_conductivity_watts_per_metre_kelvin");
@@ -191,11 +190,11 @@ TEST(RowTable, GivesBackAllThatIsStatedAndMeasured) {
   const RowTable again = read_row_table(text, "t.csv", oil_kind());
   EXPECT_EQ(as_lubricant(again.resources.at(0)).SerializeAsString(), kept.SerializeAsString())
       << text;
-  // No cell may be a formula to a spreadsheet.
+  // A spreadsheet must not read any cell as a formula.
   EXPECT_NE(text.find("150000 mPa s at -40 C; "), std::string::npos) << text;
 }
 
-TEST(RowTable, TakesWhatItDoesNotTellFromTheBase) {
+TEST(RowTable, TakesMissingValuesFromTheBase) {
   v1::Lubricant like;
   like.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_ESTER);
   like.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73);
@@ -219,13 +218,13 @@ TEST(RowTable, TakesWhatItDoesNotTellFromTheBase) {
   EXPECT_EQ(a.pressure_viscosity_coefficient_per_pascal(), 1e-8);
   EXPECT_EQ(b.pressure_viscosity_coefficient_per_pascal(), 2e-8);
   EXPECT_EQ(a.base_oil_class(), v1::Lubricant::BASE_OIL_CLASS_ESTER);
-  ASSERT_EQ(a.provenance_size(), 1) << "what was known of another value is void";
+  ASSERT_EQ(a.provenance_size(), 1) << "the provenance of the old value is cleared";
   EXPECT_EQ(a.provenance(0).field(), "thermal_conductivity_watts_per_metre_kelvin");
   EXPECT_EQ(b.provenance_size(), 2);
-  EXPECT_TRUE(table.resources[0].fields.empty()) << "all of it is written";
+  EXPECT_TRUE(table.resources[0].fields.empty()) << "all fields are written";
 }
 
-TEST(TableText, IsUtf8WhateverAProgramWrote) {
+TEST(TableText, IsUtf8ForEveryEncodingOfSpreadsheets) {
   std::string note;
   EXPECT_EQ(table_text("name\n\xc3\xa4\n", "t", note), "name\n\xc3\xa4\n");
   EXPECT_EQ(note, "");
@@ -239,13 +238,13 @@ TEST(TableText, IsUtf8WhateverAProgramWrote) {
   EXPECT_NE(note.find("UTF-16"), std::string::npos);
 }
 
-TEST(TableText, RefusesWorkbooksInOneSentence) {
+TEST(TableText, RejectsWorkbooks) {
   for (const std::string& bytes : {std::string("PK\x03\x04\x14\0\x06\0", 8),
                                    std::string("\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")}) {
     std::string note;
     try {
       table_text(bytes, "oils.csv", note);
-      FAIL() << "a workbook is no table";
+      FAIL() << "a workbook was accepted";
     } catch (const Failure& failure) {
       EXPECT_EQ(std::string(failure.what()),
                 "oils.csv is an Excel workbook. Save it as \"CSV UTF-8 (comma delimited)\" and "

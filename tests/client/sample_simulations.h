@@ -6,13 +6,14 @@
 
 namespace tribodyn::client {
 
-/// A finished curve with plausible, made-up numbers: 20 to 140 km/h by 5, contact loss at 65 to 80.
+/// Returns a finished curve with plausible, invented numbers: 20 to 140 km/h in steps of 5, contact
+/// loss from 65 to 80 km/h.
 v1::Simulation sample_curve(const std::string& lubricant, double level);
 
-/// A finished operating point with every optional part present.
+/// Returns a finished operating point with every optional part.
 v1::Simulation sample_point();
 
-/// Two mesh cycles of time, one scalar and three flank columns.
+/// Returns a history of two mesh cycles with time, one scalar and three flank columns.
 v1::History sample_history();
 
 }  // namespace tribodyn::client

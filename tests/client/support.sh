@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # For the tests of the command line: starts a real tribodynd on a free port of loopback with a
-# database in a temporary folder, runs the client, keeps what it wrote in $folder/out and
-# $folder/err, and counts what fails. Sourced with TRIBODYND and TRIBODYN as $1 and $2.
+# database in a temporary folder, runs the client, keeps its output in $folder/out and
+# $folder/err, and counts failures. Sourced with TRIBODYND and TRIBODYN as $1 and $2.
 set -uo pipefail
 
 server=$1
@@ -55,7 +55,7 @@ fail() {
   echo "  stderr: $(head -c 1500 "$folder/err")"
 }
 
-# expect CODE ARGUMENTS...: runs the client, keeps its output in out and err.
+# expect CODE ARGUMENTS...: runs the client, saves its output in out and err, checks the exit code.
 expect() {
   local wanted=$1 code=0
   shift
@@ -70,19 +70,19 @@ out_lines() {
   lines=$(wc -l <"$folder/out")
   [ "$lines" -eq "$1" ] || fail "tribodyn $asked: $lines lines, not $1"
 }
-# Every line of a CSV without quotes has as many cells as its header.
+# Checks that every line of a CSV without quotes has as many cells as its header.
 out_is_csv() {
   grep -v '"' "$folder/out" | awk -F, 'NR == 1 { n = NF } NF != n || n < 2 { bad = 1 } END { exit bad }' ||
     fail "tribodyn $asked: not a CSV table"
 }
-# Braces and brackets balance and the text is an object.
+# Checks that braces and brackets balance and that the text is an object.
 out_is_json() {
   awk 'NR == 1 && !/^\{/ { bad = 1 }
        { open += gsub(/[{[]/, ""); open -= gsub(/[]}]/, "") } END { exit bad || open != 0 }' \
     <(sed 's/"[^"]*"//g; 1s/^$/{/' "$folder/out") || fail "tribodyn $asked: not JSON"
 }
 
-# A configuration file of whoever runs the test must not matter.
+# Ignores the configuration file of the user who runs the test.
 export XDG_CONFIG_HOME=$folder/settings
 unset TRIBODYN_CONFIG TRIBODYN_OUTPUT TRIBODYN_TIMEOUT_SECONDS TRIBODYN_PROGRESS TRIBODYN_COLOR
 

@@ -42,7 +42,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// Blanks in a row as one.
+/// Returns the text with single blanks in place of runs of blanks.
 std::string squeezed(const std::string& text) {
   std::string out;
   std::unique_copy(text.begin(), text.end(), std::back_inserter(out),
@@ -66,7 +66,7 @@ TEST(Text, NumbersAreRoundedAndNeverNegativeZero) {
   EXPECT_EQ(duration_text(3720), "1 h 02 min");
 }
 
-TEST(Text, PrintableDisarmsControlCharacters) {
+TEST(Text, PrintableReplacesControlCharacters) {
   EXPECT_EQ(printable("a\x1b[2Jb\nc\x7f"), "a?[2Jb c?");
   EXPECT_EQ(printable("\xC2\x9B"
                       "31m"),
@@ -79,7 +79,7 @@ TEST(Text, SplitKeepsEmptyParts) {
   EXPECT_TRUE(split("", ',').empty());
 }
 
-TEST(Text, ResourceNames) {
+TEST(Text, ResourceNamesMayOmitTheirCollection) {
   EXPECT_EQ(resource_name("lubricants", "1"), "lubricants/1");
   EXPECT_EQ(resource_name("lubricants", "lubricants/1"), "lubricants/1");
   EXPECT_EQ(resource_id("simulations/x"), "x");
@@ -115,7 +115,7 @@ TEST(Table, AlignsDecimalPoints) {
             "         -  e\n");
 }
 
-TEST(Csv, QuotesWhatNeedsIt) {
+TEST(Csv, QuotesCellsThatReadersWouldMisread) {
   EXPECT_EQ(csv_line({"a", "b,c", "say \"x\"", "two\nlines", ""}),
             "a,\"b,c\",\"say \"\"x\"\"\",\"two\nlines\",\n");
 }
@@ -182,7 +182,7 @@ TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
       holds(point_report(sample_point(), true), "asperity_radius_metres = 4e-05 m (inside"));
 }
 
-TEST(PointReport, SaysWherePowerComesIn) {
+TEST(PointReport, NamesTheShaftOfTheInputPower) {
   v1::Simulation simulation = sample_point();
   EXPECT_TRUE(holds(squeezed(point_report(simulation, false)), "kW input at the pinion"));
   v1::PointResult& coast = *simulation.mutable_result()->mutable_points(0)->mutable_result();
@@ -196,7 +196,7 @@ TEST(PointReport, SaysWherePowerComesIn) {
   EXPECT_TRUE(holds(text, "9.0000 J in = 8.0000 out + 1.0000 friction"));
 }
 
-TEST(PointReport, SaysWhatWasNotEstimated) {
+TEST(PointReport, NamesFiguresWithoutErrorEstimate) {
   v1::Simulation simulation = sample_point();
   auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
   result.clear_estimated_relative_error();
@@ -206,7 +206,7 @@ TEST(PointReport, SaysWhatWasNotEstimated) {
   EXPECT_TRUE(holds(text, "inefficiency, energy mean 1.33 %"));
 }
 
-TEST(PointReport, GivesNoMoreDigitsThanTheErrorBears) {
+TEST(PointReport, HasNoMoreDigitsThanTheErrorJustifies) {
   v1::Simulation simulation = sample_point();
   auto& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
   result.set_inefficiency_energy_mean_percent(1.325178);
@@ -233,7 +233,7 @@ TEST(PointReport, GivesNoMoreDigitsThanTheErrorBears) {
   EXPECT_TRUE(holds(report(1e-6), "0.5000 0.6016"));
 }
 
-TEST(CurveReport, HasOneLineASpeedAndSaysWhyOneIsMissing) {
+TEST(CurveReport, HasOneLinePerSpeedAndTheReasonOfAMissingOne) {
   v1::Simulation curve = sample_curve("2", 1);
   for (const int index : {2, 3}) {
     auto& point = *curve.mutable_result()->mutable_points(index);
@@ -243,13 +243,13 @@ TEST(CurveReport, HasOneLineASpeedAndSaysWhyOneIsMissing) {
   }
   const std::string text = curve_report(curve, false);
   for (const char* part :
-       {"lubricants/2: inefficiency curve from 20 to 140 km/h", "refused",
+       {"lubricants/2: inefficiency curve from 20 to 140 km/h", "no result",
         "30, 35 km/h: no steady state within 4000 mesh cycles [WORK_LIMIT]", "yes", "mesh loss"}) {
     EXPECT_TRUE(holds(text, part));
   }
 }
 
-TEST(CurveReport, SaysWhereEachSpeedWasSolvedAlone) {
+TEST(CurveReport, NamesIndependentPoints) {
   v1::Simulation curve = sample_curve("2", 1);
   EXPECT_FALSE(holds(curve_report(curve, false), "solved independently"));
   curve.mutable_inefficiency_curve()->clear_direction();
@@ -262,7 +262,7 @@ TEST(CurveReport, SaysWhereEachSpeedWasSolvedAlone) {
   EXPECT_TRUE(holds(points_csv({curve}), ",INDEPENDENT_POINTS,"));
 }
 
-TEST(CurveReport, EstimatesStandBesideTheFigures) {
+TEST(CurveReport, PrintsErrorEstimatesBesideTheFigures) {
   v1::Simulation curve = sample_curve("2", 1);
   auto& points = *curve.mutable_result()->mutable_points();
   points[0].mutable_result()->set_estimated_relative_error(3e-4);
@@ -275,7 +275,7 @@ TEST(CurveReport, EstimatesStandBesideTheFigures) {
   EXPECT_TRUE(holds(points_csv({curve}), ",3e-04,"));
 }
 
-/// The text with every run of blanks and line feeds as one blank.
+/// Returns the text with one blank in place of every run of blanks and line feeds.
 std::string one_line(const std::string& text) {
   std::istringstream words(text);
   std::string line;
@@ -348,8 +348,8 @@ TEST(Reports, NameAWarningInPlainWordsBeforeItsCode) {
   EXPECT_TRUE(holds(text, "Jumps of the response With rising speed the branch"));
 }
 
-/// Half a unit of the last digit of a number. Zeros at the end of a whole number may be digits or
-/// fill it up: `least` takes them for digits, otherwise they are taken to fill it up.
+/// Returns half a unit of the last digit of a number. Zeros at the end of a whole number count as
+/// digits if `least`, else as padding.
 double half_unit(const std::string& text, bool least) {
   const std::size_t point = text.find('.');
   if (point != std::string::npos) {
@@ -374,7 +374,7 @@ TEST(Precision, HalfAUnitOfTheLastDigitIsNotBelowTheError) {
         const bool has_two_digits = unit > 0.5 * 0.0099 * value;
         EXPECT_TRUE(unit * (1 + 1e-6) >= error * value || has_two_digits)
             << text << " of " << value;
-        // And no more is taken away than need be.
+        // One more digit would not be justified.
         EXPECT_TRUE(least_unit <= 0.50001e-4 || least_unit / 10 < error * value)
             << text << " of " << value;
       }
@@ -382,7 +382,7 @@ TEST(Precision, HalfAUnitOfTheLastDigitIsNotBelowTheError) {
   }
 }
 
-TEST(Precision, WhatIsNotEstimatedHasThreeDigits) {
+TEST(Precision, FiguresWithoutEstimateHaveThreeDigits) {
   const v1::PointResult result;
   const Precision precision({}, result);
   EXPECT_EQ(precision.error_percent(), "-");
@@ -396,7 +396,7 @@ TEST(Precision, WhatIsNotEstimatedHasThreeDigits) {
   EXPECT_EQ(precision.part(0.0123, 91.4, 2), "0.0");
 }
 
-TEST(HistoryReport, SummaryAndCsv) {
+TEST(HistoryReport, HasASummaryAndCsv) {
   EXPECT_TRUE(holds(history_summary(sample_history()), "flank_load_newtons_flank_2"));
   const auto lines = lines_of(history_csv(sample_history()));
   ASSERT_EQ(lines.size(), 385U);
@@ -405,7 +405,7 @@ TEST(HistoryReport, SummaryAndCsv) {
             "flank_load_newtons_flank_1,flank_load_newtons_flank_2");
 }
 
-TEST(HistoryReport, AFlankWithoutLoadHasNoTemperature) {
+TEST(HistoryReport, OmitsTheTemperatureOfAFlankWithoutLoad) {
   EXPECT_EQ(column_quantity("flank_film_ratio_flank_1"), "flank_film_ratio");
   EXPECT_EQ(column_quantity("flank_load_newtons"), "flank_load_newtons");
   EXPECT_TRUE(zero_means_no_contact("flank_contact_temperature_kelvin_flank_0"));
@@ -443,7 +443,7 @@ TEST(Json, WritesZerosAndRoundTrips) {
   EXPECT_EQ(json_text(blank).find("sumpTemperatureCelsius"), std::string::npos);
 }
 
-TEST(WriteFile, ReplacesOrSaysWhyNot) {
+TEST(WriteFile, ReplacesTheFileOrReportsTheError) {
   const std::string path = testing::TempDir() + "/tribodyn_write_file_test.txt";
   write_file(path, "one");
   write_file(path, "two");
@@ -458,16 +458,16 @@ TEST(ProgressBar, FitsTheTerminal) {
   EXPECT_TRUE(holds(progress_bar_line({"a", "running", "", 1, false}, 1, 0, 99), " 99 %"));
 }
 
-TEST(ProgressBar, MovesWithTheFirstPointsOfALongCurve) {
+TEST(ProgressBar, ShowsTheFirstPointsOfALongCurve) {
   EXPECT_TRUE(holds(progress_bar_line({"a", "running", "", 4.0 / 961, false}, 1, 0, 99), "0.4 %"));
   EXPECT_EQ(percent_text(0), "0");
-  EXPECT_EQ(percent_text(0.0199), "1.9") << "what is not done is not shown as done";
+  EXPECT_EQ(percent_text(0.0199), "1.9") << "rounded down";
   EXPECT_EQ(percent_text(0.57), "57");
   EXPECT_EQ(percent_text(0.999), "99");
   EXPECT_EQ(percent_text(1), "100");
 }
 
-TEST(ProgressDisplay, IsSparseOffTerminals) {
+TEST(ProgressDisplay, PrintsFewLinesOffTerminals) {
   std::ostringstream out;
   ProgressDisplay display(out, ProgressForm::kLines, 80);
   JobProgress job{"lubricants/1", "running", "settling", 0, false};

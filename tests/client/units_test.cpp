@@ -15,7 +15,7 @@ double read(const std::string& text, const std::string& unit, bool temperature =
   return value.value_or(0);
 }
 
-TEST(Units, EveryUsualSpellingIsTheSame) {
+TEST(Units, EveryUsualSpellingIsAccepted) {
   for (const char* text :
        {"20/GPa", "20 1/GPa", "20 GPa^-1", "20GPa-1", "0.02/MPa", "20 GPa\u207b\u00b9"}) {
     EXPECT_EQ(read(text, "1/Pa"), 2e-8) << text;
@@ -25,7 +25,7 @@ TEST(Units, EveryUsualSpellingIsTheSame) {
   }
   for (const char* text :
        {"150mPas", "150 mPa s", "150 mPa*s", "150cP", "0.15Pa s", "150 mPa\u00b7s"}) {
-    // "mPas" without a blank is what laboratory sheets print.
+    // Laboratory sheets print "mPas" without a blank.
     EXPECT_EQ(read(text, "mPa s"), 150) << text;
   }
   for (const char* text : {"0.14W/(m K)", "0.14 W/mK", "0.14W/m/K", "140 mW/(m K)"}) {
@@ -45,7 +45,7 @@ TEST(Units, DecimalNumbersStayExact) {
   EXPECT_EQ(read("0.4um", "m"), 4e-7);
 }
 
-TEST(Units, TemperaturesHaveTheirZeros) {
+TEST(Units, TemperaturesConvertByTheirZeros) {
   EXPECT_EQ(read("40C", "K", true), 313.15);
   EXPECT_EQ(read("40 \u00b0C", "K", true), 313.15);
   EXPECT_EQ(read("313.15 K", "K", true), 313.15);
@@ -56,7 +56,7 @@ TEST(Units, TemperaturesHaveTheirZeros) {
   EXPECT_FALSE(is_temperature_field("inlet_temperature_rise_kelvin"));
 }
 
-TEST(Units, RefuseWhatTheyCannotMean) {
+TEST(Units, RejectUnitsOfOtherDimensions) {
   std::string wrong;
   for (const auto& [text, unit, reason] : {
            std::tuple("20", "1/Pa", "needs its unit, e.g. 20/GPa"),
@@ -84,12 +84,12 @@ TEST(Units, RefuseWhatTheyCannotMean) {
 TEST(Units, ASlopeInPercentIsAnAngle) {
   EXPECT_DOUBLE_EQ(read("100%", "degrees"), 45);
   EXPECT_NEAR(read("-6 %", "degrees"), -3.4336, 1e-4);
-  EXPECT_EQ(read("1e-323%", "degrees"), 0) << "a hundredth of it is no double";
+  EXPECT_EQ(read("1e-323%", "degrees"), 0) << "a hundredth of 1e-323 underflows";
   EXPECT_EQ(read("3.4degrees", "degrees"), 3.4);
   EXPECT_NEAR(read("1000rpm", "rad/s"), 104.7198, 1e-4);
 }
 
-TEST(Units, ASlipOfTheUnitGetsItsCure) {
+TEST(Units, ASlipOfTheUnitIsExplained) {
   EXPECT_EQ(unit_slip("0.895", "kg/m3", "kg/m3", 500, 2000),
             "0.895 looks like g/cm3: write 0.895g/cm3 or 895");
   EXPECT_EQ(unit_slip("103e-6", "mm2/s", "mm2/s", 1, 1e5),
@@ -100,16 +100,15 @@ TEST(Units, ASlipOfTheUnitGetsItsCure) {
             "2e-8 looks like 1/Pa: write 2e-8/Pa or 20");
   EXPECT_EQ(unit_slip("363", "C", "C", -70, 200), "363 looks like K: write 363K or 89.85");
   EXPECT_EQ(unit_slip("1.5", "kg", "kg", 100, 1e5), "1.5 looks like t: write 1.5t or 1500");
-  EXPECT_EQ(unit_slip("8.7", "kg/m3", "kg/m3", 500, 2000), "") << "8700 kg/m3 is no oil either";
-  EXPECT_EQ(unit_slip("3", "m", "m", 1e-9, 1e-2), "") << "um and mm would both do";
+  EXPECT_EQ(unit_slip("8.7", "kg/m3", "kg/m3", 500, 2000), "")
+      << "8700 kg/m3 is outside the range too";
+  EXPECT_EQ(unit_slip("3", "m", "m", 1e-9, 1e-2), "") << "um and mm would both fit";
   EXPECT_EQ(unit_slip("3", "", "", 0, 1), "");
 }
 
-TEST(Units, AreNoUnitsWithAMillionBrackets) {
-  EXPECT_FALSE(unit_ratio(std::string(1'000'000, '('), "m"));
-}
+TEST(Units, RejectAMillionBrackets) { EXPECT_FALSE(unit_ratio(std::string(1'000'000, '('), "m")); }
 
-TEST(Units, FieldsSayTheirUnit) {
+TEST(Units, FieldNamesEndInTheirUnit) {
   EXPECT_EQ(unit_of_field("kinematic_viscosity_40_celsius_square_millimetres_per_second"), "mm2/s");
   EXPECT_EQ(unit_of_field("density_at_zero_kelvin_kilograms_per_cubic_metre"), "kg/m3");
   EXPECT_EQ(unit_of_field("density_slope_kilograms_per_cubic_metre_kelvin"), "kg/(m3 K)");
@@ -117,7 +116,7 @@ TEST(Units, FieldsSayTheirUnit) {
   EXPECT_EQ(label_of_field("thermal_conductivity_watts_per_metre_kelvin"), "thermal conductivity");
 }
 
-TEST(Units, TheTradesUnits) {
+TEST(Units, FieldsHaveDataSheetUnits) {
   EXPECT_EQ(trade_unit_of_field("pressure_viscosity_coefficient_per_pascal"), "1/GPa");
   EXPECT_DOUBLE_EQ(in_trade_unit("pressure_viscosity_coefficient_per_pascal", 2e-8), 20);
   EXPECT_DOUBLE_EQ(in_trade_unit("pressure_viscosity_temperature_kelvin", 313.15), 40);

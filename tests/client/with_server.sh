@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs a program against a real tribodynd of its own, whose address is its first argument.
+# Starts a real tribodynd and runs a program with its address as first argument.
 # usage: with_server.sh TRIBODYND PROGRAM [argument...]
 # shellcheck source=tests/client/support.sh
 . "$(dirname "${BASH_SOURCE[0]}")/support.sh"

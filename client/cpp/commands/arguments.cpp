@@ -12,8 +12,8 @@ namespace {
 
 using GivenTexts = std::map<const Flag*, std::vector<std::string>>;
 
-/// CLI11 only splits the line into flags and texts; the texts are read later, all of them, so that
-/// no complaint hides another.
+/// CLI11 only splits the line into flags and texts. The texts are read later, so that all
+/// complaints are found.
 void add_flags(CLI::App& app, const FlagList& list, GivenTexts& given) {
   for (const Flag& flag : list.flags()) {
     if (flag.is_switch) {
@@ -31,7 +31,7 @@ void add_flags(CLI::App& app, const FlagList& list, GivenTexts& given) {
   }
 }
 
-/// "jobs list" is a "list" below a "jobs" that several commands share.
+/// Adds the command; "jobs list" becomes a "list" below a "jobs" that several commands share.
 CLI::App& add_command(CLI::App& root, const Command& command) {
   CLI::App* app = &root;
   for (const std::string& word : split(command.path, ' ')) {
@@ -53,7 +53,7 @@ std::vector<std::string> names_of(const FlagList& list) {
   return names;
 }
 
-/// Options are compared with the command's options, words with the commands.
+/// Adds complaints about unknown words, with the nearest option or command.
 void complain_of_extras(const CLI::App& root, const CLI::App& app, const Command* command,
                         const std::vector<Command>& commands, const FlagList& common_flags,
                         Complaints& complaints) {
@@ -70,7 +70,7 @@ void complain_of_extras(const CLI::App& root, const CLI::App& app, const Command
     for (const Command& each : commands) paths.push_back(each.path.substr(0, each.path.find(' ')));
   }
 
-  bool follows_option = false;  // the value of an unknown option is no news
+  bool follows_option = false;  // the value of an unknown option needs no complaint
   for (const std::string& extra : root.remaining(true)) {
     const std::string word = extra.substr(0, extra.find('='));
     const bool is_option = word.size() > 1 && word[0] == '-';
@@ -83,7 +83,8 @@ void complain_of_extras(const CLI::App& root, const CLI::App& app, const Command
                            (meant.empty() ? "" : " (is " + meant + " meant?)"));
     }
     follows_option = is_option && extra.find('=') == std::string::npos;
-    if (!is_option && command == nullptr) break;  // what follows belongs to the unknown command
+    if (!is_option && command == nullptr)
+      break;  // the following words belong to the unknown command
   }
 }
 
@@ -95,7 +96,7 @@ std::vector<std::pair<std::string, std::string>> parse_settings(std::istream& in
   std::vector<std::pair<std::string, std::string>> settings;
   try {
     for (const CLI::ConfigItem& item : CLI::ConfigINI().from_config(in)) {
-      if (item.name == "++" || item.name == "--") continue;  // section marks
+      if (item.name == "++" || item.name == "--") continue;  // begin and end of a section
       settings.emplace_back(item.fullname(), item.inputs.empty() ? "" : item.inputs.front());
     }
   } catch (const CLI::Error& error) {
@@ -108,7 +109,7 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
                        const std::vector<Command>& commands, const FlagList& common_flags) {
   CLI::App root;
   root.allow_extras();
-  // Else a resource whose name is that of a command would be taken for the command.
+  // Without this limit, a resource with the name of a command would be read as the command.
   root.require_subcommand(0, 1);
   root.set_help_all_flag("--help-all");
   bool version = false;
@@ -125,7 +126,7 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
 
   Parsed parsed;
   try {
-    // CLI11 wants the arguments reversed.
+    // CLI11 requires the arguments in reverse order.
     root.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForAllHelp&) {
     parsed.wants_help = true;
@@ -159,7 +160,7 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
       const auto texts = given.find(&flag);
       if (texts == given.end()) continue;
       if (!flag.is_file() && !std::all_of(texts->second.begin(), texts->second.end(), is_utf8)) {
-        parsed.complaints.push_back(flag.first_name() + ": is not UTF-8 text");
+        parsed.complaints.push_back(flag.first_name() + " is not UTF-8 text");
       } else {
         flag.read(texts->second, parsed.complaints);
         if (!flag.is_positional()) parsed.typed_flags[flag.field_name()] = typed(flag);

@@ -12,25 +12,26 @@ ProgressForm CommonOptions::progress_form() const {
 
 void add_common_flags(FlagList& flags, CommonOptions& options) {
   flags.group("Every command");
-  flags.text("--server", "HOST:PORT",
-             "Where tribodynd listens; unix:PATH for a socket. Default: TRIBODYN_SERVER, else the "
-             "configuration file, else 127.0.0.1:50651.",
-             [&](const std::string& text) { options.server = text; });
+  flags.text(
+      "--server", "HOST:PORT",
+      "Address of tribodynd; unix:PATH for a Unix socket. Default: TRIBODYN_SERVER, else the "
+      "configuration file, else 127.0.0.1:50651.",
+      [&](const std::string& text) { options.server = text; });
   flags.number("--timeout-seconds", {"s", "above 0 to 86400", "30"},
-               "Longest wait for one answer; a simulation may take as long as it needs",
+               "Time limit of one call; it does not limit the run time of a simulation",
                [&](double value) { options.timeout_seconds = value; });
   flags.choice("--output,-o", {"table", "csv", "json"},
                "Form of the result on standard output; progress and errors go to standard error. "
                "json is the protos' JSON. Default: table.",
                [&](int index) { options.output_format = static_cast<OutputFormat>(index); });
   flags.choice("--progress", {"auto", "lines", "none"},
-               "auto: bars on a terminal, nothing elsewhere; lines: a line now and then, for logs. "
+               "auto: bars on a terminal, nothing elsewhere; lines: occasional lines, for logs. "
                "Default: auto.",
                [&](int index) { options.progress = static_cast<ProgressChoice>(index); });
   flags.choice("--color", {"auto", "always", "never"},
                "auto: on a terminal, unless NO_COLOR is set. Default: auto.",
                [&](int index) { options.colour = static_cast<ColourChoice>(index); });
-  flags.toggle("--no-color", "The same as --color never.",
+  flags.toggle("--no-color", "Short for --color never.",
                [&] { options.colour = ColourChoice::kNever; });
 }
 

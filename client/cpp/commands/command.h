@@ -19,14 +19,14 @@ struct ResourceKind;
 
 enum class ProgressChoice { kAuto, kLines, kNone };
 
-/// What every command has: the server and the form of its output.
+/// Options of every command: the server and the form of the output.
 struct CommonOptions {
   std::string server;
   double timeout_seconds = 30;
   OutputFormat output_format = OutputFormat::kTable;
   ColourChoice colour = ColourChoice::kAuto;
   ProgressChoice progress = ProgressChoice::kAuto;
-  TypedFlags typed_flags;  ///< the user's spelling of each flag, for error messages
+  TypedFlags typed_flags;  ///< flags as typed, for error messages
 
   ProgressForm progress_form() const;
 
@@ -35,27 +35,27 @@ struct CommonOptions {
   }
 };
 
-/// A command as the command line offers it. Its closures own what the flags write to.
+/// A command of the command line. Its closures own the variables to which the flags write.
 struct Command {
   std::string path;     ///< "point", "jobs list"
   std::string summary;  ///< one line
-  std::string about;    ///< a paragraph for its help
+  std::string about;    ///< a paragraph of its help
   std::vector<std::string> examples;
   FlagList flags;
-  std::function<void(Complaints&)> check;  ///< what no flag alone can know; may be empty
+  std::function<void(Complaints&)> check;  ///< checks that concern several flags; may be empty
   std::function<int(const CommonOptions&)> run;
-  /// The flags that --help lists, by any of their names; --help-all lists all flags. Empty:
-  /// --help shows all that are the command's own.
+  /// Any one name of each flag that --help lists; --help-all lists all flags. Empty: --help lists
+  /// all flags of the command.
   std::vector<std::string> main_flags = {};
 };
 
-/// The flags of CommonOptions, to be added to each command.
+/// Adds the flags of CommonOptions; every command has them.
 void add_common_flags(FlagList& flags, CommonOptions& options);
 
-/// Every command, in the order of the help.
+/// Returns every command, in the order of the help.
 std::vector<Command> all_commands();
 
-/// list, get, create, update, delete, undelete, revisions, import and export of one kind.
+/// Returns list, get, create, update, delete, undelete, revisions, import and export of one kind.
 std::vector<Command> resource_commands(const ResourceKind& kind);
 
 Command point_command();

@@ -62,7 +62,7 @@ std::vector<std::string> starting_with(const std::string& start,
   return result;
 }
 
-/// Ids of a collection, at least those that begin with `start`. Whatever goes wrong: none.
+/// Returns ids of a collection, at least those that begin with `start`; none after any error.
 std::vector<std::string> names_of(const std::string& collection, const std::string& start,
                                   const CommonOptions& options) {
   std::vector<std::string> names;
@@ -78,7 +78,7 @@ std::vector<std::string> names_of(const std::string& collection, const std::stri
       ListOptions list;
       list.limit = kMostNames;
       list.basic = true;
-      // Of many, the server sends only those that may be meant.
+      // The filter limits a long list to names that may match.
       if (!start.empty() && start.find_first_of("\"\\") == std::string::npos) {
         list.filter = "name:\"" + start + "\"";
       }
@@ -92,7 +92,7 @@ std::vector<std::string> names_of(const std::string& collection, const std::stri
   return names;
 }
 
-/// Values of a flag. Of several by commas the last one is completed.
+/// Returns values of a flag; in a list with commas it completes the last one.
 std::vector<std::string> values_of(const Flag& flag, const std::string& start,
                                    const CommonOptions& options) {
   if (flag.is_file()) return {kFiles};
@@ -118,12 +118,12 @@ const Flag* find_flag(const std::string& name, const std::vector<const FlagList*
   return nullptr;
 }
 
-/// What the words before the last one say.
+/// The meaning of the words before the last one.
 struct Line {
-  std::string path;  ///< of commands, as far as they are known
+  std::string path;  ///< of the command, as far as it is known
   const Command* command = nullptr;
-  const Flag* awaiting = nullptr;  ///< a flag whose value is next
-  int arguments = 0;               ///< positional ones given
+  const Flag* awaiting = nullptr;  ///< the flag whose value is next
+  int arguments = 0;               ///< number of positional arguments so far
 };
 
 Line read_line(const std::vector<std::string>& words, const std::vector<Command>& commands,
@@ -217,21 +217,22 @@ std::vector<std::string> completions(const std::vector<std::string>& words,
 
 Command completion_command() {
   const auto shell = std::make_shared<int>(-1);
-  Command command{
-      "completion",
-      "a script that completes commands, flags and names in your shell",
-      "Prints a completion script. Names of resources come from the server, if it answers at once.",
-      {"tribodyn completion bash", "tribodyn completion zsh"},
-      {},
-      {},
-      {}};
+  Command command{"completion",
+                  "a script that completes commands, flags and names in your shell",
+                  "Prints a completion script. Names of resources come from the server, if the "
+                  "server answers at once.",
+                  {"tribodyn completion bash", "tribodyn completion zsh"},
+                  {},
+                  {},
+                  {}};
   command.flags.group("Arguments");
   command.flags.choice("shell", {"bash", "zsh"},
-                       "bash: source <(tribodyn completion bash) in ~/.bashrc; zsh: the same in "
+                       "bash: source <(tribodyn completion bash) in ~/.bashrc; zsh: source "
+                       "<(tribodyn completion zsh) in "
                        "~/.zshrc, after compinit.",
                        [shell](int index) { *shell = index; });
   command.check = [shell](Complaints& complaints) {
-    if (*shell < 0) complaints.emplace_back("which shell: bash or zsh?");
+    if (*shell < 0) complaints.emplace_back("name the shell: bash or zsh");
   };
   command.run = [shell](const CommonOptions&) {
     std::cout << (*shell == 0 ? kBash : kZsh);

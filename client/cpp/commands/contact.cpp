@@ -13,7 +13,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// A number of the request: its field, unit, allowed range, the default, and what it is.
+/// A number of the request: its field, unit, allowed range, default and meaning.
 struct ContactInput {
   const char* field;
   const char* unit;
@@ -22,7 +22,7 @@ struct ContactInput {
   const char* description;
 };
 
-// A hypoid flank of a passenger car near 70 km/h; steel; a run-in surface.
+// Defaults: a hypoid flank of a passenger car near 70 km/h; steel; a run-in surface.
 constexpr std::array kInputs = {
     ContactInput{"load_newtons", "N", "0 to 1e6", 1000, "Normal load W"},
     ContactInput{"radius_x_metres", "m", "1e-5 to 1e4", 0.02, "Effective radius R_zx along x"},
@@ -37,15 +37,17 @@ constexpr std::array kInputs = {
                  "Surface velocity v_s,g"},
     ContactInput{"sump_temperature_celsius", "C", "-70 to 200", 40, "Temperature of the oil bath"},
     ContactInput{"inlet_temperature_rise_kelvin", "K", "0 to 300", 20,
-                 "From the bath to the inlet (eq 14)"},
-    ContactInput{"youngs_modulus_pascals", "Pa", "1e6 to 1e13", 206e9, "Of both solids (eq 13)"},
-    ContactInput{"poissons_ratio", "-", "-0.99 to 0.5", 0.3, "Of both solids (eq 13)"},
+                 "Temperature rise from the oil bath to the inlet (eq 14)"},
+    ContactInput{"youngs_modulus_pascals", "Pa", "1e6 to 1e13", 206e9,
+                 "Young's modulus of both solids (eq 13)"},
+    ContactInput{"poissons_ratio", "-", "-0.99 to 0.5", 0.3,
+                 "Poisson's ratio of both solids (eq 13)"},
     ContactInput{"solid_thermal_conductivity_watts_per_metre_kelvin", "W/(m K)", "1e-3 to 1e4", 46,
-                 "Of both solids (eq 35)"},
+                 "Thermal conductivity of both solids (eq 35)"},
     ContactInput{"solid_density_kilograms_per_cubic_metre", "kg/m3", "1 to 1e5", 7850,
-                 "Of both solids (eq 35)"},
+                 "Density of both solids (eq 35)"},
     ContactInput{"solid_specific_heat_capacity_joules_per_kilogram_kelvin", "J/(kg K)", "1 to 1e5",
-                 470, "Of both solids (eq 35)"},
+                 470, "Specific heat capacity of both solids (eq 35)"},
     ContactInput{"asperity_density_per_square_metre", "1/m2", "1e3 to 1e16", 2.5e9,
                  "Greenwood-Tripp eta_G (eq 41)"},
     ContactInput{"asperity_radius_metres", "m", "1e-9 to 1", 40e-6,
@@ -103,7 +105,7 @@ Command contact_command() {
   const auto request = std::make_shared<v1::EvaluateContactRequest>();
   Command command{
       "contact",
-      "one flank contact from explicit inputs, every intermediate quantity",
+      "one flank contact from explicit inputs, with every intermediate quantity",
       "Solves one lubricated flank contact and prints every quantity with symbol and equation. x "
       "is "
       "the direction of radius x, y that of radius y. The defaults are a typical hypoid flank.",

@@ -12,14 +12,14 @@
 namespace tribodyn::client {
 namespace {
 
-// The paper's curve.
+// The range of speeds in the paper [km/h].
 constexpr double kFirstSpeed = 20;
 constexpr double kLastSpeed = 140;
 constexpr double kSpeedStep = 5;
 
 struct CurveFlags {
   v1::InefficiencyCurveStudy study;
-  bool has_range = false;  ///< of speeds, given by a flag
+  bool has_range = false;  ///< a flag sets the range of speeds
   Scenario scenario;
   std::string csv_path;
   std::string plot_path;
@@ -33,7 +33,7 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
   list.group("Curve");
   list.numbers("--speeds-kilometres-per-hour,--speeds,--speed",
                {"km/h", "0.1 to 400", "20 to 140 by 5"},
-               "Vehicle speeds, several by commas, in place of a range",
+               "Vehicle speeds separated by commas, instead of a range",
                [&](double value) { study.add_speeds_kilometres_per_hour(value); });
   const auto range = [&](const char* names, const NumberText& text, const char* description,
                          void (v1::InefficiencyCurveStudy::*set)(double)) {
@@ -47,18 +47,19 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
   range("--last-speed-kilometres-per-hour,--last-speed", {"km/h", "0.1 to 400", "140"},
         "Highest vehicle speed", &v1::InefficiencyCurveStudy::set_last_speed_kilometres_per_hour);
   range("--speed-step-kilometres-per-hour,--speed-step", {"km/h", "0.001 to 400", "5"},
-        "Between two points", &v1::InefficiencyCurveStudy::set_speed_step_kilometres_per_hour);
+        "Step between two speeds", &v1::InefficiencyCurveStudy::set_speed_step_kilometres_per_hour);
   list.choice("--direction", {"up", "down"},
-              "Each point starts from the steady state before it; where two responses coexist, up "
-              "and down differ. Default: up.",
+              "Each point starts from the steady state of the previous one; where two responses "
+              "coexist, up and down differ. Default: up.",
               [&](int index) {
                 study.set_direction(index == 0 ? v1::SWEEP_DIRECTION_UP : v1::SWEEP_DIRECTION_DOWN);
               });
-  list.toggle("--independent-points",
-              "Solve each speed alone, as `tribodyn point` does, in about a third of the time: no "
-              "branch is followed from speed to speed and no jump is looked for. For comparing "
-              "many fluids.",
-              [&] { study.set_independent_points(true); });
+  list.toggle(
+      "--independent-points",
+      "Solve each speed independently, as `tribodyn point` does, in about a third of the time: no "
+      "branch is followed from speed to speed and no jump is searched for. For comparing "
+      "many fluids.",
+      [&] { study.set_independent_points(true); });
   list.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"},
               "Road slope, also in percent: 6%",
               [&](double value) { study.set_ascent_angle_degrees(value); });
@@ -103,7 +104,7 @@ Command curve_command() {
   Command command{
       "curve",
       "inefficiency against speed, for one or more lubricants",
-      "Submits an inefficiency curve for each lubricant, follows them together and prints a table "
+      "Submits an inefficiency curve for each lubricant, watches them together and prints a table "
       "for each.",
       {"tribodyn curve --lubricant 1 --lubricant 2 --lubricant 3 --csv curve.csv --plot curve.svg",
        "tribodyn curve --lubricant 1 --first-speed 60 --last-speed 85 --speed-step 1 "
@@ -117,7 +118,7 @@ Command curve_command() {
     check_scenario(flags->scenario, true, complaints);
     if (flags->has_range && flags->study.speeds_kilometres_per_hour_size() > 0) {
       complaints.emplace_back(
-          "either --speed with all speeds, or --first-speed, --last-speed and --speed-step");
+          "give either --speed with all speeds, or --first-speed, --last-speed and --speed-step");
     }
     const std::size_t count = flags->scenario.lubricants.size();
     if (!flags->plot_path.empty() && count > kDistinctLooks) {
@@ -128,8 +129,7 @@ Command curve_command() {
     if (flags->study.independent_points() &&
         flags->study.direction() != v1::SWEEP_DIRECTION_UNSPECIFIED) {
       complaints.emplace_back(
-          "--direction and --independent-points: one of them, as independent points are followed "
-          "in no direction");
+          "give either --direction or --independent-points: independent points have no direction");
     }
   };
   command.main_flags = {"--lubricant",  "--speed", "--first-speed", "--last-speed",

@@ -16,9 +16,9 @@ Command diff_command() {
   const auto flags = std::make_shared<DiffFlags>();
   Command command{
       "diff",
-      "what two lubricants differ in",
+      "the differences between two lubricants",
       "Compares two lubricants, or two revisions of one: viscosities, index, grade and every "
-      "parameter with its unit, how it is known and the relative difference (B - A)/|A|. Only what "
+      "parameter with its unit, its origin and the relative difference (B - A)/|A|. Only what "
       "differs is shown, unless --all.",
       {"tribodyn diff 1 2", "tribodyn diff 1@1 1 --all --output csv"},
       {},
@@ -26,18 +26,19 @@ Command diff_command() {
       {}};
   command.flags.group("Arguments");
   command.flags
-      .text("a", "A", "A lubricant, e.g. 1, or a revision of it, e.g. 1@2.",
+      .text("a", "A", "A lubricant, e.g. 1, or a revision of a lubricant, e.g. 1@2.",
             [flags](const std::string& text) { flags->a = text; })
       .collection = "lubricants";
   command.flags
-      .text("b", "B", "Another one.", [flags](const std::string& text) { flags->b = text; })
+      .text("b", "B", "Another lubricant or revision.",
+            [flags](const std::string& text) { flags->b = text; })
       .collection = "lubricants";
   command.flags.group("Options");
-  command.flags.toggle("--all", "Show what is equal too.", [flags] { flags->all = true; });
-  command.flags.toggle("--exit-code", "Exit code 4 when they differ.",
+  command.flags.toggle("--all", "Show equal values too.", [flags] { flags->all = true; });
+  command.flags.toggle("--exit-code", "Exit with code 4 if they differ.",
                        [flags] { flags->exit_code = true; });
   command.check = [flags](Complaints& complaints) {
-    if (flags->b.empty()) complaints.emplace_back("two lubricants are needed: tribodyn diff A B");
+    if (flags->b.empty()) complaints.emplace_back("give two lubricants: tribodyn diff A B");
   };
   command.run = [flags](const CommonOptions& options) {
     Connection connection = options.connect();

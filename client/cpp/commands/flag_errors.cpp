@@ -12,15 +12,16 @@ namespace {
 
 constexpr char kAllowed[] = "allowed: ";
 
-/// A field's path, split into the flag that sets it and the place among that flag's values.
+/// A field's path, split into the flag that sets it and the index of the value among that flag's
+/// values.
 struct Place {
   const TypedFlag* flag = nullptr;
-  std::optional<std::size_t> index;  ///< of a field in a list
+  std::optional<std::size_t> index;  ///< for a field in a list
 };
 
-/// The innermost part of a path that a flag sets: "density_15_..." of
-/// "lubricant.measurements.density_15_...", "brookfield_viscosities" of
-/// "...brookfield_viscosities[1].temperature_celsius". The first part is the resource itself.
+/// Returns the innermost part of a path that a flag sets: "density_15_..." for
+/// "lubricant.measurements.density_15_...", "brookfield_viscosities" for
+/// "...brookfield_viscosities[1].temperature_celsius". The first part of the path is the resource.
 Place place_of(const std::string& path, const TypedFlags& typed) {
   const std::vector<std::string> parts = split(path, '.');
   for (std::size_t i = parts.size(); i-- > (parts.size() > 1 ? 1U : 0U);) {
@@ -40,7 +41,7 @@ struct AllowedRange {
   double low, high;
 };
 
-/// The numbers of "...; allowed: 500 to 2000 kg/m3 (eq 26)".
+/// Returns the numbers in "...; allowed: 500 to 2000 kg/m3 (eq 26)".
 std::optional<AllowedRange> allowed_range_of(const std::string& description) {
   const std::size_t start = description.find(kAllowed);
   if (start == std::string::npos) return std::nullopt;
@@ -53,7 +54,7 @@ std::optional<AllowedRange> allowed_range_of(const std::string& description) {
   return AllowedRange{*low, *high};
 }
 
-/// What a violation says, in terms of the command line.
+/// Returns the text of a violation in terms of the command line.
 std::string described_by_flag(const FieldViolation& violation, const Place& place) {
   const TypedFlag& flag = *place.flag;
   std::string leaf = violation.field.substr(violation.field.rfind('.') + 1);
@@ -67,8 +68,8 @@ std::string described_by_flag(const FieldViolation& violation, const Place& plac
   std::string text = flag.name;
   std::string wrong;
   const bool is_bare = read_quantity(typed, "", "", false, wrong).has_value();
-  // The violation gives the value in the unit of the field: what was typed stands before it where
-  // it looks different.
+  // The violation states the value in the unit of the field. The typed text precedes it where it
+  // looks different.
   const bool same_unit = flag.bare_unit == unit || unit_ratio(flag.bare_unit, unit) == 1.0;
   if (!unit.empty() && !typed.empty() && !(same_unit && is_bare)) text += " " + typed;
   const bool names_field = violation.description.rfind(leaf + " ", 0) == 0;
@@ -77,7 +78,7 @@ std::string described_by_flag(const FieldViolation& violation, const Place& plac
   if (!range || typed.empty()) return text;
   const std::string cure = unit_slip(typed, unit, flag.bare_unit, range->low, range->high);
   if (cure.empty()) return text;
-  // The server names the slip too, but not how the flag is written.
+  // The server's advice on the unit is replaced: it does not contain the syntax of the flag.
   const std::size_t slip = text.find(" looks like ");
   if (slip != std::string::npos) text.erase(std::min(text.rfind("; ", slip), text.size()));
   return text + "; " + cure;

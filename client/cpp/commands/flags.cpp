@@ -10,7 +10,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// "Oil bath temperature. Allowed: -70 to 200 C. Default: 40 C."
+/// Returns e.g. "Oil bath temperature. Allowed: -70 to 200 C. Default: 40 C."
 std::string described(const std::string& description, const NumberText& text) {
   const std::string unit = text.unit == "-" ? "" : " " + text.unit;
   return description + ". Allowed: " + text.range + unit +
@@ -50,7 +50,7 @@ void FlagList::add(const std::string& names, const std::string& value_name,
   flag.read = [name = flag.first_name(), read](const std::vector<std::string>& texts,
                                                Complaints& complaints) {
     if (texts.size() > 1) {
-      complaints.push_back(name + " is given " + std::to_string(texts.size()) + " times");
+      complaints.push_back(name + " may be given only once");
     }
     for (const std::string& text : texts) read(text, complaints);
   };
@@ -152,13 +152,13 @@ Flag& FlagList::choices(const std::string& names, const std::string& words,
         if (value.empty()) {
           complaints.push_back(complaint(name, text, "has an empty part"));
         } else if (!add_value(value)) {
-          complaints.push_back(complaint(name, value, "is not one of " + words));
+          complaints.push_back(complaint(name, value, "must be one of " + words));
         }
       }
     }
   };
   flag.words = split(words, '|');
-  if (flag.words.size() == 1) flag.words.clear();  // a placeholder such as NAMES
+  if (flag.words.size() == 1) flag.words.clear();  // a single word is a placeholder such as NAMES
   flags_.push_back(std::move(flag));
   return flags_.back();
 }
@@ -174,7 +174,7 @@ void FlagList::choice(const std::string& names, const std::vector<std::string>& 
   add(names, all, description, [=](const std::string& given, Complaints& complaints) {
     const auto found = std::find(words.begin(), words.end(), given);
     if (found == words.end()) {
-      complaints.push_back(complaint(name, given, "is not one of " + all));
+      complaints.push_back(complaint(name, given, "must be one of " + all));
     } else {
       set(static_cast<int>(found - words.begin()));
     }

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kSchemaTimeout(500);
 
-/// " Allowed: 0.1 to 1000 1/GPa (eq 33, alpha*)." as the server's table has it; empty when unknown.
+/// Returns e.g. " Allowed: 0.1 to 1000 1/GPa (eq 33, alpha*)." from the server's table; empty if
+/// the range is unknown.
 std::string allowed_range(const Flag& flag, const v1::Schema* schema) {
   if (schema == nullptr || flag.constraint_field.empty()) return "";
   for (const v1::Constraint& row : schema->constraints()) {
@@ -61,7 +62,7 @@ std::vector<const Flag*> visible_flags(const FlagList& list) {
   return flags;
 }
 
-/// Those of the short help, in the order of the long one.
+/// Returns the flags of the short help, in the order of the long one.
 std::vector<const Flag*> main_flags_of(const Command& command) {
   std::vector<const Flag*> flags = visible_flags(command.flags);
   if (command.main_flags.empty()) return flags;
@@ -81,7 +82,7 @@ std::string group_of(const Command& command) {
   return blank == std::string::npos ? "" : command.path.substr(0, blank);
 }
 
-/// A line a command, the names in one column.
+/// Returns one line per command, with the summaries in one column.
 std::string lines_text(const std::vector<std::pair<std::string, std::string>>& lines) {
   std::size_t width = 0;
   for (const auto& [name, summary] : lines) width = std::max(width, name.size());
@@ -99,7 +100,7 @@ std::string topics_text() {
   return lines_text(lines);
 }
 
-/// A topic, a command or a group.
+/// Returns the page of a topic, a command or a group.
 std::string page(const std::vector<std::string>& words, const CommonOptions& options) {
   const std::vector<Command> commands = all_commands();
   if (words.empty()) return overview_text(commands);
@@ -123,7 +124,7 @@ std::string page(const std::vector<std::string>& words, const CommonOptions& opt
   std::string group = group_text(name, commands);
   if (!group.empty()) return group;
   const std::string meant = nearest(name, known);
-  throw Failure(kExitUsage, "there is no help on '" + printable(name) + "'" +
+  throw Failure(kExitUsage, "no help topic '" + printable(name) + "'" +
                                 (meant.empty() ? "" : " (is " + meant + " meant?)") + "\nTopics\n" +
                                 topics_text());
 }
@@ -138,7 +139,7 @@ std::optional<v1::Schema> schema_for_help(const Command& command, const CommonOp
   try {
     return Connection(server_address(options.server), kSchemaTimeout).schema();
   } catch (const ServiceError&) {
-    return std::nullopt;  // help must not depend on a server
+    return std::nullopt;  // help works without a server
   }
 }
 
@@ -161,8 +162,9 @@ std::string overview_text(const std::vector<Command>& commands) {
     group = own;
   }
   return "tribodyn: what a gear oil costs in a hypoid axle, and why\n\n"
-         "Asks a tribodynd server for mesh (conjunctional) losses; bearings, churning and seals "
-         "are\nnot in them.\n\n"
+         "The server tribodynd computes losses at the tooth contact, without bearings, churning "
+         "and\n"
+         "seals; this program is its client.\n\n"
          "usage: tribodyn COMMAND [options]\n"
          "       tribodyn COMMAND --help       examples and the options that most calls need\n"
          "       tribodyn COMMAND --help-all   every option\n\n" +
@@ -171,7 +173,7 @@ std::string overview_text(const std::vector<Command>& commands) {
          "  tribodyn lubricants create my-oil --kv40 103 --kv100 15.1 --density15 868 \\\n"
          "      --base-oil-class pao\n"
          "  tribodyn curve --lubricant my-oil --plot curve.svg\n"
-         "\nExit codes: 0 done, 1 refused or failed, 2 wrong usage, 3 no server, 130 "
+         "\nExit codes: 0 done, 1 rejected or failed, 2 wrong usage, 3 no server, 130 "
          "interrupted.\n";
 }
 
@@ -209,7 +211,9 @@ std::string help_text(const Command& command, const FlagList& common_flags,
         return !flag->constraint_field.empty();
       });
   if (lacks_ranges) {
-    text += "\nNo server answers: with one, allowed ranges stand here too (tribodyn schema).\n";
+    text +=
+        "\nNo server answered. With a server, the help also shows allowed ranges (tribodyn "
+        "schema).\n";
   }
   if (length == HelpLength::kShort) {
     const std::size_t more = own_flags - flags.size();
@@ -223,7 +227,7 @@ std::string help_text(const Command& command, const FlagList& common_flags,
 Command help_command() {
   const auto words = std::make_shared<std::vector<std::string>>();
   Command command{"help",
-                  "a topic below, or a command",
+                  "a topic below or the help of a command",
                   "Prints a topic or the help of a command.",
                   {"tribodyn help units", "tribodyn help lubricants create"},
                   {},

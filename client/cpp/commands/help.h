@@ -8,25 +8,25 @@
 
 namespace tribodyn::client {
 
-/// `tribodyn --help`: what it is, every command with its summary and examples.
+/// Returns the text of `tribodyn --help`: purpose, commands with summaries, examples.
 std::string overview_text(const std::vector<Command>& commands);
 
-/// `tribodyn lubricants --help`: the commands of a group.
+/// Returns the text of `tribodyn lubricants --help` for a group of commands.
 std::string group_text(const std::string& group, const std::vector<Command>& commands);
 
 enum class HelpLength {
   kShort,  ///< examples, then the flags that most calls need
-  kAll,    ///< every flag, those of every command too
+  kAll,    ///< every flag, including those of all commands
 };
 
-/// `tribodyn COMMAND --help` or `--help-all`: examples, then flags with unit, allowed range and
-/// default. Ranges of parameters come from `schema`; without it (no server) the help says where to
-/// find them.
+/// Returns the text of `tribodyn COMMAND --help` or `--help-all`: examples, then flags with unit,
+/// allowed range and default. The ranges of parameters come from `schema`; if it is null (no
+/// server), the help refers to `tribodyn schema`.
 std::string help_text(const Command& command, const FlagList& common_flags,
                       const v1::Schema* schema, HelpLength length);
 
-/// The server's table of constraints if the help of this command shows some of it and the server
-/// answers at once.
+/// Returns the server's table of constraints if the help of this command shows a part of it and the
+/// server answers at once.
 std::optional<v1::Schema> schema_for_help(const Command& command, const CommonOptions& options);
 
 }  // namespace tribodyn::client

@@ -7,59 +7,61 @@ const std::vector<HelpTopic>& help_topics() {
       {"units", "how to write numbers with their units",
        R"(Numbers with units
 
-Every flag that takes a quantity takes a plain number in its own unit, which --help shows in angle
-brackets, or a number with a unit, with or without a blank:
+A flag for a quantity accepts a plain number in its own unit, which --help shows in angle brackets,
+or a number with a unit, with or without a blank:
   --kv40 103           = --kv40 103mm2/s          --density15 868  = --density15 0.868g/cm3
   --sump 90            = --sump 90C               --speed 72.5     = --speed 20.14m/s
   --pressure-viscosity 20 = --pressure-viscosity 20/GPa
   --brookfield -40=98000  = --brookfield -40C=98Pas
-Where a flag's name ends in a unit, that is its own unit, as it is in JSON and CSV:
+If a flag's name ends in a unit, that unit is its own, as in JSON and CSV:
   --sump-temperature-celsius 90      --pressure-viscosity-coefficient-per-pascal 2e-8
 A slope (--ascent) is an angle in degrees or percent: 3.4 or 6%. Numbers have a decimal point.
 
-Understood are products of powers of
+A unit is a product of powers of
   m g s K Pa N J W rad deg rpm St P bar l t h min %  with G M k d c m u n p before them
 in any usual spelling: mm2/s = mm^2/s = cSt, mPas = mPa s = cP, 1/GPa = GPa^-1 = /GPa,
 W/(m K) = W/mK = W/m/K, g/cm3 = kg/l. Temperatures are in C, K or F.
 
-Printed are the units of the trade (mm2/s, mPa s, 1/GPa, MPa, C, um). CSV and JSON are in the unit
-that ends each name, SI as a rule, every digit kept.
+Tables print the units of data sheets (mm2/s, mPa s, 1/GPa, MPa, C, um). CSV and JSON have every
+digit in the unit at the end of each name, mostly SI.
 )"},
       {"files", "what import, export and validate read and write",
        R"text(Files
 
-JSON holds a resource as the protos name its fields (snake_case or camelCase), or a list of them:
+A JSON file contains one resource, with the field names of the protos (snake_case or camelCase), or
+a list of resources:
   {"name": "lubricants/my-oil", "measurements": {
      "kinematic_viscosity_40_celsius_square_millimetres_per_second": 73.3, ...}}
   {"lubricants": [ ... ]}
-A misspelt name is refused, and the one that may be meant is named. `export` writes it, `import`,
-`create --file`, `update --file` and `validate` read it; "-" is standard input.
+A misspelt name is an error that names the nearest field. `export` writes such files; `import`,
+`create --file`, `update --file` and `validate` read them; "-" is standard input.
 
-Tables are CSV with a header; the order of columns is free, their names may be in any case. Files
-end in .csv, .tsv, .tab or .txt; UTF-8, UTF-16 and Latin-1 are read, Excel workbooks are not. Cells
-are separated by commas, semicolons or tabs. Numbers have a decimal point, or a decimal comma where
-commas do not separate the cells. Lines that begin with # are skipped.
+Tables are CSV with a header; columns may be in any order, their names in upper or lower case. File
+names end in .csv, .tsv, .tab or .txt; the encoding is UTF-8, UTF-16 or Latin-1. Excel workbooks are
+rejected. Commas, semicolons or tabs separate cells. Numbers have a decimal point, or a decimal
+comma if commas do not separate the cells. Lines that begin with # are skipped.
   Viscosities (lubricants): temperature_celsius or temperature_kelvin; and one or more of
     kinematic_viscosity_square_millimetres_per_second, dynamic_viscosity_millipascal_seconds,
     dynamic_viscosity_pascal_seconds, density_kilograms_per_cubic_metre,
     density_grams_per_cubic_centimetre; if known relative_standard_uncertainty, of the viscosities.
-    Empty cells are left out. A header may also be a name with its unit: "T (C)", "KV (mm2/s)",
+    Empty cells are skipped. A header may also be a name with its unit: "T (C)", "KV (mm2/s)",
     "Viscosity (mPa s)", "Density (g/cm3)".
       temperature_celsius,kinematic_viscosity_square_millimetres_per_second
       20,200
       40,73.3
       100,8.86
-  One lubricant, surface or vehicle a row: a column "name" makes a table one of these. The other
-    columns are fields as JSON names them, those of measurements too, or as the trade does: kv40,
-    kv100, kv100-sheared, density15; with a unit in brackets, "Density15 (g/cm3)", or units in the
-    second row. A cell may hold its unit itself, "20/GPa". labels.KEY is a label. FIELD.provenance,
-    FIELD.source, FIELD.standard_uncertainty and FIELD.warning tell how a number is known. Classes
-    of base oil are read in any usual spelling: PAO, Gr. III, Ester. Brookfield viscosities are in
-    columns "Brookfield -40 C", in mPa s, or in one cell of a column brookfield_viscosities:
-    "150000 mPa s at -40 C; 21000 mPa s at -26 C". Columns viscosities and densities are written
-    likewise: "205 mm2/s at 20 C +- 0.01" has a relative standard uncertainty. Empty cells are not
-    set; with --like they are as in that resource. `export --all --output csv` writes such a table
-    of what was measured and stated; an import computes the rest again, from changed cells too.
+  One lubricant, surface or vehicle per row: these tables have a column "name". The other columns
+    have the field names of JSON, those of measurements included, or names of data sheets: kv40,
+    kv100, kv100-sheared, density15. A header may have a unit in brackets, "Density15 (g/cm3)"; the
+    second row may contain units; a cell may have its own unit, "20/GPa". labels.KEY is a label.
+    FIELD.provenance, FIELD.source, FIELD.standard_uncertainty and FIELD.warning are the origin of a
+    number. Classes of base oil may have any usual spelling: PAO, Gr. III, Ester. Brookfield
+    viscosities are in columns "Brookfield -40 C", in mPa s, or in one cell of a column
+    brookfield_viscosities: "150000 mPa s at -40 C; 21000 mPa s at -26 C". Columns viscosities and
+    densities have the same form: "205 mm2/s at 20 C +- 0.01" has a relative standard uncertainty.
+    Empty cells set nothing; with --like their values come from that resource. `export --all
+    --output csv` writes such a table of measured and stated values; an import computes the others
+    from the table.
       name,kv40,kv100,base_oil_class,labels.project
       my-oil,73.3,8.86,group-iii,axle
   Tooth contact (gear sets): roll_pitches, pinion_roll_radians or pinion_roll_degrees (one pair from
@@ -72,15 +74,16 @@ commas do not separate the cells. Lines that begin with # are skipped.
     Quantities: pinion_contact_radius_metres, gear_contact_radius_metres,
     mesh_stiffness_newtons_per_metre, static_transmission_error_metres.
   Profiles (surfaces): position and height, each in _metres, _millimetres or _micrometres, height
-    also in _nanometres, or as instruments head them: "X (mm)", "Z (um)"; positions evenly spaced.
-Every violation is named with its row and column, or with its place in the list; the same one in
-many rows is told once, with their number.
+    also in _nanometres, or with the headers of instruments: "X (mm)", "Z (um)"; positions must be
+    evenly spaced.
+The errors of a file are listed with row and column, or with their place in the list. An error that
+many rows share is listed once, with the number of rows.
 
-An import takes any number of files and writes all that they hold or nothing: not when one of them
-is wrong, nor when it is interrupted or the server is lost on the way. One may be derived from
-another one in any order. Names that are taken are refused, or with --replace get a new revision
-where anything differs; a table changes only what its columns tell of. At most 20000 resources and
-64 MiB at once.
+An import reads any number of files and writes all of their resources or none, also if it is
+interrupted or the server is lost. A resource may be derived from another one of the same import, in
+any order. A name that exists is an error; with --replace the resource gets a new revision if
+anything differs, and a table changes only the fields of its columns. At most 20000 resources and
+64 MiB per import.
 )text"},
       {"filters", "which resources a list shows, and in which order",
        R"(Filters of lists
@@ -92,23 +95,23 @@ where anything differs; a table changes only what its columns tell of. At most 2
   tribodyn jobs list --filter 'state = failed AND lubricant = castrol-75w90'
   tribodyn jobs list --label project=axle --filter 'create_time > 2026-01-31T12:00:00Z'
 
-Restrictions are joined by AND. Operators: = != < <= > >= and ":" (contains; `labels.key:*` means:
-is there). Texts with blanks stand in double quotes. Numbers are in the unit of the field's name;
-kv40, kv100 (mm2/s), vi, sae_grade and density (kg/m3, at 15 C) are the figures that a list of
-lubricants shows. Names stand with or without their collection, states and classes in either case.
+AND joins restrictions. Operators: = != < <= > >= and ":" (contains; `labels.key:*` matches any
+value). Put texts with blanks in double quotes. Numbers are in the unit of the field's name; kv40,
+kv100 (mm2/s), vi, sae_grade and density (kg/m3, at 15 C) are the columns of a list of lubricants.
+Names may have their collection, states and classes may be in upper or lower case.
 `tribodyn schema` lists the fields under "lubricants.filter" and so on. Jobs have state, lubricant
 (1, or 1@2 for a revision), pinned (true or false), create_time and labels.
 )"},
       {"configuration", "configuration file and environment",
        R"(Configuration
 
-A flag wins over the environment, the environment over the file.
+A flag overrides the environment, the environment overrides the file.
   file:         $XDG_CONFIG_HOME/tribodyn/config, else ~/.config/tribodyn/config;
-                TRIBODYN_CONFIG names another one
+                TRIBODYN_CONFIG names another file
   environment:  TRIBODYN_SERVER, TRIBODYN_TIMEOUT_SECONDS, TRIBODYN_OUTPUT, TRIBODYN_PROGRESS,
                 TRIBODYN_COLOR; NO_COLOR turns colours off
 
-The file holds the flags that every command has, one a line, without dashes in front:
+The file sets flags that every command has, one per line, without their dashes:
   # the plant's server
   server = 127.0.0.1:50651
   timeout-seconds = 60
@@ -116,31 +119,31 @@ The file holds the flags that every command has, one a line, without dashes in f
   progress = auto
   color = auto
 )"},
-      {"options", "what is common to all commands",
+      {"options", "options of all commands",
        R"(Options of every command
 
-  --server HOST:PORT   another server than 127.0.0.1:50651; unix:PATH for a socket
-  --timeout-seconds S  longest wait for one answer (30)
+  --server HOST:PORT   address of the server (127.0.0.1:50651); unix:PATH for a Unix socket
+  --timeout-seconds S  time limit of one call (30)
   --output, -o FORM    table for people, csv and json for programs
-  --progress FORM      bars on a terminal and nothing elsewhere (auto), lines for a log, or none
+  --progress FORM      auto (bars, only on a terminal), lines (for a log) or none
   --color WHEN         auto, always or never; --no-color
 
-Results go to standard output, progress and errors to standard error. No pager is started and
-nothing is asked. An option may stand before or after the command; --name=value is --name value.
-Names of resources may be given with or without their collection: 1 or lubricants/1; 1@2 is
-revision 2. `tribodyn completion bash` completes commands, options and names.
+Results go to standard output, progress and errors to standard error. Commands never start a pager
+or prompt for input. An option may be before or after the command; --name=value means --name value.
+Names of resources may include their collection: 1 or lubricants/1; 1@2 is revision 2.
+`tribodyn completion bash` completes commands, options and names.
 )"},
-      {"exit-codes", "what scripts can rely on",
+      {"exit-codes", "exit codes for scripts",
        R"(Exit codes
 
     0  done
-    1  the server refused, or a simulation failed or was cancelled
-    2  the command line, the configuration or a file is wrong; nothing was sent
+    1  the server rejected the request, or a simulation failed or was cancelled
+    2  an error in the command line, the configuration or a file; nothing was sent
     3  no server at the address, or no answer in time
     4  diff --exit-code: the fluids differ
-  130  interrupted (Ctrl-C); simulations go on, and the way to follow or cancel them is printed
+  130  interrupted (Ctrl-C); simulations go on, and the commands to watch or cancel them are printed
 
-All complaints of a kind come at once, on standard error.
+A command prints all errors of a kind together, on standard error.
 )"},
   };
   return kTopics;

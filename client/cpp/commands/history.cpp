@@ -29,32 +29,33 @@ struct HistoryFlags {
 void add_history_flags(FlagList& list, HistoryFlags& flags) {
   list.group("History");
   list.texts("--columns", "NAMES",
-             "What to record, by commas; each name ends in its unit. Also: pinion_speed_..., "
+             "Columns to record, separated by commas; each name ends in its unit. Others: "
+             "pinion_speed_..., "
              "gear_friction_torque_newton_metres, flank_load_newtons (three flank slots), ...; a "
              "wrong name is answered with the nearest. Time is always recorded. Default: "
              "dynamic_transmission_error_metres,mesh_force_newtons,mesh_loss_power_watts.",
              [&](const std::string& column) { flags.history.add_columns(column); });
   list.whole_number("--mesh-cycles", {"mesh cycles", "1 to 1000", "1"},
-                    "Length of the recorded steady state",
+                    "Recorded mesh cycles of the steady state",
                     [&](int count) { flags.history.set_mesh_cycles(count); });
   list.whole_number("--samples-per-mesh-cycle", {"samples", "2 to 100000", "192"},
-                    "Equidistant in mesh phase",
+                    "Samples of a mesh cycle, equidistant in mesh phase",
                     [&](int count) { flags.history.set_samples_per_mesh_cycle(count); });
   list.text("--simulation", "NAME",
             "Read the history of this finished simulation instead of computing one.",
             [&](const std::string& name) { flags.simulation = name; });
   list.group("Files");
   list.whole_number("--max-points", {"samples", "4 to 1000000", "all"},
-                    "Print an overview where there are more: least and largest value of each run "
+                    "Print an overview if there are more: the minimum and the maximum of each run "
                     "of samples, one after the other",
                     [&](int count) { flags.maximum_points = count; });
+  add_result_file_flag(list, "--csv", "FILE",
+                       "Also write all samples as CSV. Resumes an interrupted download.",
+                       flags.csv_path);
   add_result_file_flag(
-      list, "--csv", "FILE",
-      "Also write all samples as CSV. What an interrupted download left is gone on with.",
-      flags.csv_path);
-  add_result_file_flag(list, "--npy", "FILE.npy",
-                       "The same for NumPy: numpy.load(\"FILE.npy\")[\"mesh_force_newtons\"].",
-                       flags.numpy_path);
+      list, "--npy", "FILE.npy",
+      "Also write all samples for NumPy: numpy.load(\"FILE.npy\")[\"mesh_force_newtons\"].",
+      flags.numpy_path);
   add_plot_flag(list, "Also draw every column against time, as SVG.", flags.plot_path);
 }
 
@@ -84,18 +85,18 @@ int run_history(HistoryFlags& flags, const CommonOptions& options) {
       flags.simulation.empty()
           ? computed(flags, connection, options)
           : connection.get_simulation(resource_name("simulations", flags.simulation));
-  if (simulation.name().empty()) return kExitOk;  // detached
+  if (simulation.name().empty()) return kExitOk;  // --detach or --validate-only: no result to show
   if (simulation.state() != v1::Simulation::SUCCEEDED) return report_failures({simulation});
   HistoryOptions read;
   read.maximum_points = flags.maximum_points;
   const v1::History history = connection.read_history(simulation.name(), read);
   switch (options.output_format) {
     case OutputFormat::kTable:
-      std::cout
-          << printable(simulation.name()) << ": " << study_text(simulation) << ", "
-          << printable(simulation.lubricant()) << ", " << inputs_text(simulation) << "\n\n"
-          << history_summary(history)
-          << "\nThe samples: --output csv, --csv FILE or --npy FILE; a picture: --plot FILE.svg.\n";
+      std::cout << printable(simulation.name()) << ": " << study_text(simulation) << ", "
+                << printable(simulation.lubricant()) << ", " << inputs_text(simulation) << "\n\n"
+                << history_summary(history)
+                << "\nFor the samples use --output csv, --csv FILE or --npy FILE; for a plot "
+                   "--plot FILE.svg.\n";
       break;
     case OutputFormat::kCsv:
       std::cout << history_csv(history);
@@ -126,7 +127,7 @@ Command history_command() {
   const auto flags = std::make_shared<HistoryFlags>();
   Command command{
       "history",
-      "what happens over the mesh cycle, against time",
+      "quantities over the mesh cycle, against time",
       "Computes an operating point with time histories of its steady state and reads them.",
       {"tribodyn history --lubricant 1 --speed-kilometres-per-hour 72.5 --mesh-cycles 2 "
        "--plot history.svg",

@@ -100,13 +100,13 @@ int run_list(const JobFlags& flags, const CommonOptions& options) {
   const auto list = options.connect().list_simulations(list_options);
   std::cout << jobs_text(list.resources, options.output_format, false);
   if (list.has_more) {
-    std::cerr << "There are more; --limit raises their number,\n--page-token "
-              << list.next_page_token << " goes on here.\n";
+    std::cerr << "More jobs exist. Use --limit N, or for the next page\n--page-token "
+              << list.next_page_token << "\n";
   }
   return kExitOk;
 }
 
-/// A job that has a result is shown by it; one that has none, as it stands.
+/// Prints the result of a job that has one; the state of any other job.
 int run_get(const JobFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   const v1::Simulation simulation =
@@ -119,7 +119,7 @@ int run_get(const JobFlags& flags, const CommonOptions& options) {
   return has_ended(simulation.state()) ? report_failures({simulation}) : kExitOk;
 }
 
-/// Follows all to their end.
+/// Watches all jobs until they have ended.
 std::vector<v1::Simulation> ended(Connection& connection, const std::vector<v1::Simulation>& jobs,
                                   const CommonOptions& options) {
   std::vector<std::string> labels;
@@ -149,7 +149,8 @@ int run_wait(const JobFlags& flags, const CommonOptions& options) {
   return report_failures(jobs);
 }
 
-/// The same inputs: a name without a revision would mean another one by now.
+/// Returns a request with the same inputs. It names the revisions, because names without revision
+/// may mean other revisions by now.
 v1::Simulation request_of(const v1::Simulation& job) {
   v1::Simulation out = job;
   clear_output_only(out);
@@ -176,7 +177,7 @@ int run_again(const JobFlags& flags, const CommonOptions& options) {
   return report_failures(jobs);
 }
 
-/// Does the same to each, and shows how they stand then.
+/// Calls `change` for each job and prints the new states.
 int run_each(const JobFlags& flags, const CommonOptions& options,
              v1::Simulation (Connection::*action)(const std::string&)) {
   Connection connection = options.connect();
@@ -188,7 +189,7 @@ int run_each(const JobFlags& flags, const CommonOptions& options,
   return kExitOk;
 }
 
-/// As run_each, and says of which there was nothing to stop any more.
+/// Like run_each(), and reports the jobs that had ended before.
 int run_cancel(const JobFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   const std::vector<v1::Simulation> before = named_jobs(flags, connection);
@@ -198,10 +199,10 @@ int run_cancel(const JobFlags& flags, const CommonOptions& options) {
   }
   std::cout << jobs_text(after, options.output_format, false);
   for (std::size_t i = 0; i < after.size(); ++i) {
-    // One that ended between the two calls was not stopped by the second one either.
+    // A job that ended between the two calls was not cancelled by the second call.
     if (!has_ended(before[i].state()) && after[i].state() == v1::Simulation::CANCELLED) continue;
     std::cerr << printable(after[i].name()) << " had already ended ("
-              << state_text(after[i].state()) << "); nothing was stopped.\n";
+              << state_text(after[i].state()) << "); nothing to cancel.\n";
   }
   return kExitOk;
 }
@@ -229,7 +230,7 @@ Command job_command(const char* path, const char* summary, const char* about, co
   }
   if (shows_results) {
     command.flags.group("Options");
-    command.flags.toggle("--assumptions", "Print every assumption the result rests on.",
+    command.flags.toggle("--assumptions", "Print every assumption of the result.",
                          [flags] { flags->shows_assumptions = true; });
   }
   command.check = [flags](Complaints& complaints) {
@@ -247,26 +248,29 @@ Command jobs_list_command() {
   const auto flags = std::make_shared<JobFlags>();
   flags->list.limit = 20;
   Command command{"jobs list",
-                  "the newest jobs of the server",
+                  "list the newest jobs",
                   "Lists jobs, newest first.",
                   {"tribodyn jobs list --limit 5", "tribodyn jobs list --label project=axle"},
                   {},
                   {},
                   {}};
-  command.flags.whole_number("--limit,-n", {"jobs", "1 to 100000", "20"}, "How many",
+  command.flags.whole_number("--limit,-n", {"jobs", "1 to 100000", "20"},
+                             "Maximum number of jobs listed",
                              [flags](int value) { flags->list.limit = value; });
   command.flags.text("--filter", "FILTER",
                      "Restrictions joined by AND, e.g. 'state = failed AND lubricant = 1 AND "
                      "pinned = true AND create_time > 2026-01-31T00:00:00Z'; `tribodyn help "
-                     "filters` tells more.",
+                     "filters` explains them.",
                      [flags](const std::string& text) { flags->list.filter = text; });
-  command.flags.texts("--label", "KEY[=VALUE]", "Only those with this label; repeatable.",
+  command.flags.texts("--label", "KEY[=VALUE]", "List only jobs with this label; repeatable.",
                       [flags](const std::string& text) { flags->labels.push_back(text); });
-  command.flags.text("--order-by", "FIELD", "create_time for the oldest first.",
+  command.flags.text("--order-by", "FIELD",
+                     "Order of the list; create_time lists the oldest first.",
                      [flags](const std::string& text) { flags->list.order_by = text; });
-  command.flags.text("--page-token", "TOKEN",
-                     "Goes on where a list with the same filter and order ended, which names it.",
-                     [flags](const std::string& text) { flags->list.page_token = text; });
+  command.flags.text(
+      "--page-token", "TOKEN",
+      "Read the next page; the previous page, with the same filter and order, printed the token.",
+      [flags](const std::string& text) { flags->list.page_token = text; });
   command.check = [flags](Complaints& complaints) {
     if (flags->list.limit < 1 || flags->list.limit > 100000) {
       complaints.emplace_back("--limit must be 1 to 100000");
@@ -277,14 +281,14 @@ Command jobs_list_command() {
 }
 
 Command jobs_get_command() {
-  return job_command("jobs get", "one job: its result, or how far it is",
-                     "Prints the result of a job, or where it stands.",
+  return job_command("jobs get", "show the result or the state of a job",
+                     "Prints the result of a job, or its state while it has none.",
                      "tribodyn jobs get 12 --output json", false, true, run_get);
 }
 
 Command jobs_watch_command() {
-  return job_command("jobs watch", "follow jobs to their end, then print their results",
-                     "Follows jobs until all have ended and prints their results. Ctrl-C stops "
+  return job_command("jobs watch", "watch jobs until they end, then print their results",
+                     "Watches jobs until all have ended and prints their results. Ctrl-C stops "
                      "following; the jobs go on. For a picture or a CSV file of a finished job "
                      "repeat the command that submitted it, with --plot or --csv: its result is "
                      "there and is not computed again.",
@@ -292,33 +296,36 @@ Command jobs_watch_command() {
 }
 
 Command jobs_wait_command() {
-  return job_command("jobs wait", "wait for jobs to end",
-                     "Waits until all jobs have ended and says how. Exit code 1 when one of them "
-                     "failed or was cancelled.",
-                     "tribodyn jobs wait 12 13", true, false, run_wait);
+  return job_command(
+      "jobs wait", "wait for jobs to end",
+      "Waits until all jobs have ended and prints how they ended. Exit code 1 if one of them "
+      "failed or was cancelled.",
+      "tribodyn jobs wait 12 13", true, false, run_wait);
 }
 
 Command jobs_rerun_command() {
-  return job_command("jobs rerun", "compute jobs anew, from the same inputs",
-                     "Computes jobs anew from the revisions that they rested on, although the "
-                     "result is there, and prints the results. One that differs by a bit fails.",
-                     "tribodyn jobs rerun 12", true, true, run_again);
+  return job_command(
+      "jobs rerun", "recompute jobs from the same inputs",
+      "Recomputes jobs from the revisions that they used, even if the "
+      "result exists, and prints the results. A job fails if its result is not bit-identical.",
+      "tribodyn jobs rerun 12", true, true, run_again);
 }
 
 Command jobs_cancel_command() {
-  return job_command("jobs cancel", "stop jobs", "Stops jobs; one that has ended is left as it is.",
+  return job_command("jobs cancel", "cancel jobs",
+                     "Cancels jobs; a job that has ended does not change.",
                      "tribodyn jobs cancel 12", true, false, run_cancel);
 }
 
 Command jobs_pin_command() {
   return job_command("jobs pin", "keep jobs and their results for good",
-                     "Keeps jobs from expiring and from making room for others.",
-                     "tribodyn jobs pin 12", true, false, run_pin);
+                     "Pins jobs: they neither expire nor are evicted.", "tribodyn jobs pin 12",
+                     true, false, run_pin);
 }
 
 Command jobs_unpin_command() {
-  return job_command("jobs unpin", "give pinned jobs up again",
-                     "Lets jobs expire and make room for others as usual.",
+  return job_command("jobs unpin", "unpin jobs, so that they expire normally",
+                     "Unpins jobs: they expire, or are evicted to make room, as usual.",
                      "tribodyn jobs unpin 12", true, false, run_unpin);
 }
 

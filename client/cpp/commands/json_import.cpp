@@ -23,7 +23,7 @@ std::string id_of(const FileResource& from, const std::string& given) {
   return name.empty() ? id_of_file(from.origin) : resource_id(without_revision(name));
 }
 
-/// The number in "start7]...", and how much of the text that is.
+/// An index such as 3 in "3]...", and the length of its text.
 struct Index {
   std::size_t value = 0;
   std::size_t length = 0;
@@ -39,8 +39,7 @@ std::optional<Index> read_index(const std::string& text, const std::string& star
   return index;
 }
 
-/// The header, as it was typed, of the column that a path in its resource means; empty when none
-/// does.
+/// Returns the typed header of the column for a path in its resource; empty if there is none.
 std::string column_of(const FileResource& row, const std::string& path) {
   const auto typed = [&](const std::string& column) {
     const auto found = row.columns.find(column);
@@ -56,7 +55,7 @@ std::string column_of(const FileResource& row, const std::string& path) {
   if (known && known->value < static_cast<std::size_t>(entries.size())) {
     return typed(entries[static_cast<int>(known->value)].field() + path.substr(known->length));
   }
-  // Of "measurements.viscosities[2].x" the innermost part that is a column.
+  // The innermost part of "measurements.viscosities[2].x" that is a column.
   std::vector<std::string> parts = split(path, '.');
   std::reverse(parts.begin(), parts.end());
   for (const std::string& part : parts) {
@@ -67,7 +66,8 @@ std::string column_of(const FileResource& row, const std::string& path) {
   return "";
 }
 
-/// "fluids.csv row 3 column density_...: sentence", "fluids.json, lubricants[2]: sentence".
+/// Adds e.g. "fluids.csv row 3 column density_...: sentence" or "fluids.json, lubricants[2]:
+/// sentence".
 void add_complaint(const FileResource& about, const std::string& path, const std::string& sentence,
                    GroupedComplaints& complaints) {
   const std::string column = column_of(about, path);
@@ -101,7 +101,7 @@ JsonImport::JsonImport(const ResourceKind& kind, std::vector<FileResource> resou
     if (is_new) {
       resources_.push_back(std::move(each));
     } else {
-      duplicates_.push_back(name + " stands in " + at->second + " and in " + each.origin);
+      duplicates_.push_back(name + " occurs in " + at->second + " and in " + each.origin);
     }
   }
 }
@@ -126,7 +126,7 @@ JsonImport::Verdict JsonImport::verdict(const ServiceError& refusal) const {
       continue;
     }
     is_wrong[index->value] = true;
-    // "requests[3].lubricant.name": what follows the field that holds the resource.
+    // The part of "requests[3].lubricant.name" after the field that holds the resource.
     const std::string inside = each.field.substr(index->length);
     const std::size_t dot = inside.find('.', 1);
     const std::string path = dot == std::string::npos ? "" : inside.substr(dot + 1);
@@ -154,13 +154,14 @@ BatchWritten JsonImport::send(Connection& connection, bool replace, bool validat
     if (error.kind() == ServiceError::Kind::kRefused) {
       const bool taken = error.reason() == "ALREADY_EXISTS";
       throw Failure(kExitFailed, joined(verdict(error).wrong, "\n") + "\n  Nothing was written." +
-                                     (taken ? " --replace makes new revisions." : ""));
+                                     (taken ? " Use --replace to create new revisions." : ""));
     }
     if (error.kind() == ServiceError::Kind::kCannotConnect || validate_only) throw;
     const Failure failure(error);
-    throw Failure(failure.exit_code(),
-                  std::string(failure.what()) +
-                      "\n  Either all were written or none. Import with --replace to be sure.");
+    throw Failure(
+        failure.exit_code(),
+        std::string(failure.what()) +
+            "\n  Either all resources were written or none. Repeat the import with --replace.");
   }
 }
 

@@ -7,26 +7,26 @@
 
 namespace tribodyn::client {
 
-/// "my-oil" of "fluids/my oil.csv": the id of what a file holds, if it does not say.
+/// Returns the id for the content of a file without an id, e.g. "my-oil" for "fluids/my oil.csv".
 std::string id_of_file(const std::string& path);
 
-/// Resources of one kind on their way from files to the server, all or none.
+/// Resources of one kind that were read from files. An import writes all of them or none.
 class JsonImport {
  public:
-  /// `id` is that of a single resource; empty: the name in the file, else the file's own. Two of
-  /// the same name are refused by send() and check(), together with what else is wrong.
+  /// `id` is the id of a single resource; empty: the name in the file, else the file's own name.
+  /// send() and check() reject two resources of the same name, together with all other errors.
   JsonImport(const ResourceKind& kind, std::vector<FileResource> resources, const std::string& id);
 
-  /// Has the server write all of them, or with `validate_only` say what they would be. Throws
-  /// Failure with everything that is wrong, each with its place in the files.
+  /// Writes all resources, or returns what would be written with `validate_only`. Throws Failure
+  /// that lists every error with its place in the files.
   BatchWritten send(Connection& connection, bool replace, bool validate_only) const;
 
-  /// What is found wrong, and which places in the files are known to be right.
+  /// The errors, and the places in the files that are certainly valid.
   struct Verdict {
     std::vector<std::string> valid;
     std::vector<std::string> wrong;
   };
-  /// What an import with `replace` would say.
+  /// Returns the result of an import with `replace`, without writing.
   Verdict check(Connection& connection) const;
 
  private:
@@ -34,7 +34,7 @@ class JsonImport {
   Verdict verdict(const ServiceError& refusal) const;
 
   const ResourceKind& kind_;
-  std::vector<FileResource> resources_;  ///< the first of each name
+  std::vector<FileResource> resources_;  ///< the first resource of each name
   std::vector<std::string> duplicates_;  ///< a complaint for each duplicate
 };
 

@@ -3,7 +3,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// `labels.project = "axle"` of "project=axle", `labels.project:*` of "project".
+/// Returns `labels.project = "axle"` for "project=axle", `labels.project:*` for "project".
 std::string label_restriction(const std::string& label) {
   const std::size_t mark = label.find('=');
   if (mark == std::string::npos) return "labels." + label + ":*";

@@ -5,7 +5,7 @@
 
 namespace tribodyn::client {
 
-/// The filter of a list with a restriction added for each label: "project=axle" becomes
+/// Returns the filter of a list with a restriction for each label: "project=axle" becomes
 /// `labels.project = "axle"`, "project" becomes `labels.project:*`.
 std::string with_labels(std::string filter, const std::vector<std::string>& labels);
 

@@ -13,27 +13,33 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 
-/// What each switch of ModelOptions does. A switch that is not listed here still gets its flag.
+/// Returns the help texts of the switches of ModelOptions. A switch without a text still gets its
+/// flag.
 const std::map<std::string, std::string>& switch_descriptions() {
   static const std::map<std::string, std::string> kDescriptions = {
-      {"isothermal", "Contact temperature equal to the inlet's: no thermal network (eqs 35-39)."},
+      {"isothermal",
+       "Set the contact temperature to the inlet temperature: no thermal network (eqs 35-39)."},
       {"newtonian", "No shear thinning (eq 23)."},
-      {"no_limiting_shear_stress", "Shear stress not restricted to the limiting one."},
+      {"no_limiting_shear_stress", "No limiting shear stress."},
       {"no_boundary_friction", "No friction of asperities (eq 40); they still carry load."},
       {"damping_in_contact_only", "Mesh damping acts only while the flanks touch."},
       {"energy_consistent", "Add the parametric torques that eq 2 leaves out."},
-      {"subtract_contact_point_motion", "Entrainment as the moving contact point sees it."},
-      {"load_dependent_mesh_data", "Mesh stiffness, error and load shares at the actual torque."},
+      {"subtract_contact_point_motion",
+       "Measure the entrainment speed relative to the moving contact point."},
+      {"load_dependent_mesh_data",
+       "Use mesh stiffness, transmission error and load shares at the actual torque."},
       {"tabulated_friction_arms",
-       "Lever arms of friction from the tables of the gear set, not from the actual sliding."},
-      {"exact_hertz", "Elliptic integrals in place of the fits of eqs 21, 22."},
-      {"hertz_from_total_load", "Contact ellipse from the total load, not the film's part."},
+       "Take the lever arms of friction from the tables of the gear set, not from the actual "
+       "sliding."},
+      {"exact_hertz", "Use elliptic integrals instead of the fits of eqs 21 and 22."},
+      {"hertz_from_total_load",
+       "Compute the contact ellipse from the total load instead of the load on the film."},
   };
   return kDescriptions;
 }
 
-/// The words of --as-published and the field each switches on. Eq 46 acts where profiles become a
-/// surface, and is a flag there.
+/// Returns the words of --as-published and the field that each sets. eq46 is not among them: it
+/// applies where profiles become a surface and is a flag of that import.
 const std::vector<std::pair<std::string, std::string>>& misprints() {
   static const std::vector<std::pair<std::string, std::string>> kMisprints = {
       {"eq17", "eq17_atan"},           {"eq20", "eq20_semi_major"},
@@ -56,8 +62,8 @@ std::string misprint_words() {
 void add_as_published_flag(FlagList& flags, v1::ModelOptions& options) {
   Flag& flag = flags.choices(
       "--as-published", misprint_words(),
-      "Switch a misprint of the paper back on, to see what it does: " + misprint_words() +
-          ", several by commas (eq31 stands for eqs 31 and 32, eq43 for 43 and 44). "
+      "Compute with a misprint of the paper, to see its effect: " + misprint_words() +
+          "; separate several by commas (eq31 means eqs 31 and 32, eq43 means 43 and 44). "
           "Default: all corrected.",
       [&options](const std::string& given) {
         for (const auto& [word, field] : misprints()) {
@@ -77,7 +83,7 @@ void add_as_published_flag(FlagList& flags, v1::ModelOptions& options) {
     });
     if (names_eq46) {
       complaints.emplace_back(
-          "--as-published eq46 acts where measured profiles become a surface: tribodyn surfaces "
+          "--as-published eq46 applies where measured profiles become a surface: tribodyn surfaces "
           "import --profile ... --as-published eq46");
     }
   };

@@ -7,8 +7,8 @@
 
 namespace tribodyn::client {
 
-/// What holds an operating point, as flags: a speed (with acceleration and slope), or a torque with
-/// a pinion speed.
+/// The flags of an operating point: a speed (with acceleration and slope), or a torque with a
+/// pinion speed.
 struct OperatingPointFlags {
   std::optional<double> speed_kilometres_per_hour;
   std::optional<double> acceleration_metres_per_second_squared;
@@ -18,12 +18,12 @@ struct OperatingPointFlags {
   v1::OperatingPointStudy study;  ///< model, start, probe
 };
 
-/// Writes to `point`, which must outlive the flags.
+/// Adds the flags; they write to `point`, which must outlive them.
 void add_operating_point_flags(FlagList& flags, OperatingPointFlags& point);
 void check_operating_point(const OperatingPointFlags& point, Complaints& complaints);
 v1::OperatingPointStudy operating_point_study(const OperatingPointFlags& point);
 
-/// --model and --start, shared with the curve.
+/// Adds --model and --start, which point and curve have in common.
 template <class Study>
 void add_model_and_start_flags(FlagList& flags, Study& study) {
   flags.choice(
@@ -32,7 +32,7 @@ void add_model_and_start_flags(FlagList& flags, Study& study) {
       "says which; full: the four degrees of freedom in time; quasi-static: equilibrium "
       "at constant speed, phase by phase; one-degree: the transmission error in time, the shafts "
       "carry constant torques (never taken by automatic). Curves, histories, --start and "
-      "--probe-coexisting-response take the full one unless asked. Default: automatic.",
+      "--probe-coexisting-response use the full model unless --model is given. Default: automatic.",
       [&study](int index) {
         constexpr v1::PointModel kModels[] = {v1::POINT_MODEL_AUTOMATIC, v1::POINT_MODEL_FULL,
                                               v1::POINT_MODEL_QUASI_STATIC,

@@ -28,8 +28,8 @@ Command point_command() {
   Command command{
       "point",
       "one operating point, in full",
-      "Submits one operating point, follows it and prints inefficiencies, losses, film, "
-      "temperatures, contact loss, solver statistics and what the result rests on.",
+      "Submits one operating point, watches it and prints inefficiencies, losses, film, "
+      "temperatures, contact loss, solver statistics and the number of assumptions.",
       {"tribodyn point --lubricant 1 --speed-kilometres-per-hour 72.5",
        "tribodyn point --lubricant 2 --speed 100 --sump-temperature-celsius 90 --isothermal",
        "tribodyn point --lubricant 1 --pinion-torque-newton-metres 60 "

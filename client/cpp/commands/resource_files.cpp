@@ -35,8 +35,8 @@ struct ExportFlags {
   bool all = false;
 };
 
-/// What rows of a table start from: a copy of the lubricant that --like names, without the words
-/// that describe it alone.
+/// Returns the resource from which rows of a table start: a copy of the lubricant of --like,
+/// without texts that describe only that lubricant.
 ResourcePointer base_of_rows(Connection& connection, const ResourceKind& kind,
                              const std::string& like) {
   ResourcePointer base = copy_of(connection, kind, like, {});
@@ -46,7 +46,8 @@ ResourcePointer base_of_rows(Connection& connection, const ResourceKind& kind,
   return base;
 }
 
-/// Caches the present resources of a kind by name, after one request to the server.
+/// Returns a function that looks up current resources of a kind by name. It makes one request and
+/// caches the result.
 std::function<ResourcePointer(const std::string&)> present_resources(Connection& connection,
                                                                      const ResourceKind& kind) {
   const auto by_name = std::make_shared<std::optional<std::map<std::string, ResourcePointer>>>();
@@ -66,7 +67,7 @@ std::function<ResourcePointer(const std::string&)> present_resources(Connection&
   };
 }
 
-/// What an import writes: the rows of tables and the resources of JSON files.
+/// Returns the resources that an import writes: rows of tables and resources of JSON files.
 std::vector<FileResource> resources_of(Connection& connection, const ResourceKind& kind,
                                        const ImportFlags& flags) {
   std::vector<FileResource> resources;
@@ -96,7 +97,7 @@ std::vector<FileResource> resources_of(Connection& connection, const ResourceKin
   return resources;
 }
 
-/// Gets the resources that were too many for the answer to a batch.
+/// Reads the resources that the response to a batch omitted because of their size.
 void read_left_out(Connection& connection, const ResourceKind& kind, const ImportFlags& flags,
                    BatchWritten& done) {
   if (done.resources.size() == done.names.size()) return;
@@ -110,7 +111,7 @@ void read_left_out(Connection& connection, const ResourceKind& kind, const Impor
   }
 }
 
-/// All or none.
+/// Imports all resources or none.
 int import_resources(const ResourceKind& kind, const ImportFlags& flags,
                      const CommonOptions& options) {
   Connection connection = options.connect();
@@ -120,7 +121,7 @@ int import_resources(const ResourceKind& kind, const ImportFlags& flags,
                                   std::to_string(resources.size()));
   }
   if (flags.tables.eq46_as_published) {
-    throw Failure(kExitUsage, "--as-published acts on profiles: --profile is missing");
+    throw Failure(kExitUsage, "--as-published applies to profiles: --profile is missing");
   }
   const JsonImport import(kind, std::move(resources), flags.id);
   BatchWritten done = import.send(connection, flags.replace, flags.validate_only);
@@ -153,11 +154,11 @@ int import_resources(const ResourceKind& kind, const ImportFlags& flags,
 int import_tables(const ResourceKind& kind, const ImportFlags& flags,
                   const CommonOptions& options) {
   if (flags.files.size() > 1 && kind.word != "surfaces") {
-    throw Failure(kExitUsage, "one table at a time");
+    throw Failure(kExitUsage, "import only one table at a time");
   }
   if (flags.replace) {
     throw Failure(kExitUsage,
-                  "--replace is for JSON files and tables of one " + kind.singular + " a row");
+                  "--replace is for JSON files and tables of one " + kind.singular + " per row");
   }
   TableFiles tables = flags.tables;
   for (const std::string& path : flags.files) add_table(kind, path, tables);
@@ -184,33 +185,34 @@ void check_import(const ResourceKind& kind, const ImportFlags& flags, Complaints
   std::size_t tables = 0;
   for (const std::string& path : flags.files) tables += is_table_file(path) ? 1 : 0;
   if (tables > 0 && tables < flags.files.size()) {
-    complaints.emplace_back("either JSON files or tables (.csv), not both at once");
+    complaints.emplace_back("give either JSON files or tables (.csv), not both");
   }
   if (!flags.like.empty() && !flags.files.empty() && tables == 0) {
-    complaints.emplace_back("--like is for tables; a JSON file holds all of its " + kind.plural);
+    complaints.emplace_back("--like applies only to tables; a JSON file contains complete " +
+                            kind.plural);
   }
   if (flags.files.empty() && flags.id.empty()) complaints.emplace_back("--id is missing");
 }
 
-/// All that are not deleted, and of the deleted ones those that others descend from: an import
-/// wants them.
+/// Returns all resources that are not deleted, and the deleted ones from which others are derived:
+/// an import requires them.
 std::vector<ResourcePointer> all_to_export(Connection& connection, const ResourceKind& kind) {
   ListOptions options;
   options.show_deleted = true;
   std::vector<ResourcePointer> resources = kind.calls->list(connection, options).resources;
   std::map<std::string, const google::protobuf::Message*> by_name;
   for (const ResourcePointer& each : resources) by_name[text_field(*each, "name")] = each.get();
-  std::set<const google::protobuf::Message*> wanted;
+  std::set<const google::protobuf::Message*> exported;
   for (const ResourcePointer& each : resources) {
     if (is_deleted(*each)) continue;
     const google::protobuf::Message* next = each.get();
-    while (next != nullptr && wanted.insert(next).second) {
+    while (next != nullptr && exported.insert(next).second) {
       const std::string parent = text_field(*next, "derived_from");
       const auto found = by_name.find(parent.substr(0, parent.find('@')));
       next = found == by_name.end() ? nullptr : found->second;
     }
   }
-  std::erase_if(resources, [&](const auto& each) { return wanted.count(each.get()) == 0; });
+  std::erase_if(resources, [&](const auto& each) { return exported.count(each.get()) == 0; });
   return resources;
 }
 
@@ -240,12 +242,13 @@ int run_export(const ResourceKind& kind, const ExportFlags& flags, const CommonO
   std::string text;
   const bool csv = options.output_format == OutputFormat::kCsv;
   if (csv && kind.word == "gear-sets") {
-    throw Failure(kExitUsage, "a gear set has tables of its own: --tooth-contact and --series");
+    throw Failure(kExitUsage,
+                  "a gear set is not a row of a table; use --tooth-contact and --series");
   } else if (csv) {
     std::string lost;
     text = row_table(kind, resources, lost);
     if (!lost.empty()) {
-      std::cerr << "tribodyn: a table has no room for " << lost << "; JSON has\n";
+      std::cerr << "tribodyn: a table cannot contain " << lost << "; export JSON for them\n";
     }
   } else {
     text = export_text(kind, resources);
@@ -262,33 +265,34 @@ int run_export(const ResourceKind& kind, const ExportFlags& flags, const CommonO
 
 Command import_command(const ResourceKind& kind) {
   const auto flags = std::make_shared<ImportFlags>();
-  Command command{kind.word + " import",
-                  kind.plural + " from files",
-                  "Adds " + kind.plural +
-                      " from files as export writes them, several at once: all of them, or none "
-                      "when one is wrong.",
-                  {"tribodyn " + kind.word + " import " + kind.plural.substr(0, 4) + ".json"},
-                  {},
-                  {},
-                  {}};
+  Command command{
+      kind.word + " import",
+      kind.plural + " from files",
+      "Creates " + kind.plural +
+          " from files in the form that export writes. An import creates all of them, or "
+          "none if one is wrong.",
+      {"tribodyn " + kind.word + " import " + kind.plural.substr(0, 4) + ".json"},
+      {},
+      {},
+      {}};
   if (kind.word != "gear-sets") {
-    command.about +=
-        " JSON, or a CSV table with a column \"name\": one " + kind.singular + " a row.";
+    command.about += " A file is JSON, or a CSV table with a column \"name\" and one " +
+                     kind.singular + " per row.";
   }
   if (kind.word == "lubricants") {
     command.about +=
-        " Or from a table of viscosities (CSV), whose Vogel law is fitted by least "
-        "squares; the residuals are shown.";
+        " A table of viscosities (CSV) gives one lubricant: the server fits Vogel's law by least "
+        "squares and the command prints the residuals.";
     command.examples = {"tribodyn lubricants import my-oil.csv",
                         "tribodyn lubricants import fluids.json --replace",
                         "tribodyn lubricants import table.csv --id my-oil --density15 870 "
                         "--base-oil-class polyalphaolefin"};
   } else if (kind.word == "gear-sets") {
-    command.about += " Or from tooth contact data computed elsewhere (CSV).";
+    command.about += " A table of tooth contact data (CSV) gives one gear set.";
     command.examples.emplace_back(
         "tribodyn gear-sets import contact.csv --series series.csv --id mine --like A");
   } else if (kind.word == "surfaces") {
-    command.about += " Or from measured profiles (CSV).";
+    command.about += " Measured profiles (CSV) give one surface.";
     command.examples.emplace_back(
         "tribodyn surfaces import --id mine --profile pinion,axial,p.csv --profile "
         "gear,axial,g.csv");
@@ -300,15 +304,15 @@ Command import_command(const ResourceKind& kind) {
                       [flags](const std::string& path) { flags->files.push_back(path); });
   command.flags.group("Options");
   command.flags.text("--id", "NAME",
-                     "Its id. Default: the name in the file, else the file's own name.",
+                     "Id of the resource. Default: the name in the file, else the file's own name.",
                      [flags](const std::string& text) { flags->id = resource_id(text); });
   command.flags
-      .text("--like", "NAME",
-            "Of a table: a column that is missing and a cell that is empty are as in this " +
-                kind.singular + ".",
-            [flags](const std::string& text) { flags->like = text; })
+      .text(
+          "--like", "NAME",
+          "For a table: missing columns and empty cells are taken from this " + kind.singular + ".",
+          [flags](const std::string& text) { flags->like = text; })
       .collection = kind.collection;
-  command.flags.toggle("--replace", "Make a new revision of what is there already.",
+  command.flags.toggle("--replace", "Create a new revision of each resource that exists.",
                        [flags] { flags->replace = true; });
   command.flags.toggle("--validate-only", "Check everything and show the outcome; write nothing.",
                        [flags] { flags->validate_only = true; });
@@ -332,8 +336,7 @@ Command export_command(const ResourceKind& kind) {
   Command command{
       kind.word + " export",
       kind.plural + " as JSON that import reads",
-      "Writes " + kind.plural +
-          " as JSON, every number exact. Revision, times and etag stay with the server.",
+      "Writes " + kind.plural + " as JSON with every digit, without revision, times and etag.",
       {"tribodyn " + kind.word + " export " + kind.example + " --file " + kind.example + ".json",
        "tribodyn " + kind.word + " export --all"},
       {},
@@ -341,11 +344,11 @@ Command export_command(const ResourceKind& kind) {
       {}};
   command.flags.group("Arguments");
   command.flags
-      .texts("name", "NAME", "The " + kind.plural + "; NAME@REVISION is an older revision.",
+      .texts("name", "NAME", "Names of " + kind.plural + "; NAME@REVISION is an older revision.",
              [flags](const std::string& name) { flags->names.push_back(name); })
       .collection = kind.collection;
   command.flags.group("Options");
-  command.flags.toggle("--all", "All there are, and deleted ones that others are derived from.",
+  command.flags.toggle("--all", "Export all, and deleted ones from which others are derived.",
                        [flags] { flags->all = true; });
   command.flags.text("--file,-f", "FILE", "Write to this file. Default: standard output.",
                      [flags](const std::string& path) { flags->file = path; });
@@ -358,24 +361,24 @@ Command export_command(const ResourceKind& kind) {
                        [flags](const std::string& path) { flags->series = path; });
   } else if (kind.word == "lubricants") {
     command.about +=
-        " With --output csv, a row each: what was measured and stated, and how it is known. Cells "
-        "of what the server computed are empty; an import computes it again.";
+        " With --output csv it writes one row each: measured and stated values with their origin. "
+        "Cells of computed values are empty; an import computes them again.";
     command.flags.text("--viscosity-table", "FILE.csv",
                        "Write the measured viscosities and densities as the table that import "
                        "reads.",
                        [flags](const std::string& path) { flags->viscosity_table = path; });
   } else {
-    command.about += " With --output csv, a row each.";
+    command.about += " With --output csv it writes one row each.";
   }
   command.check = [flags, &kind](Complaints& complaints) {
     if (flags->names.empty() != flags->all) {
-      complaints.emplace_back(flags->all ? "either NAME or --all"
+      complaints.emplace_back(flags->all ? "give either NAME or --all"
                                          : "NAME is missing; --all exports all " + kind.plural);
     }
     const bool has_table =
         !flags->tooth_contact.empty() || !flags->series.empty() || !flags->viscosity_table.empty();
     if (has_table && flags->names.size() != 1) {
-      complaints.emplace_back("tables are of one " + kind.singular + ": give one NAME");
+      complaints.emplace_back("tables contain one " + kind.singular + ": give one NAME");
     }
   };
   command.run = [&kind, flags](const CommonOptions& options) {

@@ -12,7 +12,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// "pinion,axial,FILE"; member and direction may be missing.
+/// Reads "pinion,axial,FILE"; member and direction may be missing.
 bool read_profile(const std::string& text, TableFiles::Profile& profile) {
   std::vector<std::string> parts = split(text, ',');
   if (parts.empty()) return false;
@@ -34,7 +34,7 @@ bool read_profile(const std::string& text, TableFiles::Profile& profile) {
   return !profile.path.empty();
 }
 
-/// "surfaces/run-in@3" of its third revision, under whatever name it was asked for.
+/// Returns the name with revision, e.g. "surfaces/run-in@3", however the resource was requested.
 std::string revision_name(const google::protobuf::Message& resource) {
   const std::string name = text_field(resource, "name");
   const auto* revision = resource.GetDescriptor()->FindFieldByName("revision");
@@ -81,7 +81,7 @@ ResourcePointer send_with_tables(Connection& connection, const ResourceKind& kin
     return std::make_unique<v1::Surface>(connection.import_surface_profiles(request));
   }
   if (tables.eq46_as_published) {
-    throw Failure(kExitUsage, "--as-published acts on profiles: --profile is missing");
+    throw Failure(kExitUsage, "--as-published applies to profiles: --profile is missing");
   }
   return kind.calls->create(connection, resource, id, validate_only);
 }
@@ -94,8 +94,8 @@ void drop(v1::Lubricant& lubricant, std::initializer_list<const char*> fields) {
   }
 }
 
-/// A table of viscosities is of another fluid: nothing of this one's viscosity is left beside it.
-void forget_viscosities(v1::Lubricant& lubricant) {
+/// Clears all viscosities of the copied lubricant: the table of viscosities is of another fluid.
+void clear_viscosities(v1::Lubricant& lubricant) {
   drop(lubricant, {"vogel_viscosity_prefactor_pascal_seconds",
                    "vogel_temperature_coefficient_kelvin", "vogel_reference_temperature_kelvin"});
   v1::LubricantMeasurements& measured = *lubricant.mutable_measurements();
@@ -106,14 +106,14 @@ void forget_viscosities(v1::Lubricant& lubricant) {
   measured.clear_viscosities();
 }
 
-void forget_densities(v1::Lubricant& lubricant) {
+void clear_densities(v1::Lubricant& lubricant) {
   drop(lubricant, {"density_at_zero_kelvin_kilograms_per_cubic_metre",
                    "density_slope_kilograms_per_cubic_metre_kelvin"});
   lubricant.mutable_measurements()->clear_density_15_celsius_kilograms_per_cubic_metre();
   lubricant.mutable_measurements()->clear_densities();
 }
 
-bool tells_densities(const std::string& path) {
+bool has_densities(const std::string& path) {
   const std::string text = read_table_file(path, kLargestTable);
   const std::vector<CsvLine> lines = read_csv(text, 1);
   return !lines.empty() &&
@@ -130,7 +130,7 @@ void replace_all(const std::string& from, const std::string& to, std::string& te
   }
 }
 
-/// The refusal with the names of the user's files in it for those of the request's fields.
+/// Returns the error with the user's file names in place of the request's fields.
 ServiceError with_file_names(const ServiceError& error, const TableFiles& tables) {
   std::vector<std::pair<std::string, std::string>> names = {
       {"viscosity_table_csv", tables.viscosity_table},
@@ -153,7 +153,7 @@ ServiceError with_file_names(const ServiceError& error, const TableFiles& tables
 
 namespace {
 
-/// The cut-off of a filter; a bare number is in `bare_unit`.
+/// Adds the cut-off of a filter; a bare number is in `bare_unit`.
 void add_cut_off_flag(FlagList& flags, const char* name, const char* bare_unit,
                       const std::string& description, double& cut_off) {
   Flag& flag = flags.raw(name, bare_unit,
@@ -175,14 +175,14 @@ void add_cut_off_flag(FlagList& flags, const char* name, const char* bare_unit,
 
 void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tables) {
   if (kind.word == "vehicles") return;
-  flags.group("Tables (CSV; `tribodyn help files` names their columns)");
+  flags.group("Tables (CSV; `tribodyn help files` describes their columns)");
   if (kind.word == "lubricants") {
     flags.text("--viscosity-table", "FILE.csv",
                "Viscosities, and densities if known, at several temperatures.",
                [&](const std::string& path) { tables.viscosity_table = path; });
   } else if (kind.word == "gear-sets") {
     flags.text("--tooth-contact", "FILE.csv",
-               "Tooth contact data computed elsewhere, by roll or by mesh phase and slot.",
+               "Tooth contact data of another program, by roll or by mesh phase and slot.",
                [&](const std::string& path) { tables.tooth_contact = path; });
     flags.text("--series", "FILE.csv",
                "Fourier series of contact radii, mesh stiffness and transmission error.",
@@ -201,22 +201,22 @@ void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tabl
       }
     };
     flags.choice("--levelling", {"mean", "least-squares-line"},
-                 "What is taken off a profile before its moments are formed. Default: "
+                 "Trend that is removed from a profile before the statistics. Default: "
                  "least-squares-line.",
                  [&](int index) {
                    tables.levelling =
                        index == 0 ? v1::LEVELLING_MEAN : v1::LEVELLING_LEAST_SQUARES_LINE;
                  });
     add_cut_off_flag(flags, "--lambda-s", "um",
-                     "Waves shorter than this, noise of the instrument, are filtered out; e.g. 2.5",
+                     "Remove waves shorter than this (noise of the instrument), e.g. 2.5",
                      tables.short_wave_cut_off_metres);
     add_cut_off_flag(flags, "--lambda-c", "mm",
-                     "Waves longer than this, waviness and form, are filtered out; e.g. 0.8",
+                     "Remove waves longer than this (waviness and form), e.g. 0.8",
                      tables.long_wave_cut_off_metres);
     flags.choice(
         "--as-published", {"eq46"},
         "Join two directions of a flank by eq 46 as the paper misprints it, sqrt(m_a + m_r) "
-        "in place of sqrt(m_a m_r), to see what it does.",
+        "instead of sqrt(m_a m_r), to see its effect.",
         [&](int) { tables.eq46_as_published = true; });
   }
 }
@@ -229,7 +229,7 @@ void add_table(const ResourceKind& kind, const std::string& path, TableFiles& ta
   } else if (kind.word == "surfaces") {
     tables.profiles.emplace_back().path = path;
   } else {
-    throw Failure(kExitUsage, path + ": there are no tables of " + kind.plural);
+    throw Failure(kExitUsage, path + ": no tables exist for " + kind.plural);
   }
 }
 
@@ -250,8 +250,8 @@ ResourcePointer copy_of(Connection& connection, const ResourceKind& kind, const 
   clear({"name", "derived_from", "display_name", "description"});
   if (auto* lubricant = dynamic_cast<v1::Lubricant*>(resource.get());
       lubricant != nullptr && !tables.viscosity_table.empty()) {
-    forget_viscosities(*lubricant);
-    if (tells_densities(tables.viscosity_table)) forget_densities(*lubricant);
+    clear_viscosities(*lubricant);
+    if (has_densities(tables.viscosity_table)) clear_densities(*lubricant);
   }
   if (!tables.tooth_contact.empty()) {
     clear({"flank_slots", "series_by_torque", "load_share_by_torque"});

@@ -24,13 +24,13 @@ struct WriteFlags {
   bool allow_missing = false;
 };
 
-/// The one resource of a file.
+/// Returns the only resource of a file; throws Failure if there are several.
 ResourcePointer read_one(const ResourceKind& kind, const std::string& path) {
   auto resources = read_resources(read_file(path), path, &kind);
   if (resources.size() != 1) {
-    throw Failure(kExitUsage, path + " holds " + std::to_string(resources.size()) + " " +
+    throw Failure(kExitUsage, path + " contains " + std::to_string(resources.size()) + " " +
                                   kind.plural + "; `tribodyn " + kind.word +
-                                  " import` takes several");
+                                  " import` reads several");
   }
   clear_output_only(*resources.front().resource);
   return std::move(resources.front().resource);
@@ -53,7 +53,7 @@ void add_write_flags(Command& command, const std::shared_ptr<WriteFlags>& flags,
                        [flags] { flags->validate_only = true; });
 }
 
-/// What the flags of create change.
+/// Returns the resource to which the flags of create are applied.
 ResourcePointer start_of(Connection& connection, const ResourceKind& kind,
                          const WriteFlags& flags) {
   if (!flags.file.empty()) return read_one(kind, flags.file);
@@ -76,8 +76,8 @@ int run_create(const ResourceKind& kind, const WriteFlags& flags, const CommonOp
   return kExitOk;
 }
 
-/// Reads the present revision, changes it, and sends it back with its etag: what somebody else has
-/// changed meanwhile is not overwritten.
+/// Reads the current revision, applies the changes and sends it back with its etag, so that changes
+/// that somebody else made meanwhile are not overwritten.
 int run_update(const ResourceKind& kind, const WriteFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   const std::string name = kind.name_of(flags.name);
@@ -100,7 +100,7 @@ int run_update(const ResourceKind& kind, const WriteFlags& flags, const CommonOp
   return kExitOk;
 }
 
-/// What the short help shows of a kind: the figures that a data sheet or a drawing gives.
+/// Returns the flags that the short help lists for a kind: figures of a data sheet or a drawing.
 const std::vector<std::string>& main_figures(const ResourceKind& kind) {
   static const std::map<std::string, std::vector<std::string>> kFlags = {
       {"lubricants",
@@ -115,7 +115,7 @@ const std::vector<std::string>& main_figures(const ResourceKind& kind) {
   return kFlags.at(kind.word);
 }
 
-/// The flags that name tables of a kind.
+/// Returns the flags that name tables of a kind.
 const std::vector<std::string>& main_tables(const ResourceKind& kind) {
   static const std::map<std::string, std::vector<std::string>> kFlags = {
       {"lubricants", {"--viscosity-table"}},
@@ -151,10 +151,12 @@ Command create_command(const ResourceKind& kind) {
   Command command{kind.word + " create", "a new " + kind.singular, "", {}, {}, {}, {}};
   if (kind.word == "lubricants") {
     command.about =
-        "Adds a gear oil as a laboratory reports it: KV40, KV100 and the density at 15 C are "
-        "enough. What the model needs beyond them is fitted, or estimated from the base-oil class, "
-        "and shown with its uncertainty and source. A number stands in the unit that the flag "
-        "shows, or carries its own: 0.868g/cm3, 98Pas; `tribodyn help units` lists them.";
+        "Creates a gear oil as a laboratory reports it: KV40, KV100 and the density at 15 C are "
+        "enough. The server fits the other parameters of the model, or estimates them from the "
+        "base-oil class, and the command prints each with its uncertainty and source. A number is "
+        "in the "
+        "unit that the flag shows, or states its own: 0.868g/cm3, 98Pas; `tribodyn help units` "
+        "lists them.";
     command.examples = {
         "tribodyn lubricants create my-oil --kv40 103 --kv100 15.1 --density15 868 "
         "--base-oil-class pao --brookfield -40=98000",
@@ -162,8 +164,8 @@ Command create_command(const ResourceKind& kind) {
         "tribodyn lubricants create my-oil --file my-oil.json --pressure-viscosity 20/GPa "
         "--label project=axle"};
   } else {
-    command.about = "Adds a " + kind.singular +
-                    ". A number stands in the unit that the flag shows, or carries its own, e.g. "
+    command.about = "Creates a " + kind.singular +
+                    ". A number is in the unit that the flag shows, or states its own, e.g. "
                     "400nm; `tribodyn help units` lists them.";
     command.examples = {"tribodyn " + kind.word + " create mine --like " + kind.example,
                         "tribodyn " + kind.word + " create mine --file mine.json"};
@@ -177,13 +179,13 @@ Command create_command(const ResourceKind& kind) {
           "gear,axial,g.csv");
     }
   }
-  add_name(command, kind, flags, "Its id: letters, digits, '-', '_', '.'; e.g. mine.", false);
+  add_name(command, kind, flags, "Id: letters, digits, '-', '_', '.'; e.g. mine.", false);
   add_table_flags(command.flags, kind, flags->tables);
   add_edit_flags(command.flags, kind, flags->edits);
   add_write_flags(command, flags,
-                  "Start from this JSON file, as export writes it; flags go before.");
+                  "Start from this JSON file, in the form that export writes; flags override it.");
   command.flags
-      .text("--like", "NAME", "Start from a copy of this " + kind.singular + "; flags go before.",
+      .text("--like", "NAME", "Start from a copy of this " + kind.singular + "; flags override it.",
             [flags](const std::string& text) { flags->like = text; })
       .collection = kind.collection;
   show_in_short_help(main_figures(kind), command);
@@ -194,13 +196,16 @@ Command create_command(const ResourceKind& kind) {
       complaints.emplace_back("NAME is missing, e.g. tribodyn " + kind.word + " create mine");
     }
     if (!flags->like.empty() && !flags->file.empty()) {
-      complaints.emplace_back("either --like or --file");
+      complaints.emplace_back("give either --like or --file");
     }
-    // After another complaint, what was meant to be said of it may only have been misread.
+    // After another complaint, the missing values may have been in a flag that was not read.
     if (complaints.empty() && flags->edits.empty() && flags->file.empty() && flags->like.empty() &&
         flags->tables.empty()) {
-      complaints.emplace_back("nothing is said of it; see `tribodyn " + kind.word +
-                              " create --help`");
+      complaints.emplace_back(std::string("no properties given; ") +
+                              (kind.word == "lubricants"
+                                   ? "at least --kv40 and --kv100 (or --file) are needed; "
+                                   : "") +
+                              "see `tribodyn " + kind.word + " create --help`");
     }
   };
   command.run = [&kind, flags](const CommonOptions& options) {
@@ -214,8 +219,9 @@ Command update_command(const ResourceKind& kind) {
   Command command{
       kind.word + " update",
       "a new revision of a " + kind.singular,
-      "Changes what the flags say and leaves the rest. That makes a new revision; results of older "
-      "ones keep theirs. What was fitted or estimated from what is changed is computed again.",
+      "Sets the fields that the flags name and keeps the others. That creates a new revision; "
+      "results of older revisions keep theirs. The server recomputes values that were fitted or "
+      "estimated from changed fields.",
       {"tribodyn " + kind.word + " update " + kind.example + " --label project=axle"},
       {},
       {},
@@ -228,21 +234,20 @@ Command update_command(const ResourceKind& kind) {
   add_name(command, kind, flags, "The " + kind.singular + ", e.g. " + kind.example + ".", true);
   add_edit_flags(command.flags, kind, flags->edits);
   add_removal_flags(command.flags, kind, flags->edits);
-  add_write_flags(command, flags, "Replace all of it by this JSON file.");
-  command.flags.toggle("--allow-missing", "With --file: create it if there is none.",
+  add_write_flags(command, flags, "Replace the whole resource by this JSON file.");
+  command.flags.toggle("--allow-missing", "With --file: create the resource if it does not exist.",
                        [flags] { flags->allow_missing = true; });
-  command.flags.text("--etag", "ETAG", "Refuse if it has changed since it had this etag.",
+  command.flags.text("--etag", "ETAG", "Fail if the resource has changed since it had this etag.",
                      [flags](const std::string& text) { flags->etag = text; });
   show_in_short_help(main_figures(kind), command);
   show_in_short_help({"--label", "--title", "--unset", "--provenance", "--uncertainty", "--file"},
                      command);
   command.check = [flags, &kind](Complaints& complaints) {
     if (flags->name.empty()) {
-      complaints.emplace_back("NAME is missing; `tribodyn " + kind.word + " list` shows them");
+      complaints.emplace_back("NAME is missing; `tribodyn " + kind.word + " list` lists the names");
     }
     if (complaints.empty() && flags->edits.empty() && flags->file.empty()) {
-      complaints.emplace_back("nothing is to be changed; see `tribodyn " + kind.word +
-                              " update --help`");
+      complaints.emplace_back("no changes given; see `tribodyn " + kind.word + " update --help`");
     }
     if (flags->allow_missing && flags->file.empty()) {
       complaints.emplace_back("--allow-missing needs --file");

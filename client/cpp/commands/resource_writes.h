@@ -15,12 +15,12 @@ Command update_command(const ResourceKind& kind);
 Command import_command(const ResourceKind& kind);
 Command export_command(const ResourceKind& kind);
 
-/// Tables that the server turns into a resource, each as the path of its file.
+/// The paths of tables from which the server makes a resource.
 struct TableFiles {
-  std::string viscosity_table;  ///< of a lubricant
-  std::string tooth_contact;    ///< of a gear set
-  std::string series;           ///< of a gear set; may be empty
-  /// Of a surface.
+  std::string viscosity_table;  ///< for a lubricant
+  std::string tooth_contact;    ///< for a gear set
+  std::string series;           ///< for a gear set; may be empty
+  /// For a surface.
   struct Profile {
     v1::FlankMember member = v1::FLANK_MEMBER_UNSPECIFIED;
     v1::ProfileDirection direction = v1::PROFILE_DIRECTION_UNSPECIFIED;
@@ -37,24 +37,24 @@ struct TableFiles {
   }
 };
 
-/// The flags that name tables of this kind; vehicles have none. They write to `tables`, which must
-/// outlive them.
+/// Adds the flags that name tables of this kind; vehicles have none. They write to `tables`, which
+/// must outlive them.
 void add_table_flags(FlagList& flags, const ResourceKind& kind, TableFiles& tables);
-/// A file named without a flag: the table of its kind.
+/// Adds a file that was named without a flag: the table of its kind.
 void add_table(const ResourceKind& kind, const std::string& path, TableFiles& tables);
 
-/// A copy of a resource that exists, without its name and what the server sets; without what the
-/// tables bring, too. Title and description are not copied, as they may be untrue of the copy; the
-/// source of a parameter becomes "as in surfaces/run-in@1", where the words of the original stand.
+/// Returns a copy of a resource without its name, fields that the server sets and fields that the
+/// tables contain. Omits title and description, which may not apply to the copy. The source of a
+/// parameter becomes "as in surfaces/run-in@1", where the original source is.
 ResourcePointer copy_of(Connection& connection, const ResourceKind& kind, const std::string& name,
                         const TableFiles& tables);
 
-/// Creates a resource from what is known of it and its tables; without tables, from that alone.
+/// Creates a resource from `resource` and the tables, if there are any.
 ResourcePointer create_with_tables(Connection& connection, const ResourceKind& kind,
                                    const google::protobuf::Message& resource, const std::string& id,
                                    const TableFiles& tables, bool validate_only);
 
-/// Says on standard output what was done to a resource, then shows it.
+/// Prints `done` with the name of a resource, then the resource, on standard output.
 void show_written(const char* done, const google::protobuf::Message& resource, bool validate_only,
                   OutputFormat format);
 

@@ -32,8 +32,8 @@ int run_list(const ResourceKind& kind, const ListFlags& flags, const CommonOptio
   std::cout << resources_text(kind, list.resources, options.output_format, false);
   if (!list.next_page_token.empty()) {
     std::cerr << "There are more than " << flags.limit
-              << "; --limit raises their number, --limit 0 lists all,\n--page-token "
-              << list.next_page_token << " goes on here.\n";
+              << ". Use --limit N (0 lists all), or for the next page\n--page-token "
+              << list.next_page_token << "\n";
   }
   return kExitOk;
 }
@@ -41,7 +41,7 @@ int run_list(const ResourceKind& kind, const ListFlags& flags, const CommonOptio
 Command list_command(const ResourceKind& kind) {
   const auto flags = std::make_shared<ListFlags>();
   Command command{kind.word + " list",
-                  "the " + kind.plural + " the server knows",
+                  "list the " + kind.plural + " of the server",
                   "Lists " + kind.plural + " in the order of their names.",
                   {"tribodyn " + kind.word + " list",
                    "tribodyn " + kind.word + " list --filter name:1 --order-by name --output csv"},
@@ -50,19 +50,21 @@ Command list_command(const ResourceKind& kind) {
                   {}};
   command.flags.text("--filter", "FILTER",
                      "Restrictions joined by AND, e.g. 'labels.project = \"axle\" AND "
-                     "revision > 1'; `tribodyn help filters` tells more.",
+                     "revision > 1'; `tribodyn help filters` explains them.",
                      [flags](const std::string& text) { flags->options.filter = text; });
-  command.flags.texts("--label", "KEY[=VALUE]", "Only those with this label; repeatable.",
+  command.flags.texts("--label", "KEY[=VALUE]", "List only resources with this label; repeatable.",
                       [flags](const std::string& text) { flags->labels.push_back(text); });
-  command.flags.text("--order-by", "FIELD", "A field of the filter, e.g. name or 'name desc'.",
+  command.flags.text("--order-by", "FIELD",
+                     "Order of the list: a field of the filter, e.g. name or 'name desc'.",
                      [flags](const std::string& text) { flags->options.order_by = text; });
   command.flags.whole_number("--limit,-n", {kind.plural, "0 to 1000000", "100"},
-                             "How many at most; 0: all",
+                             "Maximum number listed; 0 = all",
                              [flags](int value) { flags->limit = value; });
-  command.flags.text("--page-token", "TOKEN",
-                     "Goes on where a list with the same filter and order ended, which names it.",
-                     [flags](const std::string& text) { flags->options.page_token = text; });
-  command.flags.toggle("--show-deleted", "Also those that were deleted.",
+  command.flags.text(
+      "--page-token", "TOKEN",
+      "Read the next page; the previous page, with the same filter and order, printed the token.",
+      [flags](const std::string& text) { flags->options.page_token = text; });
+  command.flags.toggle("--show-deleted", "List deleted resources too.",
                        [flags] { flags->options.show_deleted = true; });
   command.check = [flags](Complaints& complaints) {
     if (flags->limit < 0 || flags->limit > 1000000) {
@@ -75,7 +77,7 @@ Command list_command(const ResourceKind& kind) {
   return command;
 }
 
-/// A command on resources that exist.
+/// Returns a command on resources that exist.
 Command name_command(const ResourceKind& kind, const char* verb, const std::string& summary,
                      const std::string& about, const std::shared_ptr<NameFlags>& flags,
                      bool several) {
@@ -95,7 +97,7 @@ Command name_command(const ResourceKind& kind, const char* verb, const std::stri
   name.collection = kind.collection;
   command.check = [flags, word = kind.word](Complaints& complaints) {
     if (flags->names.empty()) {
-      complaints.emplace_back("NAME is missing; `tribodyn " + word + " list` shows them");
+      complaints.emplace_back("NAME is missing; `tribodyn " + word + " list` lists the names");
     }
   };
   return command;
@@ -104,9 +106,9 @@ Command name_command(const ResourceKind& kind, const char* verb, const std::stri
 Command get_command(const ResourceKind& kind) {
   const auto flags = std::make_shared<NameFlags>();
   Command command = name_command(
-      kind, "get", "one " + kind.singular + ", each parameter with where it comes from",
+      kind, "get", "one " + kind.singular + " with the origin of each parameter",
       "Prints one " + kind.singular +
-          ": every parameter, its value, its uncertainty and how it is known. NAME@REVISION is an "
+          ": every parameter, its value, its uncertainty and origin. NAME@REVISION is an "
           "older revision.",
       flags, false);
   command.run = [&kind, flags](const CommonOptions& options) {
@@ -120,39 +122,41 @@ Command get_command(const ResourceKind& kind) {
 
 Command revisions_command(const ResourceKind& kind) {
   const auto flags = std::make_shared<NameFlags>();
-  Command command = name_command(kind, "revisions", "every revision of one " + kind.singular,
+  Command command = name_command(kind, "revisions", "list the revisions of one " + kind.singular,
                                  "Lists the revisions of a " + kind.singular +
-                                     ", newest first. None ever changes; results keep pointing at "
+                                     ", newest first. A revision never changes; results keep "
                                      "theirs.",
                                  flags, false);
   command.flags.group("Options");
   command.flags.whole_number("--limit,-n", {"revisions", "0 to 1000000", "100"},
-                             "How many at most; 0: all",
+                             "Maximum number listed; 0 = all",
                              [flags](int value) { flags->limit = value; });
   command.run = [&kind, flags](const CommonOptions& options) {
     Connection connection = options.connect();
     const ResourceList list =
         kind.calls->revisions(connection, kind.name_of(flags->names.front()), flags->limit);
     std::cout << resources_text(kind, list.resources, options.output_format, true);
-    if (!list.next_page_token.empty()) std::cerr << "There are older ones; --limit 0 lists all.\n";
+    if (!list.next_page_token.empty()) std::cerr << "Older revisions exist; --limit 0 lists all.\n";
     return kExitOk;
   };
   return command;
 }
 
-/// delete and undelete: a line a resource.
+/// Returns delete or undelete, which print one line per resource.
 Command deletion_command(const ResourceKind& kind, bool undelete) {
   const auto flags = std::make_shared<NameFlags>();
   Command command = name_command(
       kind, undelete ? "undelete" : "delete",
-      undelete ? "bring back what was deleted" : "hide " + kind.plural + "; nothing is lost",
-      undelete ? "Brings deleted " + kind.plural + " back."
-               : "Hides " + kind.plural +
-                     " from lists and from new simulations. Results keep theirs, and undelete "
-                     "brings them back.",
+      undelete ? "restore deleted " + kind.plural
+               : "delete " + kind.plural + "; undelete restores them",
+      undelete
+          ? "Restores deleted " + kind.plural + "."
+          : "Removes " + kind.plural +
+                " from lists and from new simulations. Results keep their revisions, and undelete "
+                "restores them.",
       flags, true);
   command.flags.group("Options");
-  command.flags.text("--etag", "ETAG", "Refuse if it has changed since it had this etag.",
+  command.flags.text("--etag", "ETAG", "Fail if the resource has changed since it had this etag.",
                      [flags](const std::string& text) { flags->etag = text; });
   command.run = [&kind, flags, undelete](const CommonOptions& options) {
     Connection connection = options.connect();

@@ -9,7 +9,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// ".png" of "pictures/curve.PNG"; empty when the name has none.
+/// Returns e.g. ".png" for "pictures/curve.PNG"; empty if the name has no extension.
 std::string lower_extension(const std::string& path) {
   const std::string name = path.substr(path.rfind('/') + 1);
   const std::size_t dot = name.rfind('.');
@@ -36,10 +36,9 @@ void add_plot_flag(FlagList& flags, const std::string& description, std::string&
       const std::string extension = lower_extension(text);
       if (extension.empty() || extension == ".svg") continue;
       const std::string stem = text.substr(0, text.size() - extension.size());
-      complaints.push_back("--plot: '" + printable(text) +
-                           "': pictures are SVG only. Write --plot " + printable(stem) +
-                           ".svg; `rsvg-convert " + printable(stem) + ".svg -o " + printable(stem) +
-                           ".png` makes a PNG, -f pdf a PDF");
+      complaints.push_back("--plot: '" + printable(text) + "' must end in .svg. Write --plot " +
+                           printable(stem) + ".svg; `rsvg-convert " + printable(stem) + ".svg -o " +
+                           printable(stem) + ".png` makes a PNG, -f pdf a PDF");
       return;
     }
     read(texts, complaints);

@@ -9,16 +9,17 @@
 
 namespace tribodyn::client {
 
-/// --plot FILE.svg. The path is checked with the command line, before anything is computed: a
-/// picture of another format is refused, and so is a file that cannot be written.
+/// Adds --plot FILE.svg. The path is checked with the command line, before anything is computed: it
+/// must end in .svg and be writable.
 void add_plot_flag(FlagList& flags, const std::string& description, std::string& path);
 
-/// A file that a command writes beside its output; checked as above.
+/// Adds a flag for a file that a command writes besides its output; the path is checked as for
+/// add_plot_flag().
 Flag& add_result_file_flag(FlagList& flags, const std::string& name, const std::string& value_name,
                            const std::string& description, std::string& path);
 
-/// The display names of the simulations' lubricants, for a picture. One that the server does not
-/// tell is left out: a picture without it is still a picture.
+/// Returns the display names of the simulations' lubricants for a plot. Omits lubricants that the
+/// server does not return: the plot is useful without their names.
 std::map<std::string, std::string> lubricant_titles(const std::vector<v1::Simulation>& simulations,
                                                     Connection& connection);
 

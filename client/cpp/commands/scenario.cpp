@@ -13,37 +13,37 @@ void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
   flags.group("Solver");
   flags.choice(
       "--method", {"automatic", "shooting", "march"},
-      "How the steady state is found: by shooting where that works and marched elsewhere, by "
-      "shooting or not at all, or marched",
+      "How the steady state is found. automatic: by shooting where that works, else by a time "
+      "march; shooting: only by shooting; march: only by a time march",
       [&](int index) {
         constexpr v1::SteadyStateMethod kMethods[] = {v1::STEADY_STATE_METHOD_AUTOMATIC,
                                                       v1::STEADY_STATE_METHOD_SHOOTING,
                                                       v1::STEADY_STATE_METHOD_MARCH};
         simulation.mutable_solver_options()->set_method(kMethods[index]);
       });
-  flags.number(
-      "--tolerance", {"-", "1e-8 to 0.01", "0.001"},
-      "Wanted relative error of inefficiency, torque and transmission error, whichever method",
-      [&](double value) { simulation.mutable_solver_options()->set_tolerance(value); });
+  flags.number("--tolerance", {"-", "1e-8 to 0.01", "0.001"},
+               "Target of the relative error of inefficiency, torque and transmission error, for "
+               "all methods",
+               [&](double value) { simulation.mutable_solver_options()->set_tolerance(value); });
   flags.number(
       "--relative-tolerance", {"-", "1e-11 to 1e-3", "1e-7"},
-      "Error of the time march, per step; read only where a point is marched",
+      "Relative error of each step of the time march; used only where a point is marched",
       [&](double value) { simulation.mutable_solver_options()->set_relative_tolerance(value); });
   flags.number(
       "--settling-tolerance", {"-", "1e-12 to 0.1", "1e-6"},
-      "Relative change per period below which a marched response counts as steady",
+      "Relative change per period below which a marched response is steady",
       [&](double value) { simulation.mutable_solver_options()->set_settling_tolerance(value); });
   flags.whole_number("--maximum-mesh-cycles", {"mesh cycles", "1 to 100000", "4000"},
-                     "Work limit of the search for the steady state", [&](int value) {
+                     "Limit of the search for the steady state", [&](int value) {
                        simulation.mutable_solver_options()->set_maximum_mesh_cycles(value);
                      });
   flags.whole_number("--recorded-mesh-cycles", {"mesh cycles", "1 to 1000", "50"},
-                     "Averaged where no period is found", [&](int value) {
+                     "Mesh cycles that are averaged if no period is found", [&](int value) {
                        simulation.mutable_solver_options()->set_recorded_mesh_cycles(value);
                      });
 }
 
-/// "failed: no steady state [WORK_LIMIT]"; empty when there is a result to show.
+/// Returns e.g. "failed: no steady state [WORK_LIMIT]"; empty if there is a result to show.
 std::string failure_text(const v1::Simulation& simulation) {
   if (simulation.state() == v1::Simulation::SUCCEEDED) {
     const auto& points = simulation.result().points();
@@ -58,7 +58,7 @@ std::string failure_text(const v1::Simulation& simulation) {
   return text;
 }
 
-/// All or nothing: one refused lubricant takes back what was submitted beside it.
+/// Cancels the submitted simulations and throws Failure: one rejected lubricant rejects all.
 [[noreturn]] void withdraw(const std::vector<v1::Simulation>& submitted, const Complaints& refusals,
                            Connection& connection) {
   for (const v1::Simulation& simulation : submitted)
@@ -76,31 +76,31 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   flags.group("Fluid, hardware, temperatures");
   flags
       .texts("--lubricant,-l", "NAME",
-             "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` shows them). A curve "
+             "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` lists them). A curve "
              "takes several: -l 1,2 or -l 1 -l 2.",
              [&](const std::string& name) { scenario.lubricants.push_back(name); })
       .collection = "lubricants";
   flags
-      .text("--gear-set", "NAME", "Gear set in its driveline. Default: A.",
+      .text("--gear-set", "NAME", "Gear set with its driveline. Default: A.",
             [&](const std::string& name) {
               simulation.set_gear_set(resource_name("gearSets", name));
             })
       .collection = "gearSets";
   flags
       .text(
-          "--surface", "NAME", "Composite roughness of the flanks. Default: run-in.",
+          "--surface", "NAME", "Surface: composite roughness of the flanks. Default: run-in.",
           [&](const std::string& name) { simulation.set_surface(resource_name("surfaces", name)); })
       .collection = "surfaces";
   flags
       .text(
-          "--vehicle", "NAME", "Road load. Default: passenger-car.",
+          "--vehicle", "NAME", "Vehicle: road load. Default: passenger-car.",
           [&](const std::string& name) { simulation.set_vehicle(resource_name("vehicles", name)); })
       .collection = "vehicles";
   flags.number("--sump-temperature-celsius,--sump", {"C", "-70 to 200", "40"},
                "Temperature of the oil bath",
                [&](double value) { simulation.set_sump_temperature_celsius(value); });
   flags.number("--inlet-temperature-rise-kelvin", {"K", "0 to 300", "20"},
-               "From the bath to the contact's inlet (eq 14)",
+               "Temperature rise from the oil bath to the inlet of the contact (eq 14)",
                [&](double value) { simulation.set_inlet_temperature_rise_kelvin(value); });
   add_model_flags(flags, *simulation.mutable_model_options());
   add_solver_flags(flags, simulation);
@@ -116,14 +116,14 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
                 if (equals != std::string::npos) label.set_value(text.substr(equals + 1));
               });
   flags.toggle("--detach", "Submit the job and return at once.", [&] { scenario.detach = true; });
-  flags.toggle("--validate-only", "Have the server check everything; run nothing.",
+  flags.toggle("--validate-only", "Check everything on the server; run nothing.",
                [&] { scenario.create.validate_only = true; });
-  flags.toggle("--force", "Compute although equal inputs have a result.",
+  flags.toggle("--force", "Compute even if equal inputs have a result.",
                [&] { scenario.create.force = true; });
   flags.number("--deadline-seconds", {"s", "0.001 to 31622400", "none"},
-               "From now; what has not ended by then fails",
+               "Time from now after which a simulation that has not ended fails",
                [&](double value) { simulation.set_deadline_seconds(value); });
-  flags.toggle("--assumptions", "Print every assumption the result rests on.",
+  flags.toggle("--assumptions", "Print every assumption of the result.",
                [&] { scenario.shows_assumptions = true; });
 }
 
@@ -132,7 +132,7 @@ void check_scenario(const Scenario& scenario, bool several_lubricants, Complaint
     complaints.emplace_back("--lubricant is missing, e.g. --lubricant 1");
   }
   if (scenario.lubricants.size() > 1 && !several_lubricants) {
-    complaints.emplace_back("--lubricant: one only (curve takes several)");
+    complaints.emplace_back("--lubricant: give only one (curve accepts several)");
   }
 }
 
@@ -175,7 +175,7 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
   if (!scenario.detach) return follow(connection, submitted, labels, options.progress_form());
   for (const v1::Simulation& simulation : submitted) {
     std::cout << simulation.name() << "  " << state_text(simulation.state())
-              << "  follow: tribodyn jobs watch " << resource_id(simulation.name()) << "\n";
+              << "  watch: tribodyn jobs watch " << resource_id(simulation.name()) << "\n";
   }
   return {};
 }

@@ -8,33 +8,35 @@
 
 namespace tribodyn::client {
 
-/// What point, curve and history have in common: fluid, hardware, temperatures, model and solver.
-/// The flags write into a Simulation that misses only its lubricant and its study.
+/// The options that point, curve and history have in common: fluid, hardware, temperatures, model
+/// and solver. The flags fill a Simulation except for its lubricant and its study.
 struct Scenario {
-  std::vector<std::string> lubricants;  ///< as given: "1" or "lubricants/1"
+  std::vector<std::string> lubricants;  ///< as typed: "1" or "lubricants/1"
   v1::Simulation simulation;
-  bool detach = false;  ///< submit, say how to follow, and return
+  bool detach = false;  ///< submit, print how to watch the jobs, and return
   CreateOptions create;
-  bool shows_assumptions = false;  ///< print the whole ledger
+  bool shows_assumptions = false;  ///< print all assumptions
 };
 
-/// Writes to `scenario`, which must outlive the flags. Solver and model flags come last, under
-/// their own headings.
+/// Adds the flags; they write to `scenario`, which must outlive them. Solver and model flags come
+/// last, below their own headings.
 void add_scenario_flags(FlagList& flags, Scenario& scenario);
 void check_scenario(const Scenario& scenario, bool several_lubricants, Complaints& complaints);
 
-/// One Simulation per lubricant.
+/// Returns one Simulation per lubricant.
 std::vector<v1::Simulation> simulations_of(const Scenario& scenario);
 
-/// Submits all, follows them together and returns them as they ended. Detached or only to be
-/// validated, it says so on standard output and returns nothing.
+/// Submits all simulations, watches them in parallel and returns them when all have ended. With
+/// `detach` or `validate_only` prints the outcome of the submission and returns none.
 std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& connection,
                                          const CommonOptions& options);
 
-/// Prints on standard error which simulations have nothing to show and why; kExitFailed if any has.
+/// Prints the simulations without results and the reasons on standard error; returns kExitFailed if
+/// there are any.
 int report_failures(const std::vector<v1::Simulation>& simulations);
 
-/// A flag for each switch of the model: "--no-limiting-shear-stress" of "no_limiting_shear_stress".
+/// Adds a flag for each switch of the model, e.g. "--no-limiting-shear-stress" for
+/// "no_limiting_shear_stress".
 void add_model_flags(FlagList& flags, v1::ModelOptions& options);
 
 }  // namespace tribodyn::client

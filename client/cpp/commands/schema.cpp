@@ -10,7 +10,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// "Lubricant" of "lubricants", "lubricant" or "Lubricant".
+/// Returns "Lubricant" for "lubricants", "lubricant" and "Lubricant".
 std::string message_of(const std::string& word) {
   for (const ResourceKind& kind : resource_kinds()) {
     if (word == kind.word || word == kind.collection || word == kind.list_field) {
@@ -75,19 +75,20 @@ int run(const std::string& word, const CommonOptions& options) {
 
 Command schema_command() {
   const auto message = std::make_shared<std::string>();
-  Command command{"schema",
-                  "what the server accepts: every number with unit and allowed range",
-                  "Prints the server's table of constraints, which every check comes from: field, "
-                  "allowed range, unit and the equation that needs it.",
-                  {"tribodyn schema lubricants", "tribodyn schema --output csv"},
-                  {},
-                  {},
-                  {}};
+  Command command{
+      "schema",
+      "the constraints of every number: unit and allowed range",
+      "Prints the server's table of constraints, from which all checks are made: field, "
+      "allowed range, unit and the equation that requires it.",
+      {"tribodyn schema lubricants", "tribodyn schema --output csv"},
+      {},
+      {},
+      {}};
   command.flags.group("Arguments");
   Flag& flag = command.flags.text(
       "message", "[MESSAGE]",
-      "Only of this one, e.g. lubricants or LubricantMeasurements. Default: all, and the words "
-      "that text fields may hold.",
+      "Only this message, e.g. lubricants or LubricantMeasurements. Default: all, with the words "
+      "that text fields may contain.",
       [message](const std::string& text) { *message = text; });
   for (const ResourceKind& kind : resource_kinds()) flag.words.push_back(kind.word);
   command.run = [message](const CommonOptions& options) { return run(*message, options); };

@@ -19,7 +19,7 @@ std::string environment(const std::string& name) {
   return value != nullptr ? value : "";
 }
 
-/// "timeout-seconds" of "--timeout-seconds".
+/// Returns "timeout-seconds" for "--timeout-seconds".
 std::string key_of(const Flag& flag) { return flag.first_name().substr(2); }
 
 std::string variable_of(const Flag& flag) {

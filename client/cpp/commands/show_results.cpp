@@ -7,8 +7,8 @@
 namespace tribodyn::client {
 namespace {
 
-/// Of the gear sets that the simulations rest on. One that the server does not tell is left out:
-/// the results are shown all the same.
+/// Returns the gear sets that the simulations used. Omits those that the server does not return:
+/// the results are shown in any case.
 std::vector<v1::GearSet> gear_sets_of(const std::vector<v1::Simulation>& simulations,
                                       Connection& connection) {
   std::vector<v1::GearSet> gear_sets;

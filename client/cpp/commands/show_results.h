@@ -8,8 +8,8 @@
 
 namespace tribodyn::client {
 
-/// Simulations that have ended, as results_text gives them; tables also say when the torque is far
-/// beyond the data of the gear set, for which the gear set is fetched.
+/// Returns results_text() of simulations that have ended. For tables it fetches the gear sets, to
+/// find torques far beyond their data.
 std::string shown_results(const std::vector<v1::Simulation>& simulations, Connection& connection,
                           const CommonOptions& options, bool alone, bool shows_assumptions);
 

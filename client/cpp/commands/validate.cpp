@@ -13,7 +13,7 @@
 namespace tribodyn::client {
 namespace {
 
-/// The kind whose table has a header like this; null when none has.
+/// Returns the kind whose table has this header; null if there is none.
 const ResourceKind* kind_of_table(const std::string& text) {
   const std::string header = text.substr(0, text.find('\n'));
   const auto has = [&](const char* word) { return header.find(word) != std::string::npos; };
@@ -27,7 +27,7 @@ const ResourceKind* kind_of_table(const std::string& text) {
   return nullptr;
 }
 
-/// The kind that the columns of a table of rows belong to.
+/// Returns the kind that has the columns of a table of rows.
 const ResourceKind& kind_of_rows(const std::string& text) {
   const std::string header = text.substr(0, text.find('\n'));
   const auto has = [&](const char* word) { return header.find(word) != std::string::npos; };
@@ -38,10 +38,10 @@ const ResourceKind& kind_of_rows(const std::string& text) {
                        [&](const ResourceKind& each) { return each.word == kind; });
 }
 
-/// The id that a file stands for when it names none.
+/// The id for a file without a name.
 constexpr char kAnyId[] = "validated";
 
-/// What is wrong with a file, a complaint each; says what is right on standard output.
+/// Adds the errors of a file to `wrong` and prints its valid parts on standard output.
 void validate(Connection& connection, const std::string& path, std::vector<std::string>& wrong) {
   const bool is_table = is_table_file(path);
   const std::string text = is_table ? read_table_file(path, kLargestFile) : read_file(path);
@@ -50,13 +50,14 @@ void validate(Connection& connection, const std::string& path, std::vector<std::
     const ResourceKind* kind = kind_of_table(text);
     if (kind == nullptr) {
       wrong.push_back(path +
-                      ": no table that the server reads; `tribodyn help files` names the "
+                      ": unknown columns; `tribodyn help files` lists the "
                       "columns");
       return;
     }
     TableFiles tables;
     add_table(*kind, path, tables);
-    // The table alone is to be judged: what it does not tell is as in hardware that is allowed.
+    // Fields that the table does not set come from valid hardware, so that only the table is
+    // checked.
     const ResourcePointer rest = kind->word == "lubricants"
                                      ? kind->make()
                                      : copy_of(connection, *kind, kind->example, tables);
@@ -72,7 +73,7 @@ void validate(Connection& connection, const std::string& path, std::vector<std::
   auto resources = rows ? read_row_table(text, path, kind_of_rows(text)).resources
                         : read_resources(text, path, nullptr);
   if (resources.empty()) {
-    std::cout << path << ": valid, but it holds nothing\n";
+    std::cout << path << ": valid, but empty\n";
     return;
   }
   const bool is_nameless =
@@ -106,9 +107,9 @@ Command validate_command() {
   const auto files = std::make_shared<std::vector<std::string>>();
   Command command{
       "validate",
-      "check files against everything the server checks, and write nothing",
-      "Checks files as an import would: lubricants, gear sets, surfaces and vehicles as JSON, and "
-      "tables as CSV. Every violation is named, with value, unit and allowed range.",
+      "check files as an import does, and write nothing",
+      "Checks files as an import does: lubricants, gear sets, surfaces and vehicles as JSON, and "
+      "tables as CSV. Lists every violation with value, unit and allowed range.",
       {"tribodyn validate fluids.json", "tribodyn validate my-oil.csv"},
       {},
       {},

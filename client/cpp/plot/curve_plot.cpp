@@ -149,7 +149,7 @@ std::string caption(const std::vector<v1::Simulation>& simulations) {
 std::vector<std::string> texts_below(const std::vector<v1::Simulation>& simulations) {
   std::vector<std::string> texts = {
       caption(simulations),
-      std::string("Mesh (conjunctional) loss only: it excludes bearings, churning and seals.") +
+      std::string("Loss at the tooth contact only; it excludes bearings, churning and seals.") +
           (has_branch_end(simulations)
                ? " A line breaks where its branch of steady states ends: the response jumps."
                : "")};

@@ -43,7 +43,7 @@ Table curve_table(const v1::Simulation& simulation) {
   for (const v1::CurvePoint& point : simulation.result().points()) {
     const std::string speed = significant(point.speed_kilometres_per_hour());
     if (!point.has_result()) {
-      table.add_row({speed, "refused"});
+      table.add_row({speed, "no result"});
       continue;
     }
     const v1::PointResult& at = point.result();
@@ -117,8 +117,7 @@ void add_solver_remarks(const v1::SimulationResult& result, Sheet& sheet) {
   if (result.independent_points()) {
     sheet.remark(
         "Each speed was solved independently: the solver neither followed a branch of steady "
-        "states "
-        "nor searched for jumps between branches.");
+        "states nor searched for jumps between branches.");
   }
   if (without_period > 0) {
     sheet.remark(std::to_string(without_period) +

@@ -25,8 +25,8 @@ struct Row {
   std::string label;  ///< shown to the user
   std::string field;  ///< of Lubricant or its characterisation
   std::string unit;
-  std::string a, b;  ///< formatted values; empty: not known
-  std::string a_known, b_known;
+  std::string a, b;  ///< formatted values; empty: unknown
+  std::string a_origin, b_origin;
   std::optional<double> relative_difference;
   bool differs = false;
 };
@@ -72,8 +72,8 @@ std::vector<Row> parameter_rows(const v1::Lubricant& a, const v1::Lubricant& b, 
     if (row.differs && in_a && in_b && *in_a != 0 && !temperature) {
       row.relative_difference = (*in_b - *in_a) / std::abs(*in_a);
     }
-    row.a_known = provenance_word_of(a, field.name());
-    row.b_known = provenance_word_of(b, field.name());
+    row.a_origin = provenance_word_of(a, field.name());
+    row.b_origin = provenance_word_of(b, field.name());
     rows.push_back(std::move(row));
   }
   return rows;
@@ -142,10 +142,10 @@ std::string table_text(const std::vector<Row>& rows, const v1::Lubricant& a,
                {"(B-A)/|A|", "%"},
                {"Origin", "", Table::Align::kLeft}});
   for (const Row& row : rows) {
-    std::string known = row.a_known;
-    if (row.b_known != row.a_known) {
-      known = (row.a_known.empty() ? "not stated" : row.a_known) + " / " +
-              (row.b_known.empty() ? "not stated" : row.b_known);
+    std::string known = row.a_origin;
+    if (row.b_origin != row.a_origin) {
+      known = (row.a_origin.empty() ? "not stated" : row.a_origin) + " / " +
+              (row.b_origin.empty() ? "not stated" : row.b_origin);
     }
     std::string difference = row.differs ? "" : "=";
     if (row.relative_difference) {
@@ -168,8 +168,8 @@ std::string csv_text_of(const std::vector<Row>& rows) {
          {"b", row.b},
          {"relative_difference", row.relative_difference ? shortest(*row.relative_difference) : ""},
          {"differs", row.differs ? "true" : "false"},
-         {"a_provenance", row.a_known},
-         {"b_provenance", row.b_known}});
+         {"a_provenance", row.a_origin},
+         {"b_provenance", row.b_origin}});
   }
   return csv_text(lines);
 }
@@ -184,8 +184,8 @@ std::string json_text_of(const std::vector<Row>& rows, const v1::Lubricant& a,
     auto& fields = *list.add_values()->mutable_struct_value()->mutable_fields();
     for (const auto& [key, text] :
          {std::pair("field", &row.field), std::pair("unit", &row.unit), std::pair("a", &row.a),
-          std::pair("b", &row.b), std::pair("a_provenance", &row.a_known),
-          std::pair("b_provenance", &row.b_known)}) {
+          std::pair("b", &row.b), std::pair("a_provenance", &row.a_origin),
+          std::pair("b_provenance", &row.b_origin)}) {
       fields[key].set_string_value(*text);
     }
     if (row.relative_difference) {

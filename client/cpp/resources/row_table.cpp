@@ -115,7 +115,8 @@ class RowReader {
         const std::string full = is_cold ? header_[k] : header_of(*column);
         if (!seen.insert(full).second) wrong_.add(column_text(k) + " occurs twice");
         columns_by_name_.emplace(full, header_[k]);
-        tells_provenance_ = tells_provenance_ || column->kind == RowColumn::Kind::kProvenance;
+        has_provenance_columns_ =
+            has_provenance_columns_ || column->kind == RowColumn::Kind::kProvenance;
       }
       columns_.push_back(std::move(column));
     }
@@ -208,7 +209,8 @@ class RowReader {
       });
       return;
     }
-    out_.note = path_ + ": " + cells + " and were read with a decimal point";
+    out_.note = path_ + ": " + cells + (count == 1 ? " and was" : " and were") +
+                " read with a decimal point";
     for_each_number([&](const CsvLine& line, std::size_t k, std::string& cell) {
       if (may_be_thousands(cell)) {
         wrong_.add(row_text(line), column_text(k),
@@ -237,7 +239,7 @@ class RowReader {
     bool clears = false;
     if (bases_.like != nullptr) {
       read.resource->CopyFrom(*bases_.like);
-    } else if (bases_.present && tells_provenance_) {
+    } else if (bases_.present && has_provenance_columns_) {
       if (ResourcePointer present = bases_.present(name_in(line))) {
         read.resource = std::move(present);
         clears = true;
@@ -318,7 +320,7 @@ class RowReader {
   std::vector<std::string> header_;
   std::vector<std::optional<RowColumn>> columns_;  ///< nullopt: unknown
   std::map<std::string, std::string> columns_by_name_;
-  bool tells_provenance_ = false;
+  bool has_provenance_columns_ = false;
   GroupedComplaints wrong_;
   RowTable out_;
 };

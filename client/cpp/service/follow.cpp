@@ -78,8 +78,8 @@ class Watches {
   std::size_t open_ = 0;
 };
 
-std::string how_to_go_on(const std::vector<v1::Simulation>& simulations,
-                         const std::vector<JobProgress>& picture) {
+std::string commands_that_resume(const std::vector<v1::Simulation>& simulations,
+                                 const std::vector<JobProgress>& picture) {
   std::string names;
   for (std::size_t i = 0; i < simulations.size(); ++i) {
     if (!picture[i].ended) names += " " + resource_id(simulations[i].name());
@@ -141,11 +141,11 @@ std::vector<v1::Simulation> follow(Connection& connection,
   threads.clear();
 
   if (open) {
-    throw Failure(kExitInterrupted, "interrupted." + how_to_go_on(simulations, picture));
+    throw Failure(kExitInterrupted, "interrupted." + commands_that_resume(simulations, picture));
   }
   if (const auto error = watches.first_failure()) {
     const Failure failure(*error);
-    throw Failure(failure.exit_code(), failure.what() + how_to_go_on(simulations, picture));
+    throw Failure(failure.exit_code(), failure.what() + commands_that_resume(simulations, picture));
   }
   return ended;
 }

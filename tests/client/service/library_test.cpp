@@ -1,4 +1,4 @@
-// The client library against a real tribodynd on a free port of loopback.
+// Tests the client library with a real tribodynd on a free port of loopback.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tribodyn/client/connection.h>
@@ -65,11 +65,11 @@ ServiceError refused(const Call& call) {
     EXPECT_EQ(error.kind(), ServiceError::Kind::kRefused) << error.what();
     return error;
   }
-  ADD_FAILURE() << "nothing was refused";
+  ADD_FAILURE() << "the call succeeded";
   return {ServiceError::Kind::kRefused, ""};
 }
 
-TEST_F(Library, ALubricantLivesThroughItsRevisions) {
+TEST_F(Library, EveryRevisionOfALubricantIsReadable) {
   const v1::Lubricant checked = connection.create(data_sheet(), "life", true);
   EXPECT_NEAR(checked.characterisation().viscosity_index(), 92, 0.5);
   EXPECT_EQ(refused([&] { connection.get<v1::Lubricant>("lubricants/life"); }).status_code(),
@@ -106,7 +106,7 @@ TEST_F(Library, ALubricantLivesThroughItsRevisions) {
   EXPECT_FALSE(connection.undelete<v1::Lubricant>("lubricants/life").has_delete_time());
 }
 
-TEST_F(Library, ABatchIsWrittenWholeOrNotAtAll) {
+TEST_F(Library, ABatchWritesAllResourcesOrNone) {
   std::vector<v1::Lubricant> fluids(2, data_sheet());
   fluids[0].set_name("lubricants/batch-drained");
   fluids[0].set_derived_from("lubricants/batch-filled");
@@ -137,7 +137,7 @@ TEST_F(Library, ABatchIsWrittenWholeOrNotAtAll) {
   EXPECT_EQ(updated.written[1].revision(), 1);
 }
 
-TEST_F(Library, AllViolationsComeAtOnce) {
+TEST_F(Library, AllViolationsAreReportedAtOnce) {
   v1::Lubricant fluid = data_sheet();
   fluid.mutable_measurements()->set_density_15_celsius_kilograms_per_cubic_metre(0.87);
   fluid.set_thermal_conductivity_watts_per_metre_kelvin(1e6);
@@ -146,7 +146,7 @@ TEST_F(Library, AllViolationsComeAtOnce) {
   EXPECT_FALSE(error.reason().empty());
 }
 
-TEST_F(Library, PagesAreHidden) {
+TEST_F(Library, AListReadsAllPages) {
   for (int i = 0; i < 12; ++i) connection.create(data_sheet(), "page-" + std::to_string(i));
   ListOptions options;
   options.filter = "name:page-";
@@ -188,7 +188,7 @@ TEST_F(Library, EveryKindCanBeCopied) {
   EXPECT_EQ(connection.create(vehicle, "copy").name(), "vehicles/copy");
 }
 
-TEST_F(Library, ASimulationIsFollowedToItsEnd) {
+TEST_F(Library, ASimulationIsWatchedUntilItEnds) {
   v1::Simulation simulation;
   simulation.set_lubricant("lubricants/1");
   auto& study = *simulation.mutable_operating_point();
@@ -208,15 +208,15 @@ TEST_F(Library, ASimulationIsFollowedToItsEnd) {
   EXPECT_EQ(connection.list_simulations({.limit = 1}).resources.size(), 1U);
 }
 
-// The client tells units from names; the server has them in its table of constraints.
-TEST_F(Library, TheServersUnitsAreThoseOfTheNames) {
+// The client derives units from the names of fields; the server's table of constraints states them.
+TEST_F(Library, UnitsFromNamesAgreeWithTheServer) {
   const v1::Schema schema = connection.schema();
   EXPECT_GT(schema.constraints_size(), 80);
   int compared = 0;
   for (const v1::Constraint& row : schema.constraints()) {
     const std::string unit = unit_of_field(row.field());
     if (unit.empty()) continue;
-    if (unit == "C") {  // has a zero of its own, and no ratio
+    if (unit == "C") {  // no ratio: its zero differs
       EXPECT_EQ(row.unit(), unit) << row.field();
       continue;
     }
@@ -230,7 +230,7 @@ TEST_F(Library, TheServersUnitsAreThoseOfTheNames) {
   }
 }
 
-// Lengths are known by stem and unit: "radius_x_metres", "each also in _millimetres".
+// Help lists lengths by stem and unit: "radius_x_metres", "each also in _millimetres".
 TEST_F(Library, HelpNamesEveryColumnThatTheServerReads) {
   std::string help;
   for (const HelpTopic& topic : help_topics()) help += topic.text;
@@ -251,11 +251,11 @@ TEST_F(Library, HelpNamesEveryColumnThatTheServerReads) {
   EXPECT_GT(compared, 30);
 }
 
-TEST(LibraryAlone, AServerThatIsNotThere) {
+TEST(LibraryAlone, AMissingServerIsAConnectionError) {
   Connection nobody("127.0.0.1:9", std::chrono::seconds(2));
   try {
     nobody.list<v1::Vehicle>();
-    FAIL() << "an answer from nobody";
+    FAIL() << "a call succeeded without a server";
   } catch (const ServiceError& error) {
     EXPECT_EQ(error.kind(), ServiceError::Kind::kCannotConnect);
   }
@@ -269,7 +269,7 @@ v1::Simulation quick_point(double speed_kilometres_per_hour) {
   return out;
 }
 
-/// Does not end on its own.
+/// Returns a simulation that runs until it is cancelled.
 v1::Simulation endless_curve() {
   v1::Simulation out;
   out.set_lubricant("lubricants/1");
@@ -285,7 +285,7 @@ v1::Simulation endless_curve() {
   return out;
 }
 
-TEST(TurnedAway, WhoComesAgainWhenToldIsServedInTheEnd) {
+TEST(TurnedAway, AClientThatRetriesAfterTheRequestedPauseIsServed) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() /
                                        ("tribodyn_turned_away_test." + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
@@ -301,7 +301,7 @@ TEST(TurnedAway, WhoComesAgainWhenToldIsServedInTheEnd) {
   Connection connection(address, std::chrono::seconds(120));
   const std::string endless = connection.create_simulation(endless_curve()).name();
   until([&] { return connection.get_simulation(endless).state() == v1::Simulation::RUNNING; });
-  // Three of them find a place, as one client may take three quarters.
+  // The queue accepts three of them: one client may use three quarters of it.
   constexpr int kClients = 6;
   std::vector<v1::Simulation::State> states(kClients);
   std::vector<std::thread> clients;
