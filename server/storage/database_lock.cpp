@@ -4,8 +4,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
+#include <fstream>
 #include <string>
 #include <system_error>
 
@@ -14,17 +14,24 @@
 namespace tribodyn::server {
 namespace {
 
-/// Returns " (process 123)" from the contents of a lock file, or an empty string if the file has
-/// none.
+/// A lock file holds two lines: the number of the process, and what it remembers.
+struct LockFileText {
+  std::string process, remembered;
+};
+
+LockFileText read_lock_file(const std::filesystem::path& lock_file) {
+  LockFileText out;
+  std::ifstream file(lock_file);
+  std::getline(file, out.process);
+  // Without its end, a line was cut off: the process was killed, or the power went.
+  if (!std::getline(file, out.remembered) || file.eof()) out.remembered.clear();
+  return out;
+}
+
+/// Returns " (process 123)" from a lock file, or an empty string if the file has no number.
 std::string holder(const std::filesystem::path& lock_file) {
-  const int descriptor = open(lock_file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return {};
-  std::array<char, 32> text{};
-  const ssize_t length = pread(descriptor, text.data(), text.size() - 1, 0);
-  close(descriptor);
-  std::string pid(text.data(), length > 0 ? static_cast<std::size_t>(length) : 0);
-  while (!pid.empty() && pid.back() == '\n') pid.pop_back();
-  return pid.empty() ? "" : " (process " + pid + ")";
+  const std::string process = read_lock_file(lock_file).process;
+  return process.empty() ? "" : " (process " + process + ")";
 }
 
 std::filesystem::path lock_file_of(const std::filesystem::path& database) {
@@ -41,11 +48,7 @@ DatabaseLock::DatabaseLock(const std::filesystem::path& database) : database_(da
     close(lock_file_);
     throw;
   }
-  const std::string pid = std::to_string(getpid()) + "\n";
-  if (ftruncate(lock_file_, 0) != 0 ||
-      pwrite(lock_file_, pid.data(), pid.size(), 0) != static_cast<ssize_t>(pid.size())) {
-    // A failure is ignored: the number only appears in the error of a second server.
-  }
+  remember(remembered(database_));  // with the number of this process
 }
 
 DatabaseLock::~DatabaseLock() {
@@ -55,6 +58,20 @@ DatabaseLock::~DatabaseLock() {
 
 void DatabaseLock::lock_new_file() {
   if (database_file_ < 0) database_file_ = lock(database_, O_RDONLY);
+}
+
+void DatabaseLock::remember(const std::string& line) {
+  std::string text = std::to_string(getpid()) + "\n";
+  if (!line.empty()) text += line + "\n";
+  if (ftruncate(lock_file_, 0) != 0 ||
+      pwrite(lock_file_, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size()) ||
+      fdatasync(lock_file_) != 0) {
+    // The number only completes a message, and the line serves a check that may go without it.
+  }
+}
+
+std::string DatabaseLock::remembered(const std::filesystem::path& database) {
+  return read_lock_file(lock_file_of(database)).remembered;
 }
 
 int DatabaseLock::lock(const std::filesystem::path& file, int flags) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace tribodyn::server {
 
@@ -24,6 +25,12 @@ class DatabaseLock {
 
   /// Locks a database file that the constructor did not find. Throws like the constructor.
   void lock_new_file();
+
+  /// Keeps a line of text in the lock file, also when the process has ended, in place of the former
+  /// one. Best effort: a failure is ignored.
+  void remember(const std::string& line);
+  /// The line that a process remembered for a database last; empty if there is none.
+  static std::string remembered(const std::filesystem::path& database);
 
  private:
   /// Opens and locks a file. Returns its descriptor.

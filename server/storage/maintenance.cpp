@@ -148,6 +148,7 @@ void backup_database(const fs::path& database, const fs::path& copy) {
                             copy.string() + " exists; use the name of a new file");
   translated(database, [&] {
     if (fs::exists(copy)) throw is_there;
+    require_own_log(canonical_path(database));
     UnfinishedFile unfinished(copy);
     const Problems problems = copy_and_check(database, unfinished.path());
     if (!problems.empty()) {
@@ -189,6 +190,7 @@ std::optional<fs::path> restore_database(const fs::path& copy, const fs::path& d
       throw StoreError(StoreError::Kind::kFailed, copy.string() + " is the database itself");
     }
     const DatabaseLock lock(target);
+    require_own_log(target);
     UnfinishedFile unfinished(target);
     const Problems problems = copy_and_check(copy, unfinished.path());
     if (!problems.empty()) {

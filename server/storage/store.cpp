@@ -1,9 +1,11 @@
 #include "server/storage/store.h"
 
 #include <SQLiteCpp/Transaction.h>
+#include <spdlog/spdlog.h>
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <exception>
 #include <limits>
 
 #include "server/storage/database_check.h"
@@ -118,8 +120,26 @@ Store::Store(const std::filesystem::path& database)
     readers_.open(path_, kReaderConnections);
     lock_.lock_new_file();
     files_.emplace(path_);
+    lock_.remember(files_->record());
   } catch (const SQLite::Exception& error) {
     throw translate_error(error, path_);
+  }
+}
+
+Store::~Store() {
+  // With the connections still open: SQLite leaves the log alone when it closes a database that is
+  // not in its place.
+  try {
+    const std::filesystem::path log = files_ ? files_->set_log_aside() : std::filesystem::path();
+    if (log.empty()) return;
+    spdlog::critical(
+        "another file took the place of database {}; the write-ahead log of the former database, "
+        "with its latest changes, is kept as {}: if the former database has another name by now, "
+        "rename the log to that name followed by -wal before anything opens that file; else the "
+        "log is of no use",
+        path_.string(), log.string());
+  } catch (const std::exception& error) {
+    spdlog::critical("{}", error.what());
   }
 }
 

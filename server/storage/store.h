@@ -31,6 +31,11 @@ class Store {
  public:
   /// Opens or creates the database and locks it against other servers.
   explicit Store(const std::filesystem::path& database);
+  /// If another file took the place of the database, sets the write-ahead log aside, which would
+  /// destroy that file (DatabaseFiles::set_log_aside), and tells the log of the process.
+  ~Store();
+  Store(const Store&) = delete;
+  Store& operator=(const Store&) = delete;
 
   /// Like DatabaseFiles::misplaced(). While the result is not empty, calls that change something
   /// throw StoreError kMisplaced.

@@ -245,6 +245,108 @@ TEST_F(DaemonTest, ChangesAreRefusedWhileTheDatabaseFileIsMoved) {
   EXPECT_EQ(get(after.name()).name(), after.name());
 }
 
+class ReplacedDatabaseTest : public DaemonTest {
+ protected:
+  /// Runs a command of tribodynd; its exit code and what it prints.
+  std::string run(const std::vector<std::string>& arguments) {
+    std::filesystem::remove(folder_.file("command.log"));
+    ServerProcess command(arguments, folder_.file("command.log"));
+    const int code = command.wait();
+    return std::to_string(code) + " " + command.log();
+  }
+
+  /// Makes a backup, and then more changes than SQLite's first pages hold.
+  void SetUp() override {
+    start();
+    ASSERT_EQ(run({"backup", "--database", database_, folder_.file("copy")}), "0 ");
+    ASSERT_TRUE(create(point_simulation(), &later_).ok());
+    ASSERT_TRUE(
+        eventually([&] { return get(later_.name()).state() == v1::Simulation::SUCCEEDED; }));
+    ASSERT_GT(std::filesystem::file_size(log_file_), 0U);
+  }
+
+  /// As cp and mv do.
+  void replace() {
+    std::filesystem::copy_file(folder_.file("copy"), database_ + ".tmp");
+    std::filesystem::rename(database_ + ".tmp", database_);
+  }
+
+  /// The database is the backup, whole.
+  void expect_backup() {
+    EXPECT_EQ(run({"check", "--database", database_}), "0 ");
+    v1::ListSimulationsResponse list;
+    grpc::ClientContext context;
+    ASSERT_TRUE(simulations_->ListSimulations(&context, {}, &list).ok());
+    EXPECT_EQ(list.simulations_size(), 0) << "made after the backup";
+    v1::Simulation created;
+    EXPECT_TRUE(create(point_simulation(), &created).ok());
+  }
+
+  std::vector<std::string> logs_left() const {
+    std::vector<std::string> out;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.file("."))) {
+      const std::string name = entry.path().filename();
+      if (name.starts_with("tribodyn.db-wal.left-")) out.push_back(name);
+    }
+    return out;
+  }
+
+  const std::string database_ = folder_.file("tribodyn.db"), log_file_ = database_ + "-wal";
+  v1::Simulation later_;
+};
+
+TEST_F(ReplacedDatabaseTest, DoesNotGetTheWriteAheadLogOfTheFormerOne) {
+  replace();
+  process_->signal(SIGTERM);
+  EXPECT_EQ(process_->wait(), 0) << process_->log();
+  ASSERT_EQ(logs_left().size(), 1U);
+  EXPECT_THAT(process_->log(), HasSubstr(logs_left().front()));
+  start();
+  expect_backup();
+}
+
+TEST_F(ReplacedDatabaseTest, TheFormerOneUnderAnotherNameIsWholeWithItsLog) {
+  std::filesystem::rename(database_, database_ + ".former");
+  replace();
+  process_->signal(SIGTERM);
+  process_->wait();
+  ASSERT_EQ(logs_left().size(), 1U);
+  for (const char* suffix : {"", "-shm"}) std::filesystem::remove(database_ + suffix);
+  std::filesystem::rename(folder_.file(logs_left().front()), log_file_);
+  std::filesystem::rename(database_ + ".former", database_);
+  EXPECT_EQ(run({"check", "--database", database_}), "0 ");
+  start();
+  EXPECT_EQ(get(later_.name()).state(), v1::Simulation::SUCCEEDED);
+}
+
+TEST_F(ReplacedDatabaseTest, IsRefusedBesideTheLogOfAServerThatWasKilled) {
+  process_->signal(SIGKILL);
+  process_->wait();
+  replace();
+  const testing::Matcher<std::string> is_refused =
+      testing::AllOf(testing::StartsWith("3 "), HasSubstr("is another file than the one that"),
+                     HasSubstr("move " + log_file_ + " elsewhere"));
+  EXPECT_THAT(run(flags()), is_refused);
+  EXPECT_THAT(run(flags()), is_refused) << "the first refusal changed nothing";
+  EXPECT_THAT(run({"check", "--database", database_}), is_refused);
+  EXPECT_THAT(run({"backup", "--database", database_, folder_.file("another")}), is_refused);
+  EXPECT_THAT(run({"restore", "--database", database_, folder_.file("copy")}), is_refused);
+  std::filesystem::rename(log_file_, log_file_ + ".elsewhere");
+  start();
+  expect_backup();
+}
+
+TEST_F(ReplacedDatabaseTest, BothFilesMayBeMovedTogetherAfterAKill) {
+  process_->signal(SIGKILL);
+  process_->wait();
+  for (const std::string& file : {database_, log_file_}) {
+    std::filesystem::copy_file(file, file + ".tmp");
+    std::filesystem::rename(file + ".tmp", file);
+  }
+  start();
+  EXPECT_EQ(get(later_.name()).state(), v1::Simulation::SUCCEEDED);
+}
+
 TEST_F(DaemonTest, ADatabaseInUseIsRefusedUnderEveryName) {
   const std::string database = folder_.file("tribodyn.db");
   const std::string linked = folder_.file("linked.db");
