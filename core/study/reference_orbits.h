@@ -20,7 +20,7 @@ inline constexpr double kShareOfSteps = 0.75;
 struct ReferenceOrbit {
   int steps = 0;  ///< per mesh cycle
   PeriodicOrbit orbit;
-  double step_error = 0;  ///< of the figures, relative
+  double step_error = 0;  ///< of the figures, relative; infinite: not known
 
   /// What the steps may do to a lubricant's figures: its losses may follow the mesh force more than
   /// Coulomb's do.
