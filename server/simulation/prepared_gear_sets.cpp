@@ -28,8 +28,9 @@ void PreparedGearSets::give_back(const std::string& revision, const ModelOptions
   std::list<Entry> dropped;  // freed after the mutex is released
   const std::lock_guard lock(mutex_);
   entries_.push_front({revision, options, std::move(gear_set)});
-  if (entries_.size() > kCapacity)
+  if (entries_.size() > kCapacity) {
     dropped.splice(dropped.end(), entries_, std::prev(entries_.end()));
+  }
 }
 
 std::size_t PreparedGearSets::size() const {

@@ -46,7 +46,7 @@ class AppTest : public testing::Test {
   Application app_ = bench_.application();
 };
 
-TEST_F(AppTest, EveryErrorSaysWhyInErrorInfo) {
+TEST_F(AppTest, EveryErrorHasAReasonInErrorInfo) {
   for (const auto& status :
        {get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/9")).error(),
         get_gear_set(app_, named<v1::GetGearSetRequest>("x")).error(),
@@ -220,7 +220,7 @@ TEST_F(AppTest, SimulationsAreFoundByStateLubricantTimeAndLabel) {
   EXPECT_EQ(list_simulations(app_, bad).error().code(), google::rpc::INVALID_ARGUMENT);
 }
 
-TEST_F(AppTest, AListOfFullViewsHasResultsAndAllPagesTogetherHoldEverySimulationOnce) {
+TEST_F(AppTest, AListOfFullViewsHasResultsAndEverySimulationOnce) {
   std::vector<std::string> expected;
   for (int i = 0; i < 7; ++i) expected.push_back(finished(labelled("axle", 40 + i)));
   std::reverse(expected.begin(), expected.end());
@@ -346,7 +346,7 @@ TEST_F(AppTest, AllViolationsOfAContactFitIntoOneError) {
   }
 }
 
-TEST_F(AppTest, HistoriesComeAsASchemaAndChunks) {
+TEST_F(AppTest, AHistoryIsReadAsASchemaAndChunks) {
   const std::string name = finished(with_history(10, 5000));
   EXPECT_EQ(bench_.get(name).result().history_rows(), 50'000);
   EXPECT_EQ(bench_.get(name).result().history_columns_size(), 4);

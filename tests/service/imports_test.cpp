@@ -434,8 +434,8 @@ TEST_F(ImportTest, AnUnfilteredProfileCausesAWarningAtTheImportAndWithEveryResul
   request.mutable_surface()->set_tribofilm_shear_strength_pascals(2e6);
   request.mutable_surface()->set_asperity_friction_coefficient(0.17);
   std::string noise = "X (um);Z (nm)\n";
-  std::uint32_t state =
-      1;  // a linear congruential generator: the same white noise on every machine
+  // A linear congruential generator makes the same white noise on every machine.
+  std::uint32_t state = 1;
   for (int i = 0; i < 4000; ++i) {
     state = 1664525U * state + 1013904223U;
     noise += fmt::format("{};{}\n", 0.5 * i, 400 * (state / 4294967296.0 - 0.5));

@@ -484,7 +484,7 @@ TEST_F(ListTest, EveryFluidShowsItsFigures) {
   }
 }
 
-TEST_F(ResourcesTest, AnExportOfABodyThatEarlierVersionsWroteComesBackTheSame) {
+TEST_F(ResourcesTest, AnExportOfABodyOfAnEarlierVersionIsImportedUnchanged) {
   auto old = seed<v1::GearSet>("gearSets/A");
   old.set_name("gearSets/old");
   auto& entries = *old.mutable_provenance();

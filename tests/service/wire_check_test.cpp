@@ -110,7 +110,7 @@ TEST(WireCheck, CountsNumbersPackedAndSingle) {
           "at most 1000"));
 }
 
-TEST(WireCheck, AddsUpTheListsOfAMessageThatComesInParts) {
+TEST(WireCheck, AddsUpTheListsOfAMessageSentInParts) {
   v1::CreateSimulationRequest request;
   for (int i = 0; i < 40; ++i) request.mutable_simulation()->add_labels()->set_key("k");
   EXPECT_THAT(judge_bytes(request), IsEmpty());
@@ -118,7 +118,7 @@ TEST(WireCheck, AddsUpTheListsOfAMessageThatComesInParts) {
               ElementsAre("simulation.labels: 80 entries; allowed: at most 64"));
 }
 
-TEST(WireCheck, LimitsFieldsThatItDoesNotKnow) {
+TEST(WireCheck, LimitsUnknownFields) {
   v1::CreateLubricantRequest request;
   const std::string unknown("\xf8\x3f\x01", 3);  // field 1023 = 1
   EXPECT_THAT(judge_bytes(wire_field(1, repeated(unknown, 100)), *request.GetDescriptor()),
