@@ -82,6 +82,7 @@ class ComputedQuery {
                 const std::function<Page<StoredResource>(const ResourceQuery&)>& read_page)
       : query_(query), stored_(query), read_page_(read_page) {
     stored_.limit = kRowsAtATime;
+    stored_.counts_all = false;
     std::erase_if(stored_.restrictions, [&](const Restriction& each) {
       if (!is_computed(query.collection, each.key)) return false;
       computed_.push_back(each);
@@ -89,7 +90,8 @@ class ComputedQuery {
     });
   }
 
-  /// In the order of a stored property: rows that satisfy the query are kept as they come.
+  /// In the order of a stored property: rows that satisfy the query are kept as they come. The rest
+  /// is not read, and so not counted: that takes a second for 20,000 lubricants.
   Page<StoredResource> in_stored_order() {
     Page<StoredResource> out;
     std::size_t bytes = 0;
@@ -100,9 +102,11 @@ class ComputedQuery {
         bytes += row.body.size();
         if (is_full(out.rows.size(), bytes)) {
           out.more = true;
+          out.total = kNotCounted;
           return out;
         }
         out.rows.push_back(row);
+        ++out.total;
       }
       if (!page.more) return out;
       go_on_after(page.rows.back());
@@ -116,6 +120,7 @@ class ComputedQuery {
     stored_.descending = false;
     stored_.after.reset();
     std::vector<Ordered> first;  // sorted, at most one more than the page holds
+    std::int64_t total = 0;
     const auto limit = static_cast<std::size_t>(query_.limit) + 1;
     for (bool more = true; more;) {
       const Page<StoredResource> page = read_page_(stored_);
@@ -123,6 +128,7 @@ class ComputedQuery {
         const v1::LubricantCharacterisation figures = figures_of(row);
         const auto value = figure(figures, query_.order_key);
         if (!value || !satisfies(figures)) continue;
+        ++total;
         const PageStart place{*value, row.name};
         if (query_.after && !is_before(*query_.after, place)) continue;
         const auto at = std::upper_bound(
@@ -136,6 +142,7 @@ class ComputedQuery {
       if (more) go_on_after(page.rows.back());
     }
     Page<StoredResource> out;
+    out.total = total;
     std::size_t bytes = 0;
     for (Ordered& each : first) {
       bytes += each.resource.body.size();

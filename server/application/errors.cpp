@@ -57,16 +57,40 @@ constexpr std::size_t kLongestCause = 500;  // bytes in the log
 
 }  // namespace
 
-google::rpc::Status error(google::rpc::Code code, const std::string& reason,
-                          const std::string& message) {
+namespace {
+
+google::rpc::Status make_error(google::rpc::Code code, const std::string& reason,
+                               const std::string& message, const ErrorMetadata& metadata) {
   google::rpc::Status status;
   status.set_code(code);
   status.set_message(message);
   google::rpc::ErrorInfo info;
   info.set_domain(kErrorDomain);
   info.set_reason(reason);
+  for (const auto& [key, value] : metadata) (*info.mutable_metadata())[key] = value;
   status.add_details()->PackFrom(info);
   return status;
+}
+
+ErrorMetadata with_name(ErrorMetadata metadata, const std::string& name) {
+  metadata.emplace("name", name);
+  return metadata;
+}
+
+}  // namespace
+
+std::string reason_text(v1::ErrorReason reason) {
+  constexpr std::string_view kPrefix = "ERROR_REASON_";
+  return v1::ErrorReason_Name(reason).substr(kPrefix.size());
+}
+
+google::rpc::Status error(google::rpc::Code code, v1::ErrorReason reason,
+                          const std::string& message, const ErrorMetadata& metadata) {
+  return make_error(code, reason_text(reason), message, metadata);
+}
+
+google::rpc::Status refused(const Refusal& refusal) {
+  return make_error(google::rpc::INVALID_ARGUMENT, refusal.reason(), refusal.what(), {});
 }
 
 google::rpc::Status invalid(const Violations& violations) {
@@ -74,8 +98,10 @@ google::rpc::Status invalid(const Violations& violations) {
   std::string message = first.field.empty() ? first.description
                                             : fmt::format("{}: {}", first.field, first.description);
   if (violations.size() > 1) message += fmt::format(" (and {} more)", violations.size() - 1);
-  return with_violations(error(google::rpc::INVALID_ARGUMENT, "INVALID_FIELDS", message),
-                         violations);
+  return with_violations(
+      error(google::rpc::INVALID_ARGUMENT, v1::ERROR_REASON_INVALID_FIELDS, message,
+            {{"field", first.field}, {"violations", std::to_string(violations.size())}}),
+      violations);
 }
 
 google::rpc::Status with_violations(google::rpc::Status status, const Violations& violations) {
@@ -84,31 +110,36 @@ google::rpc::Status with_violations(google::rpc::Status status, const Violations
 }
 
 google::rpc::Status not_found(const std::string& type, const std::string& name,
-                              const std::string& message) {
-  google::rpc::Status status = error(google::rpc::NOT_FOUND, "NOT_FOUND", message);
+                              const std::string& message, v1::ErrorReason reason) {
+  google::rpc::Status status = error(google::rpc::NOT_FOUND, reason, message, with_name({}, name));
   add_resource(type, name, status);
   return status;
 }
 
-google::rpc::Status already_exists(const std::string& reason, const std::string& type,
+google::rpc::Status already_exists(v1::ErrorReason reason, const std::string& type,
                                    const std::string& name, const std::string& message,
-                                   const Violations& violations) {
-  google::rpc::Status status = error(google::rpc::ALREADY_EXISTS, reason, message);
+                                   const ErrorMetadata& metadata, const Violations& violations) {
+  google::rpc::Status status =
+      error(google::rpc::ALREADY_EXISTS, reason, message, with_name(metadata, name));
   add_resource(type, name, status);
   if (!violations.empty()) status.add_details()->PackFrom(bad_request(violations));
   return status;
 }
 
-google::rpc::Status not_possible(const std::string& reason, const std::string& type,
-                                 const std::string& name, const std::string& message) {
-  google::rpc::Status status = error(google::rpc::FAILED_PRECONDITION, reason, message);
+google::rpc::Status not_possible(v1::ErrorReason reason, const std::string& type,
+                                 const std::string& name, const std::string& message,
+                                 const ErrorMetadata& metadata) {
+  google::rpc::Status status =
+      error(google::rpc::FAILED_PRECONDITION, reason, message, with_name(metadata, name));
   add_resource(type, name, status);
   return status;
 }
 
-google::rpc::Status aborted(const std::string& reason, const std::string& type,
-                            const std::string& name, const std::string& message, bool may_retry) {
-  google::rpc::Status status = error(google::rpc::ABORTED, reason, message);
+google::rpc::Status aborted(v1::ErrorReason reason, const std::string& type,
+                            const std::string& name, const std::string& message, bool may_retry,
+                            const ErrorMetadata& metadata) {
+  google::rpc::Status status =
+      error(google::rpc::ABORTED, reason, message, with_name(metadata, name));
   add_resource(type, name, status);
   if (may_retry) add_retry(kContentionSeconds, status);
   return status;
@@ -119,35 +150,37 @@ google::rpc::Status store_failed(const StoreError& failure) {
   if (failure.kind() == StoreError::Kind::kCancelled) return cancelled();
   if (failure.kind() == StoreError::Kind::kDataLoss ||
       failure.kind() == StoreError::Kind::kCorrupt) {
-    return error(google::rpc::DATA_LOSS, "STORED_DATA_DAMAGED",
+    return error(google::rpc::DATA_LOSS, v1::ERROR_REASON_STORED_DATA_DAMAGED,
                  "what the database holds is not what was written: `tribodynd check` names the "
                  "damage; a forced run computes a result again, and a backup restores the rest");
   }
   const bool is_misplaced = failure.kind() == StoreError::Kind::kMisplaced;
   google::rpc::Status status =
       is_misplaced
-          ? error(google::rpc::UNAVAILABLE, "DATABASE_MISPLACED",
+          ? error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_DATABASE_MISPLACED,
                   "the database's file was deleted, renamed or replaced on the server; nothing is "
                   "written until it is back")
-          : error(google::rpc::UNAVAILABLE, "STORE_FAILED",
+          : error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_STORE_FAILED,
                   "the database could not be read or written");
   add_retry(kStoreSeconds, status);
   return status;
 }
 
-google::rpc::Status exhausted(const std::string& message, double retry_seconds) {
-  google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, "TOO_MANY_WAITING", message);
+google::rpc::Status exhausted(v1::ErrorReason reason, const std::string& message,
+                              double retry_seconds) {
+  google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, reason, message,
+                                     {{"retry_seconds", fmt::format("{:.3g}", retry_seconds)}});
   add_retry(retry_seconds, status);
   return status;
 }
 
 google::rpc::Status deadline_exceeded() {
-  return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
+  return error(google::rpc::DEADLINE_EXCEEDED, v1::ERROR_REASON_DEADLINE_EXCEEDED,
                "the deadline passed before the request was applied; nothing has changed");
 }
 
 google::rpc::Status cancelled() {
-  return error(google::rpc::CANCELLED, "CANCELLED",
+  return error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED,
                "the client cancelled before the request was applied; nothing has changed");
 }
 
@@ -156,13 +189,13 @@ google::rpc::Status call_over(const CallLimits& limits) {
 }
 
 google::rpc::Status stream_deadline_exceeded() {
-  return error(google::rpc::DEADLINE_EXCEEDED, "DEADLINE_EXCEEDED",
+  return error(google::rpc::DEADLINE_EXCEEDED, v1::ERROR_REASON_STREAM_TIME_LIMIT,
                "the stream has been open for as long as it may be; call again to continue");
 }
 
 google::rpc::Status shutting_down() {
-  google::rpc::Status status =
-      error(google::rpc::UNAVAILABLE, "SHUTTING_DOWN", "the server is shutting down");
+  google::rpc::Status status = error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_SHUTTING_DOWN,
+                                     "the server is shutting down");
   add_retry(kRestartSeconds, status);
   return status;
 }
@@ -171,14 +204,16 @@ google::rpc::Status internal_error(std::string_view cause) {
   std::random_device random;
   const std::string id = fmt::format("{:016x}", (std::uint64_t{random()} << 32) | random());
   spdlog::error("event=internal_error id={} cause=\"{}\"", id, log_text(cause, kLongestCause));
-  return error(google::rpc::INTERNAL, "INTERNAL",
-               fmt::format("internal error {}; the server's log states its cause", id));
+  return error(google::rpc::INTERNAL, v1::ERROR_REASON_INTERNAL,
+               fmt::format("internal error {}; the server's log states its cause", id),
+               {{"id", id}});
 }
 
 google::rpc::Status out_of_memory() {
   spdlog::error("event=out_of_memory");
-  google::rpc::Status status = error(google::rpc::RESOURCE_EXHAUSTED, "OUT_OF_MEMORY",
-                                     "the server has no memory left for this request");
+  google::rpc::Status status =
+      error(google::rpc::RESOURCE_EXHAUSTED, v1::ERROR_REASON_OUT_OF_MEMORY,
+            "the server has no memory left for this request");
   add_retry(kMemorySeconds, status);
   return status;
 }

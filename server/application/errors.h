@@ -1,21 +1,34 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 
+#include "core/refusal.h"
 #include "google/rpc/code.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/contract/violations.h"
 #include "server/storage/call_limits.h"
 #include "server/storage/store_error.h"
+#include "tribodyn/v1/errors.pb.h"
 
 namespace tribodyn::server {
 
-inline constexpr char kErrorDomain[] = "tribodyn";
+/// The service that the reasons belong to: ErrorInfo.domain.
+inline constexpr char kErrorDomain[] = "tribodyn.dev";
 
-/// An error with ErrorInfo (domain "tribodyn" and the reason, UPPER_SNAKE_CASE).
-google::rpc::Status error(google::rpc::Code code, const std::string& reason,
-                          const std::string& message);
+/// The variables of an error's message by name: ErrorInfo.metadata (AIP-193).
+using ErrorMetadata = std::map<std::string, std::string>;
+
+/// "NOT_FOUND" of ERROR_REASON_NOT_FOUND.
+std::string reason_text(v1::ErrorReason reason);
+
+/// An error with ErrorInfo: domain, reason and metadata.
+google::rpc::Status error(google::rpc::Code code, v1::ErrorReason reason,
+                          const std::string& message, const ErrorMetadata& metadata = {});
+
+/// INVALID_ARGUMENT for what the model refuses; the reason is the refusal's.
+google::rpc::Status refused(const Refusal& refusal);
 
 /// INVALID_ARGUMENT with every violation as BadRequest. Details travel in a header block that gRPC
 /// clients limit to 8 KiB: what does not fit is counted in a last violation.
@@ -26,28 +39,33 @@ google::rpc::Status with_violations(google::rpc::Status status, const Violations
 
 /// NOT_FOUND with ResourceInfo.
 google::rpc::Status not_found(const std::string& type, const std::string& name,
-                              const std::string& message);
+                              const std::string& message,
+                              v1::ErrorReason reason = v1::ERROR_REASON_NOT_FOUND);
 
 /// ALREADY_EXISTS with ResourceInfo and, unless empty, BadRequest.
-google::rpc::Status already_exists(const std::string& reason, const std::string& type,
+google::rpc::Status already_exists(v1::ErrorReason reason, const std::string& type,
                                    const std::string& name, const std::string& message,
+                                   const ErrorMetadata& metadata = {},
                                    const Violations& violations = {});
 
 /// FAILED_PRECONDITION with ResourceInfo.
-google::rpc::Status not_possible(const std::string& reason, const std::string& type,
-                                 const std::string& name, const std::string& message);
+google::rpc::Status not_possible(v1::ErrorReason reason, const std::string& type,
+                                 const std::string& name, const std::string& message,
+                                 const ErrorMetadata& metadata = {});
 
 /// ABORTED with ResourceInfo: others changed it meanwhile; with RetryInfo where the same request
 /// may succeed a moment later.
-google::rpc::Status aborted(const std::string& reason, const std::string& type,
-                            const std::string& name, const std::string& message, bool may_retry);
+google::rpc::Status aborted(v1::ErrorReason reason, const std::string& type,
+                            const std::string& name, const std::string& message, bool may_retry,
+                            const ErrorMetadata& metadata = {});
 
 /// What a client is told of a failure of the database: DEADLINE_EXCEEDED, CANCELLED, DATA_LOSS, or
 /// UNAVAILABLE with RetryInfo. It names no file of the server.
 google::rpc::Status store_failed(const StoreError& failure);
 
 /// RESOURCE_EXHAUSTED with RetryInfo.
-google::rpc::Status exhausted(const std::string& message, double retry_seconds);
+google::rpc::Status exhausted(v1::ErrorReason reason, const std::string& message,
+                              double retry_seconds);
 
 /// DEADLINE_EXCEEDED, by the server's own limit or the client's. Only before anything is committed.
 google::rpc::Status deadline_exceeded();

@@ -25,7 +25,7 @@ Outcome<Message> guarded(const Body& body) {
   try {
     return body();
   } catch (const Refusal& refusal) {
-    return error(google::rpc::INVALID_ARGUMENT, refusal.reason(), refusal.what());
+    return refused(refusal);
   } catch (const StoreError& failure) {
     if (!is_of_the_caller(failure)) spdlog::error("{}", failure.what());
     return store_failed(failure);

@@ -32,6 +32,11 @@ struct Window {
   std::int64_t maximum_points = 0;  // 0: all
 };
 
+constexpr char kHistoryType[] = "tribodyn.v1.History";
+
+/// What ResourceInfo calls the history of a simulation.
+std::string history_name(const std::string& simulation) { return simulation + "/history"; }
+
 /// A place among the open histories, all of which share one budget of memory.
 class OpenHistory {
  public:
@@ -55,9 +60,10 @@ class OpenHistory {
 /// The schema, then chunks: each column as far as the others before any goes on.
 class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
  public:
-  HistorySource(Application& application, HistoryShape shape, Window window,
+  HistorySource(Application& application, std::string name, HistoryShape shape, Window window,
                 const v1::SimulationResult& result)
       : store_(application.store),
+        name_(std::move(name)),
         open_(application.open_histories),
         shape_(std::move(shape)),
         window_(std::move(window)),
@@ -117,7 +123,9 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
     const auto level = [&](int which, std::int64_t start, std::int64_t count) {
       std::vector<double> values(static_cast<std::size_t>(count));
       if (!store_.read_history(column, which, start, values)) {
-        error_ = not_found("tribodyn.v1.HistoryChunk", "", "the history has been evicted");
+        error_ = not_found(kHistoryType, history_name(name_),
+                           "the history of " + name_ + " has been evicted",
+                           v1::ERROR_REASON_HISTORY_EVICTED);
       }
       return values;
     };
@@ -126,6 +134,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
   }
 
   Store& store_;
+  const std::string name_;  // of the simulation
   const OpenHistory open_;
   const HistoryShape shape_;
   const Window window_;
@@ -210,21 +219,23 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
     if (!found.ok()) return found.error();
     const StoredSimulation& stored = found.message();
     if (stored.state != StoredState::kSucceeded) {
-      return not_possible("NO_RESULT_YET", "tribodyn.v1.Simulation", request.name(),
-                          request.name() + " has not succeeded, so it has no history");
+      return not_possible(v1::ERROR_REASON_NO_RESULT_YET, "tribodyn.v1.Simulation", request.name(),
+                          request.name() + " has not succeeded, so it has no history",
+                          {{"state", v1::Simulation::State_Name(
+                                         static_cast<v1::Simulation::State>(stored.state))}});
     }
     HistoryShape shape = application.store.history_shape(stored.id, call.limits);
     if (shape.names.empty()) {
-      return not_found("tribodyn.v1.HistoryChunk", request.name(),
-                       request.name() + " was run without history");
+      return not_found(kHistoryType, history_name(request.name()),
+                       request.name() + " was run without history", v1::ERROR_REASON_NO_HISTORY);
     }
     Violations violations;
     auto rows = window(request, shape, violations);
     if (!rows) return invalid(violations);
     v1::SimulationResult result;
     result.ParseFromString(application.store.result(stored.id, call.limits).value_or(""));
-    return Source(
-        std::make_shared<HistorySource>(application, std::move(shape), std::move(*rows), result));
+    return Source(std::make_shared<HistorySource>(application, request.name(), std::move(shape),
+                                                  std::move(*rows), result));
   });
 }
 

@@ -124,7 +124,11 @@ std::string full_key(const std::string& key, const std::string& collection) {
 /// The collection of the resources that a field names; empty: it names none.
 std::string named_collection(const std::string& key, const std::string& collection) {
   if (key == "name" || key == "derived_from") return collection;
-  return key == "lubricant" ? kLubricants : "";
+  if (collection != kSimulations) return "";
+  if (key == "lubricant") return kLubricants;
+  if (key == "gear_set") return kGearSets;
+  if (key == "surface") return kSurfaces;
+  return key == "vehicle" ? kVehicles : "";
 }
 
 /// Returns "GROUP_III" of "group-iii", as tables and flags write an enum.

@@ -60,22 +60,31 @@ std::optional<PropertyValue> parse_value(const std::string& text) {
 
 }  // namespace
 
-std::string page_token(const std::string& scope, const PageStart& last) {
-  return sha256(scope).substr(0, kScopeDigits) + to_hex(last.name + ' ' + text_of(last.value));
+std::string page_token(const std::string& scope, const PageToken& token) {
+  return sha256(scope).substr(0, kScopeDigits) +
+         to_hex(fmt::format("{} {} {}", token.total, token.last.name, text_of(token.last.value)));
 }
 
-std::optional<PageStart> parse_page_token(const std::string& scope, const std::string& token) {
+std::optional<PageToken> parse_page_token(const std::string& scope, const std::string& token) {
   if (token.size() < kScopeDigits ||
       token.substr(0, kScopeDigits) != sha256(scope).substr(0, kScopeDigits)) {
     return std::nullopt;
   }
   const auto text = from_hex(token.substr(kScopeDigits));
   if (!text) return std::nullopt;
-  const std::size_t space = text->find(' ');
+  PageToken out;
+  const char* const end_of_text = text->data() + text->size();
+  const auto [end, error] = std::from_chars(text->data(), end_of_text, out.total);
+  if (error != std::errc() || out.total < kNotCounted || end == end_of_text || *end != ' ') {
+    return std::nullopt;
+  }
+  const std::string rest(end + 1, end_of_text);
+  const std::size_t space = rest.find(' ');
   if (space == std::string::npos) return std::nullopt;
-  auto value = parse_value(text->substr(space + 1));
+  auto value = parse_value(rest.substr(space + 1));
   if (!value) return std::nullopt;
-  return PageStart{std::move(*value), text->substr(0, space)};
+  out.last = {std::move(*value), rest.substr(0, space)};
+  return out;
 }
 
 }  // namespace tribodyn::server

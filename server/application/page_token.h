@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -7,11 +8,16 @@
 
 namespace tribodyn::server {
 
-/// An opaque token for the page that begins after `last`; `scope` is everything of the request that
-/// must stay the same from page to page.
-std::string page_token(const std::string& scope, const PageStart& last);
+/// What a page token says.
+struct PageToken {
+  PageStart last;          ///< where the page begins: after this one
+  std::int64_t total = 0;  ///< rows of the whole list when its first page was read
+};
 
-/// Where the page begins; nothing when the token was not given out for this scope.
-std::optional<PageStart> parse_page_token(const std::string& scope, const std::string& token);
+/// An opaque token; `scope` is everything of the request that must stay the same from page to page.
+std::string page_token(const std::string& scope, const PageToken& token);
+
+/// Returns nullopt if the token was not given out for this scope.
+std::optional<PageToken> parse_page_token(const std::string& scope, const std::string& token);
 
 }  // namespace tribodyn::server

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <string>
 
 #include "server/contract/violations.h"
@@ -20,6 +22,12 @@ inline int page_size(int requested, int otherwise, Violations& violations) {
                                                    requested, otherwise, kMaximumPageSize)});
   }
   return requested == 0 ? otherwise : std::min(requested, kMaximumPageSize);
+}
+
+/// A count of rows as the total_size of a list; what does not fit, as of a forged token, is cut.
+inline std::int32_t clamped_total(std::int64_t rows) {
+  return static_cast<std::int32_t>(
+      std::min<std::int64_t>(rows, std::numeric_limits<std::int32_t>::max()));
 }
 
 inline void add_bad_page_token(Violations& violations) {

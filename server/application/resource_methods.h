@@ -14,6 +14,7 @@
 #include "server/application/outcome.h"
 #include "server/application/page_token.h"
 #include "server/application/paging.h"
+#include "server/application/read_mask.h"
 #include "server/application/resource_kinds.h"
 #include "server/application/stored_messages.h"
 #include "server/contract/output_only.h"
@@ -29,26 +30,27 @@ inline constexpr int kUpdateAttempts = 10;  ///< against other writers
 
 template <class Resource>
 google::rpc::Status name_taken(const std::string& name, bool deleted) {
-  return already_exists("ALREADY_EXISTS", Resource::descriptor()->full_name(), name,
+  return already_exists(v1::ERROR_REASON_ALREADY_EXISTS, Resource::descriptor()->full_name(), name,
                         deleted ? name + " exists and is deleted; undelete it or take another name"
                                 : name + " exists already; update it or take another name");
 }
 
 template <class Resource>
-google::rpc::Status etag_mismatch(const std::string& name) {
-  return aborted("ETAG_MISMATCH", Resource::descriptor()->full_name(), name,
-                 name + " has changed since this etag was given out; get it again", false);
+google::rpc::Status etag_mismatch(const std::string& name, const std::string& etag) {
+  return aborted(v1::ERROR_REASON_ETAG_MISMATCH, Resource::descriptor()->full_name(), name,
+                 name + " has changed since this etag was given out; get it again", false,
+                 {{"etag", plain_excerpt(etag)}});
 }
 
 template <class Resource>
 google::rpc::Status contention(const std::string& name) {
-  return aborted("CONTENTION", Resource::descriptor()->full_name(), name,
+  return aborted(v1::ERROR_REASON_CONTENTION, Resource::descriptor()->full_name(), name,
                  name + " keeps being changed by others; try again", true);
 }
 
 inline google::rpc::Status unreadable(const std::string& name) {
-  return error(google::rpc::DATA_LOSS, "STORED_RESOURCE_UNREADABLE",
-               name + " cannot be read from the database");
+  return error(google::rpc::DATA_LOSS, v1::ERROR_REASON_STORED_RESOURCE_UNREADABLE,
+               name + " cannot be read from the database", {{"name", name}});
 }
 
 /// What a single lubricant shows beside its parameters.
@@ -120,15 +122,21 @@ Outcome<StoredResource> find_stored(Application& application, const std::string&
   return unknown_name<Resource>(application, name, call);
 }
 
-template <class Resource>
-Outcome<Resource> get_resource(Application& application, const std::string& name,
+template <class Resource, class Request>
+Outcome<Resource> get_resource(Application& application, const Request& request,
                                const CallContext& call) {
-  const auto found = find_stored<Resource>(application, name, true, call);
+  Violations violations;
+  const ReadMask mask(request.read_mask(), *Resource::descriptor(), violations);
+  if (!violations.empty()) return invalid(violations);
+  const auto found = find_stored<Resource>(application, request.name(), true, call);
   if (!found.ok()) return found.error();
-  return answer<Resource>(found.message());
+  Outcome<Resource> out = answer<Resource>(found.message());
+  if (out.ok()) mask.apply(out.message());
+  return out;
 }
 
-/// Deletes or undeletes; what is so already stays as it is.
+/// Deletes, also what is deleted already, or undeletes; ALREADY_EXISTS for what is not deleted
+/// (AIP-164).
 template <class Resource, class Request>
 Outcome<Resource> set_deleted(Application& application, const Request& request, bool deleted,
                               const CallContext& call) {
@@ -137,9 +145,13 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
     if (!found.ok()) return found.error();
     StoredResource present = found.message();
     if (!request.etag().empty() && request.etag() != etag_of(present)) {
-      return etag_mismatch<Resource>(present.name);
+      return etag_mismatch<Resource>(present.name, request.etag());
     }
-    if (present.delete_time.has_value() == deleted) return answer<Resource>(present);
+    if (present.delete_time.has_value() == deleted) {
+      if (deleted) return answer<Resource>(present);
+      return already_exists(v1::ERROR_REASON_NOT_DELETED, Resource::descriptor()->full_name(),
+                            present.name, present.name + " is not deleted");
+    }
     const Microseconds now = system_time();
     if (deleted ? application.store.delete_resource(present, now, call.limits)
                 : application.store.undelete_resource(present, call.limits)) {
@@ -150,13 +162,15 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
   return contention<Resource>(request.name());
 }
 
-/// Appends rows to a response; false when one of them cannot be read.
+/// Appends to a response what the mask asks for of each row; an error if one cannot be read.
 template <class Resource, class Response>
-google::rpc::Status append(const Page<StoredResource>& page, Response& response) {
+google::rpc::Status append(const Page<StoredResource>& page, const ReadMask& mask,
+                           Response& response) {
   for (const StoredResource& row : page.rows) {
     auto message = to_message<Resource>(row);
     if (!message) return unreadable(row.name);
-    add_list_figures(*message);
+    if (mask.asks_for("characterisation")) add_list_figures(*message);
+    mask.apply(*message);
     *Kind<Resource>::add(response) = std::move(*message);
   }
   return {};
@@ -175,11 +189,18 @@ Outcome<Response> list_resources(Application& application, const Request& reques
   const Order order = parse_order(request.order_by(), query.collection, violations);
   query.order_key = order.key;
   query.descending = order.descending;
+  const ReadMask mask(request.read_mask(), *Resource::descriptor(), violations);
   const std::string scope = fmt::format("{} {} {} {}", query.collection, request.show_deleted(),
                                         request.order_by(), request.filter());
-  if (!request.page_token().empty()) {
-    query.after = parse_page_token(scope, request.page_token());
-    if (!query.after) add_bad_page_token(violations);
+  std::int64_t total = 0;
+  query.counts_all = request.page_token().empty();
+  if (!query.counts_all) {
+    if (auto token = parse_page_token(scope, request.page_token())) {
+      query.after = std::move(token->last);
+      total = token->total;
+    } else {
+      add_bad_page_token(violations);
+    }
   }
   if (!violations.empty()) return invalid(violations);
   const auto read_page = [&](const ResourceQuery& stored) {
@@ -188,10 +209,13 @@ Outcome<Response> list_resources(Application& application, const Request& reques
   const Page<StoredResource> page =
       needs_computed_fields(query) ? query_by_computed_fields(query, read_page) : read_page(query);
   Response response;
-  if (const auto failed = append<Resource>(page, response); failed.code() != 0) return failed;
+  if (const auto failed = append<Resource>(page, mask, response); failed.code() != 0) return failed;
+  if (query.counts_all) total = page.total;
+  response.set_total_size(clamped_total(total));
   if (page.more) {
     const StoredResource& last = page.rows.back();
-    response.set_next_page_token(page_token(scope, {order_value(last, order.key), last.name}));
+    response.set_next_page_token(
+        page_token(scope, {{order_value(last, order.key), last.name}, total}));
   }
   return response;
 }
@@ -202,25 +226,28 @@ Outcome<Response> list_revisions(Application& application, const Request& reques
   Violations violations;
   const int size = page_size(request.page_size(), kDefaultResourcePageSize, violations);
   const std::string scope = "revisions of " + request.name();
-  std::optional<PageStart> after;
+  std::optional<PageToken> after;
   if (!request.page_token().empty()) {
     after = parse_page_token(scope, request.page_token());
-    if (!after || !std::holds_alternative<std::int64_t>(after->value)) {
+    if (!after || !std::holds_alternative<std::int64_t>(after->last.value)) {
       add_bad_page_token(violations);
     }
   }
   if (!violations.empty()) return invalid(violations);
   const auto found = find_stored<Resource>(application, request.name(), false, call);
   if (!found.ok()) return found.error();
-  const int before = after ? static_cast<int>(std::get<std::int64_t>(after->value)) : 0;
+  const int before = after ? static_cast<int>(std::get<std::int64_t>(after->last.value)) : 0;
   Page<StoredResource> page =
       application.store.revisions(request.name(), before, size, kMaximumPageBytes, call.limits);
   for (StoredResource& row : page.rows) row.is_present = false;  // all names with their revision
   Response response;
-  if (const auto failed = append<Resource>(page, response); failed.code() != 0) return failed;
+  if (const auto failed = append<Resource>(page, ReadMask(), response); failed.code() != 0) {
+    return failed;
+  }
+  response.set_total_size(found.message().revision);  // numbered from 1 without gaps
   if (page.more) {
     response.set_next_page_token(
-        page_token(scope, {std::int64_t{page.rows.back().revision}, request.name()}));
+        page_token(scope, {{std::int64_t{page.rows.back().revision}, request.name()}}));
   }
   return response;
 }

@@ -23,14 +23,18 @@ namespace tribodyn::server {
 // alike. Bodies of RPCs: run inside `guarded`.
 
 inline constexpr std::size_t kMaximumBatchViolations = 100;
+/// Of a batch [bytes]: clients accept 4 MiB unless told otherwise, and one that cannot read the
+/// answer would not know that the batch has been written.
+inline constexpr std::size_t kMaximumBatchAnswerBytes = 4'000'000;
+/// What set_stored_fields() adds to a resource beside its name, at most [bytes].
+inline constexpr std::size_t kStoredFieldBytes = 100;
 
-/// As if the body had been stored.
+/// What the mask asks for of an accepted body, as if that had been stored.
 template <class Resource>
-Resource preview(const std::string& body) {
-  Resource out;
-  out.ParseFromString(body);
-  fill_units(*Resource::descriptor(), *out.mutable_provenance());
-  add_characterisation(out);
+Resource preview(const std::string& body, const ReadMask& mask = {}) {
+  Resource out = body_message<Resource>(body).value_or(Resource());
+  if (mask.asks_for("characterisation")) add_characterisation(out);
+  mask.apply(out);
   return out;
 }
 
@@ -119,12 +123,12 @@ void draft_update(Application& application, const Request& request, Draft<Resour
   }
   const StoredResource& present = *found;
   if (present.delete_time) {
-    return draft.refuse(not_possible("DELETED", Resource::descriptor()->full_name(), present.name,
-                                     deleted_name_text(present.name)),
+    return draft.refuse(not_possible(v1::ERROR_REASON_DELETED, Resource::descriptor()->full_name(),
+                                     present.name, deleted_name_text(present.name)),
                         "name");
   }
   if (!stated.etag().empty() && stated.etag() != etag_of(present)) {
-    return draft.refuse(etag_mismatch<Resource>(present.name), "etag");
+    return draft.refuse(etag_mismatch<Resource>(present.name, stated.etag()), "etag");
   }
   Resource merged;
   if (!merged.ParseFromString(present.body)) {
@@ -292,25 +296,25 @@ std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& ba
   return drafts;
 }
 
-/// The response to a batch: what was written of each resource, and the resources themselves unless
-/// they take more than kMaximumPageBytes. `resource_at` gives one after the other.
-template <class Resource, class Response, class ResourceAt>
-Outcome<Response> answer_all(std::size_t count, const ResourceAt& resource_at) {
+/// The answer to a batch before anything is written; INVALID_ARGUMENT if it would take more than
+/// kMaximumBatchAnswerBytes.
+template <class Resource, class Response>
+Outcome<Response> draft_answer(const std::vector<Draft<Resource>>& drafts, const ReadMask& mask,
+                               const CallContext& call) {
   Response response;
   std::size_t bytes = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    Outcome<Resource> found = resource_at(i);
-    if (!found.ok()) return found.error();
-    v1::WrittenResource* written = response.add_written();
-    written->set_name(found.message().name());
-    written->set_etag(found.message().etag());
-    written->set_revision(found.message().revision());
-    if (response.is_abridged()) continue;
-    bytes += found.message().ByteSizeLong();
-    *Kind<Resource>::add(response) = std::move(found.message());
-    if (bytes <= kMaximumPageBytes) continue;
-    Kind<Resource>::all(response)->Clear();
-    response.set_is_abridged(true);
+  for (std::size_t i = 0; i < drafts.size(); ++i) {
+    if (call.limits.are_over()) return call_over(call.limits);
+    Resource& answered = *Kind<Resource>::add(response);
+    answered = preview<Resource>(drafts[i].body, mask);
+    bytes += answered.ByteSizeLong() + drafts[i].name.size() + kStoredFieldBytes;
+    if (bytes <= kMaximumBatchAnswerBytes) continue;
+    return invalid(
+        {{"read_mask", fmt::format("the answer would take {} bytes with {} of {} resources; "
+                                   "allowed: at most {}. Ask for less, e.g. read_mask = "
+                                   "\"name,etag,revision\", or send smaller batches; "
+                                   "nothing was written",
+                                   bytes, i + 1, drafts.size(), kMaximumBatchAnswerBytes)}});
   }
   return response;
 }
@@ -321,20 +325,21 @@ Outcome<Response> write_batch(Application& application, const Batch& batch,
                               const CallContext& call) {
   Violations violations;
   check_size(batch, "requests", violations);
+  const ReadMask mask(batch.read_mask(), *Resource::descriptor(), violations);
   if (!violations.empty()) return invalid(violations);
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
     std::vector<Draft<Resource>> drafts = drafts_of<Resource>(application, batch, call);
     if (call.limits.are_over()) return call_over(call.limits);
     if (const auto refusal = refusal_of(drafts)) return *refusal;
-    if (batch.validate_only()) {
-      return answer_all<Resource, Response>(drafts.size(), [&](std::size_t i) {
-        return call.limits.are_over() ? Outcome<Resource>(call_over(call.limits))
-                                      : Outcome<Resource>(preview<Resource>(drafts[i].body));
-      });
-    }
+    auto answer = draft_answer<Resource, Response>(drafts, mask, call);
+    if (!answer.ok() || batch.validate_only()) return answer;
     if (const auto stored = store_drafts(application, std::move(drafts), call)) {
-      return answer_all<Resource, Response>(
-          stored->size(), [&](std::size_t i) { return answer<Resource>((*stored)[i]); });
+      for (std::size_t i = 0; i < stored->size(); ++i) {
+        Resource& answered = *Kind<Resource>::all(answer.message())->Mutable(static_cast<int>(i));
+        set_stored_fields((*stored)[i], answered);
+        mask.apply(answered);
+      }
+      return answer;
     }
   }
   return contention<Resource>("a resource of the batch");

@@ -38,7 +38,7 @@ Outcome<v1::Lubricant> get_lubricant(Application& application,
                                      const v1::GetLubricantRequest& request,
                                      const CallContext& call) {
   return guarded<v1::Lubricant>([&]() -> Outcome<v1::Lubricant> {
-    return get_resource<v1::Lubricant>(application, request.name(), call);
+    return get_resource<v1::Lubricant>(application, request, call);
   });
 }
 
@@ -115,7 +115,7 @@ Outcome<v1::BatchCreateGearSetsResponse> batch_create_gear_sets(
 Outcome<v1::GearSet> get_gear_set(Application& application, const v1::GetGearSetRequest& request,
                                   const CallContext& call) {
   return guarded<v1::GearSet>([&]() -> Outcome<v1::GearSet> {
-    return get_resource<v1::GearSet>(application, request.name(), call);
+    return get_resource<v1::GearSet>(application, request, call);
   });
 }
 
@@ -194,7 +194,7 @@ Outcome<v1::BatchCreateSurfacesResponse> batch_create_surfaces(
 Outcome<v1::Surface> get_surface(Application& application, const v1::GetSurfaceRequest& request,
                                  const CallContext& call) {
   return guarded<v1::Surface>([&]() -> Outcome<v1::Surface> {
-    return get_resource<v1::Surface>(application, request.name(), call);
+    return get_resource<v1::Surface>(application, request, call);
   });
 }
 
@@ -271,7 +271,7 @@ Outcome<v1::BatchCreateVehiclesResponse> batch_create_vehicles(
 Outcome<v1::Vehicle> get_vehicle(Application& application, const v1::GetVehicleRequest& request,
                                  const CallContext& call) {
   return guarded<v1::Vehicle>([&]() -> Outcome<v1::Vehicle> {
-    return get_resource<v1::Vehicle>(application, request.name(), call);
+    return get_resource<v1::Vehicle>(application, request, call);
   });
 }
 

@@ -3,11 +3,8 @@
 namespace tribodyn::server {
 namespace {
 
-v1::PointSummary summary_of(const v1::CurvePoint& point) {
+v1::PointSummary summary_of(const v1::PointResult& result) {
   v1::PointSummary out;
-  out.set_refusal_reason(point.refusal_reason());
-  if (!point.has_result()) return out;
-  const v1::PointResult& result = point.result();
   out.set_pinion_torque_newton_metres(result.pinion_torque_newton_metres());
   out.set_mesh_loss_power_watts(result.mesh_loss_power_watts());
   if (result.has_inefficiency_rms_percent()) {
@@ -21,18 +18,13 @@ v1::PointSummary summary_of(const v1::CurvePoint& point) {
 
 }  // namespace
 
-void abridge(v1::SimulationResult& result) {
-  if (result.ByteSizeLong() <= kMaximumSummaryBytes) return;
-  result.set_is_abridged(true);
+void summarise(v1::SimulationResult& result) {
   for (v1::CurvePoint& point : *result.mutable_points()) {
-    *point.mutable_summary() = summary_of(point);
+    if (!point.has_result()) continue;  // its refusal stays
+    *point.mutable_summary() = summary_of(point.result());
     point.clear_result();
-    point.clear_refusal_reason();
-    point.clear_refusal_message();
   }
-  if (result.ByteSizeLong() <= kMaximumSummaryBytes) return;
   result.clear_assumptions();
-  result.set_assumptions_are_left_out(true);
 }
 
 }  // namespace tribodyn::server

@@ -11,9 +11,12 @@
 #include "server/application/list_filter.h"
 #include "server/application/page_token.h"
 #include "server/application/paging.h"
+#include "server/application/read_mask.h"
 #include "server/application/request_text.h"
 #include "server/application/result_summary.h"
 #include "server/application/simulation_lookup.h"
+#include "server/contract/check_message.h"
+#include "server/contract/labels.h"
 #include "server/simulation/assumptions.h"
 #include "server/simulation/cost_estimate.h"
 #include "server/simulation/input_hash.h"
@@ -87,6 +90,11 @@ v1::Simulation preview(const SimulationInputs& inputs, const NewSimulation& simu
   return out;
 }
 
+/// AIP-154: another one for everything of a simulation that clients may change.
+std::string etag_of(const StoredSimulation& stored) {
+  return sha256(simulation_name(stored.id) + stored.request).substr(0, 16);
+}
+
 /// The stored row as a message, without its result.
 v1::Simulation to_message(Application& application, const StoredSimulation& stored) {
   v1::Simulation out;
@@ -100,6 +108,7 @@ v1::Simulation to_message(Application& application, const StoredSimulation& stor
   out.set_event_sequence(stored.sequence);
   out.set_request_id(stored.request_id);
   out.set_pinned(stored.is_pinned);
+  out.set_etag(etag_of(stored));
   const auto& keep = application.jobs.retention().keep;
   if (keep && stored.end_time && !stored.is_pinned) {
     *out.mutable_expire_time() = TimeUtil::MicrosecondsToTimestamp(*stored.end_time + *keep);
@@ -135,9 +144,10 @@ google::rpc::Status request_id_taken(const StoredSimulation& stored,
   earlier.ParseFromString(stored.request);
   const std::string field = first_difference(text, request_text(earlier, stored.is_forced));
   return already_exists(
-      "REQUEST_ID_REUSED", "tribodyn.v1.Simulation", simulation_name(stored.id),
+      v1::ERROR_REASON_REQUEST_ID_REUSED, "tribodyn.v1.Simulation", simulation_name(stored.id),
       fmt::format("request_id \"{}\" made {} by a request that differs in {}; take another one",
                   request.request_id(), simulation_name(stored.id), field),
+      {{"request_id", request.request_id()}, {"field", field}},
       {{"request_id", fmt::format("belongs to another request; it differs in {}", field)}});
 }
 
@@ -164,22 +174,25 @@ void set_result(Application& application, v1::SimulationView view, v1::Simulatio
   const auto result = application.store.result(id, call.limits);
   if (!result) return;
   out.mutable_result()->ParseFromString(*result);
-  if (meant == v1::SIMULATION_VIEW_SUMMARY) abridge(*out.mutable_result());
+  if (meant == v1::SIMULATION_VIEW_SUMMARY) summarise(*out.mutable_result());
 }
 
 /// As the store understands them.
 std::vector<Restriction> restrictions(const std::string& filter, Violations& violations) {
   std::vector<Restriction> out = parse_filter(filter, kSimulations, violations);
   for (Restriction& each : out) {
-    const bool has_order = each.key == "create_time";
+    const bool has_order = each.key == "create_time" || each.key == "end_time";
     const bool is_label = each.key.starts_with("labels.");
+    const bool is_text = each.key == "display_name";
     const bool is_equality = each.comparison == Restriction::Comparison::kEqual ||
                              each.comparison == Restriction::Comparison::kNotEqual;
     if (each.key == "name") {
       violations.push_back({"filter", "a name is not filtered by; get the simulation"});
     } else if (!has_order && !is_equality &&
-               !(is_label && each.comparison == Restriction::Comparison::kPresent)) {
-      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*"});
+               !(is_label && each.comparison == Restriction::Comparison::kPresent) &&
+               !(is_text && each.comparison == Restriction::Comparison::kContains)) {
+      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*, of "
+                                                 "display_name also :"});
     }
     const std::string* word = std::get_if<std::string>(&each.value);
     v1::Simulation::State state = v1::Simulation::STATE_UNSPECIFIED;
@@ -199,11 +212,9 @@ bool is_ascending(const std::string& order_by, Violations& violations) {
 }
 
 /// Where the page behind a token begins.
-std::optional<SimulationQuery::Place> place(const std::string& scope, const std::string& token) {
-  const std::optional<PageStart> start = parse_page_token(scope, token);
-  if (!start) return std::nullopt;
-  const auto* time = std::get_if<std::int64_t>(&start->value);
-  const auto id = simulation_id(start->name);
+std::optional<SimulationQuery::Place> place(const PageStart& start) {
+  const auto* time = std::get_if<std::int64_t>(&start.value);
+  const auto id = simulation_id(start.name);
   if (time == nullptr || !id) return std::nullopt;
   return SimulationQuery::Place{*time, *id};
 }
@@ -223,6 +234,7 @@ void log_submission(const CallContext& call, const NewSimulation& simulation, co
 google::rpc::Status no_place(Application& application, double retry_seconds) {
   if (application.jobs.is_stopping()) return shutting_down();
   return exhausted(
+      v1::ERROR_REASON_TOO_MANY_WAITING,
       fmt::format("too many simulations wait already; try again in {:.2f} s", retry_seconds),
       retry_seconds);
 }
@@ -267,11 +279,17 @@ Outcome<v1::Simulation> get_simulation(Application& application,
                                        const v1::GetSimulationRequest& request,
                                        const CallContext& call) {
   return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
+    Violations violations;
+    const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
+    if (!violations.empty()) return invalid(violations);
     const auto found = find_simulation(application, request.name(), call);
     if (!found.ok()) return found.error();
     v1::Simulation out = to_message(application, found.message());
-    set_result(application, request.view(), v1::SIMULATION_VIEW_SUMMARY, found.message().id, out,
-               call);
+    if (mask.asks_for("result")) {
+      set_result(application, request.view(), v1::SIMULATION_VIEW_FULL, found.message().id, out,
+                 call);
+    }
+    mask.apply(out);
     return out;
   });
 }
@@ -286,20 +304,32 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
     query.byte_limit = kMaximumPageBytes;
     query.restrictions = restrictions(request.filter(), violations);
     query.ascending = is_ascending(request.order_by(), violations);
+    const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
+    const v1::SimulationView otherwise =
+        mask.is_whole() ? v1::SIMULATION_VIEW_BASIC : v1::SIMULATION_VIEW_FULL;
     const std::string scope =
         fmt::format("{}\n{}\n{}", kSimulations, request.filter(), request.order_by());
-    if (!request.page_token().empty()) {
-      query.after = place(scope, request.page_token());
+    std::int64_t total = 0;
+    query.counts_all = request.page_token().empty();
+    if (!query.counts_all) {
+      const auto token = parse_page_token(scope, request.page_token());
+      if (token) query.after = place(token->last);
+      if (query.after) total = token->total;
       if (!query.after) add_bad_page_token(violations);
     }
     if (!violations.empty()) return invalid(violations);
     const Page<StoredSimulation> page = application.store.simulations(query, call.limits);
     v1::ListSimulationsResponse response;
+    if (query.counts_all) total = page.total;
+    response.set_total_size(clamped_total(total));
     std::size_t bytes = 0;
     bool is_cut = false;
     for (const StoredSimulation& row : page.rows) {
       v1::Simulation next = to_message(application, row);
-      set_result(application, request.view(), v1::SIMULATION_VIEW_BASIC, row.id, next, call);
+      if (mask.asks_for("result")) {
+        set_result(application, request.view(), otherwise, row.id, next, call);
+      }
+      mask.apply(next);
       bytes += next.ByteSizeLong();
       is_cut = response.simulations_size() > 0 && bytes > kMaximumPageBytes;
       if (is_cut) break;
@@ -307,7 +337,8 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
     }
     if (page.more || is_cut) {
       const StoredSimulation& last = page.rows[response.simulations_size() - 1];
-      response.set_next_page_token(page_token(scope, {last.create_time, simulation_name(last.id)}));
+      response.set_next_page_token(
+          page_token(scope, {{last.create_time, simulation_name(last.id)}, total}));
     }
     return response;
   });
@@ -322,8 +353,8 @@ Outcome<v1::Simulation> set_pinned(Application& application, const std::string& 
     if (!found.ok()) return found.error();
     // All reads come before the write: once the write is committed, nothing may fail any more.
     v1::Simulation before;
-    set_result(application, v1::SIMULATION_VIEW_SUMMARY, v1::SIMULATION_VIEW_SUMMARY,
-               found.message().id, before, call);
+    set_result(application, v1::SIMULATION_VIEW_FULL, v1::SIMULATION_VIEW_FULL, found.message().id,
+               before, call);
     const auto pinned = application.store.set_pinned(found.message().id, is_pinned, call.limits);
     if (!pinned) return does_not_exist(name);
     v1::Simulation out = to_message(application, *pinned);
@@ -333,6 +364,90 @@ Outcome<v1::Simulation> set_pinned(Application& application, const std::string& 
 }
 
 }  // namespace
+
+namespace {
+
+constexpr int kRelabelAttempts = 10;  // against other writers
+constexpr char kSimulationType[] = "tribodyn.v1.Simulation";
+
+/// Takes over into `target` what the request changes: its display name and labels.
+void take_over_labels(const v1::UpdateSimulationRequest& request, v1::Simulation& target,
+                      Violations& violations) {
+  const v1::Simulation& stated = request.simulation();
+  const auto& paths = request.update_mask().paths();
+  const bool is_all = paths.size() == 1 && paths.Get(0) == "*";
+  bool takes_name = is_all || (paths.empty() && !stated.display_name().empty());
+  bool takes_labels = is_all || (paths.empty() && stated.labels_size() > 0);
+  for (int i = 0; i < paths.size() && !is_all; ++i) {
+    if (paths.Get(i) == "display_name") {
+      takes_name = true;
+    } else if (paths.Get(i) == "labels") {
+      takes_labels = true;
+    } else {
+      violations.push_back({"update_mask", fmt::format("\"{}\" cannot be changed; allowed: "
+                                                       "display_name, labels, *",
+                                                       plain_excerpt(paths.Get(i)))});
+      return;
+    }
+  }
+  if (takes_name) target.set_display_name(stated.display_name());
+  if (takes_labels) *target.mutable_labels() = stated.labels();
+  sort_labels(*target.mutable_labels());
+  Violations all;  // a request of an older server may break newer constraints of other fields
+  check_message(target, "simulation", all);
+  for (Violation& each : all) {
+    if (each.field == "simulation.display_name") violations.push_back(std::move(each));
+  }
+  if (target.labels_size() > kMaximumSimulationLabels) {
+    violations.push_back({"simulation.labels", "more than 64 entries"});
+  } else {
+    check_labels(target.labels(), "simulation.labels", violations);
+  }
+}
+
+Outcome<v1::Simulation> update_stored(Application& application,
+                                      const v1::UpdateSimulationRequest& request,
+                                      const CallContext& call) {
+  const std::string& name = request.simulation().name();
+  for (int attempt = 0; attempt < kRelabelAttempts; ++attempt) {
+    const auto found = find_simulation(application, name, call);
+    if (!found.ok()) return found.error();
+    const StoredSimulation& present = found.message();
+    const std::string& etag = request.simulation().etag();
+    if (!etag.empty() && etag != etag_of(present)) {
+      return aborted(v1::ERROR_REASON_ETAG_MISMATCH, kSimulationType, name,
+                     name + " has changed since this etag was given out; get it again", false,
+                     {{"etag", plain_excerpt(etag)}});
+    }
+    v1::Simulation changed;
+    changed.ParseFromString(present.request);
+    Violations violations;
+    take_over_labels(request, changed, violations);
+    if (!violations.empty()) return invalid(violations);
+    std::vector<std::pair<std::string, std::string>> labels;
+    for (const v1::Label& each : changed.labels()) labels.emplace_back(each.key(), each.value());
+    const auto updated = application.store.relabel_simulation(present, changed.SerializeAsString(),
+                                                              labels, call.limits);
+    if (updated) return to_message(application, *updated);
+  }
+  return aborted(v1::ERROR_REASON_CONTENTION, kSimulationType, name,
+                 name + " keeps being changed by others; try again", true);
+}
+
+}  // namespace
+
+Outcome<v1::Simulation> update_simulation(Application& application,
+                                          const v1::UpdateSimulationRequest& request,
+                                          const CallContext& call) {
+  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
+    if (!request.has_simulation()) return invalid({{"simulation", "not set"}});
+    if (!simulation_id(request.simulation().name())) {
+      return invalid(
+          {{"simulation.name", "not a name of the form \"simulations/{id}\", id a number"}});
+    }
+    return update_stored(application, request, call);
+  });
+}
 
 Outcome<v1::Simulation> pin_simulation(Application& application,
                                        const v1::PinSimulationRequest& request,

@@ -24,6 +24,11 @@ Outcome<v1::Simulation> cancel_simulation(Application& application,
                                           const v1::CancelSimulationRequest& request,
                                           const CallContext& call = {});
 
+/// Changes its display name or labels. Answers without its result.
+Outcome<v1::Simulation> update_simulation(Application& application,
+                                          const v1::UpdateSimulationRequest& request,
+                                          const CallContext& call = {});
+
 /// Keeps it for good, and gives it up again.
 Outcome<v1::Simulation> pin_simulation(Application& application,
                                        const v1::PinSimulationRequest& request,

@@ -19,16 +19,22 @@ inline std::string etag_of(const StoredResource& stored) {
       .substr(0, 16);
 }
 
-/// A stored revision as it is answered: with what only the server knows, and with the units of its
-/// parameters. An older revision bears its revision in its name. Nothing when it does not parse.
+/// A body as it is answered, with the units of its parameters and without what the store knows of
+/// it. Returns nullopt if it does not parse.
 template <class Resource>
-std::optional<Resource> to_message(const StoredResource& stored) {
-  using google::protobuf::util::TimeUtil;
+std::optional<Resource> body_message(const std::string& body) {
   Resource out;
-  if (!out.ParseFromString(stored.body)) return std::nullopt;
+  if (!out.ParseFromString(body)) return std::nullopt;
   // Bodies of earlier versions may lack entries; an export of them is the same once imported.
   complete_provenance(out, *out.mutable_provenance());
   fill_units(*Resource::descriptor(), *out.mutable_provenance());
+  return out;
+}
+
+/// Sets what the store knows of a revision. An older revision bears its revision in its name.
+template <class Resource>
+void set_stored_fields(const StoredResource& stored, Resource& out) {
+  using google::protobuf::util::TimeUtil;
   out.set_name(stored.is_present ? stored.name : revision_name(stored.name, stored.revision));
   out.set_etag(etag_of(stored));
   out.set_revision(stored.revision);
@@ -38,6 +44,13 @@ std::optional<Resource> to_message(const StoredResource& stored) {
   if (stored.delete_time) {
     *out.mutable_delete_time() = TimeUtil::MicrosecondsToTimestamp(*stored.delete_time);
   }
+}
+
+/// A stored revision as it is answered. Returns nullopt if its body does not parse.
+template <class Resource>
+std::optional<Resource> to_message(const StoredResource& stored) {
+  auto out = body_message<Resource>(stored.body);
+  if (out) set_stored_fields(stored, *out);
   return out;
 }
 

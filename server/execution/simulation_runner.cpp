@@ -126,7 +126,7 @@ SimulationInputs SimulationRunner::inputs_of(const StoredSimulation& simulation,
     auto inputs =
         read_simulation(request, accepted_lookup(store_, simulation), "simulation", violations);
     if (!inputs) {
-      throw Refusal("INVALID_ARGUMENT",
+      throw Refusal("STORED_REQUEST_INVALID",
                     violations.front().field + ": " + violations.front().description);
     }
     return std::move(*inputs);

@@ -130,7 +130,8 @@ void set_solver(v1::PointResult* out, const PointResult& result) {
 
 v1::EvaluateContactResponse to_message(const ContactSolution& s) {
   v1::EvaluateContactResponse out;
-  out.set_status(contact_status_name(s.status));
+  out.set_status(s.status == ContactStatus::kNoLoad ? v1::CONTACT_STATUS_NO_LOAD
+                                                    : v1::CONTACT_STATUS_OK);
   out.set_film_load_newtons(s.film_load);
   out.set_asperity_load_newtons(s.asperity_load);
   out.set_contact_area_square_metres(s.contact_area);

@@ -71,10 +71,12 @@ const std::vector<PropertyField>& property_fields(std::string_view collection) {
     for (const char* each : {"lubricants", "gearSets", "surfaces", "vehicles"}) {
       out[each] = fields_of(each);
     }
-    out["simulations"] = {{kCreateTime, PropertyKind::kTime},
-                          {"lubricant", PropertyKind::kText},
-                          {"pinned", PropertyKind::kFlag},
-                          {"state", PropertyKind::kEnum}};
+    out["simulations"] = {
+        {kCreateTime, PropertyKind::kTime},  {"display_name", PropertyKind::kText},
+        {"end_time", PropertyKind::kTime},   {"gear_set", PropertyKind::kText},
+        {"input_hash", PropertyKind::kText}, {"lubricant", PropertyKind::kText},
+        {"pinned", PropertyKind::kFlag},     {"state", PropertyKind::kEnum},
+        {"surface", PropertyKind::kText},    {"vehicle", PropertyKind::kText}};
     return out;
   }();
   static const std::vector<PropertyField> kNone;

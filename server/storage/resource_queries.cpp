@@ -108,8 +108,8 @@ const Restriction* most_selective(Connection& db, const ResourceQuery& query) {
   return best;
 }
 
-constexpr char kJoined[] =
-    " CROSS JOIN resources r ON r.id = d.resource CROSS JOIN revisions v ON v.id = r.present";
+constexpr char kJoined[] = " CROSS JOIN resources r ON r.id = d.resource";
+constexpr char kRevisions[] = " CROSS JOIN revisions v ON v.id = r.present";
 
 /// Adds the start of a page and its order.
 void add_start_and_order(Clause& sql, const ResourceQuery& query, const std::string& value_column,
@@ -137,8 +137,13 @@ void add_conditions(Clause& sql, const ResourceQuery& query, const Restriction* 
   }
 }
 
-Clause statement(Connection& db, const ResourceQuery& query) {
-  Clause sql{kResourceColumns, {}};
+/// What a statement is for. Counting reads no revisions: they take most of the time.
+enum class Purpose { kRows, kCount };
+
+/// The rows of a query, or a 1 for each of them.
+Clause statement(Connection& db, const ResourceQuery& query, Purpose purpose) {
+  Clause sql{purpose == Purpose::kRows ? kResourceColumns : "SELECT 1 ", {}};
+  const std::string revisions = purpose == Purpose::kRows ? kRevisions : "";
   const bool by_name = query.order_key.empty();
   const Restriction* leading = most_selective(db, query);
   const bool sorted = leading != nullptr;
@@ -151,7 +156,7 @@ Clause statement(Connection& db, const ResourceQuery& query) {
   }
   if (leading != nullptr) {
     const Clause rows = selected(query.collection, *leading);
-    sql.add(std::string("FROM properties d") + kJoined);
+    sql.add(std::string("FROM properties d") + kJoined + revisions);
     if (!by_name) {
       sql.add(" CROSS JOIN properties o ON o.resource = r.id AND o.key = ?", {query.order_key});
     }
@@ -162,27 +167,40 @@ Clause statement(Connection& db, const ResourceQuery& query) {
     return sql;
   }
   if (by_name) {
-    sql.add("FROM resources r CROSS JOIN revisions v ON v.id = r.present WHERE r.collection = ?",
-            {query.collection});
+    sql.add("FROM resources r" + revisions + " WHERE r.collection = ?", {query.collection});
     add_conditions(sql, query, nullptr);
     add_start_and_order(sql, query, "", "r.name");
     return sql;
   }
-  sql.add(std::string("FROM properties d") + kJoined + " WHERE d.collection = ? AND d.key = ?",
+  sql.add(std::string("FROM properties d") + kJoined + revisions +
+              " WHERE d.collection = ? AND d.key = ?",
           {query.collection, query.order_key});
   add_conditions(sql, query, nullptr);
   add_start_and_order(sql, query, "d.value", "d.name");
   return sql;
 }
 
+/// How many rows the query has from its start, whatever its limit.
+std::int64_t count_all(Connection& db, const ResourceQuery& query) {
+  const Clause rows = statement(db, query, Purpose::kCount);
+  SQLite::Statement count(db, "SELECT count(*) FROM (" + rows.sql + ")");
+  bind_all(count, rows.values);
+  count.executeStep();
+  return count.getColumn(0).getInt64();
+}
+
 }  // namespace
 
 Page<StoredResource> query_resources(Connection& db, const ResourceQuery& query) {
-  const Clause sql = statement(db, query);
+  const Clause sql = statement(db, query, Purpose::kRows);
   SQLite::Statement rows(db, sql.sql + " LIMIT " + std::to_string(query.limit + 1));
   bind_all(rows, sql.values);
-  return read_page<StoredResource>(rows, query.limit, query.byte_limit, kBodyColumn,
-                                   stored_resource);
+  auto page =
+      read_page<StoredResource>(rows, query.limit, query.byte_limit, kBodyColumn, stored_resource);
+  if (query.counts_all) {
+    page.total = page.more ? count_all(db, query) : static_cast<std::int64_t>(page.rows.size());
+  }
+  return page;
 }
 
 }  // namespace tribodyn::server

@@ -1,6 +1,7 @@
 #include "server/storage/simulation_queries.h"
 
 #include <SQLiteCpp/Statement.h>
+#include <sqlite3.h>
 
 #include <stdexcept>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "server/storage/resource_rows.h"
 #include "server/storage/simulation_rows.h"
+#include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::server {
 namespace {
@@ -75,17 +77,41 @@ Condition label_condition(Connection& db, const Restriction& restriction) {
 /// Returns the column of a key. Keys come from a client's filter, so only these constants enter a
 /// statement.
 std::string column_of(const std::string& key) {
-  for (const char* column : {"state", "create_time", "pinned"}) {
+  for (const char* column : {"state", "create_time", "end_time", "input_hash", "pinned"}) {
     if (key == column) return column;
   }
   throw std::logic_error("no column of simulations for the key " + key);
 }
 
+/// Adds `display_name(BLOB)` of a stored request to the SQL functions of a connection. No column
+/// has it: whoever filters by it reads every request that the rest of the filter leaves.
+void add_display_name_function(Connection& db) {
+  db.createFunction(
+      "display_name", 1, true, nullptr, [](sqlite3_context* context, int, sqlite3_value** values) {
+        v1::Simulation request;
+        request.ParseFromArray(sqlite3_value_blob(values[0]), sqlite3_value_bytes(values[0]));
+        const std::string& name = request.display_name();
+        sqlite3_result_text(context, name.data(), static_cast<int>(name.size()), SQLITE_TRANSIENT);
+      });
+}
+
+Condition display_name_condition(Connection& db, const Restriction& restriction) {
+  add_display_name_function(db);
+  if (restriction.comparison == Comparison::kContains) {
+    return {"instr(lower(display_name(request)), lower(?)) > 0", {restriction.value}};
+  }
+  return {"display_name(request) " + operator_of(restriction.comparison) + " ?",
+          {restriction.value}};
+}
+
 Condition condition(Connection& db, const Restriction& restriction) {
+  if (restriction.key == "display_name") return display_name_condition(db, restriction);
   if (restriction.key.starts_with(kLabels)) return label_condition(db, restriction);
-  if (restriction.key == "lubricant") {
+  const bool is_resource = restriction.key == "lubricant" || restriction.key == "gear_set" ||
+                           restriction.key == "surface" || restriction.key == "vehicle";
+  if (is_resource) {
     const bool is_not = restriction.comparison == Comparison::kNotEqual;
-    return {std::string("lubricant ") + (is_not ? "NOT " : "") +
+    return {restriction.key + (is_not ? " NOT " : " ") +
                 "IN (SELECT revision_id FROM revision_names "
                 "WHERE name = ? OR name || '@' || revision = ?)",
             {restriction.value, restriction.value}};
@@ -94,16 +120,29 @@ Condition condition(Connection& db, const Restriction& restriction) {
           {restriction.value}};
 }
 
+/// How many simulations satisfy a condition.
+std::int64_t count_all(Connection& db, const std::string& where,
+                       const std::vector<PropertyValue>& values) {
+  SQLite::Statement count(db, "SELECT count(*) FROM simulations " + where);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    bind_value(count, static_cast<int>(i) + 1, values[i]);
+  }
+  count.executeStep();
+  return count.getColumn(0).getInt64();
+}
+
 }  // namespace
 
 Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& query) {
-  std::string sql = std::string(kSimulationColumns) + "WHERE 1";
+  std::string where = "WHERE 1";
   std::vector<PropertyValue> values;
   for (const Restriction& each : query.restrictions) {
     Condition next = condition(db, each);
-    sql += " AND " + next.sql;
+    where += " AND " + next.sql;
     values.insert(values.end(), next.values.begin(), next.values.end());
   }
+  std::string sql = kSimulationColumns + where;
+  const std::vector<PropertyValue> all_values = values;
   const std::string direction = query.ascending ? " ASC" : " DESC";
   if (query.after) {
     sql += std::string(" AND (create_time, id) ") + (query.ascending ? ">" : "<") + " (?, ?)";
@@ -116,8 +155,13 @@ Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& 
   for (std::size_t i = 0; i < values.size(); ++i) {
     bind_value(statement, static_cast<int>(i) + 1, values[i]);
   }
-  return read_page<StoredSimulation>(statement, query.limit, query.byte_limit, kRequestColumn,
-                                     stored_simulation);
+  auto page = read_page<StoredSimulation>(statement, query.limit, query.byte_limit, kRequestColumn,
+                                          stored_simulation);
+  if (query.counts_all) {
+    page.total =
+        page.more ? count_all(db, where, all_values) : static_cast<std::int64_t>(page.rows.size());
+  }
+  return page;
 }
 
 }  // namespace tribodyn::server

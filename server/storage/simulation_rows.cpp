@@ -88,6 +88,17 @@ std::optional<Added> repeated_request(Connection& db, const NewSimulation& simul
                query.getColumn(0).getInt64()};
 }
 
+void insert_labels(Connection& db, std::int64_t id,
+                   const std::vector<std::pair<std::string, std::string>>& labels) {
+  for (const auto& [key, value] : labels) {
+    Prepared label(db, "INSERT INTO simulation_labels VALUES (?, ?, ?)");
+    label.bind(1, key);
+    label.bind(2, value);
+    label.bind(3, id);
+    label.exec();
+  }
+}
+
 /// A QUEUED row with its first event.
 std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microseconds now) {
   Prepared insert(
@@ -113,13 +124,7 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
   insert.bind(14, simulation.cost_seconds);
   insert.exec();
   const std::int64_t id = db.getLastInsertRowid();
-  for (const auto& [key, value] : simulation.labels) {
-    Prepared label(db, "INSERT INTO simulation_labels VALUES (?, ?, ?)");
-    label.bind(1, key);
-    label.bind(2, value);
-    label.bind(3, id);
-    label.exec();
-  }
+  insert_labels(db, id, simulation.labels);
   insert_event(db, id, {.sequence = 1, .time = now, .reason = ""});
   return id;
 }
@@ -221,6 +226,21 @@ bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) t
 }
 
 }  // namespace
+
+bool set_labels(Connection& db, std::int64_t id, const std::string& before,
+                const std::string& request,
+                const std::vector<std::pair<std::string, std::string>>& labels) {
+  Prepared update(db, "UPDATE simulations SET request = ? WHERE id = ? AND request = ?");
+  bind_blob(update, 1, request);
+  update.bind(2, id);
+  bind_blob(update, 3, before);
+  if (update.exec() == 0) return false;
+  Prepared remove(db, "DELETE FROM simulation_labels WHERE simulation = ?");
+  remove.bind(1, id);
+  remove.exec();
+  insert_labels(db, id, labels);
+  return true;
+}
 
 std::int64_t ledger_row(Connection& db, const std::string& body) {
   const std::string hash = sha256(body);

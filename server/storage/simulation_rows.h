@@ -14,6 +14,12 @@ namespace tribodyn::server {
 // Rows of simulations, events, results and ledgers on an open connection, inside the caller's
 // transaction. All throw SQLite::Exception.
 
+/// Replaces the request of a simulation, and its labels. Returns false, and changes nothing, if the
+/// request is not `before`.
+bool set_labels(Connection& db, std::int64_t id, const std::string& before,
+                const std::string& request,
+                const std::vector<std::pair<std::string, std::string>>& labels);
+
 /// The row of a serialised list of assumptions, added if it is not there and repaired if it is
 /// damaged.
 std::int64_t ledger_row(Connection& db, const std::string& body);

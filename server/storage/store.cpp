@@ -316,6 +316,19 @@ std::optional<StoredSimulation> Store::set_pinned(std::int64_t id, bool is_pinne
   return out;
 }
 
+std::optional<StoredSimulation> Store::relabel_simulation(
+    const StoredSimulation& present, const std::string& request,
+    const std::vector<std::pair<std::string, std::string>>& labels, const CallLimits& limits) {
+  std::optional<StoredSimulation> out;
+  write_together(limits, [&](Connection& db) {
+    out.reset();
+    if (set_labels(db, present.id, present.request, request, labels)) {
+      out = query_simulation(db, present.id);
+    }
+  });
+  return out;
+}
+
 Store::Removal Store::remove_simulation(std::int64_t id, const CallLimits& limits) {
   return write(limits, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);

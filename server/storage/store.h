@@ -84,6 +84,13 @@ class Store {
   /// nullopt if it does not exist.
   std::optional<StoredSimulation> set_pinned(std::int64_t id, bool is_pinned,
                                              const CallLimits& limits = {});
+  /// Replaces the request of a simulation by one with another display name or labels, and its
+  /// labels. Returns the simulation as it is then; nullopt, and changes nothing, if its request is
+  /// no longer that of `present`.
+  std::optional<StoredSimulation> relabel_simulation(
+      const StoredSimulation& present, const std::string& request,
+      const std::vector<std::pair<std::string, std::string>>& labels,
+      const CallLimits& limits = {});
   /// Removes an ended simulation that is not pinned.
   enum class Removal { kDone, kAbsent, kUnfinished, kPinned };
   Removal remove_simulation(std::int64_t id, const CallLimits& limits = {});

@@ -10,11 +10,14 @@
 
 namespace tribodyn::server {
 
+inline constexpr std::int64_t kNotCounted = -1;
+
 /// A page of a list; `more` is true if the list continues after it.
 template <class Row>
 struct Page {
   std::vector<Row> rows;
   bool more = false;
+  std::int64_t total = 0;  ///< rows of the whole list, or kNotCounted; only if the query asked
 };
 
 /// A resource before it is stored.
@@ -76,6 +79,7 @@ struct ResourceQuery {
   std::optional<PageStart> after;
   int limit = 0;
   std::size_t byte_limit = 0;  ///< bytes of bodies; a page has at least one row
+  bool counts_all = false;  ///< sets Page::total; only of a query from the start, without `after`
 };
 
 }  // namespace tribodyn::server

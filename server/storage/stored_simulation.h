@@ -67,7 +67,8 @@ struct StoredSimulation {
 
 /// Selects and orders simulations: by time of creation, and equal times by id.
 struct SimulationQuery {
-  /// All must be true. Keys: "state" (its number), "lubricant", "create_time", "labels.KEY".
+  /// All must be true. Keys: those of property_fields("simulations"), "state" as its number, and
+  /// "labels.KEY".
   std::vector<Restriction> restrictions = {};
   bool ascending = false;
   struct Place {
@@ -77,6 +78,7 @@ struct SimulationQuery {
   std::optional<Place> after = {};
   int limit = 0;
   std::size_t byte_limit = 0;  ///< bytes of requests; a page has at least one row
+  bool counts_all = false;  ///< sets Page::total; only of a query from the start, without `after`
 };
 
 /// A stored change of state.

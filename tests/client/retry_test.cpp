@@ -34,6 +34,7 @@ TEST(Retry, RepeatsOnlyIdempotentRequests) {
   EXPECT_TRUE(may_repeat(v1::CancelSimulationRequest()));
   EXPECT_TRUE(may_repeat(v1::DeleteLubricantRequest()));
   EXPECT_TRUE(may_repeat(v1::EvaluateContactRequest()));
+  EXPECT_FALSE(may_repeat(v1::UndeleteLubricantRequest())) << "the second one is refused";
   EXPECT_FALSE(may_repeat(v1::CreateLubricantRequest())) << "it may exist by now";
   EXPECT_FALSE(may_repeat(v1::UpdateLubricantRequest())) << "others may have changed it since";
   EXPECT_FALSE(may_repeat(v1::ImportLubricantRequest()));
@@ -49,6 +50,8 @@ TEST(Retry, RepeatsOnlyIdempotentRequests) {
 TEST(Retry, RepeatsRequestsThatTheServerTurnedAway) {
   EXPECT_TRUE(was_turned_away(turned_away("SHUTTING_DOWN", 5)));
   EXPECT_TRUE(was_turned_away(turned_away("TOO_MANY_WAITING", 5)));
+  EXPECT_TRUE(was_turned_away(turned_away("TOO_MANY_STREAMS", 5)));
+  EXPECT_TRUE(was_turned_away(turned_away("TOO_MANY_LARGE_REQUESTS", 5)));
   EXPECT_FALSE(was_turned_away(turned_away("STORE_FAILED", 5))) << "it may have been written";
   EXPECT_FALSE(was_turned_away({grpc::StatusCode::UNAVAILABLE, "Socket closed"}));
   EXPECT_EQ(retry_delay(turned_away("SHUTTING_DOWN", 5)), milliseconds(5000));

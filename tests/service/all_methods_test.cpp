@@ -164,6 +164,10 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
       set_inner("simulation", "lubricant", "lubricants/11");
       return expect_refused(*message, "did you mean \"lubricants/1\"?");
     }
+    if (method == "UpdateSimulation") {
+      set_inner("simulation", "name", "simulations/99999");
+      return expect_refused(*message, "simulations/99999");
+    }
     if (method == "ListSimulations") {
       set("page_token", "simulations/x");
       return expect_refused(*message, "page_token");

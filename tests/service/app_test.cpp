@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 
 #include "google/rpc/error_details.pb.h"
 #include "server/application/contacts.h"
@@ -55,14 +56,54 @@ TEST_F(AppTest, EveryErrorHasAReasonInErrorInfo) {
         cancel_simulation(app_, named<v1::CancelSimulationRequest>("")).error(),
         watch_simulation(app_, named<v1::WatchSimulationRequest>("simulations/0")).error(),
         read_history(app_, named<v1::ReadHistoryRequest>("simulations/77")).error(),
-        evaluate_contact(app_, {}).error(), shutting_down(), exhausted("later", 1)}) {
+        evaluate_contact(app_, {}).error(), shutting_down(),
+        exhausted(v1::ERROR_REASON_TOO_MANY_STREAMS, "later", 1)}) {
     const auto info = detail<google::rpc::ErrorInfo>(status);
     ASSERT_TRUE(info) << status.message();
-    EXPECT_EQ(info->domain(), "tribodyn");
-    EXPECT_FALSE(info->reason().empty());
+    EXPECT_EQ(info->domain(), kErrorDomain);
+    v1::ErrorReason reason = v1::ERROR_REASON_UNSPECIFIED;
+    EXPECT_TRUE(v1::ErrorReason_Parse("ERROR_REASON_" + info->reason(), &reason))
+        << info->reason() << " is not in the contract";
+    if (reason != v1::ERROR_REASON_SHUTTING_DOWN) {
+      EXPECT_FALSE(info->metadata().empty()) << status.message();
+    }
     EXPECT_NE(status.code(), google::rpc::OK);
     EXPECT_FALSE(status.message().empty());
   }
+}
+
+TEST_F(AppTest, MetadataHasTheVariablesOfAMessage) {
+  const auto metadata = [](const google::rpc::Status& status) {
+    const auto info = detail<google::rpc::ErrorInfo>(status).value_or(google::rpc::ErrorInfo());
+    std::map<std::string, std::string> out(info.metadata().begin(), info.metadata().end());
+    out["reason"] = info.reason();
+    return out;
+  };
+  using testing::IsSupersetOf;
+  using testing::Pair;
+  EXPECT_THAT(
+      metadata(get_simulation(app_, named<v1::GetSimulationRequest>("simulations/77")).error()),
+      testing::UnorderedElementsAre(Pair("reason", "NOT_FOUND"), Pair("name", "simulations/77")));
+  EXPECT_THAT(metadata(create_simulation(app_, {}).error()),
+              testing::UnorderedElementsAre(Pair("reason", "INVALID_FIELDS"),
+                                            Pair("field", "simulation"), Pair("violations", "1")));
+  v1::UpdateLubricantRequest stale;
+  stale.mutable_lubricant()->set_name("lubricants/1");
+  stale.mutable_lubricant()->set_etag("0123");
+  EXPECT_THAT(metadata(update_lubricant(app_, stale).error()),
+              testing::UnorderedElementsAre(Pair("reason", "ETAG_MISMATCH"),
+                                            Pair("name", "lubricants/1"), Pair("etag", "0123")));
+  EXPECT_THAT(metadata(exhausted(v1::ERROR_REASON_TOO_MANY_WAITING, "later", 0.25)),
+              testing::UnorderedElementsAre(Pair("reason", "TOO_MANY_WAITING"),
+                                            Pair("retry_seconds", "0.25")));
+  const std::string name = finished(point_simulation());
+  const auto without = read_history(app_, named<v1::ReadHistoryRequest>(name)).error();
+  EXPECT_THAT(metadata(without), testing::UnorderedElementsAre(Pair("reason", "NO_HISTORY"),
+                                                               Pair("name", name + "/history")));
+  const auto resource = detail<google::rpc::ResourceInfo>(without);
+  ASSERT_TRUE(resource);
+  EXPECT_EQ(resource->resource_type(), "tribodyn.v1.History");
+  EXPECT_EQ(resource->resource_name(), name + "/history");
 }
 
 TEST_F(AppTest, ResourcesAreReadAndListed) {
@@ -201,13 +242,27 @@ TEST_F(AppTest, SimulationsAreFoundByStateLubricantTimeAndLabel) {
   v1::PinSimulationRequest pin;
   pin.set_name(other);
   ASSERT_TRUE(pin_simulation(app_, pin).ok());
+  EXPECT_THAT(names("gear_set = A AND surface = run-in AND vehicle = passenger-car").size(), 3U);
+  EXPECT_THAT(names("gear_set = B"), ElementsAre());
+  EXPECT_THAT(names("gear_set != gearSets/B@1").size(), 3U);
+  EXPECT_THAT(names("end_time > 2020-01-01T00:00:00Z").size(), 3U);
+  EXPECT_THAT(names("end_time > 2199-01-01T00:00:00Z"), ElementsAre());
+  EXPECT_THAT(names("input_hash = " + bench_.get(curve).input_hash()), ElementsAre(curve));
+  v1::Simulation titled = point_simulation();
+  titled.set_display_name("Blend 7, hot");
+  const std::string hot = finished(titled);
+  EXPECT_THAT(names("display_name = \"Blend 7, hot\""), ElementsAre(hot));
+  EXPECT_THAT(names("display_name:blend"), ElementsAre(hot));
+  EXPECT_THAT(names("display_name != \"Blend 7, hot\"").size(), 3U);
+  EXPECT_THAT(names("display_name:x AND state = FAILED"), ElementsAre());
   EXPECT_THAT(names("pinned = true"), ElementsAre(other));
-  EXPECT_THAT(names("pinned = false"), ElementsAre(curve, axle));
-  EXPECT_EQ(names("create_time > 2020-01-01T00:00:00Z AND state != QUEUED").size(), 3U);
+  EXPECT_THAT(names("pinned = false"), ElementsAre(hot, curve, axle));
+  EXPECT_EQ(names("create_time > 2020-01-01T00:00:00Z AND state != QUEUED").size(), 4U);
   EXPECT_THAT(names("create_time > 2199-01-01T00:00:00Z"), ElementsAre());
   v1::ListSimulationsRequest bad;
-  for (const char* filter : {"state > FAILED", "stat = FAILED", "state = FAILD", "name = x",
-                             "pinned = maybe", "pinned > false"}) {
+  for (const char* filter :
+       {"state > FAILED", "stat = FAILED", "state = FAILD", "name = x", "pinned = maybe",
+        "pinned > false", "gear_set > A", "input_hash:a", "display_name > a"}) {
     bad.set_filter(filter);
     EXPECT_EQ(list_simulations(app_, bad).error().code(), google::rpc::INVALID_ARGUMENT) << filter;
   }
@@ -243,6 +298,67 @@ TEST_F(AppTest, AListOfFullViewsHasResultsAndEverySimulationOnce) {
   request.set_filter("state = SUCCEEDED");
   EXPECT_EQ(list_simulations(app_, request).error().code(), google::rpc::INVALID_ARGUMENT)
       << "a token belongs to its filter";
+}
+
+TEST_F(AppTest, AListTellsHowManyThereAreInAll) {
+  for (int i = 0; i < 5; ++i) finished(labelled(i < 3 ? "axle" : "other", 40 + i));
+  v1::ListSimulationsRequest request;
+  request.set_page_size(2);
+  EXPECT_EQ(list_simulations(app_, request).message().total_size(), 5);
+  request.set_filter("labels.project = axle");
+  auto page = list_simulations(app_, request).message();
+  EXPECT_EQ(page.simulations_size(), 2);
+  EXPECT_EQ(page.total_size(), 3);
+  request.set_page_token(page.next_page_token());
+  page = list_simulations(app_, request).message();
+  EXPECT_EQ(page.simulations_size(), 1);
+  EXPECT_EQ(page.total_size(), 3) << "of the whole list";
+  request.clear_page_token();
+  request.set_filter("labels.project = none");
+  EXPECT_EQ(list_simulations(app_, request).message().total_size(), 0);
+}
+
+TEST_F(AppTest, ASimulationIsRenamedAndLabelledAnew) {
+  const std::string name = finished(labelled("axle", 40));
+  const v1::Simulation before = bench_.get(name);
+  v1::UpdateSimulationRequest request;
+  request.mutable_simulation()->set_name(name);
+  request.mutable_simulation()->set_etag(before.etag());
+  request.mutable_simulation()->set_display_name("hot");
+  const auto renamed = update_simulation(app_, request);
+  ASSERT_TRUE(renamed.ok()) << complaints(renamed.error());
+  EXPECT_EQ(renamed.message().display_name(), "hot");
+  EXPECT_EQ(renamed.message().labels_size(), 1) << "an omitted mask leaves what is not stated";
+  EXPECT_NE(renamed.message().etag(), before.etag());
+  EXPECT_EQ(update_simulation(app_, request).error().code(), google::rpc::ABORTED);
+
+  v1::Simulation changed = bench_.get(name);
+  changed.clear_display_name();
+  changed.mutable_labels(0)->set_value("van");
+  *request.mutable_simulation() = changed;
+  request.mutable_update_mask()->add_paths("*");
+  ASSERT_TRUE(update_simulation(app_, request).ok());
+  const v1::Simulation after = bench_.get(name);
+  EXPECT_EQ(after.display_name(), "");
+  EXPECT_EQ(after.input_hash(), before.input_hash());
+  EXPECT_EQ(after.result().SerializeAsString(), before.result().SerializeAsString());
+  v1::ListSimulationsRequest list;
+  list.set_filter("labels.project = van");
+  EXPECT_EQ(list_simulations(app_, list).message().total_size(), 1);
+  list.set_filter("labels.project = axle");
+  EXPECT_EQ(list_simulations(app_, list).message().total_size(), 0);
+
+  request.mutable_simulation()->clear_etag();
+  request.mutable_update_mask()->set_paths(0, "lubricant");
+  EXPECT_THAT(complaints(update_simulation(app_, request).error()),
+              testing::HasSubstr("update_mask: \"lubricant\" cannot be changed; allowed: "
+                                 "display_name, labels"));
+  request.mutable_update_mask()->set_paths(0, "display_name");
+  request.mutable_simulation()->set_display_name(std::string(1000, 'x'));
+  EXPECT_THAT(complaints(update_simulation(app_, request).error()),
+              testing::HasSubstr("simulation.display_name: "));
+  request.mutable_simulation()->set_name("simulations/77");
+  EXPECT_EQ(update_simulation(app_, request).error().code(), google::rpc::NOT_FOUND);
 }
 
 TEST_F(AppTest, APinnedSimulationSurvivesExpiryAndDiskBudget) {
@@ -312,7 +428,7 @@ TEST_F(AppTest, AContactWithoutLoadIsAnswered) {
   request.set_load_newtons(0);
   const auto outcome = evaluate_contact(app_, request);
   ASSERT_TRUE(outcome.ok());
-  EXPECT_EQ(outcome.message().status(), "NO_LOAD");
+  EXPECT_EQ(outcome.message().status(), v1::CONTACT_STATUS_NO_LOAD);
   EXPECT_EQ(outcome.message().friction_newtons(), 0);
 }
 
@@ -363,29 +479,124 @@ TEST_F(AppTest, AHistoryIsReadAsASchemaAndChunks) {
   }
 }
 
-TEST_F(AppTest, TheSummaryOfTheLongestCurveIsSmall) {
+TEST_F(AppTest, TheViewAndNotTheSizeOfAResultDecidesWhatIsTold) {
   v1::Simulation simulation = curve_simulation();
   auto* curve = simulation.mutable_inefficiency_curve();
   curve->set_last_speed_kilometres_per_hour(119.9);
   curve->set_speed_step_kilometres_per_hour(0.1);
-  auto request = named<v1::GetSimulationRequest>(finished(simulation));
-  const auto summary = get_simulation(app_, request).message();
-  EXPECT_EQ(summary.result().points_size(), 1000);
-  EXPECT_TRUE(summary.result().is_abridged());
-  for (const v1::CurvePoint& point : summary.result().points()) {
-    ASSERT_FALSE(point.has_result()) << "its figures would read as zeros";
-    ASSERT_EQ(point.summary().inefficiency_rms_percent(), 1.5);
-    ASSERT_TRUE(point.summary().has_pinion_torque_newton_metres());
+  for (const std::string& name : {finished(simulation), finished(point_simulation())}) {
+    auto request = named<v1::GetSimulationRequest>(name);
+    const auto full = get_simulation(app_, request).message().result();
+    EXPECT_GT(full.assumptions_size(), 40);
+    for (const v1::CurvePoint& point : full.points()) {
+      ASSERT_TRUE(point.has_result());
+      ASSERT_FALSE(point.has_summary());
+    }
+    request.set_view(v1::SIMULATION_VIEW_FULL);
+    EXPECT_EQ(get_simulation(app_, request).message().result().SerializeAsString(),
+              full.SerializeAsString());
+    request.set_view(v1::SIMULATION_VIEW_SUMMARY);
+    const auto summary = get_simulation(app_, request).message().result();
+    EXPECT_EQ(summary.points_size(), full.points_size());
+    EXPECT_EQ(summary.assumptions_size(), 0);
+    EXPECT_EQ(summary.input_hash(), full.input_hash());
+    for (const v1::CurvePoint& point : summary.points()) {
+      ASSERT_FALSE(point.has_result()) << "its figures would read as zeros";
+      ASSERT_EQ(point.summary().inefficiency_rms_percent(), 1.5);
+      ASSERT_TRUE(point.summary().has_pinion_torque_newton_metres());
+    }
+    EXPECT_LT(summary.ByteSizeLong(), 65'536U);
+    request.set_view(v1::SIMULATION_VIEW_BASIC);
+    EXPECT_FALSE(get_simulation(app_, request).message().has_result());
   }
-  EXPECT_LT(summary.result().ByteSizeLong(), 65'536U);
-  request.set_view(v1::SIMULATION_VIEW_BASIC);
-  EXPECT_FALSE(get_simulation(app_, request).message().has_result());
-  request.set_view(v1::SIMULATION_VIEW_FULL);
-  const auto full = get_simulation(app_, request).message().result();
-  EXPECT_FALSE(full.is_abridged());
-  EXPECT_TRUE(full.points(999).has_result());
-  EXPECT_FALSE(full.points(999).has_summary());
-  EXPECT_GT(full.ByteSizeLong(), 65'536U);
+}
+
+/// Sets every field: numbers to what takes most bytes, lists to `elements` entries.
+void fill(google::protobuf::Message& message, int elements) {
+  using google::protobuf::FieldDescriptor;
+  const auto& reflection = *message.GetReflection();
+  const auto& descriptor = *message.GetDescriptor();
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const FieldDescriptor* field = descriptor.field(i);
+    if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      for (int k = 0; field->is_repeated() && k < elements; ++k) {
+        fill(*reflection.AddMessage(&message, field), elements);
+      }
+      if (!field->is_repeated()) fill(*reflection.MutableMessage(&message, field), elements);
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+      reflection.SetDouble(&message, field, 1.0 / 3);
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_INT32) {
+      reflection.SetInt32(&message, field, 1'000'000);
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_INT64) {
+      reflection.SetInt64(&message, field, 1'000'000'000);
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_BOOL) {
+      reflection.SetBool(&message, field, true);
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
+      reflection.SetEnumValue(&message, field, 1);
+    } else if (!field->is_repeated()) {
+      reflection.SetString(&message, field, std::string(200, 'x'));
+    }
+  }
+}
+
+TEST(SimulationViews, TheLongestCurveFitsIntoAnAnswerInFull) {
+  v1::CurvePoint point;
+  v1::PointResult& most = *point.mutable_result();
+  fill(most, 3);  // flanks
+  while (most.warnings_size() < 5) *most.add_warnings() = v1::RangeWarning(most.warnings(0));
+  while (most.contact_losses_size() < 20) {
+    *most.add_contact_losses() = v1::ContactLoss(most.contact_losses(0));
+  }
+  point.mutable_branch_end()->set_gone_at_kilometres_per_hour(1.0 / 3);
+  v1::SimulationResult result;
+  for (int i = 0; i < kMaximumCurvePoints; ++i) *result.add_points() = point;
+  EXPECT_LT(result.ByteSizeLong(), 4'000'000U) << "clients accept 4 MiB unless told otherwise";
+}
+
+TEST_F(AppTest, AReadMaskNamesTheFieldsOfAnAnswer) {
+  const std::string name = finished(curve_simulation());
+  auto request = named<v1::GetSimulationRequest>(name);
+  const v1::Simulation whole = get_simulation(app_, request).message();
+  request.mutable_read_mask()->add_paths("*");
+  EXPECT_EQ(get_simulation(app_, request).message().SerializeAsString(), whole.SerializeAsString());
+  request.mutable_read_mask()->set_paths(0, "state");
+  request.mutable_read_mask()->add_paths("result.points.result.inefficiency_rms_percent");
+  const v1::Simulation part = get_simulation(app_, request).message();
+  EXPECT_EQ(part.state(), v1::Simulation::SUCCEEDED);
+  EXPECT_EQ(part.name(), "");
+  EXPECT_EQ(part.result().assumptions_size(), 0);
+  ASSERT_EQ(part.result().points_size(), whole.result().points_size());
+  for (const v1::CurvePoint& point : part.result().points()) {
+    v1::CurvePoint expected;
+    expected.mutable_result()->set_inefficiency_rms_percent(1.5);
+    EXPECT_EQ(point.SerializeAsString(), expected.SerializeAsString());
+  }
+  request.mutable_read_mask()->add_paths("result.points.result");
+  EXPECT_EQ(get_simulation(app_, request).message().result().points(0).result().SerializeAsString(),
+            whole.result().points(0).result().SerializeAsString())
+      << "a field that is named whole stays whole";
+
+  v1::ListSimulationsRequest list;
+  EXPECT_FALSE(list_simulations(app_, list).message().simulations(0).has_result());
+  list.mutable_read_mask()->add_paths("name");
+  list.mutable_read_mask()->add_paths("result.input_hash");
+  const v1::Simulation listed = list_simulations(app_, list).message().simulations(0);
+  v1::Simulation expected;
+  expected.set_name(name);
+  expected.mutable_result()->set_input_hash(whole.result().input_hash());
+  EXPECT_EQ(listed.SerializeAsString(), expected.SerializeAsString());
+
+  for (const char* wrong : {"reslt", "result.points.speed", "name.x", "", ".", "result."}) {
+    request.mutable_read_mask()->set_paths(0, wrong);
+    const auto refused = get_simulation(app_, request);
+    ASSERT_FALSE(refused.ok()) << wrong;
+    EXPECT_EQ(refused.error().code(), google::rpc::INVALID_ARGUMENT);
+    EXPECT_THAT(complaints(refused.error()), testing::HasSubstr("read_mask: ")) << wrong;
+  }
+  request.clear_read_mask();
+  for (int i = 0; i < 5000; ++i) request.mutable_read_mask()->add_paths("name");
+  EXPECT_THAT(complaints(get_simulation(app_, request).error()),
+              testing::HasSubstr("read_mask: 5000 entries; allowed: at most 200"));
 }
 
 TEST_F(AppTest, ManyConcurrentReadersGetSmallerChunks) {

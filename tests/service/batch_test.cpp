@@ -44,7 +44,9 @@ class BatchTest : public testing::Test {
   static v1::BatchCreateLubricantsRequest many(int count) {
     std::vector<v1::Lubricant> fluids;
     for (int i = 0; i < count; ++i) fluids.push_back(fluid(numbered(i)));
-    return creation(fluids);
+    v1::BatchCreateLubricantsRequest batch = creation(fluids);
+    batch.mutable_read_mask()->add_paths("name");
+    return batch;
   }
   static v1::BatchUpdateLubricantsRequest update(const std::vector<v1::Lubricant>& fluids,
                                                  bool allow_missing = false) {
@@ -198,6 +200,7 @@ TEST_F(BatchTest, ABatchUpdateMakesRevisionsLikeASingleUpdate) {
 
 TEST_F(BatchTest, ValidateOnlyAnswersAsIfWrittenAndWritesNothing) {
   v1::BatchCreateLubricantsRequest batch = many(3);
+  batch.clear_read_mask();
   batch.set_validate_only(true);
   batch.mutable_requests(1)->set_validate_only(true);
   const auto checked = batch_create_lubricants(app_, batch);
@@ -240,7 +243,7 @@ TEST_F(BatchTest, ADeadlineInAnyPhaseWritesNothing) {
   EXPECT_EQ(count(), before_ + 1000);
 }
 
-TEST_F(BatchTest, TheSizeIsLimitedAndAVeryLargeAnswerIsBrief) {
+TEST_F(BatchTest, TheSizeIsLimited) {
   for (const int size : {0, kMaximumBatchSize + 1}) {
     v1::BatchCreateLubricantsRequest batch;
     for (int i = 0; i < size; ++i) batch.add_requests();
@@ -251,17 +254,46 @@ TEST_F(BatchTest, TheSizeIsLimitedAndAVeryLargeAnswerIsBrief) {
                 ElementsAre(StartsWith("requests: requests = " + std::to_string(size) +
                                        "; allowed: 1 to 20000")));
   }
-  const auto made = batch_create_lubricants(app_, many(2000));
+}
+
+TEST_F(BatchTest, TheReadMaskAndNotTheSizeDecidesWhatIsAnswered) {
+  v1::BatchCreateLubricantsRequest batch = many(2000);
+  batch.clear_read_mask();
+  const auto refused = batch_create_lubricants(app_, batch);
+  ASSERT_FALSE(refused.ok()) << "2000 whole fluids are more than clients accept";
+  expect_nothing_written(refused.error(), google::rpc::INVALID_ARGUMENT);
+  EXPECT_THAT(complaint_lines(refused.error()),
+              ElementsAre(testing::AllOf(StartsWith("read_mask: the answer would take 4"),
+                                         HasSubstr("allowed: at most 4000000"),
+                                         HasSubstr("read_mask = \"name,etag,revision\""))));
+
+  batch.mutable_read_mask()->add_paths("name");
+  batch.mutable_read_mask()->add_paths("etag");
+  batch.mutable_read_mask()->add_paths("revision");
+  const auto made = batch_create_lubricants(app_, batch);
   ASSERT_TRUE(made.ok()) << made.error().message();
-  EXPECT_TRUE(made.message().is_abridged());
-  EXPECT_EQ(made.message().lubricants_size(), 0) << "none with fields that read as unset";
-  ASSERT_EQ(made.message().written_size(), 2000);
-  EXPECT_LT(made.message().ByteSizeLong(), 1'000'000U) << "clients accept 4 MB by default";
+  ASSERT_EQ(made.message().lubricants_size(), 2000);
+  EXPECT_LT(made.message().ByteSizeLong(), 200'000U);
+  v1::Lubricant expected;
   const v1::Lubricant whole = get(numbered(1999));
-  EXPECT_EQ(made.message().written(1999).name(), whole.name());
-  EXPECT_EQ(made.message().written(1999).etag(), whole.etag());
-  EXPECT_EQ(made.message().written(1999).revision(), 1);
-  EXPECT_FALSE(batch_create_lubricants(app_, creation({fluid("x")})).message().is_abridged());
+  expected.set_name(whole.name());
+  expected.set_etag(whole.etag());
+  expected.set_revision(1);
+  EXPECT_EQ(made.message().lubricants(1999).SerializeAsString(), expected.SerializeAsString());
+
+  v1::BatchUpdateLubricantsRequest one = update({fluid(numbered(7))});
+  EXPECT_EQ(batch_update_lubricants(app_, one).message().lubricants(0).SerializeAsString(),
+            get(numbered(7)).SerializeAsString())
+      << "without a mask all of it";
+  one.mutable_read_mask()->add_paths("characterisation.viscosity_index");
+  const v1::Lubricant index = batch_update_lubricants(app_, one).message().lubricants(0);
+  EXPECT_GT(index.characterisation().viscosity_index(), 90);
+  EXPECT_EQ(index.name(), "");
+  one.mutable_read_mask()->add_paths("etga");
+  const auto unknown = batch_update_lubricants(app_, one);
+  ASSERT_FALSE(unknown.ok());
+  EXPECT_THAT(complaint_lines(unknown.error()),
+              ElementsAre("read_mask: \"etga\" is no field of Lubricant; did you mean \"etag\"?"));
 }
 
 TEST_F(BatchTest, ThousandsOfViolationsAreAnsweredInTime) {

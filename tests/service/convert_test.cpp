@@ -182,7 +182,7 @@ TEST(FromCore, EveryFieldOfASolvedContactIsConvertedOnce) {
   EXPECT_EQ(response.limiting_stress_switches(), 36);
   EXPECT_TRUE(response.limiting_stress_at_centre());
   EXPECT_EQ(response.thermal_roots(), 37);
-  EXPECT_EQ(response.status(), "OK");
+  EXPECT_EQ(response.status(), v1::CONTACT_STATUS_OK);
   EXPECT_EQ(response.model_version(), kModelVersion);
 }
 

@@ -121,7 +121,7 @@ TEST_F(GrpcTest, AContactIsEvaluated) {
   const grpc::Status status = v1::ContactService::NewStub(channel_)->EvaluateContact(
       &context, contact_request(), &response);
   ASSERT_TRUE(status.ok()) << status.error_message();
-  EXPECT_EQ(response.status(), "OK");
+  EXPECT_EQ(response.status(), v1::CONTACT_STATUS_OK);
   EXPECT_GT(response.friction_newtons(), 0);
   EXPECT_NEAR(response.film_load_newtons() + response.asperity_load_newtons(), 2000, 1e-6);
   EXPECT_FALSE(response.model_version().empty());

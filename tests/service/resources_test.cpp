@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <set>
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
@@ -278,6 +279,34 @@ TEST_F(ResourcesTest, AnUpdateWithoutAMaskLosesNothingThatItLeavesOut) {
   EXPECT_NE(replaced.message().pressure_viscosity_coefficient_per_pascal(), 2e-8) << "estimated";
 }
 
+TEST_F(ResourcesTest, AReadMaskNamesTheFieldsOfAnAnswer) {
+  v1::GetLubricantRequest request;
+  request.set_name("lubricants/1");
+  request.mutable_read_mask()->add_paths("display_name");
+  request.mutable_read_mask()->add_paths("provenance.field");
+  const v1::Lubricant whole = get("lubricants/1").message();
+  const auto part = get_lubricant(app_, request);
+  ASSERT_TRUE(part.ok()) << complaints(part.error());
+  EXPECT_EQ(part.message().display_name(), whole.display_name());
+  EXPECT_EQ(part.message().name(), "");
+  EXPECT_FALSE(part.message().has_characterisation());
+  ASSERT_EQ(part.message().provenance_size(), whole.provenance_size());
+  EXPECT_EQ(part.message().provenance(0).field(), whole.provenance(0).field());
+  EXPECT_EQ(part.message().provenance(0).source(), "");
+
+  v1::ListGearSetsRequest list;
+  list.mutable_read_mask()->add_paths("name");
+  const auto listed = list_gear_sets(app_, list);
+  ASSERT_TRUE(listed.ok());
+  ASSERT_GT(listed.message().gear_sets_size(), 1);
+  v1::GearSet name_alone;
+  name_alone.set_name(listed.message().gear_sets(0).name());
+  EXPECT_EQ(listed.message().gear_sets(0).SerializeAsString(), name_alone.SerializeAsString());
+  list.mutable_read_mask()->add_paths("dynamics.mass");
+  EXPECT_THAT(complaints(list_gear_sets(app_, list).error()),
+              HasSubstr("read_mask: \"mass\" is no field of DrivelineDynamics"));
+}
+
 TEST_F(ResourcesTest, ComputedParametersFollowTheirInputs) {
   const v1::Lubricant first = create(three_numbers(), "x").message();
   v1::Lubricant change = first;
@@ -333,6 +362,10 @@ TEST_F(ResourcesTest, ADeletedResourceIsHiddenAndCanBeUndeleted) {
   EXPECT_THAT(complaints(evaluate_contact(app_, contact).error()), HasSubstr("undelete"));
   EXPECT_TRUE(bench_.reaches(simulated, v1::Simulation::SUCCEEDED)) << "accepted before";
   ASSERT_TRUE(undelete("lubricants/x").ok());
+  const auto again = undelete("lubricants/x");
+  ASSERT_FALSE(again.ok());
+  EXPECT_EQ(again.error().code(), google::rpc::ALREADY_EXISTS) << "AIP-164";
+  EXPECT_EQ(again.error().message(), "lubricants/x is not deleted");
   EXPECT_THAT(ids(""), ElementsAre("1", "2", "3", "x"));
   EXPECT_FALSE(get("lubricants/x").message().has_delete_time());
 }
@@ -565,6 +598,35 @@ TEST_F(ResourcesTest, RefusesAMaskOfTooManyPaths) {
   EXPECT_EQ(refused.error().code(), google::rpc::INVALID_ARGUMENT);
   EXPECT_THAT(complaint_lines(refused.error()),
               testing::ElementsAre("update_mask: 5000 entries; allowed: at most 200"));
+}
+
+TEST_F(ListTest, ThePagesOfAListTellItsTotal) {
+  const auto totals = [&](const std::string& filter, const std::string& order = "") {
+    v1::ListLubricantsRequest request;
+    request.set_filter(filter);
+    request.set_order_by(order);
+    request.set_page_size(2);
+    std::set<int> out;
+    do {
+      const auto page = list_lubricants(app_, request);
+      EXPECT_TRUE(page.ok()) << complaints(page.error());
+      out.insert(page.message().total_size());
+      request.set_page_token(page.message().next_page_token());
+    } while (!request.page_token().empty());
+    return out;
+  };
+  EXPECT_THAT(totals(""), ElementsAre(8)) << "without what is deleted";
+  EXPECT_THAT(totals("condition = FRESH"), ElementsAre(3));
+  EXPECT_THAT(totals("condition != FRESH AND labels.project = gearbox", "lims_id desc"),
+              ElementsAre(4));
+  EXPECT_THAT(totals("labels.urgent:*"), ElementsAre(1));
+  EXPECT_THAT(totals("lims_id = none"), ElementsAre(0));
+  EXPECT_THAT(totals("", "kv40"), ElementsAre(8)) << "an order by computed figures reads all";
+  EXPECT_THAT(totals("kv40 > 1 AND condition = FRESH"), ElementsAre(-1)) << "not counted";
+  EXPECT_THAT(totals("kv40 > 1 AND labels.urgent:*"), ElementsAre(1));
+  v1::ListLubricantRevisionsRequest revisions;
+  revisions.set_name("lubricants/o1");
+  EXPECT_EQ(list_lubricant_revisions(app_, revisions).message().total_size(), 1);
 }
 
 TEST_F(ListTest, ACallEndsAtItsDeadlineAndHasChangedNothing) {

@@ -100,7 +100,8 @@ value). Put texts with blanks in double quotes. Numbers are in the unit of the f
 kv100 (mm2/s), vi, sae_grade and density (kg/m3, at 15 C) are the columns of a list of lubricants.
 Names may have their collection, states and classes may be in upper or lower case.
 `tribodyn schema` lists the fields under "lubricants.filter" and so on. Jobs have state, lubricant
-(1, or 1@2 for a revision), pinned (true or false), create_time and labels.
+(1, or 1@2 for a revision), gear_set, surface, vehicle, display_name, pinned (true or false),
+create_time, end_time, input_hash and labels.
 )"},
       {"configuration", "configuration file and environment",
        R"(Configuration

@@ -100,8 +100,9 @@ int run_list(const JobFlags& flags, const CommonOptions& options) {
   const auto list = options.connect().list_simulations(list_options);
   std::cout << jobs_text(list.resources, options.output_format, false);
   if (list.has_more) {
-    std::cerr << "More jobs exist. Use --limit N, or for the next page\n--page-token "
-              << list.next_page_token << "\n";
+    std::cerr << "These are " << list.resources.size() << " of " << list.total_size
+              << ". Use --limit N, or for the next page\n--page-token " << list.next_page_token
+              << "\n";
   }
   return kExitOk;
 }

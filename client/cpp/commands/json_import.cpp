@@ -106,11 +106,22 @@ JsonImport::JsonImport(const ResourceKind& kind, std::vector<FileResource> resou
   }
 }
 
-BatchWritten JsonImport::write(Connection& connection, bool replace, bool validate_only) const {
+bool JsonImport::is_large() const {
+  std::size_t bytes = 0;
+  for (const FileResource& each : resources_) bytes += each.resource->ByteSizeLong();
+  return resources_.size() > 200 || bytes > 1'000'000;
+}
+
+std::vector<ResourcePointer> JsonImport::write(Connection& connection, bool replace,
+                                               bool validate_only, bool names_alone) const {
   if (resources_.empty()) return {};
   std::vector<BatchEntry> batch;
   for (const FileResource& each : resources_) batch.push_back({each.resource.get(), each.fields});
-  return kind_.calls->write_all(connection, batch, replace, validate_only);
+  BatchOptions options;
+  options.validate_only = validate_only;
+  options.allow_missing = true;
+  if (names_alone) options.read_mask = {"name"};
+  return kind_.calls->write_all(connection, batch, replace, options);
 }
 
 JsonImport::Verdict JsonImport::verdict(const ServiceError& refusal) const {
@@ -144,12 +155,13 @@ JsonImport::Verdict JsonImport::verdict(const ServiceError& refusal) const {
   return out;
 }
 
-BatchWritten JsonImport::send(Connection& connection, bool replace, bool validate_only) const {
+std::vector<ResourcePointer> JsonImport::send(Connection& connection, bool replace,
+                                              bool validate_only, bool names_alone) const {
   if (!duplicates_.empty()) {
     throw Failure(kExitUsage, joined(check(connection).wrong, "\n") + "\n  Nothing was written.");
   }
   try {
-    return write(connection, replace, validate_only);
+    return write(connection, replace, validate_only, names_alone);
   } catch (const ServiceError& error) {
     if (error.kind() == ServiceError::Kind::kRefused) {
       const bool taken = error.reason() == "ALREADY_EXISTS";
@@ -168,7 +180,7 @@ BatchWritten JsonImport::send(Connection& connection, bool replace, bool validat
 JsonImport::Verdict JsonImport::check(Connection& connection) const {
   Verdict out;
   try {
-    write(connection, true, true);
+    write(connection, true, true, true);
     for (const FileResource& each : resources_) out.valid.push_back(each.origin);
   } catch (const ServiceError& error) {
     if (error.kind() != ServiceError::Kind::kRefused) throw;

@@ -17,9 +17,16 @@ class JsonImport {
   /// send() and check() reject two resources of the same name, together with all other errors.
   JsonImport(const ResourceKind& kind, std::vector<FileResource> resources, const std::string& id);
 
-  /// Writes all resources, or returns what would be written with `validate_only`. Throws Failure
-  /// that lists every error with its place in the files.
-  BatchWritten send(Connection& connection, bool replace, bool validate_only) const;
+  /// Writes all resources, or checks them with `validate_only`, and returns what was or would be
+  /// written; with `names_alone` only the names. Throws Failure that lists every error with its
+  /// place in the files.
+  std::vector<ResourcePointer> send(Connection& connection, bool replace, bool validate_only,
+                                    bool names_alone) const;
+
+  /// Whether all of them might not fit into one answer, which takes at most 4 MB: they are more
+  /// than 200, or take more than 1 MB. With what the server adds to a lubricant, 200 take 1 MB
+  /// more.
+  bool is_large() const;
 
   /// The errors, and the places in the files that are certainly valid.
   struct Verdict {
@@ -30,7 +37,8 @@ class JsonImport {
   Verdict check(Connection& connection) const;
 
  private:
-  BatchWritten write(Connection& connection, bool replace, bool validate_only) const;
+  std::vector<ResourcePointer> write(Connection& connection, bool replace, bool validate_only,
+                                     bool names_alone) const;
   Verdict verdict(const ServiceError& refusal) const;
 
   const ResourceKind& kind_;

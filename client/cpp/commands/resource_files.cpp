@@ -97,20 +97,6 @@ std::vector<FileResource> resources_of(Connection& connection, const ResourceKin
   return resources;
 }
 
-/// Reads the resources that the response to a batch omitted because of their size.
-void read_left_out(Connection& connection, const ResourceKind& kind, const ImportFlags& flags,
-                   BatchWritten& done) {
-  if (done.resources.size() == done.names.size()) return;
-  if (flags.validate_only) {
-    throw Failure(kExitFailed, "all " + std::to_string(done.names.size()) +
-                                   " are valid, but take more than 2 MB, which is too much for one "
-                                   "answer; check fewer at a time to see them");
-  }
-  for (const std::string& name : done.names) {
-    done.resources.push_back(kind.calls->get(connection, name));
-  }
-}
-
 /// Imports all resources or none.
 int import_resources(const ResourceKind& kind, const ImportFlags& flags,
                      const CommonOptions& options) {
@@ -124,24 +110,24 @@ int import_resources(const ResourceKind& kind, const ImportFlags& flags,
     throw Failure(kExitUsage, "--as-published applies to profiles: --profile is missing");
   }
   const JsonImport import(kind, std::move(resources), flags.id);
-  BatchWritten done = import.send(connection, flags.replace, flags.validate_only);
   const bool is_table = options.output_format == OutputFormat::kTable;
-  if (is_table && flags.validate_only && done.resources.empty()) {
-    for (const std::string& name : done.names) {
-      std::cout << "valid, not written: " << printable(name) << "\n";
-    }
-    return kExitOk;
+  // What is not written cannot be read afterwards.
+  const bool names_alone = import.is_large() && (is_table || !flags.validate_only);
+  std::vector<ResourcePointer> done =
+      import.send(connection, flags.replace, flags.validate_only, names_alone);
+  if (names_alone && !flags.validate_only) {
+    for (ResourcePointer& each : done)
+      each = kind.calls->get(connection, text_field(*each, "name"));
   }
-  read_left_out(connection, kind, flags, done);
   if (!is_table) {
-    std::cout << resources_text(kind, done.resources, options.output_format, false);
+    std::cout << resources_text(kind, done, options.output_format, false);
     return kExitOk;
   }
-  if (done.resources.size() == 1) {
-    show_written("imported", *done.resources.front(), flags.validate_only, options.output_format);
+  if (done.size() == 1) {
+    show_written("imported", *done.front(), flags.validate_only, options.output_format);
     return kExitOk;
   }
-  for (const ResourcePointer& each : done.resources) {
+  for (const ResourcePointer& each : done) {
     std::cout << (flags.validate_only ? "valid, not written: " : "imported ")
               << printable(text_field(*each, "name")) << "\n";
     if (const auto* lubricant = dynamic_cast<const v1::Lubricant*>(each.get())) {

@@ -31,7 +31,8 @@ int run_list(const ResourceKind& kind, const ListFlags& flags, const CommonOptio
   const ResourceList list = kind.calls->list(connection, list_options);
   std::cout << resources_text(kind, list.resources, options.output_format, false);
   if (!list.next_page_token.empty()) {
-    std::cerr << "There are more than " << flags.limit
+    std::cerr << "These are " << list.resources.size() << " of "
+              << (list.total_size < 0 ? "more" : std::to_string(list.total_size))
               << ". Use --limit N (0 lists all), or for the next page\n--page-token "
               << list.next_page_token << "\n";
   }

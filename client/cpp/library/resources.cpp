@@ -66,6 +66,7 @@ Listing<Resource> all_pages(Request request, int limit, const Call& call) {
     const auto page = call(request);
     const auto& parts = Methods<Resource>::parts(page);
     all.resources.insert(all.resources.end(), parts.begin(), parts.end());
+    all.total_size = page.total_size();
     request.set_page_token(page.next_page_token());
   } while (!request.page_token().empty() &&
            (limit == 0 || static_cast<int>(all.resources.size()) < limit));
@@ -74,10 +75,16 @@ Listing<Resource> all_pages(Request request, int limit, const Call& call) {
   return all;
 }
 
+template <class Batch>
+void set_options(const BatchOptions& options, Batch& batch) {
+  batch.set_validate_only(options.validate_only);
+  for (const std::string& path : options.read_mask) batch.mutable_read_mask()->add_paths(path);
+}
+
 template <class Resource, class Response>
-BatchResult<Resource> batch_result(const Response& response) {
+std::vector<Resource> resources_of(const Response& response) {
   const auto& parts = Methods<Resource>::parts(response);
-  return {{response.written().begin(), response.written().end()}, {parts.begin(), parts.end()}};
+  return {parts.begin(), parts.end()};
 }
 
 }  // namespace
@@ -125,30 +132,28 @@ Resource Connection::update(const Resource& resource, const UpdateOptions& optio
 }
 
 template <class Resource>
-BatchResult<Resource> Connection::create_all(const std::vector<Resource>& resources,
-                                             bool validate_only) {
+std::vector<Resource> Connection::create_all(const std::vector<Resource>& resources,
+                                             const BatchOptions& options) {
   typename Methods<Resource>::BatchCreate batch;
   for (const Resource& each : resources) Methods<Resource>::part(*batch.add_requests()) = each;
-  batch.set_validate_only(validate_only);
-  const auto response =
-      services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kBatchCreate, batch);
-  return batch_result<Resource>(response);
+  set_options(options, batch);
+  return resources_of<Resource>(
+      services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kBatchCreate, batch));
 }
 
 template <class Resource>
-BatchResult<Resource> Connection::update_all(const std::vector<ResourceUpdate<Resource>>& updates,
-                                             bool allow_missing, bool validate_only) {
+std::vector<Resource> Connection::update_all(const std::vector<ResourceUpdate<Resource>>& updates,
+                                             const BatchOptions& options) {
   typename Methods<Resource>::BatchUpdate batch;
   for (const ResourceUpdate<Resource>& each : updates) {
     auto& request = *batch.add_requests();
     Methods<Resource>::part(request) = each.resource;
     for (const std::string& path : each.update_mask) request.mutable_update_mask()->add_paths(path);
-    request.set_allow_missing(allow_missing);
+    request.set_allow_missing(options.allow_missing);
   }
-  batch.set_validate_only(validate_only);
-  const auto response =
-      services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kBatchUpdate, batch);
-  return batch_result<Resource>(response);
+  set_options(options, batch);
+  return resources_of<Resource>(
+      services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kBatchUpdate, batch));
 }
 
 template <class Resource>
@@ -183,10 +188,10 @@ Resource Connection::undelete(const std::string& name, const std::string& etag) 
   template v1::Resource Connection::get(const std::string&);                                  \
   template Listing<v1::Resource> Connection::list(const ListOptions&);                        \
   template v1::Resource Connection::update(const v1::Resource&, const UpdateOptions&);        \
-  template BatchResult<v1::Resource> Connection::create_all(const std::vector<v1::Resource>&, \
-                                                            bool);                            \
-  template BatchResult<v1::Resource> Connection::update_all(                                  \
-      const std::vector<ResourceUpdate<v1::Resource>>&, bool, bool);                          \
+  template std::vector<v1::Resource> Connection::create_all(const std::vector<v1::Resource>&, \
+                                                            const BatchOptions&);             \
+  template std::vector<v1::Resource> Connection::update_all(                                  \
+      const std::vector<ResourceUpdate<v1::Resource>>&, const BatchOptions&);                 \
   template Listing<v1::Resource> Connection::revisions(const std::string&, int);              \
   template v1::Resource Connection::remove(const std::string&, const std::string&);           \
   template v1::Resource Connection::undelete(const std::string&, const std::string&)

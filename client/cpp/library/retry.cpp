@@ -41,8 +41,8 @@ std::optional<Detail> detail(const grpc::Status& status) {
 }  // namespace
 
 bool may_repeat(const Message& request) {
-  static constexpr std::array<std::string_view, 6> kRepeatable = {"Get",    "List",     "Evaluate",
-                                                                  "Cancel", "Undelete", "Delete"};
+  static constexpr std::array<std::string_view, 5> kRepeatable = {"Get", "List", "Evaluate",
+                                                                  "Cancel", "Delete"};
   const std::string& name = request.GetDescriptor()->name();
   return std::any_of(kRepeatable.begin(), kRepeatable.end(),
                      [&](std::string_view each) { return name.starts_with(each); }) ||
@@ -51,7 +51,9 @@ bool may_repeat(const Message& request) {
 
 bool was_turned_away(const grpc::Status& status) {
   const auto info = detail<google::rpc::ErrorInfo>(status);
-  return info && (info->reason() == "SHUTTING_DOWN" || info->reason() == "TOO_MANY_WAITING");
+  static constexpr std::array<std::string_view, 4> kReasons = {
+      "SHUTTING_DOWN", "TOO_MANY_WAITING", "TOO_MANY_STREAMS", "TOO_MANY_LARGE_REQUESTS"};
+  return info && std::find(kReasons.begin(), kReasons.end(), info->reason()) != kReasons.end();
 }
 
 std::optional<milliseconds> retry_delay(const grpc::Status& status) {

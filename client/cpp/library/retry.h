@@ -12,11 +12,11 @@ namespace tribodyn::client {
 
 /// Whether a request may be sent again when the fate of the first try is unknown: it reads, checks,
 /// or has the same effect however often it is carried out (cancel, delete, and create with a
-/// request_id).
+/// request_id). A second undelete is refused.
 bool may_repeat(const google::protobuf::Message& request);
 
 /// Whether the status guarantees that the request had no effect and may succeed later: the server
-/// shuts down or its queue is full.
+/// shuts down, or too many simulations wait, streams are open or large requests are worked on.
 bool was_turned_away(const grpc::Status& status);
 
 /// Returns the pause that the server requests; nullopt if it requests none.

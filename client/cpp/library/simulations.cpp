@@ -84,6 +84,7 @@ Listing<v1::Simulation> Connection::list_simulations(const ListOptions& options)
     const auto page = services_->call(*services_->simulations,
                                       &v1::SimulationService::Stub::ListSimulations, request);
     all.resources.insert(all.resources.end(), page.simulations().begin(), page.simulations().end());
+    all.total_size = page.total_size();
     request.set_page_token(page.next_page_token());
   } while (!request.page_token().empty() &&
            (limit == 0 || static_cast<int>(all.resources.size()) < limit));

@@ -91,7 +91,8 @@ std::string contact_report(const v1::EvaluateContactResponse& contact) {
   Sheet sheet;
   add_input_warnings(contact.input_warnings(), sheet);
   text +=
-      "\nstatus " + printable(contact.status()) +
+      std::string("\nstatus ") +
+      (contact.status() == v1::CONTACT_STATUS_NO_LOAD ? "NO_LOAD" : "OK") +
       "; limiting stress at the centre: " + (contact.limiting_stress_at_centre() ? "yes" : "no") +
       " (" + std::to_string(contact.limiting_stress_switches()) +
       " switches); thermal roots: " + std::to_string(contact.thermal_roots()) + "\nmodel version " +

@@ -28,25 +28,20 @@ class TypedCalls final : public ResourceCalls {
                          const UpdateOptions& options) const override {
     return own(connection.update(typed(resource), options));
   }
-  BatchWritten write_all(Connection& connection, const std::vector<BatchEntry>& batch, bool replace,
-                         bool validate_only) const override {
-    BatchResult<Resource> result;
+  std::vector<ResourcePointer> write_all(Connection& connection,
+                                         const std::vector<BatchEntry>& batch, bool replace,
+                                         const BatchOptions& options) const override {
     if (replace) {
       std::vector<ResourceUpdate<Resource>> updates;
       for (const BatchEntry& each : batch) {
         updates.push_back({typed(*each.resource),
                            each.fields.empty() ? std::vector<std::string>{"*"} : each.fields});
       }
-      result = connection.update_all(updates, true, validate_only);
-    } else {
-      std::vector<Resource> resources;
-      for (const BatchEntry& each : batch) resources.push_back(typed(*each.resource));
-      result = connection.create_all(resources, validate_only);
+      return own_each(connection.update_all(updates, options));
     }
-    BatchWritten out;
-    for (const v1::WrittenResource& each : result.written) out.names.push_back(each.name());
-    out.resources = own_each(std::move(result.resources));
-    return out;
+    std::vector<Resource> resources;
+    for (const BatchEntry& each : batch) resources.push_back(typed(*each.resource));
+    return own_each(connection.create_all(resources, options));
   }
   ResourceList revisions(Connection& connection, const std::string& name,
                          int limit) const override {
@@ -74,7 +69,8 @@ class TypedCalls final : public ResourceCalls {
     return out;
   }
   static ResourceList own_all(Listing<Resource>&& listing) {
-    return {own_each(std::move(listing.resources)), std::move(listing.next_page_token)};
+    return {own_each(std::move(listing.resources)), std::move(listing.next_page_token),
+            listing.total_size};
   }
 };
 

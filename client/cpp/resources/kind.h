@@ -23,13 +23,7 @@ struct BatchEntry {
 struct ResourceList {
   std::vector<ResourcePointer> resources;
   std::string next_page_token;  ///< empty: this is the last page
-};
-
-/// The result of a batch, in the order of its request.
-struct BatchWritten {
-  std::vector<std::string> names;
-  std::vector<ResourcePointer>
-      resources;  ///< empty if one response cannot hold all, see BatchResult
+  int total_size = 0;           ///< of the whole list; -1: not counted
 };
 
 /// The calls of Connection for resources whose kind is known only at run time. Every message passed
@@ -43,9 +37,11 @@ class ResourceCalls {
   virtual ResourceList list(Connection& connection, const ListOptions& options) const = 0;
   virtual ResourcePointer update(Connection& connection, const google::protobuf::Message& resource,
                                  const UpdateOptions& options) const = 0;
-  /// Writes all resources or none; `replace` updates those that exist.
-  virtual BatchWritten write_all(Connection& connection, const std::vector<BatchEntry>& batch,
-                                 bool replace, bool validate_only) const = 0;
+  /// Writes all resources or none and returns them in their order; `replace` updates those that
+  /// exist and creates the others.
+  virtual std::vector<ResourcePointer> write_all(Connection& connection,
+                                                 const std::vector<BatchEntry>& batch, bool replace,
+                                                 const BatchOptions& options) const = 0;
   virtual ResourceList revisions(Connection& connection, const std::string& name,
                                  int limit) const = 0;
   virtual ResourcePointer remove(Connection& connection, const std::string& name,

@@ -1,13 +1,25 @@
 #include "server/transport/grpc/live_streams.h"
 
+#include <fmt/format.h>
+
 #include "server/application/errors.h"
 
 namespace tribodyn::server {
+namespace {
+
+constexpr double kRetrySeconds = 10;
+
+}  // namespace
 
 std::optional<google::rpc::Status> LiveStreams::add(const std::shared_ptr<LiveStream>& stream) {
   const std::lock_guard lock(mutex_);
   if (closed_) return shutting_down();
-  if (streams_.size() >= maximum_) return exhausted("too many streams are open", 10);
+  if (streams_.size() >= maximum_) {
+    return exhausted(v1::ERROR_REASON_TOO_MANY_STREAMS,
+                     fmt::format("{} streams are open, which is the limit; try again in {} s",
+                                 maximum_, kRetrySeconds),
+                     kRetrySeconds);
+  }
   streams_[stream.get()] = stream;
   return std::nullopt;
 }

@@ -104,7 +104,8 @@ void finish(const UnaryMethod& method, Serving& serving, const Context& context,
     if (call.limits.are_over()) return call_over(call.limits);
     const auto lease = serving.budget.take(request.Length());
     if (!lease) {
-      return exhausted("other large requests are being worked on; try again in 2 s", kBusySeconds);
+      return exhausted(v1::ERROR_REASON_TOO_MANY_LARGE_REQUESTS,
+                       "other large requests are being worked on; try again in 2 s", kBusySeconds);
     }
     return method.answer(request, call);
   });
@@ -294,6 +295,7 @@ std::unique_ptr<grpc::Service> simulations(const std::shared_ptr<Serving>& servi
   bind.unary("GetSimulation", get_simulation);
   bind.unary("ListSimulations", list_simulations);
   bind.unary("CancelSimulation", cancel_simulation, Thread::kOfAWorker);
+  bind.unary("UpdateSimulation", update_simulation, Thread::kOfAWorker);
   bind.unary("PinSimulation", pin_simulation);
   bind.unary("UnpinSimulation", unpin_simulation);
   bind.stream("WatchSimulation", watch_simulation);

@@ -99,12 +99,14 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
       const std::lock_guard lock(mutex_);
       writing_since_.reset();
     }
-    if (!ok) return finish(error(google::rpc::CANCELLED, "CANCELLED", "the client is gone"));
+    if (!ok)
+      return finish(
+          error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client is gone"));
     send_next();
   }
 
   void OnCancel() override {
-    close(error(google::rpc::CANCELLED, "CANCELLED", "the client cancelled"));
+    close(error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client cancelled"));
   }
 
   void OnDone() override {

@@ -11,8 +11,9 @@ constexpr std::size_t kLongestName = 200;
 class Refusal final : public grpc::ServerGenericBidiReactor {
  public:
   explicit Refusal(const std::string& method) {
-    Finish(to_grpc(error(google::rpc::UNIMPLEMENTED, "UNKNOWN_METHOD",
-                         "no such method: " + method.substr(0, kLongestName))));
+    Finish(to_grpc(error(google::rpc::UNIMPLEMENTED, v1::ERROR_REASON_UNKNOWN_METHOD,
+                         "no such method: " + method.substr(0, kLongestName),
+                         {{"method", method.substr(0, kLongestName)}})));
   }
   void OnDone() override { delete this; }
 };

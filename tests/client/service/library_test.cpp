@@ -111,11 +111,16 @@ TEST_F(Library, ABatchWritesAllResourcesOrNone) {
   fluids[0].set_name("lubricants/batch-drained");
   fluids[0].set_derived_from("lubricants/batch-filled");
   fluids[1].set_name("lubricants/batch-filled");
-  EXPECT_EQ(connection.create_all(fluids, true).resources.size(), 2U);
-  const auto result = connection.create_all(fluids);
-  const std::vector<v1::Lubricant>& created = result.resources;
+  BatchOptions check;
+  check.validate_only = true;
+  check.read_mask = {"name"};
+  const auto checked = connection.create_all(fluids, check);
+  ASSERT_EQ(checked.size(), 2U);
+  EXPECT_EQ(checked[1].name(), "lubricants/batch-filled");
+  EXPECT_FALSE(checked[1].has_characterisation()) << "not asked for";
+  const std::vector<v1::Lubricant> created = connection.create_all(fluids);
   ASSERT_EQ(created.size(), 2U);
-  EXPECT_EQ(result.written[1].name(), "lubricants/batch-filled");
+  EXPECT_EQ(created[1].name(), "lubricants/batch-filled");
   EXPECT_EQ(created[0].name(), "lubricants/batch-drained");
   EXPECT_NEAR(created[1].characterisation().viscosity_index(), 92, 0.5);
 
@@ -131,10 +136,12 @@ TEST_F(Library, ABatchWritesAllResourcesOrNone) {
   EXPECT_EQ(connection.get<v1::Lubricant>(renamed.name()).revision(), 1);
   v1::Lubricant other = data_sheet();
   other.set_name("lubricants/batch-new");
+  BatchOptions options;
+  options.allow_missing = true;
   const auto updated =
-      connection.update_all<v1::Lubricant>({{renamed, {"display_name"}}, {other, {}}}, true);
-  EXPECT_EQ(updated.written[0].revision(), 2);
-  EXPECT_EQ(updated.written[1].revision(), 1);
+      connection.update_all<v1::Lubricant>({{renamed, {"display_name"}}, {other, {}}}, options);
+  EXPECT_EQ(updated[0].revision(), 2);
+  EXPECT_EQ(updated[1].revision(), 1);
 }
 
 TEST_F(Library, AllViolationsAreReportedAtOnce) {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "tribodyn/client/error.h"
-#include "tribodyn/v1/batches.pb.h"
 #include "tribodyn/v1/contacts.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
@@ -43,7 +42,8 @@ struct ListOptions {
 template <class Resource>
 struct Listing {
   std::vector<Resource> resources;
-  bool has_more = false;             ///< `limit` was reached and more exist
+  bool has_more = false;  ///< `limit` was reached and more exist
+  int total_size = 0;     ///< of the whole list when its first page was read; -1: not counted
   std::string next_page_token = {};  ///< token of the next page; empty if there is none
 };
 
@@ -54,13 +54,13 @@ struct ResourceUpdate {
   std::vector<std::string> update_mask;  ///< as in UpdateOptions
 };
 
-/// The result of a batch, in the order of its request.
-template <class Resource>
-struct BatchResult {
-  std::vector<v1::WrittenResource> written;
-  /// Empty if `written` is not: the resources take more than 2 MB together. Read them with get() or
-  /// list().
-  std::vector<Resource> resources;
+/// Options of a batch.
+struct BatchOptions {
+  bool validate_only = false;  ///< check everything, write nothing
+  bool allow_missing = false;  ///< of updates: create those that are not there
+  /// Fields of the resources to return, e.g. {"name", "etag"}; empty: all. An answer takes at most
+  /// 4 MB: a batch whose answer would take more is refused, and nothing is written.
+  std::vector<std::string> read_mask = {};
 };
 
 /// Options of an update.
@@ -125,14 +125,14 @@ class Connection {
   Resource update(const Resource& resource, const UpdateOptions& options = {});
   // A batch writes all of its resources or none. One of them may be derived from another, in any
   // order.
-  /// Creates resources under the ids in their names.
+  /// Creates resources under the ids in their names and returns them in their order.
   template <class Resource>
-  BatchResult<Resource> create_all(const std::vector<Resource>& resources,
-                                   bool validate_only = false);
-  /// Updates each resource as update() does; with `allow_missing` creates those that do not exist.
+  std::vector<Resource> create_all(const std::vector<Resource>& resources,
+                                   const BatchOptions& options = {});
+  /// Updates each resource as update() does and returns them in their order.
   template <class Resource>
-  BatchResult<Resource> update_all(const std::vector<ResourceUpdate<Resource>>& updates,
-                                   bool allow_missing = false, bool validate_only = false);
+  std::vector<Resource> update_all(const std::vector<ResourceUpdate<Resource>>& updates,
+                                   const BatchOptions& options = {});
   /// Returns the revisions, newest first; limit 0: all.
   template <class Resource>
   Listing<Resource> revisions(const std::string& name, int limit = 0);
@@ -156,8 +156,8 @@ class Connection {
                                    const CreateOptions& options = {});
   v1::Simulation get_simulation(const std::string& name);
   v1::Simulation cancel_simulation(const std::string& name);
-  /// Lists simulations without results, newest first unless options.order_by is set. Filters by
-  /// state, lubricant, create_time and labels.
+  /// Lists simulations without results, newest first unless options.order_by is set. Filters as in
+  /// ListSimulationsRequest.
   Listing<v1::Simulation> list_simulations(const ListOptions& options = {});
   /// Pin or unpin a simulation: a pinned one neither expires nor is evicted.
   v1::Simulation pin_simulation(const std::string& name);

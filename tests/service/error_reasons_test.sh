@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# Every reason that the sources of core and server give is a value of ErrorReason in the contract,
+# and every value is given somewhere.
+set -euo pipefail
+cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
+listed=$(grep -oE '^  ERROR_REASON_[A-Z0-9_]+' proto/tribodyn/v1/errors.proto | sed 's/ *ERROR_REASON_//' | sort)
+sources=$(find core server -name '*.cpp' -o -name '*.h')
+# Texts: of a Refusal, of a status of a contact, of a change of state; and values of the enum.
+given=$({
+  # shellcheck disable=SC2086
+  cat $sources | tr '\n' ' ' |
+    grep -oE '(Refusal[({]|mark_failed\(id, clock_\(\),|mark_queued\(id, clock_\(\),|fail\(id, stop,|reason = ) *"[A-Z0-9_]+"' |
+    grep -oE '"[A-Z0-9_]+"' | tr -d '"'
+  sed -n '/^const char\* contact_status_name/,/^}/p' core/contact/flank_contact.cpp |
+    grep -oE '"[A-Z0-9_]+"' | tr -d '"' | grep -vxE 'OK|NO_LOAD|UNKNOWN'
+  # shellcheck disable=SC2086
+  cat $sources | grep -oE 'ERROR_REASON_[A-Z0-9_]+' | sed 's/ERROR_REASON_//'
+} | grep -v '^$' | sort -u)
+unlisted=$(comm -13 <(echo "$listed") <(echo "$given"))
+[ -z "$unlisted" ] || { echo "proto/tribodyn/v1/errors.proto lacks:" "$unlisted"; exit 1; }
+unused=$(comm -23 <(echo "$listed") <(echo "$given") | grep -vx UNSPECIFIED || true)
+[ -z "$unused" ] || { echo "no source gives:" "$unused"; exit 1; }
