@@ -1,5 +1,6 @@
 #include "server/application/contacts.h"
 
+#include "server/application/errors.h"
 #include "server/application/guard.h"
 #include "server/simulation/contact_inputs.h"
 #include "server/storage/resource_lookup.h"

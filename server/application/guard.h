@@ -1,40 +1,21 @@
 #pragma once
 
-#include <spdlog/spdlog.h>
-
-#include <exception>
-#include <new>
-
-#include "core/refusal.h"
-#include "server/application/errors.h"
+#include "google/rpc/status.pb.h"
 #include "server/application/outcome.h"
-#include "server/storage/store_error.h"
 
 namespace tribodyn::server {
 
-/// Whether the caller, and not the database, is why a call of the store failed.
-inline bool is_of_the_caller(const StoreError& failure) {
-  return failure.kind() == StoreError::Kind::kDeadline ||
-         failure.kind() == StoreError::Kind::kCancelled;
-}
+/// The error that a client is told of the exception that is being handled. Logs failures of the
+/// database and defects; of an unexpected exception only what().
+google::rpc::Status error_of_exception();
 
-/// Runs the body of an RPC and turns every exception into an error. Of an unexpected exception only
-/// what() is logged.
+/// Runs the body of an RPC and turns every exception into an error.
 template <class Message, class Body>
 Outcome<Message> guarded(const Body& body) {
   try {
     return body();
-  } catch (const Refusal& refusal) {
-    return refused(refusal);
-  } catch (const StoreError& failure) {
-    if (!is_of_the_caller(failure)) spdlog::error("{}", failure.what());
-    return store_failed(failure);
-  } catch (const std::bad_alloc&) {
-    return out_of_memory();
-  } catch (const std::exception& defect) {
-    return internal_error(defect.what());
   } catch (...) {
-    return internal_error("an exception of unknown type");
+    return error_of_exception();
   }
 }
 

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <atomic>
@@ -8,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "server/application/errors.h"
 #include "server/application/guard.h"
 #include "server/application/simulation_lookup.h"
 #include "server/application/streams.h"
@@ -61,8 +61,9 @@ class OpenHistory {
 class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
  public:
   HistorySource(Application& application, std::string name, HistoryShape shape, Window window,
-                const v1::SimulationResult& result)
+                const v1::SimulationResult& result, const CallContext& call)
       : store_(application.store),
+        limits_{.cancelled = call.limits.cancelled},
         name_(std::move(name)),
         open_(application.open_histories),
         shape_(std::move(shape)),
@@ -83,17 +84,11 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
     }
     if (next_row_ >= rows_) return Step::kEnd;
     if (column_ == 0) run_ = std::min(open_.chunk_values(), rows_ - next_row_);
-    try {
-      const std::vector<double> values = read(shape_.columns[window_.columns[column_]]);
-      v1::HistoryChunk& chunk = *out.mutable_chunk();
-      chunk.set_column(static_cast<int>(column_));
-      chunk.set_first_row(next_row_);
-      chunk.set_values(values.data(), values.size() * sizeof(double));
-    } catch (const StoreError& failure) {
-      spdlog::error("{}", failure.what());
-      error_ = store_failed(failure);
-      return Step::kEnd;
-    }
+    const std::vector<double> values = read(shape_.columns[window_.columns[column_]]);
+    v1::HistoryChunk& chunk = *out.mutable_chunk();
+    chunk.set_column(static_cast<int>(column_));
+    chunk.set_first_row(next_row_);
+    chunk.set_values(values.data(), values.size() * sizeof(double));
     if (error_.code() != 0) return Step::kEnd;
     if (++column_ == window_.columns.size()) {
       column_ = 0;
@@ -122,7 +117,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
   std::vector<double> read(std::int64_t column) {
     const auto level = [&](int which, std::int64_t start, std::int64_t count) {
       std::vector<double> values(static_cast<std::size_t>(count));
-      if (!store_.read_history(column, which, start, values)) {
+      if (!store_.read_history(column, which, start, values, limits_)) {
         error_ = not_found(kHistoryType, history_name(name_),
                            "the history of " + name_ + " has been evicted",
                            v1::ERROR_REASON_HISTORY_EVICTED);
@@ -134,7 +129,8 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
   }
 
   Store& store_;
-  const std::string name_;  // of the simulation
+  const CallLimits limits_;  // the end of the stream is its transport's
+  const std::string name_;   // of the simulation
   const OpenHistory open_;
   const HistoryShape shape_;
   const Window window_;
@@ -235,7 +231,7 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
     v1::SimulationResult result;
     result.ParseFromString(application.store.result(stored.id, call.limits).value_or(""));
     return Source(std::make_shared<HistorySource>(application, request.name(), std::move(shape),
-                                                  std::move(*rows), result));
+                                                  std::move(*rows), result, call));
   });
 }
 

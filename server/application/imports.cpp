@@ -1,5 +1,6 @@
 #include "server/application/imports.h"
 
+#include "server/application/guard.h"
 #include "server/application/resource_writes.h"
 #include "server/resources/imports/import_gear_set.h"
 #include "server/resources/imports/import_lubricant.h"

@@ -1,46 +1,53 @@
 #pragma once
 
-#include <exception>
+#include <google/protobuf/message.h>
+
 #include <memory>
-#include <new>
 
 #include "google/rpc/status.pb.h"
-#include "server/application/errors.h"
+#include "server/application/guard.h"
 #include "server/scheduling/progress_board.h"
 
 namespace tribodyn::server {
 
 /// The messages of a server stream, pulled one by one so that a slow reader holds up nobody and
 /// nothing piles up. Not safe for concurrent access.
-template <class Message>
-class MessageSource {
+class AnyMessageSource {
  public:
   enum class Step {
     kMessage,  ///< `out` is the next message
     kWait,     ///< nothing yet; the observer is told when to ask again
     kEnd,      ///< no more; error() says whether that is well
   };
-  virtual ~MessageSource() = default;
-  virtual Step next(Message& out) = 0;
-  /// Starts telling the observer. Called once, before `next`.
+  virtual ~AnyMessageSource() = default;
+  /// `out` must be of the type of the source.
+  virtual Step next_message(google::protobuf::Message& out) = 0;
+  /// Starts telling the observer. Called once, before `next_message`.
   virtual void observe(const std::weak_ptr<ProgressObserver>&) {}
   /// OK (code 0) or why the stream broke off.
   virtual google::rpc::Status error() const { return {}; }
 };
 
-/// The next step of a source. A failure ends the stream: `end` says how it ended.
+/// A source of messages of one type.
 template <class Message>
-typename MessageSource<Message>::Step next_step(MessageSource<Message>& source, Message& out,
-                                                google::rpc::Status& end) {
-  using Step = typename MessageSource<Message>::Step;
+class MessageSource : public AnyMessageSource {
+ public:
+  Step next_message(google::protobuf::Message& out) final {
+    return next(static_cast<Message&>(out));
+  }
+  virtual Step next(Message& out) = 0;
+};
+
+/// The next step of a source. A failure ends the stream: `end` says how it ended.
+inline AnyMessageSource::Step next_step(AnyMessageSource& source, google::protobuf::Message& out,
+                                        google::rpc::Status& end) {
+  using Step = AnyMessageSource::Step;
   try {
-    const Step step = source.next(out);
+    const Step step = source.next_message(out);
     if (step == Step::kEnd) end = source.error();
     return step;
-  } catch (const std::bad_alloc&) {
-    end = out_of_memory();
-  } catch (const std::exception& defect) {
-    end = internal_error(defect.what());
+  } catch (...) {
+    end = error_of_exception();
   }
   return Step::kEnd;
 }

@@ -9,7 +9,7 @@
 #include "server/application/application.h"
 #include "server/application/call_context.h"
 #include "server/application/computed_fields.h"
-#include "server/application/guard.h"
+#include "server/application/errors.h"
 #include "server/application/list_filter.h"
 #include "server/application/outcome.h"
 #include "server/application/page_token.h"
@@ -23,7 +23,7 @@
 namespace tribodyn::server {
 
 // The standard methods that read or delete, for every kind of resource alike; resource_writes.h has
-// the others. Bodies of RPCs: run inside `guarded`.
+// the others. They throw; the dispatcher guards them.
 
 inline constexpr int kDefaultResourcePageSize = 100;
 inline constexpr int kUpdateAttempts = 10;  ///< against other writers
@@ -162,6 +162,18 @@ Outcome<Resource> set_deleted(Application& application, const Request& request, 
   return contention<Resource>(request.name());
 }
 
+template <class Resource, class Request>
+Outcome<Resource> delete_resource(Application& application, const Request& request,
+                                  const CallContext& call) {
+  return set_deleted<Resource>(application, request, true, call);
+}
+
+template <class Resource, class Request>
+Outcome<Resource> undelete_resource(Application& application, const Request& request,
+                                    const CallContext& call) {
+  return set_deleted<Resource>(application, request, false, call);
+}
+
 /// Appends to a response what the mask asks for of each row; an error if one cannot be read.
 template <class Resource, class Response>
 google::rpc::Status append(const Page<StoredResource>& page, const ReadMask& mask,
@@ -174,6 +186,19 @@ google::rpc::Status append(const Page<StoredResource>& page, const ReadMask& mas
     *Kind<Resource>::add(response) = std::move(*message);
   }
   return {};
+}
+
+/// Leaves of a page what its view shows.
+template <class Request, class Response>
+void keep_view(const Request&, Response&) {}
+inline void keep_view(const v1::ListGearSetsRequest& request, v1::ListGearSetsResponse& response) {
+  if (request.view() != v1::GEAR_SET_VIEW_BASIC) return;
+  for (v1::GearSet& gear_set : *response.mutable_gear_sets()) {
+    gear_set.clear_series();
+    gear_set.clear_flank_slots();
+    gear_set.clear_series_by_torque();
+    gear_set.clear_load_share_by_torque();
+  }
 }
 
 template <class Resource, class Response, class Request>
@@ -210,6 +235,7 @@ Outcome<Response> list_resources(Application& application, const Request& reques
       needs_computed_fields(query) ? query_by_computed_fields(query, read_page) : read_page(query);
   Response response;
   if (const auto failed = append<Resource>(page, mask, response); failed.code() != 0) return failed;
+  keep_view(request, response);
   if (query.counts_all) total = page.total;
   response.set_total_size(clamped_total(total));
   if (page.more) {

@@ -20,7 +20,7 @@
 namespace tribodyn::server {
 
 // The standard methods that create and update, one resource or a batch of them, for every kind
-// alike. Bodies of RPCs: run inside `guarded`.
+// alike. They throw; the dispatcher guards them.
 
 inline constexpr std::size_t kMaximumBatchViolations = 100;
 /// Of a batch [bytes]: clients accept 4 MiB unless told otherwise, and one that cannot read the

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/version.h"
+#include "server/application/errors.h"
 #include "server/application/guard.h"
 #include "server/application/list_filter.h"
 #include "server/contract/constraints.h"

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "server/application/element_limits.h"
+#include "server/application/errors.h"
 #include "server/application/guard.h"
 #include "server/application/list_filter.h"
 #include "server/application/page_token.h"

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <google/protobuf/util/time_util.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
 
+#include "server/application/errors.h"
 #include "server/application/guard.h"
 #include "server/application/simulation_lookup.h"
 #include "server/application/streams.h"
@@ -19,8 +19,10 @@ using std::chrono::steady_clock;
 /// is quiet, heartbeats. Holds no message: what is asked for is read then.
 class Watch : public MessageSource<v1::SimulationEvent> {
  public:
-  Watch(Application& application, SimulationJobs::Watched watched, std::int64_t after_sequence)
+  Watch(Application& application, SimulationJobs::Watched watched, std::int64_t after_sequence,
+        const CallContext& call)
       : store_(application.store),
+        limits_{.cancelled = call.limits.cancelled},
         jobs_(application.jobs),
         channel_(std::move(watched.channel)),
         simulation_(std::move(watched.simulation)),
@@ -39,15 +41,9 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     out.Clear();
     // When all is quiet too: an event may have been written and its writer been told otherwise.
     if (std::max(simulation_.sequence, latest.sequence) > sent_ || is_quiet) {
-      try {
-        if (const auto event = store_.next_event(simulation_.id, sent_)) {
-          tell_event(*event, out);
-          return Step::kMessage;
-        }
-      } catch (const StoreError& failure) {
-        spdlog::error("{}", failure.what());
-        error_ = store_failed(failure);
-        return Step::kEnd;
+      if (const auto event = store_.next_event(simulation_.id, sent_, limits_)) {
+        tell_event(*event, out);
+        return Step::kMessage;
       }
     }
     const bool is_news = simulation_.state == StoredState::kRunning && latest.sequence <= sent_ &&
@@ -57,8 +53,6 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     out.set_kind(is_news ? v1::SimulationEvent::PROGRESS : v1::SimulationEvent::HEARTBEAT);
     return Step::kMessage;
   }
-
-  google::rpc::Status error() const override { return error_; }
 
  private:
   void tell(v1::SimulationEvent& out) {
@@ -79,7 +73,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     *out.mutable_time() = TimeUtil::MicrosecondsToTimestamp(event.time);
     if (event.state == StoredState::kSucceeded) out.set_progress_fraction(1);
     if (event.state != StoredState::kFailed) return;
-    const auto failed = store_.simulation(simulation_.id);
+    const auto failed = store_.simulation(simulation_.id, limits_);
     if (!failed) return;
     out.mutable_error()->set_reason(failed->error_reason);
     out.mutable_error()->set_message(failed->error_message);
@@ -97,6 +91,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   }
 
   Store& store_;
+  const CallLimits limits_;  // the end of the stream is its transport's
   SimulationJobs& jobs_;
   std::shared_ptr<ProgressChannel> channel_;
   StoredSimulation simulation_;  // as the last event that was sent says
@@ -104,7 +99,6 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   std::uint64_t told_progress_ = 0;
   bool is_over_;
   steady_clock::time_point last_message_ = steady_clock::now();
-  google::rpc::Status error_;
 };
 
 }  // namespace
@@ -123,7 +117,7 @@ StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
       return invalid({{"after_sequence", fmt::format("after_sequence = {}; allowed: 0 to {}", after,
                                                      watched->simulation.sequence)}});
     }
-    return Source(std::make_shared<Watch>(application, std::move(*watched), after));
+    return Source(std::make_shared<Watch>(application, std::move(*watched), after, call));
   });
 }
 

@@ -170,10 +170,10 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
   Application application{store, jobs};
   const std::size_t resumed = jobs.resume();  // before clients can submit
   if (resumed > 0) spdlog::info("{} unfinished simulations are queued again", resumed);
-  GrpcServer server(
-      application, address,
-      {to_milliseconds(settings.call_limit_seconds), to_milliseconds(settings.stream_limit_seconds),
-       to_milliseconds(settings.unread_limit_seconds)});
+  CallDispatcher dispatcher(application, {to_milliseconds(settings.call_limit_seconds),
+                                          to_milliseconds(settings.stream_limit_seconds),
+                                          to_milliseconds(settings.unread_limit_seconds)});
+  GrpcServer server(dispatcher, address);
   const std::unique_ptr<MetricsListener> metrics = listen_for_metrics(settings, jobs);
   const std::string wrong = check_golden_case();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);

@@ -7,6 +7,7 @@
 #include <prometheus/text_serializer.h>
 
 #include <map>
+#include <mutex>
 #include <utility>
 
 namespace tribodyn::server {
@@ -35,6 +36,12 @@ struct Metrics::Families {
   std::map<Phase, prometheus::Histogram*> phases;
   std::map<Submission, prometheus::Counter*> submissions;
   std::map<SimulationOutcome, prometheus::Counter*> outcomes;
+  prometheus::Family<prometheus::Histogram>* call_seconds = nullptr;
+  prometheus::Family<prometheus::Counter>* calls = nullptr;
+  std::mutex calls_mutex;
+  // Guarded by calls_mutex. By method, and by method and code, each since its first call.
+  std::map<std::string, prometheus::Histogram*> seconds_of;
+  std::map<std::pair<std::string, std::string>, prometheus::Counter*> count_of;
   prometheus::Gauge* waiting = nullptr;
   prometheus::Gauge* running = nullptr;
   prometheus::Gauge* waiting_seconds = nullptr;
@@ -70,6 +77,16 @@ Metrics::Metrics() : families_(std::make_unique<Families>()) {
                                       {SimulationOutcome::kServedByCache, "cache_hit"}}) {
     families_->outcomes[outcome] = &outcomes.Add({{"outcome", name}});
   }
+  families_->call_seconds = &prometheus::BuildHistogram()
+                                 .Name("tribodyn_call_seconds")
+                                 .Help(
+                                     "Time from the arrival of a call to its answer, or to the "
+                                     "end of its stream, by method")
+                                 .Register(registry);
+  families_->calls = &prometheus::BuildCounter()
+                          .Name("tribodyn_calls_total")
+                          .Help("Calls that have ended, by method and code")
+                          .Register(registry);
   const auto gauge = [&registry](const char* name, const char* help) {
     return &prometheus::BuildGauge().Name(name).Help(help).Register(registry).Add({});
   };
@@ -88,6 +105,22 @@ void Metrics::observe(Phase phase, double seconds) {
 void Metrics::count(Submission submission) { families_->submissions.at(submission)->Increment(); }
 
 void Metrics::count(SimulationOutcome outcome) { families_->outcomes.at(outcome)->Increment(); }
+
+void Metrics::count_call(const std::string& method, const std::string& code, double seconds) {
+  prometheus::Histogram* histogram = nullptr;
+  {
+    const std::lock_guard lock(families_->calls_mutex);
+    auto& of_method = families_->seconds_of[method];
+    if (of_method == nullptr) {
+      of_method = &families_->call_seconds->Add({{"method", method}}, boundaries());
+    }
+    histogram = of_method;
+    auto& count = families_->count_of[{method, code}];
+    if (count == nullptr) count = &families_->calls->Add({{"method", method}, {"code", code}});
+    count->Increment();
+  }
+  histogram->Observe(seconds);
+}
 
 void Metrics::set_build(const std::string& version, const std::string& model_version,
                         const std::string& platform) {

@@ -52,6 +52,8 @@ class Metrics {
   void observe(Phase phase, double seconds);
   void count(Submission submission);
   void count(SimulationOutcome outcome);
+  /// Counts a call of a method that ended with this code after so many seconds.
+  void count_call(const std::string& method, const std::string& code, double seconds);
   void set_build(const std::string& version, const std::string& model_version,
                  const std::string& platform);
 

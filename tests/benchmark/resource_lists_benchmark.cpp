@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "server/application/resources.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -17,16 +17,15 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "google/rpc/code.pb.h"
-#include "server/application/contacts.h"
-#include "server/application/resources.h"
-#include "server/application/schemas.h"
 #include "server/application/simulations.h"
 #include "server/storage/seeds.h"
+#include "tests/service/resource_calls.h"
 #include "tests/support/hostile_message.h"
 
 namespace tribodyn::server {
@@ -98,65 +97,49 @@ void judge_refusal(const google::rpc::Status& status) {
   require(status.ByteSizeLong() <= kLargestRefusal);
 }
 
-template <class Answer>
-bool judge(const Outcome<Answer>& outcome) {
+bool judge(const Outcome<Reply>& outcome) {
   if (!outcome.ok()) {
     judge_refusal(outcome.error());
     return false;
   }
-  require(outcome.message().ByteSizeLong() <= kLargestAnswer);
+  require(outcome.message()->ByteSizeLong() <= kLargestAnswer);
   return true;
 }
 
 /// A method: its request, and a call that checks the answer and returns true if the request was
 /// accepted.
-struct Method {
+struct FuzzedMethod {
   const Message* prototype;
   std::function<bool(Application&, const Message&)> call;
   bool writes = false;
 };
 
-template <class Request, class Answer>
-Method method(Outcome<Answer> (*function)(Application&, const Request&, const CallContext&),
-              bool writes = false) {
-  return {&Request::default_instance(),
-          [function](Application& application, const Message& request) {
-            return judge(function(application, static_cast<const Request&>(request), {}));
+/// The methods whose requests are made, by their rows.
+const std::map<std::string, FuzzedMethod>& methods() {
+  static const std::set<std::string> kNames = {"CreateSimulation",      "ListSimulations",
+                                               "EvaluateContact",       "GetSchema",
+                                               "CreateLubricant",       "UpdateLubricant",
+                                               "BatchCreateLubricants", "BatchUpdateLubricants",
+                                               "ListLubricants",        "ListLubricantRevisions",
+                                               "GetLubricant",          "DeleteLubricant",
+                                               "UndeleteLubricant",     "GetGearSet",
+                                               "UpdateGearSet",         "BatchCreateSurfaces",
+                                               "ListSurfaces",          "UpdateVehicle",
+                                               "ListVehicles"};
+  static const std::map<std::string, FuzzedMethod> kMethods = [] {
+    std::map<std::string, FuzzedMethod> out;
+    for (const Method& row : method_table()) {
+      if (!kNames.contains(row.descriptor->name())) continue;
+      const bool writes = row.lane == CallLane::kWrite || row.lane == CallLane::kHeavy;
+      out[row.descriptor->name()] = {
+          row.request,
+          [row](Application& application, const Message& request) {
+            return judge(guarded<Reply>(
+                [&] { return row.answer(application, request, {.client = "fuzzer"}); }));
           },
           writes};
-}
-
-const std::map<std::string, Method>& methods() {
-  static const std::map<std::string, Method> kMethods = [] {
-    Method create_simulation = {
-        &v1::CreateSimulationRequest::default_instance(),
-        [](Application& application, const Message& request) {
-          return judge(server::create_simulation(
-              application, static_cast<const v1::CreateSimulationRequest&>(request),
-              {.client = "fuzzer"}));
-        },
-        true};
-    return std::map<std::string, Method>{
-        {"CreateSimulation", create_simulation},
-        {"ListSimulations", method(list_simulations)},
-        {"EvaluateContact", method(evaluate_contact)},
-        {"GetSchema", method(get_schema)},
-        {"CreateLubricant", method(create_lubricant, true)},
-        {"UpdateLubricant", method(update_lubricant, true)},
-        {"BatchCreateLubricants", method(batch_create_lubricants, true)},
-        {"BatchUpdateLubricants", method(batch_update_lubricants, true)},
-        {"ListLubricants", method(list_lubricants)},
-        {"ListLubricantRevisions", method(list_lubricant_revisions)},
-        {"GetLubricant", method(get_lubricant)},
-        {"DeleteLubricant", method(delete_lubricant, true)},
-        {"UndeleteLubricant", method(undelete_lubricant, true)},
-        {"GetGearSet", method(get_gear_set)},
-        {"UpdateGearSet", method(update_gear_set, true)},
-        {"BatchCreateSurfaces", method(batch_create_surfaces, true)},
-        {"ListSurfaces", method(list_surfaces)},
-        {"UpdateVehicle", method(update_vehicle, true)},
-        {"ListVehicles", method(list_vehicles)},
-    };
+    }
+    return out;
   }();
   return kMethods;
 }
@@ -191,7 +174,7 @@ class NoComplaints : public google::protobuf::io::ErrorCollector {
 /// A parsed input.
 struct Input {
   std::string name;
-  const Method* method = nullptr;
+  const FuzzedMethod* method = nullptr;
   std::unique_ptr<Message> request;
 
   std::string text() const {

@@ -9,11 +9,11 @@
 #include "google/rpc/error_details.pb.h"
 #include "server/application/contacts.h"
 #include "server/application/errors.h"
-#include "server/application/resources.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
 #include "server/scheduling/janitor.h"
 #include "server/storage/maintenance.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -115,9 +115,9 @@ TEST_F(AppTest, ResourcesAreReadAndListed) {
             36);
   EXPECT_EQ(get_surface(app_, named<v1::GetSurfaceRequest>("surfaces/run-in")).message().name(),
             "surfaces/run-in");
-  EXPECT_EQ(list_vehicles(app_, {}).message().vehicles_size(), 1);
-  EXPECT_EQ(list_surfaces(app_, {}).message().surfaces_size(), 1);
-  EXPECT_EQ(list_gear_sets(app_, {}).message().gear_sets_size(), 3);
+  EXPECT_EQ(list_vehicles(app_, v1::ListVehiclesRequest()).message().vehicles_size(), 1);
+  EXPECT_EQ(list_surfaces(app_, v1::ListSurfacesRequest()).message().surfaces_size(), 1);
+  EXPECT_EQ(list_gear_sets(app_, v1::ListGearSetsRequest()).message().gear_sets_size(), 3);
 }
 
 TEST_F(AppTest, ListsArePaged) {

@@ -9,10 +9,10 @@
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
 #include "server/application/call_context.h"
-#include "server/application/resources.h"
 #include "server/contract/constraints.h"
 #include "server/resources/accept_resource.h"
 #include "server/storage/maintenance.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

@@ -6,9 +6,9 @@
 
 #include "google/rpc/code.pb.h"
 #include "server/application/contacts.h"
-#include "server/application/resources.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -90,7 +90,7 @@ TEST(Concurrency, CreateWatchReadCancelAllAtOnce) {
         EXPECT_EQ(done.state(), v1::Simulation::CANCELLED);
       }
       EXPECT_TRUE(list_simulations(app, {}).ok());
-      EXPECT_TRUE(list_gear_sets(app, {}).ok());
+      EXPECT_TRUE(list_gear_sets(app, v1::ListGearSetsRequest()).ok());
       ++ends;
     }
   });

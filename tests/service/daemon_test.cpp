@@ -68,6 +68,7 @@ TEST_F(DaemonTest, AKilledServerHasWrittenABatchCompletelyOrNotAtAll) {
     fluid.set_name("lubricants/batch-" + std::to_string(i));
     *batch.add_requests()->mutable_lubricant() = fluid;
   }
+  batch.mutable_read_mask()->add_paths("name");
   // Kills the server ever later, until a batch is written before the kill.
   for (std::chrono::milliseconds delay(2);; delay += delay / 2) {
     grpc::Status status;

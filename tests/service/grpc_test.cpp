@@ -7,12 +7,16 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <regex>
+#include <set>
+#include <string>
 #include <thread>
 
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/contract/output_only.h"
 #include "server/resources/provenance.h"
+#include "tests/service/contract_methods.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
 #include "tribodyn/v1/contacts.grpc.pb.h"
@@ -43,11 +47,19 @@ TEST_F(GrpcTest, HealthAndReflectionAnswer) {
   const auto [status, health] = client.call("/grpc.health.v1.Health/Check", "");
   EXPECT_TRUE(status.ok());
   EXPECT_EQ(health, std::string("\x08\x01", 2)) << "SERVING";
-  const std::string services = client.list_services();
-  for (const char* name : {"LubricantService", "GearSetService", "SurfaceService", "VehicleService",
-                           "ContactService", "SimulationService"}) {
-    EXPECT_THAT(services, HasSubstr(std::string("tribodyn.v1.") + name));
+}
+
+TEST_F(GrpcTest, ReflectionListsEveryServiceAndNoOther) {
+  std::set<std::string> expected = {"grpc.health.v1.Health",
+                                    "grpc.reflection.v1alpha.ServerReflection"};
+  for (const auto* method : all_methods()) expected.insert(method->service()->full_name());
+  const std::string answer = RawClient(channel_).list_services();
+  const std::regex name(R"((tribodyn|grpc)\.[A-Za-z0-9_.]+)");
+  std::set<std::string> listed;
+  for (std::sregex_iterator each(answer.begin(), answer.end(), name), end; each != end; ++each) {
+    listed.insert(each->str());
   }
+  EXPECT_EQ(listed, expected);
 }
 
 TEST_F(GrpcTest, ResourcesAreServed) {

@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "google/rpc/error_details.pb.h"
-#include "server/application/resources.h"
 #include "server/resources/imports/csv_table.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -227,7 +227,8 @@ class GearSetImportTest : public ImportTest {
   std::string refused(const v1::ImportGearSetRequest& request) {
     const auto outcome = import_gear_set(app_, request);
     if (outcome.ok()) return "accepted";
-    EXPECT_EQ(list_gear_sets(app_, {}).message().gear_sets_size(), 3) << "nothing half-written";
+    EXPECT_EQ(list_gear_sets(app_, v1::ListGearSetsRequest()).message().gear_sets_size(), 3)
+        << "nothing half-written";
     return complaints(outcome.error());
   }
   /// Returns the tables with one number replaced.

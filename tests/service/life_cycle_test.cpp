@@ -260,10 +260,11 @@ TEST_F(LifeCycle, ADamagedResultIsDataLossUntilAForcedRunWritesItAgain) {
     const auto outcome = read_history(app, read);
     if (!outcome.ok()) return outcome.error().code();
     v1::ReadHistoryResponse chunk;
-    while (outcome.message()->next(chunk) ==
+    google::rpc::Status end;
+    while (next_step(*outcome.message(), chunk, end) ==
            MessageSource<v1::ReadHistoryResponse>::Step::kMessage) {
     }
-    return outcome.message()->error().code();
+    return end.code();
   };
   for (const auto& [table, column] : {std::pair("results", "body"), std::pair("ledgers", "body"),
                                       std::pair("history_blocks", "data")}) {

@@ -6,10 +6,10 @@
 #include <map>
 
 #include "server/application/contacts.h"
-#include "server/application/resources.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
 #include "server/resources/provenance.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

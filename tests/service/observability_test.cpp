@@ -8,6 +8,7 @@
 
 #include <chrono>
 #include <string>
+#include <thread>
 
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
@@ -117,6 +118,41 @@ TEST_F(ObservabilityTest, OneIdJoinsRequestJobAndResultInTheLog) {
     return process_->log().find("event=simulation_computed simulation=" + done.name() +
                                 " request_id=req-4711 input_hash=" + hash) != std::string::npos;
   }));
+}
+
+TEST_F(ObservabilityTest, ACallThatItsClientCancelsEndsEarlyAndIsCounted) {
+  v1::BatchCreateLubricantsRequest batch;
+  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
+  for (int i = 0; i < 4000; ++i) {
+    fluid.set_name("lubricants/many-" + std::to_string(i));
+    *batch.add_requests()->mutable_lubricant() = fluid;
+  }
+  const auto lubricants = v1::LubricantService::NewStub(channel_);
+  grpc::ClientContext context;
+  context.AddMetadata("tribodyn-request-id", "to-be-cancelled");
+  std::thread client([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    context.TryCancel();
+  });
+  v1::BatchCreateLubricantsResponse response;
+  const grpc::Status status = lubricants->BatchCreateLubricants(&context, batch, &response);
+  client.join();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::CANCELLED);
+  EXPECT_TRUE(eventually([&] {
+    return http_get(port_, "/metrics")
+               .find(
+                   "tribodyn_calls_total{code=\"CANCELLED\",method=\"tribodyn.v1."
+                   "LubricantService.BatchCreateLubricants\"} 1\n") != std::string::npos;
+  }));
+  EXPECT_THAT(process_->log(), HasSubstr("event=call method=BatchCreateLubricants code=CANCELLED "
+                                         "reason=CANCELLED"));
+  EXPECT_THAT(process_->log(), HasSubstr("call=to-be-cancelled"));
+  v1::ListLubricantsRequest request;
+  request.set_filter("name:many");
+  grpc::ClientContext after;
+  v1::ListLubricantsResponse left;
+  EXPECT_TRUE(lubricants->ListLubricants(&after, request, &left).ok());
+  EXPECT_TRUE(left.lubricants().empty()) << "nothing is written";
 }
 
 TEST_F(ObservabilityTest, NoFormulationIsLogged) {

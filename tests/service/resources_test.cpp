@@ -1,6 +1,4 @@
 // Tests of the standard methods: no create, update or deletion loses or mixes up data.
-#include "server/application/resources.h"
-
 #include <gmock/gmock.h>
 #include <google/protobuf/util/message_differencer.h>
 #include <gtest/gtest.h>
@@ -18,6 +16,7 @@
 #include "server/contract/constraints.h"
 #include "server/contract/output_only.h"
 #include "server/resources/provenance.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -504,7 +503,7 @@ TEST_F(ListTest, NamesNeedNoCollectionAndEnumsNoCapitals) {
 }
 
 TEST_F(ListTest, EveryFluidShowsItsFigures) {
-  const auto page = list_lubricants(app_, {});
+  const auto page = list_lubricants(app_, v1::ListLubricantsRequest());
   ASSERT_TRUE(page.ok());
   for (const v1::Lubricant& each : page.message().lubricants()) {
     const v1::Lubricant whole = get(each.name()).message();

@@ -8,12 +8,12 @@
 #include <map>
 
 #include "google/rpc/code.pb.h"
-#include "server/application/resources.h"
 #include "server/application/simulations.h"
 #include "server/contract/constraints.h"
 #include "server/contract/output_only.h"
 #include "server/storage/maintenance.h"
 #include "server/storage/seeds.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {

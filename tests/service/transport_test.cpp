@@ -14,7 +14,6 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/transport/acceptor.h"
-#include "server/transport/byte_budget.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
 #include "tests/support/run_length.h"
@@ -140,22 +139,6 @@ TEST_F(Transport, AHalfSentRequestDoesNotDelayAShutdown) {
   const auto calls = half_sent(port(), 1, 100'000);
   process_->signal(SIGTERM);
   EXPECT_EQ(process_->wait(std::chrono::seconds(8)), 0) << process_->log();
-}
-
-TEST(ByteBudget, LimitsLargeRequestsOnly) {
-  ByteBudget budget(100, 10);
-  auto first = budget.take(60);
-  ASSERT_TRUE(first);
-  EXPECT_FALSE(budget.take(50));
-  EXPECT_TRUE(budget.take(10)) << "a small one needs none of it";
-  {
-    const auto second = budget.take(40);
-    EXPECT_TRUE(second);
-    EXPECT_FALSE(budget.take(11));
-  }
-  EXPECT_TRUE(budget.take(40)) << "given back";
-  first.reset();
-  EXPECT_TRUE(budget.take(100));
 }
 
 TEST(Acceptor, RefusesConnectionsAboveItsLimit) {

@@ -12,9 +12,9 @@
 #include <set>
 
 #include "server/application/element_limits.h"
-#include "server/application/request_limits.h"
 #include "server/resources/gear_set_checks.h"
 #include "tests/service/contract_methods.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -241,10 +241,9 @@ TEST(RequestLimits, AGearSetOfTheFinestTablesFits) {
     *gear_set->add_series_by_torque() = gear_set->series();
   }
   EXPECT_THAT(judge_bytes(request), IsEmpty());
-  const auto* method =
-      v1::GearSet::descriptor()->file()->service(0)->FindMethodByName("CreateGearSet");
-  EXPECT_LT(request.ByteSizeLong(), maximum_request_bytes(*method));
-  EXPECT_LT(maximum_request_bytes(*method), kMaximumResponseBytes) << "its answer holds it";
+  const std::size_t maximum = maximum_request_bytes(*row_of(request).descriptor);
+  EXPECT_LT(request.ByteSizeLong(), maximum);
+  EXPECT_LT(maximum, kMaximumResponseBytes) << "its answer holds it";
 }
 
 TEST(Violations, KeepTheFirstAndCountAll) {

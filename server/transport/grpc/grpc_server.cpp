@@ -7,7 +7,6 @@
 
 #include <chrono>
 
-#include "server/application/request_limits.h"
 #include "server/transport/grpc/protobuf_log.h"
 
 namespace tribodyn::server {
@@ -30,11 +29,8 @@ constexpr auto kShutdownGrace = std::chrono::seconds(1);
 
 }  // namespace
 
-GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
-                       const TimeLimits& limits)
-    : acceptor_(address),
-      live_(kMaximumOpenStreams),
-      services_(grpc_services(application, live_, limits)) {
+GrpcServer::GrpcServer(CallDispatcher& dispatcher, const ListenAddress& address)
+    : acceptor_(address), live_(kMaximumOpenStreams), services_(grpc_services(dispatcher, live_)) {
   log_protobuf_reports();
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
@@ -47,8 +43,9 @@ GrpcServer::GrpcServer(Application& application, const ListenAddress& address,
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMilliseconds);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleMilliseconds);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, kConnectionAgeMilliseconds);
-  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS,
-                             static_cast<int>((limits.stream + limits.call).count()));
+  builder.AddChannelArgument(
+      GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS,
+      static_cast<int>((dispatcher.limits().stream + dispatcher.limits().call).count()));
   builder.SetMaxReceiveMessageSize(static_cast<int>(kMaximumRequestBytes));
   builder.SetMaxSendMessageSize(static_cast<int>(kMaximumResponseBytes));
   grpc::ResourceQuota quota("tribodynd");

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "server/application/application.h"
+#include "server/application/call_dispatcher.h"
 #include "server/transport/acceptor.h"
 #include "server/transport/grpc/live_streams.h"
 #include "server/transport/grpc/services.h"
@@ -19,8 +19,8 @@ namespace tribodyn::server {
 /// destructor from one thread.
 class GrpcServer {
  public:
-  /// Throws ListenError. `application` must outlive the object.
-  GrpcServer(Application& application, const ListenAddress& address, const TimeLimits& limits = {});
+  /// Throws ListenError. `dispatcher` must outlive the object.
+  GrpcServer(CallDispatcher& dispatcher, const ListenAddress& address);
   ~GrpcServer();
   GrpcServer(const GrpcServer&) = delete;
   GrpcServer& operator=(const GrpcServer&) = delete;

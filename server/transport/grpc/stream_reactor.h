@@ -13,8 +13,7 @@
 #include <utility>
 
 #include "server/application/errors.h"
-#include "server/application/message_source.h"
-#include "server/application/outcome.h"
+#include "server/transport/grpc/grpc_call.h"
 #include "server/transport/grpc/grpc_status.h"
 #include "server/transport/grpc/live_streams.h"
 
@@ -22,52 +21,50 @@ namespace tribodyn::server {
 
 /// Pumps a MessageSource into a gRPC stream: one message under way at a time, the next one only
 /// from OnWriteDone or, when the source had nothing, when the source says that something changed.
-/// Safe for concurrent access: whoever holds `busy_` owns source and stream; nobody holds the mutex
+/// The source is opened and asked on the threads of the dispatcher. Safe for concurrent access:
+/// whoever holds `busy_` owns source and stream, first whoever opens it; nobody holds the mutex
 /// while calling into gRPC. Keeps itself alive until OnDone. At its end it is closed with
 /// DEADLINE_EXCEEDED. A client that reads nothing, so that a write stays under way, is cut off: at
 /// the end, or once that write has taken too long. Of a message on its way only the bytes are kept,
 /// so that many readers of large ones cost half.
-template <class Message>
 class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
+                            public GrpcCall<StreamCall>,
                             public ProgressObserver,
                             public LiveStream,
-                            public std::enable_shared_from_this<StreamReactor<Message>> {
+                            public std::enable_shared_from_this<StreamReactor> {
  public:
-  using Source = std::shared_ptr<MessageSource<Message>>;
-
   using Clock = std::chrono::system_clock;
   using StopWatch = std::chrono::steady_clock;
 
-  StreamReactor(LiveStreams& live, grpc::CallbackServerContext& context, Clock::duration unread)
-      : live_(live), context_(&context), unread_(unread) {}
+  StreamReactor(CallDispatcher& dispatcher, LiveStreams& live, const Method& its_method,
+                grpc::CallbackServerContext& its_context, const grpc::ByteBuffer& request)
+      : GrpcCall(its_method, its_context, request, dispatcher.limits().stream),
+        dispatcher_(dispatcher),
+        live_(live),
+        context_(&its_context),
+        unread_(dispatcher.limits().unread) {}
 
-  /// A stream of the messages of the source that `open` gives, or one that ends at once with the
-  /// error. It may last for `left`, and one write of it for `unread`.
-  template <class Open>
-  static grpc::ServerWriteReactor<grpc::ByteBuffer>* start(LiveStreams& live,
+  /// A stream of the messages of the method's source, or one that ends with its error. It lasts
+  /// until the deadline of the call, and one write of it as long as the dispatcher's limit says.
+  static grpc::ServerWriteReactor<grpc::ByteBuffer>* start(CallDispatcher& dispatcher,
+                                                           LiveStreams& live, const Method& method,
                                                            grpc::CallbackServerContext& context,
-                                                           Clock::duration left,
-                                                           Clock::duration unread,
-                                                           const Open& open) {
-    auto reactor = std::make_shared<StreamReactor>(live, context, unread);
+                                                           const grpc::ByteBuffer& request) {
+    auto reactor = std::make_shared<StreamReactor>(dispatcher, live, method, context, request);
     reactor->self_ = reactor;
-    std::optional<google::rpc::Status> refused;
-    Outcome<Source> outcome = open();
-    if (outcome.ok()) {
-      refused = live.add(reactor);
-    } else {
-      refused = outcome.error();
-    }
-    if (refused) {
-      reactor->close(*refused);
-      return reactor.get();
-    }
-    reactor->source_ = std::move(outcome.message());
-    reactor->source_->observe(reactor);
-    reactor->end_at(Clock::now() + left);
-    reactor->check_writes_at(Clock::now() + unread);
-    reactor->changed();
+    dispatcher.open(*reactor);
     return reactor.get();
+  }
+
+  void opened(Outcome<ReplySource> outcome) override {
+    if (!outcome.ok()) return end_with(outcome.error());  // counted
+    if (const auto refused = live_.add(shared_from_this())) return finish(*refused);
+    source_ = std::move(outcome.message());
+    source_->observe(weak_from_this());
+    end_at(Clock::now() + std::chrono::duration_cast<Clock::duration>(context.limits.deadline -
+                                                                      CallLimits::Clock::now()));
+    check_writes_at(Clock::now() + unread_);
+    ask_again();
   }
 
   void changed() override {
@@ -78,7 +75,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
       if (busy_) return;
       busy_ = true;
     }
-    send_next();
+    ask_again();
   }
 
   void close(const google::rpc::Status& status) override {
@@ -89,9 +86,9 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
         if (!closing_) closing_ = status;
         return;
       }
-      finished_ = true;
+      busy_ = true;
     }
-    this->Finish(to_grpc(status));
+    finish(status);
   }
 
   void OnWriteDone(bool ok) override {
@@ -99,13 +96,15 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
       const std::lock_guard lock(mutex_);
       writing_since_.reset();
     }
-    if (!ok)
+    if (!ok) {
       return finish(
           error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client is gone"));
-    send_next();
+    }
+    ask_again();
   }
 
   void OnCancel() override {
+    set_cancelled();
     close(error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client cancelled"));
   }
 
@@ -122,7 +121,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   static constexpr auto kLastWrite = std::chrono::seconds(5);
 
   void end_at(Clock::time_point end) {
-    const std::weak_ptr<StreamReactor> weak = this->weak_from_this();
+    const std::weak_ptr<StreamReactor> weak = weak_from_this();
     alarm_.Set(end, [weak, end](bool rings) {
       const auto self = rings ? weak.lock() : nullptr;
       if (!self) return;
@@ -132,7 +131,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   }
 
   void cut_off_at(Clock::time_point time) {
-    const std::weak_ptr<StreamReactor> weak = this->weak_from_this();
+    const std::weak_ptr<StreamReactor> weak = weak_from_this();
     last_alarm_.Set(time, [weak](bool rings) {
       if (const auto self = rings ? weak.lock() : nullptr) self->cut_off();
     });
@@ -140,7 +139,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
 
   /// Looks then, and again whenever a write that is under way may have taken too long.
   void check_writes_at(Clock::time_point time) {
-    const std::weak_ptr<StreamReactor> weak = this->weak_from_this();
+    const std::weak_ptr<StreamReactor> weak = weak_from_this();
     // One that rings cannot be set again meanwhile; and this one may ring before Set has returned.
     const auto alarm = std::make_shared<grpc::Alarm>();
     write_alarm_ = alarm;
@@ -163,7 +162,12 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
     if (context_ != nullptr) context_->TryCancel();
   }
 
-  using Step = typename MessageSource<Message>::Step;
+  using Step = AnyMessageSource::Step;
+
+  /// Only the owner of `busy_` calls it, so that the object is there when the step runs.
+  void ask_again() {
+    dispatcher_.step([this] { send_next(); });
+  }
 
   /// The owner of `busy_` sends a message, ends the stream, or gives `busy_` back.
   void send_next() {
@@ -181,7 +185,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
             const std::lock_guard lock(mutex_);
             writing_since_ = StopWatch::now();
           }
-          return this->StartWrite(&bytes_);
+          return StartWrite(&bytes_);
         }
         case Step::kEnd:
           return finish(end_);
@@ -198,25 +202,31 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   /// The next message, if there is one, in `bytes_`.
   Step ask_source() {
     bytes_.Clear();
-    Message message;
-    const Step step = next_step(*source_, message, end_);
+    const Reply message(method.response->New());
+    const Step step = next_step(*source_, *message, end_);
     if (step != Step::kMessage) return step;
     bool own = false;
     const grpc::Status status =
-        grpc::SerializationTraits<Message>::Serialize(message, &bytes_, &own);
+        grpc::SerializationTraits<google::protobuf::Message>::Serialize(*message, &bytes_, &own);
     if (status.ok()) return step;
     end_ = internal_error("a message of a stream cannot be serialised: " + status.error_message());
     return Step::kEnd;
   }
 
   void finish(const google::rpc::Status& status) {
+    dispatcher_.ended(*this, status);
+    end_with(status);
+  }
+
+  void end_with(const google::rpc::Status& status) {
     {
       const std::lock_guard lock(mutex_);
       finished_ = true;
     }
-    this->Finish(to_grpc(status));
+    Finish(to_grpc(status));
   }
 
+  CallDispatcher& dispatcher_;
   LiveStreams& live_;
   // Recursive: TryCancel may call OnDone before it returns.
   std::recursive_mutex context_mutex_;
@@ -225,11 +235,11 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   grpc::Alarm last_alarm_;                    // set by alarm_ alone
   std::shared_ptr<grpc::Alarm> write_alarm_;  // set by start, then by itself alone
   const Clock::duration unread_;
-  Source source_;            // owner of busy_
+  ReplySource source_;       // owner of busy_
   grpc::ByteBuffer bytes_;   // owner of busy_
   google::rpc::Status end_;  // owner of busy_
   std::mutex mutex_;
-  bool busy_ = false;      // guarded by mutex_
+  bool busy_ = true;       // guarded by mutex_; at first the owner opens the source
   bool again_ = false;     // guarded by mutex_
   bool finished_ = false;  // guarded by mutex_; stays set once Finish is called
   std::optional<google::rpc::Status> closing_;          // guarded by mutex_

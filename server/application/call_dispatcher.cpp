@@ -1,0 +1,121 @@
+#include "server/application/call_dispatcher.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "google/rpc/code.pb.h"
+#include "google/rpc/error_details.pb.h"
+#include "server/application/errors.h"
+#include "server/application/guard.h"
+#include "server/application/wire_check.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr int kBusySeconds = 2;       // most batches end sooner
+constexpr double kSlowSeconds = 1.0;  // a call that takes longer is logged
+
+/// Reads the request from its bytes, and lets go of them. Returns INVALID_ARGUMENT, without having
+/// parsed anything, if they are more than the method takes or hold more than any acceptable request
+/// (wire_check.h), and if they are no such message; else nullopt.
+std::optional<google::rpc::Status> parse_request(IncomingCall& call,
+                                                 google::protobuf::Message& request) {
+  const google::protobuf::MethodDescriptor& method = *call.method.descriptor;
+  const std::size_t size = call.request_size();
+  const std::size_t maximum = maximum_request_bytes(method);
+  if (size > maximum) {
+    return invalid({{"", fmt::format("the request has {} bytes; allowed: at most {} for {}", size,
+                                     maximum, method.name())}});
+  }
+  Violations violations;
+  check_wire(*call.read_request(), static_cast<int>(size), *method.input_type(), violations);
+  if (!violations.empty()) return invalid(violations);
+  if (!request.ParseFromZeroCopyStream(call.read_request().get())) {
+    return invalid({unreadable_violation(*method.input_type())});
+  }
+  call.drop_request();
+  return std::nullopt;
+}
+
+std::string reason_of(const google::rpc::Status& status) {
+  google::rpc::ErrorInfo info;
+  for (const auto& detail : status.details()) {
+    if (detail.UnpackTo(&info)) break;
+  }
+  return info.reason();
+}
+
+}  // namespace
+
+CallDispatcher::CallDispatcher(Application& application, const TimeLimits& limits)
+    : application_(application), limits_(limits), methods_(method_table()) {}
+
+template <class Answer>
+Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
+                                           const Method::UseCase<Answer>& use_case) {
+  Outcome<Answer> out = guarded<Answer>([&]() -> Outcome<Answer> {
+    const CallLimits& limits = call.context.limits;
+    if (limits.are_over()) return call_over(limits);
+    const Reply request(call.method.request->New());
+    if (auto refused = parse_request(call, *request)) return *std::move(refused);
+    return use_case(application_, *request, call.context);
+  });
+  call.drop_request();
+  return out;
+}
+
+void CallDispatcher::run(const IncomingCall& call, std::function<void()> task,
+                         const std::function<void(const google::rpc::Status&)>& refuse) {
+  const std::size_t bytes = call.request_size();
+  const CallLane lane = bytes > kUsualRequestBytes ? CallLane::kHeavy : call.method.lane;
+  if (lanes_.run(lane, bytes, task)) return;
+  const bool is_heavy = lane == CallLane::kHeavy;
+  refuse(exhausted(
+      is_heavy ? v1::ERROR_REASON_TOO_MANY_LARGE_REQUESTS : v1::ERROR_REASON_TOO_MANY_CALLS,
+      fmt::format("too many {} calls wait; try again in {} s",
+                  is_heavy ? "large or heavy" : "other", kBusySeconds),
+      kBusySeconds));
+}
+
+void CallDispatcher::answer(UnaryCall& call) {
+  const auto finish = [this, &call](Outcome<Reply> outcome) {
+    ended(call, outcome.ok() ? google::rpc::Status() : outcome.error());
+    call.answered(std::move(outcome));
+  };
+  run(
+      call, [this, &call, finish] { finish(outcome_of(call, call.method.answer)); },
+      [&](const google::rpc::Status& refusal) { finish(refusal); });
+}
+
+void CallDispatcher::open(StreamCall& call) {
+  const auto finish = [this, &call](Outcome<ReplySource> outcome) {
+    if (!outcome.ok()) ended(call, outcome.error());
+    call.opened(std::move(outcome));
+  };
+  run(
+      call, [this, &call, finish] { finish(outcome_of(call, call.method.open)); },
+      [&](const google::rpc::Status& refusal) { finish(refusal); });
+}
+
+void CallDispatcher::step(std::function<void()> task) { lanes_.run(CallLane::kStream, 0, task); }
+
+void CallDispatcher::ended(const IncomingCall& call, const google::rpc::Status& status) try {
+  const double seconds = call.watch.seconds();
+  const google::protobuf::MethodDescriptor& method = *call.method.descriptor;
+  const std::string& code = google::rpc::Code_Name(static_cast<google::rpc::Code>(status.code()));
+  application_.jobs.metrics().count_call(method.full_name(), code, seconds);
+  const bool is_slow = seconds > kSlowSeconds && !method.server_streaming();
+  if (status.code() == google::rpc::OK && !is_slow) return;
+  spdlog::info("event=call method={} code={} reason={} seconds={:.3f} client={} call={}",
+               method.name(), code, reason_of(status), seconds, call.context.client,
+               call.context.request_id);
+} catch (const std::exception& failure) {  // no memory left: the answer counts more than its record
+  spdlog::error("event=call_not_counted cause=\"{}\"", failure.what());
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <google/protobuf/io/zero_copy_stream.h>
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "server/application/call_lanes.h"
+#include "server/application/method_table.h"
+#include "server/metrics/metrics.h"
+
+namespace tribodyn::server {
+
+/// How long a method may take, whatever deadline its client sets. A unary one answers
+/// DEADLINE_EXCEEDED; so does a stream, whether its client reads it or not: a simulation takes
+/// longer than one watch may last, and its client watches on. A stream is cut off earlier when its
+/// client takes nothing of a message for `unread`.
+struct TimeLimits {
+  std::chrono::milliseconds call = std::chrono::seconds(30);
+  std::chrono::milliseconds stream = std::chrono::hours(1);
+  std::chrono::milliseconds unread = std::chrono::minutes(1);
+};
+
+/// A call as its transport holds it. Lives until it is answered.
+class IncomingCall {
+ public:
+  explicit IncomingCall(const Method& its_method) : method(its_method) {}
+  virtual ~IncomingCall() = default;
+
+  /// The serialised request: its length [bytes], a reader from its first byte on, and the end of
+  /// its use.
+  virtual std::size_t request_size() const = 0;
+  virtual std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() = 0;
+  virtual void drop_request() = 0;
+
+  const Method& method;
+  CallContext context;  ///< with the limits of the client and of the server
+  const StopWatch watch;
+};
+
+/// A call of a unary method.
+class UnaryCall : public IncomingCall {
+ public:
+  using IncomingCall::IncomingCall;
+  /// Called once, on a thread of the lane or by CallDispatcher::answer. Must not throw.
+  virtual void answered(Outcome<Reply> outcome) = 0;
+};
+
+/// A call of a method that answers with a stream.
+class StreamCall : public IncomingCall {
+ public:
+  using IncomingCall::IncomingCall;
+  /// As UnaryCall::answered. Whoever pulls messages calls CallDispatcher::ended at their end,
+  /// unless the outcome is an error.
+  virtual void opened(Outcome<ReplySource> outcome) = 0;
+};
+
+/// Answers the calls of every transport: on the lane of the method, within its limits, with every
+/// failure as an error; counts each call, and logs those that fail or are slow. Safe for concurrent
+/// access. Must outlive all calls; the destructor answers those that wait.
+class CallDispatcher {
+ public:
+  /// `application` must outlive the object. Throws std::logic_error as method_table() does.
+  explicit CallDispatcher(Application& application, const TimeLimits& limits = {});
+
+  const std::vector<Method>& methods() const { return methods_; }
+  const TimeLimits& limits() const { return limits_; }
+
+  void answer(UnaryCall& call);
+  void open(StreamCall& call);
+  /// Runs the next step of an open stream.
+  void step(std::function<void()> task);
+  /// Counts a call that has ended, and logs it if it failed or was slow. Throws nothing.
+  void ended(const IncomingCall& call, const google::rpc::Status& status);
+
+ private:
+  void run(const IncomingCall& call, std::function<void()> task,
+           const std::function<void(const google::rpc::Status&)>& refuse);
+  template <class Answer>
+  Outcome<Answer> outcome_of(IncomingCall& call, const Method::UseCase<Answer>& use_case);
+
+  Application& application_;
+  const TimeLimits limits_;
+  const std::vector<Method> methods_;
+  CallLanes lanes_;  // last: its threads use all of the above
+};
+
+}  // namespace tribodyn::server

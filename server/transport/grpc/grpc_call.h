@@ -1,0 +1,45 @@
+#pragma once
+
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/proto_buffer_reader.h>
+#include <grpcpp/support/server_callback.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+
+#include "server/application/call_dispatcher.h"
+
+namespace tribodyn::server {
+
+/// The context of a call: from its metadata, its connection and its deadline, which is the client's
+/// or `limit` from now.
+CallContext call_context(const grpc::CallbackServerContext& context,
+                         std::chrono::milliseconds limit, const std::atomic<bool>& cancelled);
+
+/// What a UnaryCall and a StreamCall over gRPC have in common. The request is gRPC's and is this
+/// call's alone.
+template <class Call>
+class GrpcCall : public Call {
+ public:
+  GrpcCall(const Method& its_method, const grpc::CallbackServerContext& its_context,
+           const grpc::ByteBuffer& request, std::chrono::milliseconds limit)
+      : Call(its_method), request_(const_cast<grpc::ByteBuffer&>(request)) {
+    this->context = call_context(its_context, limit, cancelled_);
+  }
+
+  std::size_t request_size() const override { return request_.Length(); }
+  std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() override {
+    return std::make_unique<grpc::ProtoBufferReader>(&request_);
+  }
+  void drop_request() override { request_.Clear(); }
+
+ protected:
+  void set_cancelled() { cancelled_ = true; }
+
+ private:
+  grpc::ByteBuffer& request_;
+  std::atomic<bool> cancelled_ = false;
+};
+
+}  // namespace tribodyn::server

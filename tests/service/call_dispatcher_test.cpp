@@ -1,0 +1,243 @@
+// The method table, and what the dispatcher does with a call of any transport.
+#include "server/application/call_dispatcher.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/descriptor_database.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "google/rpc/code.pb.h"
+#include "server/application/list_filter.h"
+#include "tests/service/resource_calls.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::DescriptorPool;
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+/// The full names of all methods of tribodyn.v1 that are compiled in.
+std::multiset<std::string> methods_of_the_contract() {
+  std::vector<std::string> files;
+  DescriptorPool::internal_generated_database()->FindAllFileNames(&files);
+  std::multiset<std::string> out;
+  for (const std::string& name : files) {
+    if (!name.starts_with("tribodyn/v1/")) continue;
+    const auto* file = DescriptorPool::generated_pool()->FindFileByName(name);
+    for (int i = 0; i < file->service_count(); ++i) {
+      for (int k = 0; k < file->service(i)->method_count(); ++k) {
+        out.insert(file->service(i)->method(k)->full_name());
+      }
+    }
+  }
+  return out;
+}
+
+TEST(MethodTable, HasOneRowForEveryMethodOfTheContract) {
+  std::multiset<std::string> rows;
+  for (const Method& each : method_table()) rows.insert(each.descriptor->full_name());
+  EXPECT_GT(rows.size(), 40U);
+  EXPECT_EQ(rows, methods_of_the_contract());
+}
+
+TEST(MethodTable, AnswersAsTheContractSays) {
+  for (const Method& each : method_table()) {
+    EXPECT_EQ(each.open != nullptr, each.descriptor->server_streaming());
+    EXPECT_EQ(each.answer != nullptr, !each.descriptor->server_streaming());
+    EXPECT_EQ(each.request->GetDescriptor(), each.descriptor->input_type());
+    EXPECT_EQ(each.response->GetDescriptor(), each.descriptor->output_type());
+    EXPECT_LE(maximum_request_bytes(*each.descriptor), kMaximumRequestBytes);
+  }
+}
+
+/// A unary call without a transport.
+class TestCall : public UnaryCall {
+ public:
+  explicit TestCall(const google::protobuf::Message& request)
+      : UnaryCall(row_of(request)), bytes_(request.SerializeAsString()) {
+    context.client = "tester";
+    context.request_id = "call-1";
+    context.limits.cancelled = &cancelled;
+  }
+
+  std::size_t request_size() const override { return bytes_.size(); }
+  std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() override {
+    return std::make_unique<google::protobuf::io::ArrayInputStream>(
+        bytes_.data(), static_cast<int>(bytes_.size()));
+  }
+  void drop_request() override { bytes_.clear(); }
+  void answered(Outcome<Reply> outcome) override {
+    answer_.set_value(outcome.ok() ? google::rpc::Status() : outcome.error());
+  }
+
+  google::rpc::Status wait() { return answer_.get_future().get(); }
+
+  std::atomic<bool> cancelled = false;
+
+ private:
+  std::string bytes_;
+  std::promise<google::rpc::Status> answer_;
+};
+
+class CallDispatcherTest : public testing::Test {
+ protected:
+  static v1::GetLubricantRequest get() {
+    v1::GetLubricantRequest out;
+    out.set_name("lubricants/1");
+    return out;
+  }
+  static v1::BatchCreateLubricantsRequest batch(int count) {
+    v1::BatchCreateLubricantsRequest out;
+    v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
+    for (int i = 0; i < count; ++i) {
+      fluid.set_name("lubricants/many-" + std::to_string(i));
+      *out.add_requests()->mutable_lubricant() = fluid;
+    }
+    return out;
+  }
+  google::rpc::Status answer(TestCall& call) {
+    dispatcher_.answer(call);
+    return call.wait();
+  }
+  std::string metrics() { return bench_.jobs().metrics().text({}); }
+  std::size_t count() { return bench_.store().resource_names("lubricants").size(); }
+
+  const LogCapture log_;
+  Bench bench_;
+  Application app_ = bench_.application();
+  CallDispatcher dispatcher_{app_};
+};
+
+TEST_F(CallDispatcherTest, CountsACallByMethodAndCodeAndLogsOnlyWhatFails) {
+  TestCall good(get());
+  EXPECT_EQ(answer(good).code(), google::rpc::OK);
+  EXPECT_THAT(log_.text(), testing::Not(HasSubstr("event=call ")));
+  v1::GetLubricantRequest unknown;
+  unknown.set_name("lubricants/none");
+  TestCall bad(unknown);
+  EXPECT_EQ(answer(bad).code(), google::rpc::NOT_FOUND);
+  EXPECT_THAT(log_.text(), HasSubstr("event=call method=GetLubricant code=NOT_FOUND "
+                                     "reason=NOT_FOUND seconds=0.0"));
+  EXPECT_THAT(log_.text(), HasSubstr("client=tester call=call-1"));
+  const std::string method = "method=\"" + good.method.descriptor->full_name() + "\"";
+  EXPECT_THAT(metrics(), HasSubstr("tribodyn_calls_total{code=\"OK\"," + method + "} 1\n"));
+  EXPECT_THAT(metrics(), HasSubstr("tribodyn_calls_total{code=\"NOT_FOUND\"," + method + "} 1\n"));
+  EXPECT_THAT(metrics(), HasSubstr("tribodyn_call_seconds_count{" + method + "} 2\n"));
+}
+
+TEST_F(CallDispatcherTest, ACallIsRefusedByItsSizeAndByItsDeadlineBeforeItIsRead) {
+  v1::GetLubricantRequest long_one;
+  long_one.set_name(std::string(kUsualRequestBytes, 'x'));
+  TestCall large(long_one);
+  EXPECT_THAT(answer(large).message(), HasSubstr("allowed: at most 1048576 for GetLubricant"));
+  TestCall late(get());
+  late.context.limits.deadline = CallLimits::Clock::now();
+  EXPECT_EQ(answer(late).code(), google::rpc::DEADLINE_EXCEEDED);
+}
+
+TEST_F(CallDispatcherTest, ABatchWhoseClientCancelsEndsEarlyAndWritesNothing) {
+  const std::size_t before = count();
+  constexpr int kSize = 4000;
+  TestCall call(batch(kSize));
+  dispatcher_.answer(call);
+  std::this_thread::sleep_for(milliseconds(20));
+  call.cancelled = true;
+  EXPECT_EQ(call.wait().code(), google::rpc::CANCELLED);
+  EXPECT_EQ(count(), before);
+  EXPECT_THAT(metrics(), HasSubstr("tribodyn_calls_total{code=\"CANCELLED\",method=\"" +
+                                   call.method.descriptor->full_name() + "\"} 1\n"));
+  EXPECT_THAT(log_.text(), HasSubstr("method=BatchCreateLubricants code=CANCELLED"));
+}
+
+TEST_F(CallDispatcherTest, AStatementOfAClientThatCancelsIsInterrupted) {
+  std::vector<NewResource> many;
+  for (int i = 0; i < 20'000; ++i) {
+    many.push_back({"lubricants/m" + std::to_string(i), std::string(200, 'x')});
+  }
+  bench_.store().add_resources(many, 1);
+  ResourceQuery query;
+  query.collection = "lubricants";
+  query.limit = 10;
+  query.byte_limit = 1'000'000;
+  Violations violations;
+  query.restrictions =
+      parse_filter("name:nowhere AND display_name:nowhere", "lubricants", violations);
+  ASSERT_TRUE(violations.empty());
+  std::atomic<bool> cancelled = false;
+  // Gives up in the middle: neither before the first statement nor after the last one.
+  const auto begin = CallLimits::Clock::now();
+  bench_.store().resources(query);
+  const auto whole = CallLimits::Clock::now() - begin;
+  std::thread client([&] {
+    std::this_thread::sleep_for(whole / 4);
+    cancelled = true;
+  });
+  try {
+    for (int i = 0; i < 100; ++i) bench_.store().resources(query, {.cancelled = &cancelled});
+    ADD_FAILURE() << "nobody was interrupted";
+  } catch (const StoreError& error) {
+    EXPECT_EQ(error.kind(), StoreError::Kind::kCancelled);
+  }
+  client.join();
+}
+
+TEST_F(CallDispatcherTest, ReadsDoNotWaitForHeavyCalls) {
+  std::vector<std::unique_ptr<TestCall>> heavy;
+  for (int i = 0; i < 4; ++i) {
+    v1::BatchCreateLubricantsRequest request = batch(2000);
+    request.set_validate_only(true);
+    request.mutable_read_mask()->add_paths("name");
+    heavy.push_back(std::make_unique<TestCall>(request));
+  }
+  const StopWatch batches;
+  for (const auto& each : heavy) dispatcher_.answer(*each);
+  std::vector<double> seconds;
+  while (seconds.size() < 20) {
+    TestCall read(get());
+    const StopWatch watch;
+    EXPECT_EQ(answer(read).code(), google::rpc::OK);
+    seconds.push_back(watch.seconds());
+  }
+  for (const auto& each : heavy) EXPECT_EQ(each->wait().code(), google::rpc::OK);
+  std::nth_element(seconds.begin(), seconds.begin() + 10, seconds.end());
+  EXPECT_LT(seconds[10], batches.seconds() / 10);
+}
+
+TEST(Workers, RefuseWhatTheirQueueHasNoPlaceFor) {
+  std::promise<void> release;
+  const std::shared_future<void> released = release.get_future().share();
+  std::atomic<int> done = 0;
+  {
+    Workers workers(1, 2, 100);
+    const auto run = [&](std::size_t bytes) {
+      std::function<void()> task = [&] {
+        released.wait();
+        ++done;
+      };
+      return workers.run(bytes, task);
+    };
+    EXPECT_FALSE(run(101));
+    EXPECT_TRUE(run(60));
+    EXPECT_FALSE(run(50)) << "beside the one that is under way";
+    while (!run(20)) std::this_thread::yield();
+    while (!run(20)) std::this_thread::yield();  // until the first one is under way
+    EXPECT_FALSE(run(0)) << "two wait already";
+    release.set_value();
+  }
+  EXPECT_EQ(done, 3) << "what was accepted is run";
+}
+
+}  // namespace
+}  // namespace tribodyn::server
