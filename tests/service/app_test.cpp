@@ -11,6 +11,7 @@
 #include "server/application/errors.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
+#include "server/contract/constraints.h"
 #include "server/scheduling/janitor.h"
 #include "server/storage/maintenance.h"
 #include "tests/service/resource_calls.h"
