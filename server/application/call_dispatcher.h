@@ -14,24 +14,23 @@
 
 namespace tribodyn::server {
 
-/// How long a method may take, whatever deadline its client sets. A unary one answers
-/// DEADLINE_EXCEEDED; so does a stream, whether its client reads it or not: a simulation takes
-/// longer than one watch may last, and its client watches on. A stream is cut off earlier when its
-/// client takes nothing of a message for `unread`.
+/// The longest duration of a method, whatever deadline the client sets. A call that takes longer
+/// ends with DEADLINE_EXCEEDED. A stream does too, even if the client reads it: a client opens a
+/// further stream to watch a long simulation. A stream ends earlier if the client reads nothing of
+/// a message for `unread`.
 struct TimeLimits {
   std::chrono::milliseconds call = std::chrono::seconds(30);
   std::chrono::milliseconds stream = std::chrono::hours(1);
   std::chrono::milliseconds unread = std::chrono::minutes(1);
 };
 
-/// A call as its transport holds it. Lives until it is answered.
+/// A call of any transport. The transport owns the object at least until the call is answered.
 class IncomingCall {
  public:
   explicit IncomingCall(const Method& its_method) : method(its_method) {}
   virtual ~IncomingCall() = default;
 
-  /// The serialised request: its length [bytes], a reader from its first byte on, and the end of
-  /// its use.
+  /// The length of the serialised request [bytes], a new reader of it, and a call that frees it.
   virtual std::size_t request_size() const = 0;
   virtual std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() = 0;
   virtual void drop_request() = 0;
@@ -53,8 +52,8 @@ class UnaryCall : public IncomingCall {
 class StreamCall : public IncomingCall {
  public:
   using IncomingCall::IncomingCall;
-  /// As UnaryCall::answered. Whoever pulls messages calls CallDispatcher::ended at their end,
-  /// unless the outcome is an error.
+  /// Like UnaryCall::answered. If the outcome is a source, the transport calls
+  /// CallDispatcher::ended once after the last message.
   virtual void opened(Outcome<ReplySource> outcome) = 0;
 };
 

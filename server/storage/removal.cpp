@@ -11,8 +11,8 @@
 namespace tribodyn::server {
 namespace {
 
-/// Selects simulations that name a revision of resource ?1. Each of these columns has an index or
-/// few rows.
+/// Selects simulations that name a revision of resource ?1. Only `lubricant` has an index: SQLite
+/// reads all simulations.
 constexpr char kOfResource[] =
     "FROM simulations WHERE lubricant IN (SELECT id FROM revisions WHERE resource = ?1) "
     "OR gear_set IN (SELECT id FROM revisions WHERE resource = ?1) "
