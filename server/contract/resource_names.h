@@ -20,11 +20,11 @@ inline constexpr char kSurfaces[] = "surfaces";
 inline constexpr char kVehicles[] = "vehicles";
 inline constexpr char kSimulations[] = "simulations";
 
-inline constexpr char kDefaultGearSet[] = "gearSets/A";
+inline constexpr char kDefaultGearSet[] = "gearSets/reference-axle";
 inline constexpr char kDefaultSurface[] = "surfaces/run-in";
 inline constexpr char kDefaultVehicle[] = "vehicles/passenger-car";
 
-/// A name with or without a revision: "lubricants/1" or "lubricants/1@2".
+/// A name with or without a revision: "lubricants/paper-fluid-1" or "lubricants/paper-fluid-1@2".
 struct RevisionName {
   std::string name;
   int revision = 0;  ///< 0: the latest revision
@@ -59,7 +59,7 @@ bool is_resource_name(std::string_view name, std::string_view collection);
 
 /// Parses "collection/id" or "collection/id@revision". Returns nullopt if `name` has another form.
 std::optional<RevisionName> parse_revision_name(std::string_view name, std::string_view collection);
-/// Returns the name with its revision, e.g. "lubricants/1@2".
+/// Returns the name with its revision, e.g. "lubricants/paper-fluid-1@2".
 std::string revision_name(std::string_view name, int revision);
 
 /// Returns the id in "simulations/{id}", or nullopt if `name` has another form.
@@ -78,12 +78,12 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 /// Returns "; did you mean \"lims_id\"?", or "; allowed: " and all of `known` if no name is near.
 std::string meant_text(std::string_view name, const std::vector<std::string>& known);
 
-/// Returns "lubricants/7 does not exist; did you mean lubricants/1?", or the required form of a
-/// name.
+/// Returns "lubricants/7 does not exist; did you mean lubricants/paper-fluid-1?", or the required
+/// form of a name.
 std::string unknown_name_text(std::string_view name, std::string_view collection,
                               const std::vector<std::string>& existing);
 
-/// Returns "lubricants/1 is deleted; undelete it to use it".
+/// Returns "lubricants/paper-fluid-1 is deleted; undelete it to use it".
 std::string deleted_name_text(std::string_view name);
 
 /// A resource and the name of its revision.

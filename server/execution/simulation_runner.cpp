@@ -122,6 +122,7 @@ SimulationInputs SimulationRunner::inputs_of(const StoredSimulation& simulation,
     if (!request.ParseFromString(simulation.request)) {
       throw Refusal("STORED_REQUEST_UNREADABLE", "the stored request cannot be read");
     }
+    set_accepted_names(simulation, request);
     Violations violations;
     auto inputs =
         read_simulation(request, accepted_lookup(store_, simulation), "simulation", violations);

@@ -21,9 +21,9 @@ struct Figure {
   double (*value)(const v1::PointResult&);
 };
 
-/// Lubricant 1 in gear set A with the run-in surface at 72.5 km/h. At this speed, the first
-/// resonance, the teeth separate, so that dynamics, film, heat and friction all matter. The values
-/// are those of tribodyn-model-2 by the march, which is independent of shooting.
+/// Paper fluid 1 in the reference axle with the run-in surface at 72.5 km/h. At this speed, the
+/// first resonance, the teeth separate, so that dynamics, film, heat and friction all matter. The
+/// values are those of tribodyn-model-2 by the march, which is independent of shooting.
 constexpr Figure kFigures[] = {
     {"pinion_torque_newton_metres", 33.15439064,
      [](const v1::PointResult& point) { return point.pinion_torque_newton_metres(); }},
@@ -53,7 +53,7 @@ ResourceLookup seeds() {
 
 std::string check_golden_case(const StudyFunctions& studies) {
   v1::Simulation simulation;
-  simulation.set_lubricant("lubricants/1");
+  simulation.set_lubricant("lubricants/paper-fluid-1");
   simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(72.5);
   simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
   Violations violations;

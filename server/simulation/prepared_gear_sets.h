@@ -17,8 +17,8 @@ namespace tribodyn::server {
 class PreparedGearSets {
  public:
   /// Returns the prepared gear set of the scene for the caller alone. `revision` is the name of the
-  /// gear set with its revision, "gearSets/A@1"; it determines gear set and solid. Throws Refusal
-  /// as PreparedGearSet does.
+  /// gear set with its revision, "gearSets/reference-axle@1"; it determines gear set and solid.
+  /// Throws Refusal as PreparedGearSet does.
   std::shared_ptr<PreparedGearSet> take(const std::string& revision, const Scene& scene);
 
   /// Stores a prepared gear set for the next study. The caller must not use it afterwards. A gear

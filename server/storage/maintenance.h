@@ -36,7 +36,8 @@ std::vector<std::filesystem::path> former_databases(const std::filesystem::path&
 std::optional<std::filesystem::path> restore_database(const std::filesystem::path& copy,
                                                       const std::filesystem::path& database);
 
-/// Returns the body of a revision, e.g. of "lubricants/1" and 2; nullopt if it does not exist.
+/// Returns the body of a revision, e.g. of "lubricants/paper-fluid-1" and 2; nullopt if it does not
+/// exist.
 using FindRevision =
     std::function<std::optional<std::string>(const std::string& name, int revision)>;
 

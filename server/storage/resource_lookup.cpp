@@ -41,4 +41,20 @@ ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation)
   return out;
 }
 
+void set_accepted_names(const StoredSimulation& simulation, v1::Simulation& request) {
+  const auto name_of = [](const std::string& revision, const char* collection) {
+    const auto parsed = parse_revision_name(revision, collection);
+    return parsed ? parsed->name : std::string();
+  };
+  if (request.gear_set().empty()) {
+    request.set_gear_set(name_of(simulation.gear_set_revision, kGearSets));
+  }
+  if (request.surface().empty()) {
+    request.set_surface(name_of(simulation.surface_revision, kSurfaces));
+  }
+  if (request.vehicle().empty()) {
+    request.set_vehicle(name_of(simulation.vehicle_revision, kVehicles));
+  }
+}
+
 }  // namespace tribodyn::server

@@ -2,6 +2,7 @@
 
 #include "server/contract/resource_names.h"
 #include "server/storage/store.h"
+#include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::server {
 
@@ -12,5 +13,9 @@ ResourceLookup resource_lookup(Store& store, const CallLimits& limits = {});
 /// Like resource_lookup(), but finds the four resources of `simulation` in the revisions with which
 /// it was accepted, even if a resource has been deleted since.
 ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation);
+
+/// Fills each empty resource name of `request` with the name of the revision that `simulation` was
+/// accepted with: an older version may have accepted it with another default.
+void set_accepted_names(const StoredSimulation& simulation, v1::Simulation& request);
 
 }  // namespace tribodyn::server

@@ -8,7 +8,7 @@
 
 namespace tribodyn::server {
 
-/// Returns the collection of a name, e.g. "lubricants" of "lubricants/1".
+/// Returns the collection of a name, e.g. "lubricants" of "lubricants/paper-fluid-1".
 std::string collection_of(std::string_view name);
 
 /// Returns an empty message of the kind of a collection; null for an unknown collection.

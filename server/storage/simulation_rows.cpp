@@ -44,7 +44,7 @@ void bind_text_or_null(SQLite::Statement& statement, int index, const std::strin
   }
 }
 
-/// Row of "lubricants/1@2" in revisions.
+/// Row of "lubricants/paper-fluid-1@2" in revisions.
 std::int64_t revision_row(Connection& db, const std::string& name) {
   Prepared query(db,
                  "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "

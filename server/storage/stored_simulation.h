@@ -31,7 +31,7 @@ struct NewSimulation {
   std::string client = {};  ///< client that submitted it
   double cost_seconds = 0;  ///< estimate, in seconds of one processor
   std::vector<std::pair<std::string, std::string>> labels = {};
-  // Revisions of its resources, e.g. "lubricants/1@2"; each exists or is empty.
+  // Revisions of its resources, e.g. "lubricants/paper-fluid-1@2"; each exists or is empty.
   std::string lubricant_revision = {};
   std::string gear_set_revision = {};
   std::string surface_revision = {};

@@ -22,7 +22,7 @@ constexpr double kMostRatio = 3;
 class Library {
  public:
   explicit Library(int count) : count_(count) {
-    v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+    v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
     lubricant.clear_name();
     std::vector<NewResource> all;
     for (int i = 0; i < count; ++i) {

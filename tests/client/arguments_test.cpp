@@ -44,8 +44,9 @@ struct Outcome {
 };
 
 TEST(Arguments, AcceptACompletePoint) {
-  const Outcome outcome({"point", "--lubricant", "1", "--speed", "72.5", "--ascent-angle-degrees",
-                         "-3", "--isothermal", "--as-published", "eq17,eq20", "-o", "json"});
+  const Outcome outcome({"point", "--lubricant", "paper-fluid-1", "--speed", "72.5",
+                         "--ascent-angle-degrees", "-3", "--isothermal", "--as-published",
+                         "eq17,eq20", "-o", "json"});
   EXPECT_EQ(outcome.path, "point");
   EXPECT_TRUE(outcome.complaints.empty()) << outcome.complaints.front();
   EXPECT_EQ(outcome.options.output_format, OutputFormat::kJson);
@@ -74,19 +75,23 @@ TEST(Arguments, RejectEq46WhereNoProfilesAreRead) {
 }
 
 TEST(Arguments, RejectContradictions) {
-  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed", "3", "--torque", "3", "--pinion-speed", "3"})
+  EXPECT_TRUE(Outcome({"point", "-l", "paper-fluid-1", "--speed", "3", "--torque", "3",
+                       "--pinion-speed", "3"})
                   .complains_of("not both"));
-  EXPECT_TRUE(Outcome({"point", "-l", "1,2", "--speed", "3"}).complains_of("give only one"));
-  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed", "3", "--speed", "4"})
+  EXPECT_TRUE(Outcome({"point", "-l", "paper-fluid-1,paper-fluid-2", "--speed", "3"})
+                  .complains_of("give only one"));
+  EXPECT_TRUE(Outcome({"point", "-l", "paper-fluid-1", "--speed", "3", "--speed", "4"})
                   .complains_of("may be given only once"));
-  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed"}).complains_of("--speed: "));
+  EXPECT_TRUE(Outcome({"point", "-l", "paper-fluid-1", "--speed"}).complains_of("--speed: "));
   EXPECT_TRUE(Outcome({"jobs", "cancel"}).complains_of("NAME is missing"));
   EXPECT_TRUE(Outcome({"lubricants", "lst"}).complains_of("is lubricants list meant?"));
   EXPECT_TRUE(Outcome({"lubricants", "list", "more"}).complains_of("unknown argument more"));
 }
 
 TEST(Arguments, AcceptSeveralLubricantsAndJobs) {
-  EXPECT_TRUE(Outcome({"curve", "-l", "1", "--lubricant", "2,3"}).complaints.empty());
+  EXPECT_TRUE(
+      Outcome({"curve", "-l", "paper-fluid-1", "--lubricant", "paper-fluid-2,paper-fluid-3"})
+          .complaints.empty());
   EXPECT_TRUE(Outcome({"jobs", "watch", "a", "b"}).complaints.empty());
   EXPECT_TRUE(Outcome({"jobs", "get", "a", "b"}).complains_of("unknown argument b"));
 }
@@ -184,13 +189,13 @@ TEST(Numbers, RejectTrailingText) {
 
 TEST(Arguments, SpeedAndSumpHaveOneMeaningInAllCommands) {
   for (const char* command : {"point", "curve", "history"}) {
-    const Outcome outcome({command, "-l", "1", "--speed", "20m/s", "--sump", "90C"});
+    const Outcome outcome({command, "-l", "paper-fluid-1", "--speed", "20m/s", "--sump", "90C"});
     EXPECT_TRUE(outcome.complaints.empty()) << command << ": " << outcome.complaints.front();
   }
   EXPECT_TRUE(Outcome({"contact", "--sump", "90"}).complaints.empty());
-  EXPECT_TRUE(
-      Outcome({"curve", "-l", "1", "--speed", "20,40", "--speed", "100"}).complaints.empty());
-  EXPECT_TRUE(Outcome({"curve", "-l", "1", "--speed", "20", "--last-speed", "90"})
+  EXPECT_TRUE(Outcome({"curve", "-l", "paper-fluid-1", "--speed", "20,40", "--speed", "100"})
+                  .complaints.empty());
+  EXPECT_TRUE(Outcome({"curve", "-l", "paper-fluid-1", "--speed", "20", "--last-speed", "90"})
                   .complains_of("either --speed with all speeds, or --first-speed"));
 }
 
@@ -202,8 +207,9 @@ TEST(Arguments, QuantitiesOfALubricantNeedNoUnit) {
 }
 
 TEST(Arguments, ComplaintsNameTheTypedFlag) {
-  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed", "fast"}).complains_of("--speed: 'fast'"));
-  EXPECT_TRUE(Outcome({"point", "-l", "1", "--speed-kilometres-per-hour", "fast"})
+  EXPECT_TRUE(
+      Outcome({"point", "-l", "paper-fluid-1", "--speed", "fast"}).complains_of("--speed: 'fast'"));
+  EXPECT_TRUE(Outcome({"point", "-l", "paper-fluid-1", "--speed-kilometres-per-hour", "fast"})
                   .complains_of("--speed-kilometres-per-hour: 'fast'"));
   const Outcome wrong({"lubricants", "create", "x", "--kv40", "73,3", "--density", "868"});
   EXPECT_TRUE(
@@ -240,11 +246,11 @@ TEST(ServerErrors, NameTheTypedFlagAndTheCorrectSpelling) {
       "write 0.895g/cm3 or 895");
   EXPECT_EQ(message_for({"lubricants", "create", "x", "--kv40", "100"}, density),
             density.description);
-  EXPECT_EQ(message_for({"point", "-l", "1", "--speed=-5"},
+  EXPECT_EQ(message_for({"point", "-l", "paper-fluid-1", "--speed=-5"},
                         {"simulation.operating_point.cruise.speed_kilometres_per_hour",
                          "speed_kilometres_per_hour = -5 km/h; allowed: 0.1 to 400 km/h (eq 7)"}),
             "--speed = -5 km/h; allowed: 0.1 to 400 km/h (eq 7)");
-  EXPECT_EQ(message_for({"curve", "-l", "1", "--speed", "20,900"},
+  EXPECT_EQ(message_for({"curve", "-l", "paper-fluid-1", "--speed", "20,900"},
                         {"simulation.inefficiency_curve.speeds_kilometres_per_hour[1]",
                          "speeds_kilometres_per_hour = 900 km/h; allowed: 0.1 to 400 km/h (eq 7)"}),
             "--speed = 900 km/h; allowed: 0.1 to 400 km/h (eq 7)");
@@ -256,18 +262,20 @@ TEST(ServerErrors, NameTheTypedFlagAndTheCorrectSpelling) {
 }
 
 TEST(ResultFiles, AreCheckedBeforeAnythingIsComputed) {
-  EXPECT_TRUE(Outcome({"curve", "-l", "1", "--plot", "out.png"})
+  EXPECT_TRUE(Outcome({"curve", "-l", "paper-fluid-1", "--plot", "out.png"})
                   .complains_of("--plot: 'out.png' must end in .svg. Write --plot out.svg"));
-  EXPECT_TRUE(Outcome({"history", "-l", "1", "--speed", "3", "--plot", "a.b/out.PDF"})
+  EXPECT_TRUE(Outcome({"history", "-l", "paper-fluid-1", "--speed", "3", "--plot", "a.b/out.PDF"})
                   .complains_of("rsvg-convert a.b/out.svg"));
-  EXPECT_TRUE(Outcome({"curve", "-l", "1", "--plot", "/dev/null"}).complaints.empty());
+  EXPECT_TRUE(Outcome({"curve", "-l", "paper-fluid-1", "--plot", "/dev/null"}).complaints.empty());
   for (const char* flag : {"--plot", "--csv", "--npy"}) {
-    EXPECT_TRUE(Outcome({"history", "-l", "1", "--speed", "3", flag, "/nonexistent/x.svg"})
-                    .complains_of(std::string(flag) +
-                                  ": cannot write /nonexistent/x.svg: No such file or directory"))
+    EXPECT_TRUE(
+        Outcome({"history", "-l", "paper-fluid-1", "--speed", "3", flag, "/nonexistent/x.svg"})
+            .complains_of(std::string(flag) +
+                          ": cannot write /nonexistent/x.svg: No such file or directory"))
         << flag;
   }
-  EXPECT_TRUE(Outcome({"curve", "-l", "1", "--csv", "/tmp"}).complains_of("is a folder"));
+  EXPECT_TRUE(
+      Outcome({"curve", "-l", "paper-fluid-1", "--csv", "/tmp"}).complains_of("is a folder"));
   std::vector<std::string> many = {"curve", "--plot", "x.svg"};
   for (int i = 0; i < 25; ++i) many.insert(many.end(), {"-l", std::to_string(i)});
   EXPECT_TRUE(Outcome(many).complains_of("25 lubricants; allowed: at most 24"));

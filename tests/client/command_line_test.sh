@@ -38,23 +38,23 @@ for part in "'fast' is not a number" "'hot' is not a number" "'quick' must be on
 done
 
 echo "--- errors of the server: every violation at once"
-expect 1 point --lubricant 7 --speed -5 --sump-temperature-celsius 900 \
+expect 1 point --lubricant paper-fluid-7 --speed -5 --sump-temperature-celsius 900 \
   --relative-tolerance 1 --gear-set Z
 for part in '--speed = -5 km/h; allowed: 0\.1 to 400' \
   '--sump-temperature-celsius = 900 C; allowed: -70 to 200' '--relative-tolerance = 1; allowed' \
-  'lubricants/7' 'gearSets/Z'; do
+  'lubricants/paper-fluid-7' 'gearSets/Z'; do
   err_has "$part"
 done
 expect 1 contact --load-newtons -1 --radius-x-metres 0 --poissons-ratio 0.7
 for part in '--load-newtons = -1 N' '--radius-x-metres = 0 m' '--poissons-ratio = 0.7'; do
   err_has "$part"
 done
-expect 1 history --lubricant 1 --speed 50 --columns mesh_force_newton,nothing --samples-per-mesh-cycle 1
+expect 1 history --lubricant paper-fluid-1 --speed 50 --columns mesh_force_newton,nothing --samples-per-mesh-cycle 1
 for part in 'mesh_force_newtons' '--columns' '--samples-per-mesh-cycle = 1'; do
   err_has "$part"
 done
-expect 1 curve --lubricant 1,8 --first-speed 90 --last-speed 20
-for part in 'lubricants/8' '--last-speed = 20'; do
+expect 1 curve --lubricant paper-fluid-1,paper-fluid-8 --first-speed 90 --last-speed 20
+for part in 'lubricants/paper-fluid-8' '--last-speed = 20'; do
   err_has "$part"
 done
 expect 1 lubricants get none
@@ -77,13 +77,13 @@ same_numbers() { awk 'BEGIN { exit !(ARGV[1] + 0 == ARGV[3] + 0 && ARGV[2] + 0 =
 checked=0
 for command in point contact history curve; do
   while read -r flag lowest highest; do
-    given=(--lubricant 1 --speed 50)
+    given=(--lubricant paper-fluid-1 --speed 50)
     case "$command $flag" in
       *" --timeout-seconds") continue ;;  # the client checks it
       contact\ *) given=() ;;
-      curve\ * | *" --speed-kilometres-per-hour" | *" --speeds-kilometres-per-hour") given=(--lubricant 1) ;;
-      *" --pinion-torque-newton-metres") given=(--lubricant 1 --pinion-speed 1) ;;
-      *" --pinion-speed-radians-per-second") given=(--lubricant 1 --torque 1) ;;
+      curve\ * | *" --speed-kilometres-per-hour" | *" --speeds-kilometres-per-hour") given=(--lubricant paper-fluid-1) ;;
+      *" --pinion-torque-newton-metres") given=(--lubricant paper-fluid-1 --pinion-speed 1) ;;
+      *" --pinion-speed-radians-per-second") given=(--lubricant paper-fluid-1 --torque 1) ;;
     esac
     case "$flag" in
       *-mesh-cycles | *-mesh-cycle) value=$((highest + 1)) ;;
@@ -101,8 +101,8 @@ done
 
 echo "--- lubricants"
 expect 0 lubricants list
-out_has '^1 .*ester-olefin'
-out_has '^3 '
+out_has '^paper-fluid-1 .*ester-olefin'
+out_has '^paper-fluid-3 '
 expect 0 lubricants list --output csv
 out_is_csv
 out_lines 4
@@ -110,18 +110,18 @@ out_has 'pressure_viscosity_coefficient_per_pascal'
 expect 0 lubricants list --output json
 out_is_json
 out_has '"lubricants": \['
-expect 0 lubricants get 2
+expect 0 lubricants get paper-fluid-2
 out_has 'relaxation time +0.45  us'
-expect 0 lubricants get lubricants/2 -o json
+expect 0 lubricants get lubricants/paper-fluid-2 -o json
 out_is_json
 out_has '"pressureViscosityCoefficientPerPascal": 1.931e-0?8'
-expect 0 lubricants get 2 -o csv
+expect 0 lubricants get paper-fluid-2 -o csv
 out_lines 2
 
 echo "--- contact"
 expect 0 contact
 out_has 'central film thickness +h_cen +[0-9.]+ +um +12'
-expect 0 contact --lubricant 2 --newtonian --output csv
+expect 0 contact --lubricant paper-fluid-2 --newtonian --output csv
 out_is_csv
 out_lines 2
 expect 0 contact --output json
@@ -129,75 +129,75 @@ out_is_json
 out_has '"centralFilmThicknessMetres": [0-9.]+e-0?[67]'
 
 echo "--- point"
-expect 0 point --lubricant 1 --speed-kilometres-per-hour 72.5 --progress lines
+expect 0 point --lubricant paper-fluid-1 --speed-kilometres-per-hour 72.5 --progress lines
 for part in 'inefficiency, energy mean +[0-9.]+ %' 'inefficiency, RMS' 'mesh loss +[0-9.]+ W' \
   'film ratio lambda' 'contact loss' 'model version' 'input hash +[0-9a-f]{64}' \
   'relative solver error +0\.[0-9]+ +%' 'right-hand sides' 'assumed'; do
   out_has "$part"
 done
-err_has 'lubricants/1: succeeded'
-expect 0 point --lubricant 1 --speed 50 --model quasi-static --isothermal --assumptions
+err_has 'lubricants/paper-fluid-1: succeeded'
+expect 0 point --lubricant paper-fluid-1 --speed 50 --model quasi-static --isothermal --assumptions
 out_has 'model used +quasi-static +as requested'
 out_has 'relative solver error +[0-9.]+ +%'
 out_has 'model: isothermal'
 out_has 'asperity_radius_metres'
-expect 0 point --lubricant 1 --speed 50 --model quasi-static --output csv
+expect 0 point --lubricant paper-fluid-1 --speed 50 --model quasi-static --output csv
 out_lines 2
 out_has ',mesh_loss_power_watts,'
-expect 0 point --lubricant 1 --speed 50 --model quasi-static --output json
+expect 0 point --lubricant paper-fluid-1 --speed 50 --model quasi-static --output json
 out_is_json
 out_has '"inefficiencyEnergyMeanPercent": [0-9]'
-expect 0 point --lubricant 1 --speed 72.5 --model quasi-static
+expect 0 point --lubricant paper-fluid-1 --speed 72.5 --model quasi-static
 out_has 'relative solver error +not estimated'
-expect 0 point --lubricant 1 --speed 50 --model one-degree
+expect 0 point --lubricant paper-fluid-1 --speed 50 --model one-degree
 out_has 'model used +one degree of freedom +as requested'
 out_has 'steady state by +shooting'
 out_has 'relative solver error +[0-9.]+ +%'
-expect 0 point --lubricant 1 --speed 50 --model one-degree --output json
+expect 0 point --lubricant paper-fluid-1 --speed 50 --model one-degree --output json
 out_has '"model": "POINT_MODEL_ONE_DEGREE"'
-expect 0 point --lubricant 1 --speed 72.5 --model one-degree
+expect 0 point --lubricant paper-fluid-1 --speed 72.5 --model one-degree
 out_has 'relative solver error +not estimated'
-expect 0 point --lubricant 1 --speed 1
+expect 0 point --lubricant paper-fluid-1 --speed 1
 out_has 'model used +quasi-static +its estimated error is within the tolerance'
-expect 0 point --lubricant 1 --speed 50 --model automatic
+expect 0 point --lubricant paper-fluid-1 --speed 50 --model automatic
 out_has 'model used +full \(4 degrees of freedom\) +the error of a cheaper model may'
-expect 0 point --lubricant 1 --model quasi-static --pinion-torque-newton-metres 60 \
+expect 0 point --lubricant paper-fluid-1 --model quasi-static --pinion-torque-newton-metres 60 \
   --pinion-speed-radians-per-second 200
 out_has 'pinion torque 60 N m at 200 rad/s'
-expect 0 point --lubricant 1 --model quasi-static --speed 50 --acceleration 0.5 --ascent -1
+expect 0 point --lubricant paper-fluid-1 --model quasi-static --speed 50 --acceleration 0.5 --ascent -1
 out_has '50 km/h accelerating at 0.5 m/s2, ascent -1 degrees'
 
 echo "--- curve"
-expect 0 curve --lubricant 1 --lubricant 2,3 --first-speed 40 --last-speed 60 --speed-step 10 \
+expect 0 curve --lubricant paper-fluid-1 --lubricant paper-fluid-2,paper-fluid-3 --first-speed 40 --last-speed 60 --speed-step 10 \
   --model quasi-static --csv "$folder/curve.csv" --plot "$folder/curve.svg"
-out_has 'lubricants/3: inefficiency curve from 40 to 60 km/h'
+out_has 'lubricants/paper-fluid-3: inefficiency curve from 40 to 60 km/h'
 head -1 "$folder/curve.csv" | grep -q ',estimated_relative_error,' || fail "curve.csv without errors"
 [ "$(wc -l <"$folder/curve.csv")" -eq 10 ] || fail "curve.csv has not 1 + 9 lines"
 grep -q '</svg>' "$folder/curve.svg" || fail "curve.svg is not whole"
 if command -v rsvg-convert >/dev/null; then
   rsvg-convert "$folder/curve.svg" -o "$folder/curve.png" || fail "curve.svg cannot be drawn"
 fi
-expect 0 curve --lubricant 1 --first-speed 71 --last-speed 73 --speed-step 1 --model quasi-static
+expect 0 curve --lubricant paper-fluid-1 --first-speed 71 --last-speed 73 --speed-step 1 --model quasi-static
 out_has 'error of 3 of the speeds is not estimated'
-expect 0 curve --lubricant 1 --first-speed 40 --last-speed 60 --speed-step 10 \
+expect 0 curve --lubricant paper-fluid-1 --first-speed 40 --last-speed 60 --speed-step 10 \
   --model quasi-static --direction down --output csv
 out_lines 4
 out_has ',DOWN,'
-expect 0 curve --lubricant 1 --first-speed 60 --last-speed 80 --speed-step 20 --independent-points
+expect 0 curve --lubricant paper-fluid-1 --first-speed 60 --last-speed 80 --speed-step 20 --independent-points
 out_has 'from 60 to 80 km/h by 20, independent points'
 out_has 'Each speed was solved independently'
-expect 2 curve --lubricant 1 --independent-points --direction up
+expect 2 curve --lubricant paper-fluid-1 --independent-points --direction up
 err_has 'either --direction or --independent-points'
-expect 0 curve --lubricant 1 --first-speed 40 --last-speed 50 --speed-step 10 \
+expect 0 curve --lubricant paper-fluid-1 --first-speed 40 --last-speed 50 --speed-step 10 \
   --model quasi-static --output json
 out_is_json
 out_has '"simulations": \['
-expect 2 curve --lubricant 1 --first-speed 40 --last-speed 50 --speed-step 10 \
+expect 2 curve --lubricant paper-fluid-1 --first-speed 40 --last-speed 50 --speed-step 10 \
   --model quasi-static --plot /nonexistent/folder/curve.svg
 err_has 'cannot write /nonexistent/folder/curve.svg'
-expect 2 curve --lubricant 1 --plot "$folder/curve.png"
+expect 2 curve --lubricant paper-fluid-1 --plot "$folder/curve.png"
 err_has "Write --plot $folder/curve.svg"
-expect 0 curve --lubricant 1 --speed 40,20m/s --sump -5C --model quasi-static \
+expect 0 curve --lubricant paper-fluid-1 --speed 40,20m/s --sump -5C --model quasi-static \
   --plot "$folder/cold.svg"
 out_has 'Cold inlet, do not rank oils here, at all'
 out_has '^ +72 '
@@ -206,20 +206,20 @@ for part in 'do not rank oils here' 'COLD_INLET' 'tribodyn-model' 'hash of input
 done
 
 echo "--- a torque far beyond the data of the gear set"
-expect 0 point --lubricant 1 --model quasi-static --torque 765 --pinion-speed 200rad/s
+expect 0 point --lubricant paper-fluid-1 --model quasi-static --torque 765 --pinion-speed 200rad/s
 head -1 "$folder/out" | grep -q '^! This pinion torque, 765 N m, is 7.[67] times what' ||
   fail "no word of the torque at the top"
 out_has 'mesh loss +[0-9.]+ +kW'
 
 echo "--- history"
-expect 0 history --lubricant 1 --speed 50 --model quasi-static --mesh-cycles 2 \
+expect 0 history --lubricant paper-fluid-1 --speed 50 --model quasi-static --mesh-cycles 2 \
   --samples-per-mesh-cycle 16 --columns mesh_force_newtons,flank_load_newtons --output csv \
   --plot "$folder/history.svg"
 out_lines 33
 out_is_csv
 out_has '^time_seconds,mesh_force_newtons,flank_load_newtons_flank_0'
 grep -q 'flank 2' "$folder/history.svg" || fail "history.svg misses a flank"
-expect 0 history --lubricant 1 --speed 50 --model quasi-static --samples-per-mesh-cycle 16
+expect 0 history --lubricant paper-fluid-1 --speed 50 --model quasi-static --samples-per-mesh-cycle 16
 out_has 'dynamic_transmission_error_metres +16'
 job=$(sed -n 's,^simulations/\([^:]*\):.*,\1,p' "$folder/out")
 expect 0 history --simulation "$job" --output json
@@ -227,7 +227,7 @@ out_is_json
 out_has '"totalRows": "16"'
 
 echo "--- jobs"
-long=(--lubricant 1 --label project=axle --first-speed 20 --last-speed 140 --speed-step 0.2 --method march \
+long=(--lubricant paper-fluid-1 --label project=axle --first-speed 20 --last-speed 140 --speed-step 0.2 --method march \
   --relative-tolerance 1e-11 --settling-tolerance 1e-12)
 expect 0 curve "${long[@]}" --detach
 job=$(sed -n 's,^simulations/\([^ ]*\) .*,\1,p' "$folder/out")
@@ -266,7 +266,7 @@ expect 1 jobs watch "$job"
 err_has 'cancelled'
 expect 0 jobs cancel "$job"
 err_has "simulations/$job had already ended \(cancelled\); nothing to cancel"
-expect 0 jobs list --filter 'state = cancelled AND lubricant = 1'
+expect 0 jobs list --filter 'state = cancelled AND lubricant = paper-fluid-1'
 out_has "^$job .*cancelled"
 expect 0 jobs pin "$job"
 out_has "^$job .* yes "
@@ -281,7 +281,7 @@ expect 1 jobs wait "$job"
 expect 1 jobs rerun none
 
 echo "--- a job is computed once, and again with --force"
-point=(point --lubricant 2 --speed 50 --model quasi-static --output json)
+point=(point --lubricant paper-fluid-2 --speed 50 --model quasi-static --output json)
 expect 0 "${point[@]}"
 expect 0 "${point[@]}"
 out_has '"cacheHit": true'
@@ -290,14 +290,14 @@ expect 0 "${point[@]}" --force
 out_has '"cacheHit": false'
 expect 0 jobs rerun "$name" --output json
 out_has '"cacheHit": false'
-out_has '"lubricant": "lubricants/2@1"'
+out_has '"lubricant": "lubricants/paper-fluid-2@1"'
 expect 0 jobs wait "$name" --output csv
 out_has 'SUCCEEDED'
-expect 1 point --lubricant 2 --speed 51 --deadline-seconds 0.001 --method march
+expect 1 point --lubricant paper-fluid-2 --speed 51 --deadline-seconds 0.001 --method march
 err_has 'DEADLINE_EXCEEDED|deadline_seconds'
 
 echo "--- results outlive the server"
-expect 0 point --lubricant 3 --speed 50 --model quasi-static --output json
+expect 0 point --lubricant paper-fluid-3 --speed 50 --model quasi-static --output json
 name=$(sed -n 's,^ "name": "simulations/\(.*\)".*,\1,p' "$folder/out")
 cp "$folder/out" "$folder/before"
 stop_server

@@ -161,7 +161,7 @@ TEST(Follow, CtrlCPrintsTheCommandsThatWatchAndCancel) {
     std::raise(SIGINT);
   });
   try {
-    follow(connection, queued({"job1"}), {"lubricants/1"}, ProgressForm::kNone);
+    follow(connection, queued({"job1"}), {"lubricants/paper-fluid-1"}, ProgressForm::kNone);
     ADD_FAILURE() << "Ctrl-C was ignored";
   } catch (const Failure& failure) {
     EXPECT_EQ(failure.exit_code(), kExitInterrupted);

@@ -99,7 +99,7 @@ out_lacks 'thermal conductivity'
 expect 4 diff my-oil@1 my-oil --exit-code --output csv
 out_is_csv
 expect 0 diff my-oil my-oil --exit-code
-expect 0 diff 1 2 --all --output json
+expect 0 diff paper-fluid-1 paper-fluid-2 --all --output json
 out_is_json
 out_has 'sae_j306_grade'
 expect 0 lubricants update my-oil --unset pressure-viscosity-coefficient
@@ -178,13 +178,13 @@ err_has 'lubricants\[0\] and in .*lubricants\[1\]'
 expect 1 lubricants get twice
 
 echo "--- validation of a simulation"
-expect 0 curve --lubricant 1 --lubricant my-oil --validate-only
+expect 0 curve --lubricant paper-fluid-1 --lubricant my-oil --validate-only
 out_has '^valid, not run: lubricants/my-oil  about .* of a processor; inputs [0-9a-f]{64}$'
-expect 1 point --lubricant 1 --speed 4000 --validate-only
+expect 1 point --lubricant paper-fluid-1 --speed 4000 --validate-only
 err_has 'allowed: 0.1 to 400 km/h'
 expect 0 jobs list --output csv
 jobs_before=$(cat "$folder/out")
-expect 0 point --lubricant 1 --speed 40 --validate-only
+expect 0 point --lubricant paper-fluid-1 --speed 40 --validate-only
 expect 0 jobs list --output csv
 [ "$(cat "$folder/out")" = "$jobs_before" ] || fail "--validate-only runs something"
 
@@ -285,7 +285,7 @@ expect 0 lubricants create cold --kv40 103 --kv100 15.1 --density15 868 --brookf
   --kv100-sheared 14.2 --base-oil-class pao --density 100=815 --viscosity 20=283mm2/s \
   --thermal-conductivity 0.14W/mK --provenance 'thermal-conductivity=measured:Laboratory X' \
   --uncertainty thermal-conductivity=0.01W/mK --label 'project=axle, rear'
-for oil in 1 2 3 excel cold my-oil; do
+for oil in paper-fluid-1 paper-fluid-2 paper-fluid-3 excel cold my-oil; do
   expect 0 lubricants export "$oil" --output csv --file there.csv
   err_is_empty
   sed "2s,^lubricants/$oil,lubricants/back-$oil," there.csv >back.csv
@@ -327,13 +327,13 @@ expect 0 lubricants export --all --file all.json
 grep -q 'lubricants/row-fresh"' all.json || fail "an export lacks the deleted parent of a fluid"
 
 echo "--- tables of gear sets and surfaces"
-expect 0 gear-sets export A --tooth-contact contact.csv --series series.csv
-expect 0 gear-sets import contact.csv --series series.csv --id table --like A
+expect 0 gear-sets export reference-axle --tooth-contact contact.csv --series series.csv
+expect 0 gear-sets import contact.csv --series series.csv --id table --like reference-axle
 expect 0 gear-sets export table --tooth-contact contact-2.csv --series series-2.csv
 cmp -s contact.csv contact-2.csv || fail "tooth contact: export, import, export is not identical"
 cmp -s series.csv series-2.csv || fail "series: export, import, export is not identical"
 awk -F, -v OFS=, 'NR == 5 { $3 = 7 } { print }' contact.csv >bent.csv
-expect 1 gear-sets create bent --like A --tooth-contact bent.csv --gear-teeth 37
+expect 1 gear-sets create bent --like reference-axle --tooth-contact bent.csv --gear-teeth 37
 err_has 'row 5 column load_share'
 err_has 'R_g0'
 awk 'BEGIN { print "position_micrometres,height_nanometres"
@@ -354,7 +354,7 @@ expect 1 surfaces create one --like run-in --profile profile.csv --as-published 
 err_has 'because eq 46 combines an AXIAL and a RADIAL profile'
 expect 2 surfaces create none --like run-in --as-published eq46
 err_has '--as-published applies to profiles'
-expect 2 point --lubricant 1 --speed 50 --as-published eq46
+expect 2 point --lubricant paper-fluid-1 --speed 50 --as-published eq46
 err_has 'eq46 applies where measured profiles become a surface'
 expect 0 validate contact.csv profile.csv table-oil.csv
 expect 0 vehicles create van --like passenger-car --mass '2.1 t' --wheel-radius 0.35
@@ -414,7 +414,7 @@ if command -v script >/dev/null; then
   ! grep -q $'\x1b' terminal || fail "colours with NO_COLOR"
   on_terminal "'$client' lubricants get my-oil --no-color"
   ! grep -q $'\x1b' terminal || fail "colours with --no-color"
-  on_terminal "'$client' curve -l 1 --first-speed 50 --last-speed 60 --speed-step 5"
+  on_terminal "'$client' curve -l paper-fluid-1 --first-speed 50 --last-speed 60 --speed-step 5"
   grep -q '\] *[0-9]* %' terminal || fail "no progress on a terminal"
 fi
 
@@ -428,7 +428,7 @@ completed() {
     bash "$folder/out" "$1"
 }
 [ "$(completed 'tribodyn lubricants get my')" = 'my-oil ' ] || fail "completion of a name"
-[ "$(completed 'tribodyn curve --lubricant 1,my')" = '1,my-oil ' ] || fail "completion of a second name"
+[ "$(completed 'tribodyn curve --lubricant paper-fluid-1,my')" = 'paper-fluid-1,my-oil ' ] || fail "completion of a second name"
 [ "$(completed 'tribodyn curve --surface=run')" = 'run-in ' ] || fail "completion after ="
 [ "$(completed 'tribodyn gear-sets exp')" = 'export ' ] || fail "completion of a command"
 [ "$(completed 'tribodyn validate units-')" = 'units-2.json ' ] || fail "completion of a file"

@@ -63,7 +63,7 @@ void vary(int number, v1::Simulation& out) {
       out.set_sump_temperature_celsius(out.sump_temperature_celsius() + 5);
       break;
     case 1:
-      out.set_lubricant("lubricants/" + std::to_string(1 + (number + 1) % 3));
+      out.set_lubricant("lubricants/paper-fluid-" + std::to_string(1 + (number + 1) % 3));
       break;
     default:
       out.set_inlet_temperature_rise_kelvin(15);
@@ -86,7 +86,7 @@ v1::Lubricant lubricant_of(const std::string& name, int content) {
 v1::Simulation simulation_of(const std::string& scene) {
   const int number = std::stoi(scene) / 2;
   v1::Simulation out;
-  out.set_lubricant("lubricants/" + std::to_string(1 + number % 3));
+  out.set_lubricant("lubricants/paper-fluid-" + std::to_string(1 + number % 3));
   out.set_sump_temperature_celsius(30 + 0.1 * number);
   set_study(number, out);
   if (std::stoi(scene) % 2 == 1) vary(number, out);

@@ -110,7 +110,7 @@ class Session {
 
  private:
   server::NewResource lubricant(const std::string& title) const {
-    v1::Lubricant out = server::seed<v1::Lubricant>("lubricants/1");
+    v1::Lubricant out = server::seed<v1::Lubricant>("lubricants/paper-fluid-1");
     out.set_name("lubricants/x");
     out.set_display_name(title);
     return {out.name(), out.SerializeAsString()};

@@ -81,9 +81,9 @@ void read_field_mask(std::string_view text) {
   };
   google::protobuf::FieldMask mask;
   for (const std::string& path : client::split(text, '\n')) mask.add_paths(path);
-  v1::Lubricant target = seed("lubricants/1");
+  v1::Lubricant target = seed("lubricants/paper-fluid-1");
   server::Violations violations;
-  server::merge(seed("lubricants/2"), mask, target, violations);
+  server::merge(seed("lubricants/paper-fluid-2"), mask, target, violations);
   judge(violations, static_cast<std::size_t>(mask.paths_size()) + 1);
   v1::Lubricant copy;
   require(copy.ParseFromString(target.SerializeAsString()));

@@ -142,8 +142,8 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
     inner->GetReflection()->SetString(inner, descriptor, value);
   };
   static const std::map<std::string, std::string> kCollections = {
-      {"LubricantService", "lubricants/1"},
-      {"GearSetService", "gearSets/A"},
+      {"LubricantService", "lubricants/paper-fluid-1"},
+      {"GearSetService", "gearSets/reference-axle"},
       {"SurfaceService", "surfaces/run-in"},
       {"VehicleService", "vehicles/passenger-car"}};
   const auto known = kCollections.find(GetParam()->service()->name());
@@ -157,12 +157,12 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
       return expect_refused(*message, "did you mean \"Lubricant\"?");
     }
     if (method == "EvaluateContact") {
-      set("lubricant", "lubricants/11");
-      return expect_refused(*message, "did you mean \"lubricants/1\"?");
+      set("lubricant", "lubricants/paper-fluid-11");
+      return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");
     }
     if (method == "CreateSimulation") {
-      set_inner("simulation", "lubricant", "lubricants/11");
-      return expect_refused(*message, "did you mean \"lubricants/1\"?");
+      set_inner("simulation", "lubricant", "lubricants/paper-fluid-11");
+      return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");
     }
     if (method == "UpdateSimulation") {
       set_inner("simulation", "name", "simulations/99999");

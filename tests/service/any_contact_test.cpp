@@ -72,7 +72,7 @@ TEST(AnyContact, AnswersInFiniteNumbersOrRefuses) {
   std::chrono::duration<double> slowest{0};
   for (int i = 0; i < kRequests; ++i) {
     v1::EvaluateContactRequest request = contact_request();
-    *request.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/1");
+    *request.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/paper-fluid-1");
     randomise(&request, any);
     if (any.flag()) randomise(request.mutable_lubricant_parameters(), any);
     randomise(request.mutable_model_options(), any);

@@ -50,7 +50,7 @@ class AppTest : public testing::Test {
 
 TEST_F(AppTest, EveryErrorHasAReasonInErrorInfo) {
   for (const auto& status :
-       {get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/9")).error(),
+       {get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/paper-fluid-9")).error(),
         get_gear_set(app_, named<v1::GetGearSetRequest>("x")).error(),
         create_simulation(app_, {}).error(),
         get_simulation(app_, named<v1::GetSimulationRequest>("simulations/77")).error(),
@@ -89,11 +89,12 @@ TEST_F(AppTest, MetadataHasTheVariablesOfAMessage) {
               testing::UnorderedElementsAre(Pair("reason", "INVALID_FIELDS"),
                                             Pair("field", "simulation"), Pair("violations", "1")));
   v1::UpdateLubricantRequest stale;
-  stale.mutable_lubricant()->set_name("lubricants/1");
+  stale.mutable_lubricant()->set_name("lubricants/paper-fluid-1");
   stale.mutable_lubricant()->set_etag("0123");
   EXPECT_THAT(metadata(update_lubricant(app_, stale).error()),
               testing::UnorderedElementsAre(Pair("reason", "ETAG_MISMATCH"),
-                                            Pair("name", "lubricants/1"), Pair("etag", "0123")));
+                                            Pair("name", "lubricants/paper-fluid-1"),
+                                            Pair("etag", "0123")));
   EXPECT_THAT(metadata(exhausted(v1::ERROR_REASON_TOO_MANY_WAITING, "later", 0.25)),
               testing::UnorderedElementsAre(Pair("reason", "TOO_MANY_WAITING"),
                                             Pair("retry_seconds", "0.25")));
@@ -108,11 +109,13 @@ TEST_F(AppTest, MetadataHasTheVariablesOfAMessage) {
 }
 
 TEST_F(AppTest, ResourcesAreReadAndListed) {
-  EXPECT_EQ(get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/2"))
+  EXPECT_EQ(get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/paper-fluid-2"))
                 .message()
                 .vogel_temperature_coefficient_kelvin(),
             1105);
-  EXPECT_EQ(get_gear_set(app_, named<v1::GetGearSetRequest>("gearSets/B")).message().gear_teeth(),
+  EXPECT_EQ(get_gear_set(app_, named<v1::GetGearSetRequest>("gearSets/reference-axle-loaded-error"))
+                .message()
+                .gear_teeth(),
             36);
   EXPECT_EQ(get_surface(app_, named<v1::GetSurfaceRequest>("surfaces/run-in")).message().name(),
             "surfaces/run-in");
@@ -130,7 +133,7 @@ TEST_F(AppTest, ListsArePaged) {
   request.set_page_token(first.next_page_token());
   const auto second = list_lubricants(app_, request).message();
   ASSERT_EQ(second.lubricants_size(), 1);
-  EXPECT_EQ(second.lubricants(0).name(), "lubricants/3");
+  EXPECT_EQ(second.lubricants(0).name(), "lubricants/paper-fluid-3");
   EXPECT_TRUE(second.next_page_token().empty());
   request.set_page_token("nonsense");
   request.set_page_size(-1);
@@ -140,10 +143,12 @@ TEST_F(AppTest, ListsArePaged) {
 }
 
 TEST_F(AppTest, AnUnknownNameIsNotFoundAndTheNearestOneIsSuggested) {
-  const auto status = get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/33")).error();
+  const auto status =
+      get_lubricant(app_, named<v1::GetLubricantRequest>("lubricants/paper-fluid-33")).error();
   EXPECT_EQ(status.code(), google::rpc::NOT_FOUND);
-  EXPECT_THAT(status.message(), testing::HasSubstr("lubricants/3"));
-  EXPECT_EQ(detail<google::rpc::ResourceInfo>(status)->resource_name(), "lubricants/33");
+  EXPECT_THAT(status.message(), testing::HasSubstr("lubricants/paper-fluid-3"));
+  EXPECT_EQ(detail<google::rpc::ResourceInfo>(status)->resource_name(),
+            "lubricants/paper-fluid-33");
 }
 
 TEST_F(AppTest, ASimulationIsAcceptedListedAndRead) {
@@ -234,18 +239,20 @@ TEST_F(AppTest, SimulationsAreFoundByStateLubricantTimeAndLabel) {
   EXPECT_THAT(names("labels.project = axle"), ElementsAre(axle));
   EXPECT_THAT(names("labels.project:*", "create_time asc"), ElementsAre(axle, other));
   EXPECT_THAT(names("labels.project != axle"), ElementsAre(curve, other));
-  EXPECT_THAT(names("lubricant = \"lubricants/2\""), ElementsAre(curve));
-  EXPECT_THAT(names("lubricant = \"lubricants/1@1\" AND state = SUCCEEDED"),
+  EXPECT_THAT(names("lubricant = \"lubricants/paper-fluid-2\""), ElementsAre(curve));
+  EXPECT_THAT(names("lubricant = \"lubricants/paper-fluid-1@1\" AND state = SUCCEEDED"),
               ElementsAre(other, axle));
   EXPECT_THAT(names("state = FAILED"), ElementsAre());
-  EXPECT_THAT(names("state = succeeded AND lubricant = 2"), ElementsAre(curve));
-  EXPECT_THAT(names("lubricant != 2"), ElementsAre(other, axle));
+  EXPECT_THAT(names("state = succeeded AND lubricant = paper-fluid-2"), ElementsAre(curve));
+  EXPECT_THAT(names("lubricant != paper-fluid-2"), ElementsAre(other, axle));
   v1::PinSimulationRequest pin;
   pin.set_name(other);
   ASSERT_TRUE(pin_simulation(app_, pin).ok());
-  EXPECT_THAT(names("gear_set = A AND surface = run-in AND vehicle = passenger-car").size(), 3U);
-  EXPECT_THAT(names("gear_set = B"), ElementsAre());
-  EXPECT_THAT(names("gear_set != gearSets/B@1").size(), 3U);
+  EXPECT_THAT(
+      names("gear_set = reference-axle AND surface = run-in AND vehicle = passenger-car").size(),
+      3U);
+  EXPECT_THAT(names("gear_set = reference-axle-loaded-error"), ElementsAre());
+  EXPECT_THAT(names("gear_set != gearSets/reference-axle-loaded-error@1").size(), 3U);
   EXPECT_THAT(names("end_time > 2020-01-01T00:00:00Z").size(), 3U);
   EXPECT_THAT(names("end_time > 2199-01-01T00:00:00Z"), ElementsAre());
   EXPECT_THAT(names("input_hash = " + bench_.get(curve).input_hash()), ElementsAre(curve));

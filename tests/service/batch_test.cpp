@@ -102,30 +102,32 @@ TEST_F(BatchTest, AViolationInTheLastElementWritesNothing) {
 
 TEST_F(BatchTest, TheViolationsOfAllElementsAreReportedTogether) {
   v1::BatchCreateLubricantsRequest batch =
-      creation({fluid("1"), fluid("x"), fluid("y"), fluid("y"), fluid("z")});
+      creation({fluid("paper-fluid-1"), fluid("x"), fluid("y"), fluid("y"), fluid("z")});
   batch.mutable_requests(1)->mutable_lubricant()->set_thermal_conductivity_watts_per_metre_kelvin(
       1e9);
   batch.mutable_requests(1)->mutable_lubricant()->set_limiting_shear_stress_coefficient(-1);
   batch.mutable_requests(2)->set_lubricant_id("a b");
   batch.mutable_requests(3)->set_validate_only(true);
-  batch.mutable_requests(4)->mutable_lubricant()->set_derived_from("lubricants/11");
+  batch.mutable_requests(4)->mutable_lubricant()->set_derived_from("lubricants/paper-fluid-11");
   batch.add_requests();
   *batch.add_requests() = batch.requests(0);
   const auto refused = batch_create_lubricants(app_, batch);
   ASSERT_FALSE(refused.ok());
   expect_nothing_written(refused.error(), google::rpc::INVALID_ARGUMENT);
-  EXPECT_THAT(complaint_lines(refused.error()),
-              ElementsAre(HasSubstr("requests[0].lubricant.name: lubricants/1 exists already"),
-                          StartsWith("requests[1].lubricant.limiting_shear_stress_coefficient: "),
-                          StartsWith("requests[1].lubricant.thermal_conductivity_"),
-                          StartsWith("requests[2].lubricant_id: \"a b\"; allowed: "),
-                          StartsWith("requests[3].validate_only: "),
-                          HasSubstr("requests[4].lubricant.derived_from: \"lubricants/11\" does "
-                                    "not exist; did you mean \"lubricants/1\"?"),
-                          "requests[5].lubricant: not set",
-                          HasSubstr("requests[6].lubricant.name: lubricants/1 stands in "
-                                    "requests[0] too; allowed: once"),
-                          HasSubstr("requests[6].lubricant.name: lubricants/1 exists already")));
+  EXPECT_THAT(
+      complaint_lines(refused.error()),
+      ElementsAre(
+          HasSubstr("requests[0].lubricant.name: lubricants/paper-fluid-1 exists already"),
+          StartsWith("requests[1].lubricant.limiting_shear_stress_coefficient: "),
+          StartsWith("requests[1].lubricant.thermal_conductivity_"),
+          StartsWith("requests[2].lubricant_id: \"a b\"; allowed: "),
+          StartsWith("requests[3].validate_only: "),
+          HasSubstr("requests[4].lubricant.derived_from: \"lubricants/paper-fluid-11\" does "
+                    "not exist; did you mean \"lubricants/paper-fluid-1\"?"),
+          "requests[5].lubricant: not set",
+          HasSubstr("requests[6].lubricant.name: lubricants/paper-fluid-1 stands in "
+                    "requests[0] too; allowed: once"),
+          HasSubstr("requests[6].lubricant.name: lubricants/paper-fluid-1 exists already")));
 }
 
 TEST_F(BatchTest, AnExistingNameIsRefusedWithAlreadyExists) {
@@ -134,16 +136,19 @@ TEST_F(BatchTest, AnExistingNameIsRefusedWithAlreadyExists) {
   v1::DeleteLubricantRequest deletion;
   deletion.set_name("lubricants/gone");
   ASSERT_TRUE(delete_lubricant(app_, deletion).ok());
-  const auto taken = batch_create_lubricants(app_, creation({fluid("new"), gone, fluid("1")}));
+  const auto taken =
+      batch_create_lubricants(app_, creation({fluid("new"), gone, fluid("paper-fluid-1")}));
   ASSERT_FALSE(taken.ok());
   expect_nothing_written(taken.error(), google::rpc::ALREADY_EXISTS);
-  EXPECT_THAT(complaint_lines(taken.error()),
-              ElementsAre(StartsWith("requests[1].lubricant.name: lubricants/gone exists and is"),
-                          StartsWith("requests[2].lubricant.name: lubricants/1 exists already")));
+  EXPECT_THAT(
+      complaint_lines(taken.error()),
+      ElementsAre(
+          StartsWith("requests[1].lubricant.name: lubricants/gone exists and is"),
+          StartsWith("requests[2].lubricant.name: lubricants/paper-fluid-1 exists already")));
   const auto deleted = batch_update_lubricants(app_, update({fluid("new"), gone}, true));
   ASSERT_FALSE(deleted.ok());
   expect_nothing_written(deleted.error(), google::rpc::FAILED_PRECONDITION);
-  auto replacements = update({fluid("1"), fluid("11")});
+  auto replacements = update({fluid("paper-fluid-1"), fluid("paper-fluid-11")});
   replacements.mutable_requests(0)->mutable_update_mask()->add_paths("*");
   const auto missing = batch_update_lubricants(app_, replacements);
   ASSERT_FALSE(missing.ok());
@@ -174,7 +179,8 @@ TEST_F(BatchTest, OneMayDescendFromAnotherWhicheverComesFirst) {
 }
 
 TEST_F(BatchTest, ABatchUpdateMakesRevisionsLikeASingleUpdate) {
-  v1::Lubricant first = get("1"), second = get("2"), third = get("3");
+  v1::Lubricant first = get("paper-fluid-1"), second = get("paper-fluid-2"),
+                third = get("paper-fluid-3");
   first.set_display_name("renamed");
   second.set_display_name("renamed");
   second.set_lims_id("not in the mask");
@@ -187,14 +193,14 @@ TEST_F(BatchTest, ABatchUpdateMakesRevisionsLikeASingleUpdate) {
   EXPECT_EQ(updated.message().lubricants(2).SerializeAsString(), third.SerializeAsString())
       << "what changes nothing makes no revision";
   EXPECT_EQ(updated.message().lubricants(3).revision(), 1);
-  EXPECT_EQ(get("2").lims_id(), "");
+  EXPECT_EQ(get("paper-fluid-2").lims_id(), "");
 
   const auto stale = batch_update_lubricants(app_, update({third, first, fluid("other")}, true));
   ASSERT_FALSE(stale.ok());
   EXPECT_EQ(stale.error().code(), google::rpc::ABORTED);
   EXPECT_THAT(complaint_lines(stale.error()),
               ElementsAre(HasSubstr("requests[1].lubricant.etag: ")));
-  EXPECT_EQ(get("1").revision(), 2);
+  EXPECT_EQ(get("paper-fluid-1").revision(), 2);
   EXPECT_EQ(count(), before_ + 1);
 }
 
@@ -207,12 +213,12 @@ TEST_F(BatchTest, ValidateOnlyAnswersAsIfWrittenAndWritesNothing) {
   ASSERT_TRUE(checked.ok()) << checked.error().message();
   expect_nothing_written({}, google::rpc::OK);
   EXPECT_GT(checked.message().lubricants(2).characterisation().viscosity_index(), 90);
-  v1::Lubricant renamed = get("1");
+  v1::Lubricant renamed = get("paper-fluid-1");
   renamed.set_display_name("renamed");
   v1::BatchUpdateLubricantsRequest changes = update({renamed});
   changes.set_validate_only(true);
   EXPECT_TRUE(batch_update_lubricants(app_, changes).ok());
-  EXPECT_EQ(get("1").revision(), 1);
+  EXPECT_EQ(get("paper-fluid-1").revision(), 1);
 }
 
 TEST_F(BatchTest, AStoreErrorAtTheLastElementWritesNothing) {
@@ -372,7 +378,8 @@ TEST_F(BatchTest, ConcurrentBatchesDoNotMix) {
 
 TEST_F(BatchTest, EveryKindOfResourceHasBatches) {
   v1::BatchCreateGearSetsRequest gear_sets;
-  *gear_sets.add_requests()->mutable_gear_set() = seed<v1::GearSet>("gearSets/B");
+  *gear_sets.add_requests()->mutable_gear_set() =
+      seed<v1::GearSet>("gearSets/reference-axle-loaded-error");
   gear_sets.mutable_requests(0)->set_gear_set_id("mine");
   EXPECT_TRUE(batch_create_gear_sets(app_, gear_sets).ok());
   v1::BatchUpdateGearSetsRequest gear_set_updates;

@@ -95,12 +95,12 @@ class CallDispatcherTest : public testing::Test {
  protected:
   static v1::GetLubricantRequest get() {
     v1::GetLubricantRequest out;
-    out.set_name("lubricants/1");
+    out.set_name("lubricants/paper-fluid-1");
     return out;
   }
   static v1::BatchCreateLubricantsRequest batch(int count) {
     v1::BatchCreateLubricantsRequest out;
-    v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
+    v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
     for (int i = 0; i < count; ++i) {
       fluid.set_name("lubricants/many-" + std::to_string(i));
       *out.add_requests()->mutable_lubricant() = fluid;

@@ -58,12 +58,13 @@ v1::Simulation point_of(const std::string& lubricant, double speed) {
 /// histories.
 std::vector<v1::Simulation> scenes() {
   std::vector<v1::Simulation> out;
-  for (const char* lubricant : {"lubricants/1", "lubricants/2", "lubricants/3"}) {
+  for (const char* lubricant :
+       {"lubricants/paper-fluid-1", "lubricants/paper-fluid-2", "lubricants/paper-fluid-3"}) {
     for (const double speed : {2.0, 35.0, 72.5, 110.0}) {
       out.push_back(point_of(lubricant, speed));
       out.back().set_sump_temperature_celsius(speed);
       out.push_back(out.back());
-      out.back().set_gear_set("gearSets/B");
+      out.back().set_gear_set("gearSets/reference-axle-loaded-error");
     }
     out.push_back(point_of(lubricant, 100));
     out.back().mutable_operating_point()->set_model(v1::POINT_MODEL_QUASI_STATIC);
@@ -77,12 +78,12 @@ std::vector<v1::Simulation> scenes() {
     coast->set_pinion_torque_newton_metres(-30);
     coast->set_pinion_speed_radians_per_second(200);
   }
-  out.push_back(point_of("lubricants/1", 90));
+  out.push_back(point_of("lubricants/paper-fluid-1", 90));
   out.back().mutable_operating_point()->mutable_history()->add_columns("mesh_force_newtons");
-  out.push_back(point_of("lubricants/2", 90));
+  out.push_back(point_of("lubricants/paper-fluid-2", 90));
   out.back().mutable_solver_options()->set_tolerance(1e-6);
   if (!kUnderSanitizer) {
-    out.push_back(point_of("lubricants/2", 72.5));
+    out.push_back(point_of("lubricants/paper-fluid-2", 72.5));
     out.back().mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
     out.push_back(curve_simulation());
   }
@@ -109,7 +110,7 @@ TEST(PreparedGearSets, GiveTheBitsOfAnUnpreparedOneAfterAnyOtherStudy) {
 TEST(PreparedGearSets, GiveTheSameBitsToManyThreads) {
   std::vector<v1::Simulation> points;
   for (const double speed : {30.0, 50.0, 70.0, 90.0})
-    points.push_back(point_of("lubricants/1", speed));
+    points.push_back(point_of("lubricants/paper-fluid-1", speed));
   std::vector<std::string> alone;
   for (const v1::Simulation& each : points) alone.push_back(bits_alone(each));
   PreparedGearSets gear_sets;
@@ -130,30 +131,32 @@ TEST(PreparedGearSets, AreLentToOneStudyAtATime) {
   const SimulationInputs inputs = inputs_for(point_simulation());
   const Scene physical = scene(inputs);
   PreparedGearSets gear_sets;
-  const auto first = gear_sets.take("gearSets/A@1", physical);
-  const auto second = gear_sets.take("gearSets/A@1", physical);
+  const auto first = gear_sets.take("gearSets/reference-axle@1", physical);
+  const auto second = gear_sets.take("gearSets/reference-axle@1", physical);
   EXPECT_NE(first, second);
   const PreparedGearSet* const returned = second.get();
-  gear_sets.give_back("gearSets/A@1", physical.options, second);
-  EXPECT_EQ(gear_sets.take("gearSets/A@1", physical).get(), returned);
+  gear_sets.give_back("gearSets/reference-axle@1", physical.options, second);
+  EXPECT_EQ(gear_sets.take("gearSets/reference-axle@1", physical).get(), returned);
 }
 
 TEST(PreparedGearSets, DifferByRevisionAndModel) {
   Scene physical = scene(inputs_for(point_simulation()));
   PreparedGearSets gear_sets;
-  const auto first = gear_sets.take("gearSets/A@1", physical);
-  gear_sets.give_back("gearSets/A@1", physical.options, first);
-  EXPECT_NE(gear_sets.take("gearSets/A@2", physical), first);
+  const auto first = gear_sets.take("gearSets/reference-axle@1", physical);
+  gear_sets.give_back("gearSets/reference-axle@1", physical.options, first);
+  EXPECT_NE(gear_sets.take("gearSets/reference-axle@2", physical), first);
   physical.options.as_published.eq22_inverted_ratio = true;
-  EXPECT_NE(gear_sets.take("gearSets/A@1", physical), first);
+  EXPECT_NE(gear_sets.take("gearSets/reference-axle@1", physical), first);
   physical.options.as_published.eq22_inverted_ratio = false;
-  EXPECT_EQ(gear_sets.take("gearSets/A@1", physical), first);
+  EXPECT_EQ(gear_sets.take("gearSets/reference-axle@1", physical), first);
 }
 
 TEST(PreparedGearSets, KeepRecentlyUsedOnesAndDropLargeOnes) {
   const Scene physical = scene(inputs_for(point_simulation()));
   PreparedGearSets gear_sets;
-  const auto revision = [](std::size_t number) { return "gearSets/A@" + std::to_string(number); };
+  const auto revision = [](std::size_t number) {
+    return "gearSets/reference-axle@" + std::to_string(number);
+  };
   const auto use = [&](std::size_t number) {
     auto taken = gear_sets.take(revision(number), physical);
     gear_sets.give_back(revision(number), physical.options, taken);
@@ -189,7 +192,7 @@ TEST(PreparedGearSets, AreSharedBySimulationsAndDroppedAfterAnException) {
   };
   Bench bench(studies, 1);
   for (const double speed : {50.0, 60.0, 120.0, 70.0}) {
-    const std::string name = bench.create(point_of("lubricants/1", speed));
+    const std::string name = bench.create(point_of("lubricants/paper-fluid-1", speed));
     ASSERT_TRUE(
         bench.reaches(name, speed > 100 ? v1::Simulation::FAILED : v1::Simulation::SUCCEEDED));
   }

@@ -249,7 +249,7 @@ TEST(Concurrency, NoUpdateIsLostAndNoRevisionIsMadeTwice) {
   on_threads(kThreads, [&](int thread) {
     for (int round = 0; round < kRounds; ++round) {
       v1::UpdateLubricantRequest update;
-      update.mutable_lubricant()->set_name("lubricants/1");
+      update.mutable_lubricant()->set_name("lubricants/paper-fluid-1");
       update.mutable_lubricant()->set_lims_id(std::to_string(thread) + "." + std::to_string(round));
       update.mutable_update_mask()->add_paths("lims_id");
       const auto outcome = update_lubricant(app, update);
@@ -272,7 +272,7 @@ TEST(Concurrency, NoUpdateIsLostAndNoRevisionIsMadeTwice) {
     }
   });
   v1::GetLubricantRequest get;
-  get.set_name("lubricants/1");
+  get.set_name("lubricants/paper-fluid-1");
   EXPECT_EQ(get_lubricant(app, get).message().revision(), 1 + updated);
 }
 

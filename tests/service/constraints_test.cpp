@@ -55,11 +55,11 @@ Violations check(const v1::EvaluateContactRequest& request) {
 struct Subject {
   v1::Simulation simulation = point_simulation();
   v1::EvaluateContactRequest contact = contact_request();
-  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   v1::Surface surface = seed<v1::Surface>("surfaces/run-in");
   v1::ImportSurfaceProfilesRequest profiles;
   v1::Vehicle vehicle = seed<v1::Vehicle>("vehicles/passenger-car");
-  v1::GearSet gear_set = seed<v1::GearSet>("gearSets/A");
+  v1::GearSet gear_set = seed<v1::GearSet>("gearSets/reference-axle");
   std::unique_ptr<Message> batch;
   Message* message = nullptr;
   std::string path;
@@ -67,7 +67,7 @@ struct Subject {
   explicit Subject(std::string_view name) {
     v1::OperatingPointStudy* point = simulation.mutable_operating_point();
     if (name == "Lubricant") {
-      *contact.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/1");
+      *contact.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/paper-fluid-1");
       use(contact.mutable_lubricant_parameters(), "lubricant_parameters.");
     } else if (name == "ParameterProvenance") {
       use(lubricant.mutable_provenance(0), "provenance[0].");

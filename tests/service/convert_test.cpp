@@ -107,7 +107,7 @@ TEST(ToCore, EveryModelOptionIsConverted) {
 }
 
 TEST(ToCore, GearSetTablesAndSeriesAreConvertedCompletely) {
-  const auto message = seed<v1::GearSet>("gearSets/A");
+  const auto message = seed<v1::GearSet>("gearSets/reference-axle");
   const GearSet set = to_core(message);
   EXPECT_EQ(set.pinion_teeth, 13);
   EXPECT_EQ(set.gear_teeth, 36);

@@ -63,7 +63,7 @@ TEST_F(DaemonTest, ResultsSurviveAKillAndUnfinishedSimulationsRunAgain) {
 TEST_F(DaemonTest, AKilledServerHasWrittenABatchCompletelyOrNotAtAll) {
   constexpr int kSize = 2000;
   v1::BatchCreateLubricantsRequest batch;
-  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   for (int i = 0; i < kSize; ++i) {
     fluid.set_name("lubricants/batch-" + std::to_string(i));
     *batch.add_requests()->mutable_lubricant() = fluid;
@@ -409,7 +409,7 @@ class FileSizeLimitTest : public DaemonTest {
 
 TEST_F(FileSizeLimitTest, AFileSizeLimitIsReportedAsAFullDisk) {
   v1::BatchCreateLubricantsRequest batch;
-  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   fluid.set_description(std::string(4000, 'x'));
   for (int i = 0; i < 600; ++i) {
     fluid.set_name("lubricants/batch-" + std::to_string(i));

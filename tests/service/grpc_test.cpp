@@ -79,7 +79,7 @@ TEST_F(GrpcTest, ResourcesAreServed) {
   {
     grpc::ClientContext context;
     v1::GetLubricantRequest request;
-    request.set_name("lubricants/1");
+    request.set_name("lubricants/paper-fluid-1");
     v1::Lubricant response;
     ASSERT_TRUE(
         v1::LubricantService::NewStub(channel_)->GetLubricant(&context, request, &response).ok());
@@ -88,14 +88,15 @@ TEST_F(GrpcTest, ResourcesAreServed) {
   {
     grpc::ClientContext context;
     v1::GetGearSetRequest request;
-    request.set_name("gearSets/A");
+    request.set_name("gearSets/reference-axle");
     v1::GearSet response;
     ASSERT_TRUE(
         v1::GearSetService::NewStub(channel_)->GetGearSet(&context, request, &response).ok());
     EXPECT_EQ(response.revision(), 1);
     keep_client_part(response);
     clear_units(*response.mutable_provenance());
-    EXPECT_EQ(response.SerializeAsString(), seed<v1::GearSet>("gearSets/A").SerializeAsString());
+    EXPECT_EQ(response.SerializeAsString(),
+              seed<v1::GearSet>("gearSets/reference-axle").SerializeAsString());
   }
   {
     grpc::ClientContext context;
@@ -228,7 +229,7 @@ TEST_F(GrpcTest, ShootingIsUsedOrFailsWithItsReasonAndValues) {
 
 TEST_F(GrpcTest, ACurveByShootingNamesItsMissingPoints) {
   v1::Simulation request = curve_simulation();
-  request.set_lubricant("lubricants/1");
+  request.set_lubricant("lubricants/paper-fluid-1");
   request.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_SHOOTING);
   v1::InefficiencyCurveStudy* curve = request.mutable_inefficiency_curve();
   curve->Clear();
@@ -246,7 +247,7 @@ TEST_F(GrpcTest, ACurveByShootingNamesItsMissingPoints) {
 
 TEST_F(GrpcTest, InvalidSimulationsAreRefusedWithAllViolations) {
   v1::Simulation request;
-  request.set_lubricant("lubricants/4");
+  request.set_lubricant("lubricants/paper-fluid-4");
   request.set_sump_temperature_celsius(std::numeric_limits<double>::quiet_NaN());
   v1::Simulation created;
   const grpc::Status status = create(request, &created);
@@ -448,7 +449,7 @@ TEST_F(FewFilesTest, AfterConnectionsThatUsedAllFilesTheServerAcceptsAgain) {
 
 TEST_F(GrpcTest, NoFormulationAppearsInTheLog) {
   v1::EvaluateContactRequest request = contact_request();
-  *request.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/1");
+  *request.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   request.mutable_lubricant_parameters()->set_display_name("SecretFluid");
   request.mutable_lubricant_parameters()->set_relaxation_time_seconds(-1.23454321);
   grpc::ClientContext context;

@@ -239,7 +239,7 @@ class GearSetImportTest : public ImportTest {
         target, v1::FlankSlot::descriptor()->FindFieldByName(column), sample, number);
     return by_phase(set);
   }
-  const v1::GearSet original_ = seed<v1::GearSet>("gearSets/A");
+  const v1::GearSet original_ = seed<v1::GearSet>("gearSets/reference-axle");
 };
 
 TEST_F(GearSetImportTest, TablesByPhaseAreReadCompletely) {
@@ -655,7 +655,7 @@ TEST_F(ImportTest, AViscosityTableBecomesALubricant) {
   v1::ImportLubricantRequest request;
   request.set_lubricant_id("table");
   request.mutable_lubricant()->set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
-  const v1::Lubricant known = seed<v1::Lubricant>("lubricants/1");
+  const v1::Lubricant known = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   std::string csv =
       "temperature_kelvin,dynamic_viscosity_pascal_seconds,"
       "density_kilograms_per_cubic_metre\n";

@@ -46,7 +46,7 @@ std::shared_ptr<const Resource> changed(const std::shared_ptr<const Resource>& r
 
 TEST(Inputs, DefaultsAreThoseOfTheContract) {
   const SimulationInputs inputs = inputs_of(point_simulation());
-  EXPECT_EQ(inputs.gear_set->name(), "gearSets/A");
+  EXPECT_EQ(inputs.gear_set->name(), "gearSets/reference-axle");
   EXPECT_EQ(inputs.surface->name(), "surfaces/run-in");
   EXPECT_EQ(inputs.vehicle->name(), "vehicles/passenger-car");
   const Scene physical = scene(inputs);
@@ -164,7 +164,8 @@ TEST(Hash, DependsOnTheRangeOfTheMeasurements) {
 }
 
 TEST(FluidGrounds, OfThePapersFluidsAreThoseOfThePaper) {
-  for (const char* name : {"lubricants/1", "lubricants/2", "lubricants/3"}) {
+  for (const char* name :
+       {"lubricants/paper-fluid-1", "lubricants/paper-fluid-2", "lubricants/paper-fluid-3"}) {
     const FluidGrounds grounds = fluid_grounds(seed<v1::Lubricant>(name));
     ASSERT_TRUE(grounds.viscosity_measured) << name;
     EXPECT_DOUBLE_EQ(grounds.viscosity_measured->lowest, 283.15);
@@ -202,7 +203,7 @@ TEST(FluidGrounds, OfAFittedFluidAreItsMeasurements) {
 }
 
 TEST(FluidGrounds, OfAFluidWithGivenLawsAreUnknown) {
-  v1::Lubricant stated = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant stated = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   stated.clear_provenance();
   EXPECT_EQ(fluid_grounds(stated), FluidGrounds());
 }
@@ -246,7 +247,7 @@ TEST(Hash, AFieldIsClassifiedByItsMessageAndName) {
 
 TEST(Hash, ExplicitDefaultsHaveTheHashOfImplicitOnes) {
   v1::Simulation stated = point_simulation();
-  stated.set_gear_set("gearSets/A");
+  stated.set_gear_set("gearSets/reference-axle");
   stated.set_sump_temperature_celsius(40);
   stated.set_inlet_temperature_rise_kelvin(20);
   stated.mutable_solver_options()->set_relative_tolerance(1e-7);
@@ -326,7 +327,7 @@ TEST(CostEstimate, IsHigherForSlowPointsAndWideCurves) {
 
 TEST(Assumptions, AreSerialisedIdenticallyWithAndWithoutTheCache) {
   v1::Simulation other = point_simulation();
-  other.set_lubricant("lubricants/2");
+  other.set_lubricant("lubricants/paper-fluid-2");
   other.set_sump_temperature_celsius(90);
   for (const v1::Simulation& each : {point_simulation(), other, point_simulation()}) {
     const SimulationInputs inputs = inputs_of(each);
@@ -388,18 +389,21 @@ TEST(Hash, ALineFeedInANameIsEscaped) {
 
 TEST(Assumptions, NameEveryParameterWithValueUnitAndProvenance) {
   auto found = assumptions_of(point_simulation());
-  const auto& alpha = found.at("lubricants/1 pressure_viscosity_coefficient_per_pascal");
+  const auto& alpha =
+      found.at("lubricants/paper-fluid-1 pressure_viscosity_coefficient_per_pascal");
   EXPECT_EQ(alpha.value(), "1.609e-08 1/Pa");
   EXPECT_EQ(alpha.provenance(), v1::PROVENANCE_PUBLISHED);
-  EXPECT_EQ(found.at("lubricants/1 vogel_reference_temperature_kelvin").provenance(),
+  EXPECT_EQ(found.at("lubricants/paper-fluid-1 vogel_reference_temperature_kelvin").provenance(),
             v1::PROVENANCE_DERIVED);
-  EXPECT_EQ(found.at("gearSets/A dynamics.pinion_inertia_kilogram_square_metres").provenance(),
+  EXPECT_EQ(found.at("gearSets/reference-axle dynamics.pinion_inertia_kilogram_square_metres")
+                .provenance(),
             v1::PROVENANCE_CALIBRATED);
-  EXPECT_EQ(found.at("gearSets/A series").value(), "8 harmonics at 30 N m");
-  EXPECT_EQ(found.at("gearSets/A flank_slots").value(), "3 slots of 97 samples");
+  EXPECT_EQ(found.at("gearSets/reference-axle series").value(), "8 harmonics at 30 N m");
+  EXPECT_EQ(found.at("gearSets/reference-axle flank_slots").value(), "3 slots of 97 samples");
   EXPECT_EQ(found.at("surfaces/run-in tribofilm_shear_strength_pascals").value(), "2000000 Pa");
   EXPECT_EQ(found.at("vehicles/passenger-car mass_kilograms").value(), "1300 kg");
-  EXPECT_FALSE(found.contains("gearSets/A series_by_torque")) << "not used, so not assumed";
+  EXPECT_FALSE(found.contains("gearSets/reference-axle series_by_torque"))
+      << "not used, so not assumed";
   EXPECT_EQ(found.size(), 6U + 14 + (7 + 2 + 10) + 5 + 7);
 }
 
@@ -413,12 +417,13 @@ TEST(Assumptions, MarkDefaultsOfTheRequest) {
   EXPECT_EQ(found.at("request lubricant").provenance(), v1::PROVENANCE_USER);
   v1::Simulation stated = point_simulation();
   stated.set_sump_temperature_celsius(90);
-  stated.set_gear_set("gearSets/A");
+  stated.set_gear_set("gearSets/reference-axle");
   stated.mutable_model_options()->set_load_dependent_mesh_data(true);
   found = assumptions_of(stated);
   EXPECT_EQ(found.at("request sump_temperature_celsius").provenance(), v1::PROVENANCE_USER);
   EXPECT_EQ(found.at("request gear_set").provenance(), v1::PROVENANCE_USER);
-  EXPECT_EQ(found.at("gearSets/A series_by_torque").value(), "10, 20, 30, 45, 65, 100 N m");
+  EXPECT_EQ(found.at("gearSets/reference-axle series_by_torque").value(),
+            "10, 20, 30, 45, 65, 100 N m");
 }
 
 }  // namespace

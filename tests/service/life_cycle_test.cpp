@@ -95,7 +95,7 @@ TEST_F(LifeCycle, ARepeatedRequestIsRecognisedByItsValues) {
   Bench bench;
   const auto request = request_of(point_simulation(), "retry-2");
   const std::string name = bench.create(request);
-  const auto present = *bench.store().resource("lubricants/1");
+  const auto present = *bench.store().resource("lubricants/paper-fluid-1");
   ASSERT_TRUE(bench.store().delete_resource(present, 5));
   EXPECT_EQ(bench.create(request), name) << "its lubricant is deleted by now";
   auto with_output = request;
@@ -177,7 +177,7 @@ TEST_F(LifeCycle, EqualInputsAreServedFromTheCacheBitForBit) {
 
 TEST_F(LifeCycle, ACachedResultHasTheAssumptionsOfItsOwnResources) {
   Bench bench;
-  v1::Lubricant copy = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant copy = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   copy.set_name("lubricants/copy");
   bench.store().add_resources({{copy.name(), copy.SerializeAsString()}}, 1);
   finished(bench, request_of(point_simulation()));
@@ -188,7 +188,7 @@ TEST_F(LifeCycle, ACachedResultHasTheAssumptionsOfItsOwnResources) {
   bool names_copy = false;
   for (const auto& each : served.result().assumptions()) {
     names_copy = names_copy || each.resource().starts_with("lubricants/copy");
-    EXPECT_FALSE(each.resource().starts_with("lubricants/1")) << each.field();
+    EXPECT_FALSE(each.resource().starts_with("lubricants/paper-fluid-1")) << each.field();
   }
   EXPECT_TRUE(names_copy);
 }
@@ -285,7 +285,7 @@ TEST_F(LifeCycle, ADamagedResultIsDataLossUntilAForcedRunWritesItAgain) {
 TEST_F(LifeCycle, ALargeImportDoesNotEvictResults) {
   Bench bench;
   const std::string name = finished(bench, request_of(point_simulation()));
-  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   lubricant.set_name("lubricants/large");
   lubricant.set_description(std::string(1'000'000, 'x'));
   bench.store().add_resources({{lubricant.name(), lubricant.SerializeAsString()}}, 1);

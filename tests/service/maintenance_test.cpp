@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "server/application/stored_inputs.h"
+#include "server/storage/resource_lookup.h"
 #include "server/storage/schema.h"
 #include "server/storage/seeds.h"
 #include "tests/service/support.h"
@@ -36,7 +37,7 @@ class MaintenanceTest : public testing::Test {
                         .add_simulation({.request = point_simulation().SerializeAsString(),
                                          .key = key,
                                          .ledger = "assumptions",
-                                         .lubricant_revision = "lubricants/1@1"},
+                                         .lubricant_revision = "lubricants/paper-fluid-1@1"},
                                         5)
                         .id;
     store.mark_running(id, 6, key);
@@ -94,7 +95,9 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   ASSERT_EQ(store.migration_backup(), file + ".schema-" + std::to_string(GetParam()));
   EXPECT_EQ(stored_resources(*store.migration_backup(), GetParam()), before);
   EXPECT_THAT(check_database(*store.migration_backup()), IsEmpty());
-  for (const NewResource& seed : seed_resources()) EXPECT_EQ(before.count(seed.name), 1U);
+  for (const char* seed : {"lubricants/1", "gearSets/A", "surfaces/run-in"}) {
+    EXPECT_EQ(before.count(seed), 1U) << "as seeds were named";
+  }
   for (const auto& [name, resource] : before) {
     const auto stored = store.resource(name);
     ASSERT_TRUE(stored) << name;
@@ -106,6 +109,11 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
   EXPECT_EQ(store.simulation(1)->gear_set_revision, "gearSets/B@1");
   EXPECT_EQ(store.simulation(2)->gear_set_revision, "gearSets/A@1")
       << "what the request left out meant the default";
+  v1::Simulation request;
+  ASSERT_TRUE(request.ParseFromString(store.simulation(2)->request));
+  ASSERT_EQ(request.gear_set(), "");
+  set_accepted_names(*store.simulation(2), request);
+  EXPECT_EQ(request.gear_set(), "gearSets/A") << "and is computed with that";
   v1::SimulationResult result;
   ASSERT_TRUE(result.ParseFromString(*store.result(1)));
   EXPECT_EQ(result.input_hash(), store.simulation(1)->input_hash);
@@ -153,7 +161,7 @@ TEST_F(MaintenanceTest, ABackupOfARunningServerIsCompleteAndRestored) {
   make();
   {
     Store running(path());
-    v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+    v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
     lubricant.set_name("lubricants/new");
     running.add_resources({{lubricant.name(), lubricant.SerializeAsString()}}, 9);
     backup_database(path(), folder_.file("copy"));
@@ -172,7 +180,7 @@ TEST_F(MaintenanceTest, ABackupEndsWhileAnotherConnectionCommitsAllTheTime) {
   const TemporaryFolder memory(TemporaryFolder::Kind::kMemory);
   Store store(memory.file("db"));
   store.add_resources(seed_resources(), 1);
-  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   lubricant.set_description(std::string(1'000'000, 'x'));
   for (int i = 0; i < 12; ++i) {  // thousands of pages
     lubricant.set_name("lubricants/large-" + std::to_string(i));
@@ -212,14 +220,15 @@ TEST_F(MaintenanceTest, ADatabaseWrittenWhileTheClockWasSetBackIsBackedUp) {
   make();
   {
     Store store(path());
-    const StoredResource present = *store.resource("gearSets/A");
+    const StoredResource present = *store.resource("gearSets/reference-axle");
     ASSERT_TRUE(store.write_resources({{{present.name, present.body}, present}}, 100));
   }
   damage(
       "UPDATE revisions SET create_time = 40 WHERE revision = 2;"
       "UPDATE revisions SET create_time = 50 WHERE resource = "
       "(SELECT resource FROM revisions WHERE revision = 2) AND revision = 1;"
-      "UPDATE properties SET value = 40 WHERE name = 'gearSets/A' AND key = 'update_time'");
+      "UPDATE properties SET value = 40 WHERE name = 'gearSets/reference-axle' AND key = "
+      "'update_time'");
   EXPECT_THAT(check_database(path()), IsEmpty());
   EXPECT_NO_THROW(backup_database(path(), folder_.file("copy")));
 }
@@ -252,7 +261,7 @@ TEST(Inputs, OfAStoredSimulationKeepTheirHash) {
   SQLite::Database raw(bench.database(), SQLite::OPEN_READWRITE);
   raw.exec(
       "UPDATE simulations SET lubricant = "
-      "(SELECT revision_id FROM revision_names WHERE name = 'lubricants/3')");
+      "(SELECT revision_id FROM revision_names WHERE name = 'lubricants/paper-fluid-3')");
   EXPECT_THAT(check_database(bench.database(), hash_stored_inputs),
               Contains(HasSubstr("its inputs have another hash")));
 }

@@ -134,7 +134,7 @@ TEST_F(MeasurementsTest, OneColdViscosityInPascalSecondsIsFoundAmongSeveral) {
 }
 
 TEST_F(MeasurementsTest, AGivenLawMustNotContradictKV40) {
-  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   lubricant.mutable_measurements()
       ->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(150);
   EXPECT_THAT(refused(lubricant), AllOf(HasSubstr("above the stated law"),
@@ -230,11 +230,12 @@ TEST_F(MeasurementsTest, EstimatedParametersCauseAWarningWithEveryResult) {
 }
 
 TEST_F(MeasurementsTest, TheOrderOfProvenanceIsThatOfTheFields) {
-  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   std::reverse(lubricant.mutable_provenance()->pointer_begin(),
                lubricant.mutable_provenance()->pointer_end());
   const v1::Lubricant reversed = created(lubricant, "reversed");
-  const v1::Lubricant straight = created(seed<v1::Lubricant>("lubricants/1"), "straight");
+  const v1::Lubricant straight =
+      created(seed<v1::Lubricant>("lubricants/paper-fluid-1"), "straight");
   ASSERT_EQ(reversed.provenance_size(), straight.provenance_size());
   for (int i = 0; i < straight.provenance_size(); ++i) {
     EXPECT_EQ(reversed.provenance(i).field(), straight.provenance(i).field());

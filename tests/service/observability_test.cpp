@@ -122,7 +122,7 @@ TEST_F(ObservabilityTest, OneIdJoinsRequestJobAndResultInTheLog) {
 
 TEST_F(ObservabilityTest, ACallThatItsClientCancelsEndsEarlyAndIsCounted) {
   v1::BatchCreateLubricantsRequest batch;
-  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/1");
+  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   for (int i = 0; i < 4000; ++i) {
     fluid.set_name("lubricants/many-" + std::to_string(i));
     *batch.add_requests()->mutable_lubricant() = fluid;
@@ -160,7 +160,7 @@ TEST_F(ObservabilityTest, NoFormulationIsLogged) {
   v1::CreateLubricantRequest fresh;
   fresh.set_lubricant_id("hushed-blend");
   v1::Lubricant& fluid = *fresh.mutable_lubricant();
-  fluid = seed<v1::Lubricant>("lubricants/1");
+  fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   fluid.clear_name();
   fluid.set_display_name("Whispered Ester");
   fluid.set_description("clandestine polymer");

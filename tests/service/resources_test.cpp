@@ -171,16 +171,16 @@ TEST_F(ResourcesTest, ALubricantWithTooFewDataIsRefused) {
   entered.mutable_measurements()->add_viscosities()->set_temperature_celsius(9999);
   entered.add_labels()->set_key("no spaces");
   entered.add_provenance()->set_field("thermal_conductivity");
-  entered.set_derived_from("lubricants/11");
+  entered.set_derived_from("lubricants/paper-fluid-11");
   const std::string said = complaints(create(entered, "").error());
   for (const char* part :
        {"lubricant_id", "density_15_celsius_kilograms_per_cubic_metre = -1 kg/m3", "9999 C",
         "lubricant.measurements.viscosities[0].viscosity", "lubricant.labels[0].key",
         "did you mean \"thermal_conductivity_watts_per_metre_kelvin\"",
-        "did you mean \"lubricants/1\""}) {
+        "did you mean \"lubricants/paper-fluid-1\""}) {
     EXPECT_THAT(said, HasSubstr(part));
   }
-  EXPECT_THAT(ids(""), ElementsAre("1", "2", "3"));
+  EXPECT_THAT(ids(""), ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3"));
 }
 
 TEST_F(ResourcesTest, ValidateOnlyAnswersInFullAndWritesNothing) {
@@ -200,7 +200,8 @@ TEST_F(ResourcesTest, ValidateOnlyAnswersInFullAndWritesNothing) {
   v1::CreateSimulationRequest simulation;
   *simulation.mutable_simulation() = point_simulation();
   simulation.set_validate_only(true);
-  EXPECT_EQ(create_simulation(app_, simulation).message().gear_set_revision(), "gearSets/A@1");
+  EXPECT_EQ(create_simulation(app_, simulation).message().gear_set_revision(),
+            "gearSets/reference-axle@1");
   EXPECT_EQ(list_simulations(app_, {}).message().simulations_size(), 0);
 }
 
@@ -280,10 +281,10 @@ TEST_F(ResourcesTest, AnUpdateWithoutAMaskLosesNothingThatItLeavesOut) {
 
 TEST_F(ResourcesTest, AReadMaskNamesTheFieldsOfAnAnswer) {
   v1::GetLubricantRequest request;
-  request.set_name("lubricants/1");
+  request.set_name("lubricants/paper-fluid-1");
   request.mutable_read_mask()->add_paths("display_name");
   request.mutable_read_mask()->add_paths("provenance.field");
-  const v1::Lubricant whole = get("lubricants/1").message();
+  const v1::Lubricant whole = get("lubricants/paper-fluid-1").message();
   const auto part = get_lubricant(app_, request);
   ASSERT_TRUE(part.ok()) << complaints(part.error());
   EXPECT_EQ(part.message().display_name(), whole.display_name());
@@ -350,8 +351,9 @@ TEST_F(ResourcesTest, ADeletedResourceIsHiddenAndCanBeUndeleted) {
   EXPECT_TRUE(deleted.message().has_delete_time());
   EXPECT_TRUE(remove("lubricants/x").ok()) << "twice is once";
   EXPECT_TRUE(get("lubricants/x").message().has_delete_time());
-  EXPECT_THAT(ids(""), ElementsAre("1", "2", "3"));
-  EXPECT_THAT(ids("", "", 2, true), ElementsAre("1", "2", "3", "x"));
+  EXPECT_THAT(ids(""), ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3"));
+  EXPECT_THAT(ids("", "", 2, true),
+              ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3", "x"));
   EXPECT_EQ(create(three_numbers(), "x").error().code(), google::rpc::ALREADY_EXISTS);
   v1::Lubricant change;
   change.set_name("lubricants/x");
@@ -365,7 +367,7 @@ TEST_F(ResourcesTest, ADeletedResourceIsHiddenAndCanBeUndeleted) {
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().code(), google::rpc::ALREADY_EXISTS) << "AIP-164";
   EXPECT_EQ(again.error().message(), "lubricants/x is not deleted");
-  EXPECT_THAT(ids(""), ElementsAre("1", "2", "3", "x"));
+  EXPECT_THAT(ids(""), ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3", "x"));
   EXPECT_FALSE(get("lubricants/x").message().has_delete_time());
 }
 
@@ -375,14 +377,14 @@ TEST_F(ResourcesTest, ASimulationKeepsItsRevisions) {
   Application app = bench_.application();
   const std::string name = bench_.create(point_simulation());
   v1::UpdateLubricantRequest request;
-  *request.mutable_lubricant() = seed<v1::Lubricant>("lubricants/1");
+  *request.mutable_lubricant() = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   request.mutable_lubricant()->set_thermal_conductivity_watts_per_metre_kelvin(0.2);
   ASSERT_EQ(update_lubricant(app, request).message().revision(), 2);
   *release = true;
   ASSERT_TRUE(bench_.reaches(name, v1::Simulation::SUCCEEDED));
   const v1::Simulation done = bench_.get(name);
-  EXPECT_EQ(done.lubricant(), "lubricants/1");
-  EXPECT_EQ(done.lubricant_revision(), "lubricants/1@1");
+  EXPECT_EQ(done.lubricant(), "lubricants/paper-fluid-1");
+  EXPECT_EQ(done.lubricant_revision(), "lubricants/paper-fluid-1@1");
   EXPECT_EQ(done.surface_revision(), "surfaces/run-in@1");
   bool found = false;
   for (const auto& assumption : done.result().assumptions()) {
@@ -391,7 +393,8 @@ TEST_F(ResourcesTest, ASimulationKeepsItsRevisions) {
     EXPECT_EQ(assumption.value(), "0.154 W/(m K)");
   }
   EXPECT_TRUE(found);
-  EXPECT_EQ(bench_.get(bench_.create(point_simulation())).lubricant_revision(), "lubricants/1@2");
+  EXPECT_EQ(bench_.get(bench_.create(point_simulation())).lubricant_revision(),
+            "lubricants/paper-fluid-1@2");
 }
 
 TEST_F(ResourcesTest, RevisionsAreListedNewestFirst) {
@@ -419,7 +422,7 @@ class ListTest : public ResourcesTest {
  protected:
   void SetUp() override {
     for (int i = 0; i < 8; ++i) {
-      v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/1");
+      v1::Lubricant lubricant = seed<v1::Lubricant>("lubricants/paper-fluid-1");
       lubricant.clear_name();
       lubricant.set_display_name(i % 2 == 0 ? "Even \"oil\"" : "Odd oil");
       lubricant.set_condition(i < 3 ? v1::Lubricant::FRESH : v1::Lubricant::USED);
@@ -431,7 +434,9 @@ class ListTest : public ResourcesTest {
       if (i == 5) lubricant.add_labels()->set_key("urgent");
       ASSERT_TRUE(create(lubricant, "o" + std::to_string(i)).ok());
     }
-    for (const char* name : {"lubricants/1", "lubricants/2", "lubricants/3"}) remove(name);
+    for (const char* name :
+         {"lubricants/paper-fluid-1", "lubricants/paper-fluid-2", "lubricants/paper-fluid-3"})
+      remove(name);
   }
 };
 
@@ -517,7 +522,7 @@ TEST_F(ListTest, EveryFluidShowsItsFigures) {
 }
 
 TEST_F(ResourcesTest, AnExportOfABodyOfAnEarlierVersionIsImportedUnchanged) {
-  auto old = seed<v1::GearSet>("gearSets/A");
+  auto old = seed<v1::GearSet>("gearSets/reference-axle");
   old.set_name("gearSets/old");
   auto& entries = *old.mutable_provenance();
   for (int i = entries.size() - 1; i >= 0; --i) {
@@ -541,14 +546,14 @@ TEST_F(ResourcesTest, AResourceCannotDescendFromAMissingOneOrFromItsDescendants)
   const auto derive = [&](const std::string& name, const std::string& parent) {
     v1::UpdateLubricantRequest request;
     request.set_allow_missing(true);
-    *request.mutable_lubricant() = seed<v1::Lubricant>("lubricants/1");
+    *request.mutable_lubricant() = seed<v1::Lubricant>("lubricants/paper-fluid-1");
     request.mutable_lubricant()->set_name("lubricants/" + name);
     request.mutable_lubricant()->set_derived_from("lubricants/" + parent);
     const auto outcome = update_lubricant(app_, request);
     return outcome.ok() ? "" : complaints(outcome.error());
   };
   EXPECT_THAT(derive("sheared", "frehs"), HasSubstr("\"lubricants/frehs\" does not exist"));
-  EXPECT_EQ(derive("fresh", "1"), "");
+  EXPECT_EQ(derive("fresh", "paper-fluid-1"), "");
   EXPECT_EQ(derive("sheared", "fresh@7"), "") << "revisions number anew on import";
   EXPECT_EQ(derive("used", "sheared"), "");
   EXPECT_THAT(derive("fresh", "used"),
@@ -587,7 +592,7 @@ TEST_F(ListTest, UnknownWordsSuggestTheNearest) {
 
 TEST_F(ResourcesTest, RefusesAMaskOfTooManyPaths) {
   v1::Lubricant fluid;
-  fluid.set_name("lubricants/1");
+  fluid.set_name("lubricants/paper-fluid-1");
   fluid.set_display_name("x");
   const std::vector<std::string> paths(kMaximumMaskPaths, "display_name");
   EXPECT_TRUE(update(fluid, paths).ok());
@@ -650,7 +655,7 @@ TEST_F(ListTest, ATokenBelongsToItsList) {
   request.set_filter("condition = FRESH");
   EXPECT_THAT(complaints(list_lubricants(app_, request).error()), HasSubstr("page_token"));
   request.clear_filter();
-  for (const char* token : {"x", "lubricants/1", "0123456789abcdef", "zz"}) {
+  for (const char* token : {"x", "lubricants/paper-fluid-1", "0123456789abcdef", "zz"}) {
     request.set_page_token(token);
     EXPECT_EQ(list_lubricants(app_, request).error().code(), google::rpc::INVALID_ARGUMENT);
   }
@@ -682,7 +687,7 @@ TEST_F(ResourcesTest, AMaskMayNameAFieldOfAMessage) {
   EXPECT_EQ(update(row, {kv40}).message().revision(), 2) << "nothing changes";
 
   v1::Lubricant plain;
-  plain.set_name("lubricants/1");
+  plain.set_name("lubricants/paper-fluid-1");
   EXPECT_EQ(update(plain, {kv40}).message().revision(), 1) << "nothing to take over";
   EXPECT_THAT(complaints(update(row, {"measurements.densties"}).error()),
               HasSubstr("\"densties\" is no field of LubricantMeasurements; did you mean "
@@ -701,7 +706,7 @@ TEST_F(ResourcesTest, AMaskMayNameAFieldOfAMessage) {
       << "a path that stands there twice, or inside another one, changes nothing";
 
   v1::UpdateGearSetRequest gear_set;
-  gear_set.mutable_gear_set()->set_name("gearSets/A");
+  gear_set.mutable_gear_set()->set_name("gearSets/reference-axle");
   gear_set.mutable_gear_set()->mutable_dynamics()->set_half_backlash_metres(7e-5);
   gear_set.mutable_update_mask()->add_paths("dynamics.half_backlash_metres");
   const auto wider = update_gear_set(app_, gear_set);
@@ -730,7 +735,7 @@ TEST_F(ResourcesTest, EveryKindOfResourceHasTheStandardMethods) {
   surface.mutable_surface()->set_derived_from("surfaces/run-in@1");
   EXPECT_TRUE(create_surface(app_, surface).ok());
   v1::CreateGearSetRequest gear_set;
-  *gear_set.mutable_gear_set() = seed<v1::GearSet>("gearSets/A");
+  *gear_set.mutable_gear_set() = seed<v1::GearSet>("gearSets/reference-axle");
   gear_set.set_gear_set_id("copy");
   EXPECT_TRUE(create_gear_set(app_, gear_set).ok());
   v1::ListGearSetsRequest list;
@@ -772,7 +777,7 @@ TEST_F(ResourcesTest, AnInvalidGearSetTableIsReportedBySample) {
   v1::CreateGearSetRequest request;
   request.set_gear_set_id("bad");
   v1::GearSet& set = *request.mutable_gear_set();
-  set = seed<v1::GearSet>("gearSets/A");
+  set = seed<v1::GearSet>("gearSets/reference-axle");
   set.mutable_flank_slots(1)->set_load_share(7, 0.5);
   set.mutable_flank_slots(2)->set_radius_x_metres(0, 0.5);
   set.mutable_flank_slots(0)->set_gear_friction_arm_metres(3, 1);

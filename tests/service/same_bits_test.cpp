@@ -64,7 +64,7 @@ std::vector<v1::Simulation> requests() {
   }
   out.push_back(curve_simulation());
   out.push_back(curve_simulation());
-  out.back().set_lubricant("lubricants/3");
+  out.back().set_lubricant("lubricants/paper-fluid-3");
   out.back().mutable_inefficiency_curve()->set_direction(v1::SWEEP_DIRECTION_DOWN);
   out.push_back(point_simulation());
   out.back().mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);

@@ -108,7 +108,7 @@ void expect_teeth_and_steel(const v1::GearSet& set) {
 }
 
 TEST(Seeds, GearSetAIsTheReferenceData) {
-  const auto set = seed<v1::GearSet>("gearSets/A");
+  const auto set = seed<v1::GearSet>("gearSets/reference-axle");
   expect_teeth_and_steel(set);
   expect_mesh_series(set.series(), at(gear_data(), "fourier"), 30);
   expect_tables(set, at(gear_data(), "tables.load_share"));
@@ -119,7 +119,7 @@ TEST(Seeds, GearSetAIsTheReferenceData) {
 }
 
 TEST(Seeds, GearSetBIsCalibrationBOnTheTablesOfA) {
-  const auto set = seed<v1::GearSet>("gearSets/B");
+  const auto set = seed<v1::GearSet>("gearSets/reference-axle-loaded-error");
   expect_teeth_and_steel(set);
   expect_mesh_series(set.series(), at(gear_data(), "calibration_B.fourier"), 30);
   expect_tables(set, at(gear_data(), "tables.load_share"));
@@ -129,7 +129,7 @@ TEST(Seeds, GearSetBIsCalibrationBOnTheTablesOfA) {
 }
 
 TEST(Seeds, ConformalGearSetIsItsEntryAt30NewtonMetresOnTheRestOfA) {
-  const auto set = seed<v1::GearSet>("gearSets/A-conformal");
+  const auto set = seed<v1::GearSet>("gearSets/reference-axle-conformal");
   const JsonValue& variant = at(gear_data(), "variant_conformal_easeoff");
   ASSERT_EQ(number(variant, "torques.2"), 30);
   expect_teeth_and_steel(set);
@@ -168,7 +168,7 @@ void expect_shared_fluid_values(const v1::Lubricant& fluid) {
 }
 
 TEST(Seeds, Lubricant1IsTheFluidOfTheWorkedOrbits) {
-  const auto fluid = seed<v1::Lubricant>("lubricants/1");
+  const auto fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   const JsonValue& inputs = orbit_inputs();
   EXPECT_EQ(fluid.vogel_viscosity_prefactor_pascal_seconds(), number(inputs, "eta_ref"));
   EXPECT_EQ(fluid.vogel_temperature_coefficient_kelvin(), number(inputs, "A1"));
@@ -181,9 +181,9 @@ TEST(Seeds, LubricantsHaveThePublishedViscosities) {
     const char* name;
     double prefactor, coefficient, reference, alpha;
   };
-  for (const Row& row : {Row{"lubricants/1", 1.55e-4, 944.8, 159, 1.609e-8},
-                         Row{"lubricants/2", 7.47e-5, 1105.0, 157, 1.931e-8},
-                         Row{"lubricants/3", 1.34e-4, 943.0, 160, 1.627e-8}}) {
+  for (const Row& row : {Row{"lubricants/paper-fluid-1", 1.55e-4, 944.8, 159, 1.609e-8},
+                         Row{"lubricants/paper-fluid-2", 7.47e-5, 1105.0, 157, 1.931e-8},
+                         Row{"lubricants/paper-fluid-3", 1.34e-4, 943.0, 160, 1.627e-8}}) {
     const auto fluid = seed<v1::Lubricant>(row.name);
     EXPECT_EQ(fluid.vogel_viscosity_prefactor_pascal_seconds(), row.prefactor);
     EXPECT_EQ(fluid.vogel_temperature_coefficient_kelvin(), row.coefficient);

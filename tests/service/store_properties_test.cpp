@@ -167,7 +167,7 @@ void vary_words(Resource& resource) {
 v1::Lubricant any_lubricant() {
   v1::Lubricant out;
   if (*rc::gen::arbitrary<bool>()) {
-    out = seed<v1::Lubricant>("lubricants/" + std::to_string(*rc::gen::inRange(1, 4)));
+    out = seed<v1::Lubricant>("lubricants/paper-fluid-" + std::to_string(*rc::gen::inRange(1, 4)));
     vary_numbers(out);
   } else {
     auto* measured = out.mutable_measurements();
@@ -201,7 +201,7 @@ v1::Surface any_surface() {
 }
 
 v1::GearSet any_gear_set() {
-  auto out = seed<v1::GearSet>("gearSets/B");
+  auto out = seed<v1::GearSet>("gearSets/reference-axle-loaded-error");
   vary_numbers(*out.mutable_dynamics());
   vary_words(out);
   return out;
@@ -335,7 +335,7 @@ void expect_same_again(Application& from, Application& to) {
 void simulate(Application& app) {
   v1::CreateSimulationRequest request;
   *request.mutable_simulation() = point_simulation();
-  request.mutable_simulation()->set_lubricant("lubricants/" +
+  request.mutable_simulation()->set_lubricant("lubricants/paper-fluid-" +
                                               std::to_string(*rc::gen::inRange(0, 4)));
   const auto outcome = create_simulation(app, request);
   if (!outcome.ok()) RC_ASSERT(outcome.error().code() == google::rpc::INVALID_ARGUMENT);

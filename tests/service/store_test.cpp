@@ -37,11 +37,12 @@ class StoreTest : public testing::Test {
 
 TEST_F(StoreTest, SeedsAreAddedOnceAndNeverOverwritten) {
   Store store(path());
-  store.add_resources({{"lubricants/1", "first"}}, 1);
-  store.add_resources({{"lubricants/1", "second"}, {"lubricants/2", "other"}}, 2);
-  EXPECT_EQ(store.resource("lubricants/1")->body, "first");
-  EXPECT_EQ(store.resource("lubricants/2")->body, "other");
-  EXPECT_EQ(store.resource("lubricants/3"), std::nullopt);
+  store.add_resources({{"lubricants/paper-fluid-1", "first"}}, 1);
+  store.add_resources(
+      {{"lubricants/paper-fluid-1", "second"}, {"lubricants/paper-fluid-2", "other"}}, 2);
+  EXPECT_EQ(store.resource("lubricants/paper-fluid-1")->body, "first");
+  EXPECT_EQ(store.resource("lubricants/paper-fluid-2")->body, "other");
+  EXPECT_EQ(store.resource("lubricants/paper-fluid-3"), std::nullopt);
 }
 
 ResourceQuery all_of_b(int limit, std::size_t byte_limit, const std::string& after = "") {
@@ -337,9 +338,11 @@ TEST_F(StoreTest, RefusesAReadOnlyFile) {
 TEST_F(StoreTest, EverySeedParsesAndHasItsOwnName) {
   std::set<std::string> names;
   for (const NewResource& seed : seed_resources()) names.insert(seed.name);
-  EXPECT_EQ(names, (std::set<std::string>{"lubricants/1", "lubricants/2", "lubricants/3",
-                                          "gearSets/A", "gearSets/B", "gearSets/A-conformal",
-                                          "surfaces/run-in", "vehicles/passenger-car"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{
+                "lubricants/paper-fluid-1", "lubricants/paper-fluid-2", "lubricants/paper-fluid-3",
+                "gearSets/reference-axle", "gearSets/reference-axle-loaded-error",
+                "gearSets/reference-axle-conformal", "surfaces/run-in", "vehicles/passenger-car"}));
 }
 
 TEST(SimulationQueries, NoKeyOfAFilterEntersAStatement) {

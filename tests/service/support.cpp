@@ -123,7 +123,7 @@ v1::EvaluateContactRequest contact_request() {
   out.set_pinion_velocity_y_metres_per_second(6);
   out.set_gear_velocity_x_metres_per_second(4);
   out.set_gear_velocity_y_metres_per_second(-1);
-  out.set_lubricant("lubricants/1");
+  out.set_lubricant("lubricants/paper-fluid-1");
   out.set_sump_temperature_celsius(40);
   out.set_inlet_temperature_rise_kelvin(20);
   out.set_youngs_modulus_pascals(206e9);
@@ -141,14 +141,14 @@ v1::EvaluateContactRequest contact_request() {
 
 v1::Simulation point_simulation() {
   v1::Simulation out;
-  out.set_lubricant("lubricants/1");
+  out.set_lubricant("lubricants/paper-fluid-1");
   out.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(65);
   return out;
 }
 
 v1::Simulation curve_simulation() {
   v1::Simulation out;
-  out.set_lubricant("lubricants/2");
+  out.set_lubricant("lubricants/paper-fluid-2");
   v1::InefficiencyCurveStudy* curve = out.mutable_inefficiency_curve();
   curve->set_first_speed_kilometres_per_hour(20);
   curve->set_last_speed_kilometres_per_hour(140);

@@ -42,7 +42,7 @@ Violations check(const v1::EvaluateContactRequest& request) {
 TEST(Contact, ReasonableRequestsPass) {
   EXPECT_THAT(check(contact_request()), IsEmpty());
   v1::EvaluateContactRequest request = contact_request();
-  *request.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/2");
+  *request.mutable_lubricant_parameters() = seed<v1::Lubricant>("lubricants/paper-fluid-2");
   EXPECT_THAT(check(request), IsEmpty());
 }
 
@@ -61,8 +61,8 @@ TEST(Contact, AllViolationsAreReportedTogether) {
 
 TEST(Contact, AnUnknownFluidSuggestsTheNearest) {
   v1::EvaluateContactRequest request = contact_request();
-  request.set_lubricant("lubricants/22");
-  EXPECT_THAT(check(request), violation("lubricant", "did you mean \"lubricants/2\"?"));
+  request.set_lubricant("lubricants/paper-fluid-22");
+  EXPECT_THAT(check(request), violation("lubricant", "did you mean \"lubricants/paper-fluid-2\"?"));
   request.set_lubricant("lubricant 3\xc3\xa4\n");
   EXPECT_THAT(check(request), violation("lubricant", "of the form \"lubricants/{id}\""));
   request.set_lubricant(std::string(100'000, 'x'));
@@ -72,7 +72,7 @@ TEST(Contact, AnUnknownFluidSuggestsTheNearest) {
 TEST(Contact, TheFluidMustHaveAViscosityAndADensityAtTheInlet) {
   v1::EvaluateContactRequest request = contact_request();
   v1::Lubricant* fluid = request.mutable_lubricant_parameters();
-  *fluid = seed<v1::Lubricant>("lubricants/1");
+  *fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
   fluid->set_vogel_reference_temperature_kelvin(340);
   EXPECT_THAT(check(request),
               violation("lubricant_parameters", "below the inlet temperature, 333.15 K (eq 34)"));
@@ -89,8 +89,8 @@ TEST(Simulation, ReasonableRequestsPass) {
 
 TEST(Simulation, AllViolationsAreReportedTogether) {
   v1::Simulation simulation;
-  simulation.set_lubricant("lubricants/x");
-  simulation.set_gear_set("gearSets/C");
+  simulation.set_lubricant("lubricants/paper-fluid-x");
+  simulation.set_gear_set("gearSets/reference-axl");
   simulation.set_surface("runin");
   simulation.set_vehicle("vehicles/passenger_car");
   simulation.set_sump_temperature_celsius(-300);
@@ -99,7 +99,7 @@ TEST(Simulation, AllViolationsAreReportedTogether) {
   point->set_model(static_cast<v1::PointModel>(17));
   point->mutable_history()->add_columns("mesh_force");
   const Violations found = check(simulation);
-  EXPECT_THAT(found, violation("simulation.lubricant", "lubricants/1"));
+  EXPECT_THAT(found, violation("simulation.lubricant", "lubricants/paper-fluid-1"));
   EXPECT_THAT(found, violation("simulation.gear_set", "did you mean"));
   EXPECT_THAT(found, violation("simulation.surface", "surfaces/run-in"));
   EXPECT_THAT(found, violation("simulation.vehicle", "vehicles/passenger-car"));
@@ -131,9 +131,10 @@ TEST(Simulation, MeshDataByTorqueMustExistIfRequested) {
   v1::Simulation simulation = point_simulation();
   simulation.mutable_model_options()->set_load_dependent_mesh_data(true);
   EXPECT_THAT(check(simulation), IsEmpty());
-  simulation.set_gear_set("gearSets/B");
-  EXPECT_THAT(check(simulation), violation("simulation.model_options.load_dependent_mesh_data",
-                                           "gearSets/B holds no data by torque"));
+  simulation.set_gear_set("gearSets/reference-axle-loaded-error");
+  EXPECT_THAT(check(simulation),
+              violation("simulation.model_options.load_dependent_mesh_data",
+                        "gearSets/reference-axle-loaded-error holds no data by torque"));
 }
 
 TEST(AsPublished, Eq46IsRefusedWhereNoProfileBecomesASurface) {

@@ -224,7 +224,7 @@ TEST(WireCheck, LetsTheLargestAcceptableSimulationPass) {
 
 TEST(RequestLimits, AGearSetOfTheFinestTablesFits) {
   v1::CreateGearSetRequest request;
-  *request.mutable_gear_set() = seed<v1::GearSet>("gearSets/A");
+  *request.mutable_gear_set() = seed<v1::GearSet>("gearSets/reference-axle");
   auto* gear_set = request.mutable_gear_set();
   const auto stretch = [](auto* numbers) { numbers->Resize(kMaximumFlankSamples, 0.5); };
   for (v1::FlankSlot& slot : *gear_set->mutable_flank_slots()) {

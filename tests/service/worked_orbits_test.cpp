@@ -47,7 +47,7 @@ TEST(WorkedOrbits, AnOperatingPointAgreesThroughTheWholeService) {
 TEST(WorkedOrbits, ACurveAgreesThroughTheWholeService) {
   Bench bench{StudyFunctions()};
   v1::Simulation simulation = curve_simulation();
-  simulation.set_lubricant("lubricants/1");
+  simulation.set_lubricant("lubricants/paper-fluid-1");
   v1::InefficiencyCurveStudy* curve = simulation.mutable_inefficiency_curve();
   curve->set_first_speed_kilometres_per_hour(20);
   curve->set_last_speed_kilometres_per_hour(140);

@@ -65,8 +65,9 @@ void set_number(v1::EvaluateContactRequest& request, const char* field, double v
 
 void add_contact_flags(FlagList& list, v1::EvaluateContactRequest& request) {
   list.group("Contact");
-  request.set_lubricant("lubricants/1");
-  list.text("--lubricant,-l", "NAME", "Lubricant, e.g. 2 or lubricants/2. Default: 1.",
+  request.set_lubricant("lubricants/paper-fluid-1");
+  list.text("--lubricant,-l", "NAME",
+            "Lubricant, e.g. my-oil or lubricants/my-oil. Default: paper-fluid-1.",
             [&request](const std::string& name) {
               request.set_lubricant(resource_name("lubricants", name));
             });
@@ -109,8 +110,9 @@ Command contact_command() {
       "Solves one lubricated flank contact and prints every quantity with symbol and equation. x "
       "is "
       "the direction of radius x, y that of radius y. The defaults are a typical hypoid flank.",
-      {"tribodyn contact --lubricant 1 --load-newtons 2000",
-       "tribodyn contact --lubricant 2 --gear-velocity-y-metres-per-second 0 --newtonian "
+      {"tribodyn contact --lubricant paper-fluid-1 --load-newtons 2000",
+       "tribodyn contact --lubricant paper-fluid-2 --gear-velocity-y-metres-per-second 0 "
+       "--newtonian "
        "--output csv"},
       {},
       {},

@@ -106,8 +106,9 @@ Command curve_command() {
       "inefficiency against speed, for one or more lubricants",
       "Submits an inefficiency curve for each lubricant, watches them together and prints a table "
       "for each.",
-      {"tribodyn curve --lubricant 1 --lubricant 2 --lubricant 3 --csv curve.csv --plot curve.svg",
-       "tribodyn curve --lubricant 1 --first-speed 60 --last-speed 85 --speed-step 1 "
+      {"tribodyn curve --lubricant paper-fluid-1 --lubricant paper-fluid-2 --lubricant "
+       "paper-fluid-3 --csv curve.csv --plot curve.svg",
+       "tribodyn curve --lubricant paper-fluid-1 --first-speed 60 --last-speed 85 --speed-step 1 "
        "--direction down"},
       {},
       {},

@@ -20,13 +20,15 @@ Command diff_command() {
       "Compares two lubricants, or two revisions of one: viscosities, index, grade and every "
       "parameter with its unit, its origin and the relative difference (B - A)/|A|. Only what "
       "differs is shown, unless --all.",
-      {"tribodyn diff 1 2", "tribodyn diff 1@1 1 --all --output csv"},
+      {"tribodyn diff paper-fluid-1 paper-fluid-2",
+       "tribodyn diff my-oil@1 my-oil --all --output csv"},
       {},
       {},
       {}};
   command.flags.group("Arguments");
   command.flags
-      .text("a", "A", "A lubricant, e.g. 1, or a revision of a lubricant, e.g. 1@2.",
+      .text("a", "A",
+            "A lubricant, e.g. paper-fluid-1, or a revision of a lubricant, e.g. my-oil@2.",
             [flags](const std::string& text) { flags->a = text; })
       .collection = "lubricants";
   command.flags

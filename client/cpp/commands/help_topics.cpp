@@ -100,8 +100,8 @@ value). Put texts with blanks in double quotes. Numbers are in the unit of the f
 kv100 (mm2/s), vi, sae_grade and density (kg/m3, at 15 C) are the columns of a list of lubricants.
 Names may have their collection, states and classes may be in upper or lower case.
 `tribodyn schema` lists the fields under "lubricants.filter" and so on. Jobs have state, lubricant
-(1, or 1@2 for a revision), gear_set, surface, vehicle, display_name, pinned (true or false),
-create_time, end_time, input_hash and labels.
+(my-oil, or my-oil@2 for a revision), gear_set, surface, vehicle, display_name, pinned (true or
+false), create_time, end_time, input_hash and labels.
 )"},
       {"configuration", "configuration file and environment",
        R"(Configuration
@@ -131,8 +131,8 @@ The file sets flags that every command has, one per line, without their dashes:
 
 Results go to standard output, progress and errors to standard error. Commands never start a pager
 or prompt for input. An option may be before or after the command; --name=value means --name value.
-Names of resources may include their collection: 1 or lubricants/1; 1@2 is revision 2.
-`tribodyn completion bash` completes commands, options and names.
+Names of resources may include their collection: my-oil or lubricants/my-oil; my-oil@2 is revision
+2 of it. `tribodyn completion bash` completes commands, options and names.
 )"},
       {"exit-codes", "exit codes for scripts",
        R"(Exit codes

@@ -129,9 +129,10 @@ Command history_command() {
       "history",
       "quantities over the mesh cycle, against time",
       "Computes an operating point with time histories of its steady state and reads them.",
-      {"tribodyn history --lubricant 1 --speed-kilometres-per-hour 72.5 --mesh-cycles 2 "
+      {"tribodyn history --lubricant paper-fluid-1 --speed-kilometres-per-hour 72.5 --mesh-cycles "
+       "2 "
        "--plot history.svg",
-       "tribodyn history --lubricant 1 --speed 72.5 --columns "
+       "tribodyn history --lubricant paper-fluid-1 --speed 72.5 --columns "
        "flank_load_newtons,flank_contact_temperature_kelvin --output csv"},
       {},
       {},

@@ -259,7 +259,7 @@ Command jobs_list_command() {
                              "Maximum number of jobs listed",
                              [flags](int value) { flags->list.limit = value; });
   command.flags.text("--filter", "FILTER",
-                     "Restrictions joined by AND, e.g. 'state = failed AND lubricant = 1 AND "
+                     "Restrictions joined by AND, e.g. 'state = failed AND lubricant = my-oil AND "
                      "pinned = true AND create_time > 2026-01-31T00:00:00Z'; `tribodyn help "
                      "filters` explains them.",
                      [flags](const std::string& text) { flags->list.filter = text; });

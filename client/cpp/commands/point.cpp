@@ -30,9 +30,10 @@ Command point_command() {
       "one operating point, in full",
       "Submits one operating point, watches it and prints inefficiencies, losses, film, "
       "temperatures, contact loss, solver statistics and the number of assumptions.",
-      {"tribodyn point --lubricant 1 --speed-kilometres-per-hour 72.5",
-       "tribodyn point --lubricant 2 --speed 100 --sump-temperature-celsius 90 --isothermal",
-       "tribodyn point --lubricant 1 --pinion-torque-newton-metres 60 "
+      {"tribodyn point --lubricant paper-fluid-1 --speed-kilometres-per-hour 72.5",
+       "tribodyn point --lubricant paper-fluid-2 --speed 100 --sump-temperature-celsius 90 "
+       "--isothermal",
+       "tribodyn point --lubricant paper-fluid-1 --pinion-torque-newton-metres 60 "
        "--pinion-speed-radians-per-second 200 --output json"},
       {},
       {},

@@ -276,7 +276,8 @@ Command import_command(const ResourceKind& kind) {
   } else if (kind.word == "gear-sets") {
     command.about += " A table of tooth contact data (CSV) gives one gear set.";
     command.examples.emplace_back(
-        "tribodyn gear-sets import contact.csv --series series.csv --id mine --like A");
+        "tribodyn gear-sets import contact.csv --series series.csv --id mine --like "
+        "reference-axle");
   } else if (kind.word == "surfaces") {
     command.about += " Measured profiles (CSV) give one surface.";
     command.examples.emplace_back(

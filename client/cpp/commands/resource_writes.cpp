@@ -171,7 +171,8 @@ Command create_command(const ResourceKind& kind) {
                         "tribodyn " + kind.word + " create mine --file mine.json"};
     if (kind.word == "gear-sets") {
       command.examples.emplace_back(
-          "tribodyn gear-sets create mine --like A --tooth-contact contact.csv --series "
+          "tribodyn gear-sets create mine --like reference-axle --tooth-contact contact.csv "
+          "--series "
           "series.csv");
     } else if (kind.word == "surfaces") {
       command.examples.emplace_back(
@@ -228,7 +229,7 @@ Command update_command(const ResourceKind& kind) {
       {}};
   if (kind.word == "lubricants") {
     command.examples.emplace_back(
-        "tribodyn lubricants update 1 --pressure-viscosity 18/GPa "
+        "tribodyn lubricants update my-oil --pressure-viscosity 18/GPa "
         "--provenance pressure-viscosity=measured:report-12");
   }
   add_name(command, kind, flags, "The " + kind.singular + ", e.g. " + kind.example + ".", true);

@@ -75,13 +75,14 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   v1::Simulation& simulation = scenario.simulation;
   flags.group("Fluid, hardware, temperatures");
   flags
-      .texts("--lubricant,-l", "NAME",
-             "Lubricant, e.g. 1 or lubricants/1 (`tribodyn lubricants list` lists them). A curve "
-             "takes several: -l 1,2 or -l 1 -l 2.",
-             [&](const std::string& name) { scenario.lubricants.push_back(name); })
+      .texts(
+          "--lubricant,-l", "NAME",
+          "Lubricant, e.g. my-oil or lubricants/my-oil (`tribodyn lubricants list` lists them). A "
+          "curve takes several: -l my-oil,paper-fluid-1 or -l my-oil -l paper-fluid-1.",
+          [&](const std::string& name) { scenario.lubricants.push_back(name); })
       .collection = "lubricants";
   flags
-      .text("--gear-set", "NAME", "Gear set with its driveline. Default: A.",
+      .text("--gear-set", "NAME", "Gear set with its driveline. Default: reference-axle.",
             [&](const std::string& name) {
               simulation.set_gear_set(resource_name("gearSets", name));
             })
@@ -129,7 +130,7 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
 
 void check_scenario(const Scenario& scenario, bool several_lubricants, Complaints& complaints) {
   if (scenario.lubricants.empty()) {
-    complaints.emplace_back("--lubricant is missing, e.g. --lubricant 1");
+    complaints.emplace_back("--lubricant is missing, e.g. --lubricant paper-fluid-1");
   }
   if (scenario.lubricants.size() > 1 && !several_lubricants) {
     complaints.emplace_back("--lubricant: give only one (curve accepts several)");

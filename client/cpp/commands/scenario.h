@@ -11,7 +11,7 @@ namespace tribodyn::client {
 /// The options that point, curve and history have in common: fluid, hardware, temperatures, model
 /// and solver. The flags fill a Simulation except for its lubricant and its study.
 struct Scenario {
-  std::vector<std::string> lubricants;  ///< as typed: "1" or "lubricants/1"
+  std::vector<std::string> lubricants;  ///< as typed: "my-oil" or "lubricants/my-oil"
   v1::Simulation simulation;
   bool detach = false;  ///< submit, print how to watch the jobs, and return
   CreateOptions create;

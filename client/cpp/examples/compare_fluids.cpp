@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     const v1::Lubricant fluid = connection.create(fluid_of_a_data_sheet(), "data-sheet", true);
     std::cout << fluid.display_name() << ": viscosity index "
               << fluid.characterisation().viscosity_index() << "\n";
-    compare(connection, {"lubricants/1", "lubricants/2"});
+    compare(connection, {"lubricants/paper-fluid-1", "lubricants/paper-fluid-2"});
     return EXIT_SUCCESS;
   } catch (const client::ServiceError& error) {
     std::cerr << error.what() << "\n";

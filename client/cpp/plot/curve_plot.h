@@ -11,8 +11,8 @@ namespace tribodyn::client {
 
 /// Draws inefficiency curves: for every fluid the inefficiency against speed (energy mean solid,
 /// RMS dashed), with speeds at which flanks separate shaded; below it mesh loss and contact
-/// temperature. `titles` maps lubricants to labels ("lubricants/1" -> "1 ester-olefin"); a
-/// lubricant that is not in it is labelled with its id.
+/// temperature. `titles` maps lubricants to labels ("lubricants/my-oil" -> "my-oil ester-olefin");
+/// a lubricant that is not in it is labelled with its id.
 std::string curve_plot(const std::vector<v1::Simulation>& simulations,
                        const std::map<std::string, std::string>& titles);
 

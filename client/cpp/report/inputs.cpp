@@ -18,8 +18,12 @@ namespace {
 constexpr double kDefaultSumpTemperatureCelsius = 40;
 constexpr double kDefaultInletTemperatureRiseKelvin = 20;
 
-std::string or_default(const std::string& name, const char* standard) {
-  return name.empty() ? standard : name;
+/// Returns the stated name; without one, the name of the accepted revision; without that, the
+/// default.
+std::string stated_or_accepted(const std::string& name, const std::string& revision,
+                               const char* standard) {
+  if (!name.empty()) return name;
+  return revision.empty() ? standard : revision.substr(0, revision.find('@'));
 }
 
 void append_switches(const google::protobuf::Message& message, const std::string& prefix,
@@ -103,15 +107,17 @@ void add_assumed_of_lubricant(const v1::SimulationResult& result, Sheet& sheet) 
 }  // namespace
 
 Inputs inputs_of(const v1::Simulation& simulation) {
-  return {simulation.lubricant(),
-          or_default(simulation.gear_set(), "gearSets/A"),
-          or_default(simulation.surface(), "surfaces/run-in"),
-          or_default(simulation.vehicle(), "vehicles/passenger-car"),
-          simulation.has_sump_temperature_celsius() ? simulation.sump_temperature_celsius()
-                                                    : kDefaultSumpTemperatureCelsius,
-          simulation.has_inlet_temperature_rise_kelvin()
-              ? simulation.inlet_temperature_rise_kelvin()
-              : kDefaultInletTemperatureRiseKelvin};
+  return {
+      simulation.lubricant(),
+      stated_or_accepted(simulation.gear_set(), simulation.gear_set_revision(),
+                         "gearSets/reference-axle"),
+      stated_or_accepted(simulation.surface(), simulation.surface_revision(), "surfaces/run-in"),
+      stated_or_accepted(simulation.vehicle(), simulation.vehicle_revision(),
+                         "vehicles/passenger-car"),
+      simulation.has_sump_temperature_celsius() ? simulation.sump_temperature_celsius()
+                                                : kDefaultSumpTemperatureCelsius,
+      simulation.has_inlet_temperature_rise_kelvin() ? simulation.inlet_temperature_rise_kelvin()
+                                                     : kDefaultInletTemperatureRiseKelvin};
 }
 
 std::string inputs_text(const v1::Simulation& simulation, const char* celsius) {

@@ -17,8 +17,9 @@ struct Inputs {
 };
 Inputs inputs_of(const v1::Simulation& simulation);
 
-/// Returns e.g. "gear set A, surface run-in, vehicle passenger-car; sump 40 C, inlet rise 20 K". A
-/// plot may pass a degree sign for `celsius`; a terminal without UTF-8 cannot show one.
+/// Returns e.g. "gear set reference-axle, surface run-in, vehicle passenger-car; sump 40 C, inlet
+/// rise 20 K". A plot may pass a degree sign for `celsius`; a terminal without UTF-8 cannot show
+/// one.
 std::string inputs_text(const v1::Simulation& simulation, const char* celsius = "C");
 
 /// Returns e.g. "isothermal, newtonian, as published eq17_atan"; "as corrected" if no option is

@@ -129,8 +129,9 @@ std::string ResourceKind::name_of(const std::string& id_or_name) const {
 const std::vector<ResourceKind>& resource_kinds() {
   static const std::vector<ResourceKind> kKinds = {
       make_kind<v1::Lubricant>("lubricants", "lubricant", "lubricants", "lubricants", "lubricants",
-                               "1"),
-      make_kind<v1::GearSet>("gear-sets", "gear set", "gear sets", "gearSets", "gear_sets", "A"),
+                               "paper-fluid-1"),
+      make_kind<v1::GearSet>("gear-sets", "gear set", "gear sets", "gearSets", "gear_sets",
+                             "reference-axle"),
       make_kind<v1::Surface>("surfaces", "surface", "surfaces", "surfaces", "surfaces", "run-in"),
       make_kind<v1::Vehicle>("vehicles", "vehicle", "vehicles", "vehicles", "vehicles",
                              "passenger-car"),

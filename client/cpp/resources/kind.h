@@ -62,7 +62,7 @@ struct ResourceKind {
   std::shared_ptr<const ResourceCalls> calls;
 
   ResourcePointer make() const { return ResourcePointer(prototype->New()); }
-  /// Returns "gearSets/A" for "A" and for "gearSets/A".
+  /// Returns "gearSets/reference-axle" for "reference-axle" and for "gearSets/reference-axle".
   std::string name_of(const std::string& id_or_name) const;
 };
 

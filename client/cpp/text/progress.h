@@ -9,7 +9,7 @@ namespace tribodyn::client {
 
 /// The progress of one job.
 struct JobProgress {
-  std::string label;    ///< e.g. "lubricants/1"
+  std::string label;    ///< e.g. "lubricants/paper-fluid-1"
   std::string state;    ///< "queued", "running", ...
   std::string stage;    ///< e.g. "settling at 65 km/h"
   double fraction = 0;  ///< [0, 1]

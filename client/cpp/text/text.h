@@ -38,10 +38,10 @@ std::vector<std::string> split(std::string_view text, char separator);
 /// Returns the parts with the separator between them.
 std::string joined(const std::vector<std::string>& parts, std::string_view separator);
 
-/// Returns "lubricants/1" for "1" and for "lubricants/1".
+/// Returns "lubricants/my-oil" for "my-oil" and for "lubricants/my-oil".
 std::string resource_name(std::string_view collection, std::string_view id_or_name);
 
-/// Returns "1" for "lubricants/1".
+/// Returns "my-oil" for "lubricants/my-oil".
 std::string resource_id(std::string_view name);
 
 }  // namespace tribodyn::client

@@ -176,7 +176,7 @@ TEST_F(Library, AListReadsAllPages) {
 }
 
 TEST_F(Library, EveryKindCanBeCopied) {
-  auto gear_set = connection.get<v1::GearSet>("gearSets/A");
+  auto gear_set = connection.get<v1::GearSet>("gearSets/reference-axle");
   clear_output_only(gear_set);
   gear_set.set_name("");
   EXPECT_EQ(connection.create(gear_set, "copy").name(), "gearSets/copy");
@@ -197,7 +197,7 @@ TEST_F(Library, EveryKindCanBeCopied) {
 
 TEST_F(Library, ASimulationIsWatchedUntilItEnds) {
   v1::Simulation simulation;
-  simulation.set_lubricant("lubricants/1");
+  simulation.set_lubricant("lubricants/paper-fluid-1");
   auto& study = *simulation.mutable_operating_point();
   study.mutable_cruise()->set_speed_kilometres_per_hour(50);
   study.set_model(v1::POINT_MODEL_QUASI_STATIC);
@@ -211,7 +211,7 @@ TEST_F(Library, ASimulationIsWatchedUntilItEnds) {
                               [&](const v1::SimulationEvent&) { ++events; });
   EXPECT_EQ(ended.state(), v1::Simulation::SUCCEEDED);
   EXPECT_GT(events, 0);
-  EXPECT_EQ(ended.lubricant_revision(), "lubricants/1@1");
+  EXPECT_EQ(ended.lubricant_revision(), "lubricants/paper-fluid-1@1");
   EXPECT_EQ(connection.list_simulations({.limit = 1}).resources.size(), 1U);
 }
 
@@ -270,7 +270,7 @@ TEST(LibraryAlone, AMissingServerIsAConnectionError) {
 
 v1::Simulation quick_point(double speed_kilometres_per_hour) {
   v1::Simulation out;
-  out.set_lubricant("lubricants/1");
+  out.set_lubricant("lubricants/paper-fluid-1");
   auto* point = out.mutable_operating_point();
   point->mutable_cruise()->set_speed_kilometres_per_hour(speed_kilometres_per_hour);
   return out;
@@ -279,7 +279,7 @@ v1::Simulation quick_point(double speed_kilometres_per_hour) {
 /// Returns a simulation that runs until it is cancelled.
 v1::Simulation endless_curve() {
   v1::Simulation out;
-  out.set_lubricant("lubricants/1");
+  out.set_lubricant("lubricants/paper-fluid-1");
   auto* curve = out.mutable_inefficiency_curve();
   curve->set_first_speed_kilometres_per_hour(60);
   curve->set_last_speed_kilometres_per_hour(80);
