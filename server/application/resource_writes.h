@@ -13,7 +13,6 @@
 #include "server/application/resource_methods.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
-#include "server/execution/simulation_runner.h"
 #include "server/resources/accept_resource.h"
 #include "server/storage/resource_lookup.h"
 

@@ -37,6 +37,9 @@ static_assert(static_cast<int>(StoredState::kSucceeded) == v1::Simulation::SUCCE
 static_assert(static_cast<int>(StoredState::kFailed) == v1::Simulation::FAILED);
 static_assert(static_cast<int>(StoredState::kCancelled) == v1::Simulation::CANCELLED);
 
+static_assert(static_cast<int>(StatedClass::kInteractive) == v1::SCHEDULING_CLASS_INTERACTIVE);
+static_assert(static_cast<int>(StatedClass::kBulk) == v1::SCHEDULING_CLASS_BULK);
+
 using google::protobuf::util::TimeUtil;
 
 template <class Row>
@@ -69,6 +72,8 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
           .is_forced = request.force(),
           .deadline_time = deadline_time(inputs.requested, system_time()),
           .client = call.client,
+          .principal = call.client,
+          .stated_class = request.scheduling_class(),
           .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
           .labels = std::move(labels),
           .lubricant_revision = effective.lubricant_revision(),
@@ -249,6 +254,7 @@ Outcome<v1::Simulation> create_simulation(Application& application,
     Violations violations;
     check_request_id(request.request_id(), violations);
     if (!request.has_simulation()) violations.push_back({"simulation", "not set"});
+    check_choice(request, "scheduling_class", violations);
     check_counts(request.simulation(), "simulation", violations);  // before work that they multiply
     if (!violations.empty()) return invalid(violations);
     const std::string text = request_text(client_part(request.simulation()), request.force());
@@ -256,7 +262,7 @@ Outcome<v1::Simulation> create_simulation(Application& application,
     auto earlier = earlier_answer(application, request, text, call);
     if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
     const StopWatch watch;
-    const auto inputs =
+    auto inputs =
         read_simulation(request.simulation(), resource_lookup(application.store, call.limits),
                         "simulation", violations);
     application.jobs.metrics().observe(Phase::kValidation, watch.seconds());
@@ -266,7 +272,8 @@ Outcome<v1::Simulation> create_simulation(Application& application,
     }
     const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), call);
     if (request.validate_only()) return preview(*inputs, simulation);
-    const auto [added, retry_seconds] = application.jobs.submit(simulation, call.limits);
+    const auto [added, retry_seconds] = application.jobs.submit(
+        simulation, std::make_shared<const SimulationInputs>(std::move(*inputs)), call.limits);
     log_submission(call, simulation, added);
     if (added.kind == Added::Kind::kNoPlace) return no_place(application, retry_seconds);
     if (added.kind == Added::Kind::kRequestIdTaken) {

@@ -198,6 +198,12 @@ void check_size(const Message& request, const std::string& list, Violations& vio
   violations.push_back({list, out_of_range_text(row, size)});
 }
 
+void check_choice(const Message& request, const std::string& field, Violations& violations) {
+  const FieldDescriptor& choice = *request.GetDescriptor()->FindFieldByName(field);
+  check_enum({choice, field, violations, Missing::kAllowed},
+             request.GetReflection()->GetEnumValue(request, &choice));
+}
+
 std::string first_not_finite(const Message& message) { return first_not_finite(message, false); }
 
 }  // namespace tribodyn::server

@@ -27,6 +27,10 @@ void check_message(const google::protobuf::Message& message, const std::string& 
 void check_size(const google::protobuf::Message& request, const std::string& list,
                 Violations& violations);
 
+/// Checks that the value of an enum field of a request exists.
+void check_choice(const google::protobuf::Message& request, const std::string& field,
+                  Violations& violations);
+
 /// Returns the path of the first number that is not finite, or an empty string if there is none.
 /// Two numbers may be infinite: a shear rate without film, and the thermal resistance of a surface
 /// at rest.

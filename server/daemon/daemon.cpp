@@ -175,9 +175,8 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
                                           to_milliseconds(settings.unread_limit_seconds)});
   GrpcServer server(dispatcher, address);
   const std::unique_ptr<MetricsListener> metrics = listen_for_metrics(settings, jobs);
-  const std::string wrong = check_golden_case();
+  const std::string wrong = jobs.start();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);
-  jobs.start();
   server.set_serving(true);
   spdlog::info("tribodynd " TRIBODYN_VERSION " ({}) listens on {} with {} threads", kModelVersion,
                server.address(), options.threads);

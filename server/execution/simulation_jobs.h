@@ -6,21 +6,26 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "server/execution/simulation_runner.h"
+#include "server/execution/executor.h"
 #include "server/metrics/metrics.h"
 #include "server/scheduling/janitor.h"
-#include "server/scheduling/job_queue.h"
 #include "server/scheduling/progress_board.h"
-#include "server/scheduling/timekeeper.h"
+#include "server/scheduling/scheduler.h"
 #include "server/storage/store.h"
 
 namespace tribodyn::server {
 
-/// The life of simulations: accepted, queued, run, cancelled, too late, resumed after a crash.
-/// Safe for concurrent access without external synchronization; `resume`, `start`, `drain` and
-/// `stop` from one thread.
+/// The life of simulations, as the application sees it: the scheduler, the executor of this
+/// process, and what both need. Safe for concurrent access without external synchronization;
+/// `resume`, `start`, `drain` and `stop` from one thread.
+///
+/// What a simulation reads and writes between its request and its result: a request that makes
+/// inputs reads its four resources, and its request_id if it has one. One commit writes the row
+/// (admit), and the answer is read in the same transaction. The inputs stay in memory, so that the
+/// start reads nothing: one commit makes it RUNNING, so that a crash knows which attempts it
+/// interrupted, and looks for a result of equal inputs. One commit writes the result with
+/// SUCCEEDED. Commits at the same time share one write to disk (GroupCommit).
 class SimulationJobs {
  public:
   struct Options {
@@ -31,6 +36,8 @@ class SimulationJobs {
     StudyFunctions studies;
     /// A watch that has been silent for so long sends a sign of life.
     std::chrono::milliseconds heartbeat = std::chrono::seconds(15);
+    /// The executor proves the golden case before its first lease; with made-up studies it cannot.
+    bool wants_proof = true;
   };
 
   /// The store must outlive the object.
@@ -40,24 +47,24 @@ class SimulationJobs {
   SimulationJobs& operator=(const SimulationJobs&) = delete;
 
   /// Queues again what a crash or a stop left unfinished; how many. Before anything is submitted.
-  std::size_t resume();
-  /// Until then simulations are accepted but wait.
-  void start();
+  std::size_t resume() { return scheduler_.resume(); }
+  /// Until then simulations are accepted but wait. Returns what is wrong if this machine does not
+  /// compute the golden case as it should; then nothing is computed.
+  std::string start();
 
-  /// Writes a simulation down, and queues it unless it is there or served already. Where it would
-  /// have to wait and has no place, says when to ask again.
-  struct Submitted {
-    Added added;
-    double retry_seconds = 0;
-  };
-  Submitted submit(const NewSimulation& simulation, const CallLimits& limits = {});
-  /// Of a simulation that is QUEUED in the store: its request may have been written and yet been
-  /// answered with an error, before it came into the queue.
-  void ensure_queued(const StoredSimulation& simulation);
-
-  /// At once CANCELLED in the store; a worker on it stops at its next step. Returns the change of
-  /// state; nullopt, and changes nothing, if the simulation has ended before.
-  std::optional<StoredEvent> cancel(std::int64_t id, const CallLimits& limits = {});
+  using Submitted = Scheduler::Admitted;
+  /// As Scheduler::admit.
+  Submitted submit(const NewSimulation& simulation,
+                   std::shared_ptr<const SimulationInputs> inputs = nullptr,
+                   const CallLimits& limits = {}) {
+    return scheduler_.admit(simulation, std::move(inputs), limits);
+  }
+  /// As Scheduler::ensure_queued.
+  void ensure_queued(const StoredSimulation& simulation) { scheduler_.ensure_queued(simulation); }
+  /// As Scheduler::cancel.
+  std::optional<StoredEvent> cancel(std::int64_t id, const CallLimits& limits = {}) {
+    return scheduler_.cancel(id, limits);
+  }
 
   /// Latest progress of a simulation that runs.
   std::optional<Progress> progress(std::int64_t id) const;
@@ -71,33 +78,32 @@ class SimulationJobs {
   /// Nothing when there is no such simulation.
   std::optional<Watched> watch(std::int64_t id, const CallLimits& limits = {});
   /// Wakes the observer often enough for heartbeats.
-  void wake(const std::weak_ptr<ProgressObserver>& observer) { timekeeper_.observe(observer); }
+  void wake(const std::weak_ptr<ProgressObserver>& observer) { scheduler_.wake(observer); }
   const Retention& retention() const { return retention_; }
   Metrics& metrics() { return metrics_; }
-  Occupancy occupancy() const { return queue_.occupancy(); }
+  Occupancy occupancy() const { return scheduler_.occupancy(); }
+  /// Deadlines of simulations that have not ended.
+  std::size_t deadlines() const { return scheduler_.deadlines(); }
   std::chrono::milliseconds heartbeat() const { return heartbeat_; }
 
   /// True once nothing more is accepted.
-  bool is_stopping() const { return queue_.is_stopping(); }
-  /// As JobQueue::drain.
-  bool drain(std::chrono::milliseconds limit, const std::function<bool()>& give_up);
+  bool is_stopping() const { return scheduler_.is_stopping(); }
+  /// As Scheduler::drain.
+  bool drain(std::chrono::milliseconds limit, const std::function<bool()>& give_up) {
+    return scheduler_.drain(limit, give_up);
+  }
   /// Running simulations stop and go back to QUEUED in the store.
   void stop();
 
  private:
-  void expire(std::int64_t id);
-  void end(std::int64_t id, const std::optional<StoredEvent>& event);
-
   Store& store_;
-  const Clock clock_;
   const std::chrono::milliseconds heartbeat_;
   Metrics metrics_;
   ProgressBoard board_;
-  SimulationRunner runner_;
-  JobQueue queue_;
   const Retention retention_;
   Janitor janitor_;
-  Timekeeper timekeeper_;  // last: its thread uses all of the above
+  Scheduler scheduler_;
+  Executor executor_;
 };
 
 }  // namespace tribodyn::server

@@ -33,6 +33,7 @@ struct QueuedJob {
   double cost_seconds = 0;     ///< estimated, of one processor
   bool alone = false;          ///< may be what killed the server: nothing runs beside it
   StatedClass stated = StatedClass::kAutomatic;
+  std::int64_t result_bytes = 0;  ///< of the history that it will have
   Lane lane() const {
     if (stated == StatedClass::kInteractive) return Lane::kStated;
     const bool is_small = stated == StatedClass::kAutomatic && cost_seconds <= kInteractiveSeconds;

@@ -7,19 +7,38 @@ namespace tribodyn::server {
 using std::chrono::steady_clock;
 
 Timekeeper::Timekeeper(std::chrono::milliseconds tick, std::function<Microseconds()> clock,
-                       std::function<void(std::int64_t)> on_due)
-    : tick_(tick), clock_(std::move(clock)), on_due_(std::move(on_due)) {
+                       std::function<void(std::int64_t)> on_due, std::function<void()> on_tick)
+    : tick_(tick),
+      clock_(std::move(clock)),
+      on_due_(std::move(on_due)),
+      on_tick_(std::move(on_tick)) {
   thread_ = std::thread([this] { run(); });
 }
 
 Timekeeper::~Timekeeper() { stop(); }
 
-void Timekeeper::add_deadline(std::int64_t id, Microseconds time) {
+void Timekeeper::set_deadline(std::int64_t id, Microseconds time) {
   {
     const std::lock_guard lock(mutex_);
+    const auto [known, is_new] = times_.try_emplace(id, time);
+    if (!is_new) deadlines_.erase({known->second, id});
+    known->second = time;
     deadlines_.emplace(time, id);
   }
   changed_.notify_all();
+}
+
+void Timekeeper::remove_deadline(std::int64_t id) {
+  const std::lock_guard lock(mutex_);
+  const auto known = times_.find(id);
+  if (known == times_.end()) return;
+  deadlines_.erase({known->second, id});
+  times_.erase(known);
+}
+
+std::size_t Timekeeper::deadlines() const {
+  const std::lock_guard lock(mutex_);
+  return deadlines_.size();
 }
 
 void Timekeeper::observe(const std::weak_ptr<ProgressObserver>& observer) {
@@ -42,6 +61,7 @@ std::vector<std::int64_t> Timekeeper::take_due() {
   const Microseconds now = clock_();
   while (!deadlines_.empty() && deadlines_.begin()->first <= now) {
     due.push_back(deadlines_.begin()->second);
+    times_.erase(due.back());
     deadlines_.erase(deadlines_.begin());
   }
   return due;
@@ -68,13 +88,16 @@ void Timekeeper::run() {
     changed_.wait_for(lock, wait);
     const std::vector<std::int64_t> due = take_due();
     std::vector<std::shared_ptr<ProgressObserver>> woken;
+    bool is_tick = false;
     if (steady_clock::now() >= next_tick) {
       next_tick = steady_clock::now() + tick_;
       woken = living_observers();
+      is_tick = true;
     }
     lock.unlock();
     for (const std::int64_t id : due) on_due_(id);
     for (const auto& observer : woken) observer->changed();
+    if (is_tick) on_tick_();
     woken.clear();
     lock.lock();
   }

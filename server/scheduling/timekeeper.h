@@ -7,7 +7,9 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "server/scheduling/progress_board.h"
@@ -15,19 +17,23 @@
 
 namespace tribodyn::server {
 
-/// A thread that looks at the clock for everybody: says which deadlines have come, and wakes
-/// observers every `tick`, so that a stream notices that it has been silent for long. Safe for
+/// A thread that looks at the clock for everybody: tells which deadlines have come, and every
+/// `tick` wakes observers, so that a stream notices that it has been silent for long. Safe for
 /// concurrent access without external synchronization.
 class Timekeeper {
  public:
-  /// `on_due` is told the id of each deadline, on the thread, with no lock held.
+  /// Calls `on_due` with the id of each deadline, and `on_tick` every `tick`, on the thread, with
+  /// no lock held.
   Timekeeper(std::chrono::milliseconds tick, std::function<Microseconds()> clock,
-             std::function<void(std::int64_t)> on_due);
+             std::function<void(std::int64_t)> on_due, std::function<void()> on_tick);
   ~Timekeeper();
   Timekeeper(const Timekeeper&) = delete;
   Timekeeper& operator=(const Timekeeper&) = delete;
 
-  void add_deadline(std::int64_t id, Microseconds time);
+  /// Sets the deadline of the id; an earlier one is forgotten.
+  void set_deadline(std::int64_t id, Microseconds time);
+  void remove_deadline(std::int64_t id);
+  std::size_t deadlines() const;
   /// Woken for as long as it lives.
   void observe(const std::weak_ptr<ProgressObserver>& observer);
   /// Nobody is told anything any more.
@@ -41,11 +47,13 @@ class Timekeeper {
   const std::chrono::milliseconds tick_;
   const std::function<Microseconds()> clock_;
   const std::function<void(std::int64_t)> on_due_;
-  std::mutex mutex_;
+  const std::function<void()> on_tick_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::multimap<Microseconds, std::int64_t> deadlines_;     // guarded by mutex_
-  std::vector<std::weak_ptr<ProgressObserver>> observers_;  // guarded by mutex_
-  bool stopping_ = false;                                   // guarded by mutex_
+  std::set<std::pair<Microseconds, std::int64_t>> deadlines_;  // guarded by mutex_
+  std::map<std::int64_t, Microseconds> times_;                 // guarded by mutex_; of deadlines_
+  std::vector<std::weak_ptr<ProgressObserver>> observers_;     // guarded by mutex_
+  bool stopping_ = false;                                      // guarded by mutex_
   std::thread thread_;
 };
 

@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <ctime>
+#include <new>
 #include <string_view>
 
 #include "core/refusal.h"
+#include "core/version.h"
 #include "server/contract/check_message.h"
 #include "server/mapping/from_core.h"
+#include "server/simulation/compute_task.h"
+#include "server/simulation/result_key.h"
 
 namespace tribodyn::server {
 namespace {
@@ -116,10 +121,62 @@ Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved 
   return out;
 }
 
-Computed compute(const SimulationInputs& inputs, const ResultKey& key,
-                 const StudyFunctions& studies, const ReportProgress& report) {
-  PreparedGearSets gear_sets;
-  return to_result(inputs, key, solve(inputs, studies, gear_sets, report));
+namespace {
+
+double processor_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+void set_refusal(const std::string& reason, const std::string& message,
+                 internal::v1::ComputeResult& out) {
+  out.mutable_refusal()->set_reason(reason);
+  out.mutable_refusal()->set_message(message);
+}
+
+void set_outcome(const internal::v1::ComputeTask& task, const StudyFunctions& studies,
+                 PreparedGearSets& gear_sets, const ReportProgress& report,
+                 internal::v1::ComputeResult& out) {
+  const SimulationInputs inputs = inputs_of(task);
+  const ResultKey key{task.input_hash(), kModelVersion, platform()};
+  Computed computed = to_result(inputs, key, solve(inputs, studies, gear_sets, report));
+  for (StoredColumn& column : computed.history) {
+    internal::v1::HistoryColumn& added = *out.add_history();
+    added.set_name(column.name);
+    added.mutable_values()->Add(column.values.begin(), column.values.end());
+    std::vector<double>().swap(column.values);
+  }
+  computed.result.SerializeToString(out.mutable_result());
+}
+
+}  // namespace
+
+internal::v1::ComputeResult compute(const internal::v1::ComputeTask& task,
+                                    const StudyFunctions& studies, PreparedGearSets& gear_sets,
+                                    const ReportProgress& report) {
+  const double begin = processor_seconds();
+  internal::v1::ComputeResult out;
+  out.set_simulation(task.simulation());
+  out.set_attempt(task.attempt());
+  out.set_model_version(kModelVersion);
+  out.set_platform(platform());
+  try {
+    set_outcome(task, studies, gear_sets, report, out);
+  } catch (const Cancelled&) {
+    out.set_stopped(true);
+  } catch (const Refusal& refusal) {
+    set_refusal(refusal.reason(), refusal.what(), out);
+  } catch (const std::bad_alloc&) {
+    out.clear_history();
+    set_refusal("OUT_OF_MEMORY", "not enough memory for this simulation", out);
+  } catch (const std::exception& defect) {
+    out.set_defect(defect.what());
+  } catch (...) {
+    out.set_defect("an exception of unknown type");
+  }
+  out.set_processor_seconds(processor_seconds() - begin);
+  return out;
 }
 
 }  // namespace tribodyn::server

@@ -9,6 +9,7 @@
 #include "server/simulation/prepared_gear_sets.h"
 #include "server/simulation/simulation_inputs.h"
 #include "server/storage/store.h"
+#include "tribodyn/internal/v1/tasks.pb.h"
 #include "tribodyn/v1/results.pb.h"
 
 namespace tribodyn::server {
@@ -50,8 +51,10 @@ Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
 /// Throws Refusal if a number is not finite.
 Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved solved);
 
-/// Calls solve() with a newly prepared gear set, then to_result().
-Computed compute(const SimulationInputs& inputs, const ResultKey& key,
-                 const StudyFunctions& studies, const ReportProgress& report);
+/// Computes a task with a gear set of `gear_sets`. Refusals, defects and being asked to stop are
+/// outcomes; nothing is thrown.
+internal::v1::ComputeResult compute(const internal::v1::ComputeTask& task,
+                                    const StudyFunctions& studies, PreparedGearSets& gear_sets,
+                                    const ReportProgress& report);
 
 }  // namespace tribodyn::server

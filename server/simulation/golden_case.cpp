@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <stdexcept>
 
-#include "core/refusal.h"
-#include "server/simulation/result_key.h"
+#include "server/simulation/compute_task.h"
+#include "server/simulation/input_hash.h"
 #include "server/storage/seeds.h"
 
 namespace tribodyn::server {
@@ -51,27 +52,36 @@ ResourceLookup seeds() {
 
 }  // namespace
 
-std::string check_golden_case(const StudyFunctions& studies) {
+internal::v1::ComputeTask golden_task() {
   v1::Simulation simulation;
   simulation.set_lubricant("lubricants/paper-fluid-1");
   simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(72.5);
   simulation.mutable_solver_options()->set_tolerance(kSolverTolerance);
   Violations violations;
   const auto inputs = read_simulation(simulation, seeds(), "simulation", violations);
-  if (!inputs) return "golden case: " + violations.front().description;
-  try {
-    const Computed computed = compute(*inputs, result_key(*inputs), studies,
-                                      [](double, const StageText&) { return true; });
-    const v1::PointResult& point = computed.result.points(0).result();
-    for (const Figure& figure : kFigures) {
-      const double value = figure.value(point);
-      if (std::abs(value - figure.expected) <= kRelativeTolerance * figure.expected) continue;
-      return fmt::format("golden case: {} is {}; expected {}", figure.name, value, figure.expected);
-    }
-  } catch (const std::exception& error) {
-    return std::string("golden case: ") + error.what();
+  if (!inputs) throw std::logic_error("golden case: " + violations.front().description);
+  return compute_task(*inputs, 0, 1, input_hash(*inputs), false);
+}
+
+std::string check_golden_result(const internal::v1::ComputeResult& result) {
+  if (result.has_refusal()) return "golden case: " + result.refusal().message();
+  v1::SimulationResult computed;
+  if (!result.has_result() || !computed.ParseFromString(result.result()) ||
+      computed.points_size() != 1) {
+    return "golden case: no result; " + result.defect();
+  }
+  for (const Figure& figure : kFigures) {
+    const double value = figure.value(computed.points(0).result());
+    if (std::abs(value - figure.expected) <= kRelativeTolerance * figure.expected) continue;
+    return fmt::format("golden case: {} is {}; expected {}", figure.name, value, figure.expected);
   }
   return {};
+}
+
+std::string check_golden_case(const StudyFunctions& studies) {
+  PreparedGearSets gear_sets;
+  return check_golden_result(
+      compute(golden_task(), studies, gear_sets, [](double, const StageText&) { return true; }));
 }
 
 }  // namespace tribodyn::server

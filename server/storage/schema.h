@@ -8,7 +8,7 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 5. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 6. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   resources    lubricants, gear sets, surfaces, vehicles: one row a name, with the revision that
@@ -24,8 +24,12 @@ namespace tribodyn::server {
 ///                stated it; request_hash: of all that it stated (request_text.h), to tell a
 ///                repeated request_id from a misused one; lubricant, gear_set, surface, vehicle:
 ///                the revisions it rests on. is_forced: no result that was there before is taken.
-///                Progress is not kept: a job that a crash interrupts starts again. client: on
-///                whose behalf it waits (fair share); cost_seconds: estimated, of one processor.
+///                Progress is not kept: a job that a crash interrupts starts again. client: what
+///                the client calls itself; principal: whose share of the processors pays for it;
+///                stated_class: SchedulingClass; cost_seconds: estimated, of one processor.
+///                lease_worker, lease_expire_time: who computes it, set while it is RUNNING; after
+///                that time the attempt counts as lost. The worker "local" is the server's own
+///                process, whose leases end with it.
 ///                pinned: neither expires nor is evicted; others may go, with their events and with
 ///                a result and a ledger that no other one has
 ///   simulation_labels  what lists are filtered by beside columns of simulations, of its request
@@ -45,7 +49,7 @@ namespace tribodyn::server {
 ///
 /// The text of a schema that a release has written never changes: the tables of a database are
 /// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 5;
+inline constexpr int kSchemaVersion = 6;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

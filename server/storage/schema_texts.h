@@ -255,4 +255,20 @@ CREATE INDEX results_by_size ON results (id, stored_bytes);
 CREATE INDEX pinned_results ON simulations (result) WHERE pinned = 1;
 )sql";
 
+inline constexpr char kSchema6[] = R"sql(
+ALTER TABLE simulations ADD COLUMN principal TEXT NOT NULL DEFAULT '';
+ALTER TABLE simulations ADD COLUMN stated_class INTEGER NOT NULL DEFAULT 0
+  CHECK (stated_class BETWEEN 0 AND 2);
+ALTER TABLE simulations ADD COLUMN lease_worker TEXT CHECK (length(lease_worker) > 0);
+ALTER TABLE simulations ADD COLUMN lease_expire_time INTEGER
+  CHECK ((lease_worker IS NULL) = (lease_expire_time IS NULL));
+
+UPDATE simulations SET principal = client;
+UPDATE simulations SET lease_worker = 'local', lease_expire_time = 0 WHERE state = 2;
+
+CREATE TRIGGER running_means_leased BEFORE UPDATE OF state ON simulations
+WHEN (NEW.state = 2) <> (NEW.lease_worker IS NOT NULL)
+BEGIN SELECT RAISE(ABORT, 'a simulation runs under a lease'); END;
+)sql";
+
 }  // namespace tribodyn::server

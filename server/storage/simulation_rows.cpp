@@ -17,7 +17,7 @@ const char kSimulationColumns[] =
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), "
-    "request_id, pinned, client, cost_seconds "
+    "request_id, pinned, client, cost_seconds, principal, stated_class "
     "FROM simulations ";
 
 namespace {
@@ -105,7 +105,8 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
       db,
       "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
       "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle, client, "
-      "cost_seconds) VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "cost_seconds, principal, stated_class) "
+      "VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, now);
   bind_optional(insert, 2, simulation.deadline_time);
   bind_blob(insert, 3, simulation.request);
@@ -122,6 +123,8 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
   }
   insert.bind(13, simulation.client);
   insert.bind(14, simulation.cost_seconds);
+  insert.bind(15, simulation.principal);
+  insert.bind(16, simulation.stated_class);
   insert.exec();
   const std::int64_t id = db.getLastInsertRowid();
   insert_labels(db, id, simulation.labels);
@@ -194,14 +197,15 @@ void repair_result(Connection& db, std::int64_t row, const NewResult& result,
 
 /// Of a simulation that came to another result than equal inputs have.
 std::optional<StoredEvent> not_reproduced(Connection& db, std::int64_t id, Microseconds now,
-                                          const ResultKey& key) {
+                                          const ResultKey& key, std::optional<int> attempt) {
   return change_state(db, {.id = id,
                            .to = StoredState::kFailed,
                            .time = now,
                            .from = StoredState::kRunning,
                            .error_reason = "RESULT_NOT_REPRODUCED",
                            .error_message = "equal inputs have another result, of model " +
-                                            key.model_version + " on " + key.platform});
+                                            key.model_version + " on " + key.platform,
+                           .attempt = attempt});
 }
 
 /// Bit for bit, histories too.
@@ -288,6 +292,8 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   out.is_pinned = query.getColumn(20).getInt() != 0;
   out.client = query.getColumn(21).getString();
   out.cost_seconds = query.getColumn(22).getDouble();
+  out.principal = query.getColumn(23).getString();
+  out.stated_class = query.getColumn(24).getInt();
   return out;
 }
 
@@ -332,8 +338,10 @@ std::optional<StoredEvent> change_state(Connection& db, const StateChange& chang
       "lost_attempts = lost_attempts + ?9, "
       "start_time = CASE ?2 WHEN 1 THEN NULL WHEN 2 THEN ?3 ELSE start_time END, "
       "end_time = CASE WHEN ?2 >= 3 THEN ?3 END, "
-      "error_reason = ?5, error_message = ?6, result = ?7, cache_hit = ?8 "
+      "error_reason = ?5, error_message = ?6, result = ?7, cache_hit = ?8, "
+      "lease_worker = ?11, lease_expire_time = ?12 "
       "WHERE id = ?1 AND state = coalesce(?4, state) AND state <= 2 AND state <> ?2 "
+      "AND attempt = coalesce(?10, attempt) "
       "RETURNING sequence, attempt, start_time");
   update.bind(1, change.id);
   update.bind(2, static_cast<int>(change.to));
@@ -348,6 +356,14 @@ std::optional<StoredEvent> change_state(Connection& db, const StateChange& chang
   bind_optional(update, 7, change.result);
   update.bind(8, change.cache_hit ? 1 : 0);
   update.bind(9, change.attempt_is_lost ? 1 : 0);
+  bind_optional(update, 10, change.attempt);
+  if (change.lease) {
+    update.bind(11, change.lease->worker);
+    update.bind(12, change.lease->expire_time);
+  } else {
+    update.bind(11);
+    update.bind(12);
+  }
   if (!update.executeStep()) return std::nullopt;
   StoredEvent event{update.getColumn(0).getInt64(), change.time, change.to,
                     update.getColumn(1).getInt(), change.reason};
@@ -371,7 +387,7 @@ std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
 }
 
 std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
-                                            const ResultKey& key) {
+                                            const ResultKey& key, const LeaseTerms& lease) {
   Prepared update(
       db, "UPDATE simulations SET input_hash = ? WHERE id = ? AND state = 1 RETURNING is_forced");
   update.bind(1, key.input_hash);
@@ -381,12 +397,14 @@ std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Mic
   update.executeStep();
   std::optional<std::int64_t> result;
   if (!is_forced) result = result_row(db, key);
-  return change_state(db, {.id = id,
-                           .to = result ? StoredState::kSucceeded : StoredState::kRunning,
-                           .time = now,
-                           .from = StoredState::kQueued,
-                           .result = result,
-                           .cache_hit = result.has_value()});
+  StateChange change{.id = id,
+                     .to = result ? StoredState::kSucceeded : StoredState::kRunning,
+                     .time = now,
+                     .from = StoredState::kQueued,
+                     .result = result,
+                     .cache_hit = result.has_value()};
+  if (!result) change.lease = lease;
+  return change_state(db, change);
 }
 
 std::optional<std::string> query_result(Connection& db, std::int64_t id) {
@@ -409,11 +427,11 @@ std::optional<std::string> query_result(Connection& db, std::int64_t id) {
 }
 
 std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
-                                             const NewResult& result,
+                                             const NewResult& result, std::optional<int> attempt,
                                              const std::vector<CompressedColumn>& history) {
   std::optional<std::int64_t> row = result_row(db, result.key);
   if (row && !is_same_result(db, *row, result)) {
-    if (is_whole_result(db, *row)) return not_reproduced(db, id, now, result.key);
+    if (is_whole_result(db, *row)) return not_reproduced(db, id, now, result.key, attempt);
     repair_result(db, *row, result, history);
   }
   if (!row) row = insert_result(db, result, history, now);
@@ -421,35 +439,67 @@ std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Mi
                            .to = StoredState::kSucceeded,
                            .time = now,
                            .from = StoredState::kRunning,
-                           .result = row});
+                           .result = row,
+                           .attempt = attempt});
+}
+
+std::optional<StoredEvent> lose_attempt(Connection& db, std::int64_t id, int attempt,
+                                        Microseconds now, const std::string& reason) {
+  Prepared find(db, "SELECT lost_attempts FROM simulations WHERE id = ?");
+  find.bind(1, id);
+  if (!find.executeStep()) return std::nullopt;
+  const int lost = find.getColumn(0).getInt() + 1;
+  StateChange change{.id = id, .to = StoredState::kQueued, .time = now, .reason = reason};
+  change.from = StoredState::kRunning;
+  change.attempt = attempt;
+  change.attempt_is_lost = true;
+  if (lost >= kMaximumLostAttempts) {
+    change.to = StoredState::kFailed;
+    change.error_reason = "WORKER_LOST";
+    change.error_message = "the process that computed it was lost " +
+                           std::to_string(kMaximumLostAttempts) + " times; it is not tried again";
+  }
+  return change_state(db, change);
+}
+
+bool extend_lease(Connection& db, std::int64_t id, int attempt, Microseconds expire_time) {
+  Prepared update(db,
+                  "UPDATE simulations SET lease_expire_time = ? "
+                  "WHERE id = ? AND state = 2 AND attempt = ?");
+  update.bind(1, expire_time);
+  update.bind(2, id);
+  update.bind(3, attempt);
+  return update.exec() > 0;
 }
 
 std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
-  std::vector<std::pair<std::int64_t, int>> running;
+  std::vector<std::pair<std::int64_t, int>> lost;
   Prepared find(db,
-                "SELECT id, lost_attempts FROM simulations WHERE state IN (1, 2) AND state = 2");
+                "SELECT id, attempt FROM simulations WHERE state IN (1, 2) AND state = 2 AND "
+                "(lease_worker = ? OR lease_expire_time <= ?)");
+  find.bind(1, LeaseTerms::kLocalWorker);
+  find.bind(2, now);
   while (find.executeStep()) {
-    running.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
+    lost.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
   }
-  for (const auto& [id, lost] : running) {
-    StateChange change{.id = id, .to = StoredState::kQueued, .time = now, .reason = "SERVER_LOST"};
-    change.attempt_is_lost = true;
-    if (lost + 1 >= kMaximumLostAttempts) {
-      change.to = StoredState::kFailed;
-      change.error_reason = "WORKER_LOST";
-      change.error_message = "the server died " + std::to_string(kMaximumLostAttempts) +
-                             " times while it ran; it is not tried again";
-    }
-    change_state(db, change);
-  }
+  for (const auto& [id, attempt] : lost) lose_attempt(db, id, attempt, now, "SERVER_LOST");
   std::vector<Waiting> waiting;
   Prepared query(db,
-                 "SELECT id, lost_attempts, deadline_time, client, cost_seconds FROM simulations "
-                 "WHERE state IN (1, 2) AND state = 1 ORDER BY id");
+                 "SELECT id, attempt, lost_attempts, deadline_time, principal, stated_class, "
+                 "cost_seconds, lease_worker, lease_expire_time FROM simulations "
+                 "WHERE state IN (1, 2) ORDER BY id");
   while (query.executeStep()) {
-    waiting.push_back({query.getColumn(0).getInt64(), query.getColumn(1).getInt(),
-                       time_of(query.getColumn(2)), query.getColumn(3).getString(),
-                       query.getColumn(4).getDouble()});
+    Waiting each{.id = query.getColumn(0).getInt64(),
+                 .attempt = query.getColumn(1).getInt(),
+                 .lost_attempts = query.getColumn(2).getInt(),
+                 .deadline_time = time_of(query.getColumn(3)),
+                 .principal = query.getColumn(4).getString(),
+                 .stated_class = query.getColumn(5).getInt(),
+                 .cost_seconds = query.getColumn(6).getDouble()};
+    if (!query.getColumn(7).isNull()) {
+      each.lease = LeaseTerms{query.getColumn(7).getString(), query.getColumn(8).getInt64()};
+    }
+    waiting.push_back(std::move(each));
   }
   return waiting;
 }

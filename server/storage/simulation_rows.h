@@ -46,7 +46,9 @@ struct StateChange {
   std::string error_message = {};
   std::optional<std::int64_t> result = {};  ///< row, of SUCCEEDED
   bool cache_hit = false;
-  bool attempt_is_lost = false;  ///< its server died
+  bool attempt_is_lost = false;          ///< its worker died
+  std::optional<int> attempt = {};       ///< empty: whichever it is
+  std::optional<LeaseTerms> lease = {};  ///< of RUNNING
 };
 
 /// Changes the state and writes the event; nothing when the state does not allow it.
@@ -60,10 +62,14 @@ std::optional<std::string> query_result(Connection& db, std::int64_t id);
 
 // As Store::mark_running, mark_succeeded and requeue_unfinished.
 std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
-                                            const ResultKey& key);
+                                            const ResultKey& key, const LeaseTerms& lease);
 std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
-                                             const NewResult& result,
+                                             const NewResult& result, std::optional<int> attempt,
                                              const std::vector<CompressedColumn>& history);
 std::vector<Waiting> requeue_lost(Connection& db, Microseconds now);
+// As Store::mark_lost and extend_lease.
+std::optional<StoredEvent> lose_attempt(Connection& db, std::int64_t id, int attempt,
+                                        Microseconds now, const std::string& reason);
+bool extend_lease(Connection& db, std::int64_t id, int attempt, Microseconds expire_time);
 
 }  // namespace tribodyn::server

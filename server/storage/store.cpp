@@ -403,14 +403,31 @@ std::optional<StoredEvent> Store::change_simulation(const CallLimits& limits,
 }
 
 std::optional<StoredEvent> Store::mark_running(std::int64_t id, Microseconds now,
-                                               const ResultKey& key) {
-  return change_simulation({}, [&](Connection& db) { return start_simulation(db, id, now, key); });
+                                               const ResultKey& key, const LeaseTerms& lease) {
+  return change_simulation(
+      {}, [&](Connection& db) { return start_simulation(db, id, now, key, lease); });
+}
+
+bool Store::extend_lease(std::int64_t id, int attempt, Microseconds expire_time) {
+  bool out = false;
+  write_together({},
+                 [&](Connection& db) { out = server::extend_lease(db, id, attempt, expire_time); });
+  return out;
+}
+
+std::optional<StoredEvent> Store::mark_lost(std::int64_t id, int attempt, Microseconds now,
+                                            const std::string& reason) {
+  return change_simulation(
+      {}, [&](Connection& db) { return lose_attempt(db, id, attempt, now, reason); });
 }
 
 std::optional<StoredEvent> Store::mark_queued(std::int64_t id, Microseconds now,
-                                              const std::string& reason) {
+                                              const std::string& reason,
+                                              std::optional<int> attempt) {
   return change_simulation({}, [&](Connection& db) {
-    return change_state(db, {.id = id, .to = StoredState::kQueued, .time = now, .reason = reason});
+    return change_state(
+        db,
+        {.id = id, .to = StoredState::kQueued, .time = now, .reason = reason, .attempt = attempt});
   });
 }
 
@@ -422,24 +439,26 @@ std::optional<StoredEvent> Store::mark_cancelled(std::int64_t id, Microseconds n
 }
 
 std::optional<StoredEvent> Store::mark_failed(std::int64_t id, Microseconds now,
-                                              const std::string& reason,
-                                              const std::string& message) {
+                                              const std::string& reason, const std::string& message,
+                                              std::optional<int> attempt) {
   return change_simulation({}, [&](Connection& db) {
     return change_state(db, {.id = id,
                              .to = StoredState::kFailed,
                              .time = now,
                              .error_reason = reason,
-                             .error_message = message});
+                             .error_message = message,
+                             .attempt = attempt});
   });
 }
 
 std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds now,
-                                                 const NewResult& result) {
+                                                 const NewResult& result,
+                                                 std::optional<int> attempt) {
   // Compresses before the transaction, so that other writers do not wait.
   std::vector<CompressedColumn> history;
   for (const StoredColumn& each : result.history) history.push_back(compress(each));
   return change_simulation(
-      {}, [&](Connection& db) { return finish_simulation(db, id, now, result, history); });
+      {}, [&](Connection& db) { return finish_simulation(db, id, now, result, attempt, history); });
 }
 
 std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {

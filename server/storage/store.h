@@ -123,23 +123,36 @@ class Store {
   // return the event. They return nullopt, and change nothing, if the simulation is not in a state
   // that allows the change: of two concurrent changes the first wins.
 
-  /// Changes QUEUED to RUNNING, or to SUCCEEDED if equal inputs have a result by now.
-  std::optional<StoredEvent> mark_running(std::int64_t id, Microseconds now, const ResultKey& key);
+  // `attempt`: number of the only attempt that may change; empty: any.
+
+  /// Changes QUEUED to RUNNING under a lease, or to SUCCEEDED if equal inputs have a result by now.
+  std::optional<StoredEvent> mark_running(std::int64_t id, Microseconds now, const ResultKey& key,
+                                          const LeaseTerms& lease = {});
+  /// Extends the lease of an attempt to `expire_time`. Returns false if the attempt has ended.
+  bool extend_lease(std::int64_t id, int attempt, Microseconds expire_time);
+  /// Changes RUNNING to QUEUED for a further attempt because the worker of this one was lost, or to
+  /// FAILED after kMaximumLostAttempts lost attempts.
+  std::optional<StoredEvent> mark_lost(std::int64_t id, int attempt, Microseconds now,
+                                       const std::string& reason);
   /// Changes RUNNING to QUEUED for a further attempt.
   std::optional<StoredEvent> mark_queued(std::int64_t id, Microseconds now,
-                                         const std::string& reason);
+                                         const std::string& reason,
+                                         std::optional<int> attempt = {});
   std::optional<StoredEvent> mark_cancelled(std::int64_t id, Microseconds now,
                                             const CallLimits& limits = {});
   std::optional<StoredEvent> mark_failed(std::int64_t id, Microseconds now,
-                                         const std::string& reason, const std::string& message);
+                                         const std::string& reason, const std::string& message,
+                                         std::optional<int> attempt = {});
   /// Changes RUNNING to SUCCEEDED and stores the result. If equal inputs have another result by
   /// now, the simulation becomes FAILED, unless that result is damaged: then the new one replaces
   /// it.
   std::optional<StoredEvent> mark_succeeded(std::int64_t id, Microseconds now,
-                                            const NewResult& result);
+                                            const NewResult& result,
+                                            std::optional<int> attempt = {});
 
-  /// Changes every RUNNING simulation to QUEUED after a crash, or to FAILED after
-  /// kMaximumLostAttempts crashes. Returns all QUEUED ones, oldest first.
+  /// Treats, after a crash, the attempts of this process and those whose lease has expired as
+  /// mark_lost() does. Returns all simulations that have not ended then, oldest first; those that
+  /// another process computes come with their lease.
   std::vector<Waiting> requeue_unfinished(Microseconds now);
 
   // These functions compare stored bytes with their checksums and throw StoreError kDataLoss if

@@ -28,8 +28,10 @@ struct NewSimulation {
   std::string request_hash = {};  ///< hash of everything that the client set
   bool is_forced = false;
   std::optional<Microseconds> deadline_time = {};
-  std::string client = {};  ///< client that submitted it
-  double cost_seconds = 0;  ///< estimate, in seconds of one processor
+  std::string client = {};     ///< client that submitted it
+  std::string principal = {};  ///< whose share of the processors pays for it
+  int stated_class = 0;        ///< SchedulingClass
+  double cost_seconds = 0;     ///< estimate, in seconds of one processor
   std::vector<std::pair<std::string, std::string>> labels = {};
   // Revisions of its resources, e.g. "lubricants/paper-fluid-1@2"; each exists or is empty.
   std::string lubricant_revision = {};
@@ -53,6 +55,8 @@ struct StoredSimulation {
   bool is_forced = false;
   bool is_pinned = false;
   std::string client;
+  std::string principal;
+  int stated_class = 0;
   double cost_seconds = 0;
   bool cache_hit = false;
   std::string input_hash;
@@ -104,13 +108,24 @@ struct CompressedColumn {
   std::vector<std::vector<std::string>> levels;
 };
 
-/// A simulation in the queue.
+/// Who computes a simulation, and until when the attempt counts as alive.
+struct LeaseTerms {
+  std::string worker = kLocalWorker;
+  Microseconds expire_time = 0;
+  /// The server's own process; its leases end with it.
+  static constexpr char kLocalWorker[] = "local";
+};
+
+/// A simulation that has not ended.
 struct Waiting {
   std::int64_t id = 0;
+  int attempt = 1;
   int lost_attempts = 0;
   std::optional<Microseconds> deadline_time;
-  std::string client;
+  std::string principal;
+  int stated_class = 0;
   double cost_seconds = 0;
+  std::optional<LeaseTerms> lease = {};  ///< set if a worker of another process runs it
 };
 
 /// Outcome of Store::add_simulation().

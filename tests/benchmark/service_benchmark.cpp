@@ -24,8 +24,8 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/simulation/compute.h"
+#include "server/simulation/compute_task.h"
 #include "server/simulation/cost_estimate.h"
-#include "server/simulation/result_key.h"
 #include "server/simulation/simulation_inputs.h"
 #include "tests/benchmark/load_client.h"
 #include "tests/benchmark/measurements.h"
@@ -663,8 +663,10 @@ void measure_estimates(std::vector<Measurement>& out) {
     if (!inputs) throw std::runtime_error(violations.front().description);
     std::vector<double> times;
     for (int run = 0; run < kRuns; ++run) {
+      PreparedGearSets gear_sets;
+      const auto task = compute_task(*inputs, 1, 1, "", false);
       const auto begin = Clock::now();
-      compute(*inputs, result_key(*inputs), {}, [](double, const StageText&) { return true; });
+      compute(task, {}, gear_sets, [](double, const StageText&) { return true; });
       times.push_back(seconds_since(begin));
     }
     const double ratio = median(times) / estimate_cost(inputs->effective).processor_seconds();

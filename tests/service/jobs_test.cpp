@@ -6,7 +6,7 @@
 
 #include "core/refusal.h"
 #include "server/execution/simulation_jobs.h"
-#include "server/scheduling/job_queue.h"
+#include "server/scheduling/fair_queue.h"
 #include "server/scheduling/progress_board.h"
 #include "server/scheduling/turns.h"
 #include "server/simulation/golden_case.h"
@@ -24,51 +24,7 @@ StudyFunctions throwing(const Thrown& thrown) {
   return out;
 }
 
-TEST(JobQueue, RunsJobsInOrder) {
-  std::mutex mutex;
-  std::vector<std::int64_t> done;
-  JobQueue queue(1, {.jobs = 100}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
-    const std::lock_guard lock(mutex);
-    done.push_back(id);
-  });
-  queue.start();
-  for (int id = 1; id <= 20; ++id) {
-    ASSERT_TRUE(queue.reserve({}).is_admitted);
-    queue.push({id});
-  }
-  EXPECT_TRUE(eventually([&] {
-    const std::lock_guard lock(mutex);
-    return done.size() == 20;
-  }));
-  const std::lock_guard lock(mutex);
-  EXPECT_TRUE(std::is_sorted(done.begin(), done.end()));
-}
-
-TEST(JobQueue, RefusesJobsAboveItsCapacity) {
-  std::atomic<bool> release = false;
-  JobQueue queue(1, {.jobs = 2}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest&) {
-    while (!release && !stop.requested()) std::this_thread::yield();
-  });
-  queue.start();
-  ASSERT_TRUE(queue.reserve({}).is_admitted);
-  ASSERT_TRUE(queue.reserve({}).is_admitted);
-  EXPECT_FALSE(queue.reserve({}).is_admitted) << "reserved places count";
-  queue.release({});
-  EXPECT_TRUE(queue.reserve({}).is_admitted);
-  queue.push({1});
-  queue.push({2});
-  EXPECT_TRUE(eventually([&] {  // one of them is running now
-    if (!queue.reserve({}).is_admitted) return false;
-    queue.release({});
-    return true;
-  }));
-  queue.push_resumed({3});
-  queue.push_resumed({4});
-  EXPECT_FALSE(queue.reserve({}).is_admitted) << "resumed jobs count but are never turned away";
-  release = true;
-}
-
-/// Returns the ids in the order in which the queue releases them.
+/// Ids in the order in which they leave.
 std::vector<std::int64_t> emptied(FairQueue& queue) {
   std::vector<std::int64_t> out;
   while (const auto job = queue.pop(Lane::kBulk)) out.push_back(job->id);
@@ -117,19 +73,6 @@ TEST(FairQueue, CountsQueuedJobs) {
   EXPECT_FALSE(queue.erase(1));
   EXPECT_EQ(queue.cost_seconds_of("a"), 0);
   EXPECT_EQ(queue.size(), 1U);
-}
-
-TEST(JobQueue, IsBoundedByCostAndLeavesRoomForOthers) {
-  JobQueue queue(2, {.jobs = 100, .cost_seconds = 1000},
-                 [](std::int64_t, const StopSignal&, JobQueue::Rest&) {});
-  EXPECT_TRUE(queue.reserve({1, "a", 5000}).is_admitted) << "whatever it costs, it must run once";
-  const Admission refused = queue.reserve({2, "b", 1});
-  EXPECT_FALSE(refused.is_admitted);
-  EXPECT_EQ(refused.retry_seconds, 250) << "a tenth of 5000 s on two processors";
-  queue.release({1, "a", 5000});
-  EXPECT_TRUE(queue.reserve({3, "a", 700}).is_admitted);
-  EXPECT_FALSE(queue.reserve({4, "a", 100}).is_admitted) << "three quarters are for one principal";
-  EXPECT_TRUE(queue.reserve({5, "b", 100}).is_admitted);
 }
 
 TEST(FairQueue, StatedInteractiveJobsPassAllOthersOfTheirPrincipal) {
@@ -210,106 +153,6 @@ TEST(Turns, RemembersABoundedNumberOfPrincipals) {
     turns.next(std::to_string(i), 1 + 1e-3 * static_cast<double>(i), 10, {});
   }
   EXPECT_EQ(turns.size(), Turns::kMostKept);
-}
-
-TEST(JobQueue, KeepsAThreadForInteractiveJobs) {
-  std::atomic<int> bulk = 0;
-  std::atomic<int> small = 0;
-  JobQueue queue(2, {}, [&](std::int64_t id, const StopSignal& stop, JobQueue::Rest&) {
-    ++(id < 10 ? bulk : small);
-    while (id < 10 && !stop.requested()) std::this_thread::yield();
-  });
-  queue.start();
-  for (int id = 1; id <= 5; ++id) queue.push_resumed({id, "a", 100});
-  EXPECT_TRUE(eventually([&] { return bulk == 1; }));
-  for (int id = 10; id < 30; ++id) queue.push_resumed({id, "b", 0.1});
-  EXPECT_TRUE(eventually([&] { return small == 20; }));
-  EXPECT_EQ(bulk, 1);
-  EXPECT_EQ(queue.occupancy().waiting, 4U);
-}
-
-TEST(JobQueue, ADefectiveJobDoesNotEndTheThread) {
-  std::atomic<int> done = 0;
-  JobQueue queue(1, {.jobs = 10}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
-    ++done;
-    if (id == 1) throw std::runtime_error("defect");
-  });
-  queue.start();
-  queue.push_resumed({1});
-  queue.push_resumed({2});
-  EXPECT_TRUE(eventually([&] { return done == 2; }));
-}
-
-TEST(JobQueue, StopSignalsRunningJobsAndStartsNoOthers) {
-  std::atomic<int> started = 0;
-  std::atomic<int> shut_down = 0;
-  {
-    JobQueue queue(2, {.jobs = 10}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest&) {
-      ++started;
-      while (!stop.requested()) std::this_thread::yield();
-      if (stop.reason() == StopReason::kShutdown) ++shut_down;
-    });
-    queue.start();
-    for (int id = 1; id <= 5; ++id) queue.push_resumed({id});
-    EXPECT_TRUE(eventually([&] { return started == 2; }));
-    queue.stop();
-    EXPECT_FALSE(queue.reserve({}).is_admitted);
-  }
-  EXPECT_EQ(started, 2);
-  EXPECT_EQ(shut_down, 2);
-}
-
-TEST(JobQueue, TheNextJobIsComputedWhileAResultIsWritten) {
-  std::atomic<int> computed = 0;
-  std::atomic<int> written = 0;
-  std::atomic<bool> release = false;
-  JobQueue queue(1, {}, [&](std::int64_t, const StopSignal&, JobQueue::Rest& rest) {
-    ++computed;
-    rest = [&] {
-      while (!release) std::this_thread::yield();
-      ++written;
-    };
-  });
-  queue.start();
-  queue.push_resumed({1});
-  EXPECT_TRUE(eventually([&] { return computed == 1; }));
-  for (int id = 2; id <= 5; ++id) queue.push_resumed({id});
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_LE(computed, 2) << "unwritten results do not heap up";
-  EXPECT_EQ(written, 0);
-  release = true;
-  EXPECT_TRUE(eventually([&] { return written == 5; }));
-}
-
-TEST(JobQueue, ComputedResultsAreWrittenBeforeAStopEnds) {
-  std::atomic<int> written = 0;
-  JobQueue queue(2, {}, [&](std::int64_t, const StopSignal& stop, JobQueue::Rest& rest) {
-    while (!stop.requested()) std::this_thread::yield();
-    rest = [&] { ++written; };
-  });
-  queue.start();
-  for (int id = 1; id <= 5; ++id) queue.push_resumed({id});
-  EXPECT_TRUE(eventually([&] { return queue.occupancy().running == 2; }));
-  queue.stop();
-  EXPECT_EQ(written, 2);
-  EXPECT_EQ(queue.occupancy().running, 0U);
-}
-
-TEST(JobQueue, AJobThatMayCrashTheServerRunsAlone) {
-  std::atomic<int> running = 0;
-  std::atomic<int> done = 0;
-  std::atomic<int> together = 0;
-  JobQueue queue(4, {.jobs = 100}, [&](std::int64_t id, const StopSignal&, JobQueue::Rest&) {
-    const int others = running++;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    if (id % 3 == 0 && (others != 0 || running != 1)) ++together;
-    --running;
-    ++done;
-  });
-  for (int id = 1; id <= 60; ++id) queue.push_resumed({id, "", 0, id % 3 == 0});
-  queue.start();
-  EXPECT_TRUE(eventually([&] { return done == 60; }));
-  EXPECT_EQ(together, 0);
 }
 
 TEST(ProgressChannel, NeverFallsWithinAnAttempt) {

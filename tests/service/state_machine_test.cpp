@@ -35,6 +35,8 @@ struct Expected {
   StoredState state = StoredState::kQueued;
   int attempt = 1;
   int lost_attempts = 0;
+  std::string worker = {};  ///< while it runs
+  Microseconds lease_end = 0;
   bool cache_hit = false;
   std::vector<StoredEvent> events;
 
@@ -75,7 +77,7 @@ class Schedule {
 
   void take_step() {
     ++now_;
-    const int kind = draw(8);
+    const int kind = draw(10);
     if (jobs_.empty() || kind <= 1) return submit();
     if (kind == 2) return die();
     auto job = jobs_.begin();
@@ -89,6 +91,10 @@ class Schedule {
         return end(job->first, job->second, StoredState::kFailed);
       case 6:
         return end(job->first, job->second, StoredState::kCancelled);
+      case 7:
+        return lose(job->first, job->second);
+      case 8:
+        return extend(job->first, job->second);
       default:
         return go_back(job->first, job->second);
     }
@@ -138,26 +144,57 @@ class Schedule {
 
   void start(std::int64_t id, Expected& job) {
     log_ += fmt::format("start {}\n", id);
-    const auto event = store_.mark_running(id, now_, key(job.hash));
+    const LeaseTerms lease{draw(2) == 0 ? LeaseTerms::kLocalWorker : "far", now_ + draw(8)};
+    const auto event = store_.mark_running(id, now_, key(job.hash), lease);
     EXPECT_EQ(event.has_value(), job.state == StoredState::kQueued) << log_;
     if (job.state != StoredState::kQueued) return;
     if (!job.is_forced && results_.contains(job.hash)) {
       serve(job);
     } else {
       job.go(StoredState::kRunning, now_);
+      job.worker = lease.worker;
+      job.lease_end = lease.expire_time;
     }
+  }
+
+  /// The present attempt, or the one before it.
+  int drawn_attempt(const Expected& job) { return job.attempt - (draw(4) == 0 ? 1 : 0); }
+
+  void lose(std::int64_t id, Expected& job) {
+    const int attempt = drawn_attempt(job);
+    log_ += fmt::format("lose {} {}\n", id, attempt);
+    const auto event = store_.mark_lost(id, attempt, now_, "LEASE_EXPIRED");
+    const bool may = job.state == StoredState::kRunning && attempt == job.attempt;
+    EXPECT_EQ(event.has_value(), may) << log_;
+    if (may) lose_attempt(job, "LEASE_EXPIRED");
+  }
+
+  void lose_attempt(Expected& job, const std::string& reason) const {
+    const bool for_good = ++job.lost_attempts == kMaximumLostAttempts;
+    job.go(for_good ? StoredState::kFailed : StoredState::kQueued, now_, reason);
+  }
+
+  void extend(std::int64_t id, Expected& job) {
+    const int attempt = drawn_attempt(job);
+    log_ += fmt::format("extend {} {}\n", id, attempt);
+    const bool may = job.state == StoredState::kRunning && attempt == job.attempt;
+    EXPECT_EQ(store_.extend_lease(id, attempt, now_ + 8), may) << log_;
+    if (may) job.lease_end = now_ + 8;
   }
 
   void succeed(std::int64_t id, Expected& job) {
     const bool other_bits = draw(8) == 0;
-    log_ += fmt::format("succeed {} {}\n", id, other_bits);
+    const int attempt = drawn_attempt(job);
+    log_ += fmt::format("succeed {} {} {}\n", id, attempt, other_bits);
     v1::SimulationResult result;
     result.set_input_hash(job.hash);
     if (other_bits) result.set_direction(v1::SWEEP_DIRECTION_DOWN);
     const std::string body = result.SerializeAsString();
-    const auto event = store_.mark_succeeded(id, now_, {key(job.hash), body, {{"a", {1, 2}}}});
-    EXPECT_EQ(event.has_value(), job.state == StoredState::kRunning) << log_;
-    if (job.state != StoredState::kRunning) return;
+    const auto event =
+        store_.mark_succeeded(id, now_, {key(job.hash), body, {{"a", {1, 2}}}}, attempt);
+    const bool may = job.state == StoredState::kRunning && attempt == job.attempt;
+    EXPECT_EQ(event.has_value(), may) << log_;
+    if (!may) return;
     const auto before = results_.find(job.hash);
     if (before != results_.end() && before->second != body) {
       return job.go(StoredState::kFailed, now_);
@@ -185,14 +222,15 @@ class Schedule {
     log_ += "die\n";
     std::vector<std::int64_t> waiting;
     for (auto& [id, job] : jobs_) {
-      if (job.state == StoredState::kRunning) {
-        const bool for_good = ++job.lost_attempts == kMaximumLostAttempts;
-        job.go(for_good ? StoredState::kFailed : StoredState::kQueued, now_, "SERVER_LOST");
-      }
-      if (job.state == StoredState::kQueued) waiting.push_back(id);
+      const bool is_lost = job.worker == LeaseTerms::kLocalWorker || job.lease_end <= now_;
+      if (job.state == StoredState::kRunning && is_lost) lose_attempt(job, "SERVER_LOST");
+      if (!has_ended(job.state)) waiting.push_back(id);
     }
     std::vector<std::int64_t> found;
-    for (const Waiting& each : store_.requeue_unfinished(now_)) found.push_back(each.id);
+    for (const Waiting& each : store_.requeue_unfinished(now_)) {
+      found.push_back(each.id);
+      EXPECT_EQ(each.lease.has_value(), jobs_.at(each.id).state == StoredState::kRunning) << log_;
+    }
     EXPECT_EQ(found, waiting) << log_;
   }
 

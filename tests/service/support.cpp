@@ -241,6 +241,7 @@ void Bench::open(StudyFunctions studies) {
   options.limits = limits_;
   options.studies = std::move(studies);
   options.heartbeat = heartbeat_;
+  options.wants_proof = false;  // most studies are made up
   jobs_ = std::make_unique<SimulationJobs>(*store_, options);
   jobs_->resume();
   jobs_->start();
