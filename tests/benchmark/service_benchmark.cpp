@@ -1,7 +1,7 @@
 // The server under load: what it adds to an empty gRPC method, a bare commit, an empty stream and
 // the core's own time. Figures that are compared are of one run on one machine. usage:
 // service_benchmark [RESULTS.json [PART...]]      default: build/benchmark/results.json, all parts:
-// requests, lists, histories, watchers, overload, refusals, overhead, estimates
+// requests, lists, histories, watchers, overload, refusals, interactive, overhead, estimates
 #include <SQLiteCpp/Database.h>
 #include <fmt/format.h>
 #include <grpcpp/generic/generic_stub.h>
@@ -587,6 +587,72 @@ v1::Simulation long_curve(int number) {
   return out;
 }
 
+/// A request of the client that fills the queue.
+v1::CreateSimulationRequest request_of(const v1::Simulation& simulation,
+                                       v1::SchedulingClass scheduling_class) {
+  v1::CreateSimulationRequest out;
+  *out.mutable_simulation() = simulation;
+  out.set_scheduling_class(scheduling_class);
+  return out;
+}
+
+constexpr char kOneClient[] = "one";
+
+/// Fills the queue with jobs of one client: points, curves of a thousand points, and marched curves
+/// that do not end on their own.
+void fill_queue(Stub& stub, int jobs) {
+  const Latencies filled =
+      closed_loop(32, jobs, [&](int number, const std::function<void(bool)>& done) {
+        const auto call = std::make_shared<Call<v1::CreateSimulationRequest, v1::Simulation>>();
+        v1::Simulation simulation = point_at(20 + 1e-3 * number);
+        if (number % 3 == 1) simulation = long_curve(number % 1000);
+        if (number % 100 == 2) simulation = endless();
+        call->request = request_of(simulation, v1::SCHEDULING_CLASS_UNSPECIFIED);
+        call->request.set_force(true);
+        call->context.AddMetadata("tribodyn-client", kOneClient);
+        stub.async()->CreateSimulation(
+            &call->context, &call->request, &call->response,
+            [call, done](const grpc::Status& status) { done(status.ok()); });
+      });
+  if (filled.failures > 0) throw std::runtime_error("the queue cannot be filled");
+}
+
+/// Times of points stated INTERACTIVE, from the request to the last event of their watch.
+Latencies interactive_points(Stub& stub, double first_speed) {
+  constexpr int kPoints = 300;
+  return closed_loop(1, kPoints, [&](int number, const std::function<void(bool)>& done) {
+    grpc::ClientContext context;
+    context.AddMetadata("tribodyn-client", kOneClient);
+    v1::Simulation created;
+    const grpc::Status status = stub.CreateSimulation(
+        &context,
+        request_of(point_at(first_speed + 1e-2 * number), v1::SCHEDULING_CLASS_INTERACTIVE),
+        &created);
+    done(status.ok() && wait_for(stub, created.name()) == v1::Simulation::SUCCEEDED);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // as people and pages do
+  });
+}
+
+/// How much longer a client waits for a point stated INTERACTIVE while jobs of its own fill three
+/// quarters of the queue than while nothing waits.
+void measure_interactive(std::vector<Measurement>& out) {
+  for (const char* threads : {"1", "2"}) {
+    const Server server({"--threads", threads});
+    const Latencies idle = interactive_points(server.stub(), 30);
+    fill_queue(server.stub(), 14'000);
+    const Latencies busy = interactive_points(server.stub(), 60);
+    const int waiting = count(server.stub(), "state = QUEUED", 1000);
+    const int lost = idle.failures + busy.failures + (waiting == 1000 ? 0 : 1);
+    const std::string name = fmt::format("interactive_with_{}_threads", threads);
+    out.push_back({name + "_p99_beyond_idle", 1e3 * (busy.percentile(0.99) - idle.percentile(0.99)),
+                   "ms", 50});
+    out.push_back({name + "_p99_on_an_idle_server", 1e3 * idle.percentile(0.99), "ms", {}});
+    out.push_back({name + "_p99_beside_a_full_queue", 1e3 * busy.percentile(0.99), "ms", {}});
+    out.push_back({name + "_median_beside_a_full_queue", 1e3 * busy.percentile(0.5), "ms", {}});
+    out.push_back({name + "_not_succeeded", static_cast<double>(lost), "-", 0});
+  }
+}
+
 void measure_overhead(std::vector<Measurement>& out) {
   const Server server({"--threads", "1"});
   std::vector<double> ratios, times;
@@ -683,10 +749,11 @@ int main(int argc, char** argv) {
   using namespace tribodyn::server;
   using Measure = void (*)(std::vector<tribodyn::Measurement>&);
   const std::vector<std::pair<std::string, Measure>> parts = {
-      {"requests", measure_requests},   {"lists", measure_lists},
-      {"histories", measure_histories}, {"watchers", measure_watchers},
-      {"overload", measure_overload},   {"refusals", measure_refusals},
-      {"overhead", measure_overhead},   {"estimates", measure_estimates}};
+      {"requests", measure_requests},       {"lists", measure_lists},
+      {"histories", measure_histories},     {"watchers", measure_watchers},
+      {"overload", measure_overload},       {"refusals", measure_refusals},
+      {"interactive", measure_interactive}, {"overhead", measure_overhead},
+      {"estimates", measure_estimates}};
   const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
   const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
   for (const auto& [name, measure] : parts) {

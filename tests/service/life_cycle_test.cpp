@@ -119,6 +119,18 @@ TEST_F(LifeCycle, ARequestWithTooManyElementsIsRefusedFirst) {
                   "simulation.labels: 100000 entries; allowed: at most 64"));
 }
 
+TEST_F(LifeCycle, AnUnknownSchedulingClassIsRefusedAndTheAllowedOnesNamed) {
+  Bench bench;
+  auto request = request_of(point_simulation());
+  request.set_scheduling_class(static_cast<v1::SchedulingClass>(3));
+  const google::rpc::Status status = create(bench, request).error();
+  EXPECT_EQ(status.code(), google::rpc::INVALID_ARGUMENT);
+  EXPECT_THAT(complaint_lines(status),
+              testing::ElementsAre("scheduling_class: scheduling_class = 3; allowed: "
+                                   "SCHEDULING_CLASS_UNSPECIFIED, SCHEDULING_CLASS_INTERACTIVE, "
+                                   "SCHEDULING_CLASS_BULK"));
+}
+
 TEST_F(LifeCycle, AnotherRequestWithTheSameIdIsRefusedAndTheDifferenceNamed) {
   Bench bench;
   const std::string name = bench.create(request_of(point_simulation(), "taken"));

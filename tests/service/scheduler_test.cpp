@@ -304,7 +304,8 @@ class SchedulerTest : public testing::Test {
   }
 
   std::int64_t submit(double speed = 65, bool force = false,
-                      std::optional<Microseconds> deadline = {}) {
+                      std::optional<Microseconds> deadline = {},
+                      const std::string& principal = {}) {
     v1::Simulation simulation = point_simulation();
     simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
     Violations violations;
@@ -313,6 +314,7 @@ class SchedulerTest : public testing::Test {
                             .key = result_key(*inputs),
                             .is_forced = force,
                             .deadline_time = deadline,
+                            .principal = principal,
                             .cost_seconds = 0.001,
                             .lubricant_revision = inputs->effective.lubricant_revision(),
                             .gear_set_revision = inputs->effective.gear_set_revision(),
@@ -408,6 +410,26 @@ TEST_F(SchedulerTest, AJobWhoseWorkerIsLostIsGivenToAnother) {
   finish(*next, result_of(*next));
   EXPECT_EQ(state(id), StoredState::kSucceeded);
   EXPECT_EQ(scheduler_->occupancy().running, 0U);
+}
+
+TEST_F(SchedulerTest, APrincipalWhoseJobOutranItsEstimateWaitsUntilOthersHadAsMuch) {
+  submit(10, false, {}, "hog");
+  const auto hog = scheduler_->claim("far");
+  ASSERT_TRUE(hog);
+  scheduler_->extend(*hog, 5);
+  internal::v1::ComputeResult result = result_of(*hog);
+  result.set_processor_seconds(5);
+  finish(*hog, result);
+  const std::int64_t next_of_hog = submit(11, false, {}, "hog");
+  std::vector<std::int64_t> others;
+  for (int i = 0; i < 3; ++i) others.push_back(submit(20 + i, false, {}, "other"));
+  for (const std::int64_t id : others) {
+    const auto lease = scheduler_->claim("far");
+    ASSERT_TRUE(lease);
+    EXPECT_EQ(lease->id, id);
+    finish(*lease, result_of(*lease));
+  }
+  EXPECT_EQ(scheduler_->claim("far")->id, next_of_hog);
 }
 
 TEST_F(SchedulerTest, AJobThatLosesItsWorkersAgainAndAgainFails) {
