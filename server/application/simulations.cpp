@@ -37,8 +37,8 @@ static_assert(static_cast<int>(StoredState::kSucceeded) == v1::Simulation::SUCCE
 static_assert(static_cast<int>(StoredState::kFailed) == v1::Simulation::FAILED);
 static_assert(static_cast<int>(StoredState::kCancelled) == v1::Simulation::CANCELLED);
 
-static_assert(static_cast<int>(StatedClass::kInteractive) == v1::SCHEDULING_CLASS_INTERACTIVE);
-static_assert(static_cast<int>(StatedClass::kBulk) == v1::SCHEDULING_CLASS_BULK);
+static_assert(static_cast<int>(RequestedClass::kInteractive) == v1::SCHEDULING_CLASS_INTERACTIVE);
+static_assert(static_cast<int>(RequestedClass::kBulk) == v1::SCHEDULING_CLASS_BULK);
 
 using google::protobuf::util::TimeUtil;
 
@@ -73,7 +73,7 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
           .deadline_time = deadline_time(inputs.requested, system_time()),
           .client = call.client,
           .principal = call.client,
-          .stated_class = request.scheduling_class(),
+          .scheduling_class = request.scheduling_class(),
           .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
           .labels = std::move(labels),
           .lubricant_revision = effective.lubricant_revision(),

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <optional>
 
 #include "server/simulation/result_key.h"
@@ -15,21 +14,14 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr auto kProgressInterval = std::chrono::milliseconds(250);
-/// How often the scheduler is told what a job has used. A call takes a microsecond.
+/// Least interval of Scheduler::extend. A call takes a microsecond.
 constexpr auto kExtendInterval = std::chrono::milliseconds(5);
-constexpr double kLeastFraction = 0.01;  // below it nothing can be said of the time that is left
-
-/// Of this thread.
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
+constexpr double kLeastFraction = 0.01;  // below it the estimate of the remaining time is too rough
 
 }  // namespace
 
-/// What a study calls at its points. At most one publication of progress per interval; the stage is
-/// part of the next one.
+/// Receives the progress of a study. It publishes progress at most once per interval; the next
+/// publication contains the latest stage.
 class Executor::Reporter {
  public:
   Reporter(Executor& executor, const Lease& lease, bool may_lend)
@@ -49,11 +41,11 @@ class Executor::Reporter {
     return !lease_.stop->requested();
   }
 
-  /// Processor time that other jobs took on this thread.
+  /// Returns the processor time of other jobs on this thread [s].
   double lent_seconds() const { return lent_seconds_; }
 
  private:
-  /// Runs one urgent job, if the scheduler gives one.
+  /// Claims one urgent job and runs it.
   void lend() {
     const double begin = processor_seconds();
     executor_.scheduler_.extend(lease_, begin - begin_seconds_ - lent_seconds_);
@@ -120,7 +112,7 @@ double Executor::run(Lease lease, bool may_lend) {
   const StopWatch watch;
   Computed computed;
   computed.result = compute(lease.task, studies_, gear_sets_, std::ref(reporter));
-  // Attempts that end otherwise than with a result are not timed.
+  // The histogram contains only attempts that end with a result.
   if (computed.result.has_result()) {
     metrics_.observe(model == v1::POINT_MODEL_QUASI_STATIC ? Phase::kFriction : Phase::kOrbit,
                      watch.seconds());
@@ -142,7 +134,7 @@ void Executor::compute_all() {
     try {
       if (auto lease = scheduler_.claim(LeaseTerms::kLocalWorker)) run(std::move(*lease), true);
     } catch (const std::exception& defect) {
-      spdlog::critical("a thread that computes threw: {}; this is a defect", defect.what());
+      spdlog::critical("defect: a computing thread caught an exception: {}", defect.what());
     }
   }
 }
@@ -158,7 +150,7 @@ void Executor::complete_all() {
     try {
       scheduler_.complete(next.lease, std::move(next.result));
     } catch (const std::exception& defect) {
-      spdlog::critical("simulations/{}: its end threw: {}; this is a defect", next.lease.id,
+      spdlog::critical("defect: simulations/{}: completing its lease threw: {}", next.lease.id,
                        defect.what());
     }
   }

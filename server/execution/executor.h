@@ -13,11 +13,11 @@
 
 namespace tribodyn::server {
 
-/// Threads of this process that take leases and compute them. It reads no row of the store: a lease
-/// brings all that its task needs. What was computed is handed to as many other threads, which
-/// complete the leases, so that those that compute go on to the next job at once. At the points
-/// where a study reports its progress, its thread runs urgent jobs of the scheduler
-/// (Scheduler::claim_beside) and then goes on. `start` and `join` from one thread.
+/// Threads of this process that claim leases and compute them. The executor reads no row of the
+/// store, because a lease contains all that its task needs. As many other threads complete the
+/// leases, so that the computing ones begin the next job at once. Where a study reports its
+/// progress, its thread may run one urgent job (Scheduler::claim_beside) before it continues.
+/// `start` and `join` from one thread.
 class Executor {
  public:
   /// Scheduler and metrics must outlive the object.
@@ -26,11 +26,11 @@ class Executor {
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
-  /// Proves the golden case, enrolls and starts the threads. Returns what is wrong with the proof;
-  /// then nothing is started.
+  /// Computes the golden case, enrolls and starts the threads. If the result is wrong, starts
+  /// nothing and returns a sentence that says what is wrong.
   std::string start();
-  /// Waits until the threads have ended, after Scheduler::stop. What was computed is completed
-  /// before.
+  /// Waits until the threads have ended and have completed what they computed. Requires
+  /// Scheduler::stop() before.
   void join();
 
  private:
@@ -42,7 +42,8 @@ class Executor {
 
   void compute_all();
   void complete_all();
-  /// Returns the processor time used [s]. `may_lend`: other jobs may run at its points.
+  /// Computes a lease. Returns the processor time used [s]. `may_lend`: urgent jobs may run where
+  /// the study reports its progress.
   double run(Lease lease, bool may_lend);
 
   Scheduler& scheduler_;

@@ -7,7 +7,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Heartbeats are late by a quarter of their interval at most, and by a second.
+/// Returns the interval of the checks for heartbeats: these are late by at most a quarter of their
+/// interval, and by at most a second.
 milliseconds tick(milliseconds heartbeat) {
   return std::clamp(heartbeat / 4, milliseconds(1), milliseconds(1000));
 }
@@ -48,7 +49,7 @@ std::optional<Progress> SimulationJobs::progress(std::int64_t id) const {
 std::optional<SimulationJobs::Watched> SimulationJobs::watch(std::int64_t id,
                                                              const CallLimits& limits) {
   if (!store_.simulation(id, limits)) return std::nullopt;
-  // The channel first, the state after: what the state does not show yet will be heard.
+  // The channel is opened before the state is read, so that no change is missed.
   std::shared_ptr<ProgressChannel> channel = board_.open(id);
   std::optional<StoredSimulation> stored = store_.simulation(id, limits);
   if (!stored) return std::nullopt;

@@ -16,16 +16,16 @@
 
 namespace tribodyn::server {
 
-/// The life of simulations, as the application sees it: the scheduler, the executor of this
-/// process, and what both need. Safe for concurrent access without external synchronization;
-/// `resume`, `start`, `drain` and `stop` from one thread.
+/// The application's interface to simulations: owns the scheduler, the executor of this process and
+/// what both need. Safe for concurrent access without external synchronization; `resume`, `start`,
+/// `drain` and `stop` from one thread.
 ///
-/// What a simulation reads and writes between its request and its result: a request that makes
-/// inputs reads its four resources, and its request_id if it has one. One commit writes the row
-/// (admit), and the answer is read in the same transaction. The inputs stay in memory, so that the
-/// start reads nothing: one commit makes it RUNNING, so that a crash knows which attempts it
-/// interrupted, and looks for a result of equal inputs. One commit writes the result with
-/// SUCCEEDED. Commits at the same time share one write to disk (GroupCommit).
+/// Reads and commits between a request and its result: the use case reads the four resources, and
+/// the request_id if there is one. The first commit writes the row (admit) and reads the answer in
+/// the same transaction. The scheduler keeps the inputs, so the start of the job reads nothing; the
+/// second commit looks for a result of equal inputs and marks the job RUNNING, so that a start
+/// after a crash knows which attempts were interrupted. The third commit writes the result and
+/// SUCCEEDED. Concurrent commits share one write to disk (GroupCommit).
 class SimulationJobs {
  public:
   struct Options {
@@ -34,9 +34,9 @@ class SimulationJobs {
     Retention retention = {};
     Clock clock = system_time;
     StudyFunctions studies;
-    /// A watch that has been silent for so long sends a sign of life.
+    /// Interval of the heartbeats of a silent watch.
     std::chrono::milliseconds heartbeat = std::chrono::seconds(15);
-    /// The executor proves the golden case before its first lease; with made-up studies it cannot.
+    /// The executor must compute the golden case. Tests with invented studies set false.
     bool wants_proof = true;
   };
 
@@ -46,10 +46,10 @@ class SimulationJobs {
   SimulationJobs(const SimulationJobs&) = delete;
   SimulationJobs& operator=(const SimulationJobs&) = delete;
 
-  /// Queues again what a crash or a stop left unfinished; how many. Before anything is submitted.
+  /// As Scheduler::resume.
   std::size_t resume() { return scheduler_.resume(); }
-  /// Until then simulations are accepted but wait. Returns what is wrong if this machine does not
-  /// compute the golden case as it should; then nothing is computed.
+  /// Starts the executor; before it, simulations are accepted and wait. If this machine computes a
+  /// wrong golden case, starts nothing and returns a sentence that says what is wrong.
   std::string start();
 
   using Submitted = Scheduler::Admitted;
@@ -66,33 +66,33 @@ class SimulationJobs {
     return scheduler_.cancel(id, limits);
   }
 
-  /// Latest progress of a simulation that runs.
+  /// Returns the latest progress of a running simulation; nullopt if it does not run.
   std::optional<Progress> progress(std::int64_t id) const;
 
-  /// The channel of a simulation and how things stood when the channel was open already: whatever
-  /// happens after that is heard on it.
+  /// The channel of a simulation, and its row as read after the channel was opened: the channel
+  /// reports every later change.
   struct Watched {
     std::shared_ptr<ProgressChannel> channel;
     StoredSimulation simulation;
   };
-  /// Nothing when there is no such simulation.
+  /// Returns nullopt if there is no such simulation.
   std::optional<Watched> watch(std::int64_t id, const CallLimits& limits = {});
-  /// Wakes the observer often enough for heartbeats.
+  /// Notifies the observer at least four times per heartbeat interval.
   void wake(const std::weak_ptr<ProgressObserver>& observer) { scheduler_.wake(observer); }
   const Retention& retention() const { return retention_; }
   Metrics& metrics() { return metrics_; }
   Occupancy occupancy() const { return scheduler_.occupancy(); }
-  /// Deadlines of simulations that have not ended.
+  /// Returns the number of deadlines of simulations that have not ended.
   std::size_t deadlines() const { return scheduler_.deadlines(); }
   std::chrono::milliseconds heartbeat() const { return heartbeat_; }
 
-  /// True once nothing more is accepted.
+  /// As Scheduler::is_stopping.
   bool is_stopping() const { return scheduler_.is_stopping(); }
   /// As Scheduler::drain.
   bool drain(std::chrono::milliseconds limit, const std::function<bool()>& give_up) {
     return scheduler_.drain(limit, give_up);
   }
-  /// Running simulations stop and go back to QUEUED in the store.
+  /// Stops the running simulations, which become QUEUED in the store, and ends all threads.
   void stop();
 
  private:

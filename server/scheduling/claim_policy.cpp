@@ -5,17 +5,20 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr double kShareOfOne = 0.75;      // of the limits, for one principal
-constexpr double kWorthAsking = 0.1;      // of what waits is done by then
-constexpr double kServiceSeconds = 2e-3;  // of a processor, for what is done around a small job
-constexpr double kOutrunFactor = 4;       // estimates are right within a factor of three
+constexpr double kShareOfOne = 0.75;  // share of each limit that one principal may use
+constexpr double kWorthAsking = 0.1;  // share of the waiting work that is done before a retry
+/// Processor time around a small job: its call, its commits and its answer [s].
+constexpr double kServiceSeconds = 2e-3;
+/// Time used over estimate. service_benchmark finds estimates right within a factor of three.
+constexpr double kOutrunFactor = 4;
 constexpr double kLeastAllowedSeconds = 0.1;
-constexpr double kStatedCreditSeconds = 1;  // that a job lends before it has used as much itself
+/// Processor time that a job lends to interactive jobs before it has used as much itself [s].
+constexpr double kInteractiveCreditSeconds = 1;
 
 }  // namespace
 
 double ClaimPolicy::allowed_seconds(const QueuedJob& job) {
-  return std::clamp(kOutrunFactor * job.cost_seconds, kLeastAllowedSeconds, kInteractiveSeconds);
+  return std::clamp(kOutrunFactor * job.cost_seconds, kLeastAllowedSeconds, kSmallJobSeconds);
 }
 
 Admission ClaimPolicy::reserve(const QueuedJob& job, Turns::Time now) {
@@ -24,7 +27,7 @@ Admission ClaimPolicy::reserve(const QueuedJob& job, Turns::Time now) {
   const double own_seconds = queue_.cost_seconds_of(job.principal) + own.cost_seconds;
   const std::size_t all_jobs = queue_.size() + parked_.size() + reserved_.jobs;
   const std::size_t own_jobs = queue_.size_of(job.principal) + own.jobs;
-  // Whoever has nothing waiting gets in however large the job is, as long as there is room at all.
+  // A principal without waiting jobs may add a job of any size while there is room.
   const bool has_room =
       all_jobs < limits_.jobs && all_seconds < limits_.cost_seconds &&
       (own_jobs == 0 ||
@@ -69,12 +72,13 @@ void ClaimPolicy::add_running(const QueuedJob& job) {
   running.is_computing = false;  // on no thread of these
 }
 
-/// The last lane that may begin: where all threads but one compute bulk jobs, these wait.
-Lane ClaimPolicy::last_lane() const {
-  return threads_ > 1 && computing_bulk_ >= threads_ - 1 ? Lane::kSmall : Lane::kBulk;
+/// Returns the least urgency of a job that may begin: none of kBulk if all threads but one compute
+/// bulk jobs.
+Urgency ClaimPolicy::least_urgency() const {
+  return threads_ > 1 && computing_bulk_ >= threads_ - 1 ? Urgency::kSmall : Urgency::kBulk;
 }
 
-/// Whether the job may run beside those that run. Unwritten results do not heap up.
+/// Returns true if the job may run beside the running ones and its history beside theirs.
 bool ClaimPolicy::fits(const QueuedJob& job) const {
   if (one_runs_alone_ || (job.alone && !running_.empty())) return false;
   return unwritten_bytes_ == 0 || unwritten_bytes_ + job.result_bytes <= limits_.unwritten_bytes;
@@ -82,19 +86,19 @@ bool ClaimPolicy::fits(const QueuedJob& job) const {
 
 bool ClaimPolicy::may_begin() const {
   if (running_.size() >= 2 * static_cast<std::size_t>(std::max(1, threads_))) return false;
-  const QueuedJob* next = queue_.peek(last_lane());
+  const QueuedJob* next = queue_.peek(least_urgency());
   return next != nullptr && fits(*next);
 }
 
 std::optional<QueuedJob> ClaimPolicy::begin() {
   if (!may_begin()) return std::nullopt;
-  return start(*queue_.pop(last_lane()), 0);
+  return start(*queue_.pop(least_urgency()), 0);
 }
 
 bool ClaimPolicy::is_urgent() const {
   if (computing_ < threads_) return false;
-  return queue_.peek(Lane::kStated) != nullptr ||
-         (computing_bulk_ >= threads_ && queue_.peek(Lane::kSmall) != nullptr);
+  return queue_.peek(Urgency::kInteractive) != nullptr ||
+         (computing_bulk_ >= threads_ && queue_.peek(Urgency::kSmall) != nullptr);
 }
 
 std::optional<QueuedJob> ClaimPolicy::begin_beside(std::int64_t lender) {
@@ -102,17 +106,17 @@ std::optional<QueuedJob> ClaimPolicy::begin_beside(std::int64_t lender) {
   if (found == running_.end() || !is_urgent()) return std::nullopt;
   Running& running = found->second;
   if (!running.is_computing || running.is_lending || running.lender != 0) return std::nullopt;
-  const auto may_lend = [&](Lane last) {
-    const QueuedJob* next = queue_.peek(last);
-    const double credit = last == Lane::kStated ? kStatedCreditSeconds : 0;
-    return next != nullptr && running.lane > last && fits(*next) &&
+  const auto may_lend = [&](Urgency least) {
+    const QueuedJob* next = queue_.peek(least);
+    const double credit = least == Urgency::kInteractive ? kInteractiveCreditSeconds : 0;
+    return next != nullptr && running.urgency > least && fits(*next) &&
            running.lent_seconds <= running.used_seconds + credit;
   };
-  for (const Lane last : {Lane::kStated, Lane::kSmall}) {
-    if (last == Lane::kSmall && computing_bulk_ < threads_) continue;
-    if (!may_lend(last)) continue;
+  for (const Urgency least : {Urgency::kInteractive, Urgency::kSmall}) {
+    if (least == Urgency::kSmall && computing_bulk_ < threads_) continue;
+    if (!may_lend(least)) continue;
     running.is_lending = true;
-    return start(*queue_.pop(last), lender);
+    return start(*queue_.pop(least), lender);
   }
   return std::nullopt;
 }
@@ -120,7 +124,7 @@ std::optional<QueuedJob> ClaimPolicy::begin_beside(std::int64_t lender) {
 std::optional<QueuedJob> ClaimPolicy::start(QueuedJob job, std::int64_t lender) {
   Running& running = running_[job.id];
   running.job = job;
-  running.lane = job.lane();
+  running.urgency = job.urgency();
   running.charged_seconds = job.cost_seconds;  // by the queue
   running.lender = lender;
   running.result_bytes = job.result_bytes;
@@ -128,7 +132,7 @@ std::optional<QueuedJob> ClaimPolicy::start(QueuedJob job, std::int64_t lender) 
   one_runs_alone_ = job.alone;
   if (lender == 0) {
     ++computing_;
-    if (running.lane == Lane::kBulk) ++computing_bulk_;
+    if (running.urgency == Urgency::kBulk) ++computing_bulk_;
   }
   return job;
 }
@@ -150,7 +154,7 @@ bool ClaimPolicy::hold(std::int64_t id, const std::string& key, bool may_wait) {
   }
   if (!may_wait) return true;
   const QueuedJob job = found->second.job;
-  charge(found->second, 0);  // its principal gets back what the queue charged
+  charge(found->second, 0);  // refunds what the queue charged to its principal
   let_go(found->second);
   running_.erase(found);
   holder->second.push_back(job);
@@ -158,7 +162,7 @@ bool ClaimPolicy::hold(std::int64_t id, const std::string& key, bool may_wait) {
   return false;
 }
 
-/// Charges what was used beyond what was charged; less than that is given back at the end only.
+/// Charges the difference to what was charged before, which may be a refund.
 void ClaimPolicy::charge(Running& running, double used_seconds) {
   queue_.charge(running.job.principal, used_seconds - running.charged_seconds);
   running.charged_seconds = used_seconds;
@@ -170,24 +174,24 @@ ClaimPolicy::Verdict ClaimPolicy::use(std::int64_t id, double used_seconds) {
   Running& running = found->second;
   running.used_seconds = used_seconds;
   if (used_seconds > running.charged_seconds) charge(running, used_seconds);
-  if (running.lane == Lane::kBulk) {
+  if (running.urgency == Urgency::kBulk) {
     return running.lender == 0 ? Verdict::kGoOn : Verdict::kGiveBack;
   }
   if (used_seconds <= allowed_seconds(running.job)) return Verdict::kGoOn;
-  running.lane = Lane::kBulk;
-  running.job.stated = StatedClass::kBulk;
+  running.urgency = Urgency::kBulk;
+  running.job.requested = RequestedClass::kBulk;
   if (running.lender != 0) return Verdict::kGiveBack;
   if (running.is_computing) ++computing_bulk_;
   return Verdict::kReclassed;
 }
 
-/// Takes the job off its thread, or off the one that was lent to it.
+/// Frees the thread of the job, or returns it to the lender.
 void ClaimPolicy::leave_thread(Running& running) {
   if (!running.is_computing) return;
   running.is_computing = false;
   if (running.lender == 0) {
     --computing_;
-    if (running.lane == Lane::kBulk) --computing_bulk_;
+    if (running.urgency == Urgency::kBulk) --computing_bulk_;
     return;
   }
   const auto lender = running_.find(running.lender);
@@ -204,7 +208,7 @@ void ClaimPolicy::computed(std::int64_t id, double used_seconds) {
   leave_thread(found->second);
 }
 
-/// Everything that the job takes beside its entry in running_.
+/// Frees all that the job holds except its entry in running_.
 void ClaimPolicy::let_go(Running& running) {
   leave_thread(running);
   unwritten_bytes_ -= running.result_bytes;

@@ -5,7 +5,7 @@
 namespace tribodyn::server {
 namespace {
 
-std::size_t index_of(Lane lane) { return static_cast<std::size_t>(lane); }
+std::size_t index_of(Urgency urgency) { return static_cast<std::size_t>(urgency); }
 
 }  // namespace
 
@@ -15,32 +15,32 @@ void FairQueue::push(const QueuedJob& job) {
   if (is_new) principal.served_seconds = take_debt(job.principal);
   principal.served_seconds = std::max(principal.served_seconds, now_);
   const Place place{principal.served_seconds + job.cost_seconds, ++arrivals_};
-  principal.lanes[index_of(job.lane())].emplace(place, job);
+  principal.jobs_by_urgency[index_of(job.urgency())].emplace(place, job);
   principal.cost_seconds += job.cost_seconds;
   cost_seconds_ += job.cost_seconds;
-  places_[job.id] = {job.principal, place, job.lane()};
+  places_[job.id] = {job.principal, place, job.urgency()};
   set_turns(found);
 }
 
-const FairQueue::Jobs::value_type* FairQueue::first_of(const Principal& principal, Lane last) {
-  const auto first = [&](Lane lane) {
-    const Jobs& jobs = principal.lanes[index_of(lane)];
+const FairQueue::Jobs::value_type* FairQueue::first_of(const Principal& principal, Urgency least) {
+  const auto first = [&](Urgency urgency) {
+    const Jobs& jobs = principal.jobs_by_urgency[index_of(urgency)];
     return jobs.empty() ? nullptr : &*jobs.begin();
   };
-  const auto* stated = first(Lane::kStated);
-  if (stated != nullptr || last == Lane::kStated) return stated;
-  const auto* small = first(Lane::kSmall);
-  const auto* large = last == Lane::kBulk ? first(Lane::kBulk) : nullptr;
+  const auto* interactive = first(Urgency::kInteractive);
+  if (interactive != nullptr || least == Urgency::kInteractive) return interactive;
+  const auto* small = first(Urgency::kSmall);
+  const auto* large = least == Urgency::kBulk ? first(Urgency::kBulk) : nullptr;
   if (small == nullptr || large == nullptr) return small == nullptr ? large : small;
   return small->first < large->first ? small : large;
 }
 
-/// Brings the entries of a principal in turns_ up to date.
+/// Updates the entries of a principal in turns_.
 void FairQueue::set_turns(Principals::iterator principal) {
-  for (const Lane last : {Lane::kStated, Lane::kSmall, Lane::kBulk}) {
-    std::set<Turn>& turns = turns_[index_of(last)];
-    std::optional<Turn>& entry = principal->second.turns[index_of(last)];
-    const auto* first = first_of(principal->second, last);
+  for (const Urgency least : {Urgency::kInteractive, Urgency::kSmall, Urgency::kBulk}) {
+    std::set<Turn>& turns = turns_[index_of(least)];
+    std::optional<Turn>& entry = principal->second.turns[index_of(least)];
+    const auto* first = first_of(principal->second, least);
     std::optional<Turn> turn;
     if (first != nullptr) {
       turn = {principal->second.served_seconds, first->first.second, principal->first};
@@ -52,20 +52,20 @@ void FairQueue::set_turns(Principals::iterator principal) {
   }
 }
 
-const QueuedJob* FairQueue::peek(Lane last) const {
-  const std::set<Turn>& turns = turns_[index_of(last)];
+const QueuedJob* FairQueue::peek(Urgency least) const {
+  const std::set<Turn>& turns = turns_[index_of(least)];
   if (turns.empty()) return nullptr;
-  return &first_of(principals_.at(std::get<std::string>(*turns.begin())), last)->second;
+  return &first_of(principals_.at(std::get<std::string>(*turns.begin())), least)->second;
 }
 
-std::optional<QueuedJob> FairQueue::pop(Lane last) {
-  const std::set<Turn>& turns = turns_[index_of(last)];
+std::optional<QueuedJob> FairQueue::pop(Urgency least) {
+  const std::set<Turn>& turns = turns_[index_of(least)];
   if (turns.empty()) return std::nullopt;
   const auto principal = principals_.find(std::get<std::string>(*turns.begin()));
-  const auto [place, job] = *first_of(principal->second, last);
+  const auto [place, job] = *first_of(principal->second, least);
   now_ = std::max(now_, principal->second.served_seconds);
   principal->second.served_seconds += job.cost_seconds;
-  remove(principal, place, job.lane());
+  remove(principal, place, job.urgency());
   forgive();
   return job;
 }
@@ -73,13 +73,13 @@ std::optional<QueuedJob> FairQueue::pop(Lane last) {
 bool FairQueue::erase(std::int64_t id) {
   const auto found = places_.find(id);
   if (found == places_.end()) return false;
-  const auto [principal, place, lane] = found->second;
-  remove(principals_.find(principal), place, lane);
+  const auto [principal, place, urgency] = found->second;
+  remove(principals_.find(principal), place, urgency);
   return true;
 }
 
-void FairQueue::remove(Principals::iterator principal, const Place& place, Lane lane) {
-  Jobs& jobs = principal->second.lanes[index_of(lane)];
+void FairQueue::remove(Principals::iterator principal, const Place& place, Urgency urgency) {
+  Jobs& jobs = principal->second.jobs_by_urgency[index_of(urgency)];
   const auto job = jobs.find(place);
   cost_seconds_ -= job->second.cost_seconds;
   principal->second.cost_seconds -= job->second.cost_seconds;
@@ -90,7 +90,7 @@ void FairQueue::remove(Principals::iterator principal, const Place& place, Lane 
     remember(principal->first, principal->second.served_seconds);
     principals_.erase(principal);
   }
-  if (places_.empty()) cost_seconds_ = 0;  // no rounding stays behind
+  if (places_.empty()) cost_seconds_ = 0;  // removes the rounding errors
 }
 
 void FairQueue::charge(const std::string& principal, double seconds) {
@@ -113,7 +113,8 @@ void FairQueue::remember(const std::string& principal, double served_seconds) {
   debts_by_size_.erase(debts_by_size_.begin());
 }
 
-/// What a principal without jobs has been served; forgotten here. Returns 0 if it owes nothing.
+/// Removes and returns the service that a principal without jobs has received. Returns 0 if the
+/// principal owes nothing.
 double FairQueue::take_debt(const std::string& principal) {
   const auto found = debts_.find(principal);
   if (found == debts_.end()) return 0;
@@ -123,7 +124,7 @@ double FairQueue::take_debt(const std::string& principal) {
   return served_seconds;
 }
 
-/// Forgets those whom the others have caught up with.
+/// Forgets the principals whose debt is paid: the others have received as much service.
 void FairQueue::forgive() {
   while (!debts_by_size_.empty() && debts_by_size_.begin()->first <= now_) {
     debts_.erase(debts_by_size_.begin()->second);

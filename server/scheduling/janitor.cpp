@@ -47,7 +47,7 @@ int Janitor::remove_expired() {
 
 int Janitor::remove_beyond_budget() {
   const std::int64_t budget = retention_.disk_budget_bytes;
-  // The size of the database costs less to find, and bounds what can be removed.
+  // The size of the database is an upper bound that is quick to find.
   if (budget == 0 || store_.used_bytes() <= budget) return 0;
   int count = 0;
   std::int64_t left = store_.removable_bytes();

@@ -12,17 +12,18 @@
 
 namespace tribodyn::server {
 
-/// How long simulations stay once they have ended. Pinned ones stay for good.
+/// How long ended simulations are kept. Pinned ones are kept until they are unpinned.
 struct Retention {
-  std::optional<Microseconds> keep = {};  ///< none: for good
-  /// Of simulations and results that may be removed; beyond it the oldest go. 0: no budget.
-  /// Revisions and pinned results do not count: no removal could make room for them.
+  std::optional<Microseconds> keep = {};  ///< empty: for ever
+  /// Largest size of the simulations and results that may be removed; beyond it the janitor removes
+  /// the oldest. 0: no limit. Revisions and pinned results do not count, because the janitor cannot
+  /// remove them.
   std::int64_t disk_budget_bytes = 0;
 };
 
-/// A thread that removes the simulations that have expired and, beyond the disk budget, those that
-/// ended first, a few in a transaction so that other writers wait briefly. A simulation stays for a
-/// minute after its end, so that a client that waits for it can read its result. Safe for
+/// A thread that removes expired simulations and, beyond the disk budget, those that ended first.
+/// It removes a few in each transaction, so that other writers wait briefly. It keeps each
+/// simulation for a minute after its end, so that a client that waits can read the result. Safe for
 /// concurrent access; `start` and `stop` from one thread.
 class Janitor {
  public:
@@ -34,12 +35,12 @@ class Janitor {
 
   void start();
   void stop();
-  /// One round, as the thread makes it every few seconds.
+  /// Removes what should be removed now. The thread calls it every few seconds.
   void clean();
 
  private:
   void run();
-  /// How many simulations went.
+  // These functions return the number of simulations that they removed.
   int remove_expired();
   int remove_beyond_budget();
   bool is_stopping();

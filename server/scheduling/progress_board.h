@@ -10,39 +10,39 @@
 
 namespace tribodyn::server {
 
-/// How far a simulation that runs is.
+/// Progress of a running simulation.
 struct Progress {
   double fraction = 0;                      ///< [0, 1]
   std::string stage;                        ///< e.g. "settling at 65 km/h"
-  std::optional<double> remaining_seconds;  ///< a guess
+  std::optional<double> remaining_seconds;  ///< estimate
 };
 
-/// Told that something changed; looks for itself what. Called on any thread, with no lock held;
-/// must be quick and must not throw.
+/// Receives a call after each change, and must look up what changed. The call may come on any
+/// thread, with no lock held; it must be quick and must not throw.
 class ProgressObserver {
  public:
   virtual ~ProgressObserver() = default;
   virtual void changed() = 0;
 };
 
-/// The news of one simulation: the number of its latest event, which the store has, and the latest
-/// progress, which nothing keeps. Whoever is late sees the latest only, so nothing piles up. Safe
-/// for concurrent access without external synchronization.
+/// The latest event number and progress of one simulation. The store keeps events; nothing keeps
+/// progress. A slow observer sees only the latest values, so that no queue grows. Safe for
+/// concurrent access without external synchronization.
 class ProgressChannel {
  public:
-  /// A change of state: of this number, or of a later one already.
+  /// Publishes a change of state. Ignores a number that is not larger than the latest.
   void publish_event(std::int64_t sequence);
-  /// Progress since the latest event; the fraction never falls.
+  /// Publishes progress since the latest event. The fraction never falls.
   void publish_progress(Progress progress);
 
   struct Latest {
-    std::int64_t sequence = 0;          ///< of the latest event; 0 when none came yet
+    std::int64_t sequence = 0;          ///< of the latest event; 0: none was published
     std::uint64_t progress_number = 0;  ///< grows with each publication of progress
     Progress progress;                  ///< since that event
   };
   Latest latest() const;
 
-  /// The observer is told of later publications for as long as it lives.
+  /// Notifies the observer of later publications until it is destroyed.
   void observe(const std::weak_ptr<ProgressObserver>& observer);
 
  private:
@@ -53,15 +53,15 @@ class ProgressChannel {
   std::vector<std::weak_ptr<ProgressObserver>> observers_;  // guarded by mutex_
 };
 
-/// The channels of all simulations that have not ended.
-/// Safe for concurrent access without external synchronization.
+/// The channels of all simulations that have not ended. Safe for concurrent access without external
+/// synchronization.
 class ProgressBoard {
  public:
-  /// The channel of a simulation, made when there is none.
+  /// Returns the channel of a simulation, and creates it if there is none.
   std::shared_ptr<ProgressChannel> open(std::int64_t id);
-  /// The same, or null.
+  /// Returns the channel of a simulation; null if there is none.
   std::shared_ptr<ProgressChannel> find(std::int64_t id) const;
-  /// Publishes the last event and drops the channel; who holds it still hears of it.
+  /// Publishes the last event and removes the channel. Observers of the channel are notified.
   void finish(std::int64_t id, std::int64_t sequence);
 
  private:

@@ -20,8 +20,8 @@ constexpr auto kLookAround = milliseconds(20);
 constexpr auto kFirstPause = milliseconds(100);
 constexpr auto kLongestPause = milliseconds(30'000);
 constexpr Microseconds kLookAgain = 1'000'000;
-/// Inputs that are kept for waiting simulations [bytes]: some 8,000 points. Those of others are
-/// read from the store when they begin.
+/// Size of the inputs that are kept for waiting simulations [bytes]: some 8,000 points. claim()
+/// reads the inputs of other simulations from the store.
 constexpr std::size_t kMostKnownBytes = 16 << 20;
 
 Submission submission_of(Added::Kind kind) {
@@ -40,7 +40,7 @@ Submission submission_of(Added::Kind kind) {
   return Submission::kTurnedAway;
 }
 
-/// What the log tells of a simulation that was computed.
+/// Durations in the log line of a computed simulation.
 struct Timings {
   double waited_seconds = 0;
   double computed_seconds = 0;
@@ -81,7 +81,7 @@ Scheduler::Scheduler(Store& store, ProgressBoard& board, Metrics& metrics, Optio
 
 Scheduler::~Scheduler() { stop(); }
 
-/// With the lock held: wakes a thread if a job may begin.
+/// Wakes a thread if a job may begin. Requires the lock.
 void Scheduler::note_change() {
   is_urgent_.store(policy_.is_urgent(), std::memory_order_relaxed);
   if (policy_.may_begin()) changed_.notify_one();
@@ -94,7 +94,7 @@ std::size_t Scheduler::resume() {
     if (each.deadline_time) timekeeper_.set_deadline(each.id, *each.deadline_time);
     const bool last_chance = each.lost_attempts + 1 >= kMaximumLostAttempts;
     const QueuedJob job{each.id, each.principal, each.cost_seconds, last_chance,
-                        static_cast<StatedClass>(each.stated_class)};
+                        static_cast<RequestedClass>(each.scheduling_class)};
     const std::lock_guard lock(mutex_);
     if (!each.lease) {
       policy_.add(job);
@@ -114,14 +114,14 @@ std::size_t Scheduler::resume() {
   return queued;
 }
 
-/// With the lock held.
+/// Keeps the inputs if there is room. Requires the lock.
 void Scheduler::keep(std::int64_t id, Known known) {
   if (known_bytes_ + known.bytes > kMostKnownBytes) return;
   known_bytes_ += known.bytes;
   known_[id] = std::move(known);
 }
 
-/// With the lock held.
+/// Removes and returns the kept inputs. Requires the lock.
 Scheduler::Known Scheduler::take(std::int64_t id) {
   const auto found = known_.find(id);
   if (found == known_.end()) return {};
@@ -135,7 +135,7 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
                                      std::shared_ptr<const SimulationInputs> inputs,
                                      const CallLimits& limits) {
   QueuedJob job{0, simulation.principal, simulation.cost_seconds, false,
-                static_cast<StatedClass>(simulation.stated_class)};
+                static_cast<RequestedClass>(simulation.scheduling_class)};
   if (inputs) job.result_bytes = history_bytes(inputs->effective);
   Admission admission;
   {
@@ -181,7 +181,7 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
 
 void Scheduler::ensure_queued(const StoredSimulation& simulation) {
   const QueuedJob job{simulation.id, simulation.principal, simulation.cost_seconds, false,
-                      static_cast<StatedClass>(simulation.stated_class)};
+                      static_cast<RequestedClass>(simulation.scheduling_class)};
   const std::lock_guard lock(mutex_);
   if (stopping_ || !policy_.add(job)) return;
   if (simulation.deadline_time) {
@@ -197,7 +197,7 @@ std::optional<StoredEvent> Scheduler::cancel(std::int64_t id, const CallLimits& 
   return event;
 }
 
-/// A deadline has come.
+/// Marks a simulation FAILED whose deadline has passed.
 void Scheduler::expire(std::int64_t id) {
   try {
     const auto event = store_.mark_failed(id, options_.clock(), "DEADLINE_EXCEEDED",
@@ -255,7 +255,8 @@ bool Scheduler::wait_for_work() {
   return !stopping_;
 }
 
-/// The next job, if one may begin (`has_begun`) and it is still to be computed by this worker.
+/// Starts the next job. Sets `has_begun` if a job began. Returns nullopt if none did, or if the job
+/// needs no computation or waits for equal inputs.
 std::optional<Lease> Scheduler::begin(const std::string& worker, const Lease* lender,
                                       bool& has_begun) {
   std::optional<QueuedJob> job;
@@ -289,7 +290,8 @@ std::optional<Lease> Scheduler::claim_beside(const std::string& worker, const Le
   return begin(worker, &lender, has_begun);
 }
 
-/// Repeats what the store refuses, until it does not or the simulation is to stop.
+/// Repeats the action while it throws StoreError, with growing pauses. Rethrows the error once the
+/// simulation is asked to stop.
 template <class Action>
 auto Scheduler::insist(std::int64_t id, const StopSignal& stop, const Action& action) const {
   for (auto pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
@@ -319,14 +321,14 @@ bool Scheduler::guarded(const Lease& lease, const Action& action) {
       fail_on_defect(lease, "an exception of unknown type");
     }
     return true;
-  } catch (const StoreError& error) {  // the next start finds it unfinished and goes on
-    spdlog::error("simulations/{} is left as it is: {}", lease.id, error.what());
+  } catch (const StoreError& error) {  // the next start finds it unfinished and queues it
+    spdlog::error("simulations/{} keeps its state: {}", lease.id, error.what());
     return false;
   }
 }
 
-/// Reads a simulation that was not kept, e.g. after a restart, which may have brought another
-/// model: its row and the four revisions that it was accepted with.
+/// Reads the row of a simulation whose inputs were not kept and the four revisions that it was
+/// accepted with. After a restart the model may be a newer one, so the inputs are checked again.
 Scheduler::Known Scheduler::load(std::int64_t id, const StopSignal& stop) {
   const StopWatch watch;
   auto stored = insist(id, stop, [&] { return store_.simulation(id); });
@@ -357,7 +359,8 @@ Scheduler::Known Scheduler::load(std::int64_t id, const StopSignal& stop) {
   return out;
 }
 
-/// The lease of a job that has begun; nullopt if the job has ended, or waits for equal inputs.
+/// Returns the lease of a job that has begun; nullopt if the job has ended or waits for equal
+/// inputs.
 std::optional<Lease> Scheduler::lease_of(const QueuedJob& job, const std::string& worker,
                                          const std::string& platform) {
   Lease lease;
@@ -389,7 +392,8 @@ std::optional<Lease> Scheduler::lease_of(const QueuedJob& job, const std::string
   return out;
 }
 
-/// RUNNING in the store; nullopt if the simulation has ended, or equal inputs have a result.
+/// Marks the simulation RUNNING in the store. Returns nullopt if it has ended or equal inputs have
+/// a result.
 std::optional<Lease> Scheduler::start(const Known& known, Lease lease, const std::string& worker,
                                       const std::string& platform) {
   const double waited =
@@ -420,7 +424,7 @@ std::optional<Lease> Scheduler::start(const Known& known, Lease lease, const std
   return lease;
 }
 
-/// With the lock held.
+/// Returns false if the lease has ended or has expired. Requires the lock.
 bool Scheduler::is_current(const Lease& lease) const {
   const auto leased = leased_.find(lease.id);
   return leased != leased_.end() && leased->second.stop == lease.stop;
@@ -450,7 +454,7 @@ void Scheduler::extend(const Lease& lease, double used_seconds) {
   const auto time = std::chrono::duration_cast<std::chrono::microseconds>(options_.lease);
   try {
     store_.extend_lease(lease.id, lease.attempt, options_.clock() + time.count());
-  } catch (const StoreError& error) {  // the lease in memory is what counts while the server runs
+  } catch (const StoreError& error) {  // while the server runs, the lease in memory decides
     spdlog::error("simulations/{}: {}", lease.id, error.what());
   }
 }
@@ -482,7 +486,8 @@ void Scheduler::complete(const Lease& lease, internal::v1::ComputeResult result)
     }
   });
   if (!is_written && !is_stopping()) {
-    // It is RUNNING in the store: the lease expires, and expire_leases tries to write until it can.
+    // The simulation stays RUNNING in the store until its lease expires; expire_leases() then tries
+    // at every tick to write.
     const std::lock_guard lock(mutex_);
     leased_.at(lease.id).is_computed = false;
     return;
@@ -518,7 +523,8 @@ void Scheduler::save(const Lease& lease, internal::v1::ComputeResult& result) {
   log_computed(lease.id, request_id, stored.key.input_hash, timings);
 }
 
-/// Returns true if the job is to wait again in this process.
+/// Writes the end of an attempt that was asked to stop. Returns true if the job must wait again in
+/// this process.
 bool Scheduler::stopped(const Lease& lease) {
   const auto back = [&](const char* reason) {
     const auto event = insist(lease.id, *lease.stop, [&] {
@@ -539,7 +545,7 @@ bool Scheduler::stopped(const Lease& lease) {
       return back("OUTRAN_ESTIMATE");
     case StopReason::kShutdown:
       back("SERVER_STOPPED");
-      spdlog::info("simulations/{} goes back to the queue", lease.id);
+      spdlog::info("event=simulation_requeued simulation=simulations/{}", lease.id);
   }
   return false;
 }
@@ -565,8 +571,8 @@ void Scheduler::fail(const Lease& lease, const std::string& reason, const std::s
   publish(lease.id, event);
 }
 
-/// Without an event somebody else has ended the simulation, by cancelling it: a channel opened
-/// since must hear of it too.
+/// Publishes the event on the simulation's channel. Without an event another thread has ended the
+/// simulation, and a channel that was opened since then needs that end.
 void Scheduler::publish(std::int64_t id, const std::optional<StoredEvent>& event) {
   StoredState state = StoredState::kQueued;
   std::int64_t sequence = 0;
@@ -613,7 +619,7 @@ void Scheduler::expire_leases() {
     const SteadyTime now = options_.steady();
     const auto gap = now - last_look_;
     last_look_ = now;
-    // If this process stood still, so did its executors, and messages of others wait to be read.
+    // If this process was suspended, so were its executors, and the messages of others wait.
     const bool stood_still = gap > 3 * options_.tick + std::chrono::seconds(1);
     for (auto& [id, leased] : leased_) {
       if (leased.is_computed || leased.expires == SteadyTime::max()) continue;

@@ -25,13 +25,13 @@ namespace tribodyn::server {
 /// Wall-clock time for records.
 using Clock = std::function<Microseconds()>;
 
-/// What an executor can do.
+/// What an executor tells of itself when it enrolls.
 struct Capabilities {
-  std::string platform;  ///< of its results (result_key.h)
+  std::string platform;  ///< of its results (result_key.h): processor, compiler, libraries
   int threads = 1;
 };
 
-/// The right and the duty to compute one attempt of a simulation.
+/// The right of an executor to compute one attempt of a simulation.
 struct Lease {
   std::int64_t id = 0;
   int attempt = 1;
@@ -40,23 +40,24 @@ struct Lease {
   std::shared_ptr<ProgressChannel> channel;
 };
 
-/// Carries simulations from admission to their end: which waits, who computes it, what becomes of
-/// it. It computes nothing and owns no thread that does: executors enroll, claim a lease, extend it
-/// while they compute, and complete it. The store is the only truth; what the scheduler keeps in
-/// memory follows from it (resume). Whatever goes wrong with a simulation ends in the store; a
-/// store that cannot be written (disk full) is tried again until it can be, or the server stops.
-/// Safe for concurrent access without external synchronization; `resume`, `drain` and `stop` from
-/// one thread.
+/// Keeps the state of every simulation from its admission to its end. The scheduler computes
+/// nothing and owns no thread that computes: executors enroll, claim a lease, extend it while they
+/// compute, and complete it. The store is the only truth, and resume() derives from it what the
+/// scheduler keeps in memory. Every failure of a simulation is written to the store. If the store
+/// cannot be written (disk full), the scheduler tries again until it can or the server stops. Safe
+/// for concurrent access without external synchronization; `resume`, `drain` and `stop` from one
+/// thread.
 class Scheduler {
  public:
   struct Options {
     QueueLimits limits;
     Clock clock = system_time;
-    /// What has not ended after so long without a sign of its executor is given to another one.
+    /// Duration of a lease. After it without extend() the scheduler gives the job to another
+    /// executor.
     std::chrono::seconds lease = std::chrono::seconds(60);
-    /// For leases and turns; wall clocks jump.
+    /// Clock of leases and turns, which does not jump as wall clocks do.
     std::function<std::chrono::steady_clock::time_point()> steady = std::chrono::steady_clock::now;
-    /// How often time is looked at: for leases, and by observers of `wake`.
+    /// Interval of the checks of leases and of the calls of observers (wake).
     std::chrono::milliseconds tick = std::chrono::seconds(1);
     /// Executors must prove the golden case (golden_case.h).
     bool wants_proof = true;
@@ -68,69 +69,72 @@ class Scheduler {
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
 
-  /// Queues what a crash or a stop left unfinished; returns how many. Before anything is submitted.
+  /// Queues the simulations that a crash or a stop left unfinished. Returns their number. Must be
+  /// called before admit().
   std::size_t resume();
 
-  /// Writes a simulation down, and queues it unless it is there or served already. If it would have
-  /// to wait and has no place, says when to ask again. `inputs`: what it was made of; if they are
-  /// left out, or there is no room to keep them, they are read from the store when it begins.
+  /// Writes a simulation to the store and queues it, unless its request_id exists or equal inputs
+  /// have a result. If the queue has no place for it, writes nothing and returns a retry delay. The
+  /// scheduler keeps `inputs` for the lease; without them, or without room, claim() reads them from
+  /// the store.
   struct Admitted {
     Added added;
     double retry_seconds = 0;
   };
   Admitted admit(const NewSimulation& simulation, std::shared_ptr<const SimulationInputs> inputs,
                  const CallLimits& limits = {});
-  /// Queues a simulation that is QUEUED in the store and may not be here: its request may have been
-  /// written and yet been answered with an error.
+  /// Queues a simulation that is QUEUED in the store, if it is not in the queue: a commit may
+  /// succeed although its writer sees an error.
   void ensure_queued(const StoredSimulation& simulation);
-  /// At once CANCELLED in the store; its executor stops at the next step. Returns the change of
-  /// state; nullopt, and changes nothing, if the simulation has ended before.
+  /// Marks a simulation CANCELLED in the store and asks its executor to stop. Returns the change of
+  /// state. Returns nullopt, and changes nothing, if the simulation has ended.
   std::optional<StoredEvent> cancel(std::int64_t id, const CallLimits& limits = {});
 
-  // For executors.
+  // Executors call these functions.
 
-  /// Lets an executor claim leases, if `compute` makes of the golden case what it should. Returns
-  /// what is wrong; then the executor gets no lease.
+  /// Computes the golden case with `compute`. If the result is right, the executor may claim
+  /// leases, and an empty text is returned; otherwise a sentence that says what is wrong.
   std::string enroll(
       const std::string& worker, const Capabilities& capabilities,
       const std::function<internal::v1::ComputeResult(const internal::v1::ComputeTask&)>& compute);
-  /// Waits until claim may return a lease; false once the scheduler stops.
+  /// Waits until claim() may return a lease. Returns false once the scheduler stops.
   bool wait_for_work();
-  /// The next job, RUNNING in the store; nullopt if none may begin.
+  /// Marks the next job RUNNING in the store and returns its lease. Returns nullopt if no job may
+  /// begin.
   std::optional<Lease> claim(const std::string& worker);
-  /// The next job that may run on the thread of `lender`, which goes on afterwards.
+  /// Like claim(), for a job that runs on the thread of `lender` while that job pauses.
   std::optional<Lease> claim_beside(const std::string& worker, const Lease& lender);
-  /// Whether claim_beside is worth a try. Takes no lock.
+  /// Returns true if claim_beside() may return a lease. Takes no lock.
   bool is_urgent() const { return is_urgent_.load(std::memory_order_relaxed); }
-  /// Tells that the executor is alive and has used so much of a processor for the job. It may ask
-  /// the lease to stop.
+  /// Extends the lease and records the processor time used so far. May request a stop of the lease.
   void extend(const Lease& lease, double used_seconds);
-  /// The job has left its thread. From now on the lease does not expire; complete() follows.
+  /// Frees the thread of the job, whose lease no longer expires. The executor must call complete()
+  /// next.
   void computed(const Lease& lease, const internal::v1::ComputeResult& result);
-  /// Writes down what became of a lease: its result, why it failed, or that it was stopped.
+  /// Ends a lease: writes the result, the failure or the stop to the store.
   void complete(const Lease& lease, internal::v1::ComputeResult result);
-  /// Gives leases whose executor has given no sign for too long to others.
+  /// Queues the jobs again whose lease has expired.
   void expire_leases();
 
   Occupancy occupancy() const;
   std::size_t deadlines() const { return timekeeper_.deadlines(); }
-  /// Wakes the observer every tick.
+  /// Notifies the observer every tick until it is destroyed.
   void wake(const std::weak_ptr<ProgressObserver>& observer) { timekeeper_.observe(observer); }
 
-  /// True once nothing more is accepted and no job begins.
+  /// Returns true after drain() or stop(): no simulation is accepted and no job begins.
   bool is_stopping() const;
-  /// No further job begins; waits for those that run, so long. True when none runs any more, early
-  /// when `give_up` says so.
+  /// Lets no further job begin, and waits for the running ones until `limit` or until `give_up`
+  /// returns true. Returns true if no job runs any more.
   bool drain(std::chrono::milliseconds limit, const std::function<bool()>& give_up);
-  /// No further job begins, and running ones are asked to stop: as their executors complete them,
-  /// they go back to QUEUED. Time is not looked at any more.
+  /// Lets no further job begin, and asks the running ones to stop: complete() marks them QUEUED.
+  /// Deadlines and leases no longer expire.
   void stop();
 
  private:
   using SteadyTime = std::chrono::steady_clock::time_point;
-  /// What is known of a waiting simulation beside ClaimPolicy.
+  /// What the scheduler keeps of a waiting simulation for its lease.
   struct Known {
-    std::shared_ptr<const SimulationInputs> inputs;  ///< null: to be read from the store
+    std::shared_ptr<const SimulationInputs> inputs;  ///< null: load() reads them from the store
     std::size_t bytes = 0;
     std::string input_hash;
     bool is_forced = false;
@@ -142,7 +146,7 @@ class Scheduler {
     int attempt = 1;
     std::shared_ptr<StopSignal> stop;
     SteadyTime expires;
-    SteadyTime written;  ///< when the store was told last
+    SteadyTime written;  ///< when the expiry was last written to the store
     bool is_computed = false;
     std::string request_id;
     double waited_seconds = 0;
@@ -151,7 +155,8 @@ class Scheduler {
 
   template <class Action>
   auto insist(std::int64_t id, const StopSignal& stop, const Action& action) const;
-  /// Whatever goes wrong ends in the store. Returns false if the store cannot be written.
+  /// Runs the action and marks the simulation FAILED if it throws. Returns false if the store
+  /// cannot be written.
   template <class Action>
   bool guarded(const Lease& lease, const Action& action);
   std::optional<Lease> lease_of(const QueuedJob& job, const std::string& worker,

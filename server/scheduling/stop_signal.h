@@ -9,18 +9,19 @@ namespace tribodyn::server {
 
 enum class StopReason {
   kNone,
-  kEnded,      ///< the simulation has ended otherwise, or the lease is lost
+  kEnded,      ///< the simulation was cancelled, its deadline has passed, or the lease has expired
   kShutdown,   ///< the server stops
-  kReclassed,  ///< it outran its estimate beside another job and goes back to the queue
+  kReclassed,  ///< the job used more than its allowed time on a lent thread
 };
 
-/// Asks one running job to stop. Safe for concurrent access; the first reason stays.
+/// Asks a running job to stop. The first reason stays. Safe for concurrent access without external
+/// synchronization.
 class StopSignal {
  public:
   void request(StopReason reason);
   StopReason reason() const { return reason_.load(); }
   bool requested() const { return reason() != StopReason::kNone; }
-  /// Returns false as soon as the signal comes, true after the time.
+  /// Waits. Returns false as soon as a stop is requested, and true after `time`.
   bool wait_for(std::chrono::milliseconds time) const;
 
  private:

@@ -17,26 +17,25 @@
 
 namespace tribodyn::server {
 
-/// A thread that looks at the clock for everybody: tells which deadlines have come, and every
-/// `tick` wakes observers, so that a stream notices that it has been silent for long. Safe for
-/// concurrent access without external synchronization.
+/// A thread that reports deadlines when they pass and, every `tick`, notifies observers, so that a
+/// stream can send a heartbeat. Safe for concurrent access without external synchronization.
 class Timekeeper {
  public:
-  /// Calls `on_due` with the id of each deadline, and `on_tick` every `tick`, on the thread, with
-  /// no lock held.
+  /// Starts the thread, which calls `on_due` with the id of each deadline that has passed, and
+  /// `on_tick` every `tick`, with no lock held.
   Timekeeper(std::chrono::milliseconds tick, std::function<Microseconds()> clock,
              std::function<void(std::int64_t)> on_due, std::function<void()> on_tick);
   ~Timekeeper();
   Timekeeper(const Timekeeper&) = delete;
   Timekeeper& operator=(const Timekeeper&) = delete;
 
-  /// Sets the deadline of the id; an earlier one is forgotten.
+  /// Sets the deadline of the id, in place of its former one.
   void set_deadline(std::int64_t id, Microseconds time);
   void remove_deadline(std::int64_t id);
   std::size_t deadlines() const;
-  /// Woken for as long as it lives.
+  /// Notifies the observer every tick until it is destroyed.
   void observe(const std::weak_ptr<ProgressObserver>& observer);
-  /// Nobody is told anything any more.
+  /// Ends the thread. No further call is made.
   void stop();
 
  private:
@@ -51,9 +50,9 @@ class Timekeeper {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::set<std::pair<Microseconds, std::int64_t>> deadlines_;  // guarded by mutex_
-  std::map<std::int64_t, Microseconds> times_;                 // guarded by mutex_; of deadlines_
-  std::vector<std::weak_ptr<ProgressObserver>> observers_;     // guarded by mutex_
-  bool stopping_ = false;                                      // guarded by mutex_
+  std::map<std::int64_t, Microseconds> times_;              // guarded by mutex_; deadlines_ by id
+  std::vector<std::weak_ptr<ProgressObserver>> observers_;  // guarded by mutex_
+  bool stopping_ = false;                                   // guarded by mutex_
   std::thread thread_;
 };
 

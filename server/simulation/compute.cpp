@@ -121,13 +121,13 @@ Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved 
   return out;
 }
 
-namespace {
-
 double processor_seconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
+
+namespace {
 
 void set_refusal(const std::string& reason, const std::string& message,
                  internal::v1::ComputeResult& out) {

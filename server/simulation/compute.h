@@ -51,8 +51,11 @@ Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
 /// Throws Refusal if a number is not finite.
 Computed to_result(const SimulationInputs& inputs, const ResultKey& key, Solved solved);
 
-/// Computes a task with a gear set of `gear_sets`. Refusals, defects and being asked to stop are
-/// outcomes; nothing is thrown.
+/// Returns the processor time of this thread [s].
+double processor_seconds();
+
+/// Computes a task with a gear set of `gear_sets`. Throws nothing: refusals, defects and stops are
+/// outcomes.
 internal::v1::ComputeResult compute(const internal::v1::ComputeTask& task,
                                     const StudyFunctions& studies, PreparedGearSets& gear_sets,
                                     const ReportProgress& report);

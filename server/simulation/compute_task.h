@@ -8,18 +8,19 @@
 
 namespace tribodyn::server {
 
-/// The wire form of an attempt to compute the inputs.
+/// Returns the message that asks an executor to compute an attempt.
 internal::v1::ComputeTask compute_task(const SimulationInputs& inputs, std::int64_t id, int attempt,
                                        const std::string& input_hash, bool force);
 
-/// The inputs of a task, except for the request as it came. Throws Refusal TASK_UNREADABLE if a
-/// resource cannot be parsed.
+/// Returns the inputs of a task, without SimulationInputs::requested. Throws Refusal
+/// TASK_UNREADABLE if a resource cannot be parsed.
 SimulationInputs inputs_of(const internal::v1::ComputeTask& task);
 
-/// Bytes of the histories that a study asks for.
+/// Returns the size of the history that a study requests [bytes].
 std::int64_t history_bytes(const v1::Simulation& effective);
 
-/// The history of a result, moved out column by column, so that no history is in memory twice.
+/// Moves the history out of a result column by column, so that memory holds one column twice at
+/// most.
 std::vector<StoredColumn> take_history(internal::v1::ComputeResult& result);
 
 }  // namespace tribodyn::server

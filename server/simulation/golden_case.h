@@ -6,15 +6,15 @@
 
 namespace tribodyn::server {
 
-/// An operating point whose figures are known: a processor, a library or a build that computes
-/// something else must not compute for a server. About 0.1 s.
+/// Returns an operating point with known figures. A processor, library or build that computes other
+/// figures must not compute for a server. Takes about 0.1 s.
 internal::v1::ComputeTask golden_task();
 
-/// Compares what an executor made of golden_task() with the known figures. Returns an empty text if
-/// all agree, else a sentence that says which does not.
+/// Compares an executor's result of golden_task() with the known figures. Returns an empty string
+/// if all agree, else a sentence that names the one that differs.
 std::string check_golden_result(const internal::v1::ComputeResult& result);
 
-/// Both, on this thread.
+/// Computes golden_task() on this thread and checks it.
 std::string check_golden_case(const StudyFunctions& studies = {});
 
 }  // namespace tribodyn::server

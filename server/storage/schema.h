@@ -26,7 +26,7 @@ namespace tribodyn::server {
 ///                the revisions it rests on. is_forced: no result that was there before is taken.
 ///                Progress is not kept: a job that a crash interrupts starts again. client: what
 ///                the client calls itself; principal: whose share of the processors pays for it;
-///                stated_class: SchedulingClass; cost_seconds: estimated, of one processor.
+///                scheduling_class: SchedulingClass; cost_seconds: estimated, of one processor.
 ///                lease_worker, lease_expire_time: who computes it, set while it is RUNNING; after
 ///                that time the attempt counts as lost. The worker "local" is the server's own
 ///                process, whose leases end with it.

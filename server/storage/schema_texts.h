@@ -257,8 +257,8 @@ CREATE INDEX pinned_results ON simulations (result) WHERE pinned = 1;
 
 inline constexpr char kSchema6[] = R"sql(
 ALTER TABLE simulations ADD COLUMN principal TEXT NOT NULL DEFAULT '';
-ALTER TABLE simulations ADD COLUMN stated_class INTEGER NOT NULL DEFAULT 0
-  CHECK (stated_class BETWEEN 0 AND 2);
+ALTER TABLE simulations ADD COLUMN scheduling_class INTEGER NOT NULL DEFAULT 0
+  CHECK (scheduling_class BETWEEN 0 AND 2);
 ALTER TABLE simulations ADD COLUMN lease_worker TEXT CHECK (length(lease_worker) > 0);
 ALTER TABLE simulations ADD COLUMN lease_expire_time INTEGER
   CHECK ((lease_worker IS NULL) = (lease_expire_time IS NULL));

@@ -17,7 +17,7 @@ const char kSimulationColumns[] =
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), "
-    "request_id, pinned, client, cost_seconds, principal, stated_class "
+    "request_id, pinned, client, cost_seconds, principal, scheduling_class "
     "FROM simulations ";
 
 namespace {
@@ -105,7 +105,7 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
       db,
       "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
       "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle, client, "
-      "cost_seconds, principal, stated_class) "
+      "cost_seconds, principal, scheduling_class) "
       "VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, now);
   bind_optional(insert, 2, simulation.deadline_time);
@@ -124,7 +124,7 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
   insert.bind(13, simulation.client);
   insert.bind(14, simulation.cost_seconds);
   insert.bind(15, simulation.principal);
-  insert.bind(16, simulation.stated_class);
+  insert.bind(16, simulation.scheduling_class);
   insert.exec();
   const std::int64_t id = db.getLastInsertRowid();
   insert_labels(db, id, simulation.labels);
@@ -293,7 +293,7 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   out.client = query.getColumn(21).getString();
   out.cost_seconds = query.getColumn(22).getDouble();
   out.principal = query.getColumn(23).getString();
-  out.stated_class = query.getColumn(24).getInt();
+  out.scheduling_class = query.getColumn(24).getInt();
   return out;
 }
 
@@ -485,7 +485,7 @@ std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
   for (const auto& [id, attempt] : lost) lose_attempt(db, id, attempt, now, "SERVER_LOST");
   std::vector<Waiting> waiting;
   Prepared query(db,
-                 "SELECT id, attempt, lost_attempts, deadline_time, principal, stated_class, "
+                 "SELECT id, attempt, lost_attempts, deadline_time, principal, scheduling_class, "
                  "cost_seconds, lease_worker, lease_expire_time FROM simulations "
                  "WHERE state IN (1, 2) ORDER BY id");
   while (query.executeStep()) {
@@ -494,7 +494,7 @@ std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
                  .lost_attempts = query.getColumn(2).getInt(),
                  .deadline_time = time_of(query.getColumn(3)),
                  .principal = query.getColumn(4).getString(),
-                 .stated_class = query.getColumn(5).getInt(),
+                 .scheduling_class = query.getColumn(5).getInt(),
                  .cost_seconds = query.getColumn(6).getDouble()};
     if (!query.getColumn(7).isNull()) {
       each.lease = LeaseTerms{query.getColumn(7).getString(), query.getColumn(8).getInt64()};

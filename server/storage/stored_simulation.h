@@ -30,7 +30,7 @@ struct NewSimulation {
   std::optional<Microseconds> deadline_time = {};
   std::string client = {};     ///< client that submitted it
   std::string principal = {};  ///< whose share of the processors pays for it
-  int stated_class = 0;        ///< SchedulingClass
+  int scheduling_class = 0;    ///< SchedulingClass
   double cost_seconds = 0;     ///< estimate, in seconds of one processor
   std::vector<std::pair<std::string, std::string>> labels = {};
   // Revisions of its resources, e.g. "lubricants/paper-fluid-1@2"; each exists or is empty.
@@ -56,7 +56,7 @@ struct StoredSimulation {
   bool is_pinned = false;
   std::string client;
   std::string principal;
-  int stated_class = 0;
+  int scheduling_class = 0;
   double cost_seconds = 0;
   bool cache_hit = false;
   std::string input_hash;
@@ -123,7 +123,7 @@ struct Waiting {
   int lost_attempts = 0;
   std::optional<Microseconds> deadline_time;
   std::string principal;
-  int stated_class = 0;
+  int scheduling_class = 0;
   double cost_seconds = 0;
   std::optional<LeaseTerms> lease = {};  ///< set if a worker of another process runs it
 };

@@ -47,14 +47,14 @@ class ExecutorTest : public testing::Test {
   ~ExecutorTest() override { *release_ = true; }
 
   std::string create(const std::string& client, double speed,
-                     v1::SchedulingClass stated = v1::SCHEDULING_CLASS_UNSPECIFIED) {
+                     v1::SchedulingClass requested = v1::SCHEDULING_CLASS_UNSPECIFIED) {
     v1::CreateSimulationRequest request;
     *request.mutable_simulation() = point_simulation();
     request.mutable_simulation()
         ->mutable_operating_point()
         ->mutable_cruise()
         ->set_speed_kilometres_per_hour(speed);
-    request.set_scheduling_class(stated);
+    request.set_scheduling_class(requested);
     CallContext call;
     call.client = client;
     Application application = bench_->application();

@@ -24,17 +24,17 @@ StudyFunctions throwing(const Thrown& thrown) {
   return out;
 }
 
-/// Ids in the order in which they leave.
+/// Returns the ids in the order in which the queue releases them.
 std::vector<std::int64_t> emptied(FairQueue& queue) {
   std::vector<std::int64_t> out;
-  while (const auto job = queue.pop(Lane::kBulk)) out.push_back(job->id);
+  while (const auto job = queue.pop(Urgency::kBulk)) out.push_back(job->id);
   return out;
 }
 
 TEST(FairQueue, ServesPrincipalsInTurnHoweverMuchOneBrings) {
   FairQueue queue;
   for (int id = 1; id <= 100; ++id) queue.push({id, "bulk", 0.1});
-  for (int i = 0; i < 10; ++i) queue.pop(Lane::kBulk);
+  for (int i = 0; i < 10; ++i) queue.pop(Urgency::kBulk);
   queue.push({1000, "curve", 0.5});
   queue.push({1001, "curve", 0.5});
   const auto order = emptied(queue);
@@ -51,9 +51,9 @@ TEST(FairQueue, SmallJobsOfAPrincipalPassLargeOnesThatDoNotStarve) {
   FairQueue queue;
   queue.push({1, "a", 5});
   for (int id = 2; id <= 101; ++id) queue.push({id, "a", 0.5});
-  EXPECT_EQ(queue.peek(Lane::kBulk)->id, 2);
+  EXPECT_EQ(queue.peek(Urgency::kBulk)->id, 2);
   for (int id = 102; id < 300; ++id) {
-    if (queue.pop(Lane::kBulk)->id == 1) {
+    if (queue.pop(Urgency::kBulk)->id == 1) {
       EXPECT_GT(id, 102 + 8) << "as much as it is large has passed it";
       return;
     }
@@ -66,7 +66,7 @@ TEST(FairQueue, CountsQueuedJobs) {
   FairQueue queue;
   queue.push({1, "a", 2});
   queue.push({2, "b", 3});
-  EXPECT_FALSE(queue.pop(Lane::kSmall)) << "neither is interactive";
+  EXPECT_FALSE(queue.pop(Urgency::kSmall)) << "neither is interactive";
   EXPECT_EQ(queue.cost_seconds(), 5);
   EXPECT_EQ(queue.size_of("a"), 1U);
   EXPECT_TRUE(queue.erase(1));
@@ -75,23 +75,23 @@ TEST(FairQueue, CountsQueuedJobs) {
   EXPECT_EQ(queue.size(), 1U);
 }
 
-TEST(FairQueue, StatedInteractiveJobsPassAllOthersOfTheirPrincipal) {
+TEST(FairQueue, InteractiveJobsPassAllOthersOfTheirPrincipal) {
   FairQueue queue;
   for (int id = 1; id <= 20; ++id) queue.push({id, "a", 1e-4});
-  queue.push({21, "a", 100, false, StatedClass::kInteractive});
-  queue.push({22, "a", 1e-4, false, StatedClass::kBulk});
-  EXPECT_EQ(queue.peek(Lane::kStated)->id, 21);
-  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 21);
-  EXPECT_FALSE(queue.peek(Lane::kStated));
-  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 1);
-  while (queue.peek(Lane::kSmall) != nullptr) queue.pop(Lane::kSmall);
-  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 22) << "stated BULK, however small";
+  queue.push({21, "a", 100, false, RequestedClass::kInteractive});
+  queue.push({22, "a", 1e-4, false, RequestedClass::kBulk});
+  EXPECT_EQ(queue.peek(Urgency::kInteractive)->id, 21);
+  EXPECT_EQ(queue.pop(Urgency::kBulk)->id, 21);
+  EXPECT_FALSE(queue.peek(Urgency::kInteractive));
+  EXPECT_EQ(queue.pop(Urgency::kBulk)->id, 1);
+  while (queue.peek(Urgency::kSmall) != nullptr) queue.pop(Urgency::kSmall);
+  EXPECT_EQ(queue.pop(Urgency::kBulk)->id, 22) << "it asks for BULK, however small it is";
 }
 
 TEST(FairQueue, APrincipalThatUsedMoreThanEstimatedIsServedLater) {
   FairQueue queue;
   queue.push({1, "hog", 0.001});
-  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 1);
+  EXPECT_EQ(queue.pop(Urgency::kBulk)->id, 1);
   queue.charge("hog", 10);  // while it has no job in the queue
   queue.push({2, "hog", 0.001});
   for (int id = 3; id <= 12; ++id) queue.push({id, "other", 0.5});
@@ -99,11 +99,11 @@ TEST(FairQueue, APrincipalThatUsedMoreThanEstimatedIsServedLater) {
   EXPECT_EQ(queue.debtors(), 1U);
   queue.push({20, "hog", 0.001});
   queue.push({21, "late", 0.001});
-  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 21);
+  EXPECT_EQ(queue.pop(Urgency::kBulk)->id, 21);
   queue.charge("hog", -10);
-  queue.pop(Lane::kBulk);
+  queue.pop(Urgency::kBulk);
   queue.push({22, "late", 0.001});
-  queue.pop(Lane::kBulk);
+  queue.pop(Urgency::kBulk);
   EXPECT_LE(queue.debtors(), 2U);
 }
 
@@ -114,7 +114,7 @@ TEST(FairQueue, RemembersABoundedNumberOfDebtors) {
   EXPECT_EQ(queue.debtors(), FairQueue::kMostDebtors);
   queue.push({1, std::to_string(2 * kMost - 1), 0.001});
   queue.push({2, "0", 0.001});
-  EXPECT_EQ(queue.pop(Lane::kBulk)->id, 2) << "those who owe least are forgotten";
+  EXPECT_EQ(queue.pop(Urgency::kBulk)->id, 2) << "those who owe least are forgotten";
 }
 
 TEST(FairQueue, TimeDoesNotGrowWithTheNumberOfPrincipals) {
@@ -123,8 +123,8 @@ TEST(FairQueue, TimeDoesNotGrowWithTheNumberOfPrincipals) {
     for (int i = 0; i < principals; ++i) queue.push({i, std::to_string(i), 0.001});
     const auto begin = std::chrono::steady_clock::now();
     for (int i = 0; i < 2000; ++i) {
-      queue.peek(Lane::kSmall);
-      QueuedJob job = *queue.pop(Lane::kBulk);
+      queue.peek(Urgency::kSmall);
+      QueuedJob job = *queue.pop(Urgency::kBulk);
       queue.push(job);
     }
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

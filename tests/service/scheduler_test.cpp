@@ -21,7 +21,7 @@ namespace {
 
 using Verdict = ClaimPolicy::Verdict;
 
-constexpr StatedClass kInteractive = StatedClass::kInteractive;
+constexpr RequestedClass kInteractive = RequestedClass::kInteractive;
 
 ClaimPolicy policy_of(int threads, const QueueLimits& limits = {}) {
   ClaimPolicy out(limits);
@@ -147,7 +147,7 @@ TEST(ClaimPolicy, BytesOfUnwrittenResultsAreBounded) {
   EXPECT_EQ(begun(policy), 4) << "however large, alone";
 }
 
-TEST(ClaimPolicy, StatedInteractiveJobsRunOnLentThreadsAtOnce) {
+TEST(ClaimPolicy, InteractiveJobsRunOnLentThreadsAtOnce) {
   ClaimPolicy policy = policy_of(1);
   for (int id = 1; id <= 1000; ++id) policy.add({id, "a", 0.5});
   EXPECT_EQ(begun(policy), 1);
@@ -163,7 +163,7 @@ TEST(ClaimPolicy, StatedInteractiveJobsRunOnLentThreadsAtOnce) {
   EXPECT_EQ(begun_beside(policy, 1), 2001);
 }
 
-TEST(ClaimPolicy, AStatedInteractiveJobDoesNotLendItsThreadToAnother) {
+TEST(ClaimPolicy, AnInteractiveJobDoesNotLendItsThreadToAnother) {
   ClaimPolicy policy = policy_of(1);
   policy.add({1, "a", 0.01, false, kInteractive});
   policy.add({2, "a", 0.01, false, kInteractive});
@@ -205,7 +205,7 @@ TEST(ClaimPolicy, ALenderGetsHalfOfItsThread) {
   EXPECT_EQ(begun(policy), 1);
   double lent = 0;
   std::int64_t id = 2;
-  for (; id < 1000; ++id) {  // a flood of jobs stated INTERACTIVE
+  for (; id < 1000; ++id) {  // a flood of interactive jobs
     policy.add({id, "b", 0.01, false, kInteractive});
     if (begun_beside(policy, 1) == 0) break;
     policy.computed(id, 0.01);
