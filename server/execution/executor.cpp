@@ -87,8 +87,9 @@ std::string Executor::start() {
   if (!wrong.empty()) return wrong;
   for (int i = 0; i < thread_count_; ++i) {
     threads_.emplace_back([this] { compute_all(); });
-    completers_.emplace_back([this] { complete_all(); });
+    completers_.emplace_back([this] { complete_all(true); });
   }
+  completers_.emplace_back([this] { complete_all(false); });
   return {};
 }
 
@@ -121,11 +122,13 @@ double Executor::run(Lease lease, bool may_lend) {
   computed.result.set_processor_seconds(used);
   scheduler_.computed(lease, computed.result);
   computed.lease = std::move(lease);
+  const bool is_small = computed.result.history_size() == 0;
   {
     const std::lock_guard lock(mutex_);
-    computed_.push_back(std::move(computed));
+    (is_small ? small_ : large_).push_back(std::move(computed));
   }
-  changed_.notify_one();
+  // One of the completers takes no history.
+  is_small ? changed_.notify_one() : changed_.notify_all();
   return used;
 }
 
@@ -139,13 +142,15 @@ void Executor::compute_all() {
   }
 }
 
-void Executor::complete_all() {
+void Executor::complete_all(bool takes_histories) {
   for (;;) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return all_computed_ || !computed_.empty(); });
-    if (computed_.empty()) return;
-    Computed next = std::move(computed_.front());
-    computed_.pop_front();
+    const auto has_large = [&] { return takes_histories && !large_.empty(); };
+    changed_.wait(lock, [&] { return all_computed_ || !small_.empty() || has_large(); });
+    if (small_.empty() && !has_large()) return;
+    std::deque<Computed>& queue = small_.empty() ? large_ : small_;
+    Computed next = std::move(queue.front());
+    queue.pop_front();
     lock.unlock();
     try {
       scheduler_.complete(next.lease, std::move(next.result));

@@ -15,7 +15,8 @@ namespace tribodyn::server {
 
 /// Threads of this process that claim leases and compute them. The executor reads no row of the
 /// store, because a lease contains all that its task needs. As many other threads complete the
-/// leases, so that the computing ones begin the next job at once. Where a study reports its
+/// leases, so that the computing ones begin the next job at once; one more completes those without
+/// a history, because the writing of a long history takes seconds. Where a study reports its
 /// progress, its thread may run one urgent job (Scheduler::claim_beside) before it continues.
 /// `start` and `join` from one thread.
 class Executor {
@@ -41,7 +42,7 @@ class Executor {
   };
 
   void compute_all();
-  void complete_all();
+  void complete_all(bool takes_histories);
   /// Computes a lease. Returns the processor time used [s]. `may_lend`: urgent jobs may run where
   /// the study reports its progress.
   double run(Lease lease, bool may_lend);
@@ -53,8 +54,9 @@ class Executor {
   PreparedGearSets gear_sets_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Computed> computed_;  // guarded by mutex_
-  bool all_computed_ = false;      // guarded by mutex_
+  std::deque<Computed> small_;  // guarded by mutex_; results without a history
+  std::deque<Computed> large_;  // guarded by mutex_; results with one
+  bool all_computed_ = false;   // guarded by mutex_
   std::vector<std::thread> threads_;
   std::vector<std::thread> completers_;
 };

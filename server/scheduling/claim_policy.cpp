@@ -85,9 +85,12 @@ bool ClaimPolicy::fits(const QueuedJob& job) const {
 }
 
 bool ClaimPolicy::may_begin() const {
-  if (running_.size() >= 2 * static_cast<std::size_t>(std::max(1, threads_))) return false;
   const QueuedJob* next = queue_.peek(least_urgency());
-  return next != nullptr && fits(*next);
+  if (next == nullptr || !fits(*next)) return false;
+  // Results that are written take no thread. Beyond so many of them only interactive jobs begin.
+  const auto threads = static_cast<std::size_t>(std::max(1, threads_));
+  return running_.size() < 2 * threads ||
+         (next->urgency() == Urgency::kInteractive && running_.size() < 4 * threads);
 }
 
 std::optional<QueuedJob> ClaimPolicy::begin() {

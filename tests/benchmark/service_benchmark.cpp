@@ -598,8 +598,18 @@ v1::CreateSimulationRequest request_of(const v1::Simulation& simulation,
 
 constexpr char kOneClient[] = "one";
 
-/// Fills the queue with jobs of one client: points, curves of a thousand points, and marched curves
-/// that do not end on their own.
+/// A point with a history of a million numbers.
+v1::Simulation point_with_history(int number) {
+  v1::Simulation out = point_at(120 + 1e-3 * number);
+  v1::HistoryRequest* history = out.mutable_operating_point()->mutable_history();
+  history->add_columns("mesh_force_newtons");
+  history->set_mesh_cycles(10);
+  history->set_samples_per_mesh_cycle(100'000);
+  return out;
+}
+
+/// Fills the queue with jobs of one client: points, histories, curves of a thousand points, and
+/// marched curves that do not end on their own.
 void fill_queue(Stub& stub, int jobs) {
   const Latencies filled =
       closed_loop(32, jobs, [&](int number, const std::function<void(bool)>& done) {
@@ -607,6 +617,7 @@ void fill_queue(Stub& stub, int jobs) {
         v1::Simulation simulation = point_at(20 + 1e-3 * number);
         if (number % 3 == 1) simulation = long_curve(number % 1000);
         if (number % 100 == 2) simulation = endless();
+        if (number % 100 == 5) simulation = point_with_history(number);
         call->request = request_of(simulation, v1::SCHEDULING_CLASS_UNSPECIFIED);
         call->request.set_force(true);
         call->context.AddMetadata("tribodyn-client", kOneClient);

@@ -98,6 +98,22 @@ TEST_F(ExecutorTest, AnInteractiveJobEndsBesideTheLongJobOfItsClientOnTheOnlyThr
   EXPECT_TRUE(bench_->reaches(curve, v1::Simulation::SUCCEEDED));
 }
 
+TEST_F(ExecutorTest, AJobEndsWhileTheLongHistoryOfAnotherIsWritten) {
+  begin(1);
+  v1::Simulation with_history = point_simulation();
+  v1::HistoryRequest* history = with_history.mutable_operating_point()->mutable_history();
+  for (const char* column : {"mesh_force_newtons", "mesh_loss_power_watts", "time_seconds"}) {
+    history->add_columns(column);
+  }
+  history->set_mesh_cycles(50);
+  history->set_samples_per_mesh_cycle(100'000);
+  const std::string large = bench_->create(with_history);
+  const std::string point = create("", 70);
+  ASSERT_TRUE(bench_->reaches(point, v1::Simulation::SUCCEEDED));
+  EXPECT_EQ(bench_->get(large).state(), v1::Simulation::RUNNING);
+  EXPECT_TRUE(bench_->reaches(large, v1::Simulation::SUCCEEDED));
+}
+
 TEST_F(ExecutorTest, AnInteractiveJobThatOutrunsItsEstimateOnALentThreadWaitsAgain) {
   begin(1);
   const std::string curve = bench_->create(curve_simulation());

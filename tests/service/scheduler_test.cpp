@@ -127,6 +127,20 @@ TEST(ClaimPolicy, TheNextBeginsWhileResultsAreWrittenButTheseDoNotHeapUp) {
   EXPECT_EQ(begun(policy), 3);
 }
 
+TEST(ClaimPolicy, AnInteractiveJobBeginsWhileResultsAreWritten) {
+  ClaimPolicy policy = policy_of(1);
+  for (int id = 1; id <= 3; ++id) policy.add({id});
+  for (int id = 1; id <= 2; ++id) {
+    EXPECT_EQ(begun(policy), id);
+    policy.computed(id, 0);
+  }
+  EXPECT_EQ(begun(policy), 0);
+  policy.add({10, "", 0, false, kInteractive});
+  EXPECT_EQ(begun(policy), 10);
+  policy.computed(10, 0);
+  EXPECT_EQ(begun(policy), 0) << "not the others";
+}
+
 TEST(ClaimPolicy, BytesOfUnwrittenResultsAreBounded) {
   ClaimPolicy policy = policy_of(8, {.unwritten_bytes = 100});
   for (int id = 1; id <= 4; ++id) {
