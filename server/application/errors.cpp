@@ -10,6 +10,7 @@
 
 #include "google/rpc/error_details.pb.h"
 #include "server/application/log_text.h"
+#include "server/contract/resource_names.h"
 
 namespace tribodyn::server {
 namespace {
@@ -143,6 +144,18 @@ google::rpc::Status aborted(v1::ErrorReason reason, const std::string& type,
   add_resource(type, name, status);
   if (may_retry) add_retry(kContentionSeconds, status);
   return status;
+}
+
+google::rpc::Status etag_mismatch(const std::string& type, const std::string& name,
+                                  const std::string& etag) {
+  return aborted(v1::ERROR_REASON_ETAG_MISMATCH, type, name,
+                 name + " has changed since this etag was given out; get it again", false,
+                 {{"etag", plain_excerpt(etag)}});
+}
+
+google::rpc::Status contention(const std::string& type, const std::string& name) {
+  return aborted(v1::ERROR_REASON_CONTENTION, type, name,
+                 name + " keeps being changed by others; try again", true);
 }
 
 google::rpc::Status store_failed(const StoreError& failure) {

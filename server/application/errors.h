@@ -59,6 +59,11 @@ google::rpc::Status aborted(v1::ErrorReason reason, const std::string& type,
                             const std::string& name, const std::string& message, bool may_retry,
                             const ErrorMetadata& metadata = {});
 
+/// aborted(): the client's etag is not the present one; others kept writing.
+google::rpc::Status etag_mismatch(const std::string& type, const std::string& name,
+                                  const std::string& etag);
+google::rpc::Status contention(const std::string& type, const std::string& name);
+
 /// What a client is told of a failure of the database: DEADLINE_EXCEEDED, CANCELLED, DATA_LOSS, or
 /// UNAVAILABLE with RetryInfo. It names no file of the server.
 google::rpc::Status store_failed(const StoreError& failure);

@@ -142,6 +142,7 @@ std::vector<Method> rows() {
       unary(kRead, get_simulation),
       unary(kSearch, list_simulations),
       unary(kWrite, cancel_simulation),
+      unary(kWrite, delete_simulation),
       unary(kWrite, update_simulation),
       unary(kWrite, pin_simulation),
       unary(kWrite, unpin_simulation),

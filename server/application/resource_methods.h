@@ -37,15 +37,12 @@ google::rpc::Status name_taken(const std::string& name, bool deleted) {
 
 template <class Resource>
 google::rpc::Status etag_mismatch(const std::string& name, const std::string& etag) {
-  return aborted(v1::ERROR_REASON_ETAG_MISMATCH, Resource::descriptor()->full_name(), name,
-                 name + " has changed since this etag was given out; get it again", false,
-                 {{"etag", plain_excerpt(etag)}});
+  return etag_mismatch(Resource::descriptor()->full_name(), name, etag);
 }
 
 template <class Resource>
 google::rpc::Status contention(const std::string& name) {
-  return aborted(v1::ERROR_REASON_CONTENTION, Resource::descriptor()->full_name(), name,
-                 name + " keeps being changed by others; try again", true);
+  return contention(Resource::descriptor()->full_name(), name);
 }
 
 inline google::rpc::Status unreadable(const std::string& name) {

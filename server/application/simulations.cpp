@@ -375,7 +375,7 @@ Outcome<v1::Simulation> set_pinned(Application& application, const std::string& 
 
 namespace {
 
-constexpr int kRelabelAttempts = 10;  // against other writers
+constexpr int kWriteAttempts = 10;  // against other writers
 constexpr char kSimulationType[] = "tribodyn.v1.Simulation";
 
 /// Takes over into `target` what the request changes: its display name and labels.
@@ -417,16 +417,13 @@ Outcome<v1::Simulation> update_stored(Application& application,
                                       const v1::UpdateSimulationRequest& request,
                                       const CallContext& call) {
   const std::string& name = request.simulation().name();
-  for (int attempt = 0; attempt < kRelabelAttempts; ++attempt) {
+  for (int attempt = 0; attempt < kWriteAttempts; ++attempt) {
     const auto found = find_simulation(application, name, call);
     if (!found.ok()) return found.error();
     const StoredSimulation& present = found.message();
     const std::string& etag = request.simulation().etag();
-    if (!etag.empty() && etag != etag_of(present)) {
-      return aborted(v1::ERROR_REASON_ETAG_MISMATCH, kSimulationType, name,
-                     name + " has changed since this etag was given out; get it again", false,
-                     {{"etag", plain_excerpt(etag)}});
-    }
+    if (!etag.empty() && etag != etag_of(present))
+      return etag_mismatch(kSimulationType, name, etag);
     v1::Simulation changed;
     changed.ParseFromString(present.request);
     Violations violations;
@@ -438,11 +435,52 @@ Outcome<v1::Simulation> update_stored(Application& application,
                                                               labels, call.limits);
     if (updated) return to_message(application, *updated);
   }
-  return aborted(v1::ERROR_REASON_CONTENTION, kSimulationType, name,
-                 name + " keeps being changed by others; try again", true);
+  return contention(kSimulationType, name);
+}
+
+/// Why a simulation cannot be deleted as the request asks; nullopt if it can.
+std::optional<google::rpc::Status> undeletable(const StoredSimulation& stored,
+                                               const v1::DeleteSimulationRequest& request) {
+  if (!request.etag().empty() && request.etag() != etag_of(stored)) {
+    return etag_mismatch(kSimulationType, request.name(), request.etag());
+  }
+  if (stored.is_pinned) {
+    return not_possible(v1::ERROR_REASON_PINNED, kSimulationType, request.name(),
+                        request.name() + " is pinned; unpin it to delete it");
+  }
+  if (has_ended(stored.state) || request.cancel()) return std::nullopt;
+  const std::string state =
+      v1::Simulation::State_Name(static_cast<v1::Simulation::State>(stored.state));
+  return not_possible(v1::ERROR_REASON_NOT_ENDED, kSimulationType, request.name(),
+                      fmt::format("{} is {}; cancel it to delete it", request.name(), state),
+                      {{"state", state}});
 }
 
 }  // namespace
+
+Outcome<google::protobuf::Empty> delete_simulation(Application& application,
+                                                   const v1::DeleteSimulationRequest& request,
+                                                   const CallContext& call) {
+  using google::protobuf::Empty;
+  return guarded<Empty>([&]() -> Outcome<Empty> {
+    for (int attempt = 0; attempt < kWriteAttempts; ++attempt) {
+      const auto found = find_simulation(application, request.name(), call);
+      if (!found.ok()) {
+        const bool is_missing = found.error().code() == google::rpc::NOT_FOUND;
+        if (is_missing && request.allow_missing()) return Empty();
+        return found.error();
+      }
+      const StoredSimulation& stored = found.message();
+      if (auto refused = undeletable(stored, request)) return *std::move(refused);
+      if (!has_ended(stored.state)) application.jobs.cancel(stored.id, call.limits);
+      if (application.store.remove_simulation(stored.id, stored.request, call.limits) ==
+          Store::Removal::kDone) {
+        return Empty();
+      }
+    }
+    return contention(kSimulationType, request.name());
+  });
+}
 
 Outcome<v1::Simulation> update_simulation(Application& application,
                                           const v1::UpdateSimulationRequest& request,

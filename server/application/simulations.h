@@ -1,5 +1,7 @@
 #pragma once
 
+#include <google/protobuf/empty.pb.h>
+
 #include "server/application/application.h"
 #include "server/application/call_context.h"
 #include "server/application/outcome.h"
@@ -23,6 +25,11 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
 Outcome<v1::Simulation> cancel_simulation(Application& application,
                                           const v1::CancelSimulationRequest& request,
                                           const CallContext& call = {});
+
+/// Removes it for good, with its result unless another simulation shares that.
+Outcome<google::protobuf::Empty> delete_simulation(Application& application,
+                                                   const v1::DeleteSimulationRequest& request,
+                                                   const CallContext& call = {});
 
 /// Changes its display name or labels. Answers without its result.
 Outcome<v1::Simulation> update_simulation(Application& application,

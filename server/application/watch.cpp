@@ -34,6 +34,8 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     jobs_.wake(observer);
   }
 
+  google::rpc::Status error() const override { return error_; }
+
   Step next(v1::SimulationEvent& out) override {
     if (is_over_) return Step::kEnd;
     const ProgressChannel::Latest latest = channel_->latest();
@@ -44,6 +46,10 @@ class Watch : public MessageSource<v1::SimulationEvent> {
       if (const auto event = store_.next_event(simulation_.id, sent_, limits_)) {
         tell_event(*event, out);
         return Step::kMessage;
+      }
+      if (!store_.simulation(simulation_.id, limits_)) {
+        error_ = does_not_exist(simulation_name(simulation_.id));
+        return Step::kEnd;
       }
     }
     const bool is_news = simulation_.state == StoredState::kRunning && latest.sequence <= sent_ &&
@@ -98,6 +104,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   std::int64_t sent_;
   std::uint64_t told_progress_ = 0;
   bool is_over_;
+  google::rpc::Status error_;  // set if the simulation was deleted
   steady_clock::time_point last_message_ = steady_clock::now();
 };
 

@@ -572,9 +572,10 @@ void Scheduler::fail(const Lease& lease, const std::string& reason, const std::s
 }
 
 /// Publishes the event on the simulation's channel. Without an event another thread has ended the
-/// simulation, and a channel that was opened since then needs that end.
+/// simulation, and a channel that was opened since then needs that end. A deleted simulation has
+/// ended.
 void Scheduler::publish(std::int64_t id, const std::optional<StoredEvent>& event) {
-  StoredState state = StoredState::kQueued;
+  StoredState state = StoredState::kCancelled;
   std::int64_t sequence = 0;
   if (event) {
     state = event->state;

@@ -329,16 +329,18 @@ std::optional<StoredSimulation> Store::relabel_simulation(
   return out;
 }
 
-Store::Removal Store::remove_simulation(std::int64_t id, const CallLimits& limits) {
+Store::Removal Store::remove_simulation(std::int64_t id, const std::optional<std::string>& request,
+                                        const CallLimits& limits) {
   return write(limits, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    Prepared query(db, "SELECT state, pinned FROM simulations WHERE id = ?");
+    Prepared query(db, "SELECT state, pinned, request FROM simulations WHERE id = ?");
     query.bind(1, id);
     if (!query.executeStep()) return Removal::kAbsent;
     if (query.getColumn(0).getInt() < static_cast<int>(StoredState::kSucceeded)) {
       return Removal::kUnfinished;
     }
     if (query.getColumn(1).getInt() != 0) return Removal::kPinned;
+    if (request && bytes_of(query.getColumn(2)) != *request) return Removal::kChanged;
     query.reset();
     server::remove_simulation(db, id);
     transaction.commit();

@@ -91,9 +91,11 @@ class Store {
       const StoredSimulation& present, const std::string& request,
       const std::vector<std::pair<std::string, std::string>>& labels,
       const CallLimits& limits = {});
-  /// Removes an ended simulation that is not pinned.
-  enum class Removal { kDone, kAbsent, kUnfinished, kPinned };
-  Removal remove_simulation(std::int64_t id, const CallLimits& limits = {});
+  /// Removes a simulation. Changes nothing unless it has ended, is not pinned and, if `request` is
+  /// stated, still has that request.
+  enum class Removal { kDone, kAbsent, kUnfinished, kPinned, kChanged };
+  Removal remove_simulation(std::int64_t id, const std::optional<std::string>& request = {},
+                            const CallLimits& limits = {});
   /// Removes a resource with all its revisions and, if `with_simulations`, every simulation that
   /// used one of them. Changes nothing, and returns revisions 0, if the resource has changed since
   /// it was read, if such a simulation is unfinished, or if there is one and `with_simulations` is

@@ -280,6 +280,17 @@ err_has 'See tribodyn help filters'
 expect 1 jobs wait "$job"
 expect 1 jobs rerun none
 
+echo "--- jobs are deleted for good, but neither while they run nor while they are pinned"
+expect 0 jobs pin "$job"
+expect 1 jobs delete "$job"
+err_has 'is pinned; unpin it'
+expect 0 jobs unpin "$job"
+expect 0 jobs delete "$job"
+err_has "^deleted simulations/$job\$"
+expect 1 jobs delete "$job"
+err_has "simulations/$job does not exist"
+expect 0 jobs delete "$job" --allow-missing
+
 echo "--- a job is computed once, and again with --force"
 point=(point --lubricant paper-fluid-2 --speed 50 --model quasi-static --output json)
 expect 0 "${point[@]}"

@@ -53,6 +53,7 @@ std::vector<Command> all_commands() {
   commands.push_back(jobs_wait_command());
   commands.push_back(jobs_cancel_command());
   commands.push_back(jobs_rerun_command());
+  commands.push_back(jobs_delete_command());
   commands.push_back(jobs_pin_command());
   commands.push_back(jobs_unpin_command());
   commands.push_back(help_command());

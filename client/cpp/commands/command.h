@@ -73,6 +73,7 @@ Command jobs_watch_command();
 Command jobs_cancel_command();
 Command jobs_wait_command();
 Command jobs_rerun_command();
+Command jobs_delete_command();
 Command jobs_pin_command();
 Command jobs_unpin_command();
 

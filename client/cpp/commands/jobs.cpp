@@ -23,6 +23,7 @@ struct JobFlags {
   std::vector<std::string> names;
   ListOptions list;
   std::vector<std::string> labels;
+  DeleteOptions deletion;
   bool shows_assumptions = false;
 };
 
@@ -208,6 +209,16 @@ int run_cancel(const JobFlags& flags, const CommonOptions& options) {
   return kExitOk;
 }
 
+int run_delete(const JobFlags& flags, const CommonOptions& options) {
+  Connection connection = options.connect();
+  for (const std::string& each : flags.names) {
+    const std::string name = resource_name("simulations", each);
+    connection.delete_simulation(name, flags.deletion);
+    std::cerr << "deleted " << printable(name) << "\n";
+  }
+  return kExitOk;
+}
+
 int run_pin(const JobFlags& flags, const CommonOptions& options) {
   return run_each(flags, options, &Connection::pin_simulation);
 }
@@ -218,8 +229,8 @@ int run_unpin(const JobFlags& flags, const CommonOptions& options) {
 
 Command job_command(const char* path, const char* summary, const char* about, const char* example,
                     bool several, bool shows_results,
-                    int (*run)(const JobFlags&, const CommonOptions&)) {
-  const auto flags = std::make_shared<JobFlags>();
+                    int (*run)(const JobFlags&, const CommonOptions&),
+                    const std::shared_ptr<JobFlags>& flags = std::make_shared<JobFlags>()) {
   Command command{path, summary, about, {example}, {}, {}, {}};
   command.flags.group("Arguments");
   const char* description = "The job, e.g. 12 or simulations/12 (`tribodyn jobs list`).";
@@ -316,6 +327,21 @@ Command jobs_cancel_command() {
   return job_command("jobs cancel", "cancel jobs",
                      "Cancels jobs; a job that has ended does not change.",
                      "tribodyn jobs cancel 12", true, false, run_cancel);
+}
+
+Command jobs_delete_command() {
+  const auto flags = std::make_shared<JobFlags>();
+  Command command = job_command(
+      "jobs delete", "delete jobs and their results for good",
+      "Deletes jobs with their events, results and histories. A result that another job shares "
+      "stays. Refused while a job is pinned, or has not ended unless --cancel is set.",
+      "tribodyn jobs delete 12 --cancel", true, false, run_delete, flags);
+  command.flags.group("Options");
+  command.flags.toggle("--cancel", "Cancel jobs that have not ended, then delete them.",
+                       [flags] { flags->deletion.cancel = true; });
+  command.flags.toggle("--allow-missing", "Skip jobs that do not exist.",
+                       [flags] { flags->deletion.allow_missing = true; });
+  return command;
 }
 
 Command jobs_pin_command() {

@@ -18,6 +18,10 @@ using std::chrono::milliseconds;
 constexpr milliseconds kFirstPause(100);
 constexpr milliseconds kLongestPause(5000);
 
+bool has_field(const Message& request, const std::string& field) {
+  return request.GetDescriptor()->FindFieldByName(field) != nullptr;
+}
+
 bool is_set(const Message& request, const std::string& field) {
   const auto* descriptor = request.GetDescriptor()->FindFieldByName(field);
   if (descriptor == nullptr) return false;
@@ -44,6 +48,9 @@ bool may_repeat(const Message& request) {
   static constexpr std::array<std::string_view, 5> kRepeatable = {"Get", "List", "Evaluate",
                                                                   "Cancel", "Delete"};
   const std::string& name = request.GetDescriptor()->name();
+  // The repetition of a deletion for good would not find what the first one deleted.
+  const bool deletes_for_good = name.starts_with("Delete") && has_field(request, "allow_missing");
+  if (deletes_for_good) return is_set(request, "allow_missing");
   return std::any_of(kRepeatable.begin(), kRepeatable.end(),
                      [&](std::string_view each) { return name.starts_with(each); }) ||
          is_set(request, "validate_only") || is_set(request, "request_id");

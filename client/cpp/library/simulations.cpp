@@ -57,6 +57,15 @@ v1::Simulation Connection::cancel_simulation(const std::string& name) {
                          request);
 }
 
+void Connection::delete_simulation(const std::string& name, const DeleteOptions& options) {
+  v1::DeleteSimulationRequest request;
+  request.set_name(name);
+  request.set_cancel(options.cancel);
+  request.set_allow_missing(options.allow_missing);
+  request.set_etag(options.etag);
+  services_->call(*services_->simulations, &v1::SimulationService::Stub::DeleteSimulation, request);
+}
+
 v1::Simulation Connection::pin_simulation(const std::string& name) {
   v1::PinSimulationRequest request;
   request.set_name(name);

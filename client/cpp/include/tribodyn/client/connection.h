@@ -80,6 +80,13 @@ struct CreateOptions {
       {};  ///< a repeated request with the same id starts no second simulation; empty: random
 };
 
+/// Options of the deletion of a simulation.
+struct DeleteOptions {
+  bool cancel = false;         ///< cancel it first if it has not ended
+  bool allow_missing = false;  ///< succeed if it does not exist
+  std::string etag = {};       ///< refused unless this is the present one; empty: any
+};
+
 /// The part of a history to read.
 struct HistoryOptions {
   std::vector<std::string> columns = {};  ///< empty: all
@@ -156,6 +163,8 @@ class Connection {
                                    const CreateOptions& options = {});
   v1::Simulation get_simulation(const std::string& name);
   v1::Simulation cancel_simulation(const std::string& name);
+  /// Removes a simulation for good, with its result unless another simulation shares that.
+  void delete_simulation(const std::string& name, const DeleteOptions& options = {});
   /// Lists simulations without results, newest first unless options.order_by is set. Filters as in
   /// ListSimulationsRequest.
   Listing<v1::Simulation> list_simulations(const ListOptions& options = {});
