@@ -90,6 +90,7 @@ std::vector<Method> rows() {
                                     v1::ListLubricantRevisionsRequest>),
       unary(kWrite, delete_resource<v1::Lubricant, v1::DeleteLubricantRequest>),
       unary(kWrite, undelete_resource<v1::Lubricant, v1::UndeleteLubricantRequest>),
+      unary(kHeavy, purge_resource<v1::Lubricant, v1::PurgeLubricantRequest>),
 
       unary(kWrite, write_resource<v1::GearSet, v1::CreateGearSetRequest>),
       unary(kHeavy, write_batch<v1::GearSet, v1::BatchCreateGearSetsResponse,
@@ -105,6 +106,7 @@ std::vector<Method> rows() {
                                     v1::ListGearSetRevisionsRequest>),
       unary(kWrite, delete_resource<v1::GearSet, v1::DeleteGearSetRequest>),
       unary(kWrite, undelete_resource<v1::GearSet, v1::UndeleteGearSetRequest>),
+      unary(kHeavy, purge_resource<v1::GearSet, v1::PurgeGearSetRequest>),
 
       unary(kWrite, write_resource<v1::Surface, v1::CreateSurfaceRequest>),
       unary(kHeavy, write_batch<v1::Surface, v1::BatchCreateSurfacesResponse,
@@ -120,6 +122,7 @@ std::vector<Method> rows() {
                                     v1::ListSurfaceRevisionsRequest>),
       unary(kWrite, delete_resource<v1::Surface, v1::DeleteSurfaceRequest>),
       unary(kWrite, undelete_resource<v1::Surface, v1::UndeleteSurfaceRequest>),
+      unary(kHeavy, purge_resource<v1::Surface, v1::PurgeSurfaceRequest>),
 
       unary(kWrite, write_resource<v1::Vehicle, v1::CreateVehicleRequest>),
       unary(kHeavy, write_batch<v1::Vehicle, v1::BatchCreateVehiclesResponse,
@@ -134,6 +137,7 @@ std::vector<Method> rows() {
                                     v1::ListVehicleRevisionsRequest>),
       unary(kWrite, delete_resource<v1::Vehicle, v1::DeleteVehicleRequest>),
       unary(kWrite, undelete_resource<v1::Vehicle, v1::UndeleteVehicleRequest>),
+      unary(kHeavy, purge_resource<v1::Vehicle, v1::PurgeVehicleRequest>),
 
       unary(kRead, get_schema),
       unary<v1::EvaluateContactRequest, v1::EvaluateContactResponse>(kSearch, evaluate_contact),

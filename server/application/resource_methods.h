@@ -19,6 +19,7 @@
 #include "server/application/stored_messages.h"
 #include "server/contract/output_only.h"
 #include "server/resources/lubricant_parameters.h"
+#include "tribodyn/v1/purge_report.pb.h"
 
 namespace tribodyn::server {
 
@@ -169,6 +170,60 @@ template <class Resource, class Request>
 Outcome<Resource> undelete_resource(Application& application, const Request& request,
                                     const CallContext& call) {
   return set_deleted<Resource>(application, request, false, call);
+}
+
+/// Why a resource cannot be purged as the request asks; nullopt if it can.
+template <class Resource, class Request>
+std::optional<google::rpc::Status> unpurgeable(const StoredResource& present,
+                                               const Dependents& simulations,
+                                               const Request& request) {
+  if (!request.etag().empty() && request.etag() != etag_of(present)) {
+    return etag_mismatch<Resource>(present.name, request.etag());
+  }
+  const int count = simulations.count();
+  if (count == 0 || request.delete_simulations()) return std::nullopt;
+  return not_possible(v1::ERROR_REASON_IN_USE, Resource::descriptor()->full_name(), present.name,
+                      fmt::format("{} {} used {}; delete_simulations deletes them too", count,
+                                  count == 1 ? "simulation" : "simulations", present.name),
+                      {{"simulations", std::to_string(count)}});
+}
+
+/// Erases a resource with all its revisions, and what a former purge left to be erased.
+template <class Resource, class Request>
+Outcome<v1::PurgeReport> purge_resource(Application& application, const Request& request,
+                                        const CallContext& call) {
+  Store& store = application.store;
+  v1::PurgeReport report;
+  report.set_name(request.name());
+  const auto erase = [&] {
+    for (const auto& file : store.erase_removed()) report.add_remaining_files(file.filename());
+    return report;
+  };
+  for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
+    const auto found = find_stored<Resource>(application, request.name(), false, call);
+    if (!found.ok()) {
+      const bool is_missing = found.error().code() == google::rpc::NOT_FOUND;
+      if (!is_missing || !request.allow_missing()) return found.error();
+      return store.has_unerased_purge() && !request.validate_only() ? erase() : report;
+    }
+    const StoredResource& present = found.message();
+    const Dependents simulations = store.dependents_of(present, call.limits);
+    if (auto refused = unpurgeable<Resource>(present, simulations, request)) {
+      return *std::move(refused);
+    }
+    report.set_revisions(present.revision);  // numbered from 1 without gaps
+    report.set_simulations(simulations.count());
+    report.set_results(simulations.results);
+    if (request.validate_only()) return report;
+    for (const std::int64_t id : simulations.unfinished) application.jobs.cancel(id, call.limits);
+    const Store::Purge purge =
+        store.purge_resource(present, request.delete_simulations(), call.limits);
+    if (purge.revisions == 0) continue;  // others changed or used it meanwhile
+    report.set_simulations(purge.simulations.count());
+    report.set_results(purge.simulations.results);
+    return erase();
+  }
+  return contention<Resource>(request.name());
 }
 
 /// Appends to a response what the mask asks for of each row; an error if one cannot be read.

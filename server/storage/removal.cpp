@@ -4,20 +4,26 @@
 #include <sqlite3.h>
 
 #include <chrono>
+#include <map>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "server/storage/resource_types.h"
+
 namespace tribodyn::server {
 namespace {
 
-/// Selects simulations that name a revision of resource ?1. Only `lubricant` has an index: SQLite
-/// reads all simulations.
-constexpr char kOfResource[] =
-    "FROM simulations WHERE lubricant IN (SELECT id FROM revisions WHERE resource = ?1) "
-    "OR gear_set IN (SELECT id FROM revisions WHERE resource = ?1) "
-    "OR surface IN (SELECT id FROM revisions WHERE resource = ?1) "
-    "OR vehicle IN (SELECT id FROM revisions WHERE resource = ?1)";
+/// Returns the condition that a simulation used a revision of resource ?1. Of the columns only
+/// `lubricant` has an index: for a resource of another kind SQLite reads all simulations.
+std::string uses(const StoredResource& resource) {
+  static const std::map<std::string, std::string> kColumns = {{"lubricants", "lubricant"},
+                                                              {"gearSets", "gear_set"},
+                                                              {"surfaces", "surface"},
+                                                              {"vehicles", "vehicle"}};
+  return kColumns.at(collection_of(resource.name)) +
+         " IN (SELECT id FROM revisions WHERE resource = ?1)";
+}
 
 int remove_rows(Connection& db, const char* sql, std::int64_t key) {
   Prepared statement(db, sql);
@@ -26,7 +32,7 @@ int remove_rows(Connection& db, const char* sql, std::int64_t key) {
 }
 
 std::vector<std::int64_t> simulations_of(Connection& db, const StoredResource& resource) {
-  Prepared query(db, std::string("SELECT id ") + kOfResource);
+  Prepared query(db, "SELECT id FROM simulations WHERE " + uses(resource));
   query.bind(1, resource.id);
   std::vector<std::int64_t> out;
   while (query.executeStep()) out.push_back(query.getColumn(0).getInt64());
@@ -70,12 +76,25 @@ std::int64_t remove_simulation(Connection& db, std::int64_t id) {
 }
 
 Dependents dependents_of(Connection& db, const StoredResource& resource) {
-  Prepared query(db, std::string("SELECT count(*) FILTER (WHERE state < 3), "
-                                 "count(*) FILTER (WHERE state >= 3) ") +
-                         kOfResource);
+  Dependents out;
+  Prepared query(db, "SELECT id, state FROM simulations WHERE " + uses(resource));
   query.bind(1, resource.id);
-  query.executeStep();
-  return {query.getColumn(0).getInt(), query.getColumn(1).getInt()};
+  while (query.executeStep()) {
+    if (query.getColumn(1).getInt() < 3) {
+      out.unfinished.push_back(query.getColumn(0).getInt64());
+    } else {
+      ++out.ended;
+    }
+  }
+  Prepared results(db, "SELECT count(DISTINCT result) FROM simulations AS own WHERE " +
+                           uses(resource) +
+                           " AND NOT EXISTS (SELECT 1 FROM simulations WHERE result = own.result "
+                           "AND NOT " +
+                           uses(resource) + ")");
+  results.bind(1, resource.id);
+  results.executeStep();
+  out.results = results.getColumn(0).getInt();
+  return out;
 }
 
 int remove_resource(Connection& db, const StoredResource& resource) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "server/storage/connection.h"
 #include "server/storage/stored_resource.h"
@@ -12,14 +13,16 @@ namespace tribodyn::server {
 /// transaction. Throws SQLite::Exception.
 std::int64_t remove_simulation(Connection& db, std::int64_t id);
 
-/// Simulations that were computed with any revision of a resource.
+/// Simulations that used any revision of a resource.
 struct Dependents {
-  int unfinished = 0;  ///< QUEUED or RUNNING
+  std::vector<std::int64_t> unfinished;  ///< QUEUED or RUNNING
   int ended = 0;
+  int results = 0;  ///< results that no other simulation has
+
+  int count() const { return static_cast<int>(unfinished.size()) + ended; }
 };
 
-/// Returns the number of simulations that used a revision of the resource. Throws
-/// SQLite::Exception.
+/// Returns the simulations that used a revision of the resource. Throws SQLite::Exception.
 Dependents dependents_of(Connection& db, const StoredResource& resource);
 
 /// Removes a resource with all its revisions, and every simulation, pinned or not, that used one of

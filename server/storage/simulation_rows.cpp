@@ -208,6 +208,12 @@ std::optional<StoredEvent> not_reproduced(Connection& db, std::int64_t id, Micro
                            .attempt = attempt});
 }
 
+bool is_running(Connection& db, std::int64_t id) {
+  Prepared query(db, "SELECT 1 FROM simulations WHERE id = ? AND state = 2");
+  query.bind(1, id);
+  return query.executeStep();
+}
+
 /// Bit for bit, histories too.
 bool is_same_result(Connection& db, std::int64_t row, const NewResult& result) try {
   Prepared body(db, "SELECT 1 FROM results WHERE id = ? AND body = ? AND checksum = ?");
@@ -429,6 +435,9 @@ std::optional<std::string> query_result(Connection& db, std::int64_t id) {
 std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
                                              const NewResult& result, std::optional<int> attempt,
                                              const std::vector<CompressedColumn>& history) {
+  // Before anything is written: what is rolled back may already be in the write-ahead log, and a
+  // purge may have erased what the result rests on.
+  if (!is_running(db, id)) return std::nullopt;
   std::optional<std::int64_t> row = result_row(db, result.key);
   if (row && !is_same_result(db, *row, result)) {
     if (is_whole_result(db, *row)) return not_reproduced(db, id, now, result.key, attempt);

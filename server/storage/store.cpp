@@ -352,22 +352,29 @@ Store::Purge Store::purge_resource(const StoredResource& present, bool with_simu
                                    const CallLimits& limits) {
   return write(limits, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    Purge out{.is_current = is_unchanged(db, present), .simulations = dependents_of(db, present)};
+    Purge out{.is_current = is_unchanged(db, present),
+              .simulations = server::dependents_of(db, present)};
     const bool may_go =
-        out.simulations.unfinished == 0 && (with_simulations || out.simulations.ended == 0);
+        out.simulations.unfinished.empty() && (with_simulations || out.simulations.ended == 0);
     if (!out.is_current || !may_go) return out;
+    has_unerased_purge_ = true;
     out.revisions = remove_resource(db, present);
     transaction.commit();
     return out;
   });
 }
 
+Dependents Store::dependents_of(const StoredResource& present, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return server::dependents_of(db, present); });
+}
+
 std::vector<std::filesystem::path> Store::erase_removed() {
-  write({}, [](Connection& db) {
+  write({}, [this](Connection& db) {
     server::erase_removed(db);
+    remove_migration_backups(path_);
+    has_unerased_purge_ = false;  // under the writer's lock: no purge comes between
     return true;
   });
-  remove_migration_backups(path_);
   return former_databases(path_);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
@@ -107,10 +108,15 @@ class Store {
   };
   Purge purge_resource(const StoredResource& present, bool with_simulations,
                        const CallLimits& limits = {});
+  /// Returns what purge_resource() would find, and changes nothing.
+  Dependents dependents_of(const StoredResource& present, const CallLimits& limits = {});
   /// Like erase_removed() of removal.h, and removes the copies that migrations made. Other writers
   /// wait meanwhile. Returns the old databases that restores kept, which may still contain removed
   /// rows.
   std::vector<std::filesystem::path> erase_removed();
+  /// Returns false if nothing was purged since the last erase_removed(). True in a new process, as
+  /// the one before may have ended between the two.
+  bool has_unerased_purge() const { return has_unerased_purge_; }
 
   // Like the functions of retention.h.
   Removed remove_oldest(Microseconds ended_by, int limit);
@@ -194,6 +200,7 @@ class Store {
   GroupCommit group_commit_;
   ReaderPool readers_;
   std::optional<std::filesystem::path> migration_backup_;
+  std::atomic<bool> has_unerased_purge_ = true;
   std::optional<DatabaseFiles> files_;  // set by the constructor when the files exist
 };
 

@@ -132,6 +132,17 @@ expect 1 point --lubricant my-oil --speed 50
 expect 0 lubricants undelete my-oil
 expect 0 lubricants list
 out_has '^my-oil '
+expect 0 lubricants create secret --like my-oil
+expect 0 point --lubricant secret --speed 50 --model quasi-static
+expect 1 lubricants purge secret
+err_has '1 simulation used lubricants/secret'
+expect 0 lubricants purge secret --with-jobs --validate-only
+out_has '^would erase lubricants/secret: 1 revision, 1 job, '
+expect 0 lubricants purge secret --with-jobs
+out_has '^erased lubricants/secret: 1 revision, 1 job, '
+expect 1 lubricants get secret
+expect 1 lubricants purge secret
+expect 0 lubricants purge secret --allow-missing
 
 echo "--- files there and back"
 for kind in lubricants gear-sets surfaces vehicles; do

@@ -38,6 +38,10 @@ TEST(Retry, RepeatsOnlyIdempotentRequests) {
   EXPECT_FALSE(may_repeat(deletion)) << "the second one would not find it";
   deletion.set_allow_missing(true);
   EXPECT_TRUE(may_repeat(deletion));
+  v1::PurgeLubricantRequest purge;
+  EXPECT_FALSE(may_repeat(purge));
+  purge.set_allow_missing(true);
+  EXPECT_TRUE(may_repeat(purge));
   EXPECT_FALSE(may_repeat(v1::UndeleteLubricantRequest())) << "the second one is refused";
   EXPECT_FALSE(may_repeat(v1::CreateLubricantRequest())) << "it may exist by now";
   EXPECT_FALSE(may_repeat(v1::UpdateLubricantRequest())) << "others may have changed it since";

@@ -69,7 +69,7 @@ TEST_F(DeleteTest, TheRepetitionOfADeletionSucceedsOnlyOnRequest) {
   EXPECT_EQ(remove(request).code(), google::rpc::NOT_FOUND);
   request.set_allow_missing(true);
   EXPECT_EQ(remove(request).code(), google::rpc::OK);
-  request.set_name("lubricants/1");
+  request.set_name("lubricants/paper-fluid-1");
   EXPECT_EQ(remove(request).code(), google::rpc::INVALID_ARGUMENT) << "what is no name";
 }
 

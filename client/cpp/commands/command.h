@@ -55,7 +55,8 @@ void add_common_flags(FlagList& flags, CommonOptions& options);
 /// Returns every command, in the order of the help.
 std::vector<Command> all_commands();
 
-/// Returns list, get, create, update, delete, undelete, revisions, import and export of one kind.
+/// Returns list, get, create, update, delete, undelete, purge, revisions, import and export of one
+/// kind.
 std::vector<Command> resource_commands(const ResourceKind& kind);
 
 Command point_command();

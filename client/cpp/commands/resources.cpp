@@ -179,6 +179,51 @@ Command deletion_command(const ResourceKind& kind, bool undelete) {
   return command;
 }
 
+std::string counted(int number, const char* singular, const char* plural) {
+  return std::to_string(number) + " " + (number == 1 ? singular : plural);
+}
+
+Command purge_command(const ResourceKind& kind) {
+  const auto flags = std::make_shared<NameFlags>();
+  const auto purge = std::make_shared<PurgeOptions>();
+  Command command = name_command(
+      kind, "purge", "erase " + kind.plural + " for good",
+      "Erases " + kind.plural +
+          " with all revisions: their numbers and texts are then in no file of the server's "
+          "database. Nothing restores them. Refused while jobs used one of them, unless "
+          "--with-jobs is set.",
+      flags, true);
+  command.flags.group("Options");
+  command.flags.toggle("--with-jobs",
+                       "Delete every job that used them too, pinned or not, with its results.",
+                       [purge] { purge->delete_simulations = true; });
+  command.flags.toggle("--validate-only", "Print what would be erased; erase nothing.",
+                       [purge] { purge->validate_only = true; });
+  command.flags.toggle("--allow-missing", "Skip names that do not exist.",
+                       [purge] { purge->allow_missing = true; });
+  command.flags.text("--etag", "ETAG", "Fail if the resource has changed since it had this etag.",
+                     [purge](const std::string& text) { purge->etag = text; });
+  command.run = [&kind, flags, purge](const CommonOptions& options) {
+    Connection connection = options.connect();
+    std::vector<std::string> remaining;
+    for (const std::string& name : flags->names) {
+      const v1::PurgeReport report = kind.calls->purge(connection, kind.name_of(name), *purge);
+      std::cout << (purge->validate_only ? "would erase " : "erased ") << printable(report.name())
+                << ": " << counted(report.revisions(), "revision", "revisions") << ", "
+                << counted(report.simulations(), "job", "jobs") << ", "
+                << counted(report.results(), "result", "results") << "\n";
+      remaining.assign(report.remaining_files().begin(), report.remaining_files().end());
+    }
+    for (const std::string& file : remaining) {
+      std::cerr << "A restore kept the former database beside the present one; it may still hold "
+                   "what was erased: "
+                << printable(file) << "\n";
+    }
+    return kExitOk;
+  };
+  return command;
+}
+
 }  // namespace
 
 std::vector<Command> resource_commands(const ResourceKind& kind) {
@@ -189,6 +234,7 @@ std::vector<Command> resource_commands(const ResourceKind& kind) {
   commands.push_back(update_command(kind));
   commands.push_back(deletion_command(kind, false));
   commands.push_back(deletion_command(kind, true));
+  commands.push_back(purge_command(kind));
   commands.push_back(revisions_command(kind));
   commands.push_back(import_command(kind));
   commands.back().main_flags = {"--id",      "--like",      "--replace",       "--validate-only",

@@ -23,6 +23,7 @@ struct Methods;
     using BatchUpdate = v1::BatchUpdate##Resource##sRequest;                                     \
     using Delete = v1::Delete##Resource##Request;                                                \
     using Undelete = v1::Undelete##Resource##Request;                                            \
+    using Purge = v1::Purge##Resource##Request;                                                  \
     static constexpr auto kCreate = &Stub::Create##Resource;                                     \
     static constexpr auto kGet = &Stub::Get##Resource;                                           \
     static constexpr auto kList = &Stub::List##Resource##s;                                      \
@@ -32,6 +33,7 @@ struct Methods;
     static constexpr auto kRevisions = &Stub::List##Resource##Revisions;                         \
     static constexpr auto kDelete = &Stub::Delete##Resource;                                     \
     static constexpr auto kUndelete = &Stub::Undelete##Resource;                                 \
+    static constexpr auto kPurge = &Stub::Purge##Resource;                                       \
     template <class Services>                                                                    \
     static Stub& stub(Services& services) {                                                      \
       return *services.field##s;                                                                 \
@@ -183,6 +185,17 @@ Resource Connection::undelete(const std::string& name, const std::string& etag) 
                          request);
 }
 
+template <class Resource>
+v1::PurgeReport Connection::purge(const std::string& name, const PurgeOptions& options) {
+  typename Methods<Resource>::Purge request;
+  request.set_name(name);
+  request.set_etag(options.etag);
+  request.set_delete_simulations(options.delete_simulations);
+  request.set_allow_missing(options.allow_missing);
+  request.set_validate_only(options.validate_only);
+  return services_->call(Methods<Resource>::stub(*services_), Methods<Resource>::kPurge, request);
+}
+
 #define TRIBODYN_INSTANTIATE(Resource)                                                        \
   template v1::Resource Connection::create(const v1::Resource&, const std::string&, bool);    \
   template v1::Resource Connection::get(const std::string&);                                  \
@@ -194,7 +207,8 @@ Resource Connection::undelete(const std::string& name, const std::string& etag) 
       const std::vector<ResourceUpdate<v1::Resource>>&, const BatchOptions&);                 \
   template Listing<v1::Resource> Connection::revisions(const std::string&, int);              \
   template v1::Resource Connection::remove(const std::string&, const std::string&);           \
-  template v1::Resource Connection::undelete(const std::string&, const std::string&)
+  template v1::Resource Connection::undelete(const std::string&, const std::string&);         \
+  template v1::PurgeReport Connection::purge<v1::Resource>(const std::string&, const PurgeOptions&)
 TRIBODYN_INSTANTIATE(Lubricant);
 TRIBODYN_INSTANTIATE(GearSet);
 TRIBODYN_INSTANTIATE(Surface);

@@ -49,7 +49,8 @@ bool may_repeat(const Message& request) {
                                                                   "Cancel", "Delete"};
   const std::string& name = request.GetDescriptor()->name();
   // The repetition of a deletion for good would not find what the first one deleted.
-  const bool deletes_for_good = name.starts_with("Delete") && has_field(request, "allow_missing");
+  const bool deletes_for_good = (name.starts_with("Delete") || name.starts_with("Purge")) &&
+                                has_field(request, "allow_missing");
   if (deletes_for_good) return is_set(request, "allow_missing");
   return std::any_of(kRepeatable.begin(), kRepeatable.end(),
                      [&](std::string_view each) { return name.starts_with(each); }) ||

@@ -55,6 +55,10 @@ class TypedCalls final : public ResourceCalls {
                            const std::string& etag) const override {
     return own(connection.undelete<Resource>(name, etag));
   }
+  v1::PurgeReport purge(Connection& connection, const std::string& name,
+                        const PurgeOptions& options) const override {
+    return connection.purge<Resource>(name, options);
+  }
 
  private:
   static const Resource& typed(const Message& message) {

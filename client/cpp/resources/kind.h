@@ -48,6 +48,8 @@ class ResourceCalls {
                                  const std::string& etag) const = 0;
   virtual ResourcePointer undelete(Connection& connection, const std::string& name,
                                    const std::string& etag) const = 0;
+  virtual v1::PurgeReport purge(Connection& connection, const std::string& name,
+                                const PurgeOptions& options) const = 0;
 };
 
 /// One of the four kinds of resource, with its names.

@@ -12,6 +12,7 @@
 #include "tribodyn/v1/contacts.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/purge_report.pb.h"
 #include "tribodyn/v1/schemas.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
 #include "tribodyn/v1/surfaces.pb.h"
@@ -87,6 +88,14 @@ struct DeleteOptions {
   std::string etag = {};       ///< refused unless this is the present one; empty: any
 };
 
+/// Options of a purge.
+struct PurgeOptions {
+  bool delete_simulations = false;  ///< delete every simulation that used the resource too
+  bool allow_missing = false;       ///< succeed if it does not exist
+  bool validate_only = false;       ///< tell what would be erased, erase nothing
+  std::string etag = {};            ///< refused unless this is the present one; empty: any
+};
+
 /// The part of a history to read.
 struct HistoryOptions {
   std::vector<std::string> columns = {};  ///< empty: all
@@ -148,6 +157,10 @@ class Connection {
   Resource remove(const std::string& name, const std::string& etag = "");
   template <class Resource>
   Resource undelete(const std::string& name, const std::string& etag = "");
+
+  /// Erases a resource with all its revisions for good.
+  template <class Resource>
+  v1::PurgeReport purge(const std::string& name, const PurgeOptions& options = {});
 
   // Create resources from tables of numbers as CSV texts; the requests describe the columns.
   v1::Lubricant import_lubricant(const v1::ImportLubricantRequest& request);
