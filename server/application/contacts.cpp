@@ -1,7 +1,6 @@
 #include "server/application/contacts.h"
 
 #include "server/application/errors.h"
-#include "server/application/guard.h"
 #include "server/simulation/contact_inputs.h"
 #include "server/storage/resource_lookup.h"
 
@@ -10,14 +9,11 @@ namespace tribodyn::server {
 Outcome<v1::EvaluateContactResponse> evaluate_contact(Application& application,
                                                       const v1::EvaluateContactRequest& request,
                                                       const CallContext& call) {
-  using Result = Outcome<v1::EvaluateContactResponse>;
-  return guarded<v1::EvaluateContactResponse>([&]() -> Result {
-    Violations violations;
-    const auto lubricant =
-        read_contact(request, resource_lookup(application.store, call.limits), violations);
-    if (!lubricant) return invalid(violations);
-    return evaluate_contact(request, *lubricant);
-  });
+  Violations violations;
+  const auto lubricant =
+      read_contact(request, resource_lookup(application.store, call.limits), violations);
+  if (!lubricant) return invalid(violations);
+  return evaluate_contact(request, *lubricant);
 }
 
 }  // namespace tribodyn::server

@@ -1,6 +1,5 @@
 #include "server/application/imports.h"
 
-#include "server/application/guard.h"
 #include "server/application/resource_writes.h"
 #include "server/resources/imports/import_gear_set.h"
 #include "server/resources/imports/import_lubricant.h"
@@ -14,15 +13,13 @@ namespace {
 template <class Resource, class Request, class Read>
 Outcome<Resource> import_resource(Application& application, const Request& request,
                                   const Read& read, const CallContext& call) {
-  return guarded<Resource>([&]() -> Outcome<Resource> {
-    Violations violations;
-    const std::string name = new_name<Resource>(Kind<Resource>::id(request),
-                                                Kind<Resource>::of(request).name(), violations);
-    const auto accepted =
-        read(request, name, resource_lookup(application.store, call.limits), violations);
-    if (!violations.empty() || !accepted) return invalid(violations);
-    return store_new(application, *accepted, request.validate_only(), call);
-  });
+  Violations violations;
+  const std::string name = new_name<Resource>(Kind<Resource>::id(request),
+                                              Kind<Resource>::of(request).name(), violations);
+  const auto accepted =
+      read(request, name, resource_lookup(application.store, call.limits), violations);
+  if (!violations.empty() || !accepted) return invalid(violations);
+  return store_new(application, *accepted, request.validate_only(), call);
 }
 
 }  // namespace

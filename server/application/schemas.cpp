@@ -6,7 +6,6 @@
 
 #include "core/version.h"
 #include "server/application/errors.h"
-#include "server/application/guard.h"
 #include "server/application/list_filter.h"
 #include "server/contract/constraints.h"
 #include "server/mapping/history_columns.h"
@@ -84,20 +83,18 @@ std::vector<std::string> known_messages() {
 
 Outcome<v1::Schema> get_schema(Application&, const v1::GetSchemaRequest& request,
                                const CallContext&) {
-  return guarded<v1::Schema>([&]() -> Outcome<v1::Schema> {
-    v1::Schema out;
-    out.set_model_version(kModelVersion);
-    for (const Constraint& row : constraints()) {
-      if (request.message().empty() || request.message() == row.message) add_constraint(row, out);
-    }
-    if (out.constraints().empty()) {
-      return invalid(
-          {{"message", fmt::format("\"{}\" has no constraints{}", plain_excerpt(request.message()),
-                                   meant_text(request.message(), known_messages()))}});
-    }
-    if (request.message().empty()) add_vocabularies(out);
-    return out;
-  });
+  v1::Schema out;
+  out.set_model_version(kModelVersion);
+  for (const Constraint& row : constraints()) {
+    if (request.message().empty() || request.message() == row.message) add_constraint(row, out);
+  }
+  if (out.constraints().empty()) {
+    return invalid(
+        {{"message", fmt::format("\"{}\" has no constraints{}", plain_excerpt(request.message()),
+                                 meant_text(request.message(), known_messages()))}});
+  }
+  if (request.message().empty()) add_vocabularies(out);
+  return out;
 }
 
 }  // namespace tribodyn::server

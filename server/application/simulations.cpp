@@ -8,7 +8,6 @@
 
 #include "server/application/element_limits.h"
 #include "server/application/errors.h"
-#include "server/application/guard.h"
 #include "server/application/list_filter.h"
 #include "server/application/page_token.h"
 #include "server/application/paging.h"
@@ -250,125 +249,117 @@ google::rpc::Status no_place(Application& application, double retry_seconds) {
 Outcome<v1::Simulation> create_simulation(Application& application,
                                           const v1::CreateSimulationRequest& request,
                                           const CallContext& call) {
-  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    Violations violations;
-    check_request_id(request.request_id(), violations);
-    if (!request.has_simulation()) violations.push_back({"simulation", "not set"});
-    check_choice(request, "scheduling_class", violations);
-    check_counts(request.simulation(), "simulation", violations);  // before work that they multiply
-    if (!violations.empty()) return invalid(violations);
-    const std::string text = request_text(client_part(request.simulation()), request.force());
-    // Before anything else, as what it rests on may have changed since.
-    auto earlier = earlier_answer(application, request, text, call);
-    if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
-    const StopWatch watch;
-    auto inputs =
-        read_simulation(request.simulation(), resource_lookup(application.store, call.limits),
-                        "simulation", violations);
-    application.jobs.metrics().observe(Phase::kValidation, watch.seconds());
-    if (!inputs) {
-      application.jobs.metrics().count(Submission::kInvalid);
-      return invalid(violations);
-    }
-    const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), call);
-    if (request.validate_only()) return preview(*inputs, simulation);
-    const auto [added, retry_seconds] = application.jobs.submit(
-        simulation, std::make_shared<const SimulationInputs>(std::move(*inputs)), call.limits);
-    log_submission(call, simulation, added);
-    if (added.kind == Added::Kind::kNoPlace) return no_place(application, retry_seconds);
-    if (added.kind == Added::Kind::kRequestIdTaken) {
-      return request_id_taken(added.stored, request, text);
-    }
-    return to_message(application, added.stored);
-  });
+  Violations violations;
+  check_request_id(request.request_id(), violations);
+  if (!request.has_simulation()) violations.push_back({"simulation", "not set"});
+  check_choice(request, "scheduling_class", violations);
+  check_counts(request.simulation(), "simulation", violations);  // before work that they multiply
+  if (!violations.empty()) return invalid(violations);
+  const std::string text = request_text(client_part(request.simulation()), request.force());
+  // Before anything else, as what it rests on may have changed since.
+  auto earlier = earlier_answer(application, request, text, call);
+  if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
+  const StopWatch watch;
+  auto inputs =
+      read_simulation(request.simulation(), resource_lookup(application.store, call.limits),
+                      "simulation", violations);
+  application.jobs.metrics().observe(Phase::kValidation, watch.seconds());
+  if (!inputs) {
+    application.jobs.metrics().count(Submission::kInvalid);
+    return invalid(violations);
+  }
+  const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), call);
+  if (request.validate_only()) return preview(*inputs, simulation);
+  const auto [added, retry_seconds] = application.jobs.submit(
+      simulation, std::make_shared<const SimulationInputs>(std::move(*inputs)), call.limits);
+  log_submission(call, simulation, added);
+  if (added.kind == Added::Kind::kNoPlace) return no_place(application, retry_seconds);
+  if (added.kind == Added::Kind::kRequestIdTaken) {
+    return request_id_taken(added.stored, request, text);
+  }
+  return to_message(application, added.stored);
 }
 
 Outcome<v1::Simulation> get_simulation(Application& application,
                                        const v1::GetSimulationRequest& request,
                                        const CallContext& call) {
-  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    Violations violations;
-    const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
-    if (!violations.empty()) return invalid(violations);
-    const auto found = find_simulation(application, request.name(), call);
-    if (!found.ok()) return found.error();
-    v1::Simulation out = to_message(application, found.message());
-    if (mask.asks_for("result")) {
-      set_result(application, request.view(), v1::SIMULATION_VIEW_FULL, found.message().id, out,
-                 call);
-    }
-    mask.apply(out);
-    return out;
-  });
+  Violations violations;
+  const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
+  if (!violations.empty()) return invalid(violations);
+  const auto found = find_simulation(application, request.name(), call);
+  if (!found.ok()) return found.error();
+  v1::Simulation out = to_message(application, found.message());
+  if (mask.asks_for("result")) {
+    set_result(application, request.view(), v1::SIMULATION_VIEW_FULL, found.message().id, out,
+               call);
+  }
+  mask.apply(out);
+  return out;
 }
 
 Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
                                                       const v1::ListSimulationsRequest& request,
                                                       const CallContext& call) {
-  return guarded<v1::ListSimulationsResponse>([&]() -> Outcome<v1::ListSimulationsResponse> {
-    Violations violations;
-    SimulationQuery query;
-    query.limit = page_size(request.page_size(), kDefaultPageSize, violations);
-    query.byte_limit = kMaximumPageBytes;
-    query.restrictions = restrictions(request.filter(), violations);
-    query.ascending = is_ascending(request.order_by(), violations);
-    const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
-    const v1::SimulationView otherwise =
-        mask.is_whole() ? v1::SIMULATION_VIEW_BASIC : v1::SIMULATION_VIEW_FULL;
-    const std::string scope =
-        fmt::format("{}\n{}\n{}", kSimulations, request.filter(), request.order_by());
-    std::int64_t total = 0;
-    query.counts_all = request.page_token().empty();
-    if (!query.counts_all) {
-      const auto token = parse_page_token(scope, request.page_token());
-      if (token) query.after = place(token->last);
-      if (query.after) total = token->total;
-      if (!query.after) add_bad_page_token(violations);
+  Violations violations;
+  SimulationQuery query;
+  query.limit = page_size(request.page_size(), kDefaultPageSize, violations);
+  query.byte_limit = kMaximumPageBytes;
+  query.restrictions = restrictions(request.filter(), violations);
+  query.ascending = is_ascending(request.order_by(), violations);
+  const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
+  const v1::SimulationView otherwise =
+      mask.is_whole() ? v1::SIMULATION_VIEW_BASIC : v1::SIMULATION_VIEW_FULL;
+  const std::string scope =
+      fmt::format("{}\n{}\n{}", kSimulations, request.filter(), request.order_by());
+  std::int64_t total = 0;
+  query.counts_all = request.page_token().empty();
+  if (!query.counts_all) {
+    const auto token = parse_page_token(scope, request.page_token());
+    if (token) query.after = place(token->last);
+    if (query.after) total = token->total;
+    if (!query.after) add_bad_page_token(violations);
+  }
+  if (!violations.empty()) return invalid(violations);
+  const Page<StoredSimulation> page = application.store.simulations(query, call.limits);
+  v1::ListSimulationsResponse response;
+  if (query.counts_all) total = page.total;
+  response.set_total_size(clamped_total(total));
+  std::size_t bytes = 0;
+  bool is_cut = false;
+  for (const StoredSimulation& row : page.rows) {
+    v1::Simulation next = to_message(application, row);
+    if (mask.asks_for("result")) {
+      set_result(application, request.view(), otherwise, row.id, next, call);
     }
-    if (!violations.empty()) return invalid(violations);
-    const Page<StoredSimulation> page = application.store.simulations(query, call.limits);
-    v1::ListSimulationsResponse response;
-    if (query.counts_all) total = page.total;
-    response.set_total_size(clamped_total(total));
-    std::size_t bytes = 0;
-    bool is_cut = false;
-    for (const StoredSimulation& row : page.rows) {
-      v1::Simulation next = to_message(application, row);
-      if (mask.asks_for("result")) {
-        set_result(application, request.view(), otherwise, row.id, next, call);
-      }
-      mask.apply(next);
-      bytes += next.ByteSizeLong();
-      is_cut = response.simulations_size() > 0 && bytes > kMaximumPageBytes;
-      if (is_cut) break;
-      *response.add_simulations() = std::move(next);
-    }
-    if (page.more || is_cut) {
-      const StoredSimulation& last = page.rows[response.simulations_size() - 1];
-      response.set_next_page_token(
-          page_token(scope, {{last.create_time, simulation_name(last.id)}, total}));
-    }
-    return response;
-  });
+    mask.apply(next);
+    bytes += next.ByteSizeLong();
+    is_cut = response.simulations_size() > 0 && bytes > kMaximumPageBytes;
+    if (is_cut) break;
+    *response.add_simulations() = std::move(next);
+  }
+  if (page.more || is_cut) {
+    const StoredSimulation& last = page.rows[response.simulations_size() - 1];
+    response.set_next_page_token(
+        page_token(scope, {{last.create_time, simulation_name(last.id)}, total}));
+  }
+  return response;
 }
 
 namespace {
 
 Outcome<v1::Simulation> set_pinned(Application& application, const std::string& name,
                                    bool is_pinned, const CallContext& call) {
-  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    const auto found = find_simulation(application, name, call);
-    if (!found.ok()) return found.error();
-    // All reads come before the write: once the write is committed, nothing may fail any more.
-    v1::Simulation before;
-    set_result(application, v1::SIMULATION_VIEW_FULL, v1::SIMULATION_VIEW_FULL, found.message().id,
-               before, call);
-    const auto pinned = application.store.set_pinned(found.message().id, is_pinned, call.limits);
-    if (!pinned) return does_not_exist(name);
-    v1::Simulation out = to_message(application, *pinned);
-    if (before.has_result()) *out.mutable_result() = std::move(*before.mutable_result());
-    return out;
-  });
+  const auto found = find_simulation(application, name, call);
+  if (!found.ok()) return found.error();
+  // All reads come before the write: once the write is committed, nothing may fail any more.
+  v1::Simulation before;
+  set_result(application, v1::SIMULATION_VIEW_FULL, v1::SIMULATION_VIEW_FULL, found.message().id,
+             before, call);
+  const auto pinned = application.store.set_pinned(found.message().id, is_pinned, call.limits);
+  if (!pinned) return does_not_exist(name);
+  v1::Simulation out = to_message(application, *pinned);
+  if (before.has_result()) *out.mutable_result() = std::move(*before.mutable_result());
+  return out;
 }
 
 }  // namespace
@@ -485,14 +476,12 @@ Outcome<google::protobuf::Empty> delete_simulation(Application& application,
 Outcome<v1::Simulation> update_simulation(Application& application,
                                           const v1::UpdateSimulationRequest& request,
                                           const CallContext& call) {
-  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    if (!request.has_simulation()) return invalid({{"simulation", "not set"}});
-    if (!simulation_id(request.simulation().name())) {
-      return invalid(
-          {{"simulation.name", "not a name of the form \"simulations/{id}\", id a number"}});
-    }
-    return update_stored(application, request, call);
-  });
+  if (!request.has_simulation()) return invalid({{"simulation", "not set"}});
+  if (!simulation_id(request.simulation().name())) {
+    return invalid(
+        {{"simulation.name", "not a name of the form \"simulations/{id}\", id a number"}});
+  }
+  return update_stored(application, request, call);
 }
 
 Outcome<v1::Simulation> pin_simulation(Application& application,
@@ -510,25 +499,23 @@ Outcome<v1::Simulation> unpin_simulation(Application& application,
 Outcome<v1::Simulation> cancel_simulation(Application& application,
                                           const v1::CancelSimulationRequest& request,
                                           const CallContext& call) {
-  return guarded<v1::Simulation>([&]() -> Outcome<v1::Simulation> {
-    auto found = find_simulation(application, request.name(), call);
-    if (!found.ok()) return found.error();
-    StoredSimulation& stored = found.message();
-    const auto event = application.jobs.cancel(stored.id, call.limits);
-    if (!event) {
-      v1::GetSimulationRequest now;
-      now.set_name(request.name());
-      return get_simulation(application, now, call);
-    }
-    // The answer is not read back: a read after the deadline would report a failure of a committed
-    // call.
-    stored.state = event->state;
-    stored.attempt = event->attempt;
-    stored.sequence = event->sequence;
-    stored.start_time = event->start_time;
-    stored.end_time = event->time;
-    return to_message(application, stored);
-  });
+  auto found = find_simulation(application, request.name(), call);
+  if (!found.ok()) return found.error();
+  StoredSimulation& stored = found.message();
+  const auto event = application.jobs.cancel(stored.id, call.limits);
+  if (!event) {
+    v1::GetSimulationRequest now;
+    now.set_name(request.name());
+    return get_simulation(application, now, call);
+  }
+  // The answer is not read back: a read after the deadline would report a failure of a committed
+  // call.
+  stored.state = event->state;
+  stored.attempt = event->attempt;
+  stored.sequence = event->sequence;
+  stored.start_time = event->start_time;
+  stored.end_time = event->time;
+  return to_message(application, stored);
 }
 
 }  // namespace tribodyn::server

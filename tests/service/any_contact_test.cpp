@@ -8,10 +8,10 @@
 #include <random>
 
 #include "google/rpc/error_details.pb.h"
-#include "server/application/contacts.h"
 #include "server/contract/check_message.h"
 #include "server/contract/constraints.h"
 #include "server/simulation/contact_inputs.h"
+#include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -86,7 +86,7 @@ TEST(AnyContact, AnswersInFiniteNumbersOrRefuses) {
           v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT);
     }
     const auto begin = std::chrono::steady_clock::now();
-    const auto outcome = evaluate_contact(app, request);
+    const auto outcome = answer_contact(app, request);
     slowest =
         std::max(slowest, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin));
     if (outcome.ok()) {

@@ -426,7 +426,7 @@ TEST_F(AppTest, ARefusalOfTheModelIsAnErrorWithItsReason) {
   request.set_gear_velocity_x_metres_per_second(-5);
   request.set_gear_velocity_y_metres_per_second(-6);
   request.mutable_model_options()->set_no_limiting_shear_stress(true);
-  const auto status = evaluate_contact(app_, request).error();
+  const auto status = answer_contact(app_, request).error();
   EXPECT_EQ(status.code(), google::rpc::INVALID_ARGUMENT);
   EXPECT_EQ(detail<google::rpc::ErrorInfo>(status)->reason(), "UNBOUNDED_SHEAR");
 }

@@ -10,6 +10,7 @@
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
+#include "server/application/guard.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
 #include "server/scheduling/janitor.h"
@@ -262,7 +263,7 @@ TEST_F(LifeCycle, ADamagedResultIsDataLossUntilAForcedRunWritesItAgain) {
     Application app = bench.application();
     v1::GetSimulationRequest get;
     get.set_name(name);
-    const auto outcome = get_simulation(app, get);
+    const auto outcome = guarded<v1::Simulation>([&] { return get_simulation(app, get); });
     return outcome.ok() ? 0 : outcome.error().code();
   };
   const auto code_of_history = [&] {

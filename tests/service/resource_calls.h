@@ -7,6 +7,7 @@
 
 #include "server/application/guard.h"
 #include "server/application/method_table.h"
+#include "tribodyn/v1/contacts.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/surfaces.pb.h"
@@ -65,5 +66,8 @@ inline constexpr ResourceCall<v1::BatchCreateVehiclesResponse> batch_create_vehi
 inline constexpr ResourceCall<v1::BatchUpdateVehiclesResponse> batch_update_vehicles;
 inline constexpr ResourceCall<v1::ListVehiclesResponse> list_vehicles;
 inline constexpr ResourceCall<v1::ListVehicleRevisionsResponse> list_vehicle_revisions;
+
+/// EvaluateContact, whose use case throws what the model refuses.
+inline constexpr ResourceCall<v1::EvaluateContactResponse> answer_contact;
 
 }  // namespace tribodyn::server
