@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <set>
+#include <string>
 #include <vector>
 
-#include "server/application/element_limits.h"
+#include "server/application/mask_paths.h"
 #include "server/contract/output_only.h"
 #include "server/contract/resource_names.h"
 #include "tribodyn/v1/provenance.pb.h"
@@ -17,6 +19,7 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
+constexpr char kUpdateMask[] = "update_mask";
 constexpr char kProvenance[] = "provenance";
 
 void forget_provenance(const std::string& field, Message& target) {
@@ -41,44 +44,32 @@ bool is_other_number(const Message& a, const Message& b, const FieldDescriptor& 
          reflection.GetDouble(a, &field) != reflection.GetDouble(b, &field);
 }
 
-std::vector<std::string> settable_fields(const google::protobuf::Descriptor& descriptor) {
-  std::vector<std::string> out;
-  for (int i = 0; i < descriptor.field_count(); ++i) out.push_back(descriptor.field(i)->name());
-  return out;
-}
-
 /// Where a path of a mask leads to.
 struct Target {
   const FieldDescriptor* block = nullptr;  ///< the message that holds the field; null: the top
   const FieldDescriptor* field = nullptr;  ///< null: nothing is to be done
 };
 
-/// The place of "display_name" or "measurements.densities". Nothing to be done for what only the
-/// server sets; a violation for a field that is unknown.
+/// Finds the field that a path names: "display_name" or "measurements.densities". Leaves out what
+/// only the server sets. Adds a violation if the path leads to no field, into a list, or deeper.
 Target target_of(const std::string& path, const google::protobuf::Descriptor& resource,
                  Violations& violations) {
-  Target out;
-  const google::protobuf::Descriptor* holder = &resource;
-  std::string name = path;
-  if (const std::size_t dot = path.find('.'); dot != std::string::npos) {
-    const FieldDescriptor* block = resource.FindFieldByName(path.substr(0, dot));
-    const bool holds_fields = block != nullptr && !block->is_repeated() &&
-                              block->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
-    if (holds_fields && !is_output_only(*block)) {
-      out.block = block;
-      holder = block->message_type();
-      name = path.substr(dot + 1);
-    }
-  }
-  const FieldDescriptor* field = holder->FindFieldByName(name);
-  if (field == nullptr) {
+  const auto fields = fields_along(path, resource, kUpdateMask, violations);
+  if (fields.empty()) return {};
+  const bool is_in_list = fields.front()->is_repeated();
+  if (fields.size() > (is_in_list ? 1 : 2)) {
+    const std::string whole =
+        is_in_list ? fields[0]->name() : fields[0]->name() + "." + fields[1]->name();
     violations.push_back(
-        {"update_mask", fmt::format("\"{}\" is no field of {}{}", plain_excerpt(name),
-                                    holder->name(), meant_text(name, settable_fields(*holder)))});
-  } else if (!is_output_only(*field)) {
-    out.field = field;
+        {kUpdateMask, fmt::format("\"{}\" is part of \"{}\", which changes as a whole",
+                                  plain_excerpt(path), whole)});
+    return {};
   }
-  return out;
+  if (std::any_of(fields.begin(), fields.end(),
+                  [](const FieldDescriptor* field) { return is_output_only(*field); })) {
+    return {};
+  }
+  return {fields.size() == 2 ? fields.front() : nullptr, fields.back()};
 }
 
 /// Swaps one field of `target` with that of `source`, set or not. True when it was a number and
@@ -124,15 +115,12 @@ std::set<std::string> populated_paths(const Message& source) {
 
 void merge(const Message& source, const google::protobuf::FieldMask& mask, Message& target,
            Violations& violations) {
-  const auto& paths = mask.paths();
-  if (paths.size() == 1 && paths.Get(0) == "*") {
+  if (names_all(mask)) {
     target.CopyFrom(source);
     return;
   }
-  if (paths.size() > kMaximumMaskPaths) {
-    violations.push_back({"update_mask", too_many_text(paths.size(), kMaximumMaskPaths)});
-    return;
-  }
+  if (!check_path_count(mask, kUpdateMask, violations)) return;
+  const auto& paths = mask.paths();
   const std::set<std::string> distinct =
       paths.empty() ? populated_paths(source) : std::set<std::string>(paths.begin(), paths.end());
   const bool with_provenance = distinct.contains(kProvenance);

@@ -298,8 +298,9 @@ TEST_F(BatchTest, TheReadMaskAndNotTheSizeDecidesWhatIsAnswered) {
   one.mutable_read_mask()->add_paths("etga");
   const auto unknown = batch_update_lubricants(app_, one);
   ASSERT_FALSE(unknown.ok());
-  EXPECT_THAT(complaint_lines(unknown.error()),
-              ElementsAre("read_mask: \"etga\" is no field of Lubricant; did you mean \"etag\"?"));
+  EXPECT_THAT(
+      complaint_lines(unknown.error()),
+      ElementsAre("read_mask: \"etga\" is not a field of Lubricant; did you mean \"etag\"?"));
 }
 
 TEST_F(BatchTest, ThousandsOfViolationsAreAnsweredInTime) {

@@ -304,7 +304,7 @@ TEST_F(ResourcesTest, AReadMaskNamesTheFieldsOfAnAnswer) {
   EXPECT_EQ(listed.message().gear_sets(0).SerializeAsString(), name_alone.SerializeAsString());
   list.mutable_read_mask()->add_paths("dynamics.mass");
   EXPECT_THAT(complaints(list_gear_sets(app_, list).error()),
-              HasSubstr("read_mask: \"mass\" is no field of DrivelineDynamics"));
+              HasSubstr("read_mask: \"mass\" is not a field of DrivelineDynamics"));
 }
 
 TEST_F(ResourcesTest, ComputedParametersFollowTheirInputs) {
@@ -690,11 +690,15 @@ TEST_F(ResourcesTest, AMaskMayNameAFieldOfAMessage) {
   plain.set_name("lubricants/paper-fluid-1");
   EXPECT_EQ(update(plain, {kv40}).message().revision(), 1) << "nothing to take over";
   EXPECT_THAT(complaints(update(row, {"measurements.densties"}).error()),
-              HasSubstr("\"densties\" is no field of LubricantMeasurements; did you mean "
+              HasSubstr("\"densties\" is not a field of LubricantMeasurements; did you mean "
                         "\"densities\"?"));
   for (const char* none : {"labels.key", "display_name.x", "measurments.densities"}) {
     EXPECT_THAT(complaints(update(row, {none}).error()), HasSubstr("update_mask"));
   }
+  EXPECT_THAT(complaints(update(row, {"measurements.densities.temperature_celsius"}).error()),
+              HasSubstr("is part of \"measurements.densities\", which changes as a whole"));
+  EXPECT_EQ(update(row, {"characterisation.viscosity_index"}).message().revision(), 2)
+      << "what only the server sets is left out";
 
   v1::Lubricant sharper = changed.message();
   sharper.mutable_measurements()->set_kinematic_viscosity_40_celsius_square_millimetres_per_second(
