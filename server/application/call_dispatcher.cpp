@@ -42,6 +42,26 @@ std::optional<google::rpc::Status> parse_request(IncomingCall& call,
   return std::nullopt;
 }
 
+/// The error of a call whose lane is full: which limit, and what the client can do.
+google::rpc::Status lane_full(CallLane lane) {
+  if (lane == CallLane::kHeavy) {
+    return exhausted(
+        v1::ERROR_REASON_TOO_MANY_LARGE_REQUESTS,
+        fmt::format("no more than {} batches, imports and requests above {} MiB may wait, and they "
+                    "may have {} MiB together; try again in {} s, or send fewer or smaller ones at "
+                    "a time",
+                    CallLanes::kHeavyWaiting, kUsualRequestBytes >> 20,
+                    CallLanes::kHeavyBytes >> 20, kBusySeconds),
+        kBusySeconds);
+  }
+  return exhausted(
+      v1::ERROR_REASON_TOO_MANY_CALLS,
+      fmt::format("no more than {} calls of this kind may wait; try again in {} s, or send fewer "
+                  "calls at a time",
+                  CallLanes::kWaiting, kBusySeconds),
+      kBusySeconds);
+}
+
 std::string reason_of(const google::rpc::Status& status) {
   google::rpc::ErrorInfo info;
   for (const auto& detail : status.details()) {
@@ -74,12 +94,7 @@ void CallDispatcher::run(const IncomingCall& call, std::function<void()> task,
   const std::size_t bytes = call.request_size();
   const CallLane lane = bytes > kUsualRequestBytes ? CallLane::kHeavy : call.method.lane;
   if (lanes_.run(lane, bytes, task)) return;
-  const bool is_heavy = lane == CallLane::kHeavy;
-  refuse(exhausted(
-      is_heavy ? v1::ERROR_REASON_TOO_MANY_LARGE_REQUESTS : v1::ERROR_REASON_TOO_MANY_CALLS,
-      fmt::format("too many {} calls wait; try again in {} s",
-                  is_heavy ? "large or heavy" : "other", kBusySeconds),
-      kBusySeconds));
+  refuse(lane_full(lane));
 }
 
 void CallDispatcher::answer(UnaryCall& call) {

@@ -20,6 +20,13 @@ enum class CallLane {
 /// The threads of all lanes. Safe for concurrent access; the destructor runs what was accepted.
 class CallLanes {
  public:
+  /// How many calls may wait in a lane, and in that of heavy calls.
+  static constexpr std::size_t kWaiting = 10'000;  // small requests take gRPC a few kB each
+  static constexpr std::size_t kHeavyWaiting = 64;
+  /// Bytes of heavy requests, waiting and under way: two of the largest. Parsed, they take some 30
+  /// times as much.
+  static constexpr std::size_t kHeavyBytes = 128 << 20;
+
   /// Runs `task` on a thread of the lane. Returns false, and leaves `task` as it is, if the lane is
   /// full; that of streams never is.
   bool run(CallLane lane, std::size_t bytes, std::function<void()>& task) {
@@ -27,18 +34,14 @@ class CallLanes {
   }
 
  private:
-  static constexpr std::size_t kWaiting = 10'000;  // small requests take gRPC a few kB each
   static constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
-  /// Of heavy requests, waiting and under way: two of the largest. Parsed, they take some 30 times
-  /// as much.
-  static constexpr std::size_t kHeavyBytes = 128 << 20;
 
   // In the order of CallLane. More threads than these only wait for the processors; writers share
   // their commits.
   Workers workers_[5] = {{4, kWaiting, kUnlimited},
                          {8, kWaiting, kUnlimited},
                          {2, kWaiting, kUnlimited},
-                         {2, 64, kHeavyBytes},
+                         {2, kHeavyWaiting, kHeavyBytes},
                          {2, kUnlimited, kUnlimited}};  // one task at most for each open stream
 };
 

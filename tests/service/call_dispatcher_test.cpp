@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <deque>
 #include <future>
 #include <memory>
 #include <set>
@@ -79,16 +80,24 @@ class TestCall : public UnaryCall {
   }
   void drop_request() override { bytes_.clear(); }
   void answered(Outcome<Reply> outcome) override {
+    if (held_.valid() && outcome.ok()) held_.wait();
     answer_.set_value(outcome.ok() ? google::rpc::Status() : outcome.error());
   }
 
-  google::rpc::Status wait() { return answer_.get_future().get(); }
+  /// Lets every answer wait until `held` is ready, with the thread of its lane.
+  void hold(std::shared_future<void> held) { held_ = std::move(held); }
+  bool is_answered() const {
+    return answer_of_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }
+  google::rpc::Status wait() { return answer_of_.get(); }
 
   std::atomic<bool> cancelled = false;
 
  private:
   std::string bytes_;
+  std::shared_future<void> held_;
   std::promise<google::rpc::Status> answer_;
+  std::future<google::rpc::Status> answer_of_ = answer_.get_future();
 };
 
 class CallDispatcherTest : public testing::Test {
@@ -213,6 +222,39 @@ TEST_F(CallDispatcherTest, ReadsDoNotWaitForHeavyCalls) {
   for (const auto& each : heavy) EXPECT_EQ(each->wait().code(), google::rpc::OK);
   std::nth_element(seconds.begin(), seconds.begin() + 10, seconds.end());
   EXPECT_LT(seconds[10], batches.seconds() / 10);
+}
+
+TEST_F(CallDispatcherTest, ACallToAFullLaneIsToldTheLimitAndWhatToDo) {
+  std::promise<void> release;
+  const std::shared_future<void> released = release.get_future().share();
+  std::deque<TestCall> calls;
+  // Sends the same request until one is refused.
+  const auto refusal = [&](const google::protobuf::Message& request, std::size_t most) {
+    google::rpc::Status out;
+    for (std::size_t i = 0; i < most && out.code() == google::rpc::OK; ++i) {
+      TestCall& call = calls.emplace_back(request);
+      call.hold(released);
+      dispatcher_.answer(call);
+      if (call.is_answered()) out = call.wait();
+      if (out.code() != google::rpc::OK) calls.pop_back();
+    }
+    return out;
+  };
+  v1::BatchCreateLubricantsRequest checked = batch(1);
+  checked.set_validate_only(true);
+  const auto heavy = refusal(checked, 1000);
+  EXPECT_EQ(heavy.code(), google::rpc::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(heavy.message(),
+            "no more than 64 batches, imports and requests above 1 MiB may wait, and they may have "
+            "128 MiB together; try again in 2 s, or send fewer or smaller ones at a time");
+  const auto small = refusal(get(), 2 * CallLanes::kWaiting);
+  EXPECT_EQ(small.code(), google::rpc::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(small.message(),
+            "no more than 10000 calls of this kind may wait; try again in 2 s, or send fewer calls "
+            "at a time");
+  release.set_value();
+  for (TestCall& each : calls) EXPECT_EQ(each.wait().code(), google::rpc::OK);
+  EXPECT_THAT(log_.text(), HasSubstr("reason=TOO_MANY_CALLS"));
 }
 
 TEST(Workers, RefuseWhatTheirQueueHasNoPlaceFor) {

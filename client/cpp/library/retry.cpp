@@ -59,8 +59,9 @@ bool may_repeat(const Message& request) {
 
 bool was_turned_away(const grpc::Status& status) {
   const auto info = detail<google::rpc::ErrorInfo>(status);
-  static constexpr std::array<std::string_view, 4> kReasons = {
-      "SHUTTING_DOWN", "TOO_MANY_WAITING", "TOO_MANY_STREAMS", "TOO_MANY_LARGE_REQUESTS"};
+  static constexpr std::array<std::string_view, 5> kReasons = {
+      "SHUTTING_DOWN", "TOO_MANY_WAITING", "TOO_MANY_STREAMS", "TOO_MANY_LARGE_REQUESTS",
+      "TOO_MANY_CALLS"};
   return info && std::find(kReasons.begin(), kReasons.end(), info->reason()) != kReasons.end();
 }
 
