@@ -162,9 +162,7 @@ std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
                                                       const std::string& text,
                                                       const CallContext& call) {
   if (request.request_id().empty()) return std::nullopt;
-  const auto id = application.store.simulation_of_request(request.request_id(), call.limits);
-  if (!id) return std::nullopt;
-  const auto stored = application.store.simulation(*id, call.limits);
+  const auto stored = application.store.simulation_of_request(request.request_id(), call.limits);
   if (!stored) return std::nullopt;
   if (stored->request_hash != sha256(text)) return request_id_taken(*stored, request, text);
   if (stored->state == StoredState::kQueued) application.jobs.ensure_queued(*stored);

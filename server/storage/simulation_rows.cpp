@@ -44,16 +44,6 @@ void bind_text_or_null(SQLite::Statement& statement, int index, const std::strin
   }
 }
 
-/// Row of "lubricants/paper-fluid-1@2" in revisions.
-std::int64_t revision_row(Connection& db, const std::string& name) {
-  Prepared query(db,
-                 "SELECT revision_id FROM revision_names WHERE name || '@' || revision = ?1 AND "
-                 "name = substr(?1, 1, instr(?1, '@') - 1)");
-  query.bind(1, name);
-  if (!query.executeStep()) throw SQLite::Exception("no such revision");
-  return query.getColumn(0).getInt64();
-}
-
 std::optional<std::int64_t> result_row(Connection& db, const ResultKey& key) {
   Prepared query(db,
                  "SELECT id FROM results "
@@ -77,15 +67,14 @@ void insert_event(Connection& db, std::int64_t id, const StoredEvent& event) {
   insert.exec();
 }
 
-/// The simulation that an earlier request of this id made.
+/// Returns the simulation that an earlier request with the same request_id added.
 std::optional<Added> repeated_request(Connection& db, const NewSimulation& simulation) {
   if (simulation.request_id.empty()) return std::nullopt;
-  Prepared query(db, "SELECT id, request_hash FROM simulations WHERE request_id = ?");
-  query.bind(1, simulation.request_id);
-  if (!query.executeStep()) return std::nullopt;
-  const bool is_same = query.getColumn(1).getString() == simulation.request_hash;
-  return Added{is_same ? Added::Kind::kRepeated : Added::Kind::kRequestIdTaken,
-               query.getColumn(0).getInt64()};
+  auto stored = query_simulation_of_request(db, simulation.request_id);
+  if (!stored) return std::nullopt;
+  const bool is_same = stored->request_hash == simulation.request_hash;
+  return Added{is_same ? Added::Kind::kRepeated : Added::Kind::kRequestIdTaken, stored->id,
+               std::move(*stored)};
 }
 
 void insert_labels(Connection& db, std::int64_t id,
@@ -99,14 +88,20 @@ void insert_labels(Connection& db, std::int64_t id,
   }
 }
 
-/// A QUEUED row with its first event.
+/// Inserts a QUEUED simulation and its first event. The statement itself finds the rows of the
+/// revisions: a read before it would be one more, and one outside the transaction could be stale.
 std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microseconds now) {
   Prepared insert(
       db,
       "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
-      "request_hash, is_forced, input_hash, ledger, lubricant, gear_set, surface, vehicle, client, "
-      "cost_seconds, principal, scheduling_class) "
-      "VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "request_hash, is_forced, input_hash, ledger, client, cost_seconds, principal, "
+      "scheduling_class, lubricant, gear_set, surface, vehicle) "
+      "VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?)) "
+      "RETURNING id, lubricant, gear_set, surface, vehicle");
   insert.bind(1, now);
   bind_optional(insert, 2, simulation.deadline_time);
   bind_blob(insert, 3, simulation.request);
@@ -115,21 +110,54 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
   insert.bind(6, simulation.is_forced ? 1 : 0);
   insert.bind(7, simulation.key.input_hash);
   if (!simulation.ledger.empty()) insert.bind(8, ledger_row(db, simulation.ledger));
-  int index = 8;
-  for (const std::string* each : {&simulation.lubricant_revision, &simulation.gear_set_revision,
-                                  &simulation.surface_revision, &simulation.vehicle_revision}) {
-    ++index;
-    if (!each->empty()) insert.bind(index, revision_row(db, *each));
+  insert.bind(9, simulation.client);
+  insert.bind(10, simulation.cost_seconds);
+  insert.bind(11, simulation.principal);
+  insert.bind(12, simulation.scheduling_class);
+  const std::string* const revisions[] = {
+      &simulation.lubricant_revision, &simulation.gear_set_revision, &simulation.surface_revision,
+      &simulation.vehicle_revision};
+  for (int i = 0; i < 4; ++i) {
+    const std::size_t at = std::min(revisions[i]->find('@'), revisions[i]->size());
+    insert.bind(13 + 2 * i, revisions[i]->substr(0, at));
+    if (at < revisions[i]->size()) insert.bind(14 + 2 * i, std::stoi(revisions[i]->substr(at + 1)));
   }
-  insert.bind(13, simulation.client);
-  insert.bind(14, simulation.cost_seconds);
-  insert.bind(15, simulation.principal);
-  insert.bind(16, simulation.scheduling_class);
-  insert.exec();
-  const std::int64_t id = db.getLastInsertRowid();
+  insert.executeStep();
+  const std::int64_t id = insert.getColumn(0).getInt64();
+  for (int i = 0; i < 4; ++i) {
+    if (!revisions[i]->empty() && insert.getColumn(1 + i).isNull()) {
+      throw SQLite::Exception("no such revision");
+    }
+  }
+  insert.executeStep();  // to its end: only then is it done
   insert_labels(db, id, simulation.labels);
   insert_event(db, id, {.sequence = 1, .time = now, .reason = ""});
   return id;
+}
+
+/// Returns the row that insert_row() has inserted. Reads nothing: a read after the commit could
+/// fail or come too late, and the client would be told that nothing has changed.
+StoredSimulation inserted_simulation(const NewSimulation& simulation, std::int64_t id,
+                                     Microseconds now) {
+  StoredSimulation out;
+  out.id = id;
+  out.sequence = 1;
+  out.create_time = now;
+  out.deadline_time = simulation.deadline_time;
+  out.request = simulation.request;
+  out.request_id = simulation.request_id;
+  out.request_hash = simulation.request_hash;
+  out.is_forced = simulation.is_forced;
+  out.client = simulation.client;
+  out.cost_seconds = simulation.cost_seconds;
+  out.principal = simulation.principal;
+  out.scheduling_class = simulation.scheduling_class;
+  out.input_hash = simulation.key.input_hash;
+  out.lubricant_revision = simulation.lubricant_revision;
+  out.gear_set_revision = simulation.gear_set_revision;
+  out.surface_revision = simulation.surface_revision;
+  out.vehicle_revision = simulation.vehicle_revision;
+  return out;
 }
 
 /// Bytes that go when a result goes.
@@ -310,30 +338,31 @@ std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id
   return stored_simulation(query);
 }
 
-namespace {
+std::optional<StoredSimulation> query_simulation_of_request(Connection& db,
+                                                            const std::string& request_id) {
+  Prepared query(db, std::string(kSimulationColumns) + "WHERE request_id = ?");
+  query.bind(1, request_id);
+  if (!query.executeStep()) return std::nullopt;
+  return stored_simulation(query);
+}
 
-Added insert_or_find(Connection& db, const NewSimulation& simulation, Microseconds now,
-                     bool may_wait) {
-  if (const auto repeated = repeated_request(db, simulation)) return *repeated;
+Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
+                        bool may_wait) {
+  if (auto repeated = repeated_request(db, simulation)) return std::move(*repeated);
   std::optional<std::int64_t> result;
   if (!simulation.is_forced) result = result_row(db, simulation.key);
   if (!result && !may_wait) return {Added::Kind::kNoPlace, 0};
   const std::int64_t id = insert_row(db, simulation, now);
-  if (!result) return {Added::Kind::kQueued, id};
-  change_state(
+  Added added{Added::Kind::kQueued, id, inserted_simulation(simulation, id, now)};
+  if (!result) return added;
+  const auto event = change_state(
       db,
       {.id = id, .to = StoredState::kSucceeded, .time = now, .result = result, .cache_hit = true});
-  return {Added::Kind::kServed, id};
-}
-
-}  // namespace
-
-Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
-                        bool may_wait) {
-  Added added = insert_or_find(db, simulation, now, may_wait);
-  // Read inside the transaction: a read after the commit could fail or come too late, and the
-  // client would be told that nothing has changed.
-  if (added.kind != Added::Kind::kNoPlace) added.stored = *query_simulation(db, added.id);
+  added.kind = Added::Kind::kServed;
+  added.stored.state = event->state;
+  added.stored.sequence = event->sequence;
+  added.stored.end_time = event->time;
+  added.stored.cache_hit = true;
   return added;
 }
 

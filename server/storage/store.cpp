@@ -289,14 +289,9 @@ std::optional<StoredSimulation> Store::simulation(std::int64_t id, const CallLim
   return read(limits, [&](Connection& db) { return query_simulation(db, id); });
 }
 
-std::optional<std::int64_t> Store::simulation_of_request(const std::string& request_id,
-                                                         const CallLimits& limits) {
-  return read(limits, [&](Connection& db) -> std::optional<std::int64_t> {
-    Prepared query(db, "SELECT id FROM simulations WHERE request_id = ?");
-    query.bind(1, request_id);
-    if (!query.executeStep()) return std::nullopt;
-    return query.getColumn(0).getInt64();
-  });
+std::optional<StoredSimulation> Store::simulation_of_request(const std::string& request_id,
+                                                             const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_simulation_of_request(db, request_id); });
 }
 
 Page<StoredSimulation> Store::simulations(const SimulationQuery& query, const CallLimits& limits) {

@@ -78,8 +78,9 @@ class Store {
   Added add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait = true,
                        const CallLimits& limits = {});
   std::optional<StoredSimulation> simulation(std::int64_t id, const CallLimits& limits = {});
-  std::optional<std::int64_t> simulation_of_request(const std::string& request_id,
-                                                    const CallLimits& limits = {});
+  /// Returns the simulation that a request with this request_id added.
+  std::optional<StoredSimulation> simulation_of_request(const std::string& request_id,
+                                                        const CallLimits& limits = {});
   Page<StoredSimulation> simulations(const SimulationQuery& query, const CallLimits& limits = {});
   /// Protects a simulation from removal, or ends the protection. Returns the changed simulation;
   /// nullopt if it does not exist.

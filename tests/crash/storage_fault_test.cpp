@@ -206,7 +206,8 @@ std::vector<std::string> lost(const std::string& path, const Acknowledged& told)
   std::vector<std::string> out;
   Store store(path);
   for (const auto& [request_id, id] : told.simulations) {
-    if (store.simulation_of_request(request_id) != id) out.push_back(request_id);
+    const auto stored = store.simulation_of_request(request_id);
+    if (!stored || stored->id != id) out.push_back(request_id);
   }
   if (!out.empty()) return out;
   for (const auto& [id, events] : told.events) {
