@@ -18,7 +18,7 @@
 namespace tribodyn::server {
 namespace {
 
-/// The exit code of a command.
+/// Runs a command. Returns its exit code.
 int run_command(const Settings& settings) {
   if (settings.command == "backup") {
     backup_database(settings.database, settings.file);
@@ -45,7 +45,7 @@ sigset_t block_signals() {
   return signals;
 }
 
-/// Every connection is a file: take as many as the system grants.
+/// Raises the limit of open files, as every connection is one.
 void raise_file_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -63,12 +63,12 @@ int run(const std::vector<std::string>& arguments) {
   const std::optional<Settings> settings = read_settings(arguments, &exit_code);
   if (!settings) return exit_code;
   static const sigset_t kSignals = block_signals();
-  // More heaps would each keep what many readers of histories needed for a moment: 64 of them make
-  // the server grow by 6 to 10 MB with two heaps, by 17 with four and by 20 with eight. The solver
-  // takes no memory while it runs.
+  // Every heap keeps the memory that many readers of histories needed for a moment: 64 readers make
+  // the server grow by 6 to 10 MB with two heaps, by 17 MB with four and by 20 MB with eight
+  // (measured). The solver allocates no memory while it runs.
   mallopt(M_ARENA_MAX, 2);
   raise_file_limit();
-  umask(077);  // formulations are for their owner
+  umask(077);  // only the owner may read formulations
   spdlog::set_default_logger(spdlog::stderr_logger_mt("tribodynd"));
   spdlog::set_level(spdlog::level::from_str(settings->log_level));
   try {

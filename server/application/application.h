@@ -8,11 +8,11 @@
 
 namespace tribodyn::server {
 
-/// What the functions of this folder work on. Safe for concurrent access: all members are.
+/// The objects that every use case works on. Safe for concurrent access, as all members are.
 struct Application {
   Store& store;
   SimulationJobs& jobs;
-  /// Histories that are being read; shared, as a reader may outlive the object.
+  /// Number of histories that are being read. Shared, because a reader may outlive the object.
   std::shared_ptr<std::atomic<int>> open_histories = std::make_shared<std::atomic<int>>(0);
 };
 

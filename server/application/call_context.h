@@ -6,14 +6,14 @@
 
 namespace tribodyn::server {
 
-/// What a use case knows of the call that it answers. The default is a call of this process, which
-/// waits for ever.
+/// What a use case knows about its call: who calls, on whose behalf, and for how long the client
+/// waits. The default is a call of this process, which waits without limit.
 struct CallContext {
-  std::string principal = "local";  ///< who calls; there is one principal only
-  std::string project = "default";  ///< whose resources are meant; there is one project only
-  std::string client = {};          ///< shares the processors with the other clients
-  std::string request_id = {};      ///< names the call in log lines
-  CallLimits limits = {};           ///< until when, and whether still, the client waits
+  std::string principal = "local";  ///< who calls; always "local" so far
+  std::string project = "default";  ///< owner of the resources; always "default" so far
+  std::string client = {};          ///< name of the client; clients share the processors
+  std::string request_id = {};      ///< identifies the call in log lines
+  CallLimits limits = {};           ///< deadline of the call, and whether the client cancelled
 };
 
 }  // namespace tribodyn::server

@@ -17,12 +17,12 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr int kBusySeconds = 2;       // most batches end sooner
-constexpr double kSlowSeconds = 1.0;  // a call that takes longer is logged
+constexpr int kBusySeconds = 2;       // [s]; most batches take less
+constexpr double kSlowSeconds = 1.0;  // [s]; slower calls are logged
 
-/// Reads the request from its bytes, and lets go of them. Returns INVALID_ARGUMENT, without having
-/// parsed anything, if they are more than the method takes or hold more than any acceptable request
-/// (wire_check.h), and if they are no such message; else nullopt.
+/// Parses the request and frees its bytes. Returns nullopt, or INVALID_ARGUMENT: before parsing, if
+/// the request is longer than its method allows or has more elements than any acceptable request
+/// (wire_check.h); or if the bytes are not a message of its type.
 std::optional<google::rpc::Status> parse_request(IncomingCall& call,
                                                  google::protobuf::Message& request) {
   const google::protobuf::MethodDescriptor& method = *call.method.descriptor;
@@ -42,7 +42,7 @@ std::optional<google::rpc::Status> parse_request(IncomingCall& call,
   return std::nullopt;
 }
 
-/// The error of a call whose lane is full: which limit, and what the client can do.
+/// Returns the error of a call whose lane is full. It states the limit and what the client can do.
 google::rpc::Status lane_full(CallLane lane) {
   if (lane == CallLane::kHeavy) {
     return exhausted(
@@ -129,7 +129,8 @@ void CallDispatcher::ended(const IncomingCall& call, const google::rpc::Status& 
   spdlog::info("event=call method={} code={} reason={} seconds={:.3f} client={} call={}",
                method.name(), code, reason_of(status), seconds, call.context.client,
                call.context.request_id);
-} catch (const std::exception& failure) {  // no memory left: the answer counts more than its record
+} catch (const std::exception&
+             failure) {  // e.g. out of memory: the call is answered although it is not counted
   spdlog::error("event=call_not_counted cause=\"{}\"", failure.what());
 }
 

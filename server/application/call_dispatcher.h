@@ -30,13 +30,14 @@ class IncomingCall {
   explicit IncomingCall(const Method& its_method) : method(its_method) {}
   virtual ~IncomingCall() = default;
 
-  /// The length of the serialised request [bytes], a new reader of it, and a call that frees it.
+  /// Return the length of the serialised request [bytes] and a new reader of it.
   virtual std::size_t request_size() const = 0;
   virtual std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() = 0;
+  /// Frees the serialised request.
   virtual void drop_request() = 0;
 
   const Method& method;
-  CallContext context;  ///< with the limits of the client and of the server
+  CallContext context;  ///< its limits are the stricter ones of client and server
   const StopWatch watch;
 };
 
@@ -57,12 +58,13 @@ class StreamCall : public IncomingCall {
   virtual void opened(Outcome<ReplySource> outcome) = 0;
 };
 
-/// Answers the calls of every transport: on the lane of the method, within its limits, with every
-/// failure as an error; counts each call, and logs those that fail or are slow. Safe for concurrent
-/// access. Must outlive all calls; the destructor answers those that wait.
+/// Answers the calls of every transport: checks the size of a request, runs the use case of its
+/// method on a thread of the method's lane, turns exceptions into errors, counts each call, and
+/// logs calls that fail or are slow. Safe for concurrent access. Must outlive all calls. The
+/// destructor answers the calls that wait.
 class CallDispatcher {
  public:
-  /// `application` must outlive the object. Throws std::logic_error as method_table() does.
+  /// `application` must outlive the object. Throws std::logic_error like method_table().
   explicit CallDispatcher(Application& application, const TimeLimits& limits = {});
 
   const std::vector<Method>& methods() const { return methods_; }
@@ -70,7 +72,7 @@ class CallDispatcher {
 
   void answer(UnaryCall& call);
   void open(StreamCall& call);
-  /// Runs the next step of an open stream.
+  /// Queues the next step of an open stream.
   void step(std::function<void()> task);
   /// Counts a call that has ended, and logs it if it failed or was slow. Throws nothing.
   void ended(const IncomingCall& call, const google::rpc::Status& status);

@@ -26,15 +26,15 @@ bool is_computed(const std::string& collection, const std::string& key) {
   return find_computed_field(collection, key) != nullptr;
 }
 
-/// What the server computes of a stored lubricant; nothing of what cannot be read.
+/// Returns the computed figures of a stored lubricant; none if its body cannot be parsed.
 v1::LubricantCharacterisation figures_of(const StoredResource& resource) {
   v1::Lubricant lubricant;
   if (!lubricant.ParseFromString(resource.body)) return {};
   return brief_characterisation(lubricant);
 }
 
-/// One of the figures. Returns nullopt where the lubricant has none, e.g. a viscosity index where
-/// that is undefined.
+/// Returns one figure, or nullopt if the lubricant has none, e.g. where a viscosity index is
+/// undefined.
 std::optional<PropertyValue> figure(const v1::LubricantCharacterisation& figures,
                                     const std::string& key) {
   const auto* field = v1::LubricantCharacterisation::descriptor()->FindFieldByName(key);
@@ -47,7 +47,7 @@ std::optional<PropertyValue> figure(const v1::LubricantCharacterisation& figures
   return is_known ? std::optional<PropertyValue>(value) : std::nullopt;
 }
 
-/// As the store compares a stored property.
+/// Compares like the store compares a stored property.
 bool is_satisfied(const std::optional<PropertyValue>& value, const Restriction& restriction) {
   if (restriction.comparison == Comparison::kNotEqual) return !value || *value != restriction.value;
   if (!value) return false;
@@ -90,8 +90,8 @@ class ComputedQuery {
     });
   }
 
-  /// In the order of a stored property: rows that satisfy the query are kept as they come. The rest
-  /// is not read, and so not counted: that takes a second for 20,000 lubricants.
+  /// Answers a query that is ordered by a stored property. Stops reading when the page is full and
+  /// so does not count the rest, which would take a second for 20,000 lubricants.
   Page<StoredResource> in_stored_order() {
     Page<StoredResource> out;
     std::size_t bytes = 0;
@@ -113,8 +113,8 @@ class ComputedQuery {
     }
   }
 
-  /// In the order of a computed field: of all rows, the first ones after the start of the page are
-  /// kept.
+  /// Answers a query that is ordered by a computed field: reads all rows and keeps the first ones
+  /// after the start of the page.
   Page<StoredResource> in_computed_order() {
     stored_.order_key.clear();
     stored_.descending = false;
@@ -167,7 +167,7 @@ class ComputedQuery {
            (rows > 0 && bytes_with_next > query_.byte_limit);
   }
 
-  /// Values first, then names, both in the direction of the query.
+  /// Compares values, and names if the values are equal, in the direction of the query.
   bool is_before(const PageStart& a, const PageStart& b) const {
     const auto left = std::tie(a.value, a.name);
     const auto right = std::tie(b.value, b.name);

@@ -7,7 +7,7 @@
 
 namespace tribodyn::server {
 
-/// Solves one contact, at once and without a trace.
+/// Solves one contact and returns the result. Stores nothing.
 Outcome<v1::EvaluateContactResponse> evaluate_contact(Application& application,
                                                       const v1::EvaluateContactRequest& request,
                                                       const CallContext& call = {});

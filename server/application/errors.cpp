@@ -42,7 +42,7 @@ void add_resource(const std::string& type, const std::string& name, google::rpc:
   status.add_details()->PackFrom(info);
 }
 
-/// `seconds` are told to the millisecond, rounded up.
+/// Adds a RetryInfo. Its delay is `seconds`, rounded up to a millisecond.
 void add_retry(double seconds, google::rpc::Status& status) {
   google::rpc::RetryInfo info;
   *info.mutable_retry_delay() = google::protobuf::util::TimeUtil::MillisecondsToDuration(
@@ -50,11 +50,12 @@ void add_retry(double seconds, google::rpc::Status& status) {
   status.add_details()->PackFrom(info);
 }
 
-constexpr int kRestartSeconds = 5;  // of a server that another one takes the place of
+// Retry delays [s]
+constexpr int kRestartSeconds = 5;  // of a server that is shutting down
 constexpr int kStoreSeconds = 5;
 constexpr int kContentionSeconds = 1;
 constexpr int kMemorySeconds = 5;
-constexpr std::size_t kLongestCause = 500;  // bytes in the log
+constexpr std::size_t kLongestCause = 500;  // [bytes], in the log
 
 }  // namespace
 

@@ -14,27 +14,28 @@
 
 namespace tribodyn::server {
 
-/// The service that the reasons belong to: ErrorInfo.domain.
+/// ErrorInfo.domain of every error.
 inline constexpr char kErrorDomain[] = "tribodyn.dev";
 
-/// The variables of an error's message by name: ErrorInfo.metadata (AIP-193).
+/// ErrorInfo.metadata: the variables in the message of an error, by name (AIP-193).
 using ErrorMetadata = std::map<std::string, std::string>;
 
-/// "NOT_FOUND" of ERROR_REASON_NOT_FOUND.
+/// Returns "NOT_FOUND" for ERROR_REASON_NOT_FOUND.
 std::string reason_text(v1::ErrorReason reason);
 
-/// An error with ErrorInfo: domain, reason and metadata.
+// The functions below return errors. Each has an ErrorInfo with domain, reason and metadata.
+
 google::rpc::Status error(google::rpc::Code code, v1::ErrorReason reason,
                           const std::string& message, const ErrorMetadata& metadata = {});
 
-/// INVALID_ARGUMENT for what the model refuses; the reason is the refusal's.
+/// INVALID_ARGUMENT for inputs that the model refuses, with the reason of the refusal.
 google::rpc::Status refused(const Refusal& refusal);
 
-/// INVALID_ARGUMENT with every violation as BadRequest. Details travel in a header block that gRPC
-/// clients limit to 8 KiB: what does not fit is counted in a last violation.
+/// INVALID_ARGUMENT with every violation as BadRequest. gRPC clients limit the header block of the
+/// details to 8 KiB: a last violation states the number of those that do not fit.
 google::rpc::Status invalid(const Violations& violations);
 
-/// An error whatever the fields hold, with the fields that it is about as BadRequest.
+/// Adds the fields that an error is about to `status` as BadRequest.
 google::rpc::Status with_violations(google::rpc::Status status, const Violations& violations);
 
 /// NOT_FOUND with ResourceInfo.
@@ -53,8 +54,8 @@ google::rpc::Status not_possible(v1::ErrorReason reason, const std::string& type
                                  const std::string& name, const std::string& message,
                                  const ErrorMetadata& metadata = {});
 
-/// ABORTED with ResourceInfo: others changed it meanwhile; with RetryInfo where the same request
-/// may succeed a moment later.
+/// ABORTED with ResourceInfo: another writer changed the resource meanwhile. Has a RetryInfo if
+/// `may_retry`: the same request may succeed a moment later.
 google::rpc::Status aborted(v1::ErrorReason reason, const std::string& type,
                             const std::string& name, const std::string& message, bool may_retry,
                             const ErrorMetadata& metadata = {});
@@ -64,33 +65,34 @@ google::rpc::Status etag_mismatch(const std::string& type, const std::string& na
                                   const std::string& etag);
 google::rpc::Status contention(const std::string& type, const std::string& name);
 
-/// What a client is told of a failure of the database: DEADLINE_EXCEEDED, CANCELLED, DATA_LOSS, or
-/// UNAVAILABLE with RetryInfo. It names no file of the server.
+/// A failure of the database: DEADLINE_EXCEEDED, CANCELLED, DATA_LOSS, or UNAVAILABLE with
+/// RetryInfo. Does not contain names of the server's files.
 google::rpc::Status store_failed(const StoreError& failure);
 
 /// RESOURCE_EXHAUSTED with RetryInfo.
 google::rpc::Status exhausted(v1::ErrorReason reason, const std::string& message,
                               double retry_seconds);
 
-/// DEADLINE_EXCEEDED, by the server's own limit or the client's. Only before anything is committed.
+/// DEADLINE_EXCEEDED: the client's deadline or the server's limit passed. Requires that nothing was
+/// committed.
 google::rpc::Status deadline_exceeded();
-/// CANCELLED: the client gave up. Only before anything is committed.
+/// CANCELLED: the client cancelled the call. Requires that nothing was committed.
 google::rpc::Status cancelled();
-/// deadline_exceeded() or cancelled(), whichever limit is over.
+/// cancelled() if the client cancelled, else deadline_exceeded().
 google::rpc::Status call_over(const CallLimits& limits);
-/// DEADLINE_EXCEEDED for a stream that was open for as long as it may be.
+/// DEADLINE_EXCEEDED, STREAM_TIME_LIMIT: the stream reached its longest duration.
 google::rpc::Status stream_deadline_exceeded();
 
 /// UNAVAILABLE, SHUTTING_DOWN, with RetryInfo.
 google::rpc::Status shutting_down();
 
-/// INTERNAL: a defect of the server. Logs `cause` under an id; the client gets the id and no cause.
+/// INTERNAL: a defect of the server. Logs `cause` with an id. The error contains only the id.
 google::rpc::Status internal_error(std::string_view cause);
 
-/// RESOURCE_EXHAUSTED, OUT_OF_MEMORY, with RetryInfo: an allocation failed. Logs it.
+/// RESOURCE_EXHAUSTED, OUT_OF_MEMORY, with RetryInfo: an allocation failed. Logs the failure.
 google::rpc::Status out_of_memory();
 
-/// Serialised size of BadRequest that surely reaches a client.
+/// Largest serialised size of a BadRequest that fits the header block of every client [bytes].
 inline constexpr std::size_t kMaximumBadRequestBytes = 5500;
 
 }  // namespace tribodyn::server

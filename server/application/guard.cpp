@@ -12,7 +12,7 @@
 namespace tribodyn::server {
 namespace {
 
-/// Whether the caller, and not the database, is why a call of the store failed.
+/// Returns true if a call of the store failed because of its caller and not of the database.
 bool is_of_the_caller(const StoreError& failure) {
   return failure.kind() == StoreError::Kind::kDeadline ||
          failure.kind() == StoreError::Kind::kCancelled;

@@ -5,11 +5,11 @@
 
 namespace tribodyn::server {
 
-/// The error that a client is told of the exception that is being handled. Logs failures of the
-/// database and defects; of an unexpected exception only what().
+/// Returns the error for the exception that is being handled; call it in a catch block. Logs
+/// failures of the database, and what() of an unexpected exception.
 google::rpc::Status error_of_exception();
 
-/// Runs the body of an RPC and turns every exception into an error.
+/// Runs `body` and turns every exception into an error.
 template <class Message, class Body>
 Outcome<Message> guarded(const Body& body) {
   try {

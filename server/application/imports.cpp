@@ -9,7 +9,7 @@
 namespace tribodyn::server {
 namespace {
 
-/// `read` makes the resource of the request, or violations.
+/// Stores the resource that `read` makes of the request, or returns its violations.
 template <class Resource, class Request, class Read>
 Outcome<Resource> import_resource(Application& application, const Request& request,
                                   const Read& read, const CallContext& call) {

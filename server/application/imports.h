@@ -9,7 +9,8 @@
 
 namespace tribodyn::server {
 
-// New resources from tables that clients send as text. What is refused leaves nothing behind.
+// These use cases create a resource from tables that a client sends as text. A refused table
+// changes nothing.
 
 Outcome<v1::Lubricant> import_lubricant(Application& application,
                                         const v1::ImportLubricantRequest& request,

@@ -31,7 +31,7 @@ struct Token {
   bool quoted = false;
 };
 
-/// Words, quoted texts and operators of a filter, one after the other.
+/// Splits a filter into words, quoted texts and operators.
 class Scanner {
  public:
   explicit Scanner(std::string_view text) : rest_(text) { skip_spaces(); }
@@ -52,7 +52,7 @@ class Scanner {
     return {};
   }
 
-  /// Nothing when a quoted text does not end.
+  /// Returns nullopt if the closing quote is missing.
   std::optional<Token> value() {
     if (rest_.empty() || rest_.front() != '"') {
       return Token{take([](char c) { return std::isspace(static_cast<unsigned char>(c)) == 0; }),
@@ -115,13 +115,13 @@ std::optional<PropertyKind> kind_of(const std::string& key, const std::string& c
   return computed == nullptr ? std::nullopt : std::optional(computed->kind);
 }
 
-/// The key of a field that is named by its short name, "kv40"; other keys as they are.
+/// Returns the key of the field with the short name `key`, e.g. "kv40"; else `key`.
 std::string full_key(const std::string& key, const std::string& collection) {
   const ComputedField* computed = find_computed_field(collection, key);
   return computed == nullptr ? key : computed->key;
 }
 
-/// The collection of the resources that a field names; empty: it names none.
+/// Returns the collection of the resources that a field names; empty if its values are not names.
 std::string named_collection(const std::string& key, const std::string& collection) {
   if (key == "name" || key == "derived_from") return collection;
   if (collection != kSimulations) return "";
@@ -131,7 +131,7 @@ std::string named_collection(const std::string& key, const std::string& collecti
   return key == "vehicle" ? kVehicles : "";
 }
 
-/// Returns "GROUP_III" of "group-iii", as tables and flags write an enum.
+/// Returns "GROUP_III" for "group-iii", the form of an enum in tables and flags.
 std::string enum_name_of(std::string word) {
   std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) {
     return c == '-' || c == ' ' ? '_' : static_cast<char>(std::toupper(c));
@@ -140,7 +140,7 @@ std::string enum_name_of(std::string word) {
 }
 
 std::string unknown_field_text(const std::string& key, const std::string& collection) {
-  return fmt::format("\"{}\" is no field of a filter on {}{}", plain_excerpt(key), collection,
+  return fmt::format("\"{}\" is not a field of a filter on {}{}", plain_excerpt(key), collection,
                      meant_text(key, filter_fields(collection)));
 }
 
@@ -206,7 +206,7 @@ class FilterReader {
  private:
   void complain(std::string text) { violations_.push_back({"filter", std::move(text)}); }
 
-  /// Nothing when the rest cannot be read.
+  /// Returns nullopt, and adds a violation, if the rest of the filter cannot be parsed.
   std::optional<Restriction> restriction() {
     Restriction out;
     out.key = scanner_.field().text;
@@ -235,7 +235,7 @@ class FilterReader {
       return;
     }
     if (out.comparison == Comparison::kContains && *kind != PropertyKind::kText) {
-      return complain(fmt::format("{} is no text: \":\" does not apply", out.key));
+      return complain(fmt::format("{} is not a text; \":\" applies only to texts", out.key));
     }
     switch (*kind) {
       case PropertyKind::kText:
@@ -261,7 +261,7 @@ class FilterReader {
     }
   }
 
-  /// The name of a resource may be given without its collection.
+  /// Adds the collection to the name of a resource that lacks it.
   void read_text(const Token& value, Restriction& out) const {
     out.value = value.text;
     const std::string named = named_collection(out.key, collection_);

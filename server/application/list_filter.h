@@ -9,11 +9,13 @@
 
 namespace tribodyn::server {
 
-/// The restrictions of an AIP-160 filter: `field operator value` joined by AND. Fields: name, those
-/// of property_fields and computed_fields, labels.KEY; operators = != < <= > >= and ":" (texts:
-/// contains; ":*": is there). A value is a word or stands in double quotes with \" and \\; numbers
-/// as in C, times as in RFC 3339, enums by name in either case, names of resources with or without
-/// their collection. Adds every violation at "filter"; unknown words name the nearest.
+/// Parses an AIP-160 filter: conditions `field operator value` joined by AND.
+///   fields     "name", property_fields(), computed_fields(), "labels.KEY"
+///   operators  = != < <= > >=, ":" (a text contains the value), ":*" (the field is set)
+///   values     words, or texts in double quotes with \" and \\; numbers as in C, times as in RFC
+///              3339, enums by name in upper or lower case, names of resources with or without
+///              their collection
+/// Adds every violation at "filter"; that of an unknown word has the nearest known word.
 std::vector<Restriction> parse_filter(std::string_view filter, const std::string& collection,
                                       Violations& violations);
 
@@ -22,14 +24,14 @@ struct Order {
   bool descending = false;
 };
 
-/// "name", a field of property_fields or computed_fields, either followed by "desc" or "asc";
-/// empty: by name.
+/// Parses an order: "name" or a field of property_fields() or computed_fields(), optionally
+/// followed by "asc" or "desc". Empty means by name. Adds violations at "order_by".
 Order parse_order(std::string_view order_by, const std::string& collection, Violations& violations);
 
-/// Names that a filter may use, sorted; "labels.KEY" stands for all labels.
+/// Returns the names that a filter may use, sorted; "labels.KEY" stands for all labels.
 std::vector<std::string> filter_fields(const std::string& collection);
 
-inline constexpr std::size_t kMaximumFilterLength = 2000;  ///< bytes
+inline constexpr std::size_t kMaximumFilterLength = 2000;  ///< [bytes]
 inline constexpr std::size_t kMaximumRestrictions = 20;
 
 }  // namespace tribodyn::server

@@ -6,12 +6,12 @@
 
 namespace tribodyn::server {
 
-/// Text of unknown origin as part of one log line: every byte that is not printable ASCII becomes
-/// '?', and what lies beyond `longest` bytes is cut off.
+/// Returns a text of unknown origin in a form for log lines: its first `longest` bytes, with '?'
+/// for each byte that is not printable ASCII.
 std::string log_text(std::string_view text, std::size_t longest);
 
-/// The same as one word, so that a line of key=value pairs stays readable: spaces and '=' become
-/// '_' too.
+/// Returns a text of unknown origin as one word of a line of key=value pairs: its first `longest`
+/// bytes, with '_' for spaces, '=' and bytes that are not printable ASCII.
 std::string log_word(std::string_view text, std::size_t longest);
 
 }  // namespace tribodyn::server

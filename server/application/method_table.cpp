@@ -30,8 +30,8 @@ void visit_methods(const FileDescriptor& file, const Visit& visit) {
   }
 }
 
-/// The method that takes such a request and gives such a response; every method has a request of
-/// its own.
+/// Returns the method with these types. Every method has a request type of its own. Throws
+/// std::logic_error if there is none.
 const MethodDescriptor& method_of(const Descriptor& request, const Descriptor& response) {
   const MethodDescriptor* out = nullptr;
   visit_methods(*request.file(), [&](const MethodDescriptor& method) {

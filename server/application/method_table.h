@@ -16,25 +16,26 @@
 
 namespace tribodyn::server {
 
-/// What answers a unary call, and what answers a stream.
+/// The answer to a unary call, and the source of the messages of a stream.
 using Reply = std::unique_ptr<google::protobuf::Message>;
 using ReplySource = std::shared_ptr<AnyMessageSource>;
 
-/// A method of the contract, as every transport serves it.
+/// One row of the table of methods: what a transport needs to serve a method.
 struct Method {
   template <class Answer>
   using UseCase = std::function<Outcome<Answer>(
       Application&, const google::protobuf::Message& request, const CallContext&)>;
 
   const google::protobuf::MethodDescriptor* descriptor;
-  const google::protobuf::Message* request;  ///< the prototypes
-  const google::protobuf::Message* response;
-  CallLane lane;              ///< of requests up to kUsualRequestBytes; kHeavy of others
-  UseCase<Reply> answer;      ///< of a unary method, else null
-  UseCase<ReplySource> open;  ///< of a method that answers with a stream, else null
+  const google::protobuf::Message* request;   ///< prototype
+  const google::protobuf::Message* response;  ///< prototype
+  CallLane lane;              ///< of requests up to kUsualRequestBytes; larger ones take kHeavy
+  UseCase<Reply> answer;      ///< null for a streaming method
+  UseCase<ReplySource> open;  ///< null for a unary method
 };
 
-/// Every method of the contract. Throws std::logic_error if a method has no row or two.
+/// Returns one row for every method of the contract. Throws std::logic_error if a method has none
+/// or two.
 std::vector<Method> method_table();
 
 }  // namespace tribodyn::server

@@ -7,7 +7,8 @@
 
 namespace tribodyn::server {
 
-/// What an RPC comes to: a message, or an error with its details. An error is never OK.
+/// Result of a use case: a message, or an error with its details. The code of the error is never
+/// OK.
 template <class Message>
 class Outcome {
  public:

@@ -30,7 +30,7 @@ std::optional<std::string> from_hex(const std::string& hex) {
   return out;
 }
 
-/// The kind by its first letter, then the value.
+/// Returns the value after a letter for its kind.
 std::string text_of(const PropertyValue& value) {
   if (const auto* time = std::get_if<std::int64_t>(&value)) return fmt::format("t{}", *time);
   if (const auto* number = std::get_if<double>(&value)) return fmt::format("n{}", *number);

@@ -8,16 +8,16 @@
 
 namespace tribodyn::server {
 
-/// What a page token says.
+/// Contents of a page token.
 struct PageToken {
-  PageStart last;          ///< where the page begins: after this one
-  std::int64_t total = 0;  ///< rows of the whole list when its first page was read
+  PageStart last;          ///< last row of the previous page
+  std::int64_t total = 0;  ///< length of the whole list when its first page was read
 };
 
-/// An opaque token; `scope` is everything of the request that must stay the same from page to page.
+/// Returns an opaque token. `scope` is the part of the request that must not change between pages.
 std::string page_token(const std::string& scope, const PageToken& token);
 
-/// Returns nullopt if the token was not given out for this scope.
+/// Returns nullopt if page_token() did not make the token for this scope.
 std::optional<PageToken> parse_page_token(const std::string& scope, const std::string& token);
 
 }  // namespace tribodyn::server

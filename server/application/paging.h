@@ -13,18 +13,21 @@
 namespace tribodyn::server {
 
 inline constexpr int kMaximumPageSize = 1000;
-inline constexpr std::size_t kMaximumPageBytes = 2'000'000;  // clients accept 4 MB by default
+inline constexpr std::size_t kMaximumPageBytes =
+    2'000'000;  // [bytes]; gRPC clients accept 4 MB by default
 
-/// The page size that a request means (AIP-158): 0 is the default, too many are cut.
-inline int page_size(int requested, int otherwise, Violations& violations) {
+/// Returns the page size of a request (AIP-158): `fallback` for 0, at most kMaximumPageSize. Adds a
+/// violation if it is negative.
+inline int page_size(int requested, int fallback, Violations& violations) {
   if (requested < 0) {
     violations.push_back({"page_size", fmt::format("page_size = {}; allowed: 0 (means {}) to {}",
-                                                   requested, otherwise, kMaximumPageSize)});
+                                                   requested, fallback, kMaximumPageSize)});
   }
-  return requested == 0 ? otherwise : std::min(requested, kMaximumPageSize);
+  return requested == 0 ? fallback : std::min(requested, kMaximumPageSize);
 }
 
-/// A count of rows as the total_size of a list; what does not fit, as of a forged token, is cut.
+/// Returns a number of rows as the total_size of a list. Limits it to 32 bits, as a forged token
+/// may hold any number.
 inline std::int32_t clamped_total(std::int64_t rows) {
   return static_cast<std::int32_t>(
       std::min<std::int64_t>(rows, std::numeric_limits<std::int32_t>::max()));

@@ -7,14 +7,15 @@
 
 namespace tribodyn::server {
 
-/// All that a client stated in a request to create a simulation, except its request_id and whether
-/// it is only to be checked: two requests are the same when their texts are.
+/// Returns everything that a client set in a CreateSimulationRequest, except request_id and
+/// validate_only, as text. Two requests are equal if their texts are.
 std::string request_text(const v1::Simulation& requested, bool force);
 
-/// Path of the first value in which two such texts differ.
+/// Returns the path of the first value in which two such texts differ; empty if they are equal.
 std::string first_difference(const std::string& one, const std::string& other);
 
-/// A request_id is printable ASCII without spaces, at most kMaximumRequestIdLength bytes.
+/// Adds a violation unless the request_id is printable ASCII without spaces of at most
+/// kMaximumRequestIdLength bytes.
 void check_request_id(const std::string& request_id, Violations& violations);
 
 inline constexpr int kMaximumRequestIdLength = 100;

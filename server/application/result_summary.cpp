@@ -20,7 +20,7 @@ v1::PointSummary summary_of(const v1::PointResult& result) {
 
 void summarise(v1::SimulationResult& result) {
   for (v1::CurvePoint& point : *result.mutable_points()) {
-    if (!point.has_result()) continue;  // its refusal stays
+    if (!point.has_result()) continue;  // a refused point
     *point.mutable_summary() = summary_of(point.result());
     point.clear_result();
   }

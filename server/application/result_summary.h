@@ -4,8 +4,8 @@
 
 namespace tribodyn::server {
 
-/// Makes of a result what SIMULATION_VIEW_SUMMARY holds of it: each point has a summary in place of
-/// its result, and the assumptions are left out.
+/// Reduces a result to SIMULATION_VIEW_SUMMARY: replaces the result of each point by its summary
+/// and removes the assumptions.
 void summarise(v1::SimulationResult& result);
 
 }  // namespace tribodyn::server

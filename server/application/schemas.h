@@ -7,7 +7,7 @@
 
 namespace tribodyn::server {
 
-/// The table of constraints and the words that texts may hold.
+/// Returns the constraints of fields, and the lists of words that text fields accept.
 Outcome<v1::Schema> get_schema(Application& application, const v1::GetSchemaRequest& request,
                                const CallContext& call = {});
 

@@ -8,11 +8,12 @@
 
 namespace tribodyn::server {
 
-/// The stored simulation of that name; INVALID_ARGUMENT for what is no name, or NOT_FOUND.
+/// Returns the stored simulation. Returns INVALID_ARGUMENT if `name` does not have the form of a
+/// name, and NOT_FOUND if there is no such simulation.
 Outcome<StoredSimulation> find_simulation(Application& application, const std::string& name,
                                           const CallContext& call);
 
-/// NOT_FOUND for the name of a simulation.
+/// Returns NOT_FOUND for the name of a simulation.
 google::rpc::Status does_not_exist(const std::string& name);
 
 }  // namespace tribodyn::server

@@ -49,7 +49,7 @@ void set_revisions(const Row& row, v1::Simulation& out) {
   out.set_vehicle_revision(row.vehicle_revision);
 }
 
-/// Microseconds after `now`; nothing without a deadline.
+/// Returns the time at which a requested deadline passes; nullopt if the request sets none.
 std::optional<Microseconds> deadline_time(const v1::Simulation& requested, Microseconds now) {
   if (!requested.has_deadline_seconds()) return std::nullopt;
   return now + static_cast<Microseconds>(1e6 * requested.deadline_seconds());
@@ -81,7 +81,7 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
           .vehicle_revision = effective.vehicle_revision()};
 }
 
-/// What a request that is only checked would become; without a name.
+/// Returns the simulation that a request with validate_only would create, without a name.
 v1::Simulation preview(const SimulationInputs& inputs, const NewSimulation& simulation) {
   v1::Simulation out = inputs.requested;
   set_revisions(simulation, out);
@@ -95,12 +95,12 @@ v1::Simulation preview(const SimulationInputs& inputs, const NewSimulation& simu
   return out;
 }
 
-/// AIP-154: another one for everything of a simulation that clients may change.
+/// Returns the etag (AIP-154). It changes with every part of a simulation that clients can change.
 std::string etag_of(const StoredSimulation& stored) {
   return sha256(simulation_name(stored.id) + stored.request).substr(0, 16);
 }
 
-/// The stored row as a message, without its result.
+/// Returns the stored simulation as a message, without its result.
 v1::Simulation to_message(Application& application, const StoredSimulation& stored) {
   v1::Simulation out;
   out.ParseFromString(stored.request);
@@ -141,7 +141,7 @@ v1::Simulation to_message(Application& application, const StoredSimulation& stor
   return out;
 }
 
-/// The answer to a request whose request_id belongs to another one.
+/// Returns the error for a request whose request_id an earlier, different request has used.
 google::rpc::Status request_id_taken(const StoredSimulation& stored,
                                      const v1::CreateSimulationRequest& request,
                                      const std::string& text) {
@@ -156,7 +156,8 @@ google::rpc::Status request_id_taken(const StoredSimulation& stored,
       {{"request_id", fmt::format("belongs to another request; it differs in {}", field)}});
 }
 
-/// The simulation that an earlier request of the same id made, or that it was another request.
+/// Returns the simulation that an earlier request with the same request_id created, or an error if
+/// that request differs. Returns nullopt if there is none.
 std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
                                                       const v1::CreateSimulationRequest& request,
                                                       const std::string& text,
@@ -169,10 +170,11 @@ std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
   return to_message(application, *stored);
 }
 
-/// As much of its result as the view asks for, if it has one.
-void set_result(Application& application, v1::SimulationView view, v1::SimulationView otherwise,
+/// Sets the part of the result that `view` includes (`fallback` if it is unspecified), if the
+/// simulation has a result.
+void set_result(Application& application, v1::SimulationView view, v1::SimulationView fallback,
                 std::int64_t id, v1::Simulation& out, const CallContext& call) {
-  const v1::SimulationView meant = view == v1::SIMULATION_VIEW_UNSPECIFIED ? otherwise : view;
+  const v1::SimulationView meant = view == v1::SIMULATION_VIEW_UNSPECIFIED ? fallback : view;
   if (meant == v1::SIMULATION_VIEW_BASIC) return;
   const auto result = application.store.result(id, call.limits);
   if (!result) return;
@@ -180,7 +182,7 @@ void set_result(Application& application, v1::SimulationView view, v1::Simulatio
   if (meant == v1::SIMULATION_VIEW_SUMMARY) summarise(*out.mutable_result());
 }
 
-/// As the store understands them.
+/// Parses a filter into restrictions for the store, which compares states as numbers.
 std::vector<Restriction> restrictions(const std::string& filter, Violations& violations) {
   std::vector<Restriction> out = parse_filter(filter, kSimulations, violations);
   for (Restriction& each : out) {
@@ -190,7 +192,7 @@ std::vector<Restriction> restrictions(const std::string& filter, Violations& vio
     const bool is_equality = each.comparison == Restriction::Comparison::kEqual ||
                              each.comparison == Restriction::Comparison::kNotEqual;
     if (each.key == "name") {
-      violations.push_back({"filter", "a name is not filtered by; get the simulation"});
+      violations.push_back({"filter", "lists cannot be filtered by name; use GetSimulation"});
     } else if (!has_order && !is_equality &&
                !(is_label && each.comparison == Restriction::Comparison::kPresent) &&
                !(is_text && each.comparison == Restriction::Comparison::kContains)) {
@@ -214,7 +216,7 @@ bool is_ascending(const std::string& order_by, Violations& violations) {
   return false;
 }
 
-/// Where the page behind a token begins.
+/// Returns the row after which the page of a token begins; nullopt if the token has no such row.
 std::optional<SimulationQuery::Place> place(const PageStart& start) {
   const auto* time = std::get_if<std::int64_t>(&start.value);
   const auto id = simulation_id(start.name);
@@ -222,7 +224,7 @@ std::optional<SimulationQuery::Place> place(const PageStart& start) {
   return SimulationQuery::Place{*time, *id};
 }
 
-/// Joins what the client calls the request, the job and its result. Names only, no inputs.
+/// Logs the names of request, simulation and inputs, which connect them. Logs no inputs.
 void log_submission(const CallContext& call, const NewSimulation& simulation, const Added& added) {
   spdlog::info(
       "event=simulation_{} simulation={} request_id={} client={} input_hash={} cost_seconds={:.6f} "
@@ -251,10 +253,10 @@ Outcome<v1::Simulation> create_simulation(Application& application,
   check_request_id(request.request_id(), violations);
   if (!request.has_simulation()) violations.push_back({"simulation", "not set"});
   check_choice(request, "scheduling_class", violations);
-  check_counts(request.simulation(), "simulation", violations);  // before work that they multiply
+  check_counts(request.simulation(), "simulation", violations);  // first: work grows with them
   if (!violations.empty()) return invalid(violations);
   const std::string text = request_text(client_part(request.simulation()), request.force());
-  // Before anything else, as what it rests on may have changed since.
+  // Before the inputs are checked: the resources may have changed since the earlier request.
   auto earlier = earlier_answer(application, request, text, call);
   if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
   const StopWatch watch;
@@ -305,7 +307,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   query.restrictions = restrictions(request.filter(), violations);
   query.ascending = is_ascending(request.order_by(), violations);
   const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
-  const v1::SimulationView otherwise =
+  const v1::SimulationView fallback =
       mask.is_whole() ? v1::SIMULATION_VIEW_BASIC : v1::SIMULATION_VIEW_FULL;
   const std::string scope =
       fmt::format("{}\n{}\n{}", kSimulations, request.filter(), request.order_by());
@@ -327,7 +329,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   for (const StoredSimulation& row : page.rows) {
     v1::Simulation next = to_message(application, row);
     if (mask.asks_for("result")) {
-      set_result(application, request.view(), otherwise, row.id, next, call);
+      set_result(application, request.view(), fallback, row.id, next, call);
     }
     mask.apply(next);
     bytes += next.ByteSizeLong();
@@ -349,7 +351,7 @@ Outcome<v1::Simulation> set_pinned(Application& application, const std::string& 
                                    bool is_pinned, const CallContext& call) {
   const auto found = find_simulation(application, name, call);
   if (!found.ok()) return found.error();
-  // All reads come before the write: once the write is committed, nothing may fail any more.
+  // All reads come before the write: after the commit the call must not fail.
   v1::Simulation before;
   set_result(application, v1::SIMULATION_VIEW_FULL, v1::SIMULATION_VIEW_FULL, found.message().id,
              before, call);
@@ -367,7 +369,7 @@ namespace {
 constexpr int kWriteAttempts = 10;  // against other writers
 constexpr char kSimulationType[] = "tribodyn.v1.Simulation";
 
-/// Takes over into `target` what the request changes: its display name and labels.
+/// Copies the display name and the labels that the request changes into `target`.
 void take_over_labels(const v1::UpdateSimulationRequest& request, v1::Simulation& target,
                       Violations& violations) {
   const v1::Simulation& stated = request.simulation();
@@ -506,8 +508,8 @@ Outcome<v1::Simulation> cancel_simulation(Application& application,
     now.set_name(request.name());
     return get_simulation(application, now, call);
   }
-  // The answer is not read back: a read after the deadline would report a failure of a committed
-  // call.
+  // The answer is not read from the store: a read after the deadline would fail, although the
+  // simulation is cancelled.
   stored.state = event->state;
   stored.attempt = event->attempt;
   stored.sequence = event->sequence;

@@ -9,34 +9,36 @@
 
 namespace tribodyn::server {
 
-/// Accepts a simulation: checked, on disk and QUEUED when this returns.
+/// Checks and stores a simulation. When it returns, the simulation is on disk: QUEUED, or SUCCEEDED
+/// if equal inputs have a result.
 Outcome<v1::Simulation> create_simulation(Application& application,
                                           const v1::CreateSimulationRequest& request,
                                           const CallContext& call = {});
-/// With its result when it has succeeded.
+/// Returns a simulation, with its result if it has one and the view includes it.
 Outcome<v1::Simulation> get_simulation(Application& application,
                                        const v1::GetSimulationRequest& request,
                                        const CallContext& call = {});
-/// A page, by default newest first and without results.
+/// Returns a page of simulations, by default the latest first and without results.
 Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
                                                       const v1::ListSimulationsRequest& request,
                                                       const CallContext& call = {});
-/// CANCELLED on disk when this returns, unless it had ended before.
+/// Cancels a simulation. When it returns, the simulation is CANCELLED on disk, unless it had ended
+/// before.
 Outcome<v1::Simulation> cancel_simulation(Application& application,
                                           const v1::CancelSimulationRequest& request,
                                           const CallContext& call = {});
 
-/// Removes it for good, with its result unless another simulation shares that.
+/// Removes a simulation for good, with its result unless another simulation shares the result.
 Outcome<google::protobuf::Empty> delete_simulation(Application& application,
                                                    const v1::DeleteSimulationRequest& request,
                                                    const CallContext& call = {});
 
-/// Changes its display name or labels. Answers without its result.
+/// Changes the display name or the labels of a simulation. Returns it without its result.
 Outcome<v1::Simulation> update_simulation(Application& application,
                                           const v1::UpdateSimulationRequest& request,
                                           const CallContext& call = {});
 
-/// Keeps it for good, and gives it up again.
+// Protect a simulation from removal, and end the protection.
 Outcome<v1::Simulation> pin_simulation(Application& application,
                                        const v1::PinSimulationRequest& request,
                                        const CallContext& call = {});

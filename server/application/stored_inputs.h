@@ -7,8 +7,9 @@
 
 namespace tribodyn::server {
 
-/// HashInputs of check_database: the hash of a stored simulation's inputs, computed again from its
-/// request and its revisions. Empty text when they are not acceptable any more.
+/// Computes the input hash of a stored simulation from its request and its revisions, for
+/// check_database(). Returns an empty text if the inputs are no longer valid, and nullopt if they
+/// are of another version of the model.
 std::optional<std::string> hash_stored_inputs(const v1::Simulation& request,
                                               const std::string& model_version,
                                               const FindRevision& find);

@@ -19,8 +19,8 @@ using google::protobuf::internal::WireFormat;
 using google::protobuf::internal::WireFormatLite;
 using google::protobuf::io::CodedInputStream;
 
-/// What one message holds. The wire may hold a singular message in parts, which parsing merges: the
-/// counts of such a message stay with the message that holds it.
+/// Numbers of elements in one message. The wire may hold a singular message in several parts, which
+/// parsing merges; so the counts of such a message are kept with the message around it.
 struct ElementCounts {
   std::vector<std::int64_t> elements;                    // by index of the field; empty: none
   std::vector<std::unique_ptr<ElementCounts>> messages;  // by index of the field; empty: none
@@ -31,7 +31,7 @@ WireFormatLite::WireType wire_type_of(const FieldDescriptor& field) {
   return WireFormat::WireTypeForFieldType(field.type());
 }
 
-/// Elements of a packed list: exact for fixed sizes, else at most so many.
+/// Returns the number of elements of a packed list; an upper bound if their sizes vary.
 int packed_elements(const FieldDescriptor& field, int bytes) {
   switch (wire_type_of(field)) {
     case WireFormatLite::WIRETYPE_FIXED64:
@@ -47,7 +47,7 @@ class WireScan {
  public:
   WireScan(CodedInputStream& in, Violations& violations) : in_(in), violations_(violations) {}
 
-  /// False when the bytes are no such message.
+  /// Returns false if the bytes are not such a message.
   bool run(const Descriptor& type, int size) {
     ElementCounts counts;
     if (!read_part(type, size, counts)) return false;
@@ -139,7 +139,7 @@ class WireScan {
     return in_.ReadVarintSizeAsInt(size) && *size <= in_.BytesUntilLimit();
   }
 
-  /// Groups are refused: the contract has none.
+  /// Refuses groups: the contract has none.
   bool skip(WireFormatLite::WireType wire_type) {
     std::uint64_t number = 0;
     int size = 0;
@@ -192,7 +192,7 @@ class WireScan {
 
   CodedInputStream& in_;
   Violations& violations_;
-  std::vector<std::pair<const FieldDescriptor*, std::int64_t>> path_;  // of the present message
+  std::vector<std::pair<const FieldDescriptor*, std::int64_t>> path_;  // to the current message
   std::int64_t total_ = 0;
 };
 
@@ -205,9 +205,10 @@ void check_wire(google::protobuf::io::ZeroCopyInputStream& bytes, int size, cons
 }
 
 Violation unreadable_violation(const Descriptor& type) {
-  return {"", fmt::format("the request cannot be read: its bytes are no {}, or a text in it is not "
-                          "UTF-8",
-                          type.name())};
+  return {"",
+          fmt::format("the request cannot be read: its bytes are not a {}, or a text in it is not "
+                      "UTF-8",
+                      type.name())};
 }
 
 }  // namespace tribodyn::server

@@ -7,17 +7,17 @@
 
 namespace tribodyn::server {
 
-/// Checks a serialised request of `size` bytes before it is parsed, as parsing may multiply its
-/// size: an empty FlankSlot takes 2 bytes on the wire and 348 times as much in memory. Counts the
-/// elements of every list, at any depth and over all parts of a message that the wire holds in
-/// parts, and adds a violation, with its path, for each list that has more than any acceptable
-/// request (element_limits.h), and for unknown fields and for elements in all. Bytes that are no
-/// such message are one violation without a path; what this function does not find, parsing does.
-/// Takes time in proportion to the bytes and memory in proportion to what is acceptable.
+/// Checks a serialised request of `size` bytes before it is parsed, because a parsed message can be
+/// much larger: an empty FlankSlot takes 2 bytes on the wire and 348 times as much in memory.
+/// Counts the elements of every list, at any depth, also of messages that the wire holds in several
+/// parts. Adds a violation with its path for each list that is longer than in any acceptable
+/// request (element_limits.h), for too many unknown fields and for too many elements in total. Adds
+/// one violation without a path if the bytes are not such a message; parsing finds the remaining
+/// defects. Time grows with the bytes, memory only with the limits.
 void check_wire(google::protobuf::io::ZeroCopyInputStream& bytes, int size,
                 const google::protobuf::Descriptor& type, Violations& violations);
 
-/// The violation of bytes that are no message of this type.
+/// Returns the violation for bytes that are not a message of this type.
 Violation unreadable_violation(const google::protobuf::Descriptor& type);
 
 }  // namespace tribodyn::server

@@ -11,16 +11,16 @@
 namespace tribodyn::server {
 
 /// Threads that run tasks in the order of their arrival, and a queue of limited length. Safe for
-/// concurrent access; the destructor runs what was accepted.
+/// concurrent access. The destructor runs the accepted tasks.
 class Workers {
  public:
-  /// At most `waiting` tasks wait; tasks of at most `bytes` wait or are under way.
+  /// At most `waiting` tasks wait. Tasks that wait or run have at most `bytes` together.
   Workers(int threads, std::size_t waiting, std::size_t bytes);
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  /// Returns false, and leaves `task` as it is, if the queue is full.
+  /// Queues a task. Returns false, and does not change `task`, if the queue is full.
   bool run(std::size_t bytes, std::function<void()>& task);
 
  private:
@@ -35,7 +35,7 @@ class Workers {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Task> tasks_;  // guarded by mutex_
-  std::size_t bytes_ = 0;   // guarded by mutex_; of tasks that wait or are under way
+  std::size_t bytes_ = 0;   // guarded by mutex_; of tasks that wait or run
   bool stopping_ = false;   // guarded by mutex_
   std::vector<std::thread> threads_;
 };

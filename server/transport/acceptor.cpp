@@ -26,7 +26,7 @@ constexpr auto kPause = std::chrono::milliseconds(100);
 
 std::string reason() { return std::generic_category().message(errno); }
 
-/// A socket address of any kind, as bind and connect want it.
+/// A socket address of any kind, in the form of bind and connect.
 struct SocketName {
   sockaddr_storage storage{};
   socklen_t length = 0;
@@ -60,11 +60,12 @@ int open_socket(const SocketName& name) {
   return socket(name.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 }
 
-/// Makes room for a Unix socket: only what a dead server left behind goes.
+/// Removes the socket file of a killed server. Throws ListenError if the path belongs to another
+/// file or to a server that answers.
 void clear_socket_path(const std::string& path, SocketName name) {
   struct stat found {};
   if (lstat(path.c_str(), &found) != 0) return;
-  if (!S_ISSOCK(found.st_mode)) throw ListenError(path + " exists and is no socket");
+  if (!S_ISSOCK(found.st_mode)) throw ListenError(path + " exists and is not a socket");
   const int probe = open_socket(name);
   const bool answered = connect(probe, name.get(), name.length) == 0 || errno == EAGAIN;
   close(probe);
@@ -82,7 +83,8 @@ int port_of(int listener) {
   return ntohs(reinterpret_cast<const sockaddr_in*>(&name.storage)->sin_port);
 }
 
-/// The system hands out descriptors lowest first, so that a high one means that many are open.
+/// Returns the highest descriptor that a connection may have. The system assigns the lowest free
+/// one, so a high one means that many are open.
 int highest_descriptor(int maximum_connections) {
   rlimit limit{};
   getrlimit(RLIMIT_NOFILE, &limit);
@@ -98,7 +100,7 @@ Acceptor::Acceptor(const ListenAddress& address, int maximum_connections)
   SocketName name = socket_name(address_);
   if (address_.is_unix()) clear_socket_path(address_.socket_path, name);
   listener_ = open_socket(name);
-  const int yes = 1;  // a port in TIME_WAIT is free; one with a listener is not
+  const int yes = 1;  // takes a port in TIME_WAIT, but not one with a listener
   setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
   if (listener_ < 0 || bind(listener_, name.get(), name.length) != 0 ||
       listen(listener_, kBacklog) != 0) {
@@ -143,7 +145,7 @@ void Acceptor::run(const Take& take) const {
       scarce = false;
       take(listener_, connection);
     } else if (connection >= 0 || none_left) {
-      if (!scarce) spdlog::warn("too many connections are open: further ones are turned away");
+      if (!scarce) spdlog::warn("too many connections are open; new ones are closed");
       scarce = true;
       if (connection >= 0) close(connection);
       if (none_left) std::this_thread::sleep_for(kPause);

@@ -7,25 +7,24 @@
 
 namespace tribodyn::server {
 
-/// The listening socket, and a thread that accepts connections and hands them on. gRPC 1.51 has its
-/// own, but once the process has run out of file descriptors that one never accepts again
-/// (grpc/grpc issue 20418): anybody who opens enough connections would make the server deaf. This
-/// one turns connections away beyond `maximum_connections` and while descriptors are scarce, and
-/// keeps some for the database.
-/// Made, started and stopped by one thread.
+/// A listening socket, and a thread that accepts connections and passes them on. gRPC 1.51 has its
+/// own acceptor, which stops for good once the process has run out of file descriptors (grpc/grpc
+/// issue 20418), so that any client with enough connections could block all others. This class
+/// closes new connections beyond `maximum_connections` and while descriptors are scarce, and
+/// reserves some for the database. One thread must construct, start and stop the object.
 class Acceptor {
  public:
-  /// Binds and listens. Throws ListenError when the address is in use or not permitted. A socket
-  /// file that a killed server left behind is replaced.
+  /// Binds and listens. Replaces the socket file of a killed server. Throws ListenError if the
+  /// address is in use or not permitted.
   explicit Acceptor(const ListenAddress& address, int maximum_connections = kMaximumConnections);
   ~Acceptor();
   Acceptor(const Acceptor&) = delete;
   Acceptor& operator=(const Acceptor&) = delete;
 
-  /// The address with the port that the system picked.
+  /// Returns the address with the actual port.
   const ListenAddress& address() const { return address_; }
 
-  /// Takes over a connected socket, on the acceptor's thread.
+  /// Called on the acceptor's thread; takes over the connected socket.
   using Take = std::function<void(int listener, int connection)>;
   void start(Take take);
   void stop();
@@ -33,13 +32,13 @@ class Acceptor {
  private:
   void run(const Take& take) const;
 
-  /// Each costs gRPC about 5 kB before its first call.
+  /// gRPC keeps about 5 kB for each before its first call.
   static constexpr int kMaximumConnections = 10'000;
 
   ListenAddress address_;
   const int maximum_connections_;
   int listener_ = -1;
-  int wake_ = -1;  ///< becomes readable when the thread is to end
+  int wake_ = -1;  ///< becomes readable when the thread must end
   std::thread thread_;
 };
 

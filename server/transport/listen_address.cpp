@@ -24,7 +24,7 @@ bool is_loopback(const std::string& host) {
 
 ListenAddress parse_unix(const std::string& path) {
   if (path.empty() || path.size() >= sizeof(sockaddr_un::sun_path)) {
-    throw ListenError("unix:" + path + " is no usable socket path (1 to " +
+    throw ListenError("unix:" + path + " is not a usable socket path (allowed: 1 to " +
                       std::to_string(sizeof(sockaddr_un::sun_path) - 1) + " bytes)");
   }
   return {.host = "", .port = 0, .socket_path = path};
@@ -36,7 +36,7 @@ ListenAddress parse_listen_address(const std::string& text) {
   if (text.starts_with("unix:")) return parse_unix(text.substr(5));
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos || (text.front() == '[' && text.find("]:") == std::string::npos)) {
-    throw ListenError("\"" + text + "\" names no port; " + kForms);
+    throw ListenError("\"" + text + "\" has no port; " + kForms);
   }
   ListenAddress out;
   out.host = text.substr(0, colon);
@@ -44,7 +44,7 @@ ListenAddress parse_listen_address(const std::string& text) {
   const char* end = text.data() + text.size();
   const auto [parsed, error] = std::from_chars(begin, end, out.port);
   if (error != std::errc() || parsed != end || out.port < 0 || out.port > 65535) {
-    throw ListenError("\"" + text + "\" has no port from 0 to 65535; " + kForms);
+    throw ListenError("\"" + text + "\" does not end in a port from 0 to 65535; " + kForms);
   }
   if (out.host == "localhost") out.host = "127.0.0.1";
   if (!is_loopback(out.host)) {

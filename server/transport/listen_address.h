@@ -5,13 +5,13 @@
 
 namespace tribodyn::server {
 
-/// The server cannot listen where it was told to; what() is a sentence for the person who runs it.
+/// The server cannot listen at its address. what() is a sentence for the operator.
 class ListenError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Where to listen: a loopback address with a port, or a Unix socket.
+/// Address of a server: a loopback address with a port, or a Unix socket.
 struct ListenAddress {
   std::string host;         ///< "127.0.0.1", "[::1]"; empty for a Unix socket
   int port = 0;             ///< 0: the system picks one
@@ -19,11 +19,11 @@ struct ListenAddress {
   bool is_unix() const { return !socket_path.empty(); }
 };
 
-/// "127.0.0.1:50651", "[::1]:0", "localhost:50651", "unix:/run/tribodyn.sock". Throws ListenError
-/// for anything else, and for every address that is not loopback: there is no TLS yet.
+/// Parses "127.0.0.1:50651", "[::1]:0", "localhost:50651" or "unix:/run/tribodyn.sock". Throws
+/// ListenError for other forms, and for addresses that are not loopback, as there is no TLS yet.
 ListenAddress parse_listen_address(const std::string& text);
 
-/// As gRPC and a client write it.
+/// Returns the address in the form of gRPC and of clients.
 std::string to_text(const ListenAddress& address);
 
 }  // namespace tribodyn::server

@@ -151,7 +151,7 @@ TEST(WireCheck, RefusesBytesThatAreNoMessage) {
         std::string("\x0a\xff\xff\xff\xff\x0f"), std::string("\x0b\x0c"), std::string("\x0c"),
         std::string("\x0f"), wire_field(1, std::string("\x0a\x05\x01")),
         std::string(100'000, '\x0b')}) {
-    EXPECT_THAT(judge_bytes(bytes, type), ElementsAre(HasSubstr("no CreateLubricantRequest")));
+    EXPECT_THAT(judge_bytes(bytes, type), ElementsAre(HasSubstr("not a CreateLubricantRequest")));
   }
 }
 

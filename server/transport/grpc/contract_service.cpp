@@ -7,7 +7,7 @@
 
 namespace tribodyn::server {
 
-// As the code does that protoc generates for raw callback methods.
+// Like the code that protoc generates for raw callback methods.
 
 using grpc::ByteBuffer;
 using grpc::internal::RpcMethod;

@@ -11,18 +11,18 @@
 
 namespace tribodyn::server {
 
-/// A gRPC service of the contract, bound by descriptors and not by generated stubs: every method
-/// takes bytes and gives bytes, so that the server looks at a request before it is parsed.
+/// A gRPC service that is built from descriptors instead of generated code. Its methods take and
+/// return bytes, so that the server can check a request before it parses it.
 class ContractService final : public grpc::Service {
  public:
-  // They make the reactor of a call. Request and response are gRPC's and live until OnDone.
+  // Make the reactor of a call. gRPC owns request and response until OnDone.
   using StartUnary = std::function<grpc::ServerUnaryReactor*(
       grpc::CallbackServerContext*, const grpc::ByteBuffer* request, grpc::ByteBuffer* response)>;
   using StartStream = std::function<grpc::ServerWriteReactor<grpc::ByteBuffer>*(
       grpc::CallbackServerContext*, const grpc::ByteBuffer* request)>;
 
   void add_unary(const google::protobuf::MethodDescriptor& method, StartUnary start);
-  /// A method that answers one request with a stream.
+  /// Adds a method that answers one request with a stream.
   void add_stream(const google::protobuf::MethodDescriptor& method, StartStream start);
   int size() const { return static_cast<int>(paths_.size()); }
 
@@ -30,7 +30,7 @@ class ContractService final : public grpc::Service {
   void add(const google::protobuf::MethodDescriptor& method,
            grpc::internal::MethodHandler* handler);
 
-  std::deque<std::string> paths_;  // gRPC keeps pointers to them
+  std::deque<std::string> paths_;  // gRPC keeps pointers to the texts
 };
 
 }  // namespace tribodyn::server

@@ -12,13 +12,13 @@
 
 namespace tribodyn::server {
 
-/// The context of a call: from its metadata, its connection and its deadline, which is the client's
-/// or `limit` from now.
+/// Returns the context of a call, from its metadata and its connection. Its deadline is the
+/// client's, or `limit` from now if that is earlier.
 CallContext call_context(const grpc::CallbackServerContext& context,
                          std::chrono::milliseconds limit, const std::atomic<bool>& cancelled);
 
-/// What a UnaryCall and a StreamCall over gRPC have in common. The request is gRPC's and is this
-/// call's alone.
+/// The common part of a UnaryCall and a StreamCall over gRPC. gRPC owns the request and keeps it
+/// until OnDone; only this call uses it.
 template <class Call>
 class GrpcCall : public Call {
  public:

@@ -14,16 +14,16 @@ namespace {
 
 using ExternalConnections = grpc::experimental::ExternalConnectionAcceptor;
 
-/// What gRPC may hold for all connections: two of the largest requests, and open streams. Beyond it
-/// gRPC ends calls with RESOURCE_EXHAUSTED.
+/// Memory of gRPC for all connections [bytes]: two of the largest requests, and open streams.
+/// Beyond it gRPC ends calls with RESOURCE_EXHAUSTED.
 constexpr std::size_t kGrpcBytes = 2 * kMaximumRequestBytes + (32 << 20);
 constexpr int kMaximumStreamsPerConnection = 1000;
 constexpr std::size_t kMaximumOpenStreams = 10'000;
-constexpr int kMaximumReflectionThreads = 16;   // reflection is gRPC's only blocking service here
-constexpr int kHandshakeMilliseconds = 10'000;  // who connects and stays silent goes
-constexpr int kIdleMilliseconds = 600'000;      // without any call; clients connect again unseen
-/// An older connection takes no new call, and clients connect again unseen; it is closed once a
-/// stream could have ended. So no request that never arrives whole is kept for good.
+constexpr int kMaximumReflectionThreads = 16;   // only reflection uses blocking threads
+constexpr int kHandshakeMilliseconds = 10'000;  // then a silent connection is closed
+constexpr int kIdleMilliseconds = 600'000;      // then a connection without calls is closed
+/// Age at which a connection accepts no further calls; clients connect again by themselves. It is
+/// closed when its streams must have ended, so that an unfinished request is not kept for ever.
 constexpr int kConnectionAgeMilliseconds = 3'600'000;
 constexpr auto kShutdownGrace = std::chrono::seconds(1);
 
@@ -52,11 +52,11 @@ GrpcServer::GrpcServer(CallDispatcher& dispatcher, const ListenAddress& address)
   quota.SetMaxThreads(kMaximumReflectionThreads);
   quota.Resize(kGrpcBytes);
   builder.SetResourceQuota(quota);
-  builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);  // else one a processor
+  builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);  // else one for each processor
   for (const auto& each : services_) builder.RegisterService(each.get());
   builder.RegisterCallbackGenericService(&unknown_methods_);
   server_ = builder.BuildAndStart();
-  if (!server_) throw ListenError("gRPC does not start on " + to_text(address));
+  if (!server_) throw ListenError("gRPC cannot start on " + to_text(address));
   set_serving(false);
   acceptor_.start([connections](int listener, int connection) {
     ExternalConnections::NewConnectionParameters accepted;

@@ -15,23 +15,23 @@
 
 namespace tribodyn::server {
 
-/// The gRPC server with health and reflection. Started by the constructor; `shutdown` and the
-/// destructor from one thread.
+/// The gRPC server, with health checks and reflection. The constructor starts it. The same thread
+/// must call shutdown() and the destructor.
 class GrpcServer {
  public:
-  /// Throws ListenError. `dispatcher` must outlive the object.
+  /// `dispatcher` must outlive the object. Throws ListenError.
   GrpcServer(CallDispatcher& dispatcher, const ListenAddress& address);
   ~GrpcServer();
   GrpcServer(const GrpcServer&) = delete;
   GrpcServer& operator=(const GrpcServer&) = delete;
 
-  /// Where it really listens, with the port that the system picked.
+  /// Returns the address with the actual port.
   std::string address() const { return to_text(acceptor_.address()); }
 
-  /// What health checks are told; at first that it does not serve.
+  /// Sets the answer to health checks. It is NOT_SERVING at first.
   void set_serving(bool serving);
 
-  /// Accepts nothing new, ends every stream with UNAVAILABLE and waits for the rest.
+  /// Accepts no further calls, ends every stream with UNAVAILABLE and waits for the other calls.
   void shutdown();
 
  private:

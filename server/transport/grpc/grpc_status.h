@@ -6,7 +6,7 @@
 
 namespace tribodyn::server {
 
-/// The same error on the wire: details travel as grpc-status-details-bin.
+/// Converts an error to gRPC's form, with its details in grpc-status-details-bin.
 inline grpc::Status to_grpc(const google::rpc::Status& status) {
   if (status.code() == 0) return grpc::Status::OK;
   return {static_cast<grpc::StatusCode>(status.code()), status.message(),

@@ -2,8 +2,8 @@
 
 namespace tribodyn::server {
 
-/// Sends what libprotobuf reports, by itself on standard error, to the server's log: bad requests
-/// make it report, so the log takes a line a second and counts the others.
+/// Redirects the reports of libprotobuf from standard error to the server's log. Bad requests cause
+/// reports, so the log takes one a second and states the number of the others.
 void log_protobuf_reports();
 
 }  // namespace tribodyn::server

@@ -23,9 +23,9 @@ using Context = grpc::CallbackServerContext;
 
 constexpr char kClientMetadata[] = "tribodyn-client";
 constexpr char kRequestIdMetadata[] = "tribodyn-request-id";
-constexpr std::size_t kLongestWord = 100;  // of the client and the request id [bytes]
+constexpr std::size_t kLongestWord = 100;  // of the client's name and of the request id [bytes]
 
-/// The value of a header as one word; empty: not there.
+/// Returns the value of a header as one word; empty if the header is missing.
 std::string word_of(const Context& context, const char* header) {
   const auto found = context.client_metadata().find(header);
   if (found == context.client_metadata().end()) return {};
@@ -55,7 +55,7 @@ class UnaryReactor final : public grpc::ServerUnaryReactor, public GrpcCall<Unar
   void OnDone() override { delete this; }
 
  private:
-  /// So that gRPC calls the two above at once, and not from a thread of its own.
+  /// Lets gRPC call OnCancel and OnDone directly instead of on a thread of its own.
   bool InternalInlineable() override { return true; }
 
   Bytes& response_;
@@ -69,10 +69,10 @@ CallContext call_context(const Context& context, std::chrono::milliseconds limit
   static std::atomic<std::uint64_t> count = 0;
   const std::string client = word_of(context, kClientMetadata);
   const std::string id = word_of(context, kRequestIdMetadata);
-  // A limit of nothing leaves nothing, whatever happens between two looks at the clock.
+  // A limit of 0 gives a deadline that has passed, whatever the client's.
   const auto left =
       std::min<system_clock::duration>(context.deadline() - system_clock::now(), limit);
-  return {// Of a Unix socket the peer is a path that the client chose.
+  return {// For a Unix socket the peer is a path that the client chose.
           .client = client.empty() ? log_word(context.peer(), kLongestWord) : client,
           .request_id = id.empty() ? std::to_string(++count) : id,
           .limits = {.deadline = CallLimits::Clock::now() + left, .cancelled = &cancelled}};

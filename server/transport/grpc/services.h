@@ -10,8 +10,8 @@
 
 namespace tribodyn::server {
 
-/// The gRPC services of the method table: whatever it holds, the dispatcher answers. Both arguments
-/// must outlive them.
+/// Returns gRPC services with all methods of the method table. The dispatcher answers their calls.
+/// Both arguments must outlive the services.
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(CallDispatcher& dispatcher,
                                                           LiveStreams& live);
 

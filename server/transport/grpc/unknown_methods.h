@@ -4,7 +4,7 @@
 
 namespace tribodyn::server {
 
-/// Answers methods that no service has as everything else is answered: with ErrorInfo.
+/// Answers calls of unknown methods with UNIMPLEMENTED and an ErrorInfo.
 class UnknownMethods final : public grpc::CallbackGenericService {
  public:
   grpc::ServerGenericBidiReactor* CreateReactor(

@@ -15,12 +15,12 @@ namespace {
 using std::chrono::steady_clock;
 
 constexpr auto kLimit = std::chrono::seconds(1);
-/// For the first byte of a request, which a scraper sends at once: connections are answered one
-/// after the other, and one that stays silent keeps all others waiting for so long.
+/// Longest wait for the first byte of a request, which a scraper sends at once. A silent connection
+/// delays all others for this time.
 constexpr auto kSilenceLimit = std::chrono::milliseconds(100);
 constexpr std::size_t kLongestRequest = 8192;
 
-/// False when the socket is not ready for it in time.
+/// Returns false if the socket is not ready for `event` before `end`.
 bool is_ready(int connection, short event, steady_clock::time_point end) {
   const auto left =
       std::chrono::duration_cast<std::chrono::milliseconds>(end - steady_clock::now());
@@ -28,7 +28,7 @@ bool is_ready(int connection, short event, steady_clock::time_point end) {
   return left.count() > 0 && poll(&ready, 1, static_cast<int>(left.count())) == 1;
 }
 
-/// The head of a request; what came until then when the client is late.
+/// Returns the head of a request, or the part of it that arrived before `end`.
 std::string read_head(int connection, steady_clock::time_point end) {
   std::string head;
   std::array<char, 1024> part{};

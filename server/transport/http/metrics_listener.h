@@ -8,15 +8,14 @@
 
 namespace tribodyn::server {
 
-/// Answers GET and HEAD /metrics over HTTP/1.0, one connection after the other, each within a
-/// second, and closes one that sends nothing within 100 ms: enough for a scraper. Its thread runs
-/// until the destructor.
+/// Answers GET and HEAD /metrics over HTTP/1.0, one connection after the other. Closes a connection
+/// after one second, or after 100 ms without a request. Its thread runs until the destructor.
 class MetricsListener {
  public:
-  /// Throws ListenError. `text` is called on the thread.
+  /// `text` is called on the listener's thread. Throws ListenError.
   MetricsListener(const ListenAddress& address, std::function<std::string()> text);
 
-  /// With the port that the system picked.
+  /// Returns the address with the actual port.
   const ListenAddress& address() const { return acceptor_.address(); }
 
  private:
