@@ -1,7 +1,11 @@
 #include "server/storage/resource_rows.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
+#include "server/contract/resource_names.h"
+#include "server/storage/properties.h"
 #include "server/storage/resource_types.h"
 #include "server/support/sha256.h"
 
@@ -21,6 +25,31 @@ void insert_properties(Connection& db, const StoredResource& resource) {
     insert.exec();
     insert.reset();
   }
+}
+
+void replace_properties(Connection& db, const StoredResource& resource) {
+  Prepared clear(db, "DELETE FROM properties WHERE resource = ?");
+  clear.bind(1, resource.id);
+  clear.exec();
+  insert_properties(db, resource);
+}
+
+/// Returns true if every resource of a collection has every property that all of them have. Unset
+/// numbers have none.
+bool has_all_properties(Connection& db, const std::string& collection) {
+  Prepared resources(db, "SELECT count(*) FROM resources WHERE collection = ?");
+  resources.bind(1, collection);
+  resources.executeStep();
+  const int count = resources.getColumn(0).getInt();
+  const auto& fields = property_fields(collection);
+  return std::all_of(fields.begin(), fields.end(), [&](const PropertyField& field) {
+    if (field.kind == PropertyKind::kNumber) return true;
+    Prepared properties(db, "SELECT count(*) FROM properties WHERE collection = ? AND key = ?");
+    properties.bind(1, collection);
+    properties.bind(2, field.key);
+    properties.executeStep();
+    return properties.getColumn(0).getInt() == count;
+  });
 }
 
 /// Inserts a revision and makes it the current one.
@@ -96,10 +125,23 @@ StoredResource insert_revision(Connection& db, const StoredResource& present,
   added.content_hash = sha256(body);
   added.body = body;
   add_revision(db, added);
-  Prepared clear(db, "DELETE FROM properties WHERE resource = ?");
-  clear.bind(1, present.id);
-  clear.exec();
-  insert_properties(db, added);
+  replace_properties(db, added);
+  return added;
+}
+
+int add_missing_properties(Connection& db) {
+  int added = 0;
+  for (const char* collection : {kLubricants, kGearSets, kSurfaces, kVehicles}) {
+    if (has_all_properties(db, collection)) continue;
+    std::vector<StoredResource> resources;
+    SQLite::Statement query(db, std::string(kResourceColumns) +
+                                    "FROM resources r JOIN revisions v ON v.id = r.present "
+                                    "WHERE r.collection = ?");
+    query.bind(1, collection);
+    while (query.executeStep()) resources.push_back(stored_resource(query));
+    for (const StoredResource& each : resources) replace_properties(db, each);
+    added += static_cast<int>(resources.size());
+  }
   return added;
 }
 

@@ -30,6 +30,11 @@ StoredResource insert_resource(Connection& db, const NewResource& resource, Micr
 StoredResource insert_revision(Connection& db, const StoredResource& present,
                                const std::string& body, Microseconds now);
 
+/// Adds the properties that resources lack because the server that wrote them did not know the
+/// field of the contract: lists could neither filter nor order by it. Returns the number of
+/// resources.
+int add_missing_properties(Connection& db);
+
 /// Columns that stored_resource() reads. The caller appends the rest of a SELECT over r (resources)
 /// and v (revisions).
 inline constexpr char kResourceColumns[] =

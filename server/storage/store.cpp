@@ -162,6 +162,10 @@ void Store::open_schema() {
       migration_backup_ = backup_before_migration(path_, version);
     }
     if (version < kSchemaVersion) migrate(db, version, system_time());
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const int renewed = add_missing_properties(db);
+    transaction.commit();
+    if (renewed > 0) spdlog::info("lists can filter {} resources by newer fields", renewed);
     return true;
   });
 }

@@ -147,6 +147,25 @@ TEST_F(MaintenanceTest, AnEarlierBackupBeforeAMigrationStays) {
 
 INSTANTIATE_TEST_SUITE_P(Schemas, OldSchema, testing::Range(1, kSchemaVersion));
 
+TEST_F(MaintenanceTest, ListsFindResourcesThatWereStoredBeforeAFieldWasAdded) {
+  make();
+  damage("DELETE FROM properties WHERE key IN ('lims_id', 'base_oil_class')");
+  Store store(path());
+  ResourceQuery query;
+  query.collection = "lubricants";
+  query.order_key = "lims_id";
+  query.limit = 100;
+  query.byte_limit = 1'000'000;
+  const std::size_t all = store.resource_names("lubricants").size();
+  EXPECT_GT(all, 0U);
+  EXPECT_EQ(store.resources(query).rows.size(), all) << "ordered by the field";
+  query.order_key.clear();
+  query.restrictions = {
+      {"base_oil_class", Restriction::Comparison::kEqual, std::string("POLYALPHAOLEFIN")}};
+  EXPECT_EQ(store.resources(query).rows.size(), all);
+  EXPECT_THAT(check_database(path()), IsEmpty());
+}
+
 TEST_F(MaintenanceTest, EveryTableIsStrict) {
   make();
   SQLite::Database raw(path(), SQLite::OPEN_READONLY);
