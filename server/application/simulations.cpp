@@ -4,6 +4,7 @@
 #include <google/protobuf/util/time_util.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "server/application/element_limits.h"
@@ -22,6 +23,7 @@
 #include "server/simulation/input_hash.h"
 #include "server/simulation/result_key.h"
 #include "server/simulation/simulation_inputs.h"
+#include "server/storage/properties.h"
 #include "server/storage/resource_lookup.h"
 #include "server/support/sha256.h"
 
@@ -182,11 +184,20 @@ void set_result(Application& application, v1::SimulationView view, v1::Simulatio
   if (meant == v1::SIMULATION_VIEW_SUMMARY) summarise(*out.mutable_result());
 }
 
+/// Returns true for a property that can be compared by < and >.
+bool is_ordered(const std::string& key) {
+  const auto& fields = property_fields(kSimulations);
+  return std::any_of(fields.begin(), fields.end(), [&](const PropertyField& each) {
+    return each.key == key &&
+           (each.kind == PropertyKind::kTime || each.kind == PropertyKind::kNumber);
+  });
+}
+
 /// Parses a filter into restrictions for the store, which compares states as numbers.
 std::vector<Restriction> restrictions(const std::string& filter, Violations& violations) {
   std::vector<Restriction> out = parse_filter(filter, kSimulations, violations);
   for (Restriction& each : out) {
-    const bool has_order = each.key == "create_time" || each.key == "end_time";
+    const bool has_order = is_ordered(each.key);
     const bool is_label = each.key.starts_with("labels.");
     const bool is_text = each.key == "display_name";
     const bool is_equality = each.comparison == Restriction::Comparison::kEqual ||

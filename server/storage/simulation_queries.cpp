@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "server/storage/properties.h"
 #include "server/storage/resource_rows.h"
 #include "server/storage/simulation_rows.h"
 #include "tribodyn/v1/simulations.pb.h"
@@ -74,11 +75,11 @@ Condition label_condition(Connection& db, const Restriction& restriction) {
           values};
 }
 
-/// Returns the column of a key. Keys come from a client's filter, so only these constants enter a
-/// statement.
-std::string column_of(const std::string& key) {
-  for (const char* column : {"state", "create_time", "end_time", "input_hash", "pinned"}) {
-    if (key == column) return column;
+/// Returns the column of a key: the key of a property. Keys come from a client's filter, so only
+/// the constants of property_fields() enter a statement.
+const std::string& column_of(const std::string& key) {
+  for (const PropertyField& field : property_fields("simulations")) {
+    if (field.key == key) return field.key;
   }
   throw std::logic_error("no column of simulations for the key " + key);
 }

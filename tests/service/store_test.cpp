@@ -345,6 +345,20 @@ TEST_F(StoreTest, EverySeedParsesAndHasItsOwnName) {
                 "gearSets/reference-axle-conformal", "surfaces/run-in", "vehicles/passenger-car"}));
 }
 
+TEST(SimulationQueries, EveryPropertyOfSimulationsFiltersAList) {
+  const TemporaryFolder folder;
+  Store store(folder.file("db"));
+  for (const PropertyField& field : property_fields("simulations")) {
+    const PropertyValue value = field.kind == PropertyKind::kText ? PropertyValue(std::string("x"))
+                                                                  : PropertyValue(std::int64_t{1});
+    const SimulationQuery query{
+        .restrictions = {{field.key, Restriction::Comparison::kNotEqual, value}},
+        .limit = 1,
+        .byte_limit = 1000};
+    EXPECT_NO_THROW(store.simulations(query)) << "no column " << field.key;
+  }
+}
+
 TEST(SimulationQueries, NoKeyOfAFilterEntersAStatement) {
   const TemporaryFolder folder;
   Store store(folder.file("db"));
