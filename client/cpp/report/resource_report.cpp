@@ -39,10 +39,13 @@ int revision_of(const Message& resource) {
                                             resource.GetDescriptor()->FindFieldByName("revision"));
 }
 
-std::string enum_text(const Message& resource, const char* name) {
-  const auto* field = resource.GetDescriptor()->FindFieldByName(name);
-  if (field == nullptr) return "";
-  const auto* value = resource.GetReflection()->GetEnum(resource, field);
+/// Returns the value of a text or an enum; empty if it is unset or of another type.
+std::string word_of(const Message& resource, const FieldDescriptor& field) {
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_STRING) {
+    return resource.GetReflection()->GetString(resource, &field);
+  }
+  if (field.cpp_type() != FieldDescriptor::CPPTYPE_ENUM) return "";
+  const auto* value = resource.GetReflection()->GetEnum(resource, &field);
   return value->number() == 0 ? "" : enum_word(*value);
 }
 
@@ -174,14 +177,21 @@ void add_identity(const Message& resource, Sheet& sheet) {
   if (const std::string text = text_field(resource, "description"); !text.empty()) {
     sheet.remark(text);
   }
-  const auto line = [&](const char* label, const std::string& value) {
+  const auto line = [&](const std::string& label, const std::string& value) {
     if (!value.empty()) sheet.line(label, value);
   };
-  line("base oil", enum_text(resource, "base_oil_class"));
-  line("condition", enum_text(resource, "condition"));
-  line("derived from", text_field(resource, "derived_from"));
-  line("sample", text_field(resource, "external_sample_id"));
-  line("LIMS id", text_field(resource, "lims_id"));
+  // Every other text and enum that clients set, so that a new field is shown without a line here.
+  static const std::set<std::string> kInHeading = {"name", "display_name", "description"};
+  static const std::map<std::string, const char*> kLabels = {
+      {"base_oil_class", "base oil"}, {"external_sample_id", "sample"}, {"lims_id", "LIMS id"}};
+  const auto& type = *resource.GetDescriptor();
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    if (field.is_repeated() || is_output_only(field) || kInHeading.contains(field.name())) continue;
+    const auto label = kLabels.find(field.name());
+    line(label == kLabels.end() ? label_of_field(field.name()) : label->second,
+         word_of(resource, field));
+  }
   line("labels", labels_text(resource));
   const int revision = revision_of(resource);
   if (revision > 0) {
