@@ -7,12 +7,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <deque>
 #include <future>
+#include <map>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -99,6 +102,13 @@ class TestCall : public UnaryCall {
   std::promise<google::rpc::Status> answer_;
   std::future<google::rpc::Status> answer_of_ = answer_.get_future();
 };
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::istringstream lines(text);
+  std::vector<std::string> out;
+  for (std::string line; std::getline(lines, line);) out.push_back(line);
+  return out;
+}
 
 class CallDispatcherTest : public testing::Test {
  protected:
@@ -255,6 +265,57 @@ TEST_F(CallDispatcherTest, ACallToAFullLaneIsToldTheLimitAndWhatToDo) {
   release.set_value();
   for (TestCall& each : calls) EXPECT_EQ(each.wait().code(), google::rpc::OK);
   EXPECT_THAT(log_.text(), HasSubstr("reason=TOO_MANY_CALLS"));
+}
+
+TEST_F(CallDispatcherTest, EveryCallIsAnsweredOnceWhateverTheLoadAndWhoeverCancels) {
+  constexpr int kThreads = 4;
+  constexpr int kRounds = 60;
+  auto dispatcher = std::make_unique<CallDispatcher>(app_);
+  std::vector<std::deque<TestCall>> calls(kThreads);
+  std::vector<std::thread> clients;
+  for (int thread = 0; thread < kThreads; ++thread) {
+    clients.emplace_back([&, thread] {
+      std::deque<TestCall>& own = calls[static_cast<std::size_t>(thread)];
+      v1::UpdateLubricantRequest update;
+      update.mutable_lubricant()->set_name("lubricants/paper-fluid-1");
+      v1::ListLubricantsRequest list;
+      v1::BatchCreateLubricantsRequest checked = batch(20);
+      checked.set_validate_only(true);
+      for (int round = 0; round < kRounds; ++round) {
+        update.mutable_lubricant()->set_display_name(std::to_string(kRounds * thread + round));
+        const std::array<const google::protobuf::Message*, 4> requests = {&update, &list, &checked,
+                                                                          nullptr};
+        const google::protobuf::Message* request = requests[static_cast<std::size_t>(round % 4)];
+        TestCall& call = request == nullptr ? own.emplace_back(get()) : own.emplace_back(*request);
+        if (round % 7 == 0) {
+          call.context.limits.deadline = CallLimits::Clock::now() + std::chrono::microseconds(500);
+        }
+        dispatcher->answer(call);
+        if (round % 3 == 0) own[own.size() / 2].cancelled = true;  // waits, runs or is answered
+      }
+    });
+  }
+  for (std::thread& each : clients) each.join();
+  dispatcher.reset();  // answers the calls that wait
+  std::map<int, int> codes;
+  for (std::deque<TestCall>& own : calls) {
+    for (TestCall& each : own) {
+      ASSERT_TRUE(each.is_answered());
+      ++codes[each.wait().code()];
+    }
+  }
+  EXPECT_GT(codes[google::rpc::OK], 0);
+  const std::set<int> allowed = {google::rpc::OK, google::rpc::ABORTED, google::rpc::CANCELLED,
+                                 google::rpc::DEADLINE_EXCEEDED, google::rpc::RESOURCE_EXHAUSTED};
+  for (const auto& [code, count] : codes) EXPECT_TRUE(allowed.contains(code)) << code;
+  const std::string counted = metrics();
+  int total = 0;
+  for (const std::string& line : lines_of(counted)) {
+    if (line.starts_with("tribodyn_calls_total{")) {
+      total += std::stoi(line.substr(line.rfind(' ')));
+    }
+  }
+  EXPECT_EQ(total, kThreads * kRounds) << counted;
 }
 
 TEST(Workers, RefuseWhatTheirQueueHasNoPlaceFor) {
