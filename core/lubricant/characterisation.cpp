@@ -68,7 +68,7 @@ class Assembly {
     out_.warnings.insert(
         out_.warnings.begin(),
         {"BASE_OIL_UNSPECIFIED", "",
-         "The class of base oil is not stated; estimates are for the middle of all lubricating "
+         "The class of base oil is not set; the estimates are generic values of lubricating "
          "oils."});
   }
 
@@ -239,19 +239,21 @@ class Assembly {
         assumed ? "typical of gear oils: the viscosities leave it open" : source};
     if (assumed) {
       warn("VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature",
-           "The viscosities given do not determine T_0; " +
-               known_text(fit.reference_temperature, deviation(2)) + " K within " +
+           "T_0 cannot be fitted to the given viscosities and was set to " +
+               known_text(fit.reference_temperature, deviation(2)) + " +/- " +
                number_text(deviation(2), 2) +
-               " is used. A third temperature well apart, best a cold one, settles it.");
+               " K. Add a viscosity at a third temperature far from the others, best a low one, to "
+               "determine it.");
     }
     if (kinematic_alone) {
       constexpr double kCold = 263.15;
       warn("VOGEL_REFERENCE_TEMPERATURE_ASSUMED", "vogel_reference_temperature",
-           "Two viscosities do not determine T_0; that which follows ASTM D341 is used, " +
-               known_text(fit.reference_temperature, deviation(2)) + " K within " +
-               number_text(deviation(2), 2) + ", and leaves the viscosity at " + celsius(kCold) +
-               " known to " + number_text(100 * relative_viscosity_uncertainty(fit, kCold), 2) +
-               " %. A cold viscosity settles it.");
+           "T_0 cannot be fitted to two viscosities and was set from ASTM D341 to " +
+               known_text(fit.reference_temperature, deviation(2)) + " +/- " +
+               number_text(deviation(2), 2) + " K; the viscosity at " + celsius(kCold) +
+               " is then uncertain by " +
+               number_text(100 * relative_viscosity_uncertainty(fit, kCold), 2) +
+               " %. Add a viscosity at a low temperature to determine it.");
     }
     warn_of_misfits(fit);
     warn_of_extrapolation();
@@ -354,7 +356,7 @@ class Assembly {
       return;
     }
     out_.parameters.*known = {typical, std::nullopt, Provenance::kAssumed,
-                              belongs ? "not stated" : "where the estimate was made"};
+                              belongs ? "not stated" : "temperature of the estimate"};
     if (belongs) {
       warn("TEMPERATURE_ASSUMED", parameter,
            std::string(parameter) + " is not stated; " + celsius(typical) + " is taken.");

@@ -86,7 +86,7 @@ GearViscosityGrade gear_viscosity_grade(std::optional<double> kinematic_viscosit
       grade.low_temperature_grade = candidate.name;
       break;
     }
-    if (!cold_viscosities.empty()) add(grade.note, limit + " is not proven by a measurement.");
+    if (!cold_viscosities.empty()) add(grade.note, "No measurement shows " + limit + ".");
   }
   if (cold_viscosities.empty()) {
     add(grade.note, "No W grade without a Brookfield viscosity at low temperature.");

@@ -43,7 +43,8 @@ GearViscosityGrade measured_grade(const FluidMeasurements& fluid, const Characte
   grade = gear_viscosity_grade(viscosity, cold);
   if (!contradictions.empty()) add(contradictions.substr(1));
   if (!sheared && !grade.designation.empty()) {
-    add("By the fresh oil: the limits at 100 C hold after the 20 h KRL shear test (CEC L-45).");
+    add("Based on the fresh oil: SAE J306 requires the limits at 100 C after the 20 h KRL shear "
+        "test (CEC L-45).");
   }
   return grade;
 }
