@@ -251,7 +251,11 @@ google::rpc::Status no_place(Application& application, double retry_seconds) {
   if (application.jobs.is_stopping()) return shutting_down();
   return exhausted(
       v1::ERROR_REASON_TOO_MANY_WAITING,
-      fmt::format("too many simulations wait already; try again in {:.2f} s", retry_seconds),
+      fmt::format("the queue has no place for this simulation: at most {} simulations and {:.3g} "
+                  "processor hours may wait, three quarters of them for one client; try again in "
+                  "{:.2f} s",
+                  application.jobs.limits().jobs, application.jobs.limits().cost_seconds / 3600,
+                  retry_seconds),
       retry_seconds);
 }
 

@@ -27,6 +27,7 @@ Scheduler::Options scheduler_options(const SimulationJobs::Options& options) {
 SimulationJobs::SimulationJobs(Store& store, Options options)
     : store_(store),
       heartbeat_(options.heartbeat),
+      limits_(options.limits),
       retention_(options.retention),
       janitor_(store, retention_, options.clock),
       scheduler_(store, board_, metrics_, scheduler_options(options)),

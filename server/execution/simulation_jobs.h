@@ -21,11 +21,12 @@ namespace tribodyn::server {
 /// `drain` and `stop` from one thread.
 ///
 /// Reads and commits between a request and its result: the use case reads the four resources, and
-/// the request_id if there is one. The first commit writes the row (admit) and reads the answer in
-/// the same transaction. The scheduler keeps the inputs, so the start of the job reads nothing; the
-/// second commit looks for a result of equal inputs and marks the job RUNNING, so that a start
-/// after a crash knows which attempts were interrupted. The third commit writes the result and
-/// SUCCEEDED. Concurrent commits share one write to disk (GroupCommit).
+/// the request_id if there is one. The first commit looks for the request_id again and for a result
+/// of equal inputs, and writes the row (admit), of which the answer is made. The scheduler keeps
+/// the inputs, so the start of the job reads nothing; the second commit looks for a result of equal
+/// inputs and marks the job RUNNING, so that a start after a crash knows which attempts were
+/// interrupted. The third commit writes the result and SUCCEEDED. Concurrent commits share one
+/// write to disk (GroupCommit).
 class SimulationJobs {
  public:
   struct Options {
@@ -79,6 +80,7 @@ class SimulationJobs {
   std::optional<Watched> watch(std::int64_t id, const CallLimits& limits = {});
   /// Notifies the observer at least four times per heartbeat interval.
   void wake(const std::weak_ptr<ProgressObserver>& observer) { scheduler_.wake(observer); }
+  const QueueLimits& limits() const { return limits_; }
   const Retention& retention() const { return retention_; }
   Metrics& metrics() { return metrics_; }
   Occupancy occupancy() const { return scheduler_.occupancy(); }
@@ -100,6 +102,7 @@ class SimulationJobs {
   const std::chrono::milliseconds heartbeat_;
   Metrics metrics_;
   ProgressBoard board_;
+  const QueueLimits limits_;
   const Retention retention_;
   Janitor janitor_;
   Scheduler scheduler_;

@@ -34,14 +34,12 @@ struct Admission {
 ///
 /// - FairQueue gives the order. If several threads compute, one of them takes no bulk job.
 /// - A job that uses more processor time than allowed_seconds() counts as bulk from then on, and
-/// its
-///   principal is charged for the time used.
+///   its principal is charged for the time used.
 /// - If all threads compute, an interactive job runs on the thread of a less urgent job (its
-/// lender),
-///   which then continues (begin_beside). If all threads compute bulk jobs, a small job does too.
+///   lender), which then continues (begin_beside). If all threads compute bulk jobs, a small job
+///   does too.
 /// - A job on a lent thread that uses more than its allowed time returns to the queue as a bulk
-/// job,
-///   so that the lender waits for a bounded time.
+///   job, so that the lender waits for a bounded time.
 /// - A job whose inputs equal those of a running job waits for the result of that job.
 class ClaimPolicy {
  public:

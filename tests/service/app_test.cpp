@@ -712,6 +712,9 @@ TEST_F(AppTest, AFullQueueRefusesSimulationsWithARetryDelay) {
   Application app = small.application();
   const auto status = create_simulation(app, request).error();
   EXPECT_EQ(status.code(), google::rpc::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(status.message(), testing::HasSubstr("at most 1 simulations and 100 processor hours "
+                                                   "may wait, three quarters of them for one "
+                                                   "client; try again in 0."));
   const auto delay = detail<google::rpc::RetryInfo>(status)->retry_delay();
   EXPECT_EQ(delay.seconds(), 0) << "a point is computed in far less than a second";
   EXPECT_GT(delay.nanos(), 0);
