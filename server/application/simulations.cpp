@@ -468,24 +468,22 @@ Outcome<google::protobuf::Empty> delete_simulation(Application& application,
                                                    const v1::DeleteSimulationRequest& request,
                                                    const CallContext& call) {
   using google::protobuf::Empty;
-  return guarded<Empty>([&]() -> Outcome<Empty> {
-    for (int attempt = 0; attempt < kWriteAttempts; ++attempt) {
-      const auto found = find_simulation(application, request.name(), call);
-      if (!found.ok()) {
-        const bool is_missing = found.error().code() == google::rpc::NOT_FOUND;
-        if (is_missing && request.allow_missing()) return Empty();
-        return found.error();
-      }
-      const StoredSimulation& stored = found.message();
-      if (auto refused = undeletable(stored, request)) return *std::move(refused);
-      if (!has_ended(stored.state)) application.jobs.cancel(stored.id, call.limits);
-      if (application.store.remove_simulation(stored.id, stored.request, call.limits) ==
-          Store::Removal::kDone) {
-        return Empty();
-      }
+  for (int attempt = 0; attempt < kWriteAttempts; ++attempt) {
+    const auto found = find_simulation(application, request.name(), call);
+    if (!found.ok()) {
+      const bool is_missing = found.error().code() == google::rpc::NOT_FOUND;
+      if (is_missing && request.allow_missing()) return Empty();
+      return found.error();
     }
-    return contention(kSimulationType, request.name());
-  });
+    const StoredSimulation& stored = found.message();
+    if (auto refused = undeletable(stored, request)) return *std::move(refused);
+    if (!has_ended(stored.state)) application.jobs.cancel(stored.id, call.limits);
+    if (application.store.remove_simulation(stored.id, stored.request, call.limits) ==
+        Store::Removal::kDone) {
+      return Empty();
+    }
+  }
+  return contention(kSimulationType, request.name());
 }
 
 Outcome<v1::Simulation> update_simulation(Application& application,
