@@ -85,14 +85,17 @@ bool is_taken(Connection& db, const std::string& name) {
   return taken.executeStep();
 }
 
+// After a purge a new resource may get the id of the purged one: name and contents tell them apart.
 bool is_unchanged(Connection& db, const StoredResource& present) {
   Prepared unchanged(db,
                      "SELECT 1 FROM resources r JOIN revisions v ON v.id = r.present "
                      "WHERE r.id = ? AND v.revision = ? AND "
-                     "(r.delete_time IS NULL) = ?");
+                     "(r.delete_time IS NULL) = ? AND r.name = ? AND v.content_hash = ?");
   unchanged.bind(1, present.id);
   unchanged.bind(2, present.revision);
   unchanged.bind(3, present.delete_time ? 0 : 1);
+  unchanged.bind(4, present.name);
+  unchanged.bind(5, present.content_hash);
   return unchanged.executeStep();
 }
 

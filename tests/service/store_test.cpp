@@ -94,6 +94,23 @@ TEST_F(StoreTest, AnUpdateAddsARevisionAndKeepsTheOthers) {
   EXPECT_EQ(store.revisions("lubricants/x", 2, 10, 1000).rows.front().body, "first");
 }
 
+TEST_F(StoreTest, AWriteDoesNotReachTheResourceThatGotTheIdOfAPurgedOne) {
+  Store store(path());
+  ASSERT_TRUE(store.write_resources({{{"lubricants/purged", "first"}, {}}}, 1));
+  const StoredResource purged = *store.resource("lubricants/purged");
+  ASSERT_TRUE(store.purge_resource(purged, true).is_current);
+  for (const char* name : {"lubricants/other", "lubricants/purged"}) {
+    ASSERT_TRUE(store.write_resources({{{name, "second"}, {}}}, 2));
+    const StoredResource next = *store.resource(name);
+    ASSERT_EQ(next.id, purged.id) << "this test is of use only then";
+    EXPECT_FALSE(store.write_resources({{{purged.name, "third"}, purged}}, 3));
+    EXPECT_FALSE(store.delete_resource(purged, 3));
+    EXPECT_FALSE(store.purge_resource(purged, true).is_current);
+    EXPECT_EQ(store.resource(name)->body, "second");
+    ASSERT_TRUE(store.purge_resource(next, true).is_current);
+  }
+}
+
 TEST_F(StoreTest, RevisionTimesDoNotGoBackWhenTheClockDoes) {
   Store store(path());
   ASSERT_TRUE(store.write_resources({{{"lubricants/x", "first"}, {}}}, 100));
