@@ -52,6 +52,19 @@ TEST(Arguments, AcceptACompletePoint) {
   EXPECT_EQ(outcome.options.output_format, OutputFormat::kJson);
 }
 
+TEST(Arguments, TheClassOfAJobIsItsSchedulingClass) {
+  for (const auto& [word, expected] : {std::pair("interactive", v1::SCHEDULING_CLASS_INTERACTIVE),
+                                       std::pair("bulk", v1::SCHEDULING_CLASS_BULK)}) {
+    Scenario scenario;
+    std::vector<Command> commands(1);
+    commands[0].path = "point";
+    add_scenario_flags(commands[0].flags, scenario);
+    parse_arguments({"point", "--class", word}, commands, FlagList());
+    EXPECT_EQ(scenario.create.scheduling_class, expected);
+  }
+  EXPECT_TRUE(Outcome({"point", "--class", "soon"}).complains_of("'soon' must be one of"));
+}
+
 TEST(Arguments, ReportEveryErrorAtOnce) {
   const Outcome outcome({"point", "--speed", "fast", "--sump", "1e999", "--as-published", "eq99",
                          "--model", "quick", "--pinion-torque-newton-metres", "3", "--lubricnt",

@@ -121,6 +121,13 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
                [&] { scenario.create.validate_only = true; });
   flags.toggle("--force", "Compute even if equal inputs have a result.",
                [&] { scenario.create.force = true; });
+  flags.choice("--class", {"interactive", "bulk"},
+               "How soon the job begins. interactive: before all your other jobs, and beside those "
+               "that run; bulk: after small ones. Default: by its estimated cost",
+               [&](int index) {
+                 scenario.create.scheduling_class =
+                     index == 0 ? v1::SCHEDULING_CLASS_INTERACTIVE : v1::SCHEDULING_CLASS_BULK;
+               });
   flags.number("--deadline-seconds", {"s", "0.001 to 31622400", "none"},
                "Time from now after which a simulation that has not ended fails",
                [&](double value) { simulation.set_deadline_seconds(value); });

@@ -37,6 +37,7 @@ v1::Simulation Connection::create_simulation(const v1::Simulation& simulation,
   *request.mutable_simulation() = simulation;
   request.set_validate_only(options.validate_only);
   request.set_force(options.force);
+  request.set_scheduling_class(options.scheduling_class);
   request.set_request_id(options.request_id.empty() ? new_request_id() : options.request_id);
   return services_->call(*services_->simulations, &v1::SimulationService::Stub::CreateSimulation,
                          request);

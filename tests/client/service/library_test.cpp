@@ -215,6 +215,24 @@ TEST_F(Library, ASimulationIsWatchedUntilItEnds) {
   EXPECT_EQ(connection.list_simulations({.limit = 1}).resources.size(), 1U);
 }
 
+TEST_F(Library, TheSchedulingClassReachesTheServer) {
+  v1::Simulation simulation;
+  simulation.set_lubricant("lubricants/paper-fluid-1");
+  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(50);
+  CreateOptions options;
+  options.validate_only = true;
+  options.scheduling_class = v1::SCHEDULING_CLASS_INTERACTIVE;
+  connection.create_simulation(simulation, options);
+  options.scheduling_class = static_cast<v1::SchedulingClass>(3);
+  try {
+    connection.create_simulation(simulation, options);
+    FAIL() << "an unknown class is accepted";
+  } catch (const ServiceError& error) {
+    EXPECT_NE(std::string(error.what()).find("scheduling_class = 3"), std::string::npos)
+        << error.what();
+  }
+}
+
 // The client derives units from the names of fields; the server's table of constraints states them.
 TEST_F(Library, UnitsFromNamesAgreeWithTheServer) {
   const v1::Schema schema = connection.schema();

@@ -77,6 +77,8 @@ struct UpdateOptions {
 struct CreateOptions {
   bool validate_only = false;  ///< check everything, run nothing
   bool force = false;          ///< compute even if equal inputs have a result
+  /// How soon the simulation begins among those that wait.
+  v1::SchedulingClass scheduling_class = v1::SCHEDULING_CLASS_UNSPECIFIED;
   std::string request_id =
       {};  ///< a repeated request with the same id starts no second simulation; empty: random
 };
