@@ -268,8 +268,9 @@ std::optional<google::rpc::Status> refusal_of(const std::vector<Draft<Resource>>
   return all_refusals ? with_violations(*first, violations) : invalid(violations);
 }
 
-/// Drafts of all requests, accepted or with what is wrong with them; of a batch in which much is
-/// wrong perhaps not all. Throws StoreError.
+/// Returns the drafts of a batch, each accepted or with its violations. Stops after
+/// kMaximumBatchViolations bad requests, and when the limits of the call are over: further requests
+/// then have no draft or one that is not checked. Throws StoreError.
 template <class Resource, class Batch>
 std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& batch,
                                        const CallContext& call) {
