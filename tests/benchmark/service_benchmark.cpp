@@ -1,7 +1,7 @@
 // The server under load: what it adds to an empty gRPC method, a bare commit, an empty stream and
 // the core's own time. Figures that are compared are of one run on one machine. usage:
 // service_benchmark [RESULTS.json [PART...]]      default: build/benchmark/results.json, all parts:
-// requests, lists, histories, watchers, overload, refusals, interactive, overhead, estimates
+// requests, lists, histories, watchers, overload, refusals, interactive, screening, estimates
 #include <SQLiteCpp/Database.h>
 #include <fmt/format.h>
 #include <grpcpp/generic/generic_stub.h>
@@ -13,12 +13,14 @@
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <random>
 #include <thread>
 
 #include "google/rpc/error_details.pb.h"
@@ -33,6 +35,7 @@
 #include "tests/service/server_process.h"
 #include "tests/service/support.h"
 #include "tests/support/paths.h"
+#include "tribodyn/v1/lubricants.grpc.pb.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
 
 namespace tribodyn::server {
@@ -156,6 +159,21 @@ v1::Simulation create(Stub& stub, const v1::Simulation& simulation, bool force =
   const grpc::Status status = stub.CreateSimulation(&context, request, &out);
   if (!status.ok()) throw std::runtime_error(status.error_message());
   return out;
+}
+
+void create_lubricants(const Server& server, const std::vector<v1::Lubricant>& fluids) {
+  const auto stub = v1::LubricantService::NewStub(server.another_channel());
+  grpc::ClientContext context;
+  v1::BatchCreateLubricantsRequest request;
+  v1::BatchCreateLubricantsResponse response;
+  for (const v1::Lubricant& fluid : fluids) {
+    v1::CreateLubricantRequest& one = *request.add_requests();
+    one.set_lubricant_id(fluid.name().substr(fluid.name().find('/') + 1));
+    *one.mutable_lubricant() = fluid;
+  }
+  request.mutable_read_mask()->add_paths("name");
+  const grpc::Status status = stub->BatchCreateLubricants(&context, request, &response);
+  if (!status.ok()) throw std::runtime_error(status.error_message());
 }
 
 /// Follows it to its end.
@@ -664,42 +682,152 @@ void measure_interactive(std::vector<Measurement>& out) {
   }
 }
 
-void measure_overhead(std::vector<Measurement>& out) {
-  const Server server({"--threads", "1"});
-  std::vector<double> ratios, times;
-  for (int run = 0; run < kRuns; ++run) {
-    double core = 0;
-    for (int i = 0; i < 10; ++i) {
-      Violations violations;
-      const auto inputs = read_simulation(long_curve(i), seed_lookup(), "simulation", violations);
-      const Scene physical = scene(*inputs);
-      const CurveStudy study = std::get<CurveStudy>(server::study(*inputs));
-      const auto begin = Clock::now();
-      sweep_speed(physical, study.vehicle_speeds, study.ascent_angle, study.options,
-                  [](const SweepPoint&) {});
-      core += seconds_since(begin);
-    }
-    const auto begin = Clock::now();
-    std::vector<std::string> names;
-    for (int i = 0; i < 10; ++i) {
-      v1::Simulation simulation = long_curve(10 * run + i);
-      names.push_back(create(server.stub(), simulation).name());
-    }
-    for (const std::string& name : names) {
-      wait_for(server.stub(), name);
-      grpc::ClientContext context;
-      v1::GetSimulationRequest get;
-      get.set_name(name);
-      get.set_view(v1::SIMULATION_VIEW_FULL);
-      v1::Simulation done;
-      server.stub().GetSimulation(&context, get, &done);
-      if (done.result().points_size() != 1000) throw std::runtime_error("no result");
-    }
-    times.push_back(seconds_since(begin));
-    ratios.push_back(times.back() / core);
+/// Candidates of a screening: variants of the paper's fluids that nobody has asked for before.
+std::vector<v1::Lubricant> candidates(int count) {
+  std::mt19937_64 random(20261122);
+  const auto varied = [&](double value, double share) {
+    return value * std::uniform_real_distribution<double>(1 - share, 1 + share)(random);
+  };
+  std::vector<v1::Lubricant> out;
+  for (int i = 0; i < count; ++i) {
+    v1::Lubricant fluid =
+        seed<v1::Lubricant>("lubricants/paper-fluid-" + std::to_string(1 + i % 3));
+    fluid.set_name("lubricants/candidate-" + std::to_string(i));
+    fluid.set_vogel_viscosity_prefactor_pascal_seconds(
+        varied(fluid.vogel_viscosity_prefactor_pascal_seconds(), 0.1));
+    fluid.set_pressure_viscosity_coefficient_per_pascal(
+        varied(fluid.pressure_viscosity_coefficient_per_pascal(), 0.1));
+    fluid.set_relaxation_time_seconds(varied(fluid.relaxation_time_seconds(), 0.3));
+    fluid.set_limiting_shear_stress_coefficient(
+        varied(fluid.limiting_shear_stress_coefficient(), 0.1));
+    out.push_back(fluid);
   }
-  out.push_back({"service_over_core_for_10000_points", median(ratios), "-", 1.15});
-  out.push_back({"service_for_10000_points", median(times), "s", {}});
+  return out;
+}
+
+constexpr int kCandidates = 100;
+constexpr std::array kSumpCelsius = {20.0, 40.0, 90.0};
+constexpr int kSpeeds = 13;  ///< 20 to 140 km/h by 10
+constexpr int kScreened = kCandidates * static_cast<int>(kSumpCelsius.size()) * kSpeeds;
+
+/// Each candidate and sump as a curve whose points are solved independently of each other.
+std::vector<v1::Simulation> screening_curves(const std::vector<v1::Lubricant>& fluids) {
+  std::vector<v1::Simulation> out;
+  for (const v1::Lubricant& fluid : fluids) {
+    for (const double sump : kSumpCelsius) {
+      v1::Simulation simulation = curve_simulation();
+      simulation.set_lubricant(fluid.name());
+      simulation.set_sump_temperature_celsius(sump);
+      simulation.mutable_inefficiency_curve()->set_independent_points(true);
+      out.push_back(simulation);
+    }
+  }
+  return out;
+}
+
+/// The same points, each as a simulation.
+std::vector<v1::Simulation> screening_points(const std::vector<v1::Lubricant>& fluids) {
+  std::vector<v1::Simulation> out;
+  for (const v1::Lubricant& fluid : fluids) {
+    for (const double sump : kSumpCelsius) {
+      for (int i = 0; i < kSpeeds; ++i) {
+        v1::Simulation simulation = point_at(20 + 10 * i);
+        simulation.set_lubricant(fluid.name());
+        simulation.set_sump_temperature_celsius(sump);
+        out.push_back(simulation);
+      }
+    }
+  }
+  return out;
+}
+
+/// Processor time of this thread since it began [s].
+double thread_processor_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Processor time that the core's screening of all candidates takes [s].
+double screen_in_core(const std::vector<v1::Lubricant>& fluids) {
+  ResourceLookup lookup = seed_lookup();
+  lookup.find = [&fluids,
+                 seeds = lookup.find](const RevisionName& name) -> std::optional<FoundResource> {
+    for (const v1::Lubricant& fluid : fluids) {
+      if (fluid.name() == name.name) return FoundResource{1, false, fluid.SerializeAsString()};
+    }
+    return seeds(name);
+  };
+  std::vector<SimulationInputs> inputs;
+  for (const v1::Simulation& simulation : screening_curves(fluids)) {
+    Violations violations;
+    inputs.push_back(read_simulation(simulation, lookup, "simulation", violations).value());
+  }
+  const double begin = thread_processor_seconds();
+  std::shared_ptr<PreparedGearSet> gear_set;
+  for (const SimulationInputs& input : inputs) {
+    const Scene physical = scene(input);
+    if (!gear_set) {
+      gear_set =
+          std::make_shared<PreparedGearSet>(physical.gear_set, physical.solid, physical.options);
+    }
+    PreparedScene prepared(physical, gear_set);
+    const auto study = std::get<CurveStudy>(server::study(input));
+    for (const double speed : study.vehicle_speeds) {
+      OperatingCondition condition;
+      condition.vehicle_speed = speed;
+      screen_point(prepared, condition, study.options.point);
+    }
+  }
+  return thread_processor_seconds() - begin;
+}
+
+/// Processor time of the server from the first submission, 64 under way, until all have ended [s].
+double screen_over_the_wire(const Server& server, const std::vector<v1::Simulation>& simulations) {
+  const double begin = process_figures(server.id()).processor_seconds;
+  const Latencies submitted = closed_loop(
+      64, static_cast<int>(simulations.size()),
+      [&](int number, const std::function<void(bool)>& done) {
+        const auto call = std::make_shared<Call<v1::CreateSimulationRequest, v1::Simulation>>();
+        *call->request.mutable_simulation() = simulations[number];
+        server.stub().async()->CreateSimulation(
+            &call->context, &call->request, &call->response,
+            [call, done](const grpc::Status& status) { done(status.ok()); });
+      });
+  if (submitted.failures > 0) throw std::runtime_error("a submission was refused");
+  while (count(server.stub(), "state = QUEUED", 1) + count(server.stub(), "state = RUNNING", 1)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  if (count(server.stub(), "state = SUCCEEDED", 1000) <
+      std::min<int>(1000, static_cast<int>(simulations.size()))) {
+    throw std::runtime_error("a screened simulation failed");
+  }
+  return process_figures(server.id()).processor_seconds - begin;
+}
+
+/// What pipelines do: many fluids at the same speeds and sumps, as curves or as points, against the
+/// same points screened in the core alone.
+void measure_screening(std::vector<Measurement>& out) {
+  const std::vector<v1::Lubricant> fluids = candidates(kCandidates);
+  const auto milliseconds_a_point = [](double total) { return 1e3 * total / kScreened; };
+  std::vector<double> core, curves, points;
+  for (int run = 0; run < 3; ++run) {
+    core.push_back(milliseconds_a_point(screen_in_core(fluids)));
+    for (const bool as_curves : {true, false}) {
+      const Server server;
+      create_lubricants(server, fluids);
+      (as_curves ? curves : points)
+          .push_back(milliseconds_a_point(screen_over_the_wire(
+              server, as_curves ? screening_curves(fluids) : screening_points(fluids))));
+    }
+  }
+  out.push_back({"screened_point_in_the_core", median(core), "ms", {}});
+  out.push_back({"screened_point_over_the_wire_in_a_curve", median(curves), "ms", 0.45});
+  out.push_back({"screened_point_over_the_wire_of_its_own", median(points), "ms", 2.3});
+  out.push_back(
+      {"screened_point_in_a_curve_over_the_core", median(curves) / median(core), "-", {}});
+  out.push_back(
+      {"screened_point_of_its_own_over_the_core", median(points) / median(core), "-", {}});
 }
 
 struct EstimatedCase {
@@ -763,7 +891,7 @@ int main(int argc, char** argv) {
       {"requests", measure_requests},       {"lists", measure_lists},
       {"histories", measure_histories},     {"watchers", measure_watchers},
       {"overload", measure_overload},       {"refusals", measure_refusals},
-      {"interactive", measure_interactive}, {"overhead", measure_overhead},
+      {"interactive", measure_interactive}, {"screening", measure_screening},
       {"estimates", measure_estimates}};
   const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
   const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
