@@ -81,6 +81,7 @@ Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
   Outcome<Answer> out = guarded<Answer>([&]() -> Outcome<Answer> {
     const CallLimits& limits = call.context.limits;
     if (limits.are_over()) return call_over(limits);
+    if (auto refused = call.prepare()) return *std::move(refused);
     const Reply request(call.method.request->New());
     if (auto refused = parse_request(call, *request)) return *std::move(refused);
     return use_case(application_, *request, call.context);

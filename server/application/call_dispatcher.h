@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "server/application/call_lanes.h"
@@ -30,7 +31,12 @@ class IncomingCall {
   explicit IncomingCall(const Method& its_method) : method(its_method) {}
   virtual ~IncomingCall() = default;
 
-  /// Return the length of the serialised request [bytes] and a new reader of it.
+  /// Called once, on a thread of the lane, before the next two: a transport whose requests arrive
+  /// in another form than protobuf's binary one converts them here. Returns the error of a request
+  /// that cannot be converted.
+  virtual std::optional<google::rpc::Status> prepare() { return std::nullopt; }
+  /// Return the length of the serialised request [bytes], before prepare() an estimate, and a new
+  /// reader of it.
   virtual std::size_t request_size() const = 0;
   virtual std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() = 0;
   /// Frees the serialised request.

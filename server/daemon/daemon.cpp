@@ -10,9 +10,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "core/version.h"
 #include "server/application/stored_inputs.h"
@@ -26,7 +28,8 @@
 #include "server/storage/seeds.h"
 #include "server/storage/store.h"
 #include "server/transport/grpc/grpc_server.h"
-#include "server/transport/http/metrics_listener.h"
+#include "server/transport/http/http_server.h"
+#include "server/transport/http/rest_handler.h"
 
 namespace tribodyn::server {
 namespace {
@@ -144,16 +147,28 @@ int complain(int code, const std::string& sentence) {
   return code;
 }
 
-/// Starts the metrics listener. Returns null if no address is set.
-std::unique_ptr<MetricsListener> listen_for_metrics(const Settings& settings,
-                                                    SimulationJobs& jobs) {
-  if (settings.metrics_listen.empty()) return nullptr;
+/// The REST interface and the HTTP server that carries it.
+struct Rest {
+  RestHandler handler;
+  HttpServer server;
+  Rest(CallDispatcher& dispatcher, std::map<std::string, RestHandler::Page> pages,
+       const ListenAddress& address)
+      : handler(dispatcher, std::move(pages)), server(handler, address) {}
+};
+
+/// Starts the REST interface. Returns null if no address is set.
+std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& dispatcher,
+                                      SimulationJobs& jobs) {
+  if (settings.http_listen.empty()) return nullptr;
   jobs.metrics().set_build(TRIBODYN_VERSION, kModelVersion, platform());
-  auto listener =
-      std::make_unique<MetricsListener>(parse_listen_address(settings.metrics_listen),
-                                        [&jobs] { return jobs.metrics().text(jobs.occupancy()); });
-  spdlog::info("metrics at http://{}/metrics", to_text(listener->address()));
-  return listener;
+  std::map<std::string, RestHandler::Page> pages;
+  pages["/metrics"] = {"text/plain; version=0.0.4; charset=utf-8",
+                       [&jobs] { return jobs.metrics().text(jobs.occupancy()); }};
+  pages["/healthz"] = {"text/plain; charset=utf-8", [] { return std::string("ok\n"); }};
+  auto out = std::make_unique<Rest>(dispatcher, std::move(pages),
+                                    parse_listen_address(settings.http_listen));
+  spdlog::info("REST at http://{}", to_text(out->server.address()));
+  return out;
 }
 
 }  // namespace
@@ -174,7 +189,7 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
                                           to_milliseconds(settings.stream_limit_seconds),
                                           to_milliseconds(settings.unread_limit_seconds)});
   GrpcServer server(dispatcher, address);
-  const std::unique_ptr<MetricsListener> metrics = listen_for_metrics(settings, jobs);
+  const std::unique_ptr<Rest> rest = listen_for_http(settings, dispatcher, jobs);
   const std::string wrong = jobs.start();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);
   server.set_serving(true);

@@ -120,9 +120,11 @@ void add_flags(CLI::App& app, Settings& settings) {
   app.add_option(
       "--port-file", settings.port_file,
       "File for the address, written when the server accepts calls and removed at its end");
-  app.add_option("--metrics-listen", settings.metrics_listen,
-                 "Loopback address and port of GET /metrics for Prometheus; none by default. "
-                 "Recommended: 127.0.0.1:50652");
+  app.add_option(
+      "--http-listen", settings.http_listen,
+      "Loopback address and port (0: any free one), or unix:PATH, of the REST interface, "
+      "of /metrics for Prometheus and of /healthz; none by default. Recommended: "
+      "127.0.0.1:50652");
   app.add_option("--log-level", settings.log_level, "Recommended: info")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
       ->capture_default_str();

@@ -25,7 +25,7 @@ struct Settings {
   std::string database;
   int threads = 0;
   std::string port_file;
-  std::string metrics_listen;  ///< empty: no metrics
+  std::string http_listen;  ///< empty: no REST interface and no metrics
   std::string log_level = "info";
   double call_limit_seconds = 30;
   double stream_limit_seconds = 3600;

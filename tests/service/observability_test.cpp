@@ -28,7 +28,7 @@ std::string http(const std::string& method, int port, const std::string& path) {
   name.sin_port = htons(static_cast<std::uint16_t>(port));
   name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   EXPECT_EQ(connect(connection, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
-  const std::string request = method + " " + path + " HTTP/1.1\r\nHost: x\r\n\r\n";
+  const std::string request = method + " " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
   EXPECT_EQ(send(connection, request.data(), request.size(), 0),
             static_cast<ssize_t>(request.size()));
   std::string out;
@@ -45,10 +45,10 @@ std::string http_get(int port, const std::string& path) { return http("GET", por
 class ObservabilityTest : public GrpcTest {
  protected:
   void SetUp() override {
-    more_flags_ = {"--metrics-listen", "127.0.0.1:0"};
+    more_flags_ = {"--http-listen", "127.0.0.1:0"};
     start();
     const std::string log = process_->log();
-    const std::string before = "metrics at http://127.0.0.1:";
+    const std::string before = "REST at http://127.0.0.1:";
     const auto found = log.find(before);
     ASSERT_NE(found, std::string::npos) << log;
     port_ = std::stoi(log.substr(found + before.size()));
@@ -96,12 +96,12 @@ TEST_F(ObservabilityTest, MetricsCountPhasesOutcomesCacheHitsAndTheBuild) {
 
 TEST_F(ObservabilityTest, HeadOfMetricsEqualsGetWithoutABody) {
   const std::string head = http("HEAD", port_, "/metrics"), whole = http_get(port_, "/metrics");
-  EXPECT_THAT(head, testing::StartsWith("HTTP/1.0 200 OK\r\n"));
+  EXPECT_THAT(head, testing::StartsWith("HTTP/1.1 200 OK\r\n"));
   EXPECT_THAT(head, HasSubstr("Content-Length: "));
   EXPECT_THAT(head, testing::EndsWith("\r\n\r\n"));
   EXPECT_EQ(head.find("\r\n\r\n"), head.size() - 4) << "no body";
   EXPECT_GT(whole.size(), head.size());
-  EXPECT_THAT(http("HEAD", port_, "/other"), testing::StartsWith("HTTP/1.0 404"));
+  EXPECT_THAT(http("HEAD", port_, "/other"), testing::StartsWith("HTTP/1.1 404"));
 }
 
 TEST_F(ObservabilityTest, OneIdJoinsRequestJobAndResultInTheLog) {

@@ -3,13 +3,13 @@
 #include <grpcpp/impl/codegen/proto_utils.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "server/application/guard.h"
-#include "server/application/log_text.h"
+#include "server/transport/call_words.h"
 #include "server/transport/grpc/contract_service.h"
 #include "server/transport/grpc/grpc_call.h"
 #include "server/transport/grpc/grpc_status.h"
@@ -21,15 +21,11 @@ namespace {
 using Bytes = grpc::ByteBuffer;
 using Context = grpc::CallbackServerContext;
 
-constexpr char kClientMetadata[] = "tribodyn-client";
-constexpr char kRequestIdMetadata[] = "tribodyn-request-id";
-constexpr std::size_t kLongestWord = 100;  // of the client's name and of the request id [bytes]
-
-/// Returns the value of a header as one word; empty if the header is missing.
-std::string word_of(const Context& context, const char* header) {
-  const auto found = context.client_metadata().find(header);
+/// Returns the value of a header, or "".
+std::string_view header(const Context& context, const char* name) {
+  const auto found = context.client_metadata().find(name);
   if (found == context.client_metadata().end()) return {};
-  return log_word({found->second.data(), found->second.size()}, kLongestWord);
+  return {found->second.data(), found->second.size()};
 }
 
 /// A unary call, from its arrival until OnDone.
@@ -66,16 +62,15 @@ class UnaryReactor final : public grpc::ServerUnaryReactor, public GrpcCall<Unar
 CallContext call_context(const Context& context, std::chrono::milliseconds limit,
                          const std::atomic<bool>& cancelled) {
   using std::chrono::system_clock;
-  static std::atomic<std::uint64_t> count = 0;
-  const std::string client = word_of(context, kClientMetadata);
-  const std::string id = word_of(context, kRequestIdMetadata);
   // A limit of 0 gives a deadline that has passed, whatever the client's.
   const auto left =
       std::min<system_clock::duration>(context.deadline() - system_clock::now(), limit);
-  return {// For a Unix socket the peer is a path that the client chose.
-          .client = client.empty() ? log_word(context.peer(), kLongestWord) : client,
-          .request_id = id.empty() ? std::to_string(++count) : id,
-          .limits = {.deadline = CallLimits::Clock::now() + left, .cancelled = &cancelled}};
+  // For a Unix socket the peer is a path that the client chose.
+  const std::string peer = context.peer();
+  return call_context({.client = header(context, "tribodyn-client"),
+                       .request_id = header(context, "tribodyn-request-id"),
+                       .peer = peer},
+                      left, cancelled);
 }
 
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(CallDispatcher& dispatcher,

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include "google/rpc/status.pb.h"
+#include "server/transport/http/http_message.h"
+
+namespace tribodyn::server {
+
+/// Returns the HTTP status of a google.rpc code (AIP-193); 412 for an etag that has changed.
+int http_status(const google::rpc::Status& error);
+
+/// Returns the error as JSON: {"error": {"code", "message", "status", "details"}}. With Retry-After
+/// [s, rounded up] if the error has RetryInfo.
+HttpResponse error_response(const google::rpc::Status& error);
+/// The same with another HTTP status, for errors of HTTP itself.
+HttpResponse error_response(const google::rpc::Status& error, int status);
+
+/// Returns the message as JSON: names in snake_case, zeros printed, 64-bit integers as texts, "NaN"
+/// and "Infinity". With ETag: the message's own etag, else a hash of the body. Status 304 without a
+/// body if `request` is a GET or HEAD that has this tag already.
+HttpResponse message_response(const google::protobuf::Message& message, const HttpRequest& request);
+
+/// Compresses the body if the client accepts gzip and the body is long enough to gain.
+void compress(const HttpRequest& request, HttpResponse& response);
+
+}  // namespace tribodyn::server

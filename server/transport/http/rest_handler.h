@@ -1,0 +1,55 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "server/application/call_dispatcher.h"
+#include "server/transport/http/http_message.h"
+#include "server/transport/http/http_routes.h"
+
+namespace tribodyn::server {
+
+/// Serves the methods of the contract as REST: requests in, responses out, whatever carries them.
+/// Routes are those of google.api.http, bodies are protobuf's JSON, errors AIP-193's. Refuses what
+/// a web page of another origin may send. Safe for concurrent access.
+class RestHandler {
+ public:
+  /// A page of the server's own, by its path: GET and HEAD.
+  struct Page {
+    std::string content_type;
+    std::function<std::string()> text;
+  };
+
+  /// `dispatcher` must outlive the object. Throws std::logic_error as HttpRoutes does.
+  explicit RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages = {});
+
+  /// Called once, on any thread.
+  using Reply = std::function<void(HttpResponse)>;
+
+  /// Returns the longest body of a request with this verb and target [bytes]; 0 if it takes none.
+  std::size_t maximum_body_bytes(const HttpRequest& head) const;
+
+  /// Answers a request. `cancelled` is true once the client has gone.
+  void handle(HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled, Reply reply);
+
+  /// JSON spells out the names of fields: a lubricant takes three times the bytes of its binary
+  /// form. No body is longer than kMaximumBodyBytes.
+  static constexpr std::size_t kJsonGrowth = 4;
+  static constexpr std::size_t kMaximumBodyBytes = 64 << 20;
+
+  const HttpRoutes& routes() const { return routes_; }
+
+ private:
+  CallDispatcher& dispatcher_;
+  const HttpRoutes routes_;
+  const std::map<std::string, Page> pages_;
+};
+
+/// Returns the headers of every response, for those that are made without a handler.
+const std::map<std::string, std::string>& security_headers();
+
+}  // namespace tribodyn::server

@@ -1,0 +1,293 @@
+#include "server/transport/http/rest_request.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/util/field_mask_util.h>
+#include <google/protobuf/util/json_util.h>
+#include <google/protobuf/util/type_resolver_util.h>
+#include <google/protobuf/wire_format_lite.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "google/protobuf/field_mask.pb.h"
+#include "server/application/errors.h"
+#include "server/contract/resource_names.h"
+#include "server/contract/violations.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::Reflection;
+
+constexpr char kTypePrefix[] = "type.googleapis.com";
+
+google::protobuf::util::TypeResolver& resolver() {
+  static const std::unique_ptr<google::protobuf::util::TypeResolver> kResolver(
+      google::protobuf::util::NewTypeResolverForDescriptorPool(
+          kTypePrefix, google::protobuf::DescriptorPool::generated_pool()));
+  return *kResolver;
+}
+
+/// Parses the whole text as a number of this type.
+template <class Number>
+std::optional<Number> number_of(const std::string& text) {
+  Number out{};
+  const char* end = text.data() + text.size();
+  const auto [stop, failure] = std::from_chars(text.data(), end, out);
+  if (failure != std::errc() || stop != end || text.empty()) return std::nullopt;
+  return out;
+}
+
+std::string values_of(const google::protobuf::EnumDescriptor& type) {
+  std::string out;
+  for (int i = 0; i < type.value_count(); ++i) {
+    if (i > 0) out += ", ";
+    out += type.value(i)->name();
+  }
+  return out;
+}
+
+/// Gives a field the value of a text, or appends the value to a repeated field. Returns what the
+/// text should be if it is no such value, else "".
+std::string set_field(Message& message, const FieldDescriptor& field, const std::string& text) {
+  const Reflection& reflect = *message.GetReflection();
+  const auto put = [&](auto value, auto set, auto add) -> std::string {
+    if (field.is_repeated()) {
+      (reflect.*add)(&message, &field, value);
+    } else {
+      (reflect.*set)(&message, &field, value);
+    }
+    return {};
+  };
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_STRING:
+      return put(text, &Reflection::SetString, &Reflection::AddString);
+    case FieldDescriptor::CPPTYPE_BOOL:
+      if (text != "true" && text != "false") return "true or false";
+      return put(text == "true", &Reflection::SetBool, &Reflection::AddBool);
+    case FieldDescriptor::CPPTYPE_INT32:
+      if (const auto value = number_of<std::int32_t>(text)) {
+        return put(*value, &Reflection::SetInt32, &Reflection::AddInt32);
+      }
+      return "a whole number";
+    case FieldDescriptor::CPPTYPE_INT64:
+      if (const auto value = number_of<std::int64_t>(text)) {
+        return put(*value, &Reflection::SetInt64, &Reflection::AddInt64);
+      }
+      return "a whole number";
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      if (const auto value = number_of<double>(text)) {
+        return put(*value, &Reflection::SetDouble, &Reflection::AddDouble);
+      }
+      return "a number";
+    case FieldDescriptor::CPPTYPE_ENUM:
+      if (const auto* value = field.enum_type()->FindValueByName(text)) {
+        return put(value, &Reflection::SetEnum, &Reflection::AddEnum);
+      }
+      return "one of " + values_of(*field.enum_type());
+    case FieldDescriptor::CPPTYPE_MESSAGE:
+      if (field.message_type() == google::protobuf::FieldMask::descriptor() &&
+          !field.is_repeated()) {
+        google::protobuf::FieldMask mask;
+        google::protobuf::util::FieldMaskUtil::FromString(text, &mask);
+        reflect.MutableMessage(&message, &field)->MergeFrom(mask);
+        return {};
+      }
+      return "in the body of the request";
+    default:
+      return "in the body of the request";
+  }
+}
+
+/// A field that a text gives a value to, and the message that holds the field.
+struct Target {
+  Message* message = nullptr;
+  const FieldDescriptor* field = nullptr;
+};
+
+/// Finds "lubricant.name" or "pageSize" in `message`. Returns nullopt if there is no such field.
+std::optional<Target> find_target(Message& message, std::string_view path) {
+  Target out{&message, nullptr};
+  for (;;) {
+    const std::size_t dot = std::min(path.find('.'), path.size());
+    const std::string name(path.substr(0, dot));
+    const Descriptor& type = *out.message->GetDescriptor();
+    out.field = type.FindFieldByName(name);
+    if (out.field == nullptr) out.field = type.FindFieldByCamelcaseName(name);
+    if (out.field == nullptr) return std::nullopt;
+    if (dot == path.size()) return out;
+    if (out.field->is_repeated() || out.field->message_type() == nullptr) return std::nullopt;
+    out.message = out.message->GetReflection()->MutableMessage(out.message, out.field);
+    path.remove_prefix(dot + 1);
+  }
+}
+
+std::vector<std::string> field_names(const Descriptor& type, const RouteMatch& route) {
+  std::vector<std::string> out;
+  for (int i = 0; i < type.field_count(); ++i) {
+    const std::string& name = type.field(i)->name();
+    if (name != route.body_field && !route.of_path.contains(name)) out.push_back(name);
+  }
+  return out;
+}
+
+/// A query in decoded pairs. Adds a violation for each that cannot be decoded.
+std::vector<std::pair<std::string, std::string>> pairs_of(std::string_view query,
+                                                          Violations& violations) {
+  std::vector<std::pair<std::string, std::string>> out;
+  while (!query.empty()) {
+    const std::size_t end = std::min(query.find('&'), query.size());
+    std::string pair(query.substr(0, end));
+    query.remove_prefix(std::min(end + 1, query.size()));
+    if (pair.empty()) continue;
+    for (char& character : pair) {
+      if (character == '+') character = ' ';
+    }
+    const std::size_t equals = std::min(pair.find('='), pair.size());
+    auto name = percent_decoded(pair.substr(0, equals));
+    auto value = percent_decoded(pair.substr(std::min(equals + 1, pair.size())));
+    if (name && value) {
+      out.emplace_back(*std::move(name), *std::move(value));
+    } else {
+      violations.push_back({plain_excerpt(pair.substr(0, equals)),
+                            "a percent sign in the query must be followed by two hexadecimal "
+                            "digits; a percent sign itself is written %25"});
+    }
+  }
+  return out;
+}
+
+void add_query(const RouteMatch& route, std::string_view query, Message& message,
+               Violations& violations) {
+  const Descriptor& type = *message.GetDescriptor();
+  for (const auto& [name, value] : pairs_of(query, violations)) {
+    const std::string shown = plain_excerpt(name);
+    const std::string first = name.substr(0, name.find('.'));
+    if (route.body_field == "*") {
+      violations.push_back(
+          {shown, "this method takes no query; its fields stand in the JSON body"});
+      continue;
+    }
+    const auto target = find_target(message, name);
+    if (!target) {
+      violations.push_back(
+          {shown, "is no parameter of this method" + meant_text(name, field_names(type, route))});
+    } else if (first == route.body_field) {
+      violations.push_back({shown, "stands in the JSON body, not in the query"});
+    } else if (route.of_path.contains(target->field->name())) {
+      violations.push_back({shown, "stands in the path, not in the query"});
+    } else {
+      const std::string expected = set_field(*target->message, *target->field, value);
+      if (!expected.empty()) {
+        violations.push_back(
+            {shown, fmt::format("is \"{}\"; allowed: {}", plain_excerpt(value), expected)});
+      }
+    }
+  }
+}
+
+/// The entity tag of an If-Match header, or "" for none and for "*".
+std::string etag_of(std::string_view header) {
+  if (header.starts_with("W/")) header.remove_prefix(2);
+  if (header.size() < 2 || header.front() != '"' || header.back() != '"') return {};
+  return std::string(header.substr(1, header.size() - 2));
+}
+
+/// Gives the request, or the resource in its body, the etag that the client has seen.
+void set_etag(const RouteMatch& route, const std::string& etag, Message& message) {
+  for (const std::string& path : {std::string("etag"), route.body_field + ".etag"}) {
+    const Descriptor& type = *message.GetDescriptor();
+    if (path != "etag" && type.FindFieldByName(route.body_field) == nullptr) continue;
+    if (const auto target = find_target(message, path)) {
+      set_field(*target->message, *target->field, etag);
+      return;
+    }
+  }
+}
+
+/// The type of what the body holds.
+const Descriptor& body_type(const RouteMatch& route) {
+  const Descriptor& request = *route.method->descriptor->input_type();
+  if (route.body_field == "*") return request;
+  return *request.FindFieldByName(route.body_field)->message_type();
+}
+
+/// The first line of what protobuf says of a body, as printable ASCII. Further lines repeat the
+/// body.
+std::string first_line(std::string_view text) {
+  constexpr std::size_t kLongest = 300;  // [bytes]
+  std::string out(text.substr(0, std::min(text.find('\n'), kLongest)));
+  for (char& character : out) {
+    if (character < ' ' || character > '~') character = '?';
+  }
+  return out;
+}
+
+/// Appends the body of the request. Returns a violation if the body is not JSON of its type.
+std::optional<Violation> append_body(const RouteMatch& route, const std::string& body,
+                                     std::string& wire) {
+  namespace io = google::protobuf::io;
+  const std::string type = std::string(kTypePrefix) + "/" + body_type(route).full_name();
+  std::string binary;
+  const auto status = google::protobuf::util::JsonToBinaryString(
+      &resolver(), type, body.empty() ? "{}" : body, &binary);
+  if (!status.ok()) {
+    return Violation{route.body_field == "*" ? "" : route.body_field,
+                     "the body is no JSON of " + body_type(route).name() + ": " +
+                         first_line({status.message().data(), status.message().size()})};
+  }
+  if (route.body_field == "*") {
+    wire += binary;
+    return std::nullopt;
+  }
+  using google::protobuf::internal::WireFormatLite;
+  const FieldDescriptor& field =
+      *route.method->descriptor->input_type()->FindFieldByName(route.body_field);
+  io::StringOutputStream stream(&wire);
+  io::CodedOutputStream out(&stream);
+  out.WriteTag(WireFormatLite::MakeTag(field.number(), WireFormatLite::WIRETYPE_LENGTH_DELIMITED));
+  out.WriteVarint32(static_cast<std::uint32_t>(binary.size()));
+  out.WriteString(binary);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<google::rpc::Status> write_request(const RouteMatch& route,
+                                                 const HttpRequest& request, std::string& wire) {
+  Violations violations;
+  const std::unique_ptr<Message> beside_body(route.method->request->New());
+  for (const auto& [path, value] : route.of_path) {
+    const auto target = find_target(*beside_body, path);
+    set_field(*target->message, *target->field, value);
+  }
+  const std::size_t question = request.target.find('?');
+  if (question != std::string::npos) {
+    add_query(route, std::string_view(request.target).substr(question + 1), *beside_body,
+              violations);
+  }
+  const std::string etag = etag_of(request.header("if-match"));
+  if (!etag.empty()) set_etag(route, etag, *beside_body);
+  wire.clear();
+  if (!route.body_field.empty()) {
+    if (auto violation = append_body(route, request.body, wire)) {
+      violations.push_back(*std::move(violation));
+    }
+  } else if (!request.body.empty()) {
+    violations.push_back({"", "this method takes no body"});
+  }
+  if (!violations.empty()) return invalid(violations);
+  wire += beside_body->SerializeAsString();
+  return std::nullopt;
+}
+
+}  // namespace tribodyn::server

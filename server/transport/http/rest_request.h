@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "google/rpc/status.pb.h"
+#include "server/transport/http/http_message.h"
+#include "server/transport/http/http_routes.h"
+
+namespace tribodyn::server {
+
+/// Writes the request message of a method in protobuf's binary form: fields of the path, the query
+/// and the header If-Match (the field "etag") over those of the JSON body. No message is built from
+/// the body, so that the dispatcher counts its elements before anything grows. Returns
+/// INVALID_ARGUMENT that names each wrong parameter, or the place of the body that cannot be read.
+std::optional<google::rpc::Status> write_request(const RouteMatch& route,
+                                                 const HttpRequest& request, std::string& wire);
+
+}  // namespace tribodyn::server

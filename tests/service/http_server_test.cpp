@@ -1,0 +1,256 @@
+// The HTTP server over real connections: what a client may send and how slowly, and what is
+// refused.
+#include "server/transport/http/http_server.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+/// A connection of a client that writes its own HTTP.
+class Connection {
+ public:
+  explicit Connection(int port) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in name{};
+    name.sin_family = AF_INET;
+    name.sin_port = htons(static_cast<std::uint16_t>(port));
+    name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(connect(socket_, reinterpret_cast<const sockaddr*>(&name), sizeof name), 0);
+  }
+  ~Connection() { hang_up(); }
+  Connection(Connection&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  Connection& operator=(Connection&&) = delete;
+
+  void hang_up() {
+    if (socket_ >= 0) close(socket_);
+    socket_ = -1;
+  }
+  /// Returns false once the server has closed the connection.
+  bool send(const std::string& text) {
+    return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) ==
+           static_cast<ssize_t>(text.size());
+  }
+  /// Reads until `end` has come, the server closes, or `limit` is over.
+  std::string read_until(const std::string& end, milliseconds limit = milliseconds(20'000)) {
+    std::string out;
+    const auto last = steady_clock::now() + limit;
+    while (out.find(end) == std::string::npos || end.empty()) {
+      const auto left = std::chrono::duration_cast<milliseconds>(last - steady_clock::now());
+      pollfd ready{socket_, POLLIN, 0};
+      if (left.count() <= 0 || poll(&ready, 1, static_cast<int>(left.count())) != 1) break;
+      char part[65536];
+      const ssize_t count = recv(socket_, part, sizeof part, 0);
+      if (count <= 0) {
+        is_closed_ = true;
+        break;
+      }
+      out.append(part, static_cast<std::size_t>(count));
+    }
+    return out;
+  }
+  /// All that comes until the server closes.
+  std::string read_all() { return read_until(""); }
+  bool is_closed() const { return is_closed_; }
+
+ private:
+  int socket_;
+  bool is_closed_ = false;
+};
+
+constexpr char kHost[] = "Host: localhost\r\n";
+
+std::string get(const std::string& target, const std::string& headers = {}) {
+  return "GET " + target + " HTTP/1.1\r\n" + kHost + headers + "\r\n";
+}
+
+class HttpServerTest : public testing::Test {
+ protected:
+  /// A server with its own limits.
+  struct Served {
+    Served(Application& app, const HttpLimits& limits)
+        : dispatcher(app),
+          handler(dispatcher, {{"/hello", {"text/plain", [] { return std::string("hello"); }}}}),
+          server(handler, {"127.0.0.1", 0, ""}, limits) {}
+    int port() const { return server.address().port; }
+
+    CallDispatcher dispatcher;
+    RestHandler handler;
+    HttpServer server;
+  };
+  std::unique_ptr<Served> serve(const HttpLimits& limits = {}) {
+    return std::make_unique<Served>(app_, limits);
+  }
+
+  Bench bench_;
+  Application app_ = bench_.application();
+};
+
+TEST_F(HttpServerTest, OneConnectionCarriesManyRequestsAlsoWhenSentAtOnce) {
+  const auto served = serve();
+  Connection client(served->port());
+  client.send(get("/hello") + get("/v1/lubricants/paper-fluid-1") +
+              get("/hello", "Connection: close\r\n"));
+  const std::string all = client.read_all();
+  EXPECT_TRUE(client.is_closed());
+  std::size_t answers = 0;
+  for (std::size_t at = 0; (at = all.find("HTTP/1.1 200 OK", at)) != std::string::npos; ++at) {
+    ++answers;
+  }
+  EXPECT_EQ(answers, 3U);
+  EXPECT_LT(all.find("hello"), all.find("lubricants/paper-fluid-1"));
+  EXPECT_THAT(all, HasSubstr("Date: "));
+  EXPECT_THAT(all, Not(HasSubstr("Server: ")));
+}
+
+TEST_F(HttpServerTest, HeadAnswersTheLengthWithoutTheBody) {
+  const auto served = serve();
+  Connection client(served->port());
+  client.send("HEAD /hello HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+  const std::string head = client.read_all();
+  EXPECT_THAT(head, StartsWith("HTTP/1.1 200 OK\r\n"));
+  EXPECT_THAT(head, HasSubstr("Content-Length: 5\r\n"));
+  EXPECT_THAT(head, testing::EndsWith("\r\n\r\n"));
+}
+
+TEST_F(HttpServerTest, AClientThatAsksBeforeItSendsIsInvited) {
+  const auto served = serve();
+  Connection client(served->port());
+  const std::string body = R"({"load_newtons": 0})";
+  client.send(std::string("POST /v1/contacts:evaluate HTTP/1.1\r\n") + kHost +
+              "Content-Type: application/json\r\nExpect: 100-continue\r\nContent-Length: " +
+              std::to_string(body.size()) + "\r\n\r\n");
+  EXPECT_EQ(client.read_until("\r\n\r\n"), "HTTP/1.1 100 Continue\r\n\r\n");
+  client.send(body);
+  EXPECT_THAT(client.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 400 Bad Request"));
+}
+
+TEST_F(HttpServerTest, WhatIsNoRequestIsRefusedAndTheConnectionClosed) {
+  const auto served = serve();
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"\x16\x03\x01\x02 what TLS sends\r\n\r\n", "400"},
+      {"GET /hello HTTP/9.9\r\n\r\n", "400"},
+      {"GET /hello HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n", "400"},
+      {get("/hello", "X: " + std::string(20'000, 'x') + "\r\n"), "431"},
+      {std::string("POST /v1/simulations HTTP/1.1\r\n") + kHost +
+           "Transfer-Encoding: chunked\r\n\r\n5\r\nhello\r\n0\r\n\r\n",
+       "411"},
+      {std::string("POST /v1/simulations HTTP/1.1\r\n") + kHost +
+           "Content-Length: 99999999\r\n\r\n",
+       "413"},
+      {std::string("GET /hello HTTP/1.1\r\n") + kHost + "Content-Length: 1\r\n\r\nx", "413"},
+      {std::string("POST /v1/simulations HTTP/1.1\r\n") + kHost + "Content-Length: -1\r\n\r\n",
+       "400"}};
+  for (const auto& [request, status] : cases) {
+    Connection client(served->port());
+    client.send(request);
+    const std::string answer = client.read_all();
+    EXPECT_THAT(answer, StartsWith("HTTP/1.1 " + status)) << request.substr(0, 60);
+    EXPECT_THAT(answer, HasSubstr("X-Content-Type-Options: nosniff"));
+    EXPECT_TRUE(client.is_closed()) << request.substr(0, 60);
+  }
+}
+
+TEST_F(HttpServerTest, SlowClientsAreClosedAtTheLimitOfTheirState) {
+  HttpLimits limits;
+  limits.head_time = limits.body_time = milliseconds(300);
+  const auto served = serve(limits);
+  const std::string half_body = std::string("POST /v1/simulations HTTP/1.1\r\n") + kHost +
+                                "Content-Type: application/json\r\nContent-Length: 10\r\n\r\n{";
+  for (const std::string& beginning : {std::string(), std::string("GET /hel"), half_body}) {
+    Connection client(served->port());
+    client.send(beginning);
+    EXPECT_EQ(client.read_all(), "") << beginning;
+    EXPECT_TRUE(client.is_closed()) << beginning;
+  }
+  // One byte at a time does not lengthen the limit.
+  Connection trickle(served->port());
+  const auto begin = steady_clock::now();
+  for (const char each : get("/hello", "X: " + std::string(1000, 'x') + "\r\n")) {
+    if (!trickle.send({each})) break;
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  EXPECT_LT(steady_clock::now() - begin, std::chrono::seconds(8)) << "ten seconds in all";
+}
+
+TEST_F(HttpServerTest, ConnectionsBeyondTheLimitAreClosedAndTheOthersServed) {
+  HttpLimits limits;
+  limits.connections = 20;
+  limits.connections_of_a_peer = 15;
+  const auto served = serve(limits);
+  std::vector<Connection> silent;
+  for (int i = 0; i < 14; ++i) silent.emplace_back(served->port());
+  Connection active(served->port());
+  active.send(get("/hello"));
+  EXPECT_THAT(active.read_until("hello"), StartsWith("HTTP/1.1 200"));
+  Connection further(served->port());
+  further.send(get("/hello"));
+  EXPECT_EQ(further.read_all(), "");
+  silent.pop_back();
+  EXPECT_TRUE(eventually([&] {
+    Connection another(served->port());
+    another.send(get("/hello"));
+    return another.read_until("hello", milliseconds(2000)).starts_with("HTTP/1.1 200");
+  })) << "room again";
+}
+
+TEST_F(HttpServerTest, BodiesThatAreReadTogetherAreLimited) {
+  HttpLimits limits;
+  limits.bodies_bytes = 1000;
+  const auto served = serve(limits);
+  const auto head = [](int length) {
+    return std::string("POST /v1/simulations HTTP/1.1\r\n") + kHost +
+           "Content-Type: application/json\r\nContent-Length: " + std::to_string(length) +
+           "\r\n\r\n";
+  };
+  Connection first(served->port());
+  first.send(head(900) + "{");
+  EXPECT_TRUE(eventually([&] {
+    Connection second(served->port());
+    second.send(head(200) + "{}");
+    return second.read_until("\r\n\r\n", milliseconds(200)).starts_with("HTTP/1.1 503");
+  }));
+  first.hang_up();
+  EXPECT_TRUE(eventually([&] {
+    Connection third(served->port());
+    third.send(head(900) + std::string(900, ' '));
+    return third.read_until("\r\n\r\n", milliseconds(2000)).starts_with("HTTP/1.1 400");
+  })) << "counted no longer";
+}
+
+TEST_F(HttpServerTest, TheServerEndsWhileClientsAreConnectedAndCallsRun) {
+  for (int round = 0; round < 20; ++round) {
+    auto served = serve();
+    std::vector<Connection> clients;
+    for (int i = 0; i < 10; ++i) {
+      clients.emplace_back(served->port());
+      clients.back().send(i % 2 == 0 ? get("/v1/lubricants") : "GET /v1/lubr");
+    }
+    served.reset();
+    for (Connection& each : clients) each.read_all();
+  }
+}
+
+}  // namespace
+}  // namespace tribodyn::server

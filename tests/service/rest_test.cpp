@@ -1,0 +1,339 @@
+// The REST interface without a connection: routes, bodies, queries, errors, entity tags, and what a
+// web page of another origin may do. The same calls over a connection: http_server_test.cpp.
+#include <gmock/gmock.h>
+#include <google/protobuf/util/json_util.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "google/rpc/code.pb.h"
+#include "server/application/errors.h"
+#include "server/transport/http/rest_answer.h"
+#include "server/transport/http/rest_handler.h"
+#include "tests/service/contract_methods.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class RestTest : public testing::Test {
+ protected:
+  HttpResponse send(HttpRequest request) {
+    request.headers.try_emplace("host", "127.0.0.1:50652");
+    if (!request.body.empty()) request.headers.try_emplace("content-type", "application/json");
+    std::promise<HttpResponse> answer;
+    handler_.handle(std::move(request), std::make_shared<std::atomic<bool>>(false),
+                    [&](HttpResponse response) { answer.set_value(std::move(response)); });
+    return answer.get_future().get();
+  }
+  HttpResponse send(const std::string& verb, const std::string& target,
+                    const std::string& body = {}, std::map<std::string, std::string> headers = {}) {
+    return send(HttpRequest{verb, target, std::move(headers), body, "127.0.0.1"});
+  }
+  static json parsed(const HttpResponse& response) { return json::parse(response.body); }
+
+  /// The violations of an error: field and description.
+  static std::map<std::string, std::string> violations(const HttpResponse& response) {
+    std::map<std::string, std::string> out;
+    const json body = parsed(response);
+    for (const json& detail : body["error"]["details"]) {
+      if (!detail.contains("field_violations")) continue;
+      for (const json& each : detail["field_violations"]) {
+        out[each.value("field", "")] = each["description"];
+      }
+    }
+    return out;
+  }
+
+  Bench bench_;
+  Application app_ = bench_.application();
+  CallDispatcher dispatcher_{app_};
+  RestHandler handler_{dispatcher_,
+                       {{"/hello", {"text/plain", [] { return std::string("hello"); }}}}};
+};
+
+TEST_F(RestTest, EveryMethodHasARouteThatFindsIt) {
+  std::set<std::string> found;
+  for (const HttpRoutes::Route& route : handler_.routes().all()) {
+    std::string path;
+    for (const std::string& segment : route.segments)
+      path += "/" + (segment == "*" ? "x" : segment);
+    if (!route.custom_verb.empty()) path += ":" + route.custom_verb;
+    const auto match = handler_.routes().find(route.verb, path);
+    ASSERT_TRUE(match) << route.verb << " " << path;
+    EXPECT_EQ(match->method, route.method) << route.verb << " " << path;
+    found.insert(match->method->descriptor->full_name());
+  }
+  for (const auto* method : all_methods()) EXPECT_TRUE(found.contains(method->full_name()));
+}
+
+TEST_F(RestTest, GetAnswersTheResourceWithNamesInSnakeCaseAndItsZeros) {
+  const HttpResponse response = send("GET", "/v1/lubricants/paper-fluid-1");
+  EXPECT_EQ(response.status, 200) << response.body;
+  EXPECT_EQ(response.headers.at("Content-Type"), "application/json; charset=utf-8");
+  const json fluid = parsed(response);
+  EXPECT_EQ(fluid["name"], "lubricants/paper-fluid-1");
+  EXPECT_TRUE(fluid["pressure_viscosity_coefficient_per_pascal"].is_number());
+  EXPECT_EQ(fluid["external_sample_id"], "") << "an empty text is printed";
+  EXPECT_EQ(response.headers.at("ETag"), "\"" + fluid["etag"].get<std::string>() + "\"");
+}
+
+TEST_F(RestTest, ResourceIsCreatedUpdatedAndDeletedWithItsEtag) {
+  json fluid = parsed(send("GET", "/v1/lubricants/paper-fluid-1"));
+  fluid.erase("etag");
+  fluid["display_name"] = "Mine \"A\" \u00e9";
+  const HttpResponse made = send("POST", "/v1/lubricants?lubricant_id=mine", fluid.dump());
+  ASSERT_EQ(made.status, 200) << made.body;
+  EXPECT_EQ(parsed(made)["name"], "lubricants/mine");
+  EXPECT_EQ(parsed(made)["display_name"], fluid["display_name"]);
+
+  const std::string first = made.headers.at("ETag");
+  const HttpResponse renamed = send("PATCH", "/v1/lubricants/mine?update_mask=display_name",
+                                    R"({"display_name": "B"})", {{"if-match", first}});
+  ASSERT_EQ(renamed.status, 200) << renamed.body;
+  EXPECT_EQ(parsed(renamed)["display_name"], "B");
+  EXPECT_EQ(parsed(renamed)["relaxation_time_seconds"], fluid["relaxation_time_seconds"]);
+
+  const HttpResponse late =
+      send("PATCH", "/v1/lubricants/mine", R"({"display_name": "C"})", {{"if-match", first}});
+  EXPECT_EQ(late.status, 412) << late.body;
+  EXPECT_EQ(send("DELETE", "/v1/lubricants/mine", "", {{"if-match", first}}).status, 412);
+  EXPECT_EQ(send("DELETE", "/v1/lubricants/mine").status, 200);
+  EXPECT_EQ(send("POST", "/v1/lubricants/mine:undelete", "{}").status, 200);
+}
+
+TEST_F(RestTest, KnownEtagAnswersNotModifiedWithoutABody) {
+  const HttpResponse whole = send("GET", "/v1/lubricants/paper-fluid-1");
+  const std::string tag = whole.headers.at("ETag");
+  for (const std::string& known : {tag, "\"other\", " + tag, "W/" + tag, std::string("*")}) {
+    const HttpResponse again =
+        send("GET", "/v1/lubricants/paper-fluid-1", "", {{"if-none-match", known}});
+    EXPECT_EQ(again.status, 304) << known;
+    EXPECT_TRUE(again.body.empty());
+    EXPECT_EQ(again.headers.at("ETag"), tag);
+  }
+  EXPECT_EQ(
+      send("GET", "/v1/lubricants/paper-fluid-1", "", {{"if-none-match", "\"other\""}}).status,
+      200);
+  const std::string of_list = send("GET", "/v1/lubricants").headers.at("ETag");
+  EXPECT_EQ(send("GET", "/v1/lubricants", "", {{"if-none-match", of_list}}).status, 304);
+}
+
+TEST_F(RestTest, QueryGivesFieldsOfEveryKind) {
+  const HttpResponse page =
+      send("GET",
+           "/v1/lubricants?page_size=2&pageToken=&read_mask=name,display_name&"
+           "filter=display_name%3A%22Lubricant%22");
+  ASSERT_EQ(page.status, 200) << page.body;
+  const json list = parsed(page);
+  EXPECT_EQ(list["lubricants"].size(), 2U);
+  EXPECT_EQ(list["total_size"], 3) << page.body;
+  EXPECT_TRUE(list["lubricants"][0]["etag"] == "") << "not in the mask";
+  EXPECT_EQ(send("GET", "/v1/simulations?view=SIMULATION_VIEW_BASIC").status, 200);
+}
+
+TEST_F(RestTest, EachWrongParameterIsNamedWithWhatIsAllowed) {
+  const HttpResponse response =
+      send("GET", "/v1/simulations?page_sise=5&page_size=many&view=WHOLE&filter=%zz");
+  EXPECT_EQ(response.status, 400);
+  const auto wrong = violations(response);
+  ASSERT_EQ(wrong.size(), 4U);
+  EXPECT_THAT(wrong.at("page_sise"), HasSubstr("did you mean \"page_size\"?"));
+  EXPECT_THAT(wrong.at("page_size"), HasSubstr("is \"many\"; allowed: a whole number"));
+  EXPECT_THAT(wrong.at("view"), HasSubstr("SIMULATION_VIEW_FULL"));
+  EXPECT_THAT(wrong.at("filter"), HasSubstr("%25"));
+  EXPECT_THAT(violations(send("GET", "/v1/lubricants/paper-fluid-1?name=lubricants/2")).at("name"),
+              HasSubstr("stands in the path"));
+  EXPECT_THAT(violations(send("POST", "/v1/contacts:evaluate?x=1", "{}")).at("x"),
+              HasSubstr("takes no query"));
+  EXPECT_THAT(
+      violations(send("POST", "/v1/lubricants?lubricant.name=x", "{}")).at("lubricant.name"),
+      HasSubstr("stands in the JSON body"));
+}
+
+TEST_F(RestTest, ABodyThatCannotBeReadIsRefusedWithThePlace) {
+  for (const std::string& body :
+       {std::string("{"), std::string("[]"), std::string("5"), std::string("{\"a\":\xff}"),
+        std::string(R"({"relaxation_tme_seconds": 1})"),
+        std::string(R"({"relaxation_time_seconds": "long"})"),
+        std::string(R"({"base_oil_class": "GROUP_9"})"), std::string(1, '\0'),
+        std::string(200'000, '['), std::string(R"({"measurements": [1]})")}) {
+    const HttpResponse response = send("POST", "/v1/lubricants?lubricant_id=x", body);
+    EXPECT_EQ(response.status, 400) << body.substr(0, 60);
+    EXPECT_THAT(violations(response).at("lubricant"),
+                HasSubstr("the body is no JSON of Lubricant"));
+  }
+  const HttpResponse misspelt =
+      send("POST", "/v1/lubricants?lubricant_id=x", R"({"relaxation_tme_seconds": 1})");
+  EXPECT_THAT(misspelt.body, HasSubstr("relaxation_tme_seconds"));
+  EXPECT_THAT(violations(send("GET", "/v1/lubricants/paper-fluid-1", "{}")).at(""),
+              HasSubstr("takes no body"));
+}
+
+TEST_F(RestTest, ErrorsHaveTheCodeTheReasonAndTheDetails) {
+  const HttpResponse response = send("GET", "/v1/lubricants/none");
+  EXPECT_EQ(response.status, 404);
+  const json error = parsed(response)["error"];
+  EXPECT_EQ(error["code"], 404);
+  EXPECT_EQ(error["status"], "NOT_FOUND");
+  EXPECT_THAT(error["message"].get<std::string>(), HasSubstr("lubricants/none"));
+  EXPECT_EQ(error["details"][0]["@type"], "type.googleapis.com/google.rpc.ErrorInfo");
+  EXPECT_EQ(error["details"][0]["reason"], "NOT_FOUND");
+  EXPECT_EQ(error["details"][0]["domain"], "tribodyn.dev");
+}
+
+TEST(RestAnswer, EveryCodeHasItsStatus) {
+  using google::rpc::Code;
+  const std::map<Code, int> expected = {
+      {google::rpc::INVALID_ARGUMENT, 400},   {google::rpc::FAILED_PRECONDITION, 400},
+      {google::rpc::OUT_OF_RANGE, 400},       {google::rpc::UNAUTHENTICATED, 401},
+      {google::rpc::PERMISSION_DENIED, 403},  {google::rpc::NOT_FOUND, 404},
+      {google::rpc::ALREADY_EXISTS, 409},     {google::rpc::ABORTED, 409},
+      {google::rpc::RESOURCE_EXHAUSTED, 429}, {google::rpc::CANCELLED, 499},
+      {google::rpc::INTERNAL, 500},           {google::rpc::UNKNOWN, 500},
+      {google::rpc::DATA_LOSS, 500},          {google::rpc::UNIMPLEMENTED, 501},
+      {google::rpc::UNAVAILABLE, 503},        {google::rpc::DEADLINE_EXCEEDED, 504}};
+  for (const auto& [code, status] : expected) {
+    google::rpc::Status failure;
+    failure.set_code(code);
+    EXPECT_EQ(http_status(failure), status) << code;
+  }
+}
+
+TEST(RestAnswer, RetryDelayIsRoundedUpToSeconds) {
+  const HttpResponse busy = error_response(exhausted(v1::ERROR_REASON_TOO_MANY_CALLS, "busy", 1.2));
+  EXPECT_EQ(busy.status, 429);
+  EXPECT_EQ(busy.headers.at("Retry-After"), "2");
+}
+
+TEST_F(RestTest, UnknownPathsAndVerbsSayWhatThereIs) {
+  EXPECT_EQ(send("GET", "/v2/lubricants").status, 404);
+  EXPECT_EQ(send("GET", "/v1/lubricants/paper-fluid-1/x").status, 404);
+  EXPECT_EQ(send("GET", "/v1/lubricants/a%2Fb").status, 404) << "no slash inside an id";
+  EXPECT_EQ(send("GET", "/v1/../v1/lubricants").status, 404);
+  EXPECT_EQ(send("GET", "").status, 404);
+  const HttpResponse other = send("PUT", "/v1/lubricants");
+  EXPECT_EQ(other.status, 405);
+  EXPECT_EQ(other.headers.at("Allow"), "GET, POST");
+  EXPECT_EQ(send("OPTIONS", "/v1/lubricants").status, 405) << "no CORS";
+  EXPECT_EQ(send("GET", "/v1/lubricants?" + std::string(9000, 'x')).status, 414);
+}
+
+TEST_F(RestTest, AMethodThatAnswersWithAStreamSaysThatGrpcCarriesIt) {
+  const HttpResponse response = send("GET", "/v1/simulations/1:watch");
+  EXPECT_EQ(response.status, 501);
+  EXPECT_THAT(response.body, HasSubstr("WatchSimulation answers with a stream"));
+}
+
+TEST_F(RestTest, PagesOfOtherOriginsAreRefused) {
+  const auto status = [&](const std::string& verb, std::map<std::string, std::string> headers) {
+    return send(verb, "/v1/lubricants", verb == "GET" ? "" : "{}", std::move(headers)).status;
+  };
+  EXPECT_EQ(status("GET", {{"host", "evil.example:50652"}}), 403) << "DNS rebinding";
+  EXPECT_EQ(status("GET", {{"host", ""}}), 403);
+  EXPECT_EQ(status("GET", {{"origin", "http://evil.example"}}), 403);
+  EXPECT_EQ(status("POST", {{"origin", "null"}}), 403) << "a sandboxed frame or a file";
+  EXPECT_EQ(status("POST", {{"sec-fetch-site", "cross-site"}}), 403);
+  EXPECT_EQ(status("GET", {{"origin", "http://127.0.0.1:50652"}}), 200);
+  for (const char* host : {"localhost:50652", "127.0.0.1", "[::1]:50652", "[::1]"}) {
+    EXPECT_EQ(status("GET", {{"host", host}}), 200) << host;
+  }
+  // What a form of a page can send without asking first.
+  for (const char* type : {"text/plain", "application/x-www-form-urlencoded", ""}) {
+    EXPECT_EQ(status("POST", {{"content-type", type}}), 415) << type;
+  }
+  EXPECT_EQ(status("POST", {{"content-encoding", "gzip"}}), 415);
+}
+
+TEST_F(RestTest, EveryAnswerForbidsSniffingFramingAndSharing) {
+  for (const char* path : {"/v1/lubricants", "/hello", "/none"}) {
+    const HttpResponse response = send("GET", path);
+    for (const auto& [name, value] : security_headers()) {
+      EXPECT_EQ(response.headers.at(name), value) << path;
+    }
+    EXPECT_FALSE(response.headers.contains("Access-Control-Allow-Origin"));
+  }
+}
+
+/// Decompresses gzip.
+std::string unzipped(const std::string& body) {
+  z_stream stream{};
+  inflateInit2(&stream, 15 + 16);
+  std::string out(1 << 22, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(body.data()));
+  stream.avail_in = static_cast<uInt>(body.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  EXPECT_EQ(inflate(&stream, Z_FINISH), Z_STREAM_END);
+  out.resize(stream.total_out);
+  inflateEnd(&stream);
+  return out;
+}
+
+TEST_F(RestTest, LongAnswersAreCompressedForThoseWhoAskForIt) {
+  const HttpResponse plain = send("GET", "/v1/gearSets");
+  const HttpResponse zipped =
+      send("GET", "/v1/gearSets", "", {{"accept-encoding", "br, GZIP;q=0.5"}});
+  EXPECT_EQ(zipped.headers.at("Content-Encoding"), "gzip");
+  EXPECT_LT(zipped.body.size(), plain.body.size() / 2);
+  EXPECT_EQ(unzipped(zipped.body), plain.body);
+  for (const char* header : {"", "br", "gzip;q=0"}) {
+    const HttpResponse other = send("GET", "/v1/gearSets", "", {{"accept-encoding", header}});
+    EXPECT_FALSE(other.headers.contains("Content-Encoding")) << header;
+  }
+}
+
+TEST_F(RestTest, BodiesAreLimitedByTheirMethod) {
+  const auto most = [&](const std::string& verb, const std::string& target) {
+    HttpRequest head;
+    head.verb = verb;
+    head.target = target;
+    return handler_.maximum_body_bytes(head);
+  };
+  EXPECT_EQ(most("GET", "/v1/lubricants"), 0U);
+  EXPECT_EQ(most("POST", "/none"), 0U);
+  EXPECT_EQ(most("POST", "/v1/simulations"), 4 * kUsualRequestBytes);
+  EXPECT_EQ(most("POST", "/v1/lubricants:batchCreate?x=1"), RestHandler::kMaximumBodyBytes);
+}
+
+TEST_F(RestTest, AHostileBodyIsRefusedBeforeItGrows) {
+  std::string many = R"({"requests":[{})";
+  for (int i = 0; i < 100'000; ++i) many += ",{}";
+  const HttpResponse response = send("POST", "/v1/lubricants:batchCreate", many + "]}");
+  EXPECT_EQ(response.status, 400);
+  EXPECT_THAT(response.body, HasSubstr("at most"));
+}
+
+TEST_F(RestTest, SimulationRunsOverRestAndItsCurveIsRead) {
+  const HttpResponse made = send("POST", "/v1/simulations?request_id=r1", R"({
+    "lubricant": "lubricants/paper-fluid-1",
+    "operating_point": {"cruise": {"speed_kilometres_per_hour": 65}}})");
+  ASSERT_EQ(made.status, 200) << made.body;
+  const std::string name = parsed(made)["name"];
+  EXPECT_EQ(parsed(send("POST", "/v1/simulations?request_id=r1", R"({
+    "lubricant": "lubricants/paper-fluid-1",
+    "operating_point": {"cruise": {"speed_kilometres_per_hour": 65}}})"))["name"],
+            name);
+  ASSERT_TRUE(bench_.reaches(name, v1::Simulation::SUCCEEDED));
+  const json done = parsed(send("GET", "/v1/" + name + "?view=SIMULATION_VIEW_FULL"));
+  EXPECT_EQ(done["state"], "SUCCEEDED");
+  EXPECT_GT(done["result"]["points"].size() + done["result"].size(), 0U);
+}
+
+TEST_F(RestTest, PagesAreServedByTheirPath) {
+  EXPECT_EQ(send("GET", "/hello").body, "hello");
+  EXPECT_EQ(send("HEAD", "/hello").status, 200);
+  EXPECT_EQ(send("POST", "/hello", "{}").status, 404);
+}
+
+}  // namespace
+}  // namespace tribodyn::server
