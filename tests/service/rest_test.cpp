@@ -137,7 +137,7 @@ TEST_F(RestTest, QueryGivesFieldsOfEveryKind) {
   const json list = parsed(page);
   EXPECT_EQ(list["lubricants"].size(), 2U);
   EXPECT_EQ(list["total_size"], 3) << page.body;
-  EXPECT_TRUE(list["lubricants"][0]["etag"] == "") << "not in the mask";
+  EXPECT_EQ(list["lubricants"][0].size(), 2U) << "no zeros of what the mask leaves out";
   EXPECT_EQ(send("GET", "/v1/simulations?view=SIMULATION_VIEW_BASIC").status, 200);
 }
 

@@ -56,6 +56,15 @@ std::string own_etag(const google::protobuf::Message& message) {
   return message.GetReflection()->GetString(message, field);
 }
 
+/// True if the query has the parameter read_mask.
+bool has_read_mask(const HttpRequest& request) {
+  const std::size_t question = request.target.find('?');
+  if (question == std::string::npos) return false;
+  const std::string query = "&" + request.target.substr(question + 1);
+  return query.find("&read_mask=") != std::string::npos ||
+         query.find("&readMask=") != std::string::npos;
+}
+
 /// True if a list of entity tags holds this one, or is "*". Weak tags compare as strong ones.
 bool lists_tag(std::string_view list, std::string_view tag) {
   while (!list.empty()) {
@@ -151,7 +160,7 @@ HttpResponse message_response(const google::protobuf::Message& message,
                               const HttpRequest& request) {
   HttpResponse out;
   out.headers["Content-Type"] = kJson;
-  out.body = json_of(message, true);
+  out.body = json_of(message, !has_read_mask(request));
   const std::string own = own_etag(message);
   const std::string tag = '"' + (own.empty() ? sha256(out.body) : own) + '"';
   out.headers["ETag"] = tag;

@@ -16,9 +16,10 @@ HttpResponse error_response(const google::rpc::Status& error);
 /// The same with another HTTP status, for errors of HTTP itself.
 HttpResponse error_response(const google::rpc::Status& error, int status);
 
-/// Returns the message as JSON: names in snake_case, zeros printed, 64-bit integers as texts, "NaN"
-/// and "Infinity". With ETag: the message's own etag, else a hash of the body. Status 304 without a
-/// body if `request` is a GET or HEAD that has this tag already.
+/// Returns the message as JSON: names in snake_case, 64-bit integers as texts, "NaN" and
+/// "Infinity". Zeros are printed unless the query has a read_mask: a zero of a field that the mask
+/// leaves out would read as the field's value. With ETag: the message's own etag, else a hash of
+/// the body. Status 304 without a body if `request` is a GET or HEAD that has this tag already.
 HttpResponse message_response(const google::protobuf::Message& message, const HttpRequest& request);
 
 /// Compresses the body if the client accepts gzip and the body is long enough to gain.
