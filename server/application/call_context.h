@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "server/contract/resource_names.h"
 #include "server/storage/call_limits.h"
 
 namespace tribodyn::server {
@@ -9,11 +10,11 @@ namespace tribodyn::server {
 /// What a use case knows about its call: who calls, on whose behalf, and for how long the client
 /// waits. The default is a call of this process, which waits without limit.
 struct CallContext {
-  std::string principal = "local";  ///< who calls; always "local" so far
-  std::string project = "default";  ///< owner of the resources; always "default" so far
-  std::string client = {};          ///< name of the client; clients share the processors
-  std::string request_id = {};      ///< identifies the call in log lines
-  CallLimits limits = {};           ///< deadline of the call, and whether the client cancelled
+  std::string principal = "local";        ///< who calls; always "local" so far
+  std::string project = kDefaultProject;  ///< of the request (request_project.h)
+  std::string client = {};                ///< name of the client; clients share the processors
+  std::string request_id = {};            ///< identifies the call in log lines
+  CallLimits limits = {};  ///< deadline of the call, and whether the client cancelled
 };
 
 }  // namespace tribodyn::server

@@ -12,6 +12,7 @@
 #include "google/rpc/error_details.pb.h"
 #include "server/application/errors.h"
 #include "server/application/guard.h"
+#include "server/application/request_project.h"
 #include "server/application/wire_check.h"
 
 namespace tribodyn::server {
@@ -84,6 +85,9 @@ Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
     if (auto refused = call.prepare()) return *std::move(refused);
     const Reply request(call.method.request->New());
     if (auto refused = parse_request(call, *request)) return *std::move(refused);
+    if (auto refused = enter_project(application_, *request, call.context)) {
+      return *std::move(refused);
+    }
     return use_case(application_, *request, call.context);
   });
   call.drop_request();

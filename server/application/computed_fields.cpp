@@ -10,6 +10,7 @@
 #include "server/contract/resource_names.h"
 #include "server/resources/lubricant_parameters.h"
 #include "server/storage/properties.h"
+#include "server/storage/resource_types.h"
 
 namespace tribodyn::server {
 namespace {
@@ -216,7 +217,7 @@ const ComputedField* find_computed_field(std::string_view collection, std::strin
 
 PropertyValue order_value(const StoredResource& resource, const std::string& key) {
   if (key.empty()) return std::string();
-  const std::string collection = resource.name.substr(0, resource.name.find('/'));
+  const std::string collection = collection_of(resource.name);
   if (is_computed(collection, key)) {
     const auto value = figure(figures_of(resource), key);
     return value.value_or(std::string());

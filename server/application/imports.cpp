@@ -16,8 +16,8 @@ Outcome<Resource> import_resource(Application& application, const Request& reque
   Violations violations;
   const std::string name = new_name<Resource>(Kind<Resource>::id(request),
                                               Kind<Resource>::of(request).name(), violations);
-  const auto accepted =
-      read(request, name, resource_lookup(application.store, call.limits), violations);
+  const auto accepted = read(
+      request, name, resource_lookup(application.store, call.project, call.limits), violations);
   if (!violations.empty() || !accepted) return invalid(violations);
   return store_new(application, *accepted, request.validate_only(), call);
 }

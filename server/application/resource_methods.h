@@ -83,8 +83,8 @@ std::string name_problem(Application& application, const std::string& name, bool
   const std::string collection = Kind<Resource>::kCollection;
   const auto parsed = parse_revision_name(name, collection);
   if (!parsed) {
-    return unknown_name_text(name, collection,
-                             application.store.resource_names(collection, call.limits));
+    return unknown_name_text(
+        name, collection, application.store.resource_names(call.project, collection, call.limits));
   }
   if (parsed->revision == 0 || revisions_allowed) return {};
   return plain_excerpt(name) + " is a revision; allowed: the name without it";
@@ -95,9 +95,9 @@ template <class Resource>
 std::optional<StoredResource> find_named(Application& application, const std::string& name,
                                          const CallContext& call) {
   const RevisionName parsed = *parse_revision_name(name, Kind<Resource>::kCollection);
-  return parsed.revision == 0
-             ? application.store.resource(parsed.name, call.limits)
-             : application.store.revision(parsed.name, parsed.revision, call.limits);
+  const std::string full = full_name(call.project, parsed.name);
+  return parsed.revision == 0 ? application.store.resource(full, call.limits)
+                              : application.store.revision(full, parsed.revision, call.limits);
 }
 
 /// NOT_FOUND with the name that may be meant. Compares the name with all of its collection.
@@ -105,9 +105,10 @@ template <class Resource>
 google::rpc::Status unknown_name(Application& application, const std::string& name,
                                  const CallContext& call) {
   const std::string collection = Kind<Resource>::kCollection;
-  return not_found(Resource::descriptor()->full_name(), name,
-                   unknown_name_text(name, collection,
-                                     application.store.resource_names(collection, call.limits)));
+  return not_found(
+      Resource::descriptor()->full_name(), full_name(call.project, name),
+      unknown_name_text(name, collection,
+                        application.store.resource_names(call.project, collection, call.limits)));
 }
 
 /// The stored revision that a name means; INVALID_ARGUMENT for what is no name, or NOT_FOUND.
@@ -194,7 +195,7 @@ Outcome<v1::PurgeReport> purge_resource(Application& application, const Request&
                                         const CallContext& call) {
   Store& store = application.store;
   v1::PurgeReport report;
-  report.set_name(request.name());
+  report.set_name(full_name(call.project, request.name()));
   const auto erase = [&] {
     for (const auto& file : store.erase_removed()) report.add_remaining_files(file.filename());
     return report;
@@ -258,6 +259,7 @@ Outcome<Response> list_resources(Application& application, const Request& reques
                                  const CallContext& call) {
   Violations violations;
   ResourceQuery query;
+  query.project = call.project;
   query.collection = Kind<Resource>::kCollection;
   query.limit = page_size(request.page_size(), kDefaultResourcePageSize, violations);
   query.byte_limit = kMaximumPageBytes;
@@ -267,8 +269,9 @@ Outcome<Response> list_resources(Application& application, const Request& reques
   query.order_key = order.key;
   query.descending = order.descending;
   const ReadMask mask(request.read_mask(), *Resource::descriptor(), violations);
-  const std::string scope = fmt::format("{} {} {} {}", query.collection, request.show_deleted(),
-                                        request.order_by(), request.filter());
+  const std::string scope =
+      fmt::format("{} {} {} {}", full_name(query.project, query.collection), request.show_deleted(),
+                  request.order_by(), request.filter());
   std::int64_t total = 0;
   query.counts_all = request.page_token().empty();
   if (!query.counts_all) {
@@ -303,7 +306,8 @@ Outcome<Response> list_revisions(Application& application, const Request& reques
                                  const CallContext& call) {
   Violations violations;
   const int size = page_size(request.page_size(), kDefaultResourcePageSize, violations);
-  const std::string scope = "revisions of " + request.name();
+  const std::string name = full_name(call.project, request.name());
+  const std::string scope = "revisions of " + name;
   std::optional<PageToken> after;
   if (!request.page_token().empty()) {
     after = parse_page_token(scope, request.page_token());
@@ -316,7 +320,7 @@ Outcome<Response> list_revisions(Application& application, const Request& reques
   if (!found.ok()) return found.error();
   const int before = after ? static_cast<int>(std::get<std::int64_t>(after->last.value)) : 0;
   Page<StoredResource> page =
-      application.store.revisions(request.name(), before, size, kMaximumPageBytes, call.limits);
+      application.store.revisions(name, before, size, kMaximumPageBytes, call.limits);
   for (StoredResource& row : page.rows) row.is_present = false;  // all names with their revision
   Response response;
   if (const auto failed = append<Resource>(page, ReadMask(), response); failed.code() != 0) {
@@ -325,7 +329,7 @@ Outcome<Response> list_revisions(Application& application, const Request& reques
   response.set_total_size(found.message().revision);  // numbered from 1 without gaps
   if (page.more) {
     response.set_next_page_token(
-        page_token(scope, {{std::int64_t{page.rows.back().revision}, request.name()}}));
+        page_token(scope, {{std::int64_t{page.rows.back().revision}, name}}));
   }
   return response;
 }

@@ -30,8 +30,9 @@ inline constexpr std::size_t kStoredFieldBytes = 100;
 
 /// What the mask asks for of an accepted body, as if that had been stored.
 template <class Resource>
-Resource preview(const std::string& body, const ReadMask& mask = {}) {
+Resource preview(const std::string& body, const CallContext& call, const ReadMask& mask = {}) {
   Resource out = body_message<Resource>(body).value_or(Resource());
+  out.set_name(full_name(call.project, out.name()));
   if (mask.asks_for("characterisation")) add_characterisation(out);
   mask.apply(out);
   return out;
@@ -58,12 +59,12 @@ std::string new_name(const std::string& id, const std::string& stated, Violation
 template <class Resource>
 Outcome<Resource> store_new(Application& application, const Resource& accepted, bool validate_only,
                             const CallContext& call) {
-  const std::string& name = accepted.name();
+  const std::string name = full_name(call.project, accepted.name());
   if (const auto taken = application.store.resource(name, call.limits)) {
     return name_taken<Resource>(name, taken->delete_time.has_value());
   }
   const std::string body = accepted.SerializeAsString();
-  if (validate_only) return preview<Resource>(body);
+  if (validate_only) return preview<Resource>(body, call);
   const auto stored =
       application.store.write_resources({{{name, body}, std::nullopt}}, system_time(), call.limits);
   if (!stored) return name_taken<Resource>(name, false);
@@ -74,7 +75,7 @@ Outcome<Resource> store_new(Application& application, const Resource& accepted, 
 /// resource that is to be stored.
 template <class Resource>
 struct Draft {
-  std::string name;                       ///< of the resource; empty where it is wrong
+  std::string name;                       ///< relative, of the resource; empty where it is wrong
   std::optional<Resource> stated;         ///< whole; none: not to be judged, or accepted
   std::optional<StoredResource> present;  ///< that an update starts from; none: it is a new one
   std::string body;                       ///< what has been accepted, serialised
@@ -97,8 +98,9 @@ void draft_create(Application& application, const Request& request, Draft<Resour
       new_name<Resource>(Kind<Resource>::id(request), draft.stated->name(), draft.violations);
   draft.stated->set_name(draft.name);
   if (draft.name.empty()) return;
-  if (const auto taken = application.store.resource(draft.name, call.limits)) {
-    draft.refuse(name_taken<Resource>(draft.name, taken->delete_time.has_value()), "name");
+  const std::string full = full_name(call.project, draft.name);
+  if (const auto taken = application.store.resource(full, call.limits)) {
+    draft.refuse(name_taken<Resource>(full, taken->delete_time.has_value()), "name");
   }
 }
 
@@ -135,7 +137,7 @@ void draft_update(Application& application, const Request& request, Draft<Resour
   }
   merge(stated, request.update_mask(), merged, draft.violations);
   if (!draft.violations.empty()) return;
-  merged.set_name(present.name);
+  merged.set_name(draft.name);
   draft.stated = std::move(merged);
   draft.present = present;
 }
@@ -182,7 +184,8 @@ std::optional<std::vector<StoredResource>> store_drafts(Application& application
       all[i] = std::move(*draft.present);
     } else {
       places.push_back(i);
-      writes.push_back({{draft.name, std::move(draft.body)}, std::move(draft.present)});
+      writes.push_back(
+          {{full_name(call.project, draft.name), std::move(draft.body)}, std::move(draft.present)});
     }
   }
   if (writes.empty()) return all;
@@ -199,10 +202,10 @@ Outcome<Resource> write_resource(Application& application, const Request& reques
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
     std::vector<Draft<Resource>> drafts;
     Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request, call));
-    accept_draft(resource_lookup(application.store, call.limits), draft);
+    accept_draft(resource_lookup(application.store, call.project, call.limits), draft);
     if (!draft.violations.empty()) return invalid(draft.violations);
     if (draft.refusal) return *draft.refusal;
-    if (request.validate_only()) return preview<Resource>(draft.body);
+    if (request.validate_only()) return preview<Resource>(draft.body, call);
     if (const auto stored = store_drafts(application, std::move(drafts), call)) {
       return answer<Resource>(stored->front());
     }
@@ -286,7 +289,7 @@ std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& ba
   }
   const auto places = places_of(drafts);
   const ResourceLookup lookup =
-      lookup_with(drafts, places, resource_lookup(application.store, call.limits));
+      lookup_with(drafts, places, resource_lookup(application.store, call.project, call.limits));
   bad = 0;
   for (Draft<Resource>& draft : drafts) {
     if (call.limits.are_over()) return drafts;
@@ -306,7 +309,7 @@ Outcome<Response> draft_answer(const std::vector<Draft<Resource>>& drafts, const
   for (std::size_t i = 0; i < drafts.size(); ++i) {
     if (call.limits.are_over()) return call_over(call.limits);
     Resource& answered = *Kind<Resource>::add(response);
-    answered = preview<Resource>(drafts[i].body, mask);
+    answered = preview<Resource>(drafts[i].body, call, mask);
     bytes += answered.ByteSizeLong() + drafts[i].name.size() + kStoredFieldBytes;
     if (bytes <= kMaximumBatchAnswerBytes) continue;
     return invalid(

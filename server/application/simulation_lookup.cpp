@@ -9,11 +9,12 @@ namespace tribodyn::server {
 
 Outcome<StoredSimulation> find_simulation(Application& application, const std::string& name,
                                           const CallContext& call) {
-  const std::optional<std::int64_t> id = simulation_id(name);
-  if (!id) {
+  const std::optional<std::int64_t> number = simulation_id(name);
+  if (!number) {
     return invalid({{"name", "not a name of the form \"simulations/{id}\", id a number"}});
   }
-  std::optional<StoredSimulation> stored = application.store.simulation(*id, call.limits);
+  std::optional<StoredSimulation> stored =
+      application.store.numbered_simulation(call.project, *number, call.limits);
   if (!stored) return does_not_exist(name);
   return std::move(*stored);
 }

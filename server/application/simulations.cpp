@@ -65,7 +65,8 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
   for (const v1::Label& each : inputs.requested.labels()) {
     labels.emplace_back(each.key(), each.value());
   }
-  return {.request = inputs.requested.SerializeAsString(),
+  return {.project = call.project,
+          .request = inputs.requested.SerializeAsString(),
           .key = result_key(inputs),
           .ledger = serialised_assumptions(inputs),
           .request_id = request.request_id(),
@@ -99,14 +100,14 @@ v1::Simulation preview(const SimulationInputs& inputs, const NewSimulation& simu
 
 /// Returns the etag (AIP-154). It changes with every part of a simulation that clients can change.
 std::string etag_of(const StoredSimulation& stored) {
-  return sha256(simulation_name(stored.id) + stored.request).substr(0, 16);
+  return sha256(name_of(stored) + stored.request).substr(0, 16);
 }
 
 /// Returns the stored simulation as a message, without its result.
 v1::Simulation to_message(Application& application, const StoredSimulation& stored) {
   v1::Simulation out;
   out.ParseFromString(stored.request);
-  out.set_name(simulation_name(stored.id));
+  out.set_name(name_of(stored));
   out.set_state(static_cast<v1::Simulation::State>(stored.state));
   set_revisions(stored, out);
   out.set_input_hash(stored.input_hash);
@@ -151,9 +152,9 @@ google::rpc::Status request_id_taken(const StoredSimulation& stored,
   earlier.ParseFromString(stored.request);
   const std::string field = first_difference(text, request_text(earlier, stored.is_forced));
   return already_exists(
-      v1::ERROR_REASON_REQUEST_ID_REUSED, "tribodyn.v1.Simulation", simulation_name(stored.id),
+      v1::ERROR_REASON_REQUEST_ID_REUSED, "tribodyn.v1.Simulation", name_of(stored),
       fmt::format("request_id \"{}\" made {} by a request that differs in {}; take another one",
-                  request.request_id(), simulation_name(stored.id), field),
+                  request.request_id(), name_of(stored), field),
       {{"request_id", request.request_id()}, {"field", field}},
       {{"request_id", fmt::format("belongs to another request; it differs in {}", field)}});
 }
@@ -165,7 +166,8 @@ std::optional<Outcome<v1::Simulation>> earlier_answer(Application& application,
                                                       const std::string& text,
                                                       const CallContext& call) {
   if (request.request_id().empty()) return std::nullopt;
-  const auto stored = application.store.simulation_of_request(request.request_id(), call.limits);
+  const auto stored =
+      application.store.simulation_of_request(call.project, request.request_id(), call.limits);
   if (!stored) return std::nullopt;
   if (stored->request_hash != sha256(text)) return request_id_taken(*stored, request, text);
   if (stored->state == StoredState::kQueued) application.jobs.ensure_queued(*stored);
@@ -230,9 +232,9 @@ bool is_ascending(const std::string& order_by, Violations& violations) {
 /// Returns the row after which the page of a token begins; nullopt if the token has no such row.
 std::optional<SimulationQuery::Place> place(const PageStart& start) {
   const auto* time = std::get_if<std::int64_t>(&start.value);
-  const auto id = simulation_id(start.name);
-  if (time == nullptr || !id) return std::nullopt;
-  return SimulationQuery::Place{*time, *id};
+  const auto number = simulation_id(start.name);
+  if (time == nullptr || !number) return std::nullopt;
+  return SimulationQuery::Place{*time, *number};
 }
 
 /// Logs the names of request, simulation and inputs, which connect them. Logs no inputs.
@@ -243,7 +245,7 @@ void log_submission(const CallContext& call, const NewSimulation& simulation, co
       added.kind == Added::Kind::kQueued   ? "queued"
       : added.kind == Added::Kind::kServed ? "served"
                                            : "not_added",
-      added.id == 0 ? "-" : simulation_name(added.id), simulation.request_id, simulation.client,
+      added.id == 0 ? "-" : name_of(added.stored), simulation.request_id, simulation.client,
       simulation.key.input_hash, simulation.cost_seconds, call.request_id);
 }
 
@@ -275,9 +277,9 @@ Outcome<v1::Simulation> create_simulation(Application& application,
   auto earlier = earlier_answer(application, request, text, call);
   if (earlier && (!request.validate_only() || !earlier->ok())) return *std::move(earlier);
   const StopWatch watch;
-  auto inputs =
-      read_simulation(request.simulation(), resource_lookup(application.store, call.limits),
-                      "simulation", violations);
+  auto inputs = read_simulation(request.simulation(),
+                                resource_lookup(application.store, call.project, call.limits),
+                                "simulation", violations);
   application.jobs.metrics().observe(Phase::kValidation, watch.seconds());
   if (!inputs) {
     application.jobs.metrics().count(Submission::kInvalid);
@@ -317,6 +319,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
                                                       const CallContext& call) {
   Violations violations;
   SimulationQuery query;
+  query.project = call.project;
   query.limit = page_size(request.page_size(), kDefaultPageSize, violations);
   query.byte_limit = kMaximumPageBytes;
   query.restrictions = restrictions(request.filter(), violations);
@@ -324,8 +327,8 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
   const v1::SimulationView fallback =
       mask.is_whole() ? v1::SIMULATION_VIEW_BASIC : v1::SIMULATION_VIEW_FULL;
-  const std::string scope =
-      fmt::format("{}\n{}\n{}", kSimulations, request.filter(), request.order_by());
+  const std::string scope = fmt::format("{}\n{}\n{}", full_name(query.project, kSimulations),
+                                        request.filter(), request.order_by());
   std::int64_t total = 0;
   query.counts_all = request.page_token().empty();
   if (!query.counts_all) {
@@ -355,7 +358,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   if (page.more || is_cut) {
     const StoredSimulation& last = page.rows[response.simulations_size() - 1];
     response.set_next_page_token(
-        page_token(scope, {{last.create_time, simulation_name(last.id)}, total}));
+        page_token(scope, {{last.create_time, relative_name(name_of(last))}, total}));
   }
   return response;
 }

@@ -48,7 +48,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
         return Step::kMessage;
       }
       if (!store_.simulation(simulation_.id, limits_)) {
-        error_ = does_not_exist(simulation_name(simulation_.id));
+        error_ = does_not_exist(name_of(simulation_));
         return Step::kEnd;
       }
     }

@@ -42,6 +42,41 @@ std::string_view id_of(std::string_view name) { return name.substr(name.find('/'
 
 }  // namespace
 
+bool is_project_id(std::string_view id) {
+  const auto is_letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  constexpr std::size_t kLongestProjectId = 63;
+  return !id.empty() && id.size() <= kLongestProjectId && is_letter(id.front()) &&
+         id.back() != '-' && std::all_of(id.begin(), id.end(), [&](char c) {
+           return is_letter(c) || is_digit(c) || c == '-';
+         });
+}
+
+std::optional<ProjectAndName> split_name(std::string_view name) {
+  constexpr std::string_view kPrefix = "projects/";
+  if (!name.starts_with(kPrefix)) return ProjectAndName{kDefaultProject, name};
+  const std::string_view rest = name.substr(kPrefix.size());
+  const std::string_view project = rest.substr(0, rest.find('/'));
+  if (!is_project_id(project)) return std::nullopt;
+  return ProjectAndName{project, rest.substr(std::min(rest.size(), project.size() + 1))};
+}
+
+std::string full_name(std::string_view project, std::string_view relative) {
+  if (project == kDefaultProject) return std::string(relative);
+  return fmt::format("{}/{}/{}", kProjects, project, relative);
+}
+
+std::string name_in(std::string_view project, std::string_view name) {
+  if (!name.starts_with("projects/")) return full_name(project, name);
+  const auto parts = split_name(name);
+  return parts ? full_name(parts->project, parts->relative) : std::string(name);
+}
+
+std::string relative_name(std::string_view name) {
+  const auto parts = split_name(name);
+  return std::string(parts ? parts->relative : name);
+}
+
 std::string plain_excerpt(std::string_view text) {
   std::string out(text.substr(0, 60));
   for (char& c : out) {
@@ -85,13 +120,17 @@ std::string deleted_name_text(std::string_view name) {
 std::optional<std::int64_t> simulation_id(std::string_view name) {
   if (!is_resource_name(name, kSimulations)) return std::nullopt;
   const std::string_view digits = name.substr(std::string_view(kSimulations).size() + 1);
-  std::int64_t id = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), id);
-  if (error != std::errc() || end != digits.data() + digits.size() || id <= 0) return std::nullopt;
-  return id;
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc() || end != digits.data() + digits.size() || number <= 0) {
+    return std::nullopt;
+  }
+  return number;
 }
 
-std::string simulation_name(std::int64_t id) { return fmt::format("{}/{}", kSimulations, id); }
+std::string simulation_name(std::string_view project, std::int64_t number) {
+  return full_name(project, fmt::format("{}/{}", kSimulations, number));
+}
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {
   const std::string_view compared = id_of(name).substr(0, kMaximumTextLength);

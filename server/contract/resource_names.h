@@ -20,6 +20,23 @@ inline constexpr char kSurfaces[] = "surfaces";
 inline constexpr char kVehicles[] = "vehicles";
 inline constexpr char kSimulations[] = "simulations";
 
+// Projects. The full name of a resource is "projects/{project}/lubricants/{id}". The project
+// `default` is the exception: the full name of its resource is the relative name,
+// "lubricants/{id}". So all names from before there were projects stay valid, and each resource has
+// one full name.
+//
+// A client may state a full name, "projects/default/lubricants/{id}" or a relative name. The parent
+// or the name that a request is about gives the project of the request; a relative name alone gives
+// `default`. Within the request, every relative name means a resource of that project, and a name
+// of another project is a violation: no resource refers to another project. Stored bodies,
+// references and error texts have relative names; the names of answered resources are full names.
+//
+// application/request_project.h brings a request into this form. Behind it, names are relative and
+// CallContext::project says of which project.
+
+inline constexpr char kDefaultProject[] = "default";
+inline constexpr char kProjects[] = "projects";
+
 inline constexpr char kDefaultGearSet[] = "gearSets/reference-axle";
 inline constexpr char kDefaultSurface[] = "surfaces/run-in";
 inline constexpr char kDefaultVehicle[] = "vehicles/passenger-car";
@@ -53,6 +70,28 @@ struct ResourceLookup {
   std::shared_ptr<KnownChains> chains = std::make_shared<KnownChains>();
 };
 
+/// Returns true for 1 to 63 lower-case letters, digits and '-' that begin with a letter and do not
+/// end with '-'.
+bool is_project_id(std::string_view id);
+
+/// A name in two parts; both are part of the split text or kDefaultProject.
+struct ProjectAndName {
+  std::string_view project;
+  std::string_view relative;  ///< "lubricants/x"; empty for the name of a project
+};
+/// Splits a full or a relative name. Returns nullopt for a name that begins with "projects/" but
+/// not with a project.
+std::optional<ProjectAndName> split_name(std::string_view name);
+
+/// Returns "projects/acme/lubricants/x" for "acme" and "lubricants/x"; the relative name for the
+/// project `default`.
+std::string full_name(std::string_view project, std::string_view relative);
+/// Returns the full name of what a client calls `name` within a project, e.g.
+/// "projects/acme/lubricants/x" for "lubricants/x" within "acme". A name with a project keeps it.
+std::string name_in(std::string_view project, std::string_view name);
+/// Returns "lubricants/x" for "projects/acme/lubricants/x" and for "lubricants/x".
+std::string relative_name(std::string_view name);
+
 /// Returns true for "collection/id" whose id is not empty and consists of letters, digits, '-', '_'
 /// and '.'.
 bool is_resource_name(std::string_view name, std::string_view collection);
@@ -62,10 +101,10 @@ std::optional<RevisionName> parse_revision_name(std::string_view name, std::stri
 /// Returns the name with its revision, e.g. "lubricants/paper-fluid-1@2".
 std::string revision_name(std::string_view name, int revision);
 
-/// Returns the id in "simulations/{id}", or nullopt if `name` has another form.
+/// Returns the number in "simulations/{id}", or nullopt if `name` has another form.
 std::optional<std::int64_t> simulation_id(std::string_view name);
-/// Returns "simulations/{id}".
-std::string simulation_name(std::int64_t id);
+/// Returns the full name of a simulation. Each project numbers its simulations from 1.
+std::string simulation_name(std::string_view project, std::int64_t number);
 
 /// Returns the first 60 bytes of a client's text with '?' for each byte that is not printable
 /// ASCII.

@@ -179,7 +179,9 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
     spdlog::info("the database was brought to schema {}; {} holds it as it was before",
                  kSchemaVersion, store.migration_backup()->string());
   }
-  store.add_resources(seed_resources(), system_time());
+  const std::vector<NewResource> seeds = seed_resources();
+  store.add_project(kDefaultProject, seeds, system_time());
+  for (const std::string& each : settings.projects) store.add_project(each, seeds, system_time());
   const SimulationJobs::Options options = job_options(settings);
   SimulationJobs jobs(store, options);
   Application application{store, jobs};

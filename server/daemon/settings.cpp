@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "core/version.h"
+#include "server/contract/resource_names.h"
 
 namespace tribodyn::server {
 namespace {
@@ -48,6 +49,15 @@ CLI::Validator between(double least, double most) {
           range};
 }
 
+CLI::Validator project_id() {
+  return {[](std::string& id) {
+            return is_project_id(id) ? std::string()
+                                     : id + " is no project: allowed are 1 to 63 lower-case "
+                                            "letters, digits and '-', first a letter, last no '-'";
+          },
+          ""};
+}
+
 /// Returns a check that refuses devices, folders, missing and too large files.
 CLI::Validator settings_file() {
   return {[](std::string& path) {
@@ -79,6 +89,14 @@ void add_flags(CLI::App& app, Settings& settings) {
       ->capture_default_str();
   app.add_option("--database", settings.database,
                  "SQLite file; created if missing. Use a local disk");
+  app.add_option("--projects", settings.projects,
+                 "Projects beside `default`, e.g. gearboxes,axles. A new one gets the resources "
+                 "that every database begins with. A project of the database stays without the "
+                 "flag")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->check(project_id());
   app.add_option("--threads", settings.threads,
                  "Simulations computed at the same time; 0: one per processor. Recommended: 0")
       ->check(CLI::Range(0, 1024))

@@ -24,6 +24,7 @@ struct Settings {
   std::string listen = "127.0.0.1:50651";
   std::string database;
   int threads = 0;
+  std::vector<std::string> projects;  ///< beside `default`
   std::string port_file;
   std::string http_listen;  ///< empty: no REST interface and no metrics
   std::string log_level = "info";

@@ -155,7 +155,7 @@ void Executor::complete_all(bool takes_histories) {
     try {
       scheduler_.complete(next.lease, std::move(next.result));
     } catch (const std::exception& defect) {
-      spdlog::critical("defect: simulations/{}: completing its lease threw: {}", next.lease.id,
+      spdlog::critical("defect: {}: completing its lease threw: {}", next.lease.name,
                        defect.what());
     }
   }

@@ -40,6 +40,11 @@ Submission submission_of(Added::Kind kind) {
   return Submission::kTurnedAway;
 }
 
+/// Name of the simulation in log lines; its row until the name is read.
+std::string name_of(const Lease& lease) {
+  return lease.name.empty() ? "row:" + std::to_string(lease.id) : lease.name;
+}
+
 /// Durations in the log line of a computed simulation.
 struct Timings {
   double waited_seconds = 0;
@@ -47,14 +52,14 @@ struct Timings {
   double stored_seconds = 0;
 };
 
-void log_computed(std::int64_t id, const std::string& request_id, const std::string& input_hash,
+void log_computed(const Lease& lease, const std::string& request_id, const std::string& input_hash,
                   const Timings& timings) {
   spdlog::info(
-      "event=simulation_computed simulation=simulations/{} "
+      "event=simulation_computed simulation={} "
       "request_id={} input_hash={} "
       "waited_seconds={:.6f} computed_seconds={:.6f} "
       "stored_seconds={:.6f}",
-      id, request_id, input_hash, timings.waited_seconds, timings.computed_seconds,
+      name_of(lease), request_id, input_hash, timings.waited_seconds, timings.computed_seconds,
       timings.stored_seconds);
 }
 
@@ -166,9 +171,11 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
   if (inputs) {
     known.bytes = inputs->effective.SpaceUsedLong();
     known.inputs = std::move(inputs);
+    known.project = simulation.project;
     known.input_hash = simulation.key.input_hash;
     known.is_forced = simulation.is_forced;
     known.request_id = simulation.request_id;
+    known.name = server::name_of(added.stored);
     known.create_time = added.stored.create_time;
     known.is_loaded = true;
   }
@@ -205,7 +212,7 @@ void Scheduler::expire(std::int64_t id) {
     if (event) metrics_.count(SimulationOutcome::kFailed);
     end_otherwise(id, event);
   } catch (const StoreError& error) {
-    spdlog::error("simulations/{}: {}", id, error.what());
+    spdlog::error("simulation of row {}: {}", id, error.what());
     timekeeper_.set_deadline(id, options_.clock() + kLookAgain);
   }
 }
@@ -298,7 +305,7 @@ auto Scheduler::insist(std::int64_t id, const StopSignal& stop, const Action& ac
     try {
       return action();
     } catch (const StoreError& error) {
-      spdlog::error("simulations/{}: {}", id, error.what());
+      spdlog::error("simulation of row {}: {}", id, error.what());
       if (!stop.wait_for(pause)) throw;
     }
   }
@@ -322,7 +329,7 @@ bool Scheduler::guarded(const Lease& lease, const Action& action) {
     }
     return true;
   } catch (const StoreError& error) {  // the next start finds it unfinished and queues it
-    spdlog::error("simulations/{} keeps its state: {}", lease.id, error.what());
+    spdlog::error("{} keeps its state: {}", name_of(lease), error.what());
     return false;
   }
 }
@@ -348,11 +355,13 @@ Scheduler::Known Scheduler::load(std::int64_t id, const StopSignal& stop) {
                   violations.front().field + ": " + violations.front().description);
   }
   Known out;
+  out.project = stored->project;
   out.input_hash = input_hash(*inputs);
   out.bytes = inputs->effective.SpaceUsedLong();
   out.inputs = std::make_shared<const SimulationInputs>(std::move(*inputs));
   out.is_forced = stored->is_forced;
   out.request_id = stored->request_id;
+  out.name = server::name_of(*stored);
   out.create_time = stored->create_time;
   out.is_loaded = true;
   metrics_.observe(Phase::kValidation, watch.seconds());
@@ -375,10 +384,13 @@ std::optional<Lease> Scheduler::lease_of(const QueuedJob& job, const std::string
   bool waits = false;
   guarded(lease, [&] {
     if (!known.is_loaded) known = load(job.id, *lease.stop);
+    lease.name = known.name;
     {
       const std::lock_guard lock(mutex_);
       policy_.set_result_bytes(job.id, history_bytes(known.inputs->effective));
-      waits = !policy_.hold(job.id, known.input_hash + platform, !known.is_forced);
+      // Another project's job is not waited for: its result would not serve this one.
+      waits = !policy_.hold(job.id, full_name(known.project, known.input_hash + platform),
+                            !known.is_forced);
       if (waits) {
         leased_.erase(job.id);
         keep(job.id, std::move(known));
@@ -418,6 +430,7 @@ std::optional<Lease> Scheduler::start(const Known& known, Lease lease, const std
   Leased& leased = leased_.at(lease.id);
   leased.attempt = lease.attempt;
   leased.request_id = known.request_id;
+  leased.name = known.name;
   leased.waited_seconds = waited;
   leased.begin = leased.written = options_.steady();
   leased.expires = leased.begin + options_.lease;
@@ -438,8 +451,8 @@ void Scheduler::extend(const Lease& lease, double used_seconds) {
       case ClaimPolicy::Verdict::kGoOn:
         break;
       case ClaimPolicy::Verdict::kReclassed:
-        spdlog::info("event=simulation_reclassified simulation=simulations/{} used_seconds={:.3f}",
-                     lease.id, used_seconds);
+        spdlog::info("event=simulation_reclassified simulation={} used_seconds={:.3f}",
+                     name_of(lease), used_seconds);
         break;
       case ClaimPolicy::Verdict::kGiveBack:
         lease.stop->request(StopReason::kReclassed);
@@ -455,7 +468,7 @@ void Scheduler::extend(const Lease& lease, double used_seconds) {
   try {
     store_.extend_lease(lease.id, lease.attempt, options_.clock() + time.count());
   } catch (const StoreError& error) {  // while the server runs, the lease in memory decides
-    spdlog::error("simulations/{}: {}", lease.id, error.what());
+    spdlog::error("{}: {}", name_of(lease), error.what());
   }
 }
 
@@ -520,7 +533,7 @@ void Scheduler::save(const Lease& lease, internal::v1::ComputeResult& result) {
   }
   publish(lease.id, ended);
   timings.stored_seconds = storing.seconds();
-  log_computed(lease.id, request_id, stored.key.input_hash, timings);
+  log_computed(lease, request_id, stored.key.input_hash, timings);
 }
 
 /// Writes the end of an attempt that was asked to stop. Returns true if the job must wait again in
@@ -541,29 +554,29 @@ bool Scheduler::stopped(const Lease& lease) {
       publish(lease.id, std::nullopt);
       return false;
     case StopReason::kReclassed:
-      spdlog::info("event=simulation_preempted simulation=simulations/{}", lease.id);
+      spdlog::info("event=simulation_preempted simulation={}", name_of(lease));
       return back("OUTRAN_ESTIMATE");
     case StopReason::kShutdown:
       back("SERVER_STOPPED");
-      spdlog::info("event=simulation_requeued simulation=simulations/{}", lease.id);
+      spdlog::info("event=simulation_requeued simulation={}", name_of(lease));
   }
   return false;
 }
 
 void Scheduler::fail_on_defect(const Lease& lease, const std::string& cause) {
   spdlog::error(
-      "event=internal_error simulation=simulations/{} "
+      "event=internal_error simulation={} "
       "cause=\"{}\"",
-      lease.id, cause);
+      name_of(lease), cause);
   fail(lease, "INTERNAL", "internal error; the server's log states its cause");
 }
 
 void Scheduler::fail(const Lease& lease, const std::string& reason, const std::string& message) {
   // The message may quote inputs, so only the reason is logged.
   spdlog::warn(
-      "event=simulation_failed simulation=simulations/{} "
+      "event=simulation_failed simulation={} "
       "reason={}",
-      lease.id, reason);
+      name_of(lease), reason);
   const auto event = insist(lease.id, *lease.stop, [&] {
     return store_.mark_failed(lease.id, options_.clock(), reason, message);
   });
@@ -628,6 +641,7 @@ void Scheduler::expire_leases() {
       if (leased.expires > now) continue;
       Lease& lease = expired.emplace_back();
       lease.id = id;
+      lease.name = leased.name;
       lease.attempt = leased.attempt;
       lease.stop = leased.stop;
     }
@@ -638,13 +652,12 @@ void Scheduler::expire_leases() {
           store_.mark_lost(lease.id, lease.attempt, options_.clock(), "LEASE_EXPIRED");
       lease.stop->request(StopReason::kEnded);
       if (event && event->state == StoredState::kFailed) metrics_.count(SimulationOutcome::kFailed);
-      spdlog::warn("event=lease_expired simulation=simulations/{} attempt={}", lease.id,
-                   lease.attempt);
+      spdlog::warn("event=lease_expired simulation={} attempt={}", name_of(lease), lease.attempt);
       publish(lease.id, event);
       const bool waits = event && event->state == StoredState::kQueued;
       waits ? requeue(lease.id, false) : end(lease.id);
     } catch (const StoreError& error) {  // tried again at the next tick
-      spdlog::error("simulations/{}: {}", lease.id, error.what());
+      spdlog::error("{}: {}", name_of(lease), error.what());
     }
   }
 }

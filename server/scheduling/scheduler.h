@@ -33,7 +33,8 @@ struct Capabilities {
 
 /// The right of an executor to compute one attempt of a simulation.
 struct Lease {
-  std::int64_t id = 0;
+  std::int64_t id = 0;    ///< row of the simulation
+  std::string name = {};  ///< of the simulation, for log lines
   int attempt = 1;
   internal::v1::ComputeTask task;
   std::shared_ptr<StopSignal> stop;
@@ -136,9 +137,11 @@ class Scheduler {
   struct Known {
     std::shared_ptr<const SimulationInputs> inputs;  ///< null: load() reads them from the store
     std::size_t bytes = 0;
+    std::string project;
     std::string input_hash;
     bool is_forced = false;
     std::string request_id;
+    std::string name;
     Microseconds create_time = 0;
     bool is_loaded = false;  ///< all of the above are known
   };
@@ -149,6 +152,7 @@ class Scheduler {
     SteadyTime written;  ///< when the expiry was last written to the store
     bool is_computed = false;
     std::string request_id;
+    std::string name;
     double waited_seconds = 0;
     SteadyTime begin;
   };

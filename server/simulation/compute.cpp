@@ -93,8 +93,7 @@ Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
              PreparedGearSets& gear_sets, const ReportProgress& report) {
   const Scene physical = scene(inputs);
   const Study asked = study(inputs);
-  const std::string& revision = inputs.effective.gear_set_revision();
-  const std::shared_ptr<PreparedGearSet> gear_set = gear_sets.take(revision, physical);
+  const std::shared_ptr<PreparedGearSet> gear_set = gear_sets.take(inputs.gear_set, physical);
   Solved out;
   if (const auto* point = std::get_if<PointStudy>(&asked)) {
     out = solve_point(*point, physical, gear_set, studies, report);
@@ -102,7 +101,7 @@ Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
     out = solve_curve(std::get<CurveStudy>(asked), physical, gear_set, studies, report);
   }
   // An exception may leave the gear set half prepared: then it is not given back.
-  gear_sets.give_back(revision, physical.options, gear_set);
+  gear_sets.give_back(inputs.gear_set, physical.options, gear_set);
   return out;
 }
 

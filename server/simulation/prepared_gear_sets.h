@@ -4,10 +4,10 @@
 #include <list>
 #include <memory>
 #include <mutex>
-#include <string>
 
 #include "core/study/prepared_scene.h"
 #include "core/study/scene.h"
+#include "tribodyn/v1/gear_sets.pb.h"
 
 namespace tribodyn::server {
 
@@ -16,14 +16,18 @@ namespace tribodyn::server {
 /// concurrent access without external synchronization.
 class PreparedGearSets {
  public:
-  /// Returns the prepared gear set of the scene for the caller alone. `revision` is the name of the
-  /// gear set with its revision, "gearSets/reference-axle@1"; it determines gear set and solid.
-  /// Throws Refusal as PreparedGearSet does.
-  std::shared_ptr<PreparedGearSet> take(const std::string& revision, const Scene& scene);
+  /// The message of a gear set, from which gear set and solid of a scene are made. parse_resource()
+  /// shares one message among equal bodies. A name would not do: two projects may give it to
+  /// different gear sets.
+  using Source = std::shared_ptr<const v1::GearSet>;
+
+  /// Returns the prepared gear set of the scene for the caller alone. `source` is the message of
+  /// the gear set of the scene. Throws Refusal as PreparedGearSet does.
+  std::shared_ptr<PreparedGearSet> take(const Source& source, const Scene& scene);
 
   /// Stores a prepared gear set for the next study. The caller must not use it afterwards. A gear
   /// set whose grids have more than kMaximumSteps steps is dropped.
-  void give_back(const std::string& revision, const ModelOptions& options,
+  void give_back(const Source& source, const ModelOptions& options,
                  std::shared_ptr<PreparedGearSet> gear_set);
 
   /// Returns the number of stored gear sets.
@@ -39,7 +43,7 @@ class PreparedGearSets {
 
  private:
   struct Entry {
-    std::string revision;
+    Source source;
     ModelOptions options;
     std::shared_ptr<PreparedGearSet> gear_set;
   };

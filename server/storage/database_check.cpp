@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 
+#include "server/contract/resource_names.h"
 #include "server/storage/checksum.h"
 #include "server/storage/history_rows.h"
 #include "server/storage/properties.h"
@@ -60,21 +61,35 @@ void check_rows(Connection& db, Problems& problems) {
            "LEFT JOIN revisions v ON v.id = r.present AND v.resource = r.id "
            "WHERE v.revision IS NOT "
            "(SELECT max(revision) FROM revisions WHERE resource = r.id)",
-           "SELECT name || ': unknown kind of resource' FROM resources "
-           "WHERE collection NOT IN ('lubricants', 'gearSets', 'surfaces', 'vehicles')",
-           "SELECT 'simulations/' || s.id || ': its events have gaps' FROM simulations s "
+           "SELECT name || ': unknown kind of resource, or unknown project' FROM resources "
+           "WHERE collection NOT IN (SELECT CASE p.name WHEN 'default' THEN '' "
+           "ELSE 'projects/' || p.name || '/' END || kind.column1 "
+           "FROM projects p, (VALUES ('lubricants'), ('gearSets'), ('surfaces'), ('vehicles')) "
+           "kind)",
+           "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = s.id) || "
+           "': its project does not exist or has given no such number' FROM simulations s "
+           "WHERE NOT EXISTS (SELECT 1 FROM projects p WHERE p.name = s.project AND "
+           "s.number BETWEEN 1 AND p.last_number)",
+           "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = s.id) || "
+           "': its result belongs to another project' "
+           "FROM simulations s JOIN results r ON r.id = s.result WHERE r.project <> s.project",
+           "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = s.id) || "
+           "': its events have gaps' FROM simulations s "
            "WHERE (SELECT count(*) FROM events WHERE simulation = s.id) <> s.sequence OR "
            "(SELECT coalesce(max(sequence), 0) FROM events WHERE simulation = s.id) <> s.sequence",
-           "SELECT 'simulations/' || s.id || ': its last event has another state' "
+           "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = s.id) || "
+           "': its last event has another state' "
            "FROM simulations s JOIN events e ON e.simulation = s.id AND e.sequence = s.sequence "
            "WHERE e.state <> s.state OR e.attempt <> s.attempt",
-           "SELECT 'simulations/' || a.simulation || ': its states move backwards' "
+           "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = a.simulation) || "
+           "': its states move backwards' "
            "FROM events a JOIN events b ON b.simulation = a.simulation "
            "AND b.sequence = a.sequence + 1 WHERE a.state > 2 OR b.attempt < a.attempt OR "
            "(b.attempt = a.attempt AND b.state <= a.state)",
            "SELECT 'result ' || id || ': its content differs from its checksum' FROM results "
            "WHERE checksum <> checksum(body)",
-           "SELECT 'simulations/' || s.id || ': columns of its history differ in length' "
+           "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = s.id) || "
+           "': columns of its history differ in length' "
            "FROM simulations s JOIN history_columns h ON h.result = s.result GROUP BY s.id "
            "HAVING min(rows) <> max(rows)",
        }) {
@@ -119,7 +134,7 @@ void check_bodies(Connection& db, Problems& problems) {
     const auto message = new_resource(collection_of(name));
     if (!message || !message->ParseFromString(body)) {
       problems.push_back(revision + ": cannot be read");
-    } else if (!bears_name(*message, name)) {
+    } else if (!bears_name(*message, relative_name(name))) {
       problems.push_back(revision + ": contains another resource");
     }
   }
@@ -141,13 +156,13 @@ std::map<std::string, PropertyValue> stored_properties(Connection& db, std::int6
 
 void check_properties(Connection& db, Problems& problems) {
   SQLite::Statement query(db,
-                          "SELECT r.id, r.name, r.collection, v.body, r.create_time, v.create_time "
+                          "SELECT r.id, r.name, v.body, r.create_time, v.create_time "
                           "FROM resources r JOIN revisions v ON v.id = r.present");
   while (problems.size() < kMaximumProblems && query.executeStep()) {
     std::map<std::string, PropertyValue> expected;
-    for (Property& each :
-         properties_of(query.getColumn(2).getString(), query.getColumn(3).getString(),
-                       query.getColumn(4).getInt64(), query.getColumn(5).getInt64())) {
+    for (Property& each : properties_of(
+             collection_of(query.getColumn(1).getString()), query.getColumn(2).getString(),
+             query.getColumn(3).getInt64(), query.getColumn(4).getInt64())) {
       expected[each.key] = std::move(each.value);
     }
     if (stored_properties(db, query.getColumn(0).getInt64()) == expected) continue;
@@ -167,19 +182,17 @@ std::optional<std::string> revision_body(Connection& db, const std::string& name
 }
 
 void check_simulations(Connection& db, const HashInputs& hash_inputs, Problems& problems) {
-  const FindRevision find = [&db](const std::string& name, int revision) {
-    return revision_body(db, name, revision);
-  };
   SQLite::Statement query(
       db,
       "SELECT s.id, s.request, s.input_hash, b.body, "
       "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.lubricant), "
       "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.gear_set), "
       "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.surface), "
-      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.vehicle) "
-      "FROM simulations s LEFT JOIN results b ON b.id = s.result");
+      "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = s.vehicle), "
+      "s.project, s.number FROM simulations s LEFT JOIN results b ON b.id = s.result");
   while (problems.size() < kMaximumProblems && query.executeStep()) {
-    const std::string name = "simulations/" + query.getColumn(0).getString();
+    const std::string project = query.getColumn(8).getString();
+    const std::string name = simulation_name(project, query.getColumn(9).getInt64());
     const std::string hash = query.getColumn(2).getString();
     v1::Simulation request;
     if (!request.ParseFromString(query.getColumn(1).getString())) {
@@ -192,10 +205,13 @@ void check_simulations(Connection& db, const HashInputs& hash_inputs, Problems& 
     } else if (result.input_hash() != hash) {
       problems.push_back(name + ": its result belongs to other inputs");
     } else if (hash_inputs) {
-      request.set_lubricant(query.getColumn(4).getString());
-      request.set_gear_set(query.getColumn(5).getString());
-      request.set_surface(query.getColumn(6).getString());
-      request.set_vehicle(query.getColumn(7).getString());
+      request.set_lubricant(relative_name(query.getColumn(4).getString()));
+      request.set_gear_set(relative_name(query.getColumn(5).getString()));
+      request.set_surface(relative_name(query.getColumn(6).getString()));
+      request.set_vehicle(relative_name(query.getColumn(7).getString()));
+      const FindRevision find = [&db, &project](const std::string& relative, int revision) {
+        return revision_body(db, full_name(project, relative), revision);
+      };
       const auto again = hash_inputs(request, result.model_version(), find);
       if (again && *again != hash) problems.push_back(name + ": its inputs have another hash");
     }

@@ -7,21 +7,22 @@
 
 namespace tribodyn::server {
 
-ResourceLookup resource_lookup(Store& store, const CallLimits& limits) {
-  return {[&store, limits](const RevisionName& name) -> std::optional<FoundResource> {
-            auto found = name.revision == 0 ? store.resource(name.name, limits)
-                                            : store.revision(name.name, name.revision, limits);
+ResourceLookup resource_lookup(Store& store, const std::string& project, const CallLimits& limits) {
+  return {[&store, project, limits](const RevisionName& name) -> std::optional<FoundResource> {
+            const std::string full = full_name(project, name.name);
+            auto found = name.revision == 0 ? store.resource(full, limits)
+                                            : store.revision(full, name.revision, limits);
             if (!found) return std::nullopt;
             return FoundResource{found->revision, found->delete_time.has_value(),
                                  std::move(found->body)};
           },
-          [&store, limits](const std::string& collection) {
-            return store.resource_names(collection, limits);
+          [&store, project, limits](const std::string& collection) {
+            return store.resource_names(project, collection, limits);
           }};
 }
 
 ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation) {
-  ResourceLookup out = resource_lookup(store);
+  ResourceLookup out = resource_lookup(store, simulation.project);
   std::vector<RevisionName> accepted;
   const auto add = [&accepted](const std::string& name, const char* collection) {
     if (const auto parsed = parse_revision_name(name, collection)) accepted.push_back(*parsed);

@@ -6,9 +6,10 @@
 
 namespace tribodyn::server {
 
-/// Returns a lookup of resources in the store, which must outlive the lookup, within the limits of
-/// the call.
-ResourceLookup resource_lookup(Store& store, const CallLimits& limits = {});
+/// Returns a lookup of resources of a project by their relative names, within the limits of the
+/// call. The store must outlive the lookup.
+ResourceLookup resource_lookup(Store& store, const std::string& project,
+                               const CallLimits& limits = {});
 
 /// Like resource_lookup(), but finds the four resources of `simulation` in the revisions with which
 /// it was accepted, even if a resource has been deleted since.

@@ -51,13 +51,25 @@ Clause compared(const std::string& column, const Restriction& restriction) {
   return {"FALSE", {}};
 }
 
+/// Returns a restriction on the name. Equal names are compared in full, others without the project.
+Clause compared_name(const std::string& project, Restriction restriction) {
+  const bool is_whole = restriction.comparison == Comparison::kEqual ||
+                        restriction.comparison == Comparison::kNotEqual;
+  if (is_whole) {
+    restriction.value = name_in(project, std::get<std::string>(restriction.value));
+    return compared("r.name", restriction);
+  }
+  const std::size_t begin = full_name(project, "").size() + 1;
+  return compared("substr(r.name, " + std::to_string(begin) + ")", restriction);
+}
+
 /// Returns a restriction as a condition on the resource r, which works in any query.
-Clause condition(const Restriction& restriction) {
+Clause condition(const std::string& project, const Restriction& restriction) {
   Clause out;
   const bool negated = restriction.comparison == Comparison::kNotEqual;
   const std::string begin = negated ? " AND NOT " : " AND ";
   if (restriction.key == "name") {
-    const Clause test = compared("r.name", restriction);
+    const Clause test = compared_name(project, restriction);
     out.add(begin + "(" + test.sql + ")", test.values);
     return out;
   }
@@ -99,7 +111,7 @@ const Restriction* most_selective(Connection& db, const ResourceQuery& query) {
   int fewest = kSelectiveRowLimit;
   for (const Restriction& each : query.restrictions) {
     if (!has_index(each)) continue;
-    const int count = count_up_to_limit(db, query.collection, each);
+    const int count = count_up_to_limit(db, full_name(query.project, query.collection), each);
     if (count < fewest) {
       fewest = count;
       best = &each;
@@ -132,7 +144,7 @@ void add_conditions(Clause& sql, const ResourceQuery& query, const Restriction* 
   if (!query.show_deleted) sql.add(" AND r.delete_time IS NULL");
   for (const Restriction& each : query.restrictions) {
     if (&each == but) continue;
-    const Clause more = condition(each);
+    const Clause more = condition(query.project, each);
     sql.add(more.sql, more.values);
   }
 }
@@ -143,6 +155,7 @@ enum class Purpose { kRows, kCount };
 /// The rows of a query, or a 1 for each of them.
 Clause statement(Connection& db, const ResourceQuery& query, Purpose purpose) {
   Clause sql{purpose == Purpose::kRows ? kResourceColumns : "SELECT 1 ", {}};
+  const std::string collection = full_name(query.project, query.collection);
   const std::string revisions = purpose == Purpose::kRows ? kRevisions : "";
   const bool by_name = query.order_key.empty();
   const Restriction* leading = most_selective(db, query);
@@ -155,7 +168,7 @@ Clause statement(Connection& db, const ResourceQuery& query, Purpose purpose) {
     if (equal != query.restrictions.end()) leading = &*equal;
   }
   if (leading != nullptr) {
-    const Clause rows = selected(query.collection, *leading);
+    const Clause rows = selected(collection, *leading);
     sql.add(std::string("FROM properties d") + kJoined + revisions);
     if (!by_name) {
       sql.add(" CROSS JOIN properties o ON o.resource = r.id AND o.key = ?", {query.order_key});
@@ -167,14 +180,14 @@ Clause statement(Connection& db, const ResourceQuery& query, Purpose purpose) {
     return sql;
   }
   if (by_name) {
-    sql.add("FROM resources r" + revisions + " WHERE r.collection = ?", {query.collection});
+    sql.add("FROM resources r" + revisions + " WHERE r.collection = ?", {collection});
     add_conditions(sql, query, nullptr);
     add_start_and_order(sql, query, "", "r.name");
     return sql;
   }
   sql.add(std::string("FROM properties d") + kJoined + revisions +
               " WHERE d.collection = ? AND d.key = ?",
-          {query.collection, query.order_key});
+          {collection, query.order_key});
   add_conditions(sql, query, nullptr);
   add_start_and_order(sql, query, "d.value", "d.name");
   return sql;

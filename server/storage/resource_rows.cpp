@@ -20,7 +20,7 @@ void insert_properties(Connection& db, const StoredResource& resource) {
     insert.bind(1, resource.id);
     insert.bind(2, each.key);
     bind_value(insert, 3, each.value);
-    insert.bind(4, collection);
+    insert.bind(4, full_collection_of(resource.name));
     insert.bind(5, resource.name);
     insert.exec();
     insert.reset();
@@ -41,7 +41,7 @@ bool has_all_properties(Connection& db, const std::string& collection) {
   resources.bind(1, collection);
   resources.executeStep();
   const int count = resources.getColumn(0).getInt();
-  const auto& fields = property_fields(collection);
+  const auto& fields = property_fields(relative_name(collection));
   return std::all_of(fields.begin(), fields.end(), [&](const PropertyField& field) {
     if (field.kind == PropertyKind::kNumber) return true;
     Prepared properties(db, "SELECT count(*) FROM properties WHERE collection = ? AND key = ?");
@@ -103,7 +103,7 @@ StoredResource insert_resource(Connection& db, const NewResource& resource, Micr
   Prepared insert(
       db, "INSERT INTO resources (name, collection, present, create_time) VALUES (?, ?, 0, ?)");
   insert.bind(1, resource.name);
-  insert.bind(2, collection_of(resource.name));
+  insert.bind(2, full_collection_of(resource.name));
   insert.bind(3, now);
   insert.exec();
   StoredResource added;
@@ -133,8 +133,11 @@ StoredResource insert_revision(Connection& db, const StoredResource& present,
 }
 
 int add_missing_properties(Connection& db) {
+  std::vector<std::string> collections;
+  SQLite::Statement names(db, "SELECT DISTINCT collection FROM resources");
+  while (names.executeStep()) collections.push_back(names.getColumn(0).getString());
   int added = 0;
-  for (const char* collection : {kLubricants, kGearSets, kSurfaces, kVehicles}) {
+  for (const std::string& collection : collections) {
     if (has_all_properties(db, collection)) continue;
     std::vector<StoredResource> resources;
     SQLite::Statement query(db, std::string(kResourceColumns) +

@@ -1,5 +1,6 @@
 #include "server/storage/resource_types.h"
 
+#include "server/contract/resource_names.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
@@ -11,8 +12,13 @@ namespace tribodyn::server {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-std::string collection_of(std::string_view name) {
-  return std::string(name.substr(0, name.find('/')));
+std::string collection_of(std::string_view full_name) {
+  const std::string name = relative_name(full_name);
+  return name.substr(0, name.find('/'));
+}
+
+std::string full_collection_of(std::string_view full_name) {
+  return std::string(full_name.substr(0, full_name.rfind('/')));
 }
 
 std::unique_ptr<Message> new_resource(std::string_view collection) {

@@ -130,6 +130,7 @@ void bring_from(Connection& database, int from, int to, Microseconds now) {
     add_checksums(database);
   }
   if (passes(6)) database.exec(kSchema6);
+  if (passes(7)) database.exec(kSchema7);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(to));
 }

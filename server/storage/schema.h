@@ -8,39 +8,42 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 6. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 7. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
+///   projects     one row per project; last_number is that of its latest simulation, removed or not
 ///   resources    lubricants, gear sets, surfaces, vehicles: one row a name, with the revision that
-///                is the present one; delete_time is set while it is deleted (nothing is lost)
+///                is the present one; delete_time is set while it is deleted (nothing is lost).
+///                name and collection are full ones, "projects/acme/lubricants/my-oil": the project
+///                is a part of both keys, here and in properties, and no query can leave it out
 ///   revisions    what a resource was: never changed and never removed, numbered 1, 2, ... without
 ///                gaps. content_hash: SHA-256 of body, 64 hex digits
 ///   properties   what lists are filtered and ordered by: the values of the present revision
 ///                (properties.h); derived from it, kept in step with it
-///   simulations  one row per job; id is the number in "simulations/{id}" and the order of
-///                creation. state as in Simulation.State; its changes are those of life_cycle.h.
-///                attempt counts from 1, lost_attempts those that ended with the server's process;
-///                sequence is that of the latest event. request: the Simulation as the client
-///                stated it; request_hash: of all that it stated (request_text.h), to tell a
-///                repeated request_id from a misused one; lubricant, gear_set, surface, vehicle:
-///                the revisions it rests on. is_forced: no result that was there before is taken.
-///                Progress is not kept: a job that a crash interrupts starts again. client: what
-///                the client calls itself; principal: whose share of the processors pays for it;
-///                scheduling_class: SchedulingClass; cost_seconds: estimated, of one processor.
-///                lease_worker, lease_expire_time: who computes it, set while it is RUNNING; after
-///                that time the attempt counts as lost. The worker "local" is the server's own
-///                process, whose leases end with it.
-///                pinned: neither expires nor is evicted; others may go, with their events and with
-///                a result and a ledger that no other one has
+///   simulations  one row per job; id is the order of creation over all projects, number the one in
+///                its name, counted within its project. state as in Simulation.State; its changes
+///                are those of life_cycle.h. attempt counts from 1, lost_attempts those that ended
+///                with the server's process; sequence is that of the latest event. request: the
+///                Simulation as the client stated it; request_hash: of all that it stated
+///                (request_text.h), to tell a repeated request_id, unique in its project, from a
+///                misused one; lubricant, gear_set, surface, vehicle: the revisions it rests on.
+///                is_forced: no result that was there before is taken. Progress is not kept: a job
+///                that a crash interrupts starts again. client: what the client calls itself;
+///                principal: whose share of the processors pays for it; scheduling_class:
+///                SchedulingClass; cost_seconds: estimated, of one processor. lease_worker,
+///                lease_expire_time: who computes it, set while it is RUNNING; after that time the
+///                attempt counts as lost. The worker "local" is the server's own process, whose
+///                leases end with it. pinned: neither expires nor is evicted; others may go, with
+///                their events and with a result and a ledger that no other one has
 ///   simulation_labels  what lists are filtered by beside columns of simulations, of its request
 ///   events       every change of state of a job, numbered 1, 2, ... without gaps, written with it
 ///   ledgers      assumptions of results, each distinct list once: a SimulationResult with nothing
 ///                else. They belong to the job, as they name its resources
 ///   results      one SimulationResult without assumptions for equal inputs (input_hash), model
-///                version and platform, written with the change of state of the first job that
-///                has it. platform is empty, and the result serves no other job, where it comes
-///                from an older schema. checksum: of body (checksum.h); stored_bytes: of body and
-///                of the blocks of its history, which go together
+///                version and platform in one project, written with the change of state of the
+///                first job that has it. platform is empty, and the result serves no other job,
+///                where it comes from an older schema. checksum: of body (checksum.h);
+///                stored_bytes: of body and of the blocks of its history, which go together
 ///   history_columns  of time histories, in the order of position; ids are never used again
 ///   history_blocks   a column cut into runs of kHistoryBlock doubles, numbered 0, 1, ..., and each
 ///                compressed (column_codec.h): level 0 as it is, levels above it the least and
@@ -49,7 +52,7 @@ namespace tribodyn::server {
 ///
 /// The text of a schema that a release has written never changes: the tables of a database are
 /// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 6;
+inline constexpr int kSchemaVersion = 7;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

@@ -271,4 +271,42 @@ WHEN (NEW.state = 2) <> (NEW.lease_worker IS NOT NULL)
 BEGIN SELECT RAISE(ABORT, 'a simulation runs under a lease'); END;
 )sql";
 
+// Everything from before there were projects belongs to the project `default`. The numbers of its
+// simulations go on where the rows were.
+inline constexpr char kSchema7[] = R"sql(
+CREATE TABLE projects (
+  name TEXT PRIMARY KEY CHECK (length(name) BETWEEN 1 AND 63),
+  last_number INTEGER NOT NULL DEFAULT 0 CHECK (last_number >= 0)
+) STRICT, WITHOUT ROWID;
+INSERT INTO projects VALUES ('default', max(
+  coalesce((SELECT seq FROM sqlite_sequence WHERE name = 'simulations'), 0),
+  coalesce((SELECT max(id) FROM simulations), 0)));
+
+ALTER TABLE simulations ADD COLUMN project TEXT NOT NULL DEFAULT 'default';
+ALTER TABLE simulations ADD COLUMN number INTEGER NOT NULL DEFAULT 0;
+UPDATE simulations SET number = id;
+ALTER TABLE results ADD COLUMN project TEXT NOT NULL DEFAULT 'default';
+
+CREATE VIEW simulation_names AS
+SELECT id AS simulation, CASE project WHEN 'default' THEN '' ELSE 'projects/' || project || '/' END ||
+                         'simulations/' || number AS name
+FROM simulations;
+
+DROP INDEX one_simulation_per_request;
+CREATE UNIQUE INDEX one_simulation_per_request ON simulations (project, request_id);
+CREATE UNIQUE INDEX simulations_by_number ON simulations (project, number);
+DROP INDEX simulations_by_time;
+CREATE INDEX simulations_by_time ON simulations (project, create_time, number);
+DROP INDEX simulations_by_state;
+CREATE INDEX simulations_by_state ON simulations (project, state, create_time, number);
+DROP INDEX one_result_per_input;
+CREATE UNIQUE INDEX one_result_per_input ON results (project, input_hash, model_version, platform)
+WHERE platform <> '';
+
+CREATE TRIGGER simulations_stay_in_their_project BEFORE UPDATE OF project, number ON simulations
+BEGIN SELECT RAISE(ABORT, 'a simulation keeps its project and its number'); END;
+CREATE TRIGGER results_stay_in_their_project BEFORE UPDATE OF project ON results
+BEGIN SELECT RAISE(ABORT, 'a result keeps its project'); END;
+)sql";
+
 }  // namespace tribodyn::server

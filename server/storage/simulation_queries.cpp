@@ -105,17 +105,18 @@ Condition display_name_condition(Connection& db, const Restriction& restriction)
           {restriction.value}};
 }
 
-Condition condition(Connection& db, const Restriction& restriction) {
+Condition condition(Connection& db, const std::string& project, const Restriction& restriction) {
   if (restriction.key == "display_name") return display_name_condition(db, restriction);
   if (restriction.key.starts_with(kLabels)) return label_condition(db, restriction);
   const bool is_resource = restriction.key == "lubricant" || restriction.key == "gear_set" ||
                            restriction.key == "surface" || restriction.key == "vehicle";
   if (is_resource) {
     const bool is_not = restriction.comparison == Comparison::kNotEqual;
+    const std::string name = name_in(project, std::get<std::string>(restriction.value));
     return {restriction.key + (is_not ? " NOT " : " ") +
                 "IN (SELECT revision_id FROM revision_names "
                 "WHERE name = ? OR name || '@' || revision = ?)",
-            {restriction.value, restriction.value}};
+            {name, name}};
   }
   return {column_of(restriction.key) + " " + operator_of(restriction.comparison) + " ?",
           {restriction.value}};
@@ -135,10 +136,10 @@ std::int64_t count_all(Connection& db, const std::string& where,
 }  // namespace
 
 Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& query) {
-  std::string where = "WHERE 1";
-  std::vector<PropertyValue> values;
+  std::string where = "WHERE project = ?";
+  std::vector<PropertyValue> values = {query.project};
   for (const Restriction& each : query.restrictions) {
-    Condition next = condition(db, each);
+    Condition next = condition(db, query.project, each);
     where += " AND " + next.sql;
     values.insert(values.end(), next.values.begin(), next.values.end());
   }
@@ -146,11 +147,11 @@ Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& 
   const std::vector<PropertyValue> all_values = values;
   const std::string direction = query.ascending ? " ASC" : " DESC";
   if (query.after) {
-    sql += std::string(" AND (create_time, id) ") + (query.ascending ? ">" : "<") + " (?, ?)";
+    sql += std::string(" AND (create_time, number) ") + (query.ascending ? ">" : "<") + " (?, ?)";
     values.emplace_back(query.after->create_time);
-    values.emplace_back(query.after->id);
+    values.emplace_back(query.after->number);
   }
-  sql += " ORDER BY create_time" + direction + ", id" + direction + " LIMIT ?";
+  sql += " ORDER BY create_time" + direction + ", number" + direction + " LIMIT ?";
   values.emplace_back(std::int64_t{query.limit + 1});
   SQLite::Statement statement(db, sql);
   for (std::size_t i = 0; i < values.size(); ++i) {

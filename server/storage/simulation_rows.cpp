@@ -17,7 +17,7 @@ const char kSimulationColumns[] =
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle), "
-    "request_id, pinned, client, cost_seconds, principal, scheduling_class "
+    "request_id, pinned, client, cost_seconds, principal, scheduling_class, project, number "
     "FROM simulations ";
 
 namespace {
@@ -44,14 +44,18 @@ void bind_text_or_null(SQLite::Statement& statement, int index, const std::strin
   }
 }
 
-std::optional<std::int64_t> result_row(Connection& db, const ResultKey& key) {
+/// Row of the result with this key in a project: projects share no results, as a cache hit would
+/// tell one project what another has computed.
+std::optional<std::int64_t> result_row(Connection& db, const std::string& project,
+                                       const ResultKey& key) {
   Prepared query(db,
                  "SELECT id FROM results "
-                 "WHERE input_hash = ? AND model_version = ? AND platform = ? AND "
+                 "WHERE project = ? AND input_hash = ? AND model_version = ? AND platform = ? AND "
                  "platform <> ''");
-  query.bind(1, key.input_hash);
-  query.bind(2, key.model_version);
-  query.bind(3, key.platform);
+  query.bind(1, project);
+  query.bind(2, key.input_hash);
+  query.bind(3, key.model_version);
+  query.bind(4, key.platform);
   if (!query.executeStep()) return std::nullopt;
   return query.getColumn(0).getInt64();
 }
@@ -67,10 +71,31 @@ void insert_event(Connection& db, std::int64_t id, const StoredEvent& event) {
   insert.exec();
 }
 
-/// Returns the simulation that an earlier request with the same request_id added.
+/// Project of a simulation. Throws SQLite::Exception if the simulation does not exist.
+std::string project_of(Connection& db, std::int64_t id) {
+  Prepared query(db, "SELECT project FROM simulations WHERE id = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) throw SQLite::Exception("no such simulation");
+  return query.getColumn(0).getString();
+}
+
+/// Takes the next number of a project. Numbers of removed simulations are not given again.
+std::int64_t next_number(Connection& db, const std::string& project) {
+  Prepared update(db,
+                  "UPDATE projects SET last_number = last_number + 1 WHERE name = ? "
+                  "RETURNING last_number");
+  update.bind(1, project);
+  if (!update.executeStep()) throw SQLite::Exception("no such project");
+  const std::int64_t number = update.getColumn(0).getInt64();
+  update.executeStep();  // to its end: only then is it done
+  return number;
+}
+
+/// Returns the simulation that an earlier request with the same request_id added to the
+/// same project.
 std::optional<Added> repeated_request(Connection& db, const NewSimulation& simulation) {
   if (simulation.request_id.empty()) return std::nullopt;
-  auto stored = query_simulation_of_request(db, simulation.request_id);
+  auto stored = query_simulation_of_request(db, simulation.project, simulation.request_id);
   if (!stored) return std::nullopt;
   const bool is_same = stored->request_hash == simulation.request_hash;
   return Added{is_same ? Added::Kind::kRepeated : Added::Kind::kRequestIdTaken, stored->id,
@@ -90,17 +115,18 @@ void insert_labels(Connection& db, std::int64_t id,
 
 /// Inserts a QUEUED simulation and its first event. The statement itself finds the rows of the
 /// revisions: a read before it would be one more, and one outside the transaction could be stale.
-std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microseconds now) {
+std::int64_t insert_row(Connection& db, const NewSimulation& simulation, std::int64_t number,
+                        Microseconds now) {
   Prepared insert(
       db,
       "INSERT INTO simulations (state, sequence, create_time, deadline_time, request, request_id, "
       "request_hash, is_forced, input_hash, ledger, client, cost_seconds, principal, "
-      "scheduling_class, lubricant, gear_set, surface, vehicle) "
+      "scheduling_class, lubricant, gear_set, surface, vehicle, project, number) "
       "VALUES (1, 1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
-      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?)) "
+      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), ?, ?) "
       "RETURNING id, lubricant, gear_set, surface, vehicle");
   insert.bind(1, now);
   bind_optional(insert, 2, simulation.deadline_time);
@@ -119,9 +145,11 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
       &simulation.vehicle_revision};
   for (int i = 0; i < 4; ++i) {
     const std::size_t at = std::min(revisions[i]->find('@'), revisions[i]->size());
-    insert.bind(13 + 2 * i, revisions[i]->substr(0, at));
+    insert.bind(13 + 2 * i, full_name(simulation.project, revisions[i]->substr(0, at)));
     if (at < revisions[i]->size()) insert.bind(14 + 2 * i, std::stoi(revisions[i]->substr(at + 1)));
   }
+  insert.bind(21, simulation.project);
+  insert.bind(22, number);
   insert.executeStep();
   const std::int64_t id = insert.getColumn(0).getInt64();
   for (int i = 0; i < 4; ++i) {
@@ -138,9 +166,11 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, Microse
 /// Returns the row that insert_row() has inserted. Reads nothing: a read after the commit could
 /// fail or come too late, and the client would be told that nothing has changed.
 StoredSimulation inserted_simulation(const NewSimulation& simulation, std::int64_t id,
-                                     Microseconds now) {
+                                     std::int64_t number, Microseconds now) {
   StoredSimulation out;
   out.id = id;
+  out.project = simulation.project;
+  out.number = number;
   out.sequence = 1;
   out.create_time = now;
   out.deadline_time = simulation.deadline_time;
@@ -178,11 +208,11 @@ void insert_history(Connection& db, std::int64_t result,
   }
 }
 
-std::int64_t insert_result(Connection& db, const NewResult& result,
+std::int64_t insert_result(Connection& db, const std::string& project, const NewResult& result,
                            const std::vector<CompressedColumn>& history, Microseconds now) {
   Prepared insert(db,
                   "INSERT INTO results (input_hash, model_version, platform, create_time, body, "
-                  "checksum, stored_bytes) VALUES (?, ?, ?, ?, ?, ?, ?)");
+                  "checksum, stored_bytes, project) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, result.key.input_hash);
   insert.bind(2, result.key.model_version);
   insert.bind(3, result.key.platform);
@@ -190,6 +220,7 @@ std::int64_t insert_result(Connection& db, const NewResult& result,
   bind_blob(insert, 5, result.body);
   insert.bind(6, checksum(result.body));
   insert.bind(7, size_of(result, history));
+  insert.bind(8, project);
   insert.exec();
   const std::int64_t row = db.getLastInsertRowid();
   insert_history(db, row, history);
@@ -318,16 +349,18 @@ StoredSimulation stored_simulation(const SQLite::Statement& query) {
   out.input_hash = query.getColumn(12).getString();
   out.error_reason = query.getColumn(13).getString();
   out.error_message = query.getColumn(14).getString();
-  out.lubricant_revision = query.getColumn(15).getString();
-  out.gear_set_revision = query.getColumn(16).getString();
-  out.surface_revision = query.getColumn(17).getString();
-  out.vehicle_revision = query.getColumn(18).getString();
+  out.lubricant_revision = relative_name(query.getColumn(15).getString());
+  out.gear_set_revision = relative_name(query.getColumn(16).getString());
+  out.surface_revision = relative_name(query.getColumn(17).getString());
+  out.vehicle_revision = relative_name(query.getColumn(18).getString());
   out.request_id = query.getColumn(19).getString();
   out.is_pinned = query.getColumn(20).getInt() != 0;
   out.client = query.getColumn(21).getString();
   out.cost_seconds = query.getColumn(22).getDouble();
   out.principal = query.getColumn(23).getString();
   out.scheduling_class = query.getColumn(24).getInt();
+  out.project = query.getColumn(25).getString();
+  out.number = query.getColumn(26).getInt64();
   return out;
 }
 
@@ -339,9 +372,11 @@ std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id
 }
 
 std::optional<StoredSimulation> query_simulation_of_request(Connection& db,
+                                                            const std::string& project,
                                                             const std::string& request_id) {
-  Prepared query(db, std::string(kSimulationColumns) + "WHERE request_id = ?");
-  query.bind(1, request_id);
+  Prepared query(db, std::string(kSimulationColumns) + "WHERE project = ? AND request_id = ?");
+  query.bind(1, project);
+  query.bind(2, request_id);
   if (!query.executeStep()) return std::nullopt;
   return stored_simulation(query);
 }
@@ -350,10 +385,11 @@ Added insert_simulation(Connection& db, const NewSimulation& simulation, Microse
                         bool may_wait) {
   if (auto repeated = repeated_request(db, simulation)) return std::move(*repeated);
   std::optional<std::int64_t> result;
-  if (!simulation.is_forced) result = result_row(db, simulation.key);
+  if (!simulation.is_forced) result = result_row(db, simulation.project, simulation.key);
   if (!result && !may_wait) return {Added::Kind::kNoPlace, 0};
-  const std::int64_t id = insert_row(db, simulation, now);
-  Added added{Added::Kind::kQueued, id, inserted_simulation(simulation, id, now)};
+  const std::int64_t number = next_number(db, simulation.project);
+  const std::int64_t id = insert_row(db, simulation, number, now);
+  Added added{Added::Kind::kQueued, id, inserted_simulation(simulation, id, number, now)};
   if (!result) return added;
   const auto event = change_state(
       db,
@@ -423,15 +459,17 @@ std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
 
 std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,
                                             const ResultKey& key, const LeaseTerms& lease) {
-  Prepared update(
-      db, "UPDATE simulations SET input_hash = ? WHERE id = ? AND state = 1 RETURNING is_forced");
+  Prepared update(db,
+                  "UPDATE simulations SET input_hash = ? WHERE id = ? AND state = 1 RETURNING "
+                  "is_forced, project");
   update.bind(1, key.input_hash);
   update.bind(2, id);
   if (!update.executeStep()) return std::nullopt;
   const bool is_forced = update.getColumn(0).getInt() != 0;
+  const std::string project = update.getColumn(1).getString();
   update.executeStep();
   std::optional<std::int64_t> result;
-  if (!is_forced) result = result_row(db, key);
+  if (!is_forced) result = result_row(db, project, key);
   StateChange change{.id = id,
                      .to = result ? StoredState::kSucceeded : StoredState::kRunning,
                      .time = now,
@@ -444,7 +482,8 @@ std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Mic
 
 std::optional<std::string> query_result(Connection& db, std::int64_t id) {
   Prepared query(db,
-                 "SELECT r.body, r.checksum, l.body, l.content_hash FROM simulations s "
+                 "SELECT r.body, r.checksum, l.body, l.content_hash, s.project, s.number "
+                 "FROM simulations s "
                  "JOIN results r ON r.id = s.result "
                  "LEFT JOIN ledgers l ON l.id = s.ledger WHERE s.id = ?");
   query.bind(1, id);
@@ -454,8 +493,11 @@ std::optional<std::string> query_result(Connection& db, std::int64_t id) {
   const bool has_ledger = !query.getColumn(3).isNull();
   if (checksum(result) != query.getColumn(1).getInt64() ||
       (has_ledger && sha256(ledger) != query.getColumn(3).getString())) {
-    throw StoreError(StoreError::Kind::kDataLoss,
-                     "the stored result of simulations/" + std::to_string(id) + " is damaged");
+    throw StoreError(
+        StoreError::Kind::kDataLoss,
+        "the stored result of " +
+            simulation_name(query.getColumn(4).getString(), query.getColumn(5).getInt64()) +
+            " is damaged");
   }
   // The bytes of two messages in a row are those of both merged.
   return std::string(result).append(ledger);
@@ -467,12 +509,13 @@ std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Mi
   // Before anything is written: what is rolled back may already be in the write-ahead log, and a
   // purge may have erased what the result rests on.
   if (!is_running(db, id)) return std::nullopt;
-  std::optional<std::int64_t> row = result_row(db, result.key);
+  const std::string project = project_of(db, id);
+  std::optional<std::int64_t> row = result_row(db, project, result.key);
   if (row && !is_same_result(db, *row, result)) {
     if (is_whole_result(db, *row)) return not_reproduced(db, id, now, result.key, attempt);
     repair_result(db, *row, result, history);
   }
-  if (!row) row = insert_result(db, result, history, now);
+  if (!row) row = insert_result(db, project, result, history, now);
   return change_state(db, {.id = id,
                            .to = StoredState::kSucceeded,
                            .time = now,

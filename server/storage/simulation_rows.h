@@ -31,6 +31,7 @@ StoredSimulation stored_simulation(const SQLite::Statement& query);
 
 std::optional<StoredSimulation> query_simulation(Connection& db, std::int64_t id);
 std::optional<StoredSimulation> query_simulation_of_request(Connection& db,
+                                                            const std::string& project,
                                                             const std::string& request_id);
 
 /// As Store::add_simulation.

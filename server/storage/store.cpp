@@ -166,6 +166,9 @@ void Store::open_schema() {
     const int renewed = add_missing_properties(db);
     transaction.commit();
     if (renewed > 0) spdlog::info("lists can filter {} resources by newer fields", renewed);
+    SQLite::Statement projects(db, "SELECT name FROM projects");
+    const std::lock_guard lock(projects_mutex_);
+    while (projects.executeStep()) projects_.insert(projects.getColumn(0).getString());
     return true;
   });
 }
@@ -179,6 +182,29 @@ void Store::add_resources(const std::vector<NewResource>& resources, Microsecond
     transaction.commit();
     return true;
   });
+}
+
+void Store::add_project(const std::string& project, const std::vector<NewResource>& resources,
+                        Microseconds now) {
+  write({}, [&](Connection& db) {
+    SQLite::Transaction transaction(db);
+    Prepared insert(db, "INSERT INTO projects (name) VALUES (?) ON CONFLICT DO NOTHING");
+    insert.bind(1, project);
+    insert.exec();
+    for (const NewResource& each : resources) {
+      const std::string name = full_name(project, each.name);
+      if (!is_taken(db, name)) insert_resource(db, {name, each.body}, now);
+    }
+    transaction.commit();
+    return true;
+  });
+  const std::lock_guard lock(projects_mutex_);
+  projects_.insert(project);
+}
+
+bool Store::has_project(const std::string& project) const {
+  const std::lock_guard lock(projects_mutex_);
+  return projects_.contains(project);
 }
 
 std::optional<StoredResource> Store::resource(const std::string& name, const CallLimits& limits) {
@@ -223,15 +249,16 @@ Page<StoredResource> Store::revisions(const std::string& name, int before, int l
   });
 }
 
-std::vector<std::string> Store::resource_names(const std::string& collection,
+std::vector<std::string> Store::resource_names(const std::string& project,
+                                               const std::string& collection,
                                                const CallLimits& limits) {
   return read(limits, [&](Connection& db) {
     Prepared query(
         db,
         "SELECT name FROM resources WHERE collection = ? AND delete_time IS NULL ORDER BY name");
-    query.bind(1, collection);
+    query.bind(1, full_name(project, collection));
     std::vector<std::string> names;
-    while (query.executeStep()) names.push_back(query.getColumn(0).getString());
+    while (query.executeStep()) names.push_back(relative_name(query.getColumn(0).getString()));
     return names;
   });
 }
@@ -293,9 +320,23 @@ std::optional<StoredSimulation> Store::simulation(std::int64_t id, const CallLim
   return read(limits, [&](Connection& db) { return query_simulation(db, id); });
 }
 
-std::optional<StoredSimulation> Store::simulation_of_request(const std::string& request_id,
+std::optional<StoredSimulation> Store::numbered_simulation(const std::string& project,
+                                                           std::int64_t number,
+                                                           const CallLimits& limits) {
+  return read(limits, [&](Connection& db) -> std::optional<StoredSimulation> {
+    Prepared query(db, std::string(kSimulationColumns) + "WHERE project = ? AND number = ?");
+    query.bind(1, project);
+    query.bind(2, number);
+    if (!query.executeStep()) return std::nullopt;
+    return stored_simulation(query);
+  });
+}
+
+std::optional<StoredSimulation> Store::simulation_of_request(const std::string& project,
+                                                             const std::string& request_id,
                                                              const CallLimits& limits) {
-  return read(limits, [&](Connection& db) { return query_simulation_of_request(db, request_id); });
+  return read(limits,
+              [&](Connection& db) { return query_simulation_of_request(db, project, request_id); });
 }
 
 Page<StoredSimulation> Store::simulations(const SimulationQuery& query, const CallLimits& limits) {

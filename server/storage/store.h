@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,6 +50,16 @@ class Store {
   /// Adds the resources whose names do not exist, in one transaction. Existing ones, deleted or
   /// not, do not change.
   void add_resources(const std::vector<NewResource>& resources, Microseconds now);
+  /// Adds a project, unless it exists, and those of the resources that it does not have, in one
+  /// transaction. `resources` have relative names.
+  void add_project(const std::string& project, const std::vector<NewResource>& resources,
+                   Microseconds now);
+  /// Reads no row: the store remembers the names of all projects.
+  bool has_project(const std::string& project) const;
+
+  // A resource is stored and found under its full name (resource_names.h): a call about one project
+  // reads no row of another.
+
   /// Returns the current revision of a resource, also of a deleted one.
   std::optional<StoredResource> resource(const std::string& name, const CallLimits& limits = {});
   std::optional<StoredResource> revision(const std::string& name, int revision,
@@ -58,8 +69,9 @@ class Store {
   /// `limit` rows and `byte_limit` bytes, but at least one row.
   Page<StoredResource> revisions(const std::string& name, int before, int limit,
                                  std::size_t byte_limit, const CallLimits& limits = {});
-  /// Returns the names of all resources of a collection that are not deleted, sorted.
-  std::vector<std::string> resource_names(const std::string& collection,
+  /// Returns the relative names of all resources of a collection of a project that are not deleted,
+  /// sorted.
+  std::vector<std::string> resource_names(const std::string& project, const std::string& collection,
                                           const CallLimits& limits = {});
 
   /// Writes all resources in one transaction and returns them as stored. Returns nullopt, and
@@ -73,13 +85,19 @@ class Store {
                        const CallLimits& limits = {});
   bool undelete_resource(const StoredResource& present, const CallLimits& limits = {});
 
-  /// Adds a simulation, or returns the one that an earlier request with the same request_id added.
+  /// Adds a simulation, or returns the one that an earlier request with the same request_id added
+  /// to the same project.
   /// If not `may_wait`, adds it only if its result exists.
   Added add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait = true,
                        const CallLimits& limits = {});
+  /// Returns the simulation of a row, over all projects. Clients know numbers, not rows.
   std::optional<StoredSimulation> simulation(std::int64_t id, const CallLimits& limits = {});
-  /// Returns the simulation that a request with this request_id added.
-  std::optional<StoredSimulation> simulation_of_request(const std::string& request_id,
+  std::optional<StoredSimulation> numbered_simulation(const std::string& project,
+                                                      std::int64_t number,
+                                                      const CallLimits& limits = {});
+  /// Returns the simulation that a request with this request_id added to the project.
+  std::optional<StoredSimulation> simulation_of_request(const std::string& project,
+                                                        const std::string& request_id,
                                                         const CallLimits& limits = {});
   Page<StoredSimulation> simulations(const SimulationQuery& query, const CallLimits& limits = {});
   /// Protects a simulation from removal, or ends the protection. Returns the changed simulation;
@@ -203,6 +221,8 @@ class Store {
   std::optional<std::filesystem::path> migration_backup_;
   std::atomic<bool> has_unerased_purge_ = true;
   std::optional<DatabaseFiles> files_;  // set by the constructor when the files exist
+  mutable std::mutex projects_mutex_;
+  std::set<std::string> projects_;  // guarded by projects_mutex_; those of the database
 };
 
 }  // namespace tribodyn::server

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "server/contract/resource_names.h"
 #include "server/storage/properties.h"
 #include "server/storage/times.h"
 
@@ -22,14 +23,14 @@ struct Page {
 
 /// A resource before it is stored.
 struct NewResource {
-  std::string name;
-  std::string body;  ///< serialised message
+  std::string name;  ///< full name
+  std::string body;  ///< serialised message, whose name is the relative one
 };
 
 /// One revision of a resource.
 struct StoredResource {
   std::int64_t id = 0;  ///< id of the resource
-  std::string name;
+  std::string name;     ///< full name
   int revision = 0;
   bool is_present = true;  ///< true for the latest revision
   Microseconds create_time = 0;
@@ -63,7 +64,7 @@ struct Restriction {
   PropertyValue value;
 };
 
-/// Start of a page: after the resource with this name and, if ordered by a property, with this
+/// Start of a page: after the resource with this full name and, if ordered by a property, with this
 /// value.
 struct PageStart {
   PropertyValue value;
@@ -71,7 +72,8 @@ struct PageStart {
 };
 
 struct ResourceQuery {
-  std::string collection;
+  std::string project = kDefaultProject;
+  std::string collection;                 ///< without the project
   std::vector<Restriction> restrictions;  ///< all must be true
   std::string order_key;                  ///< empty: order by name
   bool descending = false;

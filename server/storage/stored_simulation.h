@@ -6,13 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "server/contract/resource_names.h"
 #include "server/storage/life_cycle.h"
 #include "server/storage/stored_resource.h"
 #include "server/storage/times.h"
 
 namespace tribodyn::server {
 
-/// Key of a stored result. Simulations with equal keys share the result, bit for bit.
+/// Key of a stored result. Simulations of one project with equal keys share the result, bit for
+/// bit.
 struct ResultKey {
   std::string input_hash;     ///< SHA-256, 64 hex digits
   std::string model_version;  ///< core/version.h
@@ -21,6 +23,7 @@ struct ResultKey {
 
 /// A simulation before it is stored.
 struct NewSimulation {
+  std::string project = kDefaultProject;
   std::string request;  ///< serialised Simulation
   ResultKey key;
   std::string ledger = {};  ///< serialised SimulationResult, assumptions and input warnings only
@@ -33,7 +36,8 @@ struct NewSimulation {
   int scheduling_class = 0;    ///< SchedulingClass
   double cost_seconds = 0;     ///< estimate, in seconds of one processor
   std::vector<std::pair<std::string, std::string>> labels = {};
-  // Revisions of its resources, e.g. "lubricants/paper-fluid-1@2"; each exists or is empty.
+  // Revisions of its resources, as relative names, e.g. "lubricants/paper-fluid-1@2"; each exists
+  // in the project or is empty.
   std::string lubricant_revision = {};
   std::string gear_set_revision = {};
   std::string surface_revision = {};
@@ -41,7 +45,9 @@ struct NewSimulation {
 };
 
 struct StoredSimulation {
-  std::int64_t id = 0;
+  std::int64_t id = 0;  ///< row, over all projects
+  std::string project;
+  std::int64_t number = 0;  ///< in its name; counts within the project
   StoredState state = StoredState::kQueued;
   int attempt = 1;
   std::int64_t sequence = 0;  ///< number of its latest event
@@ -62,22 +68,28 @@ struct StoredSimulation {
   std::string input_hash;
   std::string error_reason;
   std::string error_message;
-  // Revisions of its resources; empty if unknown.
+  // Revisions of its resources, as relative names; empty if unknown.
   std::string lubricant_revision;
   std::string gear_set_revision;
   std::string surface_revision;
   std::string vehicle_revision;
 };
 
-/// Selects and orders simulations: by time of creation, and equal times by id.
+/// Returns the full name of a stored simulation.
+inline std::string name_of(const StoredSimulation& simulation) {
+  return simulation_name(simulation.project, simulation.number);
+}
+
+/// Selects and orders simulations: by time of creation, and equal times by number.
 struct SimulationQuery {
+  std::string project = kDefaultProject;
   /// All must be true. Keys: those of property_fields("simulations"), "state" as its number, and
   /// "labels.KEY".
   std::vector<Restriction> restrictions = {};
   bool ascending = false;
   struct Place {
     Microseconds create_time = 0;
-    std::int64_t id = 0;
+    std::int64_t number = 0;
   };
   std::optional<Place> after = {};
   int limit = 0;

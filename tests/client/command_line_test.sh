@@ -307,6 +307,34 @@ out_has 'SUCCEEDED'
 expect 1 point --lubricant paper-fluid-2 --speed 51 --deadline-seconds 0.001 --method march
 err_has 'DEADLINE_EXCEEDED|deadline_seconds'
 
+echo "--- projects"
+expect 1 --project axles lubricants list
+err_has 'projects/axles does not exist'
+stop_server
+start_server --projects axles,gearboxes
+expect 0 --project axles lubricants create house-oil --like paper-fluid-1
+out_has 'house-oil'
+expect 0 --project axles lubricants list
+out_has '^house-oil '
+expect 0 lubricants list
+out_lacks '^house-oil '
+expect 1 lubricants get house-oil
+expect 0 lubricants get projects/axles/lubricants/house-oil --output json
+out_has '"name": "projects/axles/lubricants/house-oil"'
+expect 0 --project axles lubricants get house-oil --output json
+out_has '"name": "lubricants/house-oil"'
+expect 0 --project axles point --lubricant house-oil --speed 50 --model quasi-static --output json
+out_has '"name": "simulations/1"'
+expect 0 --project axles point --lubricant house-oil --speed 51 --model quasi-static --detach
+out_has 'tribodyn --project axles jobs watch 2'
+TRIBODYN_PROJECT=axles expect 0 jobs wait 1 2
+expect 0 --project axles lubricants update house-oil --density15 870
+expect 0 --project axles lubricants revisions house-oil
+out_has 'house-oil@2'
+expect 1 --project gearboxes jobs get 1
+expect 1 --project Axles jobs get 1
+err_has 'lower-case letters'
+
 echo "--- results outlive the server"
 expect 0 point --lubricant paper-fluid-3 --speed 50 --model quasi-static --output json
 name=$(sed -n 's,^ "name": "simulations/\(.*\)".*,\1,p' "$folder/out")

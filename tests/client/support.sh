@@ -12,7 +12,7 @@ failures=0
 
 start_server() {
   rm -f "$folder/port"
-  "$server" --listen 127.0.0.1:0 --database "$folder/db.sqlite" --port-file "$folder/port" \
+  "$server" --listen 127.0.0.1:0 --database "$folder/db.sqlite" --port-file "$folder/port" "$@" \
     >>"$folder/server.log" 2>&1 &
   server_pid=$!
   for _ in $(seq 600); do
@@ -64,6 +64,7 @@ expect() {
   [ "$code" -eq "$wanted" ] || fail "tribodyn $asked: exit code $code, not $wanted"
 }
 out_has() { grep -qE -- "$1" "$folder/out" || fail "tribodyn $asked: no '$1' on standard output"; }
+out_lacks() { ! grep -qE -- "$1" "$folder/out" || fail "tribodyn $asked: '$1' on standard output"; }
 err_has() { grep -qE -- "$1" "$folder/err" || fail "tribodyn $asked: no '$1' on standard error"; }
 out_lines() {
   local lines
@@ -84,7 +85,7 @@ out_is_json() {
 
 # Ignores the configuration file of the user who runs the test.
 export XDG_CONFIG_HOME=$folder/settings
-unset TRIBODYN_CONFIG TRIBODYN_OUTPUT TRIBODYN_TIMEOUT_SECONDS TRIBODYN_PROGRESS TRIBODYN_COLOR
+unset TRIBODYN_CONFIG TRIBODYN_PROJECT TRIBODYN_OUTPUT TRIBODYN_TIMEOUT_SECONDS TRIBODYN_PROGRESS TRIBODYN_COLOR
 
 finish() {
   [ "$failures" -eq 0 ] || echo "$failures failures"

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "core/gear/gear_set.h"
+#include "google/api/annotations.pb.h"
 #include "proto/enum_names.h"
 #include "server/application/element_limits.h"
 #include "server/application/list_filter.h"
@@ -63,6 +65,40 @@ TEST(Contract, HoldsNothingThatTheBaselineLacks) {
 }
 
 TEST(Contract, IsNamedAndDocumentedByItsRules) { EXPECT_THAT(lint(present_contract()), IsEmpty()); }
+
+std::string path_of(const google::api::HttpRule& rule) {
+  for (const std::string& path : {rule.get(), rule.post(), rule.patch(), rule.delete_()}) {
+    if (!path.empty()) return path;
+  }
+  return {};
+}
+
+/// A name of the project `default` has a short form, and so has its route.
+TEST(Contract, RoutesEveryMethodOfResourcesWithAProjectAndWithout) {
+  int routes = 0;
+  const FileDescriptorSet contract = present_contract();
+  for (const auto& file : contract.file()) {
+    for (const auto& service : file.service()) {
+      if (service.name() == "SchemaService") continue;
+      for (const auto& method : service.method()) {
+        const auto& rule = method.options().GetExtension(google::api::http);
+        ASSERT_EQ(rule.additional_bindings_size(), 1) << method.name();
+        const auto& without = rule.additional_bindings(0);
+        const std::string path = path_of(rule);
+        const std::string of_parent =
+            std::regex_replace(path, std::regex(R"(^/v1/\{parent=projects/\*\}/)"), "/v1/");
+        const std::string short_path =
+            std::regex_replace(of_parent, std::regex(R"(=projects/\*/)"), "=");
+        EXPECT_NE(short_path, path) << method.name();
+        EXPECT_EQ(path_of(without), short_path) << method.name();
+        EXPECT_EQ(without.body(), rule.body()) << method.name();
+        EXPECT_EQ(without.pattern_case(), rule.pattern_case()) << method.name();
+        ++routes;
+      }
+    }
+  }
+  EXPECT_GT(routes, 40);
+}
 
 const FieldDescriptor& field(const std::string& message, const std::string& name) {
   v1::Simulation::descriptor();  // else the linker may leave files out

@@ -206,7 +206,7 @@ std::vector<std::string> lost(const std::string& path, const Acknowledged& told)
   std::vector<std::string> out;
   Store store(path);
   for (const auto& [request_id, id] : told.simulations) {
-    const auto stored = store.simulation_of_request(request_id);
+    const auto stored = store.simulation_of_request("default", request_id);
     if (!stored || stored->id != id) out.push_back(request_id);
   }
   if (!out.empty()) return out;

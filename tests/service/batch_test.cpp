@@ -65,7 +65,7 @@ class BatchTest : public testing::Test {
     if (!found.ok()) ADD_FAILURE() << found.error().message();
     return found.ok() ? found.message() : v1::Lubricant();
   }
-  std::size_t count() { return bench_.store().resource_names("lubricants").size(); }
+  std::size_t count() { return bench_.store().resource_names("default", "lubricants").size(); }
 
   void expect_nothing_written(const google::rpc::Status& status, google::rpc::Code code) {
     EXPECT_EQ(status.code(), code) << status.message();

@@ -131,7 +131,7 @@ class CallDispatcherTest : public testing::Test {
     return call.wait();
   }
   std::string metrics() { return bench_.jobs().metrics().text({}); }
-  std::size_t count() { return bench_.store().resource_names("lubricants").size(); }
+  std::size_t count() { return bench_.store().resource_names("default", "lubricants").size(); }
 
   const LogCapture log_;
   Bench bench_;

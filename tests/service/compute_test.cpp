@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <numeric>
 #include <random>
@@ -127,39 +129,45 @@ TEST(PreparedGearSets, GiveTheSameBitsToManyThreads) {
   EXPECT_LE(gear_sets.size(), 4U) << "one a thread";
 }
 
+const auto kFirst = std::make_shared<const v1::GearSet>();
+const auto kSecond = std::make_shared<const v1::GearSet>();
+
 TEST(PreparedGearSets, AreLentToOneStudyAtATime) {
   const SimulationInputs inputs = inputs_for(point_simulation());
   const Scene physical = scene(inputs);
   PreparedGearSets gear_sets;
-  const auto first = gear_sets.take("gearSets/reference-axle@1", physical);
-  const auto second = gear_sets.take("gearSets/reference-axle@1", physical);
+  const auto first = gear_sets.take(kFirst, physical);
+  const auto second = gear_sets.take(kFirst, physical);
   EXPECT_NE(first, second);
   const PreparedGearSet* const returned = second.get();
-  gear_sets.give_back("gearSets/reference-axle@1", physical.options, second);
-  EXPECT_EQ(gear_sets.take("gearSets/reference-axle@1", physical).get(), returned);
+  gear_sets.give_back(kFirst, physical.options, second);
+  EXPECT_EQ(gear_sets.take(kFirst, physical).get(), returned);
 }
 
-TEST(PreparedGearSets, DifferByRevisionAndModel) {
+TEST(PreparedGearSets, DifferByGearSetAndModel) {
   Scene physical = scene(inputs_for(point_simulation()));
   PreparedGearSets gear_sets;
-  const auto first = gear_sets.take("gearSets/reference-axle@1", physical);
-  gear_sets.give_back("gearSets/reference-axle@1", physical.options, first);
-  EXPECT_NE(gear_sets.take("gearSets/reference-axle@2", physical), first);
+  const auto first = gear_sets.take(kFirst, physical);
+  gear_sets.give_back(kFirst, physical.options, first);
+  EXPECT_NE(gear_sets.take(kSecond, physical), first);
   physical.options.as_published.eq22_inverted_ratio = true;
-  EXPECT_NE(gear_sets.take("gearSets/reference-axle@1", physical), first);
+  EXPECT_NE(gear_sets.take(kFirst, physical), first);
   physical.options.as_published.eq22_inverted_ratio = false;
-  EXPECT_EQ(gear_sets.take("gearSets/reference-axle@1", physical), first);
+  EXPECT_EQ(gear_sets.take(kFirst, physical), first);
 }
 
 TEST(PreparedGearSets, KeepRecentlyUsedOnesAndDropLargeOnes) {
   const Scene physical = scene(inputs_for(point_simulation()));
   PreparedGearSets gear_sets;
-  const auto revision = [](std::size_t number) {
-    return "gearSets/reference-axle@" + std::to_string(number);
+  std::map<std::size_t, PreparedGearSets::Source> sources;
+  const auto source = [&](std::size_t number) {
+    auto& out = sources[number];
+    if (!out) out = std::make_shared<const v1::GearSet>();
+    return out;
   };
   const auto use = [&](std::size_t number) {
-    auto taken = gear_sets.take(revision(number), physical);
-    gear_sets.give_back(revision(number), physical.options, taken);
+    auto taken = gear_sets.take(source(number), physical);
+    gear_sets.give_back(source(number), physical.options, taken);
     return taken;
   };
   const auto first = use(1);
@@ -171,10 +179,10 @@ TEST(PreparedGearSets, KeepRecentlyUsedOnesAndDropLargeOnes) {
   EXPECT_EQ(use(1), first);
   EXPECT_NE(use(2), second) << "used longest ago";
 
-  const auto large = gear_sets.take(revision(1), physical);
+  const auto large = gear_sets.take(source(1), physical);
   large->grids().with_steps(static_cast<int>(PreparedGearSets::kMaximumSteps) + 1);
-  gear_sets.give_back(revision(1), physical.options, large);
-  EXPECT_NE(gear_sets.take(revision(1), physical), large);
+  gear_sets.give_back(source(1), physical.options, large);
+  EXPECT_NE(gear_sets.take(source(1), physical), large);
 }
 
 TEST(PreparedGearSets, AreSharedBySimulationsAndDroppedAfterAnException) {

@@ -105,6 +105,12 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
     EXPECT_EQ(stored->body, resource.second) << name;
   }
   EXPECT_EQ(store.simulations({.limit = 100, .byte_limit = 1 << 30}).rows.size(), 7U);
+  for (std::int64_t id = 1; id <= 7; ++id) {
+    EXPECT_EQ(store.numbered_simulation("default", id)->id, id);
+    EXPECT_EQ(name_of(*store.simulation(id)), "simulations/" + std::to_string(id));
+  }
+  EXPECT_TRUE(store.has_project("default"));
+  EXPECT_FALSE(store.has_project("acme"));
   EXPECT_EQ(store.simulation(1)->lubricant_revision, "lubricants/2@1");
   EXPECT_EQ(store.simulation(1)->gear_set_revision, "gearSets/B@1");
   EXPECT_EQ(store.simulation(2)->gear_set_revision, "gearSets/A@1")
@@ -156,7 +162,7 @@ TEST_F(MaintenanceTest, ListsFindResourcesThatWereStoredBeforeAFieldWasAdded) {
   query.order_key = "lims_id";
   query.limit = 100;
   query.byte_limit = 1'000'000;
-  const std::size_t all = store.resource_names("lubricants").size();
+  const std::size_t all = store.resource_names("default", "lubricants").size();
   EXPECT_GT(all, 0U);
   EXPECT_EQ(store.resources(query).rows.size(), all) << "ordered by the field";
   query.order_key.clear();

@@ -13,6 +13,7 @@
 
 #include "google/rpc/code.pb.h"
 #include "server/application/errors.h"
+#include "server/storage/seeds.h"
 #include "server/transport/http/rest_answer.h"
 #include "server/transport/http/rest_handler.h"
 #include "tests/service/contract_methods.h"
@@ -85,6 +86,20 @@ TEST_F(RestTest, GetAnswersTheResourceWithNamesInSnakeCaseAndItsZeros) {
   EXPECT_TRUE(fluid["pressure_viscosity_coefficient_per_pascal"].is_number());
   EXPECT_EQ(fluid["external_sample_id"], "") << "an empty text is printed";
   EXPECT_EQ(response.headers.at("ETag"), "\"" + fluid["etag"].get<std::string>() + "\"");
+}
+
+TEST_F(RestTest, AProjectIsAPartOfThePath) {
+  bench_.store().add_project("acme", seed_resources(), 1);
+  json fluid = parsed(send("GET", "/v1/projects/acme/lubricants/paper-fluid-1"));
+  EXPECT_EQ(fluid["name"], "projects/acme/lubricants/paper-fluid-1");
+  const HttpResponse made =
+      send("POST", "/v1/projects/acme/lubricants?lubricant_id=mine", fluid.dump());
+  ASSERT_EQ(made.status, 200) << made.body;
+  EXPECT_EQ(parsed(made)["name"], "projects/acme/lubricants/mine");
+  EXPECT_EQ(send("GET", "/v1/projects/acme/lubricants/mine").status, 200);
+  EXPECT_EQ(send("GET", "/v1/projects/acme/lubricants/mine:listRevisions").status, 200);
+  EXPECT_EQ(send("GET", "/v1/lubricants/mine").status, 404);
+  EXPECT_EQ(send("GET", "/v1/projects/none/lubricants").status, 404);
 }
 
 TEST_F(RestTest, ResourceIsCreatedUpdatedAndDeletedWithItsEtag) {

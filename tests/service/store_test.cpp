@@ -70,7 +70,7 @@ TEST_F(StoreTest, ResourcesArePagedByNumberAndBytesWithinTheirCollection) {
   EXPECT_TRUE(page.more);
   page = store.resources(all_of_b(10, 50, "b/1"));
   EXPECT_EQ(page.rows.size(), 1U) << "one row always comes, however large";
-  EXPECT_EQ(store.resource_names("b").size(), 3U);
+  EXPECT_EQ(store.resource_names("default", "b").size(), 3U);
 }
 
 TEST_F(StoreTest, AnUpdateAddsARevisionAndKeepsTheOthers) {
@@ -127,7 +127,7 @@ TEST_F(StoreTest, ADeletedResourceIsNotListedAndIsUndeletedUnchanged) {
   ASSERT_TRUE(store.delete_resource(*store.resource("b/1"), 5));
   EXPECT_EQ(store.resource("b/1")->delete_time, 5);
   EXPECT_TRUE(store.resources(all_of_b(10, 1000)).rows.empty());
-  EXPECT_TRUE(store.resource_names("b").empty());
+  EXPECT_TRUE(store.resource_names("default", "b").empty());
   ResourceQuery with_deleted = all_of_b(10, 1000);
   with_deleted.show_deleted = true;
   EXPECT_EQ(store.resources(with_deleted).rows.size(), 1U);

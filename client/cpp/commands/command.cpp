@@ -17,6 +17,10 @@ void add_common_flags(FlagList& flags, CommonOptions& options) {
       "Address of tribodynd; unix:PATH for a Unix socket. Default: TRIBODYN_SERVER, else the "
       "configuration file, else 127.0.0.1:50651.",
       [&](const std::string& text) { options.server = text; });
+  flags.text("--project", "NAME",
+             "Project of the resources and jobs; names without a project mean its own. Default: "
+             "default.",
+             [&](const std::string& text) { options.project = text; });
   flags.number("--timeout-seconds", {"s", "above 0 to 86400", "30"},
                "Time limit of one call; it does not limit the run time of a simulation",
                [&](double value) { options.timeout_seconds = value; });

@@ -19,9 +19,10 @@ struct ResourceKind;
 
 enum class ProgressChoice { kAuto, kLines, kNone };
 
-/// Options of every command: the server and the form of the output.
+/// Options of every command: the server, the project and the form of the output.
 struct CommonOptions {
   std::string server;
+  std::string project = kDefaultProject;
   double timeout_seconds = 30;
   OutputFormat output_format = OutputFormat::kTable;
   ColourChoice colour = ColourChoice::kAuto;
@@ -31,7 +32,8 @@ struct CommonOptions {
   ProgressForm progress_form() const;
 
   Connection connect() const {
-    return Connection(server_address(server), std::chrono::duration<double>(timeout_seconds));
+    return Connection(server_address(server), std::chrono::duration<double>(timeout_seconds),
+                      project);
   }
 };
 

@@ -183,7 +183,8 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
   if (!scenario.detach) return follow(connection, submitted, labels, options.progress_form());
   for (const v1::Simulation& simulation : submitted) {
     std::cout << simulation.name() << "  " << state_text(simulation.state())
-              << "  watch: tribodyn jobs watch " << resource_id(simulation.name()) << "\n";
+              << "  watch: " << program_of(connection) << " jobs watch "
+              << resource_id(simulation.name()) << "\n";
   }
   return {};
 }

@@ -13,7 +13,8 @@ std::string server_address(const std::string& address) {
   return environment != nullptr && *environment != '\0' ? environment : kDefaultServer;
 }
 
-Connection::Connection(std::string address, std::chrono::duration<double> timeout)
+Connection::Connection(std::string address, std::chrono::duration<double> timeout,
+                       std::string project)
     : services_(std::make_unique<Services>()) {
   grpc::ChannelArguments arguments;
   // With BDP probes, gRPC would buffer megabytes of a watch stream that is not read.
@@ -25,6 +26,7 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   arguments.SetMaxReceiveMessageSize(16 << 20);
   services_->address = std::move(address);
   services_->timeout = timeout;
+  services_->project = std::move(project);
   services_->channel =
       grpc::CreateCustomChannel(services_->address, grpc::InsecureChannelCredentials(), arguments);
   services_->lubricants = v1::LubricantService::NewStub(services_->channel);
@@ -41,6 +43,8 @@ Connection::Connection(Connection&& other) noexcept = default;
 Connection& Connection::operator=(Connection&& other) noexcept = default;
 
 const std::string& Connection::address() const { return services_->address; }
+
+const std::string& Connection::project() const { return services_->project; }
 
 v1::Schema Connection::schema(const std::string& message) {
   v1::GetSchemaRequest request;

@@ -36,6 +36,7 @@ void Connection::stream_history(const std::string& name, const HistoryOptions& o
                                 const std::function<void(const HistoryRows&)>& on_rows) {
   v1::ReadHistoryRequest request;
   request.set_name(name);
+  add_project(services_->project, request);
   *request.mutable_columns() = {options.columns.begin(), options.columns.end()};
   request.set_max_points(options.maximum_points);
   std::optional<v1::HistorySchema> schema;

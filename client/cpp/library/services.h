@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "client/cpp/library/project_names.h"
 #include "client/cpp/library/retry.h"
 #include "client/cpp/library/status.h"
 #include "tribodyn/client/connection.h"
@@ -27,6 +28,7 @@ inline constexpr int kLargestPage = 1000;  ///< most entries that the server lis
 struct Connection::Services {
   std::string address;
   std::chrono::duration<double> timeout;
+  std::string project;
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::LubricantService::Stub> lubricants;
   std::unique_ptr<v1::GearSetService::Stub> gear_sets;
@@ -36,13 +38,14 @@ struct Connection::Services {
   std::unique_ptr<v1::ContactService::Stub> contacts;
   std::unique_ptr<v1::SchemaService::Stub> schemas;
 
-  /// Makes one call within the time limit. Retries with pauses where that is safe: when the server
-  /// was lost or turned the request away.
+  /// Makes one call about the project within the time limit. Retries with pauses where that is
+  /// safe: when the server was lost or turned the request away.
   template <class Stub, class Request, class Response>
   Response call(Stub& stub,
                 grpc::Status (Stub::*method)(grpc::ClientContext*, const Request&, Response*),
-                const Request& request) const {
+                Request request) const {
     using std::chrono::system_clock;
+    add_project(project, request);
     const auto deadline =
         system_clock::now() + std::chrono::duration_cast<system_clock::duration>(timeout);
     Backoff backoff;
@@ -52,7 +55,10 @@ struct Connection::Services {
       context.set_deadline(deadline);
       Response response;
       const grpc::Status status = (stub.*method)(&context, request, &response);
-      if (status.ok()) return response;
+      if (status.ok()) {
+        remove_project(project, response);
+        return response;
+      }
       if (never_connected(status) && !was_connected) {
         // Nothing was sent. Retry once: gRPC may report a connection in progress as failed.
         if (tries == 1 && channel->WaitForConnected(

@@ -108,6 +108,7 @@ v1::Simulation Connection::wait_for_end(
     const std::stop_token& stop) {
   v1::WatchSimulationRequest request;
   request.set_name(name);
+  add_project(services_->project, request);
   using std::chrono::system_clock;
   // Restarts a watch that does not end, to notice a connection that died silently.
   const auto one_watch = std::chrono::duration_cast<system_clock::duration>(

@@ -78,18 +78,24 @@ class Watches {
   std::size_t open_ = 0;
 };
 
-std::string commands_that_resume(const std::vector<v1::Simulation>& simulations,
+std::string commands_that_resume(const std::string& program,
+                                 const std::vector<v1::Simulation>& simulations,
                                  const std::vector<JobProgress>& picture) {
   std::string names;
   for (std::size_t i = 0; i < simulations.size(); ++i) {
     if (!picture[i].ended) names += " " + resource_id(simulations[i].name());
   }
   if (names.empty()) return "";
-  return "\n  The simulations go on. Watch them:   tribodyn jobs watch" + names +
-         "\n                         Cancel them:  tribodyn jobs cancel" + names;
+  return "\n  The simulations go on. Watch them:   " + program + " jobs watch" + names +
+         "\n                         Cancel them:  " + program + " jobs cancel" + names;
 }
 
 }  // namespace
+
+std::string program_of(const Connection& connection) {
+  if (connection.project() == kDefaultProject) return "tribodyn";
+  return "tribodyn --project " + connection.project();
+}
 
 std::string state_text(v1::Simulation::State state) {
   switch (state) {
@@ -141,11 +147,13 @@ std::vector<v1::Simulation> follow(Connection& connection,
   threads.clear();
 
   if (open) {
-    throw Failure(kExitInterrupted, "interrupted." + commands_that_resume(simulations, picture));
+    throw Failure(kExitInterrupted, "interrupted." + commands_that_resume(program_of(connection),
+                                                                          simulations, picture));
   }
   if (const auto error = watches.first_failure()) {
     const Failure failure(*error);
-    throw Failure(failure.exit_code(), failure.what() + commands_that_resume(simulations, picture));
+    throw Failure(failure.exit_code(), failure.what() + commands_that_resume(program_of(connection),
+                                                                             simulations, picture));
   }
   return ended;
 }

@@ -8,6 +8,10 @@
 
 namespace tribodyn::client {
 
+/// Returns how the command line is called for the project of a connection: "tribodyn" or
+/// "tribodyn --project acme".
+std::string program_of(const Connection& connection);
+
 /// Returns "queued", "running", "succeeded", ...
 std::string state_text(v1::Simulation::State state);
 

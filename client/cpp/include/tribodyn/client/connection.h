@@ -21,6 +21,7 @@
 namespace tribodyn::client {
 
 inline constexpr char kDefaultServer[] = "127.0.0.1:50651";
+inline constexpr char kDefaultProject[] = "default";
 inline constexpr char kServerVariable[] = "TRIBODYN_SERVER";
 
 /// Returns the address of the server: `address` unless it is empty, else the environment variable
@@ -112,20 +113,23 @@ struct HistoryRows {
   std::vector<std::vector<double>> columns;
 };
 
-/// A server and its services. Safe for concurrent use. The constructor sends nothing. Every call
-/// throws ServiceError if it fails. A call retries within the time limit, where that is safe, when
-/// the server is lost or turns the request away. `Resource` is v1::Lubricant, v1::GearSet,
-/// v1::Surface or v1::Vehicle.
+/// A server, its services and a project. Names without a project mean resources of this project,
+/// and names of its resources are answered without it. Safe for concurrent use. The constructor
+/// sends nothing. Every call throws ServiceError if it fails. A call retries within the time limit,
+/// where that is safe, when the server is lost or turns the request away. `Resource` is
+/// v1::Lubricant, v1::GearSet, v1::Surface or v1::Vehicle.
 class Connection {
  public:
   /// `timeout` limits every call except wait_for_end() and the reading of histories.
   explicit Connection(std::string address,
-                      std::chrono::duration<double> timeout = std::chrono::seconds(30));
+                      std::chrono::duration<double> timeout = std::chrono::seconds(30),
+                      std::string project = kDefaultProject);
   ~Connection();
   Connection(Connection&& other) noexcept;
   Connection& operator=(Connection&& other) noexcept;
 
   const std::string& address() const;
+  const std::string& project() const;
 
   /// Creates a resource under `id` (empty: the id in its name) and returns it as stored: with
   /// fitted and estimated parameters and the provenance of each.

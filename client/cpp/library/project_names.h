@@ -1,0 +1,17 @@
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <string>
+
+namespace tribodyn::client {
+
+/// States the project in a request: as its parent, or else in the relative names that it is about.
+/// A name with a project keeps it. A request of the project `default` stays as it is.
+void add_project(const std::string& project, google::protobuf::Message& request);
+
+/// Removes the project from the names of the resources of an answer, so that they are relative to
+/// the project of the connection. A name of another project keeps it.
+void remove_project(const std::string& project, google::protobuf::Message& response);
+
+}  // namespace tribodyn::client
