@@ -1,0 +1,336 @@
+// Tests of the states of a stream, without a transport: in random orders, and from several threads.
+#include "server/application/stream_machine.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "google/rpc/code.pb.h"
+#include "server/application/workers.h"
+#include "tests/service/support.h"
+#include "tests/support/run_length.h"
+#include "tribodyn/v1/simulations.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = StreamMachine::Clock;
+
+google::rpc::Status status_of(google::rpc::Code code) {
+  google::rpc::Status out;
+  out.set_code(code);
+  return out;
+}
+
+/// Messages 1, 2, ... as they become available. Complains if it is asked by two threads at once.
+class CountingSource : public AnyMessageSource {
+ public:
+  Step next_message(google::protobuf::Message& out) override {
+    EXPECT_FALSE(is_asked_.exchange(true)) << "two threads ask at once";
+    EXPECT_FALSE(has_ended_) << "asked after the end";
+    Step step = Step::kWait;
+    if (given_ < available) {
+      static_cast<v1::SimulationEvent&>(out).set_sequence(++given_);
+      step = Step::kMessage;
+    } else if (is_closed && given_ >= available) {
+      has_ended_ = true;
+      step = Step::kEnd;
+    }
+    is_asked_ = false;
+    return step;
+  }
+
+  std::atomic<int> available = 0;
+  std::atomic<bool> is_closed = false;  // set after the last message is available
+
+ private:
+  std::atomic<bool> is_asked_ = false;
+  int given_ = 0;  // the machine lets one thread ask at a time
+  bool has_ended_ = false;
+};
+
+/// What both transports of the tests check.
+class CheckedTransport : public StreamTransport {
+ public:
+  std::optional<google::rpc::Status> write(const google::protobuf::Message& message) override {
+    const std::lock_guard lock(mutex_);
+    EXPECT_FALSE(is_writing_) << "two writes at once";
+    EXPECT_FALSE(end_) << "a write after the end";
+    is_writing_ = true;
+    EXPECT_EQ(static_cast<const v1::SimulationEvent&>(message).sequence(), ++begun_);
+    return std::nullopt;
+  }
+  void finish(const google::rpc::Status& status) override {
+    const std::lock_guard lock(mutex_);
+    EXPECT_FALSE(is_writing_) << "an end during a write";
+    EXPECT_FALSE(end_) << "two ends";
+    end_ = status;
+  }
+  void cut_off() override { is_cut_off_ = true; }
+
+  /// Ends the write that is under way. Returns false if there is none.
+  bool end_write() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(is_writing_, false);
+  }
+  bool is_writing() const {
+    const std::lock_guard lock(mutex_);
+    return is_writing_;
+  }
+  std::optional<google::rpc::Status> end() const {
+    const std::lock_guard lock(mutex_);
+    return end_;
+  }
+  int begun() const {
+    const std::lock_guard lock(mutex_);
+    return begun_;
+  }
+  bool is_cut_off() const { return is_cut_off_; }
+
+ private:
+  mutable std::mutex mutex_;
+  bool is_writing_ = false;                 // guarded by mutex_
+  int begun_ = 0;                           // guarded by mutex_; number of writes
+  std::optional<google::rpc::Status> end_;  // guarded by mutex_
+  std::atomic<bool> is_cut_off_ = false;
+};
+
+/// Steps wait until the test runs them.
+class ManualTransport : public CheckedTransport {
+ public:
+  void run_step() override {
+    EXPECT_FALSE(is_step_due) << "two steps at once";
+    is_step_due = true;
+  }
+  bool is_step_due = false;
+};
+
+struct Manual {
+  explicit Manual(Clock::duration unread = std::chrono::minutes(1),
+                  Clock::duration lasts = std::chrono::hours(1))
+      : machine(transport, v1::SimulationEvent::default_instance(), unread), begin(Clock::now()) {
+    machine.open(source, begin + lasts);
+  }
+  bool run_step() {
+    if (!std::exchange(transport.is_step_due, false)) return false;
+    machine.step();
+    return true;
+  }
+  bool end_write(bool ok = true) {
+    if (!transport.end_write()) return false;
+    machine.written(ok);
+    return true;
+  }
+  void feed() {
+    ++source->available;
+    machine.changed();
+  }
+  void run_all() {
+    while (run_step() || end_write()) {
+    }
+  }
+  int code() const { return transport.end() ? transport.end()->code() : -1; }
+
+  std::shared_ptr<CountingSource> source = std::make_shared<CountingSource>();
+  ManualTransport transport;
+  StreamMachine machine;
+  Clock::time_point begin;
+};
+
+TEST(StreamMachine, WritesEveryMessageOnceInEveryOrderOfEvents) {
+  const int schedules = kUnderSanitizer ? 2000 : 20'000;
+  for (int seed = 0; seed < schedules; ++seed) {
+    std::mt19937 random(static_cast<unsigned>(seed));
+    Manual stream;
+    bool is_disturbed = false;
+    for (int i = 0; i < 60; ++i) {
+      switch (random() % 12) {
+        case 0:
+        case 1:
+        case 2:
+          stream.feed();
+          break;
+        case 3:
+          stream.machine.changed();
+          break;
+        case 4:
+          stream.machine.look_at_clock(stream.begin + milliseconds(random() % 1000));
+          break;
+        case 5:
+          if (random() % 20 == 0) {
+            stream.machine.close(status_of(google::rpc::UNAVAILABLE));
+            is_disturbed = true;
+          }
+          break;
+        case 6:
+          if (random() % 20 == 0) is_disturbed |= stream.end_write(false);
+          break;
+        case 7:
+        case 8:
+          stream.end_write();
+          break;
+        default:
+          stream.run_step();
+      }
+      const bool is_idle = !stream.transport.is_step_due && !stream.transport.is_writing();
+      if (is_idle && !stream.transport.end()) {
+        ASSERT_EQ(stream.transport.begun(), stream.source->available)
+            << "schedule " << seed << ": nobody will ask for what is available";
+      }
+    }
+    stream.source->is_closed = true;
+    stream.machine.changed();
+    stream.run_all();
+    ASSERT_TRUE(stream.transport.end()) << "schedule " << seed;
+    if (!is_disturbed) {
+      ASSERT_EQ(stream.code(), google::rpc::OK);
+      ASSERT_EQ(stream.transport.begun(), stream.source->available) << "schedule " << seed;
+    }
+    stream.machine.changed();
+    stream.machine.close(status_of(google::rpc::CANCELLED));
+    ASSERT_FALSE(stream.transport.is_step_due) << "nothing happens after the end";
+  }
+}
+
+TEST(StreamMachine, HoldsOneMessageForASlowClient) {
+  Manual stream;
+  for (int i = 0; i < 100; ++i) stream.feed();
+  stream.run_step();
+  for (int i = 0; i < 100; ++i) stream.machine.changed();
+  EXPECT_FALSE(stream.transport.is_step_due) << "it is asked again when the first one is written";
+  EXPECT_EQ(stream.transport.begun(), 1);
+}
+
+TEST(StreamMachine, CutsOffAClientThatDoesNotReadAMessage) {
+  Manual stream(milliseconds(100));
+  stream.feed();
+  stream.run_step();
+  const auto now = Clock::now();
+  const auto next = stream.machine.look_at_clock(now);
+  ASSERT_TRUE(next);
+  EXPECT_LE(*next, now + milliseconds(100));
+  EXPECT_FALSE(stream.transport.is_cut_off());
+  EXPECT_FALSE(stream.machine.look_at_clock(now + milliseconds(100)));
+  EXPECT_TRUE(stream.transport.is_cut_off());
+  EXPECT_TRUE(stream.end_write(false));
+  EXPECT_EQ(stream.code(), google::rpc::CANCELLED);
+}
+
+TEST(StreamMachine, AnIdleStreamEndsAtItsTime) {
+  Manual stream(std::chrono::minutes(1), milliseconds(100));
+  stream.run_step();
+  EXPECT_EQ(stream.machine.look_at_clock(stream.begin), stream.begin + milliseconds(100));
+  stream.machine.look_at_clock(stream.begin + milliseconds(100));
+  EXPECT_EQ(stream.code(), google::rpc::DEADLINE_EXCEEDED);
+}
+
+TEST(StreamMachine, AWriteMayEndSoonAfterTheStreamsTime) {
+  for (const bool client_reads : {true, false}) {
+    Manual stream(std::chrono::minutes(1), milliseconds(100));
+    stream.feed();
+    stream.feed();
+    stream.run_step();
+    const auto end = stream.begin + milliseconds(100);
+    EXPECT_EQ(stream.machine.look_at_clock(end), end + StreamMachine::kLastWrite);
+    EXPECT_FALSE(stream.transport.end()) << "a write is under way";
+    if (client_reads) {
+      stream.end_write();
+      stream.run_all();
+      EXPECT_EQ(stream.code(), google::rpc::DEADLINE_EXCEEDED);
+      EXPECT_EQ(stream.transport.begun(), 1) << "no further message after the end";
+    } else {
+      stream.machine.look_at_clock(end + StreamMachine::kLastWrite);
+      EXPECT_TRUE(stream.transport.is_cut_off());
+    }
+  }
+}
+
+TEST(StreamMachine, AShutdownWhileItIsOpenedEndsIt) {
+  ManualTransport transport;
+  StreamMachine machine(transport, v1::SimulationEvent::default_instance(),
+                        std::chrono::minutes(1));
+  machine.close(status_of(google::rpc::UNAVAILABLE));
+  EXPECT_FALSE(transport.end()) << "whoever opens it owns it";
+  machine.open(std::make_shared<CountingSource>(), Clock::now() + std::chrono::hours(1));
+  machine.step();
+  EXPECT_EQ(transport.end()->code(), google::rpc::UNAVAILABLE);
+}
+
+/// Steps and ends of writes on threads of their own.
+class ThreadedTransport : public CheckedTransport {
+ public:
+  explicit ThreadedTransport(Workers& workers) : workers_(workers) {}
+  void run_step() override {
+    run([this] { machine->step(); });
+  }
+  std::optional<google::rpc::Status> write(const google::protobuf::Message& message) override {
+    CheckedTransport::write(message);
+    run([this] {
+      if (end_write()) machine->written(!is_cut_off());
+    });
+    return std::nullopt;
+  }
+  StreamMachine* machine = nullptr;
+
+ private:
+  void run(std::function<void()> task) { workers_.run(0, task); }
+  Workers& workers_;
+};
+
+TEST(StreamMachine, WritesEveryMessageOnceFromManyThreads) {
+  constexpr int kMessages = 200;
+  const int streams = kUnderSanitizer ? 20 : 100;
+  for (int round = 0; round < streams; ++round) {
+    const auto source = std::make_shared<CountingSource>();
+    const bool is_closed_early = round % 4 == 3;
+    std::unique_ptr<ThreadedTransport> transport;
+    std::unique_ptr<StreamMachine> machine;
+    {
+      constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+      Workers workers(3, kUnlimited, kUnlimited);
+      transport = std::make_unique<ThreadedTransport>(workers);
+      machine = std::make_unique<StreamMachine>(*transport, v1::SimulationEvent::default_instance(),
+                                                std::chrono::minutes(1));
+      transport->machine = machine.get();
+      std::vector<std::thread> threads;
+      for (int i = 0; i < 2; ++i) {
+        threads.emplace_back([&] {
+          for (int k = 0; k < kMessages / 2; ++k) {
+            ++source->available;
+            machine->changed();
+            if (k % 16 == 0) std::this_thread::yield();
+          }
+        });
+      }
+      machine->open(source, Clock::now() + std::chrono::hours(1));
+      threads.emplace_back([&] {
+        for (int k = 0; k < 50; ++k) {
+          machine->look_at_clock();
+          machine->changed();
+        }
+        if (is_closed_early) machine->close(status_of(google::rpc::UNAVAILABLE));
+      });
+      for (std::thread& thread : threads) thread.join();
+      source->is_closed = true;
+      machine->changed();
+      ASSERT_TRUE(eventually([&] { return transport->end().has_value(); })) << "round " << round;
+    }
+    if (is_closed_early) continue;
+    EXPECT_EQ(transport->end()->code(), google::rpc::OK);
+    EXPECT_EQ(transport->begun(), kMessages);
+  }
+}
+
+}  // namespace
+}  // namespace tribodyn::server
