@@ -444,5 +444,23 @@ completed() {
 [ "$(completed 'tribodyn gear-sets exp')" = 'export ' ] || fail "completion of a command"
 [ "$(completed 'tribodyn validate units-')" = 'units-2.json ' ] || fail "completion of a file"
 
+echo "--- a batch whose full answer would be too large is written all the same"
+text=$(printf 'd%.0s' {1..3900})
+numbers='"measurements": {"kinematic_viscosity_40_celsius_square_millimetres_per_second": 73,
+  "kinematic_viscosity_100_celsius_square_millimetres_per_second": 9}'
+{
+  printf '{"lubricants": ['
+  for i in {1..1100}; do
+    [ "$i" -eq 1 ] || printf ','
+    printf '{"name": "lubricants/many-%s", "description": "%s", %s}' "$i" "$text" "$numbers"
+  done
+  printf ']}'
+} >many.json
+expect 0 lubricants import many.json --output csv
+out_lines 1101
+expect 0 lubricants import many.json --replace --validate-only
+expect 1 lubricants import many.json --replace --validate-only --output json
+err_has 'one answer has no room for 1100 lubricants in full: leave --output out'
 cd "$here" || exit 1
+
 finish

@@ -131,6 +131,12 @@ JsonImport::Verdict JsonImport::verdict(const ServiceError& refusal) const {
   bool says_all = true;
   for (const FieldViolation& each : refusal.violations()) {
     const auto index = read_index(each.field, "requests[");
+    if (each.field == "read_mask") {  // the client's own choice, which no flag names
+      says_all = false;
+      wrong.add("one answer has no room for " + std::to_string(resources_.size()) + " " +
+                kind_.plural + " in full: leave --output out, or send fewer at a time");
+      continue;
+    }
     if (!index || index->value >= resources_.size()) {
       says_all = false;
       wrong.add(each.field == "*" ? each.description : each.field + ": " + each.description);
