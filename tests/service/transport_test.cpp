@@ -129,7 +129,9 @@ TEST_F(Transport, HalfSentRequestsShareAMemoryLimitAndBlockNobody) {
   constexpr int kCalls = 6;
   constexpr std::size_t kBytes = 60 << 20;
   const auto calls = half_sent(port(), kUnderSanitizer ? 1 : kCalls, kBytes);
-  EXPECT_LT(process_->peak_memory_kibibytes(), 240 * 1024) << "not the sum of them";
+  if (!kUnderSanitizer) {  // a sanitizer's own memory is counted too, and varies
+    EXPECT_LT(process_->peak_memory_kibibytes(), 240 * 1024) << "not the sum of them";
+  }
   const auto channel = connect(address_);
   EXPECT_TRUE(
       RawClient(channel).call("/tribodyn.v1.LubricantService/ListLubricants", "").first.ok());
