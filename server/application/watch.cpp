@@ -41,7 +41,8 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     const ProgressChannel::Latest latest = channel_->latest();
     const bool is_quiet = steady_clock::now() - last_message_ >= jobs_.heartbeat();
     out.Clear();
-    // When all is quiet too: an event may have been written and its writer been told otherwise.
+    // A heartbeat reads the store too: an event may be on disk although its writer was told that
+    // the write failed.
     if (std::max(simulation_.sequence, latest.sequence) > sent_ || is_quiet) {
       if (const auto event = store_.next_event(simulation_.id, sent_, limits_)) {
         tell_event(*event, out);
