@@ -29,7 +29,7 @@ std::string take_custom_verb(std::string_view& path) {
   if (colon == std::string_view::npos || slash == std::string_view::npos || colon < slash) {
     return {};
   }
-  const std::string out(path.substr(colon + 1));
+  std::string out(path.substr(colon + 1));
   path = path.substr(0, colon);
   return out;
 }
