@@ -6,7 +6,7 @@
 
 #include "google/rpc/status.pb.h"
 #include "server/application/guard.h"
-#include "server/scheduling/progress_board.h"
+#include "server/support/observers.h"
 
 namespace tribodyn::server {
 
@@ -23,7 +23,7 @@ class AnyMessageSource {
   /// `out` must be of the type of the source.
   virtual Step next_message(google::protobuf::Message& out) = 0;
   /// Starts telling the observer. Called once, before `next_message`.
-  virtual void observe(const std::weak_ptr<ProgressObserver>&) {}
+  virtual void observe(const std::weak_ptr<Observer>&) {}
   /// OK (code 0) or why the stream broke off.
   virtual google::rpc::Status error() const { return {}; }
 };

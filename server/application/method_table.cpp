@@ -151,6 +151,7 @@ std::vector<Method> rows() {
       unary(kWrite, pin_simulation),
       unary(kWrite, unpin_simulation),
       stream(watch_simulation),
+      stream(watch_simulations),
       stream(read_history),
   };
 }

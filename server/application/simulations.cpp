@@ -195,32 +195,6 @@ bool is_ordered(const std::string& key) {
   });
 }
 
-/// Parses a filter into restrictions for the store, which compares states as numbers.
-std::vector<Restriction> restrictions(const std::string& filter, Violations& violations) {
-  std::vector<Restriction> out = parse_filter(filter, kSimulations, violations);
-  for (Restriction& each : out) {
-    const bool has_order = is_ordered(each.key);
-    const bool is_label = each.key.starts_with("labels.");
-    const bool is_text = each.key == "display_name";
-    const bool is_equality = each.comparison == Restriction::Comparison::kEqual ||
-                             each.comparison == Restriction::Comparison::kNotEqual;
-    if (each.key == "name") {
-      violations.push_back({"filter", "lists cannot be filtered by name; use GetSimulation"});
-    } else if (!has_order && !is_equality &&
-               !(is_label && each.comparison == Restriction::Comparison::kPresent) &&
-               !(is_text && each.comparison == Restriction::Comparison::kContains)) {
-      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*, of "
-                                                 "display_name also :"});
-    }
-    const std::string* word = std::get_if<std::string>(&each.value);
-    v1::Simulation::State state = v1::Simulation::STATE_UNSPECIFIED;
-    if (each.key == "state" && word != nullptr && v1::Simulation::State_Parse(*word, &state)) {
-      each.value = std::int64_t{state};
-    }
-  }
-  return out;
-}
-
 bool is_ascending(const std::string& order_by, Violations& violations) {
   if (order_by == "create_time" || order_by == "create_time asc") return true;
   if (!order_by.empty() && order_by != "create_time desc") {
@@ -314,6 +288,32 @@ Outcome<v1::Simulation> get_simulation(Application& application,
   return out;
 }
 
+std::vector<Restriction> simulation_restrictions(const std::string& filter,
+                                                 Violations& violations) {
+  std::vector<Restriction> out = parse_filter(filter, kSimulations, violations);
+  for (Restriction& each : out) {
+    const bool has_order = is_ordered(each.key);
+    const bool is_label = each.key.starts_with("labels.");
+    const bool is_text = each.key == "display_name";
+    const bool is_equality = each.comparison == Restriction::Comparison::kEqual ||
+                             each.comparison == Restriction::Comparison::kNotEqual;
+    if (each.key == "name") {
+      violations.push_back({"filter", "lists cannot be filtered by name; use GetSimulation"});
+    } else if (!has_order && !is_equality &&
+               !(is_label && each.comparison == Restriction::Comparison::kPresent) &&
+               !(is_text && each.comparison == Restriction::Comparison::kContains)) {
+      violations.push_back({"filter", each.key + ": allowed: = or !=, of labels also :*, of "
+                                                 "display_name also :"});
+    }
+    const std::string* word = std::get_if<std::string>(&each.value);
+    v1::Simulation::State state = v1::Simulation::STATE_UNSPECIFIED;
+    if (each.key == "state" && word != nullptr && v1::Simulation::State_Parse(*word, &state)) {
+      each.value = std::int64_t{state};
+    }
+  }
+  return out;
+}
+
 Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
                                                       const v1::ListSimulationsRequest& request,
                                                       const CallContext& call) {
@@ -322,7 +322,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   query.project = call.project;
   query.limit = page_size(request.page_size(), kDefaultPageSize, violations);
   query.byte_limit = kMaximumPageBytes;
-  query.restrictions = restrictions(request.filter(), violations);
+  query.restrictions = simulation_restrictions(request.filter(), violations);
   query.ascending = is_ascending(request.order_by(), violations);
   const ReadMask mask(request.read_mask(), *v1::Simulation::descriptor(), violations);
   const v1::SimulationView fallback =
@@ -338,8 +338,10 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
     if (!query.after) add_bad_page_token(violations);
   }
   if (!violations.empty()) return invalid(violations);
-  const Page<StoredSimulation> page = application.store.simulations(query, call.limits);
   v1::ListSimulationsResponse response;
+  // Before the page: an event between the two is in both rather than in none.
+  response.set_event_number(application.store.event_range(call.limits).latest);
+  const Page<StoredSimulation> page = application.store.simulations(query, call.limits);
   if (query.counts_all) total = page.total;
   response.set_total_size(clamped_total(total));
   std::size_t bytes = 0;

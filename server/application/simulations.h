@@ -22,6 +22,9 @@ Outcome<v1::Simulation> get_simulation(Application& application,
 Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
                                                       const v1::ListSimulationsRequest& request,
                                                       const CallContext& call = {});
+/// Parses a filter into restrictions for the store, which compares states as numbers.
+std::vector<Restriction> simulation_restrictions(const std::string& filter, Violations& violations);
+
 /// Cancels a simulation. When it returns, the simulation is CANCELLED on disk, unless it had ended
 /// before.
 Outcome<v1::Simulation> cancel_simulation(Application& application,

@@ -10,6 +10,7 @@
 #include "google/rpc/status.pb.h"
 #include "server/application/message_source.h"
 #include "server/application/method_table.h"
+#include "server/support/observers.h"
 
 namespace tribodyn::server {
 
@@ -36,7 +37,7 @@ class StreamTransport {
 /// changed. Closes the stream at its end, or when the transport or a shutdown wishes, as soon as no
 /// write is under way; cuts off a client that reads nothing. Safe for concurrent access: whoever
 /// brings it into kAsking or kWriting owns the source until it leaves that state.
-class StreamMachine : public ProgressObserver {
+class StreamMachine : public Observer {
  public:
   using Clock = std::chrono::steady_clock;
 

@@ -18,6 +18,11 @@ StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
                                                     const v1::WatchSimulationRequest& request,
                                                     const CallContext& call = {});
 
+/// Events of many simulations, in the order of their numbers.
+StreamOutcome<v1::SimulationEvent> watch_simulations(Application& application,
+                                                     const v1::WatchSimulationsRequest& request,
+                                                     const CallContext& call = {});
+
 /// The schema of a history or an overview of it, then its rows.
 StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
                                                     const v1::ReadHistoryRequest& request,

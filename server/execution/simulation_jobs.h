@@ -79,7 +79,7 @@ class SimulationJobs {
   /// Returns nullopt if there is no such simulation.
   std::optional<Watched> watch(std::int64_t id, const CallLimits& limits = {});
   /// Notifies the observer at least four times per heartbeat interval.
-  void wake(const std::weak_ptr<ProgressObserver>& observer) { scheduler_.wake(observer); }
+  void wake(const std::weak_ptr<Observer>& observer) { scheduler_.wake(observer); }
   const QueueLimits& limits() const { return limits_; }
   const Retention& retention() const { return retention_; }
   Metrics& metrics() { return metrics_; }

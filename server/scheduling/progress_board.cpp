@@ -5,47 +5,29 @@
 
 namespace tribodyn::server {
 
-std::vector<std::shared_ptr<ProgressObserver>> ProgressChannel::living_observers() const {
-  std::vector<std::shared_ptr<ProgressObserver>> out;
-  for (const auto& weak : observers_) {
-    if (auto observer = weak.lock()) out.push_back(std::move(observer));
-  }
-  return out;
-}
-
 void ProgressChannel::publish_event(std::int64_t sequence) {
-  std::vector<std::shared_ptr<ProgressObserver>> told;
   {
     const std::lock_guard lock(mutex_);
     if (sequence <= latest_.sequence) return;
     latest_.sequence = sequence;
     latest_.progress = {};
-    told = living_observers();
   }
-  for (const auto& observer : told) observer->changed();
+  observers_.tell();
 }
 
 void ProgressChannel::publish_progress(Progress progress) {
-  std::vector<std::shared_ptr<ProgressObserver>> told;
   {
     const std::lock_guard lock(mutex_);
     progress.fraction = std::max(progress.fraction, latest_.progress.fraction);
     latest_.progress = std::move(progress);
     ++latest_.progress_number;
-    told = living_observers();
   }
-  for (const auto& observer : told) observer->changed();
+  observers_.tell();
 }
 
 ProgressChannel::Latest ProgressChannel::latest() const {
   const std::lock_guard lock(mutex_);
   return latest_;
-}
-
-void ProgressChannel::observe(const std::weak_ptr<ProgressObserver>& observer) {
-  const std::lock_guard lock(mutex_);
-  std::erase_if(observers_, [](const auto& weak) { return weak.expired(); });
-  observers_.push_back(observer);
 }
 
 std::shared_ptr<ProgressChannel> ProgressBoard::open(std::int64_t id) {

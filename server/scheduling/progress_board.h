@@ -6,7 +6,8 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
+
+#include "server/support/observers.h"
 
 namespace tribodyn::server {
 
@@ -15,14 +16,6 @@ struct Progress {
   double fraction = 0;                      ///< [0, 1]
   std::string stage;                        ///< e.g. "settling at 65 km/h"
   std::optional<double> remaining_seconds;  ///< estimate
-};
-
-/// Receives a call after each change, and must look up what changed. The call may come on any
-/// thread, with no lock held; it must be quick and must not throw.
-class ProgressObserver {
- public:
-  virtual ~ProgressObserver() = default;
-  virtual void changed() = 0;
 };
 
 /// The latest event number and progress of one simulation. The store keeps events; nothing keeps
@@ -43,14 +36,12 @@ class ProgressChannel {
   Latest latest() const;
 
   /// Notifies the observer of later publications until it is destroyed.
-  void observe(const std::weak_ptr<ProgressObserver>& observer);
+  void observe(const std::weak_ptr<Observer>& observer) { observers_.add(observer); }
 
  private:
-  std::vector<std::shared_ptr<ProgressObserver>> living_observers() const;
-
   mutable std::mutex mutex_;
-  Latest latest_;                                           // guarded by mutex_
-  std::vector<std::weak_ptr<ProgressObserver>> observers_;  // guarded by mutex_
+  Latest latest_;  // guarded by mutex_
+  Observers observers_;
 };
 
 /// The channels of all simulations that have not ended. Safe for concurrent access without external

@@ -120,7 +120,7 @@ class Scheduler {
   Occupancy occupancy() const;
   std::size_t deadlines() const { return timekeeper_.deadlines(); }
   /// Notifies the observer every tick until it is destroyed.
-  void wake(const std::weak_ptr<ProgressObserver>& observer) { timekeeper_.observe(observer); }
+  void wake(const std::weak_ptr<Observer>& observer) { timekeeper_.observe(observer); }
 
   /// Returns true after drain() or stop(): no simulation is accepted and no job begins.
   bool is_stopping() const;

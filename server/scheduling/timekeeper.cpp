@@ -41,12 +41,6 @@ std::size_t Timekeeper::deadlines() const {
   return deadlines_.size();
 }
 
-void Timekeeper::observe(const std::weak_ptr<ProgressObserver>& observer) {
-  const std::lock_guard lock(mutex_);
-  std::erase_if(observers_, [](const auto& weak) { return weak.expired(); });
-  observers_.push_back(observer);
-}
-
 void Timekeeper::stop() {
   {
     const std::lock_guard lock(mutex_);
@@ -67,14 +61,6 @@ std::vector<std::int64_t> Timekeeper::take_due() {
   return due;
 }
 
-std::vector<std::shared_ptr<ProgressObserver>> Timekeeper::living_observers() {
-  std::vector<std::shared_ptr<ProgressObserver>> out;
-  for (const auto& weak : observers_) {
-    if (auto observer = weak.lock()) out.push_back(std::move(observer));
-  }
-  return out;
-}
-
 void Timekeeper::run() {
   auto next_tick = steady_clock::now() + tick_;
   std::unique_lock lock(mutex_);
@@ -87,18 +73,14 @@ void Timekeeper::run() {
     }
     changed_.wait_for(lock, wait);
     const std::vector<std::int64_t> due = take_due();
-    std::vector<std::shared_ptr<ProgressObserver>> woken;
-    bool is_tick = false;
-    if (steady_clock::now() >= next_tick) {
-      next_tick = steady_clock::now() + tick_;
-      woken = living_observers();
-      is_tick = true;
-    }
+    const bool is_tick = steady_clock::now() >= next_tick;
+    if (is_tick) next_tick = steady_clock::now() + tick_;
     lock.unlock();
     for (const std::int64_t id : due) on_due_(id);
-    for (const auto& observer : woken) observer->changed();
-    if (is_tick) on_tick_();
-    woken.clear();
+    if (is_tick) {
+      observers_.tell();
+      on_tick_();
+    }
     lock.lock();
   }
 }

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/scheduling/progress_board.h"
 #include "server/storage/times.h"
+#include "server/support/observers.h"
 
 namespace tribodyn::server {
 
@@ -34,14 +34,13 @@ class Timekeeper {
   void remove_deadline(std::int64_t id);
   std::size_t deadlines() const;
   /// Notifies the observer every tick until it is destroyed.
-  void observe(const std::weak_ptr<ProgressObserver>& observer);
+  void observe(const std::weak_ptr<Observer>& observer) { observers_.add(observer); }
   /// Ends the thread. No further call is made.
   void stop();
 
  private:
   void run();
   std::vector<std::int64_t> take_due();
-  std::vector<std::shared_ptr<ProgressObserver>> living_observers();
 
   const std::chrono::milliseconds tick_;
   const std::function<Microseconds()> clock_;
@@ -50,9 +49,9 @@ class Timekeeper {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::set<std::pair<Microseconds, std::int64_t>> deadlines_;  // guarded by mutex_
-  std::map<std::int64_t, Microseconds> times_;              // guarded by mutex_; deadlines_ by id
-  std::vector<std::weak_ptr<ProgressObserver>> observers_;  // guarded by mutex_
-  bool stopping_ = false;                                   // guarded by mutex_
+  std::map<std::int64_t, Microseconds> times_;  // guarded by mutex_; deadlines_ by id
+  bool stopping_ = false;                       // guarded by mutex_
+  Observers observers_;
   std::thread thread_;
 };
 

@@ -86,6 +86,19 @@ void check_rows(Connection& db, Problems& problems) {
            "FROM events a JOIN events b ON b.simulation = a.simulation "
            "AND b.sequence = a.sequence + 1 WHERE a.state > 2 OR b.attempt < a.attempt OR "
            "(b.attempt = a.attempt AND b.state <= a.state)",
+           "SELECT 'event ' || number || ': its simulation does not exist' FROM events "
+           "WHERE state <> 0 AND simulation NOT IN (SELECT id FROM simulations)",
+           "SELECT 'event ' || number || ': its simulation was not deleted' FROM events "
+           "WHERE state = 0 AND simulation IN (SELECT id FROM simulations)",
+           "SELECT 'event ' || number || ': its project does not exist or has given no such "
+           "number' "
+           "FROM events e WHERE state = 0 AND NOT EXISTS (SELECT 1 FROM projects p "
+           "WHERE p.name = e.project AND e.simulation_number BETWEEN 1 AND p.last_number)",
+           "SELECT 'event ' || b.number || ': it has a smaller number than the one before it' "
+           "FROM events a JOIN events b ON b.simulation = a.simulation "
+           "AND b.sequence = a.sequence + 1 WHERE b.number <= a.number",
+           "SELECT 'the number of deleted simulations is wrong' FROM event_log WHERE deletions <> "
+           "(SELECT count(*) FROM events WHERE state = 0)",
            "SELECT 'result ' || id || ': its content differs from its checksum' FROM results "
            "WHERE checksum <> checksum(body)",
            "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = s.id) || "

@@ -2,8 +2,16 @@
 
 namespace tribodyn::server {
 
-/// States of a simulation as stored; the numbers are those of Simulation.State.
-enum class StoredState { kQueued = 1, kRunning = 2, kSucceeded = 3, kFailed = 4, kCancelled = 5 };
+/// States of a simulation as stored; the numbers are those of Simulation.State. kDeleted is that of
+/// an event only: a deleted simulation has no row.
+enum class StoredState {
+  kDeleted = 0,
+  kQueued = 1,
+  kRunning = 2,
+  kSucceeded = 3,
+  kFailed = 4,
+  kCancelled = 5
+};
 
 /// Returns true if the state is final.
 inline bool has_ended(StoredState state) { return state >= StoredState::kSucceeded; }

@@ -9,13 +9,13 @@
 #include <thread>
 #include <vector>
 
+#include "server/storage/event_rows.h"
 #include "server/storage/resource_types.h"
 
 namespace tribodyn::server {
 namespace {
 
-/// Returns the condition that a simulation used a revision of resource ?1. Of the columns only
-/// `lubricant` has an index: for a resource of another kind SQLite reads all simulations.
+/// Returns the condition that a simulation used a revision of resource ?1. The column has an index.
 std::string uses(const StoredResource& resource) {
   static const std::map<std::string, std::string> kColumns = {{"lubricants", "lubricant"},
                                                               {"gearSets", "gear_set"},
@@ -59,6 +59,7 @@ std::int64_t remove_simulation(Connection& db, std::int64_t id) {
     result = query.getColumn(0).getInt64();
     ledger = query.getColumn(1).getInt64();
   }
+  insert_deletion(db, id);
   remove_rows(db, "DELETE FROM simulations WHERE id = ?1", id);
   remove_rows(db,
               "DELETE FROM ledgers WHERE id = ?1 AND "

@@ -8,9 +8,9 @@
 
 namespace tribodyn::server {
 
-/// Removes a simulation with its events and labels, and its result and assumptions unless another
-/// simulation uses them. Returns the freed bytes of the result. Works inside the caller's
-/// transaction. Throws SQLite::Exception.
+/// Removes a simulation with its labels, and its result and assumptions unless another simulation
+/// uses them. One event remains, which tells of the deletion. Returns the freed bytes of the
+/// result. Works inside the caller's transaction. Throws SQLite::Exception.
 std::int64_t remove_simulation(Connection& db, std::int64_t id);
 
 /// Simulations that used any revision of a resource.

@@ -131,6 +131,7 @@ void bring_from(Connection& database, int from, int to, Microseconds now) {
   }
   if (passes(6)) database.exec(kSchema6);
   if (passes(7)) database.exec(kSchema7);
+  if (passes(8)) database.exec(kSchema8);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(to));
 }

@@ -8,7 +8,7 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 7. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 8. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   projects     one row per project; last_number is that of its latest simulation, removed or not
@@ -36,7 +36,14 @@ namespace tribodyn::server {
 ///                leases end with it. pinned: neither expires nor is evicted; others may go, with
 ///                their events and with a result and a ledger that no other one has
 ///   simulation_labels  what lists are filtered by beside columns of simulations, of its request
-///   events       every change of state of a job, numbered 1, 2, ... without gaps, written with it
+///   events       every change of state of a job, written with it. number: among those of all jobs
+///   of
+///                all projects, in the order of their commits, never given twice; sequence: among
+///                those of the job, 1, 2, ... without gaps. When a job is removed one event of
+///                state 0 takes the place of its events, and tells watchers: it has the project and
+///                the number of the job, whose row is gone
+///   event_log    one row: how many events of state 0 there are, and the largest number of those
+///                that were forgotten since (kKeptDeletions)
 ///   ledgers      assumptions of results, each distinct list once: a SimulationResult with nothing
 ///                else. They belong to the job, as they name its resources
 ///   results      one SimulationResult without assumptions for equal inputs (input_hash), model
@@ -52,7 +59,7 @@ namespace tribodyn::server {
 ///
 /// The text of a schema that a release has written never changes: the tables of a database are
 /// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 7;
+inline constexpr int kSchemaVersion = 8;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

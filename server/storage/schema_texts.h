@@ -309,4 +309,54 @@ CREATE TRIGGER results_stay_in_their_project BEFORE UPDATE OF project ON results
 BEGIN SELECT RAISE(ABORT, 'a result keeps its project'); END;
 )sql";
 
+// The order of old events: by time, and never against the order within a simulation, even if the
+// clock was set back between two of its events.
+inline constexpr char kSchema8[] = R"sql(
+ALTER TABLE events RENAME TO events_of_schema_7;
+
+CREATE TABLE events (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  simulation INTEGER NOT NULL,
+  sequence INTEGER NOT NULL CHECK (sequence >= 1),
+  time INTEGER NOT NULL,
+  state INTEGER NOT NULL CHECK (state BETWEEN 0 AND 5),
+  attempt INTEGER NOT NULL CHECK (attempt >= 1),
+  reason TEXT NOT NULL,
+  project TEXT,
+  simulation_number INTEGER,
+  UNIQUE (simulation, sequence),
+  CHECK ((state = 0) = (project IS NOT NULL)),
+  CHECK ((state = 0) = (simulation_number IS NOT NULL))
+) STRICT;
+
+INSERT INTO events (simulation, sequence, time, state, attempt, reason)
+SELECT simulation, sequence, time, state, attempt, reason FROM events_of_schema_7
+ORDER BY max(time) OVER (PARTITION BY simulation ORDER BY sequence), simulation, sequence;
+DROP TABLE events_of_schema_7;
+
+CREATE TRIGGER events_follow_one_another BEFORE INSERT ON events
+WHEN NEW.sequence <> 1 + (SELECT coalesce(max(sequence), 0) FROM events
+                          WHERE simulation = NEW.simulation)
+BEGIN SELECT RAISE(ABORT, 'an event follows the last one'); END;
+CREATE TRIGGER events_never_change BEFORE UPDATE ON events
+BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
+CREATE TRIGGER events_have_a_simulation BEFORE INSERT ON events
+WHEN NOT EXISTS (SELECT 1 FROM simulations WHERE id = NEW.simulation)
+BEGIN SELECT RAISE(ABORT, 'an event belongs to a simulation'); END;
+
+CREATE INDEX deletions ON events (number) WHERE state = 0;
+CREATE UNIQUE INDEX deleted_simulations ON events (project, simulation_number) WHERE state = 0;
+
+CREATE TABLE event_log (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  deletions INTEGER NOT NULL CHECK (deletions >= 0),
+  forgotten INTEGER NOT NULL CHECK (forgotten >= 0)
+) STRICT;
+INSERT INTO event_log VALUES (1, 0, 0);
+
+CREATE INDEX simulations_by_gear_set ON simulations (gear_set);
+CREATE INDEX simulations_by_surface ON simulations (surface);
+CREATE INDEX simulations_by_vehicle ON simulations (vehicle);
+)sql";
+
 }  // namespace tribodyn::server

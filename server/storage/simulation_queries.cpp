@@ -21,12 +21,6 @@ using Comparison = Restriction::Comparison;
 constexpr int kSelectiveLabelLimit = 1000;
 constexpr std::string_view kLabels = "labels.";
 
-/// A condition of an SQL statement and the values of its parameters.
-struct Condition {
-  std::string sql;
-  std::vector<PropertyValue> values;
-};
-
 std::string operator_of(Comparison comparison) {
   switch (comparison) {
     case Comparison::kNotEqual:
@@ -135,14 +129,21 @@ std::int64_t count_all(Connection& db, const std::string& where,
 
 }  // namespace
 
-Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& query) {
-  std::string where = "WHERE project = ?";
-  std::vector<PropertyValue> values = {query.project};
-  for (const Restriction& each : query.restrictions) {
-    Condition next = condition(db, query.project, each);
-    where += " AND " + next.sql;
-    values.insert(values.end(), next.values.begin(), next.values.end());
+Condition condition_of(Connection& db, const std::string& project,
+                       const std::vector<Restriction>& restrictions) {
+  Condition out{"project = ?", {project}};
+  for (const Restriction& each : restrictions) {
+    Condition next = condition(db, project, each);
+    out.sql += " AND " + next.sql;
+    out.values.insert(out.values.end(), next.values.begin(), next.values.end());
   }
+  return out;
+}
+
+Page<StoredSimulation> query_simulations(Connection& db, const SimulationQuery& query) {
+  const Condition condition = condition_of(db, query.project, query.restrictions);
+  const std::string where = "WHERE " + condition.sql;
+  std::vector<PropertyValue> values = condition.values;
   std::string sql = kSimulationColumns + where;
   const std::vector<PropertyValue> all_values = values;
   const std::string direction = query.ascending ? " ASC" : " DESC";

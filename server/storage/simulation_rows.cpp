@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "server/storage/checksum.h"
+#include "server/storage/event_rows.h"
 #include "server/storage/history_rows.h"
 #include "server/storage/resource_rows.h"
 #include "server/storage/store_error.h"
@@ -58,17 +59,6 @@ std::optional<std::int64_t> result_row(Connection& db, const std::string& projec
   query.bind(4, key.platform);
   if (!query.executeStep()) return std::nullopt;
   return query.getColumn(0).getInt64();
-}
-
-void insert_event(Connection& db, std::int64_t id, const StoredEvent& event) {
-  Prepared insert(db, "INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
-  insert.bind(1, id);
-  insert.bind(2, event.sequence);
-  insert.bind(3, event.time);
-  insert.bind(4, static_cast<int>(event.state));
-  insert.bind(5, event.attempt);
-  insert.bind(6, event.reason);
-  insert.exec();
 }
 
 /// Project of a simulation. Throws SQLite::Exception if the simulation does not exist.
@@ -159,7 +149,8 @@ std::int64_t insert_row(Connection& db, const NewSimulation& simulation, std::in
   }
   insert.executeStep();  // to its end: only then is it done
   insert_labels(db, id, simulation.labels);
-  insert_event(db, id, {.sequence = 1, .time = now, .reason = ""});
+  StoredEvent first{.simulation = id, .sequence = 1, .time = now, .reason = ""};
+  insert_event(db, first);
   return id;
 }
 
@@ -436,25 +427,16 @@ std::optional<StoredEvent> change_state(Connection& db, const StateChange& chang
     update.bind(12);
   }
   if (!update.executeStep()) return std::nullopt;
-  StoredEvent event{update.getColumn(0).getInt64(), change.time, change.to,
-                    update.getColumn(1).getInt(), change.reason};
+  StoredEvent event{.simulation = change.id,
+                    .sequence = update.getColumn(0).getInt64(),
+                    .time = change.time,
+                    .state = change.to,
+                    .attempt = update.getColumn(1).getInt(),
+                    .reason = change.reason};
   event.start_time = time_of(update.getColumn(2));
   update.executeStep();  // to its end: only then is it done
-  insert_event(db, change.id, event);
+  insert_event(db, event);
   return event;
-}
-
-std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
-                                            std::int64_t after_sequence) {
-  Prepared query(db,
-                 "SELECT sequence, time, state, attempt, reason FROM events "
-                 "WHERE simulation = ? AND sequence > ? ORDER BY sequence LIMIT 1");
-  query.bind(1, id);
-  query.bind(2, after_sequence);
-  if (!query.executeStep()) return std::nullopt;
-  return StoredEvent{query.getColumn(0).getInt64(), query.getColumn(1).getInt64(),
-                     static_cast<StoredState>(query.getColumn(2).getInt()),
-                     query.getColumn(3).getInt(), query.getColumn(4).getString()};
 }
 
 std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Microseconds now,

@@ -57,9 +57,6 @@ struct StateChange {
 /// Changes the state and writes the event; nothing when the state does not allow it.
 std::optional<StoredEvent> change_state(Connection& db, const StateChange& change);
 
-std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t id,
-                                            std::int64_t after_sequence);
-
 /// As Store::result. Throws StoreError kDataLoss too.
 std::optional<std::string> query_result(Connection& db, std::int64_t id);
 

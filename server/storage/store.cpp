@@ -11,6 +11,7 @@
 #include "server/storage/database_check.h"
 #include "server/storage/database_files.h"
 #include "server/storage/durable_files.h"
+#include "server/storage/event_rows.h"
 #include "server/storage/maintenance.h"
 #include "server/storage/resource_queries.h"
 #include "server/storage/resource_rows.h"
@@ -67,17 +68,21 @@ void Store::require_place() const {
 /// change is acknowledged whose file has lost its name meanwhile.
 template <class Action>
 auto Store::write(const CallLimits& limits, const Action& action) {
-  const std::lock_guard lock(writer_mutex_);
-  check(limits);
-  require_place();
-  try {
-    const Connection::Under under(writer_, limits);
-    auto out = action(writer_);
+  auto out = [&] {
+    const std::lock_guard lock(writer_mutex_);
+    check(limits);
     require_place();
-    return out;
-  } catch (const SQLite::Exception& error) {
-    throw translate(error, path_, limits);
-  }
+    try {
+      const Connection::Under under(writer_, limits);
+      auto result = action(writer_);
+      require_place();
+      return result;
+    } catch (const SQLite::Exception& error) {
+      throw translate(error, path_, limits);
+    }
+  }();
+  observers_.tell();  // without the lock
+  return out;
 }
 
 void Store::write_together(const CallLimits& limits, const GroupCommit::Action& action) {
@@ -86,6 +91,7 @@ void Store::write_together(const CallLimits& limits, const GroupCommit::Action& 
   try {
     group_commit_.run(action, limits);
     require_place();
+    observers_.tell();
   } catch (const RollBack&) {
     return;
   } catch (const SQLite::Exception& error) {
@@ -439,6 +445,19 @@ std::optional<StoredEvent> Store::next_event(std::int64_t id, std::int64_t after
                                              const CallLimits& limits) {
   return read(limits, [&](Connection& db) { return query_next_event(db, id, after_sequence); });
 }
+
+std::optional<StoredEvent> Store::deletion(const std::string& project,
+                                           std::int64_t simulation_number,
+                                           const CallLimits& limits) {
+  return read(limits,
+              [&](Connection& db) { return query_deletion(db, project, simulation_number); });
+}
+
+EventPage Store::events(const EventQuery& query, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_events(db, query); });
+}
+
+EventRange Store::event_range(const CallLimits& limits) { return read(limits, query_event_range); }
 
 template <class Change>
 std::optional<StoredEvent> Store::change_simulation(const CallLimits& limits,

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -21,6 +22,7 @@
 #include "server/storage/store_error.h"
 #include "server/storage/stored_resource.h"
 #include "server/storage/stored_simulation.h"
+#include "server/support/observers.h"
 
 namespace tribodyn::server {
 
@@ -145,6 +147,13 @@ class Store {
   /// none.
   std::optional<StoredEvent> next_event(std::int64_t id, std::int64_t after_sequence,
                                         const CallLimits& limits = {});
+  /// Like query_deletion(), query_events() and query_event_range() of event_rows.h.
+  std::optional<StoredEvent> deletion(const std::string& project, std::int64_t simulation_number,
+                                      const CallLimits& limits = {});
+  EventPage events(const EventQuery& query, const CallLimits& limits = {});
+  EventRange event_range(const CallLimits& limits = {});
+  /// Tells the observer of every later commit, for as long as it lives.
+  void observe(const std::weak_ptr<Observer>& observer) { observers_.add(observer); }
 
   // These functions change the state of a simulation and add the event in one transaction. They
   // return the event. They return nullopt, and change nothing, if the simulation is not in a state
@@ -220,6 +229,7 @@ class Store {
   ReaderPool readers_;
   std::optional<std::filesystem::path> migration_backup_;
   std::atomic<bool> has_unerased_purge_ = true;
+  Observers observers_;
   std::optional<DatabaseFiles> files_;  // set by the constructor when the files exist
   mutable std::mutex projects_mutex_;
   std::set<std::string> projects_;  // guarded by projects_mutex_; those of the database

@@ -97,13 +97,18 @@ struct SimulationQuery {
   bool counts_all = false;  ///< sets Page::total; only of a query from the start, without `after`
 };
 
-/// A stored change of state.
+/// A stored change of state, or the deletion of a simulation.
 struct StoredEvent {
-  std::int64_t sequence = 0;
+  std::int64_t number = 0;      ///< among the events of all projects; grows with each commit
+  std::int64_t simulation = 0;  ///< row, over all projects
+  std::int64_t sequence = 0;    ///< number among the events of the simulation
   Microseconds time = 0;
   StoredState state = StoredState::kQueued;
   int attempt = 1;
   std::string reason;  ///< why an attempt did not finish; else empty
+  // Of the name of the simulation. Set in events that are read, and to write a deletion.
+  std::string project = {};
+  std::int64_t simulation_number = 0;
   /// Start of the attempt. Set only in the event that a change of state returns; not stored.
   std::optional<Microseconds> start_time = {};
 };
@@ -118,6 +123,35 @@ struct CompressedColumn {
   std::string name;
   std::int64_t rows = 0;
   std::vector<std::vector<std::string>> levels;
+};
+
+/// Returns the full name of the simulation of an event that was read.
+inline std::string name_of(const StoredEvent& event) {
+  return simulation_name(event.project, event.simulation_number);
+}
+
+/// Selects events after number `after`: of the simulations with these ids or, if there is none, of
+/// those of the project that satisfy all restrictions now; deletions satisfy every restriction.
+struct EventQuery {
+  std::vector<std::int64_t> simulations = {};
+  std::string project = kDefaultProject;
+  std::vector<Restriction> restrictions = {};
+  std::int64_t after = 0;
+};
+
+/// Events in the order of their numbers. All selected events up to number `through` are in it.
+struct EventPage {
+  std::vector<StoredEvent> events;
+  std::int64_t through = 0;
+  bool more = false;  ///< there may be further ones already
+};
+
+/// The numbers of the events, of all projects, that the database keeps.
+struct EventRange {
+  std::int64_t latest = 0;
+  /// Deletions up to this number have been forgotten: whoever knows nothing later may have missed
+  /// some.
+  std::int64_t forgotten = 0;
 };
 
 /// Who computes a simulation, and until when the attempt counts as alive.

@@ -48,14 +48,20 @@ class ScriptedServer final : public v1::SimulationService::Service {
   int ends_at_get = 1;  ///< first call of GetSimulation that returns an ended simulation
   std::atomic<bool> is_frozen = false;  ///< GetSimulation does not answer
 
-  grpc::Status WatchSimulation(grpc::ServerContext* context, const v1::WatchSimulationRequest*,
-                               grpc::ServerWriter<v1::SimulationEvent>* writer) override {
+  grpc::Status WatchSimulations(grpc::ServerContext* context,
+                                const v1::WatchSimulationsRequest* request,
+                                grpc::ServerWriter<v1::SimulationEvent>* writer) override {
     const std::size_t index = std::min<std::size_t>(watches_++, scripts.size() - 1);
     const Watch& script = scripts[index];
     for (const State state : script.states) {
-      v1::SimulationEvent event;
-      event.set_state(state);
-      writer->Write(event);
+      for (const std::string& name : request->names()) {
+        v1::SimulationEvent event;
+        // As the server: the project `default` is left out.
+        event.set_name(request->parent() == "projects/default" ? name
+                                                               : request->parent() + "/" + name);
+        event.set_state(state);
+        writer->Write(event);
+      }
     }
     while (script.hangs && !context->IsCancelled()) {
       hanging_ = true;
@@ -99,6 +105,21 @@ TEST(Follow, ReturnsEverySimulationWhenAllHaveEnded) {
   const auto ended = follow(connection, queued({"a", "b"}), {"a", "b"}, ProgressForm::kNone);
   ASSERT_EQ(ended.size(), 2U);
   EXPECT_EQ(ended[1].name(), "simulations/b");
+  EXPECT_EQ(server.watches(), 1) << "one stream for all";
+}
+
+TEST(Follow, OneStreamIsOfOneProject) {
+  ScriptedServer server;
+  server.scripts = {{{v1::Simulation::RUNNING, v1::Simulation::SUCCEEDED}, grpc::Status::OK}};
+  Connection connection(server.address(), std::chrono::seconds(10), "acme");
+  std::vector<std::string> told;
+  connection.watch({"simulations/a", "projects/acme/simulations/b", "projects/other/simulations/a"},
+                   [&](const v1::SimulationEvent& event) {
+                     if (event.state() == v1::Simulation::SUCCEEDED) told.push_back(event.name());
+                   });
+  EXPECT_EQ(told, (std::vector<std::string>{"simulations/a", "simulations/b",
+                                            "projects/other/simulations/a"}));
+  EXPECT_EQ(server.watches(), 2);
 }
 
 TEST(Follow, ResumesABrokenStream) {

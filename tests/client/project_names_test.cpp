@@ -41,6 +41,20 @@ TEST(ProjectNames, OfAnotherProjectStay) {
   EXPECT_EQ(answer.name(), "projects/other/simulations/1");
 }
 
+TEST(ProjectNames, AreSplit) {
+  const auto expect = [](const std::string& name, const std::string& project,
+                         const std::string& relative) {
+    const ProjectAndName parts = split_name("acme", name);
+    EXPECT_EQ(parts.project, project) << name;
+    EXPECT_EQ(parts.relative, relative) << name;
+  };
+  expect("simulations/1", "acme", "simulations/1");
+  expect("projects/other/simulations/1", "other", "simulations/1");
+  expect("projects/default/simulations/1", "default", "simulations/1");
+  expect("projects/other", "acme", "projects/other");
+  expect("", "acme", "");
+}
+
 TEST(ProjectNames, OfTheDefaultStayAsTheyAre) {
   v1::ListLubricantsRequest list;
   add_project("default", list);

@@ -168,6 +168,11 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
       set_inner("simulation", "name", "simulations/99999");
       return expect_refused(*message, "simulations/99999");
     }
+    if (method == "WatchSimulations") {
+      message->GetReflection()->AddString(
+          message.get(), message->GetDescriptor()->FindFieldByName("names"), "simulations/99999");
+      return expect_refused(*message, "simulations/99999");
+    }
     if (method == "ListSimulations") {
       set("page_token", "simulations/x");
       return expect_refused(*message, "page_token");

@@ -29,7 +29,7 @@ v1::Simulation with_history() {
 }
 
 /// Watches as the gRPC layer does: asks again at every notification.
-class Watcher : public ProgressObserver, public std::enable_shared_from_this<Watcher> {
+class Watcher : public Observer, public std::enable_shared_from_this<Watcher> {
  public:
   using Source = std::shared_ptr<MessageSource<v1::SimulationEvent>>;
   explicit Watcher(Source source) : source_(std::move(source)) {}

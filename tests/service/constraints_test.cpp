@@ -260,8 +260,9 @@ INSTANTIATE_TEST_SUITE_P(Table, ConstraintRow, testing::ValuesIn(all_rows()), ro
 /// Numbers without a row in the table; the comment names the test of their check.
 const std::set<std::string>& checked_elsewhere() {
   static const std::set<std::string> kNames = {
-      "page_size",       // paging.h; all_methods_test.cpp
-      "after_sequence",  // compared with the existing events: jobs_test.cpp
+      "page_size",           // paging.h; all_methods_test.cpp
+      "after_sequence",      // compared with the existing events: jobs_test.cpp
+      "after_event_number",  // compared with the existing events: watch_test.cpp
       // compared with the length of the history: app_test.cpp
       "start_row", "row_count", "max_points"};
   return kNames;

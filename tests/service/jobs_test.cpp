@@ -170,7 +170,7 @@ TEST(ProgressChannel, NeverFallsWithinAnAttempt) {
   EXPECT_EQ(channel.latest().progress_number, number);
 }
 
-class Counter : public ProgressObserver {
+class Counter : public Observer {
  public:
   void changed() override { ++count; }
   std::atomic<int> count = 0;

@@ -408,7 +408,7 @@ TEST_F(LifeCycle, AWatchReportsProgressStageAndTimeLeft) {
   *release_ = true;
 }
 
-class Waker : public ProgressObserver {
+class Waker : public Observer {
  public:
   void changed() override { ++count; }
   std::atomic<int> count = 0;

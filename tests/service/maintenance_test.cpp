@@ -130,6 +130,10 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
     EXPECT_EQ(store.next_event(id, store.simulation(id)->sequence - 1)->state,
               store.simulation(id)->state);
   }
+  EXPECT_EQ(
+      store.event_range().latest,
+      static_cast<std::int64_t>(store.events({.simulations = {1, 2, 3, 4, 5, 6, 7}}).events.size()))
+      << "events have numbers";
   EXPECT_THAT(store.requeue_unfinished(9), SizeIs(2));
   EXPECT_THAT(check_database(file, hash_stored_inputs), IsEmpty());
   SQLite::Database raw(file, SQLite::OPEN_READWRITE);
@@ -302,7 +306,7 @@ TEST_F(MaintenanceTest, ServerCheckAndRestoreRefuseTheSameDatabases) {
       {"CREATE TRIGGER planted AFTER INSERT ON simulations BEGIN DELETE FROM results; END",
        "its trigger planted is not of this program"},
       {"DROP INDEX one_result_per_input", "its index one_result_per_input is missing"},
-      {"DROP TABLE events", "its table events is missing"},
+      {"DROP TABLE event_log", "its table event_log is missing"},
       {"DROP VIEW revision_names; CREATE VIEW revision_names AS SELECT 1", "view revision_names"},
   };
   make();
@@ -363,6 +367,15 @@ TEST_F(MaintenanceTest, CheckFindsEveryKindOfProblem) {
       {"DELETE FROM events WHERE sequence = 3", "gaps"},
       {"UPDATE events SET state = 2 WHERE sequence = 3", "another state"},
       {"UPDATE events SET state = 4 WHERE sequence = 1", "backwards"},
+      {"UPDATE events SET number = number + 100 WHERE sequence = 1", "smaller number"},
+      {"UPDATE events SET simulation = 99", "its simulation does not exist"},
+      {"UPDATE events SET state = 0, project = 'default', simulation_number = 1 "
+       "WHERE sequence = 3",
+       "its simulation was not deleted"},
+      {"UPDATE events SET state = 0, project = 'default', simulation_number = 99 "
+       "WHERE sequence = 3",
+       "its project does not exist or has given no such number"},
+      {"UPDATE event_log SET deletions = 1", "the number of deleted simulations is wrong"},
       {"UPDATE results SET body = x'0a00'", "result 1: its content differs from its checksum"},
       {"UPDATE results SET checksum = checksum + 1", "result 1: its content differs from"},
       {"UPDATE ledgers SET body = x'0a00'", "ledger 1: its content differs from its checksum"},

@@ -44,7 +44,11 @@ struct Expected {
   void go(StoredState to, Microseconds now, const std::string& reason = "") {
     if (to == StoredState::kQueued) ++attempt;
     state = to;
-    events.push_back({static_cast<std::int64_t>(events.size()) + 1, now, to, attempt, reason});
+    events.push_back({.sequence = static_cast<std::int64_t>(events.size()) + 1,
+                      .time = now,
+                      .state = to,
+                      .attempt = attempt,
+                      .reason = reason});
   }
 };
 
@@ -132,7 +136,7 @@ class Schedule {
     EXPECT_FALSE(jobs_.contains(added.id)) << log_;
     Expected& job = jobs_[added.id];
     job = {.hash = input, .request_hash = request_hash, .is_forced = forced, .events = {}};
-    job.events.push_back({1, now_, StoredState::kQueued, 1, ""});
+    job.events.push_back({.sequence = 1, .time = now_, .reason = ""});
     if (served) serve(job);
     if (!request_id.empty()) request_ids_[request_id] = added.id;
   }

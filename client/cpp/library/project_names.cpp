@@ -78,6 +78,13 @@ void add_project(const std::string& project, Message& request) {
   visit_resources(request, [&](Message& resource) { change_names(resource, with_project); });
 }
 
+ProjectAndName split_name(const std::string& project, const std::string& name) {
+  constexpr std::string_view kPrefix = "projects/";
+  const std::size_t end = is_relative(name) ? std::string::npos : name.find('/', kPrefix.size());
+  if (end == std::string::npos) return {project, name};
+  return {name.substr(kPrefix.size(), end - kPrefix.size()), name.substr(end + 1)};
+}
+
 void remove_project(const std::string& project, Message& response) {
   if (project == kDefaultProject) return;
   const std::string prefix = prefix_of(project);

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <map>
 #include <mutex>
+#include <utility>
 
 #include "client/cpp/library/services.h"
 
@@ -12,6 +14,7 @@ using std::chrono::milliseconds;
 
 constexpr std::chrono::duration<double> kLongestWatch = std::chrono::seconds(60);
 constexpr milliseconds kBetweenWatches(250);
+constexpr std::size_t kMostWatched = 1000;  // simulations that the server watches in one stream
 constexpr int kWatchRetries =
     20;  // about 40 s in all: long enough for a server that drains and restarts
 
@@ -103,39 +106,66 @@ Listing<v1::Simulation> Connection::list_simulations(const ListOptions& options)
   return all;
 }
 
-v1::Simulation Connection::wait_for_end(
-    const std::string& name, const std::function<void(const v1::SimulationEvent&)>& on_event,
-    const std::stop_token& stop) {
-  v1::WatchSimulationRequest request;
-  request.set_name(name);
-  add_project(services_->project, request);
+void Connection::watch(const std::vector<std::string>& names,
+                       const std::function<void(const v1::SimulationEvent&)>& on_event,
+                       const std::stop_token& stop) {
+  std::map<std::string, std::vector<std::string>> by_project;  // relative names
+  for (const std::string& each : names) {
+    ProjectAndName parts = split_name(services_->project, each);
+    by_project[parts.project].push_back(std::move(parts.relative));
+  }
+  for (const auto& [project, all] : by_project) {
+    for (std::size_t i = 0; i < all.size() && !stop.stop_requested(); i += kMostWatched) {
+      const std::size_t end = std::min(all.size(), i + kMostWatched);
+      watch_some(project,
+                 {all.begin() + static_cast<std::ptrdiff_t>(i),
+                  all.begin() + static_cast<std::ptrdiff_t>(end)},
+                 on_event, stop);
+    }
+  }
+}
+
+void Connection::watch_some(const std::string& project, std::set<std::string> open,
+                            const std::function<void(const v1::SimulationEvent&)>& on_event,
+                            const std::stop_token& stop) {
   using std::chrono::system_clock;
   // Restarts a watch that does not end, to notice a connection that died silently.
   const auto one_watch = std::chrono::duration_cast<system_clock::duration>(
       std::min(kLongestWatch, 2 * services_->timeout));
-  bool ended = false;
+  const std::string parent = "projects/" + project;
+  v1::WatchSimulationsRequest request;
+  request.set_parent(parent);
   Backoff backoff;
-  for (int tries_left = kWatchRetries; !ended && !stop.stop_requested();) {
+  for (int tries_left = kWatchRetries; !open.empty() && !stop.stop_requested();) {
+    request.clear_names();
+    for (const std::string& name : open) request.add_names(name);
     grpc::ClientContext context;
     context.set_deadline(system_clock::now() + one_watch);
     const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
-    const auto reader = services_->simulations->WatchSimulation(&context, request);
+    const auto reader = services_->simulations->WatchSimulations(&context, request);
     bool was_silent = true;
     v1::SimulationEvent event;
     while (reader->Read(&event)) {
       was_silent = false;
       tries_left = kWatchRetries;
       backoff.reset();
-      ended = has_ended(event.state());
-      request.set_after_sequence(event.sequence());
+      request.set_after_event_number(event.event_number());
+      if (has_ended(event.state()) || event.kind() == v1::SimulationEvent::DELETED) {
+        open.erase(split_name(kDefaultProject, event.name()).relative);
+      }
+      remove_project(services_->project, event);
       if (on_event && event.kind() != v1::SimulationEvent::HEARTBEAT) on_event(event);
     }
     const grpc::Status status = reader->Finish();
-    if (ended || stop.stop_requested()) break;
+    if (open.empty() || stop.stop_requested()) return;
     if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) {
       // A watch without any message, not even a heartbeat, was too short for one, or its server is
-      // frozen. This call throws if the server does not answer.
-      if (was_silent && has_ended(get_simulation(name).state())) break;
+      // frozen. These calls throw if the server does not answer.
+      while (was_silent && !open.empty() &&
+             has_ended(get_simulation(parent + "/" + *open.begin()).state())) {
+        open.erase(open.begin());
+      }
+      if (open.empty()) return;
     } else {
       const bool broken = status.ok() || status.error_code() == grpc::StatusCode::UNAVAILABLE;
       if (!broken) throw service_error(status, address());
@@ -143,8 +173,14 @@ v1::Simulation Connection::wait_for_end(
         throw ServiceError(ServiceError::Kind::kCannotConnect, "lost the server at " + address());
       }
     }
-    if (!pause(backoff.next(kBetweenWatches), stop)) break;
+    if (!pause(backoff.next(kBetweenWatches), stop)) return;
   }
+}
+
+v1::Simulation Connection::wait_for_end(
+    const std::string& name, const std::function<void(const v1::SimulationEvent&)>& on_event,
+    const std::stop_token& stop) {
+  watch({name}, on_event, stop);
   return get_simulation(name);
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <iostream>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -21,61 +22,62 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kRedraw(150);
 
-/// Progress that watching threads write and the displaying thread reads. Safe for concurrent use.
+/// Progress that a watching thread writes and the displaying thread reads. Safe for concurrent use.
 class Watches {
  public:
-  Watches(const std::vector<v1::Simulation>& simulations, const std::vector<std::string>& labels)
-      : failures_(simulations.size()) {
+  Watches(const std::vector<v1::Simulation>& simulations, const std::vector<std::string>& labels) {
     for (std::size_t i = 0; i < simulations.size(); ++i) {
       const bool ended = has_ended(simulations[i].state());
       jobs_.push_back({labels[i], state_text(simulations[i].state()), "",
                        ended ? 1 : simulations[i].progress_fraction(), ended});
+      places_[simulations[i].name()].push_back(i);
     }
-    open_ = simulations.size();
   }
 
-  void note(std::size_t index, const v1::SimulationEvent& event) {
+  void note(const v1::SimulationEvent& event) {
     const std::lock_guard lock(mutex_);
-    JobProgress& job = jobs_[index];
-    job.state = state_text(event.state());
+    for (const std::size_t place : places_[event.name()]) note(event, jobs_[place]);
+  }
+
+  void close(std::optional<ServiceError> failure) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::move(failure);
+    is_open_ = false;
+    changed_.notify_all();
+  }
+
+  /// Copies the current progress to `picture` after at most kRedraw; returns true while the watch
+  /// is open.
+  bool wait(std::vector<JobProgress>& picture) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kRedraw, [&] { return !is_open_; });
+    picture = jobs_;
+    return is_open_;
+  }
+
+  std::optional<ServiceError> failure() {
+    const std::lock_guard lock(mutex_);
+    return failure_;
+  }
+
+ private:
+  static void note(const v1::SimulationEvent& event, JobProgress& job) {
+    job.state =
+        event.kind() == v1::SimulationEvent::DELETED ? "deleted" : state_text(event.state());
     job.stage = event.stage();
     if (event.has_remaining_seconds()) {
       job.stage += ", about " + duration_text(event.remaining_seconds()) + " left";
     }
-    job.ended = has_ended(event.state());
+    job.ended = has_ended(event.state()) || event.kind() == v1::SimulationEvent::DELETED;
     job.fraction = event.state() == v1::Simulation::SUCCEEDED ? 1 : event.progress_fraction();
   }
 
-  void close(std::size_t index, std::optional<ServiceError> failure) {
-    const std::lock_guard lock(mutex_);
-    failures_[index] = std::move(failure);
-    --open_;
-    changed_.notify_all();
-  }
-
-  /// Copies the current progress to `picture` after at most kRedraw; returns true while a watch is
-  /// open.
-  bool wait(std::vector<JobProgress>& picture) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kRedraw, [&] { return open_ == 0; });
-    picture = jobs_;
-    return open_ > 0;
-  }
-
-  std::optional<ServiceError> first_failure() {
-    const std::lock_guard lock(mutex_);
-    for (const auto& failure : failures_) {
-      if (failure) return failure;
-    }
-    return std::nullopt;
-  }
-
- private:
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<JobProgress> jobs_;
-  std::vector<std::optional<ServiceError>> failures_;
-  std::size_t open_ = 0;
+  std::map<std::string, std::vector<std::size_t>> places_;  // in jobs_, by name
+  std::optional<ServiceError> failure_;
+  bool is_open_ = true;
 };
 
 std::string commands_that_resume(const std::string& program,
@@ -120,22 +122,23 @@ std::vector<v1::Simulation> follow(Connection& connection,
   const InterruptGuard interrupts;
   Watches watches(simulations, labels);
   ProgressDisplay display(std::cerr, form, standard_error_width());
-  std::vector<v1::Simulation> ended(simulations.size());
+  std::vector<v1::Simulation> ended;
   std::stop_source stop;
-  std::vector<std::jthread> threads;
-  for (std::size_t i = 0; i < simulations.size(); ++i) {
-    threads.emplace_back([&, i] {
-      std::optional<ServiceError> failure;
-      try {
-        ended[i] = connection.wait_for_end(
-            simulations[i].name(),
-            [&](const v1::SimulationEvent& event) { watches.note(i, event); }, stop.get_token());
-      } catch (const ServiceError& error) {
-        failure = error;
+  std::jthread watching([&] {
+    std::vector<std::string> names;
+    for (const v1::Simulation& each : simulations) names.push_back(each.name());
+    std::optional<ServiceError> failure;
+    try {
+      connection.watch(
+          names, [&](const v1::SimulationEvent& event) { watches.note(event); }, stop.get_token());
+      for (std::size_t i = 0; i < names.size() && !stop.stop_requested(); ++i) {
+        ended.push_back(connection.get_simulation(names[i]));
       }
-      watches.close(i, failure);
-    });
-  }
+    } catch (const ServiceError& error) {
+      failure = error;
+    }
+    watches.close(failure);
+  });
   std::vector<JobProgress> picture;
   bool open = true;
   while (open && !InterruptGuard::interrupted()) {
@@ -144,13 +147,13 @@ std::vector<v1::Simulation> follow(Connection& connection,
   }
   display.finish();
   stop.request_stop();
-  threads.clear();
+  watching.join();
 
   if (open) {
     throw Failure(kExitInterrupted, "interrupted." + commands_that_resume(program_of(connection),
                                                                           simulations, picture));
   }
-  if (const auto error = watches.first_failure()) {
+  if (const auto error = watches.failure()) {
     const Failure failure(*error);
     throw Failure(failure.exit_code(), failure.what() + commands_that_resume(program_of(connection),
                                                                              simulations, picture));

@@ -15,9 +15,9 @@ std::string program_of(const Connection& connection);
 /// Returns "queued", "running", "succeeded", ...
 std::string state_text(v1::Simulation::State state);
 
-/// Watches simulations in parallel until all have ended and returns them with their results, in the
-/// given order. Shows one progress display on standard error. Throws Failure: kExitInterrupted on
-/// Ctrl-C, kExitCannotConnect when the server is lost. The simulations go on in both cases; the
+/// Watches simulations in one stream until all have ended and returns them with their results, in
+/// the given order. Shows one progress display on standard error. Throws Failure: kExitInterrupted
+/// on Ctrl-C, kExitCannotConnect when the server is lost. The simulations go on in both cases; the
 /// message contains the commands that watch or cancel them.
 std::vector<v1::Simulation> follow(Connection& connection,
                                    const std::vector<v1::Simulation>& simulations,

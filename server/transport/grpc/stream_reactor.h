@@ -56,7 +56,7 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
     if (!outcome.ok()) return machine_.refuse(outcome.error());
     const auto self = shared_from_this();
     if (const auto refused = live_.add(self)) return machine_.refuse(*refused);
-    outcome.message()->observe(std::shared_ptr<ProgressObserver>(self, &machine_));
+    outcome.message()->observe(std::shared_ptr<Observer>(self, &machine_));
     machine_.open(std::move(outcome.message()), context.limits.deadline);
     look_at_clock();
   }

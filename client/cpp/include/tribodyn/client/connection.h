@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -120,7 +121,7 @@ struct HistoryRows {
 /// v1::Lubricant, v1::GearSet, v1::Surface or v1::Vehicle.
 class Connection {
  public:
-  /// `timeout` limits every call except wait_for_end() and the reading of histories.
+  /// `timeout` limits every call except watch(), wait_for_end() and the reading of histories.
   explicit Connection(std::string address,
                       std::chrono::duration<double> timeout = std::chrono::seconds(30),
                       std::string project = kDefaultProject);
@@ -190,10 +191,15 @@ class Connection {
   /// Pin or unpin a simulation: a pinned one neither expires nor is evicted.
   v1::Simulation pin_simulation(const std::string& name);
   v1::Simulation unpin_simulation(const std::string& name);
-  /// Blocks until the simulation has ended and returns it with its result. Calls `on_event` in the
-  /// calling thread for each change of state, once and in order, and for progress. Resumes a broken
-  /// stream after the last event, for a limited time. When `stop` is requested, returns the
-  /// simulation in its current state.
+  /// Blocks until all simulations have ended or are deleted, or until `stop` is requested. Calls
+  /// `on_event` in the calling thread for each change of state, once and in order, and for
+  /// progress. Resumes a broken stream after the last event, for a limited time. Of more than 1000
+  /// simulations it watches 1000 at a time, and of several projects one after the other.
+  void watch(const std::vector<std::string>& names,
+             const std::function<void(const v1::SimulationEvent&)>& on_event = {},
+             const std::stop_token& stop = {});
+  /// Watches one simulation and returns it with its result; in its current state when `stop` is
+  /// requested.
   v1::Simulation wait_for_end(const std::string& name,
                               const std::function<void(const v1::SimulationEvent&)>& on_event = {},
                               const std::stop_token& stop = {});
@@ -209,6 +215,11 @@ class Connection {
 
  private:
   struct Services;
+  /// `open` are relative names of at most 1000 simulations of the project.
+  void watch_some(const std::string& project, std::set<std::string> open,
+                  const std::function<void(const v1::SimulationEvent&)>& on_event,
+                  const std::stop_token& stop);
+
   std::unique_ptr<Services> services_;
 };
 

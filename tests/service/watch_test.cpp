@@ -1,0 +1,369 @@
+// Tests of WatchSimulations.
+#include <SQLiteCpp/Database.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "google/rpc/code.pb.h"
+#include "google/rpc/error_details.pb.h"
+#include "server/application/request_project.h"
+#include "server/application/simulations.h"
+#include "server/application/streams.h"
+#include "server/storage/event_rows.h"
+#include "server/storage/maintenance.h"
+#include "server/storage/seeds.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using Step = AnyMessageSource::Step;
+using State = v1::Simulation;
+using Events = std::vector<v1::SimulationEvent>;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+class CountingObserver : public Observer {
+ public:
+  void changed() override { ++count; }
+  std::atomic<int> count = 0;
+};
+
+class WatchTest : public testing::Test {
+ protected:
+  /// Opens a watch as the dispatcher does.
+  StreamOutcome<v1::SimulationEvent> open(v1::WatchSimulationsRequest request) {
+    Application app = bench_.application();
+    CallContext context;
+    if (auto refused = enter_project(app, request, context)) return *refused;
+    return watch_simulations(app, request, context);
+  }
+  static v1::WatchSimulationsRequest of(const std::vector<std::string>& names,
+                                        std::int64_t after = 0) {
+    v1::WatchSimulationsRequest out;
+    for (const std::string& name : names) out.add_names(name);
+    out.set_after_event_number(after);
+    return out;
+  }
+  static v1::WatchSimulationsRequest that_satisfy(const std::string& filter,
+                                                  std::int64_t after = 0) {
+    v1::WatchSimulationsRequest out;
+    out.set_filter(filter);
+    out.set_after_event_number(after);
+    return out;
+  }
+  /// Reads until the stream ends or has nothing more; without progress and heartbeats.
+  static Events read(MessageSource<v1::SimulationEvent>& source, Step* last = nullptr) {
+    Events out;
+    v1::SimulationEvent event;
+    Step step = source.next(event);
+    for (; step == Step::kMessage; step = source.next(event)) {
+      if (event.kind() == v1::SimulationEvent::STATE_CHANGE ||
+          event.kind() == v1::SimulationEvent::DELETED) {
+        out.push_back(event);
+      }
+    }
+    if (last != nullptr) *last = step;
+    return out;
+  }
+  Events read(const v1::WatchSimulationsRequest& request) {
+    const auto outcome = open(request);
+    EXPECT_TRUE(outcome.ok()) << outcome.error().message();
+    return outcome.ok() ? read(*outcome.message()) : Events();
+  }
+  static std::string reason(const google::rpc::Status& status) {
+    google::rpc::ErrorInfo info;
+    for (const auto& each : status.details()) {
+      if (each.UnpackTo(&info)) return info.reason();
+    }
+    return {};
+  }
+  static std::vector<std::string> names_of(const Events& events) {
+    std::vector<std::string> out;
+    for (const auto& each : events) out.push_back(each.name());
+    return out;
+  }
+  std::string finished(const std::string& part = "none") {
+    v1::Simulation simulation = point_simulation();
+    v1::Label& label = *simulation.add_labels();
+    label.set_key("part");
+    label.set_value(part);
+    std::string name = bench_.create(simulation);
+    EXPECT_TRUE(bench_.reaches(name, State::SUCCEEDED));
+    return name;
+  }
+  std::string finished_in(const std::string& project) {
+    Application app = bench_.application();
+    v1::CreateSimulationRequest request;
+    *request.mutable_simulation() = point_simulation();
+    CallContext context;
+    context.project = project;
+    const std::string name = create_simulation(app, request, context).message().name();
+    EXPECT_TRUE(eventually([&] { return stored(name)->state == StoredState::kSucceeded; }));
+    return name;
+  }
+  std::optional<StoredSimulation> stored(const std::string& name) {
+    const auto parts = split_name(name);
+    return bench_.store().numbered_simulation(std::string(parts->project),
+                                              *simulation_id(parts->relative));
+  }
+  void remove(const std::string& name) {
+    EXPECT_EQ(bench_.store().remove_simulation(stored(name)->id), Store::Removal::kDone);
+  }
+  std::int64_t latest() { return bench_.store().event_range().latest; }
+  /// Changes the database past the trigger that an event belongs to a simulation.
+  void add_events(const std::string& sql) {
+    SQLite::Database db(bench_.database(), SQLite::OPEN_READWRITE);
+    const std::string trigger =
+        db.execAndGet("SELECT sql FROM sqlite_master WHERE name = 'events_have_a_simulation'")
+            .getString();
+    db.exec("DROP TRIGGER events_have_a_simulation");
+    db.exec(sql);
+    db.exec(trigger);
+  }
+
+  Bench bench_;
+};
+
+TEST_F(WatchTest, OneStreamTellsTheEventsOfAllNamedSimulationsInOrder) {
+  const std::string first = finished(), other = finished(), second = finished();
+  Step last = Step::kWait;
+  const auto source = open(of({second, first, second})).message();
+  const Events events = read(*source, &last);
+  EXPECT_EQ(last, Step::kEnd) << "all have ended";
+  EXPECT_THAT(names_of(events), ElementsAre(first, first, first, second, second));
+  std::int64_t number = 0;
+  for (const auto& each : events) {
+    EXPECT_GT(each.event_number(), number);
+    number = each.event_number();
+  }
+  EXPECT_EQ(events.back().state(), State::SUCCEEDED);
+  EXPECT_EQ(events.back().progress_fraction(), 1);
+}
+
+TEST_F(WatchTest, AResumedStreamTellsExactlyTheRest) {
+  const std::vector<std::string> names = {finished(), finished()};
+  const Events all = read(of(names));
+  for (std::size_t known = 1; known <= all.size(); ++known) {
+    const Events rest = read(of(names, all[known - 1].event_number()));
+    ASSERT_THAT(rest, SizeIs(all.size() - known));
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      EXPECT_EQ(rest[i].SerializeAsString(), all[known + i].SerializeAsString());
+    }
+  }
+}
+
+TEST_F(WatchTest, AFilterTellsOfLaterSimulationsToo) {
+  const std::string before = finished("axle");
+  const auto source = open(that_satisfy("labels.part = axle", latest())).message();
+  const auto observer = std::make_shared<CountingObserver>();
+  source->observe(observer);
+  EXPECT_THAT(read(*source), IsEmpty());
+  const int told = observer->count;
+  finished("gearbox");
+  const std::string later = finished("axle");
+  EXPECT_GT(observer->count, told) << "commits wake it";
+  Step last = Step::kEnd;
+  EXPECT_THAT(names_of(read(*source, &last)), ElementsAre(later, later)) << "QUEUED, SUCCEEDED";
+  EXPECT_EQ(last, Step::kWait) << "it does not end";
+  EXPECT_THAT(names_of(read(that_satisfy("labels.part = axle"))),
+              ElementsAre(before, before, before, later, later));
+}
+
+TEST_F(WatchTest, AClientThatResumesLearnsOfEverythingThatWasDeleted) {
+  const std::string seen = finished(), unseen = finished();
+  const std::int64_t known = read(of({seen})).back().event_number();
+  remove(unseen);
+  const Events events = read(that_satisfy("lubricant = paper-fluid-1", known));
+  ASSERT_THAT(events, SizeIs(1));
+  EXPECT_EQ(events[0].kind(), v1::SimulationEvent::DELETED);
+  EXPECT_EQ(events[0].name(), unseen);
+  EXPECT_EQ(events[0].state(), State::STATE_UNSPECIFIED);
+  EXPECT_THAT(names_of(read(of({unseen}, known))), ElementsAre(unseen)) << "named too";
+  EXPECT_EQ(open(of({unseen})).error().code(), google::rpc::NOT_FOUND);
+  EXPECT_THAT(check_database(bench_.database()), IsEmpty());
+}
+
+TEST_F(WatchTest, AStreamIsOfOneProject) {
+  bench_.store().add_project("acme", seed_resources(), 1);
+  const std::string mine = finished(), other = finished_in("acme");
+  ASSERT_EQ(mine, "simulations/1");
+  ASSERT_EQ(other, "projects/acme/simulations/1");
+  const auto thrice = [](const std::string& name) { return ElementsAre(name, name, name); };
+  auto filtered = that_satisfy("lubricant = paper-fluid-1");
+  EXPECT_THAT(names_of(read(filtered)), thrice(mine));
+  filtered.set_parent("projects/acme");
+  EXPECT_THAT(names_of(read(filtered)), thrice(other));
+  EXPECT_THAT(names_of(read(of({other}))), thrice(other));
+  EXPECT_THAT(names_of(read(of({mine}))), thrice(mine));
+  auto relative = of({mine});
+  relative.set_parent("projects/acme");
+  EXPECT_THAT(names_of(read(relative)), thrice(other));
+  EXPECT_THAT(complaints(open(of({other, "projects/default/simulations/1"})).error()),
+              HasSubstr("names[1]: \"projects/default/simulations/1\" belongs to another project"));
+  EXPECT_EQ(open(of({"projects/acme/simulations/2"})).error().code(), google::rpc::NOT_FOUND);
+}
+
+TEST_F(WatchTest, ADeletionIsToldInItsProject) {
+  bench_.store().add_project("acme", seed_resources(), 1);
+  const std::string mine = finished(), other = finished_in("acme");
+  const std::int64_t known = latest();
+  remove(mine);
+  remove(other);
+  auto filtered = that_satisfy("lubricant = paper-fluid-1", known);
+  EXPECT_THAT(names_of(read(filtered)), ElementsAre(mine));
+  filtered.set_parent("projects/acme");
+  EXPECT_THAT(names_of(read(filtered)), ElementsAre(other));
+  EXPECT_THAT(names_of(read(of({other}, known))), ElementsAre(other));
+  EXPECT_THAT(names_of(read(of({mine}, known))), ElementsAre(mine));
+  EXPECT_THAT(check_database(bench_.database()), IsEmpty());
+}
+
+TEST_F(WatchTest, AStreamEndsAfterADeletionThatTheClientHas) {
+  const std::string name = finished();
+  const std::int64_t known = latest();
+  remove(name);
+  Step last = Step::kWait;
+  EXPECT_THAT(read(*open(of({name}, known)).message(), &last), SizeIs(1));
+  EXPECT_EQ(last, Step::kEnd);
+  EXPECT_THAT(read(*open(of({name}, latest())).message(), &last), IsEmpty());
+  EXPECT_EQ(last, Step::kEnd);
+}
+
+TEST_F(WatchTest, NumbersAreNeverGivenTwice) {
+  const std::string name = finished();
+  const std::int64_t before = latest();
+  remove(name);
+  EXPECT_GT(latest(), before);
+  const std::string next = finished();
+  EXPECT_GT(read(of({next})).front().event_number(), before + 1);
+}
+
+TEST_F(WatchTest, AClientThatResumesBeforeForgottenDeletionsIsRefused) {
+  const std::string name = finished();
+  SQLite::Database(bench_.database(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE event_log SET forgotten = 2");
+  const auto refused = open(of({name}, 1)).error();
+  EXPECT_EQ(refused.code(), google::rpc::OUT_OF_RANGE);
+  EXPECT_EQ(reason(refused), "EVENTS_FORGOTTEN");
+  EXPECT_THAT(read(of({name}, 2)), SizeIs(1));
+  EXPECT_THAT(read(of({name})), SizeIs(3)) << "without a number nothing can be missing";
+}
+
+TEST_F(WatchTest, TheOldestDeletionsAreForgotten) {
+  const std::string kept = finished(), removed = finished();
+  add_events(
+      "INSERT INTO events (simulation, sequence, time, state, attempt, reason, project, "
+      "simulation_number) "
+      "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " +
+      std::to_string(kKeptDeletions + 999) +
+      ") SELECT 1000000 + i, 1, 0, 0, 1, '', 'default', 1000000 + i FROM n");
+  SQLite::Database db(bench_.database(), SQLite::OPEN_READWRITE);
+  db.exec("UPDATE projects SET last_number = 2000000");
+  db.exec("UPDATE event_log SET deletions = " + std::to_string(kKeptDeletions + 999));
+  const std::int64_t first = latest() - (kKeptDeletions + 999) + 1;
+  remove(removed);
+  EXPECT_EQ(bench_.store().event_range().forgotten, first + 999);
+  EXPECT_THAT(check_database(bench_.database()), IsEmpty());
+  EXPECT_THAT(read(of({kept})), SizeIs(3)) << "events of what is there stay";
+}
+
+TEST_F(WatchTest, AStreamComesForwardWhereNothingMatches) {
+  const std::string name = finished("axle");
+  add_events(
+      "INSERT INTO events (simulation, sequence, time, state, attempt, reason) "
+      "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " +
+      std::to_string(2 * kEventWindow) + ") SELECT 1000000 + i, 1, 0, 1, 1, '' FROM n");
+  const std::string later = finished("axle");
+  const auto source = open(that_satisfy("labels.part = axle", 3)).message();
+  v1::SimulationEvent event;
+  ASSERT_EQ(source->next(event), Step::kMessage);
+  EXPECT_EQ(event.kind(), v1::SimulationEvent::HEARTBEAT);
+  EXPECT_EQ(event.event_number(), 3 + kEventWindow) << "says how far it has come";
+  EXPECT_THAT(names_of(read(*source)), ElementsAre(later, later));
+}
+
+TEST_F(WatchTest, RefusesWhatItCannotFollow) {
+  const std::string name = finished();
+  EXPECT_EQ(open({}).error().code(), google::rpc::INVALID_ARGUMENT) << "neither names nor filter";
+  auto both = of({name});
+  both.set_filter("lubricant = paper-fluid-1");
+  EXPECT_EQ(open(both).error().code(), google::rpc::INVALID_ARGUMENT);
+  EXPECT_THAT(complaints(open(that_satisfy("state = RUNNING")).error()),
+              HasSubstr("state changes with events"));
+  EXPECT_THAT(complaints(open(of({name, "lubricants/paper-fluid-1"})).error()),
+              HasSubstr("names[1]"));
+  EXPECT_THAT(complaints(open(of({name}, latest() + 1)).error()), HasSubstr("allowed: 0 to 3"));
+  EXPECT_EQ(open(of({name}, -1)).error().code(), google::rpc::INVALID_ARGUMENT);
+  EXPECT_EQ(open(of({name, "simulations/99"})).error().code(), google::rpc::NOT_FOUND);
+}
+
+TEST_F(WatchTest, AListSaysAfterWhichEventToWatch) {
+  finished();
+  Application app = bench_.application();
+  EXPECT_EQ(list_simulations(app, {}).message().event_number(), latest());
+}
+
+TEST_F(WatchTest, ARunningSimulationTellsItsProgress) {
+  const auto release = std::make_shared<std::atomic<bool>>(false);
+  bench_.restart(patient_studies(release));
+  const std::string name = bench_.create(point_simulation());
+  ASSERT_TRUE(bench_.reaches(name, State::RUNNING));
+  const std::vector<v1::WatchSimulationsRequest> requests = {
+      of({name}), of({name}, latest()), that_satisfy("lubricant = paper-fluid-1"),
+      that_satisfy("lubricant = paper-fluid-1", latest())};
+  for (const auto& request : requests) {
+    const auto source = open(request).message();
+    source->observe(std::make_shared<CountingObserver>());
+    v1::SimulationEvent event;
+    EXPECT_TRUE(eventually([&] {
+      return source->next(event) == Step::kMessage && event.kind() == v1::SimulationEvent::PROGRESS;
+    })) << request.DebugString();
+    EXPECT_EQ(event.name(), name);
+    EXPECT_EQ(event.state(), State::RUNNING);
+    EXPECT_EQ(event.sequence(), 2);
+    EXPECT_EQ(event.event_number(), latest());
+  }
+  *release = true;
+}
+
+TEST_F(WatchTest, NothingIsMissedWhileManySimulationsRun) {
+  constexpr int kThreads = 3, kEach = 30;
+  const auto source = open(that_satisfy("lubricant = paper-fluid-1")).message();
+  source->observe(std::make_shared<CountingObserver>());
+  std::vector<std::thread> threads;
+  for (int i = 0; i < kThreads; ++i) {
+    threads.emplace_back([this, i] {
+      for (int k = 0; k < kEach; ++k) {
+        v1::Simulation simulation = point_simulation();
+        simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(
+            40 + i + 0.1 * k);
+        bench_.create(simulation);
+      }
+    });
+  }
+  std::map<std::string, std::int64_t> told;  // sequence by name
+  int ended = 0;
+  std::int64_t number = 0;
+  EXPECT_TRUE(eventually([&] {
+    for (const auto& each : read(*source)) {
+      EXPECT_EQ(each.sequence(), ++told[each.name()]) << "every event once and in order";
+      EXPECT_GT(each.event_number(), number);
+      number = each.event_number();
+      ended += each.state() == State::SUCCEEDED ? 1 : 0;
+    }
+    return ended == kThreads * kEach;
+  }));
+  for (std::thread& thread : threads) thread.join();
+}
+
+}  // namespace
+}  // namespace tribodyn::server
