@@ -14,6 +14,8 @@ struct Application {
   SimulationJobs& jobs;
   /// Number of histories that are being read. Shared, because a reader may outlive the object.
   std::shared_ptr<std::atomic<int>> open_histories = std::make_shared<std::atomic<int>>(0);
+  /// Watches with a filter that are open; shared for the same reason.
+  std::shared_ptr<std::atomic<int>> open_filters = std::make_shared<std::atomic<int>>(0);
 };
 
 }  // namespace tribodyn::server

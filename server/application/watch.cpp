@@ -2,6 +2,7 @@
 #include <google/protobuf/util/time_util.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <deque>
 #include <map>
@@ -18,6 +19,8 @@ namespace {
 
 using google::protobuf::util::TimeUtil;
 using std::chrono::steady_clock;
+
+constexpr double kRetrySeconds = 10;  // for a place among the watches with a filter
 
 /// What a watch knows of a simulation whose end it has not told.
 struct Watched {
@@ -47,12 +50,13 @@ class Watch : public MessageSource<v1::SimulationEvent> {
         is_named_(true),
         watched_(std::move(watched)),
         told_through_(after) {}
-  /// Of those of the project of the call that satisfy the restrictions; `watched` are those that
+  /// Of those of the project of the call that satisfy the restrictions; `running` are those that
   /// run now.
   Watch(Application& application, std::vector<Restriction> restrictions, Simulations running,
-        std::int64_t after, const CallContext& call)
+        std::shared_ptr<void> place, std::int64_t after, const CallContext& call)
       : Watch(application, std::move(running), after, call) {
     is_named_ = false;
+    place_ = std::move(place);
     restrictions_ = std::move(restrictions);
   }
 
@@ -212,7 +216,8 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   }
 
   Application application_;
-  const CallLimits limits_;  // the end of the stream is its transport's
+  std::shared_ptr<void> place_;  // of a filter, else null
+  const CallLimits limits_;      // the end of the stream is its transport's
   const std::string project_;
   bool is_named_;
   std::vector<Restriction> restrictions_;
@@ -300,6 +305,16 @@ Outcome<Source> watch_named(Application& application, const v1::WatchSimulations
   return Source(std::make_shared<Watch>(application, std::move(simulations), after, call));
 }
 
+/// Returns a place among kMostFilters, which is free again when the last copy is destroyed; null if
+/// there is none.
+std::shared_ptr<void> take_place(const std::shared_ptr<std::atomic<int>>& open) {
+  if (++*open > kMostFilters) {
+    --*open;
+    return nullptr;
+  }
+  return {open.get(), [open](void*) { --*open; }};
+}
+
 Outcome<Source> watch_filtered(Application& application, const v1::WatchSimulationsRequest& request,
                                const CallContext& call) {
   Violations violations;
@@ -312,6 +327,14 @@ Outcome<Source> watch_filtered(Application& application, const v1::WatchSimulati
     }
   }
   if (!violations.empty()) return invalid(violations);
+  std::shared_ptr<void> place = take_place(application.open_filters);
+  if (!place) {
+    return exhausted(v1::ERROR_REASON_TOO_MANY_STREAMS,
+                     fmt::format("{} watches with a filter are open, which is the limit; try again "
+                                 "in {} s",
+                                 kMostFilters, kRetrySeconds),
+                     kRetrySeconds);
+  }
   std::vector<Restriction> restrictions = running.restrictions;
   running.restrictions.push_back(
       {"state", Restriction::Comparison::kEqual, std::int64_t{v1::Simulation::RUNNING}});
@@ -324,8 +347,8 @@ Outcome<Source> watch_filtered(Application& application, const v1::WatchSimulati
     simulations[each.id] = watched(std::move(*opened));
   }
   return Source(std::make_shared<Watch>(application, std::move(restrictions),
-                                        std::move(simulations), request.after_event_number(),
-                                        call));
+                                        std::move(simulations), std::move(place),
+                                        request.after_event_number(), call));
 }
 
 }  // namespace

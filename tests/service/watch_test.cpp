@@ -306,6 +306,21 @@ TEST_F(WatchTest, RefusesWhatItCannotFollow) {
   EXPECT_EQ(open(of({name, "simulations/99"})).error().code(), google::rpc::NOT_FOUND);
 }
 
+TEST_F(WatchTest, ManyFiltersAreRefusedUntilOneIsClosed) {
+  Application app = bench_.application();
+  const auto request = that_satisfy("lubricant = paper-fluid-1");
+  std::vector<std::shared_ptr<MessageSource<v1::SimulationEvent>>> sources;
+  for (int i = 0; i < kMostFilters; ++i) {
+    sources.push_back(watch_simulations(app, request).message());
+  }
+  const auto refused = watch_simulations(app, request).error();
+  EXPECT_EQ(refused.code(), google::rpc::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(reason(refused), "TOO_MANY_STREAMS");
+  EXPECT_TRUE(watch_simulations(app, of({finished()})).ok()) << "names are not limited";
+  sources.pop_back();
+  EXPECT_TRUE(watch_simulations(app, request).ok());
+}
+
 TEST_F(WatchTest, AListSaysAfterWhichEventToWatch) {
   finished();
   Application app = bench_.application();
