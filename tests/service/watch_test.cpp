@@ -106,7 +106,7 @@ class WatchTest : public testing::Test {
     *request.mutable_simulation() = point_simulation();
     CallContext context;
     context.project = project;
-    const std::string name = create_simulation(app, request, context).message().name();
+    std::string name = create_simulation(app, request, context).message().name();
     EXPECT_TRUE(eventually([&] { return stored(name)->state == StoredState::kSucceeded; }));
     return name;
   }
