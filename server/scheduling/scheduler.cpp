@@ -548,7 +548,7 @@ bool Scheduler::stopped(const Lease& lease) {
   };
   switch (lease.stop->reason()) {
     case StopReason::kNone:
-      fail_on_defect(lease, "the study stopped without being asked to");
+      fail_on_defect(lease, "the study ended early without a request to stop");
       return false;
     case StopReason::kEnded:
       publish(lease.id, std::nullopt);

@@ -70,11 +70,13 @@ std::vector<std::string> reads_of(const std::vector<std::string>& statements) {
     };
     if (sql.find("FROM resources r JOIN revisions v ON v.id = r.present") != std::string::npos) {
       out.push_back(value("r.name = '"));
-    } else if (sql.find("FROM results WHERE project = 'default' AND input_hash") != std::string::npos) {
+    } else if (sql.find("FROM results WHERE project = 'default' AND input_hash") !=
+               std::string::npos) {
       out.push_back("result of equal inputs");
     } else if (sql.find("FROM ledgers WHERE content_hash") != std::string::npos) {
       out.push_back("assumptions");
-    } else if (sql.find("FROM simulations WHERE project = 'default' AND request_id") != std::string::npos) {
+    } else if (sql.find("FROM simulations WHERE project = 'default' AND request_id") !=
+               std::string::npos) {
       out.push_back("simulation of request_id " + value("request_id = '"));
     } else {
       out.push_back(sql);

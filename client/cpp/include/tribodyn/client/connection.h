@@ -96,7 +96,7 @@ struct DeleteOptions {
 struct PurgeOptions {
   bool delete_simulations = false;  ///< delete every simulation that used the resource too
   bool allow_missing = false;       ///< succeed if it does not exist
-  bool validate_only = false;       ///< tell what would be erased, erase nothing
+  bool validate_only = false;       ///< count what would be erased, and erase nothing
   std::string etag = {};            ///< refused unless this is the present one; empty: any
 };
 
