@@ -126,6 +126,24 @@ TEST_F(RestTest, ResourceIsCreatedUpdatedAndDeletedWithItsEtag) {
   EXPECT_EQ(send("POST", "/v1/lubricants/mine:undelete", "{}").status, 200);
 }
 
+TEST_F(RestTest, AConditionThatCannotBeKeptIsRefused) {
+  for (const char* header : {"tag", "W/\"tag\"", "\"a\", \"b\"", "\"\""}) {
+    const HttpResponse response =
+        send("DELETE", "/v1/lubricants/paper-fluid-1", "", {{"if-match", header}});
+    EXPECT_EQ(response.status, 400) << header;
+    EXPECT_THAT(violations(response).at("If-Match"), HasSubstr("one etag in double quotes"));
+  }
+  EXPECT_THAT(
+      violations(send("GET", "/v1/lubricants", "", {{"if-match", "\"tag\""}})).at("If-Match"),
+      HasSubstr("compares no etag"));
+  EXPECT_EQ(send("GET", "/v1/lubricants/paper-fluid-1").status, 200) << "nothing was deleted";
+}
+
+TEST_F(RestTest, TextThatIsNotUtf8IsRefused) {
+  EXPECT_EQ(send("GET", "/v1/lubricants/%ff").status, 400);
+  EXPECT_EQ(send("GET", "/v1/lubricants?filter=%ff").status, 400);
+}
+
 TEST_F(RestTest, KnownEtagAnswersNotModifiedWithoutABody) {
   const HttpResponse whole = send("GET", "/v1/lubricants/paper-fluid-1");
   const std::string tag = whole.headers.at("ETag");

@@ -308,7 +308,16 @@ HttpServer::Connections::Connections(RestHandler& handler, const ListenAddress& 
     : handler_(handler), limits_(limits), acceptor_(address) {}
 
 void HttpServer::Connections::start() {
-  thread_ = std::thread([this] { context_.run(); });
+  thread_ = std::thread([this] {
+    for (;;) {
+      try {
+        context_.run();
+        return;
+      } catch (const std::exception& failure) {  // no memory for a connection: the others go on
+        spdlog::error("event=http_failed cause=\"{}\"", failure.what());
+      }
+    }
+  });
   acceptor_.start([this](int, int connection) {
     asio::post(context_, [this, connection] { add(connection); });
   });

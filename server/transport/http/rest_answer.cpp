@@ -173,9 +173,9 @@ HttpResponse message_response(const google::protobuf::Message& message,
   return out;
 }
 
-void compress(const HttpRequest& request, HttpResponse& response) {
+void compress(std::string_view accept_encoding, HttpResponse& response) {
   response.headers["Vary"] = "Accept-Encoding";
-  if (response.body.size() < kLeastCompressed || !accepts_gzip(request.header("accept-encoding"))) {
+  if (response.body.size() < kLeastCompressed || !accepts_gzip(accept_encoding)) {
     return;
   }
   constexpr int kGzipWindow = 15 + 16;  // 32 kB, with gzip's header

@@ -2,6 +2,8 @@
 
 #include <google/protobuf/message.h>
 
+#include <string_view>
+
 #include "google/rpc/status.pb.h"
 #include "server/transport/http/http_message.h"
 
@@ -22,7 +24,8 @@ HttpResponse error_response(const google::rpc::Status& error, int status);
 /// the body. Status 304 without a body if `request` is a GET or HEAD that has this tag already.
 HttpResponse message_response(const google::protobuf::Message& message, const HttpRequest& request);
 
-/// Compresses the body if the client accepts gzip and the body is long enough to gain.
-void compress(const HttpRequest& request, HttpResponse& response);
+/// Compresses the body if the header Accept-Encoding allows gzip and the body is long enough to
+/// gain.
+void compress(std::string_view accept_encoding, HttpResponse& response);
 
 }  // namespace tribodyn::server

@@ -124,8 +124,8 @@ class RestCall final : public UnaryCall {
 
  private:
   HttpResponse response(const Outcome<Reply>& outcome) const {
-    if (!outcome.ok()) return error_response(outcome.error());
     try {
+      if (!outcome.ok()) return error_response(outcome.error());
       return message_response(*outcome.message(), request_);
     } catch (...) {
       return error_response(error_of_exception());
@@ -170,7 +170,9 @@ std::size_t RestHandler::maximum_body_bytes(const HttpRequest& head) const {
 
 void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled,
                          Reply reply) {
-  const auto answer = [reply = std::move(reply), encoding = request](HttpResponse response) {
+  const auto answer = [reply = std::move(reply),
+                       encoding =
+                           std::string(request.header("accept-encoding"))](HttpResponse response) {
     response.headers.insert(security_headers().begin(), security_headers().end());
     compress(encoding, response);
     reply(std::move(response));

@@ -195,22 +195,38 @@ void add_query(const RouteMatch& route, std::string_view query, Message& message
   }
 }
 
-/// The entity tag of an If-Match header, or "" for none and for "*".
-std::string etag_of(std::string_view header) {
-  if (header.starts_with("W/")) header.remove_prefix(2);
-  if (header.size() < 2 || header.front() != '"' || header.back() != '"') return {};
-  return std::string(header.substr(1, header.size() - 2));
+/// The entity tag of an If-Match header. Returns nullopt if the header is not one tag in quotes.
+std::optional<std::string> etag_of(std::string_view header) {
+  if (header.size() < 3 || header.front() != '"' || header.back() != '"') return std::nullopt;
+  const std::string_view tag = header.substr(1, header.size() - 2);
+  if (tag.find('"') != std::string_view::npos) return std::nullopt;
+  return std::string(tag);
 }
 
-/// Gives the request, or the resource in its body, the etag that the client has seen.
-void set_etag(const RouteMatch& route, const std::string& etag, Message& message) {
+/// Gives the request, or the resource in its body, the etag that the client has seen. Returns false
+/// if neither has an etag.
+bool set_etag(const RouteMatch& route, const std::string& etag, Message& message) {
   for (const std::string& path : {std::string("etag"), route.body_field + ".etag"}) {
     const Descriptor& type = *message.GetDescriptor();
     if (path != "etag" && type.FindFieldByName(route.body_field) == nullptr) continue;
     if (const auto target = find_target(message, path)) {
       set_field(*target->message, *target->field, etag);
-      return;
+      return true;
     }
+  }
+  return false;
+}
+
+/// A condition that cannot be kept is refused: the client relies on it.
+void add_condition(const RouteMatch& route, std::string_view header, Message& message,
+                   Violations& violations) {
+  if (header.empty() || header == "*") return;
+  const auto etag = etag_of(header);
+  if (!etag) {
+    violations.push_back(
+        {"If-Match", "is " + plain_excerpt(header) + "; allowed: one etag in double quotes, or *"});
+  } else if (!set_etag(route, *etag, message)) {
+    violations.push_back({"If-Match", "this method compares no etag"});
   }
 }
 
@@ -275,8 +291,7 @@ std::optional<google::rpc::Status> write_request(const RouteMatch& route,
     add_query(route, std::string_view(request.target).substr(question + 1), *beside_body,
               violations);
   }
-  const std::string etag = etag_of(request.header("if-match"));
-  if (!etag.empty()) set_etag(route, etag, *beside_body);
+  add_condition(route, request.header("if-match"), *beside_body, violations);
   wire.clear();
   if (!route.body_field.empty()) {
     if (auto violation = append_body(route, request.body, wire)) {
