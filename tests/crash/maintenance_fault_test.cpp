@@ -175,7 +175,7 @@ class MaintenanceOnAFaultyDisk : public MaintenanceFault {
   void fail_each_operation(const Action& action, const Check& check) {
     using Operation = FaultyVfs::Operation;
     for (const Operation operation : {Operation::kOpen, Operation::kWrite, Operation::kSync}) {
-      const int slowed = kUnderThreadSanitizer ? 80 : kUnderAddressSanitizer ? 40 : 10;
+      const int slowed = kUnderAddressSanitizer ? 40 : 10;
       const int stride = operation == Operation::kWrite ? slowed : 1;
       for (const bool lasting : {false, true}) {
         int n = 1;
