@@ -156,15 +156,38 @@ struct Rest {
       : handler(dispatcher, std::move(pages)), server(handler, address) {}
 };
 
+/// The page /healthz: 503 while gRPC's health check answers NOT_SERVING.
+RestHandler::Page health_page(const GrpcServer& server) {
+  return [&server] {
+    HttpResponse out;
+    out.headers["Content-Type"] = "text/plain; charset=utf-8";
+    out.headers["Cache-Control"] = "no-store";
+    out.status = server.is_serving() ? 200 : 503;
+    out.body = server.is_serving()
+                   ? "ok\n"
+                   : "not serving: the server starts or stops, or its database was moved\n";
+    return out;
+  };
+}
+
+/// The page /metrics.
+RestHandler::Page metrics_page(SimulationJobs& jobs) {
+  return [&jobs] {
+    HttpResponse out;
+    out.headers["Content-Type"] = "text/plain; version=0.0.4; charset=utf-8";
+    out.body = jobs.metrics().text(jobs.occupancy());
+    return out;
+  };
+}
+
 /// Starts the REST interface. Returns null if no address is set.
 std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& dispatcher,
-                                      SimulationJobs& jobs) {
+                                      SimulationJobs& jobs, const GrpcServer& server) {
   if (settings.http_listen.empty()) return nullptr;
   jobs.metrics().set_build(TRIBODYN_VERSION, kModelVersion, platform());
   std::map<std::string, RestHandler::Page> pages;
-  pages["/metrics"] = {"text/plain; version=0.0.4; charset=utf-8",
-                       [&jobs] { return jobs.metrics().text(jobs.occupancy()); }};
-  pages["/healthz"] = {"text/plain; charset=utf-8", [] { return std::string("ok\n"); }};
+  pages["/metrics"] = metrics_page(jobs);
+  pages["/healthz"] = health_page(server);
   auto out = std::make_unique<Rest>(dispatcher, std::move(pages),
                                     parse_listen_address(settings.http_listen));
   spdlog::info("REST at http://{}", to_text(out->server.address()));
@@ -191,7 +214,7 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
                                           to_milliseconds(settings.stream_limit_seconds),
                                           to_milliseconds(settings.unread_limit_seconds)});
   GrpcServer server(dispatcher, address);
-  const std::unique_ptr<Rest> rest = listen_for_http(settings, dispatcher, jobs);
+  const std::unique_ptr<Rest> rest = listen_for_http(settings, dispatcher, jobs, server);
   const std::string wrong = jobs.start();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);
   server.set_serving(true);

@@ -52,6 +52,15 @@ class Connection {
     return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) ==
            static_cast<ssize_t>(text.size());
   }
+  /// Sends a text of any length. Returns false once the server has closed the connection.
+  bool send_all(std::string_view text) {
+    while (!text.empty()) {
+      const ssize_t count = ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
+      if (count <= 0) return false;
+      text.remove_prefix(static_cast<std::size_t>(count));
+    }
+    return true;
+  }
   /// Reads until `end` has come, the server closes, or `limit` is over.
   std::string read_until(const std::string& end, milliseconds limit = milliseconds(20'000)) {
     std::string out;
@@ -85,13 +94,23 @@ std::string get(const std::string& target, const std::string& headers = {}) {
   return "GET " + target + " HTTP/1.1\r\n" + kHost + headers + "\r\n";
 }
 
+constexpr std::size_t kLongPage = 50'000'000;  // [bytes], more than the buffers of both ends hold
+
+HttpResponse page(std::string text) {
+  HttpResponse out;
+  out.headers["Content-Type"] = "text/plain";
+  out.body = std::move(text);
+  return out;
+}
+
 class HttpServerTest : public testing::Test {
  protected:
   /// A server with its own limits.
   struct Served {
     Served(Application& app, const HttpLimits& limits)
         : dispatcher(app),
-          handler(dispatcher, {{"/hello", {"text/plain", [] { return std::string("hello"); }}}}),
+          handler(dispatcher, {{"/hello", [] { return page("hello"); }},
+                               {"/long", [] { return page(std::string(kLongPage, 'x')); }}}),
           server(handler, {"127.0.0.1", 0, ""}, limits) {}
     int port() const { return server.address().port; }
 
@@ -168,6 +187,7 @@ TEST_F(HttpServerTest, WhatIsNoRequestIsRefusedAndTheConnectionClosed) {
     const std::string answer = client.read_all();
     EXPECT_THAT(answer, StartsWith("HTTP/1.1 " + status)) << request.substr(0, 60);
     EXPECT_THAT(answer, HasSubstr("X-Content-Type-Options: nosniff"));
+    EXPECT_THAT(answer, HasSubstr("INVALID_HTTP"));
     EXPECT_TRUE(client.is_closed()) << request.substr(0, 60);
   }
 }
@@ -229,7 +249,7 @@ TEST_F(HttpServerTest, BodiesThatAreReadTogetherAreLimited) {
   EXPECT_TRUE(eventually([&] {
     Connection second(served->port());
     second.send(head(200) + "{}");
-    return second.read_until("\r\n\r\n", milliseconds(200)).starts_with("HTTP/1.1 503");
+    return second.read_until("\r\n\r\n", milliseconds(200)).starts_with("HTTP/1.1 429");
   }));
   first.hang_up();
   EXPECT_TRUE(eventually([&] {
@@ -237,6 +257,50 @@ TEST_F(HttpServerTest, BodiesThatAreReadTogetherAreLimited) {
     third.send(head(900) + std::string(900, ' '));
     return third.read_until("\r\n\r\n", milliseconds(2000)).starts_with("HTTP/1.1 400");
   })) << "counted no longer";
+}
+
+TEST_F(HttpServerTest, ACallWhoseClientHangsUpIsCancelled) {
+  const auto served = serve();
+  std::string batch = R"({"requests":[)";
+  for (int i = 0; i < 4000; ++i) {
+    batch += std::string(i > 0 ? "," : "") + R"({"lubricant":{"name":"lubricants/many-)" +
+             std::to_string(i) + R"(","derived_from":"lubricants/paper-fluid-1"}})";
+  }
+  batch += "]}";
+  {
+    Connection client(served->port());
+    client.send(std::string("POST /v1/lubricants:batchCreate HTTP/1.1\r\n") + kHost +
+                "Content-Type: application/json\r\nContent-Length: " +
+                std::to_string(batch.size()) + "\r\n\r\n");
+    client.send_all(batch);
+  }
+  EXPECT_TRUE(eventually([&] {
+    return bench_.jobs()
+               .metrics()
+               .text(bench_.jobs().occupancy())
+               .find(
+                   "tribodyn_calls_total{code=\"CANCELLED\",method=\"tribodyn.v1.LubricantService."
+                   "BatchCreateLubricants\"} 1\n") != std::string::npos;
+  }));
+  Connection other(served->port());
+  other.send(get("/v1/lubricants?filter=name:many&read_mask=name", "Connection: close\r\n"));
+  EXPECT_THAT(other.read_all(), Not(HasSubstr("many-1"))) << "nothing is written";
+}
+
+TEST_F(HttpServerTest, AClientThatDoesNotReadItsAnswerIsClosedAtTheWriteLimit) {
+  HttpLimits limits;
+  limits.write_time = milliseconds(300);
+  const auto served = serve(limits);
+  Connection slow(served->port());
+  slow.send(get("/long"));
+  EXPECT_THAT(slow.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 200"));
+  std::this_thread::sleep_for(milliseconds(800));
+  EXPECT_LT(slow.read_all().size(), kLongPage) << "cut off";
+  EXPECT_TRUE(slow.is_closed());
+  const auto patient = serve();
+  Connection reader(patient->port());
+  reader.send(get("/long", "Connection: close\r\n"));
+  EXPECT_GT(reader.read_all().size(), kLongPage);
 }
 
 TEST_F(HttpServerTest, TheServerEndsWhileClientsAreConnectedAndCallsRun) {

@@ -7,6 +7,8 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <csignal>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -50,7 +52,7 @@ class ObservabilityTest : public GrpcTest {
     start();
     const std::string log = process_->log();
     const std::string before = "REST at http://127.0.0.1:";
-    const auto found = log.find(before);
+    const auto found = log.rfind(before);  // of the last start
     ASSERT_NE(found, std::string::npos) << log;
     port_ = std::stoi(log.substr(found + before.size()));
   }
@@ -93,6 +95,27 @@ TEST_F(ObservabilityTest, MetricsCountPhasesOutcomesCacheHitsAndTheBuild) {
   EXPECT_THAT(text, HasSubstr("tribodyn_simulations_waiting 0\n"));
   EXPECT_THAT(text, HasSubstr("tribodyn_build_info{"));
   EXPECT_THAT(http_get(port_, "/other"), HasSubstr("404"));
+}
+
+TEST_F(ObservabilityTest, HealthIsUnavailableWhileTheDatabaseIsMisplacedOrTheServerDrains) {
+  EXPECT_THAT(http_get(port_, "/healthz"), HasSubstr("200 OK"));
+  const std::string database = folder_.file("tribodyn.db");
+  std::filesystem::rename(database, database + ".elsewhere");
+  EXPECT_TRUE(eventually([&] { return http_get(port_, "/healthz").starts_with("HTTP/1.1 503"); }));
+  EXPECT_THAT(http_get(port_, "/healthz"), HasSubstr("not serving"));
+  std::filesystem::rename(database + ".elsewhere", database);
+  EXPECT_TRUE(eventually([&] { return http_get(port_, "/healthz").starts_with("HTTP/1.1 200"); }));
+  process_->signal(SIGKILL);
+  process_->wait();
+  drain_seconds_ = "20";
+  SetUp();
+  v1::Simulation running;
+  ASSERT_TRUE(create(long_simulation(), &running).ok());
+  ASSERT_TRUE(eventually([&] { return get(running.name()).state() == v1::Simulation::RUNNING; }));
+  process_->signal(SIGTERM);
+  EXPECT_TRUE(eventually([&] { return http_get(port_, "/healthz").starts_with("HTTP/1.1 503"); }));
+  process_->signal(SIGKILL);
+  process_->wait();
 }
 
 TEST_F(ObservabilityTest, HeadOfMetricsEqualsGetWithoutABody) {

@@ -1,6 +1,7 @@
 // The REST interface without a connection: routes, bodies, queries, errors, entity tags, and what a
 // web page of another origin may do. The same calls over a connection: http_server_test.cpp.
 #include <gmock/gmock.h>
+#include <google/protobuf/descriptor.pb.h>
 #include <google/protobuf/util/json_util.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -11,8 +12,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "google/api/annotations.pb.h"
 #include "google/rpc/code.pb.h"
 #include "server/application/errors.h"
+#include "server/application/request_limits.h"
+#include "server/contract/resource_names.h"
 #include "server/storage/seeds.h"
 #include "server/transport/http/rest_answer.h"
 #include "server/transport/http/rest_handler.h"
@@ -25,6 +29,13 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
+
+HttpResponse hello() {
+  HttpResponse out;
+  out.headers["Content-Type"] = "text/plain";
+  out.body = "hello";
+  return out;
+}
 
 class RestTest : public testing::Test {
  protected:
@@ -58,8 +69,7 @@ class RestTest : public testing::Test {
   Bench bench_;
   Application app_ = bench_.application();
   CallDispatcher dispatcher_{app_};
-  RestHandler handler_{dispatcher_,
-                       {{"/hello", {"text/plain", [] { return std::string("hello"); }}}}};
+  RestHandler handler_{dispatcher_, {{"/hello", hello}}};
 };
 
 TEST_F(RestTest, EveryMethodHasARouteThatFindsIt) {
@@ -139,9 +149,138 @@ TEST_F(RestTest, AConditionThatCannotBeKeptIsRefused) {
   EXPECT_EQ(send("GET", "/v1/lubricants/paper-fluid-1").status, 200) << "nothing was deleted";
 }
 
-TEST_F(RestTest, TextThatIsNotUtf8IsRefused) {
-  EXPECT_EQ(send("GET", "/v1/lubricants/%ff").status, 400);
-  EXPECT_EQ(send("GET", "/v1/lubricants?filter=%ff").status, 400);
+TEST_F(RestTest, TextThatIsNotUtf8IsRefusedByTheNameOfItsField) {
+  // A lone byte, one cut off, one too many, a surrogate, a number above U+10FFFF, a long form of /.
+  for (const char* text : {"%ff", "%C3", "a%80", "%ED%A0%80", "%F4%90%80%80", "%C0%AF"}) {
+    EXPECT_EQ(
+        violations(send("GET", std::string("/v1/lubricants/") + text)).at("name"),
+        "is \"lubricants/" + plain_excerpt(*percent_decoded(text)) + "\"; allowed: text in UTF-8");
+    EXPECT_THAT(violations(send("GET", std::string("/v1/lubricants?filter=") + text)).at("filter"),
+                HasSubstr("allowed: text in UTF-8"));
+    EXPECT_THAT(
+        violations(send("GET", std::string("/v1/lubricants?read_mask=") + text)).at("read_mask"),
+        HasSubstr("allowed: names of fields"));
+  }
+  EXPECT_EQ(
+      send("GET", "/v1/lubricants?filter=display_name:%22%C3%A9%E2%82%AC%F0%9F%98%80%22").status,
+      200);
+}
+
+TEST_F(RestTest, OnlyAReadMaskThatNamesFieldsLeavesOutZeros) {
+  const auto fields = [&](const std::string& query) {
+    return parsed(send("GET", "/v1/lubricants?" + query))["lubricants"][0].size();
+  };
+  const std::size_t whole = fields("");
+  EXPECT_EQ(fields("read_mask="), whole);
+  EXPECT_EQ(fields("read%5Fmask=name,external_sample_id"), 1U) << "the empty id is left out";
+}
+
+/// The message in indented JSON, the longest that writers of JSON make of it.
+std::string indented(const google::protobuf::Message& message) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.add_whitespace = true;
+  options.preserve_proto_field_names = true;
+  std::string out;
+  EXPECT_TRUE(google::protobuf::util::MessageToJsonString(message, &out, options).ok());
+  return out;
+}
+
+TEST(BodyLimit, TakesTheLongestResourcesInIndentedJson) {
+  v1::GearSet gears = seed<v1::GearSet>("gearSets/reference-axle");
+  v1::Lubricant fluid = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  for (int i = 0; i < 10'000; ++i) {  // mostly 17 digits and a power of ten
+    gears.mutable_flank_slots(0)->add_radius_x_metres(-0.01 / (3 + i));
+  }
+  for (int i = 0; i < 1000; ++i) {
+    auto& measured = *fluid.mutable_measurements();
+    v1::ViscosityMeasurement& viscosity = *measured.add_viscosities();
+    viscosity.set_temperature_celsius(20 + i / 7.0);
+    viscosity.set_kinematic_viscosity_square_millimetres_per_second(100 / 3.0 - i / 1100.0);
+    viscosity.set_relative_standard_uncertainty(0.01 / 3);
+    v1::BrookfieldViscosity& brookfield = *measured.add_brookfield_viscosities();
+    brookfield.set_temperature_celsius(-40 + i / 70.0);
+    brookfield.set_dynamic_viscosity_millipascal_seconds(1e5 / 3 - i);
+    v1::DensityMeasurement& density = *measured.add_densities();
+    density.set_temperature_celsius(20 + i / 7.0);
+    density.set_density_kilograms_per_cubic_metre(2500 / 3.0 - i / 10.0);
+  }
+  // The longest gear sets consist of numbers, which grow by a factor of 3.2. Measurements grow by
+  // more, but the longest ones fit easily.
+  EXPECT_LE(indented(gears).size(), RestHandler::kJsonGrowth * gears.ByteSizeLong());
+  EXPECT_LE(indented(fluid).size(), RestHandler::kJsonGrowth * kUsualRequestBytes / 2);
+}
+
+TEST_F(RestTest, AnUnknownMethodIsNamed) {
+  const json unknown = parsed(send("GET", "/v2/none"))["error"]["details"][0];
+  EXPECT_EQ(unknown["reason"], "UNKNOWN_METHOD");
+  EXPECT_EQ(unknown["metadata"]["method"], "GET /v2/none");
+  EXPECT_EQ(parsed(send("PUT", "/v1/lubricants"))["error"]["details"][0]["metadata"]["method"],
+            "PUT /v1/lubricants");
+}
+
+TEST_F(RestTest, HttpThatIsNotServedHasAReasonOfItsOwn) {
+  for (const HttpResponse& response :
+       {send("GET", "/v1/lubricants?" + std::string(9000, 'x')),
+        send("POST", "/v1/lubricants", "{}", {{"content-type", "text/plain"}})}) {
+    EXPECT_EQ(parsed(response)["error"]["details"][0]["reason"], "INVALID_HTTP");
+    EXPECT_EQ(parsed(response)["error"]["code"], response.status);
+  }
+}
+
+/// A contract of one method with this route; its request has a text, a number and a message.
+class Contract {
+ public:
+  Contract(const std::string& path, const std::string& body) {
+    using google::protobuf::FieldDescriptorProto;
+    google::protobuf::FileDescriptorProto file;
+    file.set_name("one_method.proto");
+    auto& message = *file.add_message_type();
+    message.set_name("Request");
+    const std::pair<const char*, FieldDescriptorProto::Type> kFields[] = {
+        {"name", FieldDescriptorProto::TYPE_STRING},
+        {"count", FieldDescriptorProto::TYPE_INT32},
+        {"inner", FieldDescriptorProto::TYPE_MESSAGE}};
+    for (const auto& [name, type] : kFields) {
+      auto& field = *message.add_field();
+      field.set_name(name);
+      field.set_number(message.field_size());
+      field.set_label(FieldDescriptorProto::LABEL_OPTIONAL);
+      field.set_type(type);
+      if (type == FieldDescriptorProto::TYPE_MESSAGE) field.set_type_name("Request");
+    }
+    auto& service = *file.add_service();
+    service.set_name("Service");
+    auto& method = *service.add_method();
+    method.set_name("Call");
+    method.set_input_type("Request");
+    method.set_output_type("Request");
+    auto& rule = *method.mutable_options()->MutableExtension(google::api::http);
+    rule.set_post(path);
+    rule.set_body(body);
+    methods_[0].descriptor = pool_.BuildFile(file)->service(0)->method(0);
+  }
+  const std::vector<Method>& methods() const { return methods_; }
+
+ private:
+  google::protobuf::DescriptorPool pool_;
+  std::vector<Method> methods_{1};
+};
+
+TEST(HttpRoutes, RefuseFieldsThatTheRequestDoesNotHave) {
+  const auto routes = [](const char* path, const char* body) {
+    const Contract contract(path, body);
+    return HttpRoutes(contract.methods()).all().size();
+  };
+  EXPECT_EQ(routes("/v1/{name=things/*}", ""), 1U);
+  EXPECT_EQ(routes("/v1/{inner.name=things/*}", "inner"), 1U);
+  EXPECT_EQ(routes("/v1/{name=things/*}", "*"), 1U);
+  for (const char* path : {"/v1/{nane=things/*}", "/v1/{count=things/*}", "/v1/{inner=things/*}",
+                           "/v1/{inner.nane=things/*}", "/v1/{name.inner=things/*}"}) {
+    EXPECT_THROW(routes(path, ""), std::logic_error) << path;
+  }
+  for (const char* body : {"iner", "name", "inner.inner"}) {
+    EXPECT_THROW(routes("/v1/things", body), std::logic_error) << body;
+  }
 }
 
 TEST_F(RestTest, KnownEtagAnswersNotModifiedWithoutABody) {

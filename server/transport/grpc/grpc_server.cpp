@@ -69,6 +69,7 @@ GrpcServer::GrpcServer(CallDispatcher& dispatcher, const ListenAddress& address)
 GrpcServer::~GrpcServer() { shutdown(); }
 
 void GrpcServer::set_serving(bool serving) {
+  is_serving_ = serving;
   server_->GetHealthCheckService()->SetServingStatus(serving);
 }
 

@@ -2,6 +2,7 @@
 
 #include <grpcpp/server.h>
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,11 +31,13 @@ class GrpcServer {
 
   /// Sets the answer to health checks. It is NOT_SERVING at first.
   void set_serving(bool serving);
+  bool is_serving() const { return is_serving_; }
 
   /// Accepts no further calls, ends every stream with UNAVAILABLE and waits for the other calls.
   void shutdown();
 
  private:
+  std::atomic<bool> is_serving_ = false;
   Acceptor acceptor_;
   LiveStreams live_;
   std::vector<std::unique_ptr<grpc::Service>> services_;

@@ -94,6 +94,38 @@ std::pair<std::string, std::string> verb_and_template(const google::api::HttpRul
   return {};
 }
 
+/// Returns the field with a path such as "lubricant.name", or null.
+const google::protobuf::FieldDescriptor* field_at(const google::protobuf::Descriptor& type,
+                                                  std::string_view path) {
+  const std::size_t dot = std::min(path.find('.'), path.size());
+  const auto* field = type.FindFieldByName(std::string(path.substr(0, dot)));
+  if (field == nullptr || dot == path.size()) return field;
+  if (field->is_repeated() || field->message_type() == nullptr) return nullptr;
+  return field_at(*field->message_type(), path.substr(dot + 1));
+}
+
+/// Throws std::logic_error unless the request has a text for each variable of the path, and a
+/// message for the body.
+void check_fields(const HttpRoutes::Route& route) {
+  const google::protobuf::Descriptor& request = *route.method->descriptor->input_type();
+  const auto refuse = [&](const std::string& field, const char* kind) {
+    return std::logic_error("route " + route.text + ": " + request.full_name() + " has no " + kind +
+                            " " + field);
+  };
+  for (const HttpRoutes::Route::Variable& variable : route.variables) {
+    const google::protobuf::FieldDescriptor* field = field_at(request, variable.field);
+    if (field == nullptr || field->is_repeated() ||
+        field->type() != google::protobuf::FieldDescriptor::TYPE_STRING) {
+      throw refuse(variable.field, "text");
+    }
+  }
+  if (route.body_field.empty() || route.body_field == "*") return;
+  const google::protobuf::FieldDescriptor* field = request.FindFieldByName(route.body_field);
+  if (field == nullptr || field->is_repeated() || field->message_type() == nullptr) {
+    throw refuse(route.body_field, "message");
+  }
+}
+
 /// A path of a request in decoded segments.
 struct Path {
   std::vector<std::string> segments;
@@ -166,6 +198,7 @@ HttpRoutes::HttpRoutes(const std::vector<Method>& methods) {
       route.method = &method;
       route.verb = verb;
       route.body_field = each.body();
+      check_fields(route);
       std::string shape = verb + ":" + route.custom_verb;
       for (const std::string& segment : route.segments) shape += "/" + segment;
       if (!known.insert(shape).second) {

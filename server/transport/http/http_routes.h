@@ -23,8 +23,9 @@ struct RouteMatch {
 /// The routes of all methods, as google.api.http of the contract states them.
 class HttpRoutes {
  public:
-  /// Throws std::logic_error if a method has no route, a template cannot be read, or two methods
-  /// have the same route. `methods` must outlive the object.
+  /// Throws std::logic_error if a method has no route, a template cannot be read or names a field
+  /// that the request does not have, or two methods have the same route. `methods` must outlive
+  /// the object.
   explicit HttpRoutes(const std::vector<Method>& methods);
 
   /// Returns the method of a verb and a percent-encoded path without query, or nullopt.

@@ -80,12 +80,7 @@ std::string lower_case(std::string_view text) {
   return out;
 }
 
-HttpResponse http_refusal(int status, const std::string& message) {
-  HttpResponse out = error_response(
-      error(google::rpc::INVALID_ARGUMENT, v1::ERROR_REASON_INVALID_FIELDS, message), status);
-  out.headers.insert(security_headers().begin(), security_headers().end());
-  return out;
-}
+constexpr double kBusySeconds = 2;  // until a body of usual length has been read
 
 }  // namespace
 
@@ -211,7 +206,9 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
                              " bytes; allowed: " + std::to_string(most));
     }
     if (all_.body_bytes_ + length > all_.limits_.bodies_bytes) {
-      return refuse(503, "other large requests are being read; try again in a few seconds");
+      return refuse(error_response(exhausted(
+          v1::ERROR_REASON_TOO_MANY_LARGE_REQUESTS,
+          "other large requests are being read; try again in a few seconds", kBusySeconds)));
     }
     counted_bytes_ = length;
     all_.body_bytes_ += length;
@@ -268,10 +265,12 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
         });
   }
 
-  void refuse(int status, const std::string& message) {
+  void refuse(int status, const std::string& message) { refuse(http_error(status, message)); }
+  void refuse(HttpResponse response) {
     is_kept_ = false;
     head_.reset();
-    write(http_refusal(status, message));
+    response.headers.insert(security_headers().begin(), security_headers().end());
+    write(std::move(response));
   }
 
   void release_body() {

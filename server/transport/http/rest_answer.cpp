@@ -56,15 +56,6 @@ std::string own_etag(const google::protobuf::Message& message) {
   return message.GetReflection()->GetString(message, field);
 }
 
-/// True if the query has the parameter read_mask.
-bool has_read_mask(const HttpRequest& request) {
-  const std::size_t question = request.target.find('?');
-  if (question == std::string::npos) return false;
-  const std::string query = "&" + request.target.substr(question + 1);
-  return query.find("&read_mask=") != std::string::npos ||
-         query.find("&readMask=") != std::string::npos;
-}
-
 /// True if a list of entity tags holds this one, or is "*". Weak tags compare as strong ones.
 bool lists_tag(std::string_view list, std::string_view tag) {
   while (!list.empty()) {
@@ -156,11 +147,16 @@ HttpResponse error_response(const google::rpc::Status& error, int status) {
   return out;
 }
 
-HttpResponse message_response(const google::protobuf::Message& message,
-                              const HttpRequest& request) {
+HttpResponse http_error(int status, const std::string& message) {
+  return error_response(
+      error(google::rpc::INVALID_ARGUMENT, v1::ERROR_REASON_INVALID_HTTP, message), status);
+}
+
+HttpResponse message_response(const google::protobuf::Message& message, const HttpRequest& request,
+                              bool with_zeros) {
   HttpResponse out;
   out.headers["Content-Type"] = kJson;
-  out.body = json_of(message, !has_read_mask(request));
+  out.body = json_of(message, with_zeros);
   const std::string own = own_etag(message);
   const std::string tag = '"' + (own.empty() ? sha256(out.body) : own) + '"';
   out.headers["ETag"] = tag;

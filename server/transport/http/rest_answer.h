@@ -17,12 +17,15 @@ int http_status(const google::rpc::Status& error);
 HttpResponse error_response(const google::rpc::Status& error);
 /// The same with another HTTP status, for errors of HTTP itself.
 HttpResponse error_response(const google::rpc::Status& error, int status);
+/// A request that is no HTTP which the server serves: INVALID_HTTP.
+HttpResponse http_error(int status, const std::string& message);
 
 /// Returns the message as JSON: names in snake_case, 64-bit integers as texts, "NaN" and
-/// "Infinity". Zeros are printed unless the query has a read_mask: a zero of a field that the mask
-/// leaves out would read as the field's value. With ETag: the message's own etag, else a hash of
-/// the body. Status 304 without a body if `request` is a GET or HEAD that has this tag already.
-HttpResponse message_response(const google::protobuf::Message& message, const HttpRequest& request);
+/// "Infinity". `with_zeros` is false if the request has a read_mask: a zero of a field that the
+/// mask leaves out would read as the field's value. With ETag: the message's own etag, else a hash
+/// of the body. Status 304 without a body if `request` is a GET or HEAD that has this tag already.
+HttpResponse message_response(const google::protobuf::Message& message, const HttpRequest& request,
+                              bool with_zeros);
 
 /// Compresses the body if the header Accept-Encoding allows gzip and the body is long enough to
 /// gain.

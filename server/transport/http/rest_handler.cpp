@@ -40,9 +40,9 @@ std::string_view host_of(std::string_view authority) {
   return has_port ? authority.substr(0, colon) : authority;
 }
 
-HttpResponse refusal(int status, google::rpc::Code code, v1::ErrorReason reason,
-                     const std::string& message) {
-  return error_response(error(code, reason, message), status);
+HttpResponse foreign(const std::string& message) {
+  return error_response(
+      error(google::rpc::PERMISSION_DENIED, v1::ERROR_REASON_FOREIGN_ORIGIN, message));
 }
 
 /// Refuses what a page of another origin makes a browser send: this server answers whoever reaches
@@ -51,17 +51,15 @@ std::optional<HttpResponse> foreign_origin(const HttpRequest& request) {
   const std::string_view authority = request.header("host");
   const std::string_view host = host_of(authority);
   if (host != "localhost" && host != "127.0.0.1" && host != "[::1]") {
-    return refusal(403, google::rpc::PERMISSION_DENIED, v1::ERROR_REASON_FOREIGN_ORIGIN,
-                   "this server is not called \"" + plain_excerpt(authority) +
-                       "\"; address it as localhost, 127.0.0.1 or [::1]");
+    return foreign("this server is not called \"" + plain_excerpt(authority) +
+                   "\"; address it as localhost, 127.0.0.1 or [::1]");
   }
   const std::string_view origin = request.header("origin");
   const bool is_own =
       origin == "http://" + std::string(authority) || origin == "https://" + std::string(authority);
   if ((!origin.empty() && !is_own) ||
       (!is_reading(request) && request.header("sec-fetch-site") == "cross-site")) {
-    return refusal(403, google::rpc::PERMISSION_DENIED, v1::ERROR_REASON_FOREIGN_ORIGIN,
-                   "pages of " + plain_excerpt(origin) + " may not call this server");
+    return foreign("pages of " + plain_excerpt(origin) + " may not call this server");
   }
   return std::nullopt;
 }
@@ -78,11 +76,10 @@ std::optional<HttpResponse> wrong_body(const HttpRequest& request) {
   const std::string_view encoding = request.header("content-encoding");
   const bool is_plain = encoding.empty() || encoding == "identity";
   if (is_plain && is_json(request.header("content-type"))) return std::nullopt;
-  return refusal(415, google::rpc::INVALID_ARGUMENT, v1::ERROR_REASON_INVALID_FIELDS,
-                 is_plain
-                     ? "Content-Type is \"" + plain_excerpt(request.header("content-type")) +
-                           "\"; allowed: application/json"
-                     : "Content-Encoding is \"" + plain_excerpt(encoding) + "\"; allowed: none");
+  return http_error(
+      415, is_plain ? "Content-Type is \"" + plain_excerpt(request.header("content-type")) +
+                          "\"; allowed: application/json"
+                    : "Content-Encoding is \"" + plain_excerpt(encoding) + "\"; allowed: none");
 }
 
 /// A unary call over HTTP; deletes itself once it has been answered.
@@ -103,19 +100,19 @@ class RestCall final : public UnaryCall {
   }
 
   std::size_t request_size() const override {
-    return is_prepared_ ? wire_.size() : request_.body.size() + request_.target.size();
+    return is_prepared_ ? written_.wire.size() : request_.body.size() + request_.target.size();
   }
   std::optional<google::rpc::Status> prepare() override {
     is_prepared_ = true;
-    auto refused = write_request(route_, request_, wire_);
+    auto refused = write_request(route_, request_, written_);
     std::string().swap(request_.body);
     return refused;
   }
   std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() override {
-    return std::make_unique<google::protobuf::io::ArrayInputStream>(wire_.data(),
-                                                                    static_cast<int>(wire_.size()));
+    return std::make_unique<google::protobuf::io::ArrayInputStream>(
+        written_.wire.data(), static_cast<int>(written_.wire.size()));
   }
-  void drop_request() override { std::string().swap(wire_); }
+  void drop_request() override { std::string().swap(written_.wire); }
 
   void answered(Outcome<Reply> outcome) override {
     const std::unique_ptr<RestCall> self(this);
@@ -126,7 +123,7 @@ class RestCall final : public UnaryCall {
   HttpResponse response(const Outcome<Reply>& outcome) const {
     try {
       if (!outcome.ok()) return error_response(outcome.error());
-      return message_response(*outcome.message(), request_);
+      return message_response(*outcome.message(), request_, !written_.has_read_mask);
     } catch (...) {
       return error_response(error_of_exception());
     }
@@ -137,7 +134,7 @@ class RestCall final : public UnaryCall {
   const std::shared_ptr<const std::atomic<bool>> cancelled_;
   const RestHandler::Reply reply_;
   bool is_prepared_ = false;
-  std::string wire_;
+  WrittenRequest written_;
 };
 
 std::string joined(const std::vector<std::string>& words) {
@@ -178,34 +175,34 @@ void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<
     reply(std::move(response));
   };
   if (request.target.size() > kLongestTarget) {
-    return answer(refusal(414, google::rpc::INVALID_ARGUMENT, v1::ERROR_REASON_INVALID_FIELDS,
-                          fmt::format("the target of the request has {} bytes; allowed: {}",
-                                      request.target.size(), kLongestTarget)));
+    return answer(http_error(414, fmt::format("the target of the request has {} bytes; allowed: {}",
+                                              request.target.size(), kLongestTarget)));
   }
   if (auto foreign = foreign_origin(request)) return answer(*std::move(foreign));
   const std::string path(path_of(request));
   if (const auto page = pages_.find(path); page != pages_.end() && is_reading(request)) {
-    HttpResponse response;
-    response.headers["Content-Type"] = page->second.content_type;
-    response.body = page->second.text();
-    return answer(std::move(response));
+    return answer(page->second());
   }
   const std::string verb = request.verb == "HEAD" ? "GET" : request.verb;
   auto route = routes_.find(verb, path);
   if (!route) {
     const std::vector<std::string> others = routes_.verbs(path);
-    HttpResponse response = refusal(
-        others.empty() ? 404 : 405, google::rpc::UNIMPLEMENTED, v1::ERROR_REASON_UNKNOWN_METHOD,
-        others.empty() ? "no method has the path " + plain_excerpt(path)
-                       : plain_excerpt(path) + " takes " + joined(others) + ", not " +
-                             plain_excerpt(request.verb));
+    const std::string shown = plain_excerpt(path);
+    const std::string shown_verb = plain_excerpt(request.verb);
+    HttpResponse response = error_response(
+        error(google::rpc::UNIMPLEMENTED, v1::ERROR_REASON_UNKNOWN_METHOD,
+              others.empty() ? "no method has the path " + shown
+                             : shown + " takes " + joined(others) + ", not " + shown_verb,
+              {{"method", shown_verb + " " + shown}}),
+        others.empty() ? 404 : 405);
     if (!others.empty()) response.headers["Allow"] = joined(others);
     return answer(std::move(response));
   }
   if (!route->method->answer) {
-    return answer(refusal(
-        501, google::rpc::UNIMPLEMENTED, v1::ERROR_REASON_UNKNOWN_METHOD,
-        route->method->descriptor->name() + " answers with a stream, which gRPC alone carries"));
+    const std::string& name = route->method->descriptor->name();
+    return answer(error_response(error(google::rpc::UNIMPLEMENTED, v1::ERROR_REASON_UNKNOWN_METHOD,
+                                       name + " answers with a stream, which gRPC alone carries",
+                                       {{"method", name}})));
   }
   if (auto wrong = wrong_body(request)) return answer(*std::move(wrong));
   auto* call = new RestCall(*std::move(route), std::move(request), std::move(cancelled), answer,

@@ -18,11 +18,8 @@ namespace tribodyn::server {
 /// a web page of another origin may send. Safe for concurrent access.
 class RestHandler {
  public:
-  /// A page of the server's own, by its path: GET and HEAD.
-  struct Page {
-    std::string content_type;
-    std::function<std::string()> text;
-  };
+  /// A page of the server's own, by its path: GET and HEAD. Called on the thread of handle().
+  using Page = std::function<HttpResponse()>;
 
   /// `dispatcher` must outlive the object. Throws std::logic_error as HttpRoutes does.
   explicit RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages = {});
@@ -36,8 +33,9 @@ class RestHandler {
   /// Answers a request. `cancelled` is true once the client has gone.
   void handle(HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled, Reply reply);
 
-  /// JSON spells out the names of fields: a lubricant takes three times the bytes of its binary
-  /// form. No body is longer than kMaximumBodyBytes.
+  /// A body may have so many times the bytes of the method's longest binary request: numbers in
+  /// indented JSON take 3.2 times the bytes of the binary form. No body is longer than
+  /// kMaximumBodyBytes.
   static constexpr std::size_t kJsonGrowth = 4;
   static constexpr std::size_t kMaximumBodyBytes = 64 << 20;
 

@@ -47,6 +47,25 @@ std::optional<Number> number_of(const std::string& text) {
   return out;
 }
 
+/// True if the text is UTF-8 as RFC 3629 has it. protobuf accepts other texts, logs an error, and
+/// refuses to parse what it has written.
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto first = static_cast<unsigned char>(text[i++]);
+    if (first < 0x80) continue;
+    const int further = first >= 0xf0 ? 3 : first >= 0xe0 ? 2 : 1;
+    if (first < 0xc2 || first > 0xf4) return false;
+    char32_t point = first & (0x3f >> further);
+    for (int k = 0; k < further; ++k) {
+      if (i == text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
+      point = point << 6 | (static_cast<unsigned char>(text[i++]) & 0x3f);
+    }
+    const char32_t least = further == 1 ? 0x80 : further == 2 ? 0x800 : 0x10000;
+    if (point < least || point > 0x10ffff || (point >= 0xd800 && point < 0xe000)) return false;
+  }
+  return true;
+}
+
 std::string values_of(const google::protobuf::EnumDescriptor& type) {
   std::string out;
   for (int i = 0; i < type.value_count(); ++i) {
@@ -70,6 +89,7 @@ std::string set_field(Message& message, const FieldDescriptor& field, const std:
   };
   switch (field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_STRING:
+      if (!is_utf8(text)) return "text in UTF-8";
       return put(text, &Reflection::SetString, &Reflection::AddString);
     case FieldDescriptor::CPPTYPE_BOOL:
       if (text != "true" && text != "false") return "true or false";
@@ -97,6 +117,7 @@ std::string set_field(Message& message, const FieldDescriptor& field, const std:
     case FieldDescriptor::CPPTYPE_MESSAGE:
       if (field.message_type() == google::protobuf::FieldMask::descriptor() &&
           !field.is_repeated()) {
+        if (!is_utf8(text)) return "names of fields";
         google::protobuf::FieldMask mask;
         google::protobuf::util::FieldMaskUtil::FromString(text, &mask);
         reflect.MutableMessage(&message, &field)->MergeFrom(mask);
@@ -276,15 +297,28 @@ std::optional<Violation> append_body(const RouteMatch& route, const std::string&
   return std::nullopt;
 }
 
+bool has_read_mask(const Message& request) {
+  const FieldDescriptor* field = request.GetDescriptor()->FindFieldByName("read_mask");
+  if (field == nullptr || field->message_type() != google::protobuf::FieldMask::descriptor()) {
+    return false;
+  }
+  const Message& mask = request.GetReflection()->GetMessage(request, field);
+  return static_cast<const google::protobuf::FieldMask&>(mask).paths_size() > 0;
+}
+
 }  // namespace
 
 std::optional<google::rpc::Status> write_request(const RouteMatch& route,
-                                                 const HttpRequest& request, std::string& wire) {
+                                                 const HttpRequest& request, WrittenRequest& out) {
   Violations violations;
   const std::unique_ptr<Message> beside_body(route.method->request->New());
   for (const auto& [path, value] : route.of_path) {
-    const auto target = find_target(*beside_body, path);
-    set_field(*target->message, *target->field, value);
+    const auto target = find_target(*beside_body, path);  // HttpRoutes has checked that it exists
+    const std::string expected = set_field(*target->message, *target->field, value);
+    if (!expected.empty()) {
+      violations.push_back(
+          {path, fmt::format("is \"{}\"; allowed: {}", plain_excerpt(value), expected)});
+    }
   }
   const std::size_t question = request.target.find('?');
   if (question != std::string::npos) {
@@ -292,16 +326,17 @@ std::optional<google::rpc::Status> write_request(const RouteMatch& route,
               violations);
   }
   add_condition(route, request.header("if-match"), *beside_body, violations);
-  wire.clear();
+  out = {};
   if (!route.body_field.empty()) {
-    if (auto violation = append_body(route, request.body, wire)) {
+    if (auto violation = append_body(route, request.body, out.wire)) {
       violations.push_back(*std::move(violation));
     }
   } else if (!request.body.empty()) {
     violations.push_back({"", "this method takes no body"});
   }
   if (!violations.empty()) return invalid(violations);
-  wire += beside_body->SerializeAsString();
+  out.wire += beside_body->SerializeAsString();
+  out.has_read_mask = has_read_mask(*beside_body);
   return std::nullopt;
 }
 

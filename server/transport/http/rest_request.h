@@ -9,11 +9,17 @@
 
 namespace tribodyn::server {
 
-/// Writes the request message of a method in protobuf's binary form: fields of the path, the query
-/// and the header If-Match (the field "etag") over those of the JSON body. No message is built from
-/// the body, so that the dispatcher counts its elements before anything grows. Returns
-/// INVALID_ARGUMENT that names each wrong parameter, or the place of the body that cannot be read.
+/// The request message of a method in protobuf's binary form.
+struct WrittenRequest {
+  std::string wire;
+  bool has_read_mask = false;  ///< the query has a read_mask that names fields
+};
+
+/// Writes the request message of a method: fields of the path, the query and the header If-Match
+/// (the field "etag") over those of the JSON body. No message is built from the body, so that the
+/// dispatcher counts its elements before anything grows. Returns INVALID_ARGUMENT that names each
+/// wrong parameter, or the place of the body that cannot be read.
 std::optional<google::rpc::Status> write_request(const RouteMatch& route,
-                                                 const HttpRequest& request, std::string& wire);
+                                                 const HttpRequest& request, WrittenRequest& out);
 
 }  // namespace tribodyn::server
