@@ -35,12 +35,6 @@ FixedStepMarch::FixedStepMarch(GearPairSystem& system, const MarchScales& scales
   c.per_gear_inertia = 1 / d.gear_inertia;
   c.pinion_radius = mesh.mean_pinion_contact_radius();
   c.gear_radius = mesh.mean_gear_contact_radius();
-  if (!system.has_shafts()) {
-    (solve_wheel_torque ? c.gear_per_torque : c.pinion_per_torque) =
-        solve_wheel_torque ? -c.per_gear_inertia : c.per_pinion_inertia;
-    return;
-  }
-  c.shafts = 1;
   c.pinion_shaft_stiffness = d.pinion_shaft_stiffness;
   c.pinion_shaft_damping = d.pinion_shaft_damping;
   c.gear_shaft_stiffness = d.gear_shaft_stiffness;

@@ -7,40 +7,17 @@
 #include "core/numerics/square.h"
 
 namespace tribodyn {
-namespace {
-
-constexpr int kAll[] = {kPinionShaftTwist, kWinding,   kGearShaftTwist, kPinionShaftSpeed,
-                        kPinionSpeed,      kGearSpeed, kWheelSpeed};
-constexpr int kOfTheGears[] = {kWinding, kPinionSpeed, kGearSpeed};
-constexpr int kBehindShafts[] = {kPinionShaftTwist, kGearShaftTwist, kPinionShaftSpeed,
-                                 kWheelSpeed};
-
-}  // namespace
-
-DrivelineStates states_of(Driveline driveline) {
-  if (driveline == Driveline::kElasticShafts) return {kAll, {}};
-  return {kOfTheGears, kBehindShafts};
-}
 
 GearPairSystem::GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
-                               const DrivelineDynamics& dynamics, const ModelOptions& options,
-                               Driveline driveline)
+                               const DrivelineDynamics& dynamics, const ModelOptions& options)
     : mesh_(mesh),
       contact_(contact),
       dynamics_(dynamics),
       options_(options),
-      driveline_(driveline),
       inverse_{1 / dynamics.pinion_shaft_inertia, 1 / dynamics.pinion_inertia,
                1 / dynamics.gear_inertia, 1 / dynamics.wheel_inertia},
       lag_per_winding_(mesh.gear_teeth() / mesh.mean_gear_contact_radius()),
-      cycle_angle_(2 * std::numbers::pi / mesh.pinion_teeth()) {
-  if (has_shafts()) {
-    shafts_ = {1, dynamics.pinion_shaft_stiffness, dynamics.pinion_shaft_damping,
-               dynamics.gear_shaft_stiffness, dynamics.gear_shaft_damping};
-  } else {
-    inverse_.pinion_shaft_inertia = inverse_.wheel_inertia = 0;
-  }
-}
+      cycle_angle_(2 * std::numbers::pi / mesh.pinion_teeth()) {}
 
 MeshPhase GearPairSystem::at_phase(double phase) const {
   return mesh_.at_phase(2 * std::numbers::pi * phase);
@@ -215,16 +192,11 @@ void GearPairSystem::derivative(const double* y, const Instant& at, bool record,
     dy[kLimitedCentreTime] = limited_centre ? 1 : 0;
     dy[kGapTime] = regime.side == 0 ? 1 : 0;
     dy[kCoastTime] = regime.side < 0 ? 1 : 0;
-    if (has_shafts()) {
-      dy[kPinionShaftAngle] = y[kPinionShaftSpeed];
-      dy[kWheelAngle] = y[kWheelSpeed];
-      dy[kShaftDampingWork] =
-          d.pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]) +
-          d.gear_shaft_damping * square(y[kGearSpeed] - y[kWheelSpeed]);
-    } else {  // where the torques act
-      dy[kPinionShaftAngle] = y[kPinionSpeed];
-      dy[kWheelAngle] = y[kGearSpeed];
-    }
+    dy[kPinionShaftAngle] = y[kPinionShaftSpeed];
+    dy[kWheelAngle] = y[kWheelSpeed];
+    dy[kShaftDampingWork] =
+        d.pinion_shaft_damping * square(y[kPinionShaftSpeed] - y[kPinionSpeed]) +
+        d.gear_shaft_damping * square(y[kGearSpeed] - y[kWheelSpeed]);
     dy[kMeshDampingWork] = at.damper_force * at.transmission_velocity;
     if (!options_.energy_consistent) dy[kParametricWork] = at.parametric_torque() * y[kPinionSpeed];
   }
@@ -256,9 +228,8 @@ void GearPairSystem::to_march(const SectionState& section, double* y) const {
 
 SectionState GearPairSystem::to_section(const double* y) const {
   const double lag = mesh_.gear_teeth() / mesh_.mean_gear_contact_radius();
-  const DrivelineDynamics& d = dynamics_;
-  return {has_shafts() ? y[kPinionShaftTwist] : torques_.pinion / d.pinion_shaft_stiffness,
-          has_shafts() ? y[kGearShaftTwist] : torques_.wheel / d.gear_shaft_stiffness,
+  return {y[kPinionShaftTwist],
+          y[kGearShaftTwist],
           y[kPinionShaftSpeed],
           y[kPinionSpeed],
           y[kGearSpeed],
@@ -271,11 +242,6 @@ double GearPairSystem::stored_energy(double phase, const double* y) const {
   const DrivelineDynamics& d = dynamics_;
   Mechanics at;
   kinematics(phase, y, at);
-  if (!has_shafts()) {
-    return 0.5 *
-           (d.pinion_inertia * square(y[kPinionSpeed]) + d.gear_inertia * square(y[kGearSpeed]) +
-            at.mesh.mesh_stiffness * square(at.deflection));
-  }
   return 0.5 * (d.pinion_shaft_inertia * square(y[kPinionShaftSpeed]) +
                 d.pinion_inertia * square(y[kPinionSpeed]) +
                 d.gear_inertia * square(y[kGearSpeed]) + d.wheel_inertia * square(y[kWheelSpeed]) +

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "core/contact/flank_contact_batch.h"
@@ -53,7 +52,7 @@ enum RecordComponent {
   kLimitedCentreTime,
   kGapTime,
   kCoastTime,
-  kPinionShaftAngle,  ///< of what T_s turns: int phidot_s dt, phidot_p without a shaft
+  kPinionShaftAngle,  ///< int phidot_s dt
   kWheelAngle,
   kShaftDampingWork,
   kMeshDampingWork,
@@ -84,21 +83,6 @@ struct Torques {
 inline double input_torque(const Torques& torques, double wheel_per_pinion_speed) {
   return std::max(torques.pinion, 0.0) + std::max(-torques.wheel * wheel_per_pinion_speed, 0.0);
 }
-
-/// What stands between the gears and their torques.
-enum class Driveline {
-  kElasticShafts,  ///< shafts, pinion-shaft rotor and wheel: eqs 1-4, four degrees of freedom
-  /// T_s and T_w act on I_p and I_g themselves: a semi-definite pair of rotors whose one elastic
-  /// degree is x. What is cut off stands still in the state: the outer rotors turn at the mean
-  /// speeds, as behind infinitely soft shafts, and no twist is read.
-  kConstantTorques,
-};
-
-/// Components of MarchComponent that move with a driveline, time left out, and those that do not.
-struct DrivelineStates {
-  std::span<const int> moving, still;
-};
-DrivelineStates states_of(Driveline driveline);
 
 /// Forces and torques at one instant.
 struct Mechanics {
@@ -133,17 +117,13 @@ class GearPairSystem {
  public:
   /// Keeps references: mesh, contact and dynamics must outlive it.
   GearPairSystem(const MeshData& mesh, const FlankContactModel& contact,
-                 const DrivelineDynamics& dynamics, const ModelOptions& options,
-                 Driveline driveline = Driveline::kElasticShafts);
+                 const DrivelineDynamics& dynamics, const ModelOptions& options);
 
   /// The contacts of an instant are solved together from now on; null: one by one, by the
   /// reference. Figures that no record holds are left out. Keeps the reference.
   void solve_together(const FlankContactBatch* contacts);
 
-  void set_torques(const Torques& torques) {
-    torques_ = torques;
-    if (!has_shafts()) constant_ = torques;
-  }
+  void set_torques(const Torques& torques) { torques_ = torques; }
   const Torques& torques() const { return torques_; }
   /// Speed of the shaft at which power comes in (input_torque()), referred to the pinion [rad/s]:
   /// phidot_s, in coast phidot_w N_g/N_p.
@@ -190,13 +170,11 @@ class GearPairSystem {
   double cycle_angle() const { return cycle_angle_; }  ///< phi_p per mesh cycle, 2 pi/N_p
   void to_march(const SectionState& section, double* state) const;
   SectionState to_section(const double* state) const;
-  /// Kinetic and elastic energy of what moves [J].
+  /// Kinetic and elastic energy [J].
   double stored_energy(double phase, const double* state) const;
 
   const MeshData& mesh() const { return mesh_; }
   const DrivelineDynamics& dynamics() const { return dynamics_; }
-  Driveline driveline() const { return driveline_; }
-  bool has_shafts() const { return driveline_ == Driveline::kElasticShafts; }
   const FlankContactModel& contact_model() const { return contact_; }
   const ModelOptions& options() const { return options_; }
   long contact_solutions() const { return contact_solutions_; }
@@ -218,15 +196,9 @@ class GearPairSystem {
   std::optional<ContactGeometries> geometries_;
   const DrivelineDynamics& dynamics_;
   ModelOptions options_;
-  Driveline driveline_;
   Torques torques_;
-  Torques constant_;  // on the gears themselves
-  struct Shafts {
-    double present;  // 1; or 0, and so all of them
-    double pinion_stiffness, pinion_damping, gear_stiffness, gear_damping;
-  } shafts_{};
   struct Inverse {
-    double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;  // 0: it stands still
+    double pinion_shaft_inertia, pinion_inertia, gear_inertia, wheel_inertia;
   } inverse_;
   double lag_per_winding_;  // of N_g phi_g behind N_p phi_p [rad/m]
   double cycle_angle_;
@@ -255,12 +227,11 @@ inline void GearPairSystem::kinematics(const MeshPhase& phase, const double* y,
 inline void GearPairSystem::mechanics(const MeshPhase& phase, const double* y,
                                       Mechanics& out) const {
   kinematics(phase, y, out);
-  const Shafts& s = shafts_;
-  out.pinion_shaft_torque = s.pinion_stiffness * y[kPinionShaftTwist] +
-                            s.pinion_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]) +
-                            constant_.pinion;
-  out.gear_shaft_torque = s.gear_stiffness * y[kGearShaftTwist] +
-                          s.gear_damping * (y[kGearSpeed] - y[kWheelSpeed]) + constant_.wheel;
+  const DrivelineDynamics& d = dynamics_;
+  out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
+                            d.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+  out.gear_shaft_torque = d.gear_shaft_stiffness * y[kGearShaftTwist] +
+                          d.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]);
   out.pinion_friction_torque = out.gear_friction_torque = out.loss_power = 0;
 }
 
@@ -294,12 +265,12 @@ inline void GearPairSystem::motion(const double* y, const Mechanics& at, double*
   const double gear_torque =
       m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque;
   // Eqs 1-4 in time, then by phase.
-  const double time = cycle_angle_ / y[kPinionSpeed], twisting = time * shafts_.present;
+  const double time = cycle_angle_ / y[kPinionSpeed];
   dy[kTime] = time;
-  dy[kPinionShaftTwist] = twisting * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
   dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
                          mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
-  dy[kGearShaftTwist] = twisting * (y[kGearSpeed] - y[kWheelSpeed]);
+  dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
   dy[kPinionShaftSpeed] =
       time * ((torques_.pinion - at.pinion_shaft_torque) * inverse_.pinion_shaft_inertia);
   dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);

@@ -68,7 +68,6 @@ class Harmonics {
 struct MeshSides {
   Complex per_pinion, per_gear;  ///< 1 / D_p, 1 / D_g [1/(N m)]
   Complex shaft_share;           ///< phi_s over phi_p
-  Complex wheel_share;           ///< phi_w over phi_g
   Complex compliance;            ///< Y [m/N]
   Complex mesh;                  ///< k + i Omega c [N/m]
   Complex damper;                ///< i Omega c
@@ -80,7 +79,7 @@ struct MeshSides {
     const Complex gear_shaft{d.gear_shaft_stiffness, frequency * d.gear_shaft_damping};
     shaft_share = pinion_shaft * inverse(pinion_shaft - f2 * d.pinion_shaft_inertia);
     per_pinion = inverse(-f2 * (d.pinion_inertia + d.pinion_shaft_inertia * shaft_share));
-    wheel_share = gear_shaft * inverse(gear_shaft - f2 * d.wheel_inertia);
+    const Complex wheel_share = gear_shaft * inverse(gear_shaft - f2 * d.wheel_inertia);
     per_gear = inverse(-f2 * (d.gear_inertia + d.wheel_inertia * wheel_share));
     compliance = square(system.mesh().mean_pinion_contact_radius()) * per_pinion +
                  square(system.mesh().mean_gear_contact_radius()) * per_gear;
@@ -224,64 +223,6 @@ InertialCorrection inertial_correction(const GearPairSystem& system, double mean
                          gear_radius * asked_torque * std::abs(here.per_gear);
     out.unresolved += asked * square(1.0 / h) * std::abs(here.amplification());
   }
-  return out;
-}
-
-void TwoRotorMotion::resize(std::size_t count) {
-  for (auto* v : {&pinion_torque, &gear_torque, &mesh_stiffness}) v->resize(count);
-}
-
-ShaftCorrection shaft_correction(const GearPairSystem& system, double mean_pinion_speed,
-                                 const TwoRotorMotion& motion) {
-  constexpr int kRounds = 3;  // growth is that of the first
-  const DrivelineDynamics& d = system.dynamics();
-  const int phases = static_cast<int>(motion.mesh_stiffness.size());
-  const Harmonics harmonics(phases, std::min(phases / 2 - 1, kMostHarmonics));
-  const int count = harmonics.count();
-  const double first = mean_pinion_speed * system.mesh().pinion_teeth();
-  const double pinion_radius = system.mesh().mean_pinion_contact_radius();
-  const double gear_radius = system.mesh().mean_gear_contact_radius();
-  const std::vector<Complex> pinion_torque = harmonics.of(motion.pinion_torque);
-  const std::vector<Complex> gear_torque = harmonics.of(motion.gear_torque);
-
-  std::vector<MeshSides> at;
-  std::vector<Complex> pinion(count), gear(count), source(count);
-  at.reserve(count);
-  for (int h = 0; h < count; ++h) {
-    const double frequency = first * (h + 1);
-    MeshSides& here = at.emplace_back(system, frequency);
-    here.compliance = pinion_radius * motion.pinion_arm * here.per_pinion +
-                      gear_radius * motion.gear_arm * here.per_gear;
-    const double alone = -1 / square(frequency);
-    pinion[h] = pinion_torque[h] * (here.per_pinion - alone / d.pinion_inertia);
-    gear[h] = gear_torque[h] * (here.per_gear - alone / d.gear_inertia);
-    source[h] = pinion_radius * pinion[h] - gear_radius * gear[h];
-  }
-  const Answer answer = answer_of(system, harmonics, at, source, motion.mesh_stiffness, kRounds);
-  ShaftCorrection out;
-  out.growth = answer.growth;
-  std::vector<Complex> velocity(count), shaft(count);
-  for (int h = 0; h < count; ++h) {
-    const MeshSides& here = at[h];
-    const Complex rate = Complex{0, first * (h + 1)};
-    const Complex force = here.mesh * answer.correction[h] + answer.ripple[h];
-    const Complex whole_pinion =
-        rate * here.per_pinion * (pinion_torque[h] - motion.pinion_arm * force);
-    const Complex whole_gear = rate * here.per_gear * (gear_torque[h] + motion.gear_arm * force);
-    velocity[h] = rate * answer.correction[h];
-    pinion[h] = rate * (pinion[h] - motion.pinion_arm * force * here.per_pinion);
-    gear[h] = rate * (gear[h] + motion.gear_arm * force * here.per_gear);
-    shaft[h] = whole_pinion * here.shaft_share;
-    out.shaft_damping_power +=
-        0.5 * (d.pinion_shaft_damping * std::norm(whole_pinion * (1.0 - here.shaft_share)) +
-               d.gear_shaft_damping * std::norm(whole_gear * (1.0 - here.wheel_share)));
-  }
-  out.transmission_error = harmonics.signal(answer.correction);
-  out.transmission_velocity = harmonics.signal(velocity);
-  out.pinion_speed = harmonics.signal(pinion);
-  out.gear_speed = harmonics.signal(gear);
-  out.pinion_shaft_speed = harmonics.signal(shaft);
-  keep_mean_force(system, motion.mesh_stiffness, out.transmission_error);
   return out;
 }
 

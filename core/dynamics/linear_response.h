@@ -43,38 +43,6 @@ struct InertialCorrection {
 InertialCorrection inertial_correction(const GearPairSystem& system, double mean_pinion_speed,
                                        const ImposedMotion& motion);
 
-/// The torques on the two gears of a motion under constant torques (Driveline::kConstantTorques),
-/// at even mesh phases as in ImposedMotion: of mesh force, dampers and friction, a constant left
-/// out or not.
-struct TwoRotorMotion {
-  std::vector<double> pinion_torque;   ///< -R_p F + T_fr,p [N m]
-  std::vector<double> gear_torque;     ///< R_g F + T_fr,g [N m]
-  std::vector<double> mesh_stiffness;  ///< k_m [N/m]
-  /// Of more mesh force with the friction that comes with it, in the mean: R_p and R_g less and
-  /// more what friction takes [m].
-  double pinion_arm = 0, gear_arm = 0;
-  void resize(std::size_t count);
-};
-
-/// What shafts and what is behind them change of such a motion, at the same phases.
-struct ShaftCorrection {
-  std::vector<double> transmission_error;     ///< of x [m]
-  std::vector<double> transmission_velocity;  ///< of xdot [m/s]
-  std::vector<double> pinion_speed;           ///< of phidot_p [rad/s]
-  std::vector<double> gear_speed;             ///< of phidot_g [rad/s]
-  std::vector<double> pinion_shaft_speed;     ///< phidot_s less its mean [rad/s]
-  double shaft_damping_power = 0;             ///< that the dampers of both shafts take [W]
-  double growth = 0;                          ///< as of InertialCorrection
-};
-
-/// As inertial_correction(), from the rotors alone to those with shafts: under the same torques
-/// each moves by the difference of 1/D and -1/(Omega^2 I) otherwise, and the mesh answers,
-///   (1 + Y (k + i Omega c)) dx = R_p tau_p (1/D_p + 1/(Omega^2 I_p))
-///                              - R_g tau_g (1/D_g + 1/(Omega^2 I_g)),
-/// with one R in each term of Y the arm under friction: on a resonance it counts.
-ShaftCorrection shaft_correction(const GearPairSystem& system, double mean_pinion_speed,
-                                 const TwoRotorMotion& motion);
-
 /// Whether the ripple of the mesh stiffness may keep a vibration going that nothing forces:
 /// a harmonic of it near twice the frequency of the mesh on its mean stiffness, and larger than the
 /// mesh damper bears (Mathieu's first tongue, |n Omega / 2 omega - 1| < kappa_n / 4, and margins).

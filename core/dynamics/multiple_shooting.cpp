@@ -25,8 +25,6 @@ MultipleShooting::MultipleShooting(GearPairSystem& system, OrbitFriction& fricti
     : Shooting(system, friction, grid, request, orbit),
       instruction_set_(friction.instruction_set()),
       steps_(grid.steps()),
-      moving_(states_of(system.driveline()).moving),
-      unknowns_(moving_.size() + 1),
       response_(storage.response),
       lagged_(storage.lagged),
       end_(storage.end),
@@ -36,9 +34,9 @@ MultipleShooting::MultipleShooting(GearPairSystem& system, OrbitFriction& fricti
       block_{system, grid, side(), request.solve_wheel_torque, lagged_} {
   system.regime = orbit.regime = {block_.side, true};
   // The torque has a residual of its own: 0.
-  for (std::size_t i = 0; i < moving_.size(); ++i) per_scale_[i] = 1 / scale_(moving_[i] - 1);
+  for (int i = 0; i < kTorque; ++i) per_scale_[i] = 1 / scale_(i);
   end_.resize(kUnknowns, steps_);
-  change_.resize(unknowns_ * (steps_ + 1));
+  change_.resize(kUnknowns * (steps_ + 1));
   duration_.resize(steps_);
   response_.start.resize(kResponseRows, steps_ + 1);
   response_.middle.resize(kResponseRows, steps_ + 1);
@@ -94,23 +92,20 @@ void MultipleShooting::spread_friction() {
 }
 
 void MultipleShooting::take_derivatives() {
-  auto made = std::make_shared<CycleDerivatives>(steps_, static_cast<int>(unknowns_));
+  auto made = std::make_shared<CycleDerivatives>(steps_);
   compose_steps(instruction_set_, derivatives_, *made);
   Sensitivity sensitivity;
-  for (auto& row : sensitivity) row.setZero();
-  const double* const whole = made->from_section.get() + made->matrix() * steps_;
-  for (std::size_t j = 0; j < unknowns_; ++j) {
-    const int by = j < moving_.size() ? moving_[j] - 1 : kTorque;
-    for (std::size_t i = 0; i < moving_.size(); ++i) {
-      sensitivity[moving_[i]](by) = whole[unknowns_ * j + i];
-    }
+  constexpr std::size_t kMatrix = CycleDerivatives::kMatrix;
+  const double* const whole = made->from_section.get() + kMatrix * steps_;
+  for (int j = 0; j < kUnknowns; ++j) {
+    for (int i = 0; i < kTorque; ++i) sensitivity[i + 1](j) = whole[kUnknowns * j + i];
     double time = 0;
     for (int s = 1; s <= steps_; ++s) {
-      time += made->from_section[made->matrix() * s + unknowns_ * j + unknowns_ - 1];
+      time += made->from_section[kMatrix * s + kUnknowns * j + kTorque];
     }
-    sensitivity[kTime](by) = time;
+    sensitivity[kTime](j) = time;
   }
-  orbit_.map.emplace(sensitivity, scale_, period_time_, states_of(system_.driveline()).still);
+  orbit_.map.emplace(sensitivity, scale_, period_time_);
   orbit_.cycle_derivatives = std::move(made);
   orbit_.moved_from_map = std::numeric_limits<double>::infinity();
 }
@@ -120,7 +115,7 @@ double MultipleShooting::improve() {
   throw_if_interrupted();
   const bool anew = !orbit_.map || orbit_.cycle_derivatives == nullptr ||
                     orbit_.cycle_derivatives->steps != steps_;
-  if (anew) derivatives_.resize(unknowns_ * unknowns_, steps_);
+  if (anew) derivatives_.resize(CycleDerivatives::kMatrix, steps_);
   if (!take_steps(instruction_set_, block_, response_, end_, anew ? &derivatives_ : nullptr)) {
     return kBrokenDown;
   }
@@ -130,31 +125,25 @@ double MultipleShooting::improve() {
 
   // From a section that does not move, what is missing at the end; then the section moves.
   follow_residuals(instruction_set_, derivatives, response_, end_, change_.data());
-  const auto change_at = [&](int s) { return change_.data() + unknowns_ * s; };
-  const std::size_t last = moving_.size();
+  const auto change_at = [&](int s) { return change_.data() + kUnknowns * s; };
   double time = 0;
-  for (int s = 1; s <= steps_; ++s) time += change_at(s)[last];
-  Vector residual = Vector::Zero();
-  for (std::size_t i = 0; i < last; ++i) {
-    residual(moving_[i] - 1) = change_at(steps_)[i] * per_scale_[i];
-  }
+  for (int s = 1; s <= steps_; ++s) time += change_at(s)[kTorque];
+  Vector residual;
+  for (int i = 0; i < kTorque; ++i) residual(i) = change_at(steps_)[i] * per_scale_[i];
   residual(kTorque) = time / period_time_ - 1;
   const Vector step = orbit_.map->step(residual);
   std::array<double, kUnknowns> at_section{};
-  for (std::size_t i = 0; i < last; ++i) {
-    at_section[i] = step(moving_[i] - 1) * scale_(moving_[i] - 1);
-  }
-  at_section[last] = step(kTorque) * scale_(kTorque);
+  for (int i = 0; i < kUnknowns; ++i) at_section[i] = step(i) * scale_(i);
   const double length =
       std::max(step.norm(), add_section_change(instruction_set_, derivatives, at_section.data(),
                                                per_scale_.data(), change_.data()));
-  for (std::size_t i = 0; i < last; ++i) {
-    double* const start = response_.start[moving_[i]];
+  for (int i = 0; i < kTorque; ++i) {
+    double* const start = response_.start[i + 1];
     for (int s = 0; s < steps_; ++s) start[s] += change_at(s)[i];
     start[steps_] = start[0];
   }
-  for (int s = 0; s < steps_; ++s) duration_[s] = change_at(s + 1)[last];
-  add_to_unknown(at_section[last]);
+  for (int s = 0; s < steps_; ++s) duration_[s] = change_at(s + 1)[kTorque];
+  add_to_unknown(at_section[kTorque]);
   is_filled_ = false;
   // Two steps with the same derivatives tell how much is left; the first one, where they were new,
   // came twice as near as those that follow will.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <vector>
 
 #include "core/dynamics/shooting.h"
@@ -44,8 +43,6 @@ class MultipleShooting final : public Shooting {
 
   InstructionSet instruction_set_;
   int steps_;
-  std::span<const int> moving_;  ///< components
-  std::size_t unknowns_;         ///< of a step
   CycleResponse& response_;
   CycleFriction& lagged_;
   Columns &end_, &derivatives_;

@@ -8,9 +8,7 @@ void correct_period(GearPairSystem& system, const MarchState& before, int period
   const MeshData& mesh = system.mesh();
   const double ratio = mesh.mean_pinion_contact_radius() / mesh.mean_gear_contact_radius();
   // As the pinion feels it.
-  const bool shafts = system.has_shafts();
   const auto momentum = [&](const MarchState& y) {
-    if (!shafts) return d.pinion_inertia * y[kPinionSpeed] + ratio * d.gear_inertia * y[kGearSpeed];
     return d.pinion_shaft_inertia * y[kPinionShaftSpeed] + d.pinion_inertia * y[kPinionSpeed] +
            ratio * (d.gear_inertia * y[kGearSpeed] + d.wheel_inertia * y[kWheelSpeed]);
   };
@@ -18,17 +16,16 @@ void correct_period(GearPairSystem& system, const MarchState& before, int period
   Torques torques = system.torques();
   if (solve_wheel_torque) {
     torques.wheel += excess / ratio;
-    if (shafts) after[kGearShaftTwist] += excess / ratio / d.gear_shaft_stiffness;
+    after[kGearShaftTwist] += excess / ratio / d.gear_shaft_stiffness;
   } else {
     torques.pinion -= excess;
-    if (shafts) after[kPinionShaftTwist] -= excess / d.pinion_shaft_stiffness;
+    after[kPinionShaftTwist] -= excess / d.pinion_shaft_stiffness;
     after[kWinding] -= excess / (mesh.mean_pinion_contact_radius() * mesh.mean_mesh_stiffness());
   }
   system.set_torques(torques);
   const double shift = mean_pinion_speed - period * system.cycle_angle() / after[kTime];
   after[kPinionSpeed] += shift;
   after[kGearSpeed] += ratio * shift;
-  if (!shafts) return;
   after[kPinionShaftSpeed] += shift;
   after[kWheelSpeed] += ratio * shift;
 }

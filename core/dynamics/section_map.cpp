@@ -9,8 +9,7 @@
 
 namespace tribodyn {
 
-SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period,
-                       std::span<const int> still) {
+SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period) {
   Eigen::Matrix<double, kUnknowns, kUnknowns> jacobian;
   for (int i = 0; i + 1 < kUnknowns; ++i) {
     jacobian.row(i) = sensitivity[i + 1].matrix();
@@ -19,12 +18,6 @@ SectionMap::SectionMap(const Sensitivity& sensitivity, const Vector& scale, doub
     jacobian.row(i) /= scale(i);
   }
   jacobian.row(kUnknowns - 1) = sensitivity[kTime].matrix() / period;
-  for (const int component : still) {
-    const int i = component - 1;
-    jacobian.row(i).setZero();
-    jacobian(i, i) = 1;
-    monodromy_.row(i).setZero();
-  }
   factors_.compute(jacobian * scale.asDiagonal());
   monodromy_ *= scale.head<kUnknowns - 1>().asDiagonal();
 }

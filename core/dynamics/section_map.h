@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <array>
 #include <limits>
-#include <span>
 
 namespace tribodyn {
 
@@ -11,17 +10,14 @@ namespace tribodyn {
 /// the section and by the unknown torque.
 using Sensitivity = std::array<Eigen::Array<double, 1, 8>, 8>;
 
-/// How the state after a period follows the state at the section and the unknown torque. States
-/// that stand still are no unknowns: no step of Newton's moves them, and they have no multiplier.
+/// How the state after a period follows the state at the section and the unknown torque.
 class SectionMap {
  public:
   static constexpr int kUnknowns = 8;  // the seven states and the torque
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
-  /// `scale`: of the unknowns. `period`: of the time's residual [s]. `still`: components that stand
-  /// still; nothing may depend on them.
-  SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period,
-             std::span<const int> still);
+  /// `scale`: of the unknowns. `period`: of the time's residual [s].
+  SectionMap(const Sensitivity& sensitivity, const Vector& scale, double period);
 
   /// Newton's step from a residual, both scaled.
   Vector step(const Vector& residual) const { return factors_.solve(-residual); }
@@ -38,7 +34,6 @@ class SectionMap {
   double distance_from_doubling() const;
   /// The disturbance of the section that comes nearest to changing its side every period and
   /// nothing else, of length 1; scaled, without the torque. Of use where a multiplier is near -1.
-  /// Zero in what stands still.
   Eigen::Matrix<double, kUnknowns - 1, 1> alternating_disturbance() const;
 
  private:

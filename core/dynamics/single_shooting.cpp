@@ -40,7 +40,7 @@ bool SingleShooting::renew_map() {
   Sensitivity sensitivity;
   start_regime(y);
   if (!march_.run(orbit_.friction, request_.keep_contact, y, &sensitivity, nullptr)) return false;
-  orbit_.map.emplace(sensitivity, scale_, period_time_, states_of(system_.driveline()).still);
+  orbit_.map.emplace(sensitivity, scale_, period_time_);
   orbit_.moved_from_map = 0;
   orbit_.pieces_of_map = orbit_.pieces.size();
   return true;
@@ -54,7 +54,7 @@ double SingleShooting::improve() {
   } else {
     Sensitivity sensitivity;
     if (!march(y, &sensitivity)) return kBrokenDown;
-    orbit_.map.emplace(sensitivity, scale_, period_time_, states_of(system_.driveline()).still);
+    orbit_.map.emplace(sensitivity, scale_, period_time_);
     orbit_.moved_from_map = 0;
     orbit_.pieces_of_map = orbit_.pieces.size();
   }

@@ -96,21 +96,20 @@ class PeriodMap {
     constexpr double kStep = 1e-4;
     const Torques torques = system_.torques();
     const ContactRegime regime = system_.regime;
-    const std::span<const int> moving = states_of(system_.driveline()).moving;
-    const auto states = static_cast<Eigen::Index>(moving.size());
     const Vector origin = pack(state);
     MarchState moved = state;
     march(moved, period);
     const Vector image = pack(moved);
-    Eigen::MatrixXd jacobian(states, states);
-    for (Eigen::Index j = 0; j < states; ++j) {
+    constexpr int kStates = kWheelSpeed;  // the seven of the section
+    Eigen::Matrix<double, kStates, kStates> jacobian;
+    for (int j = 0; j < kStates; ++j) {
       Vector shifted = origin;
-      shifted(moving[j] - 1) += kStep;
+      shifted(j) += kStep;
       moved = state;
       unpack(shifted, moved);
       march(moved, period);
       const Vector change = pack(moved) - image;
-      for (Eigen::Index i = 0; i < states; ++i) jacobian(i, j) = change(moving[i] - 1) / kStep;
+      for (int i = 0; i < kStates; ++i) jacobian(i, j) = change(i) / kStep;
     }
     system_.set_torques(torques);
     system_.regime = regime;

@@ -21,36 +21,9 @@ namespace tribodyn {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Places of time and of what moves with a driveline, and which component each is. Derivatives have
-/// as many columns: the states but time, then the unknown torque.
-struct Shafts {
-  enum : int {
-    kTime,
-    kPinionShaftTwist,
-    kWinding,
-    kGearShaftTwist,
-    kPinionShaftSpeed,
-    kPinionSpeed,
-    kGearSpeed,
-    kWheelSpeed,
-    kStates
-  };
-  static constexpr Driveline kDriveline = Driveline::kElasticShafts;
-  static constexpr int component(int place) { return place; }
-};
-struct NoShafts {
-  enum : int { kTime, kWinding, kPinionSpeed, kGearSpeed, kStates };
-  static constexpr Driveline kDriveline = Driveline::kConstantTorques;
-  static constexpr int component(int place) {
-    constexpr int kComponents[kStates] = {tribodyn::kTime, tribodyn::kWinding,
-                                          tribodyn::kPinionSpeed, tribodyn::kGearSpeed};
-    return kComponents[place];
-  }
-};
-template <class Train>
-constexpr bool has_shafts() {
-  return Train::kDriveline == Driveline::kElasticShafts;
-}
+constexpr int kStates =
+    kStepUnknowns;                    // time and the seven states; derivatives have as many columns
+constexpr int kTorque = kStates - 1;  // column of the unknown torque
 
 /// What all lanes share.
 struct Constants {
@@ -110,10 +83,9 @@ HWY_INLINE Pack series(const Phase& phase, int function, Pack x, Pack x2, Pack x
 }
 
 /// Of x and the mesh force. Clears `good` where the series do not reach.
-template <class Train>
 HWY_INLINE void mechanics(const Constants& c, const Phase& phase, const Pack* y, PackMechanics& m,
                           Mask& good) {
-  const Pack x = less_product(c.lag_per_winding, y[Train::kWinding], phase[kOffsetRow]);
+  const Pack x = less_product(c.lag_per_winding, y[kWinding], phase[kOffsetRow]);
   good = good & (size(x) <= c.reach);
   const Pack x2 = x * x, x4 = x2 * x2;
   m.pinion_radius = phase[kPinionRadiusRow];
@@ -121,27 +93,22 @@ HWY_INLINE void mechanics(const Constants& c, const Phase& phase, const Pack* y,
   m.relative_radius = m.pinion_radius - phase[kErrorSlopeRow];
   m.stiffness = phase[kStiffnessRow];
   // x - b
-  const Pack beyond = y[Train::kWinding] + series(phase, 1, x, x2, x4) - phase[kErrorRow];
+  const Pack beyond = y[kWinding] + series(phase, 1, x, x2, x4) - phase[kErrorRow];
   m.deflection = beyond + c.backlash;
   m.transmission_error = beyond;
-  m.velocity =
-      less_product(m.gear_radius, y[Train::kGearSpeed], m.relative_radius * y[Train::kPinionSpeed]);
+  m.velocity = less_product(m.gear_radius, y[kGearSpeed], m.relative_radius * y[kPinionSpeed]);
   m.force = fused(m.stiffness, m.deflection, c.mesh_damping * m.velocity);
 }
 
 /// Eqs 1-4 by phase.
-template <class Train>
 HWY_INLINE void rates(const Constants& c, const Phase& phase, const PackMechanics& m, const Pack* y,
                       Pack* dy) {
   const Pack pressing = greatest(c.side * m.force, 0);
-  Pack pinion_shaft = c.pinion_torque, gear_shaft = c.wheel_torque;
-  if constexpr (has_shafts<Train>()) {
-    pinion_shaft =
-        fused(c.pinion_shaft_stiffness, y[Train::kPinionShaftTwist],
-              c.pinion_shaft_damping * (y[Train::kPinionShaftSpeed] - y[Train::kPinionSpeed]));
-    gear_shaft = fused(c.gear_shaft_stiffness, y[Train::kGearShaftTwist],
-                       c.gear_shaft_damping * (y[Train::kGearSpeed] - y[Train::kWheelSpeed]));
-  }
+  const Pack pinion_shaft =
+      fused(c.pinion_shaft_stiffness, y[kPinionShaftTwist],
+            c.pinion_shaft_damping * (y[kPinionShaftSpeed] - y[kPinionSpeed]));
+  const Pack gear_shaft = fused(c.gear_shaft_stiffness, y[kGearShaftTwist],
+                                c.gear_shaft_damping * (y[kGearSpeed] - y[kWheelSpeed]));
   Pack pinion = fused(phase.torque(kPinionFrictionRow), pressing,
                       less_product(m.pinion_radius, m.force, pinion_shaft));
   if (c.energy_consistent) {
@@ -150,39 +117,34 @@ HWY_INLINE void rates(const Constants& c, const Phase& phase, const PackMechanic
   }
   const Pack gear =
       fused(phase.torque(kGearFrictionRow), pressing, fused(m.gear_radius, m.force, -gear_shaft));
-  const Pack time = c.cycle_angle / y[Train::kPinionSpeed];
-  dy[Train::kTime] = time;
-  dy[Train::kWinding] = time * less_product(c.gear_radius, y[Train::kGearSpeed],
-                                            c.pinion_radius * y[Train::kPinionSpeed]);
-  dy[Train::kPinionSpeed] = time * (pinion * c.pinion_inertia);
-  dy[Train::kGearSpeed] = time * (gear * c.gear_inertia);
-  if constexpr (has_shafts<Train>()) {
-    dy[Train::kPinionShaftTwist] = time * (y[Train::kPinionShaftSpeed] - y[Train::kPinionSpeed]);
-    dy[Train::kGearShaftTwist] = time * (y[Train::kGearSpeed] - y[Train::kWheelSpeed]);
-    dy[Train::kPinionShaftSpeed] =
-        time * ((c.pinion_torque - pinion_shaft) * c.pinion_shaft_inertia);
-    dy[Train::kWheelSpeed] = time * ((gear_shaft - c.wheel_torque) * c.wheel_inertia);
-  }
+  const Pack time = c.cycle_angle / y[kPinionSpeed];
+  dy[kTime] = time;
+  dy[kWinding] =
+      time * less_product(c.gear_radius, y[kGearSpeed], c.pinion_radius * y[kPinionSpeed]);
+  dy[kPinionSpeed] = time * (pinion * c.pinion_inertia);
+  dy[kGearSpeed] = time * (gear * c.gear_inertia);
+  dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
+  dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
+  dy[kPinionShaftSpeed] = time * ((c.pinion_torque - pinion_shaft) * c.pinion_shaft_inertia);
+  dy[kWheelSpeed] = time * ((gear_shaft - c.wheel_torque) * c.wheel_inertia);
 }
 
 /// Of one Runge-Kutta stage, what its derivatives need.
-template <class Train>
 struct Stage {
   Pack relative_radius, gear_radius, stiffness, time, per_speed, deflection;
   Pack pinion_arm, gear_arm;  // of the force: d torque/d force
   Pack stiffness_slope;
-  Pack rate[Train::kStates];
+  Pack rate[kStates];
 };
 
-template <class Train>
 HWY_INLINE void keep_stage(const Constants& c, const Phase& phase, const PackMechanics& m,
-                           const Pack* y, const Pack* dy, Stage<Train>& out) {
+                           const Pack* y, const Pack* dy, Stage& out) {
   const Pack by_force = where(c.side * m.force > 0, c.side);
   out.relative_radius = m.relative_radius;
   out.gear_radius = m.gear_radius;
   out.stiffness = m.stiffness;
-  out.time = dy[Train::kTime];
-  out.per_speed = 1 / y[Train::kPinionSpeed];
+  out.time = dy[kTime];
+  out.per_speed = 1 / y[kPinionSpeed];
   out.deflection = m.deflection;
   out.pinion_arm = fused(by_force, phase.torque(kPinionFrictionRow), -m.pinion_radius);
   out.gear_arm = fused(by_force, phase.torque(kGearFrictionRow), m.gear_radius);
@@ -190,49 +152,40 @@ HWY_INLINE void keep_stage(const Constants& c, const Phase& phase, const PackMec
     out.pinion_arm = out.pinion_arm + phase[kErrorSlopeRow];
     out.stiffness_slope = phase[kStiffnessSlopeRow];
   }
-  for (int i = 0; i < Train::kStates; ++i) out.rate[i] = dy[i];
+  for (int i = 0; i < kStates; ++i) out.rate[i] = dy[i];
 }
 
 /// As FixedStepMarch::sensitivity_rates, of one column.
-template <class Train>
-HWY_INLINE void derivative_rates(const Constants& c, const Stage<Train>& at, int column,
-                                 const Pack* s, Pack* ds) {
-  const Pack velocity = less_product(at.gear_radius, s[Train::kGearSpeed],
-                                     at.relative_radius * s[Train::kPinionSpeed]);
-  const Pack force = fused(at.stiffness, s[Train::kWinding], c.mesh_damping * velocity);
-  const bool by_torque = column == Train::kStates - 1;
-  Pack pinion_shaft = by_torque && !c.solve_wheel_torque ? 1 : 0;
-  Pack gear_shaft = by_torque && c.solve_wheel_torque ? 1 : 0;
-  if constexpr (has_shafts<Train>()) {
-    pinion_shaft =
-        fused(c.pinion_shaft_stiffness, s[Train::kPinionShaftTwist],
-              c.pinion_shaft_damping * (s[Train::kPinionShaftSpeed] - s[Train::kPinionSpeed]));
-    gear_shaft = fused(c.gear_shaft_stiffness, s[Train::kGearShaftTwist],
-                       c.gear_shaft_damping * (s[Train::kGearSpeed] - s[Train::kWheelSpeed]));
-  }
+HWY_INLINE void derivative_rates(const Constants& c, const Stage& at, int column, const Pack* s,
+                                 Pack* ds) {
+  const Pack velocity =
+      less_product(at.gear_radius, s[kGearSpeed], at.relative_radius * s[kPinionSpeed]);
+  const Pack force = fused(at.stiffness, s[kWinding], c.mesh_damping * velocity);
+  const Pack pinion_shaft =
+      fused(c.pinion_shaft_stiffness, s[kPinionShaftTwist],
+            c.pinion_shaft_damping * (s[kPinionShaftSpeed] - s[kPinionSpeed]));
+  const Pack gear_shaft = fused(c.gear_shaft_stiffness, s[kGearShaftTwist],
+                                c.gear_shaft_damping * (s[kGearSpeed] - s[kWheelSpeed]));
   Pack pinion = fused(at.pinion_arm, force, pinion_shaft);
   if (c.energy_consistent) {
-    pinion = less_product(at.stiffness_slope * at.deflection, s[Train::kWinding], pinion);
+    pinion = less_product(at.stiffness_slope * at.deflection, s[kWinding], pinion);
   }
   const Pack gear = fused(at.gear_arm, force, -gear_shaft);
-  ds[Train::kTime] = 0;
-  ds[Train::kWinding] =
-      less_product(c.gear_radius, s[Train::kGearSpeed], c.pinion_radius * s[Train::kPinionSpeed]);
-  ds[Train::kPinionSpeed] = c.pinion_inertia * pinion;
-  ds[Train::kGearSpeed] = c.gear_inertia * gear;
-  if constexpr (has_shafts<Train>()) {
-    ds[Train::kPinionShaftTwist] = s[Train::kPinionShaftSpeed] - s[Train::kPinionSpeed];
-    ds[Train::kGearShaftTwist] = s[Train::kGearSpeed] - s[Train::kWheelSpeed];
-    ds[Train::kPinionShaftSpeed] = -c.pinion_shaft_inertia * pinion_shaft;
-    ds[Train::kWheelSpeed] = c.wheel_inertia * gear_shaft;
-    if (by_torque && c.solve_wheel_torque) {
-      ds[Train::kWheelSpeed] = ds[Train::kWheelSpeed] - c.wheel_inertia;
-    } else if (by_torque) {
-      ds[Train::kPinionShaftSpeed] = ds[Train::kPinionShaftSpeed] + c.pinion_shaft_inertia;
-    }
+  ds[kTime] = 0;
+  ds[kWinding] = less_product(c.gear_radius, s[kGearSpeed], c.pinion_radius * s[kPinionSpeed]);
+  ds[kPinionSpeed] = c.pinion_inertia * pinion;
+  ds[kGearSpeed] = c.gear_inertia * gear;
+  ds[kPinionShaftTwist] = s[kPinionShaftSpeed] - s[kPinionSpeed];
+  ds[kGearShaftTwist] = s[kGearSpeed] - s[kWheelSpeed];
+  ds[kPinionShaftSpeed] = -c.pinion_shaft_inertia * pinion_shaft;
+  ds[kWheelSpeed] = c.wheel_inertia * gear_shaft;
+  if (column == kTorque && c.solve_wheel_torque) {
+    ds[kWheelSpeed] = ds[kWheelSpeed] - c.wheel_inertia;
+  } else if (column == kTorque) {
+    ds[kPinionShaftSpeed] = ds[kPinionShaftSpeed] + c.pinion_shaft_inertia;
   }
-  const Pack faster = s[Train::kPinionSpeed] * at.per_speed;
-  for (int i = 0; i < Train::kStates; ++i) {
+  const Pack faster = s[kPinionSpeed] * at.per_speed;
+  for (int i = 0; i < kStates; ++i) {
     ds[i] = less_product(at.rate[i], faster, at.time * ds[i]);
   }
 }
@@ -240,10 +193,7 @@ HWY_INLINE void derivative_rates(const Constants& c, const Stage<Train>& at, int
 constexpr double kNode[4] = {0, 0.5, 0.5, 1};
 constexpr double kWeight[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
 
-template <class Train>
-void differentiate(const Constants& c, const Stage<Train>* stages, double h, int lane,
-                   Columns& out) {
-  constexpr int kStates = Train::kStates;
+void differentiate(const Constants& c, const Stage* stages, double h, int lane, Columns& out) {
   for (int column = 0; column < kStates; ++column) {
     Pack s[kStates], ds[kStates], sum[kStates];
     for (int i = 0; i < kStates; ++i) sum[i] = i == column + 1 ? 1 : 0;
@@ -281,10 +231,10 @@ HWY_INLINE Row<kSize> add_product(const double* matrix, const double* x, Row<kSi
   return even + odd;
 }
 
-template <class Train>
-bool steps_of(const StepBlock& block, const CycleResponse& response, Columns& end,
-              Columns* derivatives) {
-  constexpr int kStates = Train::kStates;
+}  // namespace
+
+bool steps_in_lanes(const StepBlock& block, const CycleResponse& response, Columns& end,
+                    Columns* derivatives) {
   const Constants c(block);
   const MeshGrid::MeshColumns& mesh = block.grid.mesh_columns(block.side);
   const int steps = block.grid.steps();
@@ -296,36 +246,34 @@ bool steps_of(const StepBlock& block, const CycleResponse& response, Columns& en
     const Phase last{mesh.starts, &block.friction.start, lane + 1};
     const Phase* const phases[4] = {&start, &middle, &middle, &last};
     Pack y[kStates], sum[kStates], stage[kStates], rate[kStates];
-    y[Train::kTime] = sum[Train::kTime] = 0;
+    y[kTime] = sum[kTime] = 0;
     for (int i = 1; i < kStates; ++i) {
-      sum[i] = y[i] = load_any(response.start[Train::component(i)] + lane);
+      sum[i] = y[i] = load_any(response.start[i] + lane);
     }
-    Stage<Train> stages[4];
+    Stage stages[4];
     Mask good = ~nowhere();
     for (int n = 0; n < 4; ++n) {
       for (int i = 0; i < kStates; ++i) {
         stage[i] = n == 0 ? y[i] : fused(kNode[n] * h, rate[i], y[i]);
       }
       PackMechanics m;
-      mechanics<Train>(c, *phases[n], stage, m, good);
-      rates<Train>(c, *phases[n], m, stage, rate);
+      mechanics(c, *phases[n], stage, m, good);
+      rates(c, *phases[n], m, stage, rate);
       if (derivatives != nullptr) keep_stage(c, *phases[n], m, stage, rate, stages[n]);
       for (int i = 0; i < kStates; ++i) sum[i] = fused(kWeight[n] * h, rate[i], sum[i]);
     }
     for (int i = 0; i < kStates; ++i) {
       good = good & (size(sum[i]) < 1e100);
-      store_any(sum[i], end[Train::component(i)] + lane);
+      store_any(sum[i], end[i] + lane);
     }
-    good = good & (sum[Train::kPinionSpeed] > 0);
+    good = good & (sum[kPinionSpeed] > 0);
     all_good = all_good && all(good | beyond(lane, steps));
     if (derivatives != nullptr) differentiate(c, stages, h, lane, *derivatives);
   }
   return all_good;
 }
 
-template <class Train>
-bool fill_of(const StepBlock& block, CycleResponse& response) {
-  constexpr int kStates = Train::kStates;
+bool fill_lanes(const StepBlock& block, CycleResponse& response) {
   const Constants c(block);
   const MeshGrid::MeshColumns& mesh = block.grid.mesh_columns(block.side);
   const int steps = block.grid.steps();
@@ -335,44 +283,39 @@ bool fill_of(const StepBlock& block, CycleResponse& response) {
   bool all_good = true;
   const auto fill = [&](const Phase& phase, int lane, Columns& to, Pack* y, Mask good) HWY_ATTR {
     PackMechanics m;
-    mechanics<Train>(c, phase, y, m, good);
+    mechanics(c, phase, y, m, good);
     store_any(m.force, to[kMeshForceRow] + lane);
     store_any(m.transmission_error + half_backlash, to[kTransmissionErrorRow] + lane);
     store_any(m.velocity, to[kTransmissionVelocityRow] + lane);
-    good = good & (size(m.force) < 1e100) & (y[Train::kPinionSpeed] > 0);
+    good = good & (size(m.force) < 1e100) & (y[kPinionSpeed] > 0);
     all_good = all_good && all(good | beyond(lane, steps + (&to == &response.start ? 1 : 0)));
     return m;
   };
   Pack y[kStates];
   for (int lane = 0; lane <= steps; lane += pack_lanes()) {
     const Phase phase{mesh.starts, &block.friction.start, lane};
-    for (int i = 0; i < kStates; ++i) y[i] = load_any(response.start[Train::component(i)] + lane);
+    for (int i = 0; i < kStates; ++i) y[i] = load_any(response.start[i] + lane);
     const PackMechanics m = fill(phase, lane, response.start, y, ~nowhere());
     Pack dy[kStates];
-    rates<Train>(c, phase, m, y, dy);
-    for (int i = 0; i < kStates; ++i) store_any(dy[i], rate[Train::component(i)] + lane);
+    rates(c, phase, m, y, dy);
+    for (int i = 0; i < kStates; ++i) store_any(dy[i], rate[i] + lane);
   }
   for (int lane = 0; lane < steps; lane += pack_lanes()) {
     for (int i = 0; i < kStates; ++i) {
-      const int component = Train::component(i);
-      const double* const at = response.start[component] + lane;
-      const double* const slope = rate[component] + lane;
+      const double* const at = response.start[i] + lane;
+      const double* const slope = rate[i] + lane;
       y[i] = fused(h / 8, load_any(slope) - load_any(slope + 1),
                    0.5 * (load_any(at) + load_any(at + 1)));
-      store_any(y[i], response.middle[component] + lane);
+      store_any(y[i], response.middle[i] + lane);
     }
     fill({mesh.middles, nullptr, lane}, lane, response.middle, y, ~nowhere());
-  }
-  for (const int i : states_of(Train::kDriveline).still) {
-    std::copy_n(response.start[i], steps, response.middle[i]);
   }
   return all_good;
 }
 
-template <class Train>
-void compose_of(const Columns& derivatives, CycleDerivatives& out) {
-  constexpr int kSize = Train::kStates, kTorque = kSize - 1;
-  constexpr std::size_t kMatrix = std::size_t{kSize} * kSize;
+void compose_matrices(const Columns& derivatives, CycleDerivatives& out) {
+  constexpr int kSize = kStates;
+  constexpr std::size_t kMatrix = CycleDerivatives::kMatrix;
   const double nothing[kSize] = {};
   for (int j = 0; j < kSize; ++j) {
     double* const column = out.from_section.get() + kSize * j;
@@ -395,33 +338,30 @@ void compose_of(const Columns& derivatives, CycleDerivatives& out) {
   }
 }
 
-template <class Train>
-void follow_of(const CycleDerivatives& derivatives, const CycleResponse& response,
-               const Columns& end, double* particular) {
-  constexpr int kSize = Train::kStates;
+void follow_in_rows(const CycleDerivatives& derivatives, const CycleResponse& response,
+                    const Columns& end, double* particular) {
+  constexpr int kSize = kStates;
   std::fill_n(particular, kSize, 0.0);
   double residual[kSize];
   for (int s = 0; s < derivatives.steps; ++s) {
     for (int i = 1; i < kSize; ++i) {
-      const int component = Train::component(i);
-      residual[i - 1] = end[component][s] - response.start[component][s + 1];
+      residual[i - 1] = end[i][s] - response.start[i][s + 1];
     }
-    residual[kSize - 1] = end[tribodyn::kTime][s];
-    const double* const matrix = derivatives.step.get() + derivatives.matrix() * s;
+    residual[kSize - 1] = end[kTime][s];
+    const double* const matrix = derivatives.step.get() + CycleDerivatives::kMatrix * s;
     double* const at = particular + kSize * s;
     store_row(add_product<kSize - 1>(matrix, at, load_row<kSize>(residual)), at + kSize);
   }
 }
 
-template <class Train>
-double add_section_of(const CycleDerivatives& derivatives, const double* section,
-                      const double* per_scale, double* particular) {
-  constexpr int kSize = Train::kStates;
+double add_section_in_rows(const CycleDerivatives& derivatives, const double* section,
+                           const double* per_scale, double* particular) {
+  constexpr int kSize = kStates;
   const double nothing[kSize] = {};
   const auto scale = load_row<kSize>(per_scale);
   auto largest = load_row<kSize>(nothing);
   for (int s = 0; s <= derivatives.steps; ++s) {
-    const double* const matrix = derivatives.from_section.get() + derivatives.matrix() * s;
+    const double* const matrix = derivatives.from_section.get() + CycleDerivatives::kMatrix * s;
     double* const at = particular + kSize * s;
     const auto sum = add_product<kSize>(matrix, section, load_row<kSize>(at));
     store_row(sum, at);
@@ -432,38 +372,6 @@ double add_section_of(const CycleDerivatives& derivatives, const double* section
   double found[kSize];
   store_row(largest, found);
   return *std::max_element(found, found + kSize);
-}
-
-}  // namespace
-
-bool steps_in_lanes(const StepBlock& block, const CycleResponse& response, Columns& end,
-                    Columns* derivatives) {
-  return block.system.has_shafts() ? steps_of<Shafts>(block, response, end, derivatives)
-                                   : steps_of<NoShafts>(block, response, end, derivatives);
-}
-
-bool fill_lanes(const StepBlock& block, CycleResponse& response) {
-  return block.system.has_shafts() ? fill_of<Shafts>(block, response)
-                                   : fill_of<NoShafts>(block, response);
-}
-
-void compose_matrices(const Columns& derivatives, CycleDerivatives& out) {
-  out.unknowns == Shafts::kStates ? compose_of<Shafts>(derivatives, out)
-                                  : compose_of<NoShafts>(derivatives, out);
-}
-
-void follow_in_rows(const CycleDerivatives& derivatives, const CycleResponse& response,
-                    const Columns& end, double* particular) {
-  derivatives.unknowns == Shafts::kStates
-      ? follow_of<Shafts>(derivatives, response, end, particular)
-      : follow_of<NoShafts>(derivatives, response, end, particular);
-}
-
-double add_section_in_rows(const CycleDerivatives& derivatives, const double* section,
-                           const double* per_scale, double* particular) {
-  return derivatives.unknowns == Shafts::kStates
-             ? add_section_of<Shafts>(derivatives, section, per_scale, particular)
-             : add_section_of<NoShafts>(derivatives, section, per_scale, particular);
 }
 
 void see_in_lanes(const StepBlock& block, const GridContacts& contacts,

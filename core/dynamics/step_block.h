@@ -39,34 +39,32 @@ struct StepBlock {
   const CycleFriction& friction;
 };
 
-/// Unknowns of a step: the states that move with a driveline, and the torque. 8, or 4.
-inline int unknowns_of(Driveline driveline) {
-  return static_cast<int>(states_of(driveline).moving.size()) + 1;
-}
+/// Unknowns of a step: the states but time, then the torque.
+inline constexpr int kStepUnknowns = 8;
 
-/// One classical Runge-Kutta step from every start of `response` (time is not read): moving states
+/// One classical Runge-Kutta step from every start of `response` (time is not read): states
 /// at their ends, kTime their durations, to `end`. Unless null, to `derivatives` those of duration
-/// and moving states at a step's end (rows) by moving states at its start and the torque (columns),
-/// row after row. False where the grid's series do not reach that far or a number means nothing.
+/// and states at a step's end (rows) by states at its start and the torque (columns), row after
+/// row. False where the grid's series do not reach that far or a number means nothing.
 bool take_steps(InstructionSet instruction_set, const StepBlock& block,
                 const CycleResponse& response, Columns& end, Columns* derivatives);
 
-/// Fills rates (of what moves) and mechanics of the starts, the middles (by the cubic through both
+/// Fills rates and mechanics of the starts, the middles (by the cubic through both
 /// ends) and their mechanics. Times and states at the starts are given. False as above.
 bool fill_response(InstructionSet instruction_set, const StepBlock& block, CycleResponse& response);
 
 /// How the states at the steps' starts, and the steps' durations, follow the section state and the
-/// unknown torque. Square matrices in columns: moving states and the duration of the step before,
-/// by moving states and the torque.
+/// unknown torque. Square matrices in columns: states and the duration of the step before, by
+/// states and the torque.
 struct CycleDerivatives {
-  CycleDerivatives(int count, int unknowns_of_a_step)
-      : steps(count),
-        unknowns(unknowns_of_a_step),
-        step(std::make_unique_for_overwrite<double[]>(matrix() * count)),
-        from_section(std::make_unique_for_overwrite<double[]>(matrix() * (count + 1))) {}
   /// Numbers of one.
-  std::size_t matrix() const { return static_cast<std::size_t>(unknowns) * unknowns; }
-  int steps, unknowns;
+  static constexpr std::size_t kMatrix = std::size_t{kStepUnknowns} * kStepUnknowns;
+
+  explicit CycleDerivatives(int count)
+      : steps(count),
+        step(std::make_unique_for_overwrite<double[]>(kMatrix * count)),
+        from_section(std::make_unique_for_overwrite<double[]>(kMatrix * (count + 1))) {}
+  int steps;
   std::unique_ptr<double[]> step;  ///< of each step, by its start
   std::unique_ptr<double[]>
       from_section;  ///< of each start and the end of the cycle, by the section
@@ -77,7 +75,7 @@ void compose_steps(InstructionSet instruction_set, const Columns& derivatives,
                    CycleDerivatives& out);
 
 /// What the steps' residuals (their ends less the next starts) alone do to the starts and
-/// durations: numbers of all unknowns for each start and the end of the cycle.
+/// durations: kStepUnknowns numbers for each start and the end of the cycle.
 void follow_residuals(InstructionSet instruction_set, const CycleDerivatives& derivatives,
                       const CycleResponse& response, const Columns& end, double* particular);
 

@@ -38,13 +38,13 @@ HWY_INLINE void sensitivity_rates(const SensitivityConstants& c, const Sensitivi
       fused(at.pinion_arm, force, fused(at.torque_per_winding, s[kWinding], pinion_shaft));
   const States gear = fused(at.gear_arm, force, -1.0 * gear_shaft);
   ds[kTime] = States(0);
-  ds[kPinionShaftTwist] = c.shafts * pinion_twisting;
+  ds[kPinionShaftTwist] = pinion_twisting;
   ds[kWinding] = fused(c.pinion_radius, s[kPinionSpeed], -c.gear_radius * s[kGearSpeed]);
-  ds[kGearShaftTwist] = c.shafts * gear_twisting;
+  ds[kGearShaftTwist] = gear_twisting;
   ds[kPinionShaftSpeed] =
       fused(-c.per_pinion_shaft_inertia, pinion_shaft, c.pinion_shaft_per_torque * by_torque);
-  ds[kPinionSpeed] = fused(c.per_pinion_inertia, pinion, c.pinion_per_torque * by_torque);
-  ds[kGearSpeed] = fused(c.per_gear_inertia, gear, c.gear_per_torque * by_torque);
+  ds[kPinionSpeed] = c.per_pinion_inertia * pinion;
+  ds[kGearSpeed] = c.per_gear_inertia * gear;
   ds[kWheelSpeed] = fused(c.per_wheel_inertia, gear_shaft, c.wheel_per_torque * by_torque);
   // From time to phase.
   const States slower = -at.per_speed * s[kPinionSpeed];

@@ -9,12 +9,11 @@ namespace tribodyn {
 
 /// What the variational equations need of the driveline. SI units.
 struct SensitivityConstants {
-  double shafts;  ///< 1; 0: there are none, and all else of them is 0
   double pinion_shaft_stiffness, pinion_shaft_damping, gear_shaft_stiffness, gear_shaft_damping;
   double per_pinion_shaft_inertia, per_pinion_inertia, per_gear_inertia, per_wheel_inertia;
   double pinion_radius, gear_radius;  ///< R_p0, R_g0
   /// What the unknown torque does to the rates of the speeds [1/(kg m2)].
-  double pinion_shaft_per_torque, pinion_per_torque, gear_per_torque, wheel_per_torque;
+  double pinion_shaft_per_torque, wheel_per_torque;
 };
 
 /// And of one stage of a Runge-Kutta step.

@@ -178,10 +178,8 @@ std::optional<MarchState> tapping_start(GearPairSystem& system, const MeshGrid& 
 
   MarchState out = pieces.front().start;
   out[kWinding] += shift_to_flanks(system, pieces, side, force);
-  if (system.has_shafts()) {
-    out[kPinionShaftTwist] += torques.pinion / d.pinion_shaft_stiffness;
-    out[kGearShaftTwist] += torques.wheel / d.gear_shaft_stiffness;
-  }
+  out[kPinionShaftTwist] += torques.pinion / d.pinion_shaft_stiffness;
+  out[kGearShaftTwist] += torques.wheel / d.gear_shaft_stiffness;
   return out;
 }
 

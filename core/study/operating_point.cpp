@@ -12,7 +12,6 @@
 #include "core/study/history_sampler.h"
 #include "core/study/march_plan.h"
 #include "core/study/model_choice.h"
-#include "core/study/one_degree.h"
 #include "core/study/operating_target.h"
 #include "core/study/orbit_record.h"
 #include "core/study/orbit_refinement.h"
@@ -52,14 +51,6 @@ void set_estimate(double error, Result& out) {
   if (std::isfinite(error)) out.estimated_relative_error = error;
 }
 
-Driveline driveline_of(PointModel model) {
-  return model == PointModel::kOneDegree ? Driveline::kConstantTorques : Driveline::kElasticShafts;
-}
-
-PointModel dynamic_model(const GearPairSystem& system) {
-  return system.has_shafts() ? PointModel::kFull : PointModel::kOneDegree;
-}
-
 PointResult solve_by_marching(GearPairSystem& system, const OperatingTarget& target,
                               const PointOptions& options, const MarchPlan& plan,
                               const HistoryRequest& history_request) {
@@ -81,10 +72,10 @@ PointResult solve_by_marching(GearPairSystem& system, const OperatingTarget& tar
   }
   const SteadyState steady = solve_steady_state(system, plan.start, request);
 
-  PointResult out = empty_result(target, dynamic_model(system));
+  PointResult out = empty_result(target, PointModel::kFull);
   out.settled = steady.settled;
-  // Of both by experience: their errors are some ten times smaller. A model's own is not told.
-  if (steady.settled && system.has_shafts()) {
+  // Of both by experience: their errors are some ten times smaller.
+  if (steady.settled) {
     out.estimated_relative_error = 3 * request.tolerance + 300 * request.march.relative_tolerance;
   }
   out.period_in_mesh_cycles = steady.period;
@@ -138,18 +129,6 @@ std::optional<OrbitSearch> search_from(const GearPairSystem& system, const Opera
   return search;
 }
 
-/// As refine_orbit(), the estimate with that of the model's own error.
-std::optional<RefinedOrbit> shoot(GearPairSystem& system, const FlankContactBatch& contacts,
-                                  MeshGrids& grids, const OrbitSearch& search,
-                                  MarchStatistics& statistics, long& marched_cycles,
-                                  std::optional<Rattle>& rattle) {
-  auto found = refine_orbit(system, contacts, grids, search, statistics, marched_cycles, rattle);
-  if (found && !system.has_shafts()) {
-    found->estimated_error += one_degree_model_error(system, grids, search, *found);
-  }
-  return found;
-}
-
 /// Everything that follows from a response; its pieces with their contacts.
 SolvedPieces fill_from_orbit(GearPairSystem& system, MeshGrids& grids, const PeriodicOrbit& orbit,
                              int steps_per_mesh_cycle, double mean_pinion_speed, PointResult& out) {
@@ -182,11 +161,11 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   MarchStatistics statistics;
   long cycles = 0;
   const std::optional<RefinedOrbit> refined =
-      shoot(system, contacts, grids, *search, statistics, cycles, rattle);
+      refine_orbit(system, contacts, grids, *search, statistics, cycles, rattle);
   if (!refined) return std::nullopt;
   const PeriodicOrbit& orbit = refined->orbit;
 
-  PointResult out = empty_result(target, dynamic_model(system));
+  PointResult out = empty_result(target, PointModel::kFull);
   out.method = SteadyStateMethod::kShooting;
   set_estimate(refined->estimated_error, out);
   const SolvedPieces solved = fill_from_orbit(system, grids, orbit, refined->steps_per_mesh_cycle,
@@ -285,7 +264,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       }
       PreparedGearSet& gear_set = at_data_torque ? *at_data_torque : prepared.gear_set();
       GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
-                            scene.options, driveline_of(options.model));
+                            scene.options);
       system.set_torques(target.torques);
       const bool last_pass = !scene.options.load_dependent_mesh_data || pass >= 12;
       PointResult result;
@@ -396,7 +375,7 @@ PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit
   out.period_in_mesh_cycles = orbit.period;
   set_estimate(estimated_error, out);
   out.contact_solutions = system.contact_solutions();
-  out.model = dynamic_model(system);
+  out.model = PointModel::kFull;
   return out;
 }
 
@@ -414,7 +393,7 @@ PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condi
   if (options.method == SteadyStateMethod::kAutomatic && !scene.options.load_dependent_mesh_data) {
     const FlankContactBatch& contacts = prepared.contacts();
     GearPairSystem system(gear_set.mesh(), contacts.model(), gear_set.gear_set().dynamics,
-                          scene.options, driveline_of(options.model));
+                          scene.options);
     system.set_torques(target.torques);
     if (const auto chosen = quasi_static_for(system, contacts, gear_set, target, plain)) {
       PointFigures figures =
@@ -433,10 +412,10 @@ PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condi
     std::optional<RefinedOrbit> found;
     if (search) {
       if (step_errors == StepErrors::kByReference) {
-        search->references = &gear_set.reference_orbits(system.driveline());
+        search->references = &gear_set.reference_orbits();
       }
       std::optional<Rattle> rattle;
-      found = shoot(system, contacts, gear_set.grids(), *search, statistics, cycles, rattle);
+      found = refine_orbit(system, contacts, gear_set.grids(), *search, statistics, cycles, rattle);
     }
     if (found) return figures_of(system, found->orbit, found->estimated_error, target);
   }

@@ -33,14 +33,6 @@ enum class PointModel {
   kAutomatic,    ///< the cheapest whose estimated error is within the tolerance; not in results
   kFull,         ///< steady state of the 4-DoF system, friction in the loop
   kQuasiStatic,  ///< static equilibrium at constant speed, phase by phase
-  /// As kFull, but T_s and T_w act on I_p and I_g themselves (Driveline::kConstantTorques): x is
-  /// the one elastic degree. For comparison with one-degree literature; kAutomatic never takes it:
-  /// friction is most of either, so where flanks stay together it takes 0.84 of a full point's
-  /// time, and with its estimate, without which it cannot be chosen, all of it or more. On the
-  /// reference gear set it is off by 2e-4 at 140 km/h, 1e-3 at 45 and 100, 6e-3 at 60, 1e-2 at 80
-  /// and 8e-2 at half the resonance (37.5); its quiet branch ends at 70 km/h (71.5 in the full
-  /// model), its loud one at 59 (65).
-  kOneDegree,
 };
 
 /// Where a single point starts; it decides the branch where two responses coexist.
@@ -50,7 +42,7 @@ enum class PointStart {
                     ///< where it exists
 };
 
-/// How the steady state of the full model, or the one-degree one, is found.
+/// How the steady state of the full model is found.
 enum class SteadyStateMethod {
   kAutomatic,  ///< by shooting; marched where shooting finds no attracting response
   /// Found by shooting. Asked for: refused with NOT_FOUND_BY_SHOOTING where marching had to decide,

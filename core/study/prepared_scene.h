@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 
 #include "core/contact/flank_contact_batch.h"
@@ -24,16 +23,14 @@ class PreparedGearSet {
   const MeshData& mesh() const { return mesh_; }
   MeshGrids& grids() { return grids_; }
   /// For studies that meet the same speeds and loads with many lubricants.
-  ReferenceOrbits& reference_orbits(Driveline driveline = Driveline::kElasticShafts) {
-    return reference_orbits_[static_cast<std::size_t>(driveline)];
-  }
+  ReferenceOrbits& reference_orbits() { return reference_orbits_; }
   QuasiStaticChances& quasi_static_chances() { return quasi_static_chances_; }
 
  private:
   GearSet gear_set_;
   MeshData mesh_;
   MeshGrids grids_;
-  std::array<ReferenceOrbits, 2> reference_orbits_;  // of each driveline
+  ReferenceOrbits reference_orbits_;
   QuasiStaticChances quasi_static_chances_;
 };
 

@@ -127,15 +127,6 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
              : "no dynamics, and their effect cannot be told: flanks may part, or the mesh "
                "resonates; the inefficiency can be 10 to 45 % low");
   }
-  if (r.model == PointModel::kOneDegree) {
-    warn("ONE_DEGREE",
-         r.estimated_relative_error
-             ? "shafts carry constant torques: with the grid's error the figures are estimated to "
-               "be within " +
-                   number_text(100 * *r.estimated_relative_error, 2) + " % of the full model's"
-             : "shafts carry constant torques, and the effect of that cannot be told: flanks part "
-               "or may, what the shafts change is not small, or the response was marched");
-  }
   if (scene.options.isothermal) {
     warn("ISOTHERMAL", "contact temperature held at the inlet's: friction at speed is too high");
   }

@@ -36,8 +36,8 @@ std::vector<ReferenceOrbit> reference_orbits(GearPairSystem& system,
                                              const PeriodicOrbit& origin, int least);
 
 /// Those that have been found before, for the lubricants that come after. An entry depends on gear
-/// set, load, speed and start alone: it is the same bits from here and found anew. Of one gear set,
-/// driveline and its options; one thread at a time; bounded.
+/// set, load, speed and start alone: it is the same bits from here and found anew. Of one gear set
+/// and its options; one thread at a time; bounded.
 class ReferenceOrbits {
  public:
   /// As reference_orbits(). Valid until the next call.

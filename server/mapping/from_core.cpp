@@ -93,8 +93,6 @@ v1::PointModel point_model(PointModel model) {
   switch (model) {
     case PointModel::kQuasiStatic:
       return v1::POINT_MODEL_QUASI_STATIC;
-    case PointModel::kOneDegree:
-      return v1::POINT_MODEL_ONE_DEGREE;
     default:
       return v1::POINT_MODEL_FULL;
   }

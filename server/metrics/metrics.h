@@ -11,7 +11,7 @@ namespace tribodyn::server {
 enum class Phase {
   kQueue,       ///< from the creation of the simulation until a worker takes it
   kValidation,  ///< reading and checking the request and its resources
-  kOrbit,       ///< solving the full or the one-degree model
+  kOrbit,       ///< solving the full model
   kFriction,    ///< solving the quasi-static model
   kStore,       ///< converting the result to a message and committing it to disk
 };

@@ -135,8 +135,6 @@ PointModel point_model(v1::PointModel model) {
       return PointModel::kFull;
     case v1::POINT_MODEL_QUASI_STATIC:
       return PointModel::kQuasiStatic;
-    case v1::POINT_MODEL_ONE_DEGREE:
-      return PointModel::kOneDegree;
     default:
       return PointModel::kAutomatic;
   }

@@ -12,8 +12,8 @@
 #include "tests/support/figure_error.h"
 #include "tests/support/reference_scene.h"
 
-// Where a cheaper model pays: time and true error of the quasi-static model, of the one-degree one,
-// of the full one and of the automatic choice, at slow and fast points and three tolerances, on the
+// Where a cheaper model pays: time and true error of the quasi-static model, of the full one and of
+// the automatic choice, at slow and fast points and three tolerances, on the
 // reference gear set. The truth is the full model at 1e-6. Gear set and fluid are prepared,
 // responses without friction are not. Times are medians of interleaved turns.
 namespace tribodyn {
@@ -23,10 +23,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double kSpeeds[] = {1, 2, 5, 10, 20, 37.5, 45, 60, 80, 100, 140};  // [km/h]
 constexpr double kTolerances[] = {1e-3, 1e-2, 5e-2};
-constexpr int kModelCount = 4;
-constexpr PointModel kModels[kModelCount] = {PointModel::kQuasiStatic, PointModel::kOneDegree,
-                                             PointModel::kFull, PointModel::kAutomatic};
-enum { kQuasiStatic, kOneDegree, kFull, kAutomatic };  // places in it
+constexpr int kModelCount = 3;
+constexpr PointModel kModels[kModelCount] = {PointModel::kQuasiStatic, PointModel::kFull,
+                                             PointModel::kAutomatic};
+enum { kQuasiStatic, kFull, kAutomatic };  // places in it
 
 struct Run {
   PointFigures figures;
@@ -54,9 +54,9 @@ int run(const std::string& path, int turns) {
   std::vector<Measurement> figures;
   std::printf("%s; medians of %d turns; times in us\n\n", machine_name().c_str(), turns);
   std::printf(
-      "               quasi-static             one degree               full"
+      "               quasi-static             full"
       "                automatic\n"
-      " km/h  asked   time  says    errs     time  says    errs     time  says    errs"
+      " km/h  asked   time  says    errs     time  says    errs"
       "     time    errs  model\n");
   for (const double speed : kSpeeds) {
     OperatingCondition condition;
@@ -95,8 +95,6 @@ int run(const std::string& path, int turns) {
           {"automatic, true error over tolerance, " + at, error[kAutomatic] / tolerance, "-", 1.0});
       figures.push_back(
           {"automatic over full model, time, " + at, time[kAutomatic] / time[kFull], "-", {}});
-      figures.push_back(
-          {"one degree over full model, time, " + at, time[kOneDegree] / time[kFull], "-", {}});
       if (speed == 1 && tolerance == 1e-3) {
         figures.push_back(
             {"quasi-static point with its estimates, " + at, time[kQuasiStatic], "us", 99.0});

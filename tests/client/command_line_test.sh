@@ -37,6 +37,9 @@ for part in "'fast' is not a number" "'hot' is not a number" "'quick' must be on
   err_has "$part"
 done
 
+expect 2 point --lubricant paper-fluid-1 --speed 50 --model one-degree
+err_has "'one-degree' was removed; use full and a gear set with stiffnesses"
+
 echo "--- errors of the server: every violation at once"
 expect 1 point --lubricant paper-fluid-7 --speed -5 --sump-temperature-celsius 900 \
   --relative-tolerance 1 --gear-set Z
@@ -148,14 +151,6 @@ expect 0 point --lubricant paper-fluid-1 --speed 50 --model quasi-static --outpu
 out_is_json
 out_has '"inefficiencyEnergyMeanPercent": [0-9]'
 expect 0 point --lubricant paper-fluid-1 --speed 72.5 --model quasi-static
-out_has 'relative solver error +not estimated'
-expect 0 point --lubricant paper-fluid-1 --speed 50 --model one-degree
-out_has 'model used +one degree of freedom +as requested'
-out_has 'steady state by +shooting'
-out_has 'relative solver error +[0-9.]+ +%'
-expect 0 point --lubricant paper-fluid-1 --speed 50 --model one-degree --output json
-out_has '"model": "POINT_MODEL_ONE_DEGREE"'
-expect 0 point --lubricant paper-fluid-1 --speed 72.5 --model one-degree
 out_has 'relative solver error +not estimated'
 expect 0 point --lubricant paper-fluid-1 --speed 1
 out_has 'model used +quasi-static +its estimated error is within the tolerance'

@@ -322,11 +322,6 @@ TEST(QuasiStaticOverRandomScenes, EstimatesBoundTheDistanceFromTheFullModelAndAr
   EXPECT_GT(chosen, 0.1 * known);
 }
 
-TEST(OneDegreeOverRandomScenes, EstimatesBoundTheDistanceFromTheFullModelAndAreNotFarAbove) {
-  if (kShortRun) GTEST_SKIP() << "minutes under sanitizers";
-  expect_honest_estimates(PointModel::kOneDegree, 1e-5, [](const auto&, const auto&) {});
-}
-
 TEST(QuasiStaticEstimate, SaysThatItCannotTellWhereFlanksPartOrTheMeshResonates) {
   for (const double speed : {70.0, 72.5, 80.0, 150.0}) {
     SCOPED_TRACE(speed);

@@ -22,7 +22,6 @@ struct GapCase {
   std::string name;
   double pinion_torque;  ///< [N m]
   std::function<void(Scene&)> change;
-  Driveline driveline = Driveline::kElasticShafts;
 };
 
 void PrintTo(const GapCase& c, std::ostream* out) { *out << c.name; }
@@ -40,7 +39,7 @@ class GapMarch {
         mesh_(scene_.gear_set),
         contacts_({scene_.lubricant, scene_.solid, scene_.roughness, scene_.boundary,
                    scene_.sump_temperature, scene_.inlet_temperature_rise, scene_.options}),
-        system_(mesh_, contacts_, scene_.gear_set.dynamics, scene_.options, c.driveline),
+        system_(mesh_, contacts_, scene_.gear_set.dynamics, scene_.options),
         grid_(mesh_, scene_.gear_set.dynamics.half_backlash, kSteps,
               reduced_modulus(scene_.solid.youngs_modulus, scene_.solid.poissons_ratio),
               scene_.options) {
@@ -154,9 +153,7 @@ INSTANTIATE_TEST_SUITE_P(
                               scene.options.energy_consistent = true;
                             }},
                     GapCase{"without_backlash", 33,
-                            [](Scene& scene) { scene.gear_set.dynamics.half_backlash = 0; }},
-                    GapCase{"without_shafts", 33, damp_in_contact_only,
-                            Driveline::kConstantTorques}),
+                            [](Scene& scene) { scene.gear_set.dynamics.half_backlash = 0; }}),
     [](const auto& c) { return c.param.name; });
 
 /// The reference scene with its damper in contact only, and without any friction.

@@ -29,7 +29,6 @@ struct StepCase {
   std::string name;
   double pinion_torque;  ///< [N m]
   std::function<void(Scene&)> change;
-  Driveline driveline = Driveline::kElasticShafts;
 };
 
 void PrintTo(const StepCase& c, std::ostream* out) { *out << c.name; }
@@ -43,7 +42,7 @@ struct Bench {
         mesh(scene.gear_set),
         contacts({scene.lubricant, scene.solid, scene.roughness, scene.boundary,
                   scene.sump_temperature, scene.inlet_temperature_rise, scene.options}),
-        system(mesh, contacts, scene.gear_set.dynamics, scene.options, c.driveline),
+        system(mesh, contacts, scene.gear_set.dynamics, scene.options),
         grid(mesh, scene.gear_set.dynamics.half_backlash, steps,
              reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
              scene.options),
@@ -84,7 +83,6 @@ struct Bench {
     return scene;
   }
   StepBlock block() const { return {system, grid, system.regime.side, solve_wheel_torque, lagged}; }
-  std::span<const int> moving() const { return states_of(system.driveline()).moving; }
   double scale(int component) const { return march_scales(system, kSpeed).of(mesh, component); }
 
   Scene scene;
@@ -116,7 +114,7 @@ TEST_P(StepsSideBySide, LeadWhereEachLeadsAlone) {
       for (int s = 0; s < steps; ++s) {
         const OrbitPiece& piece = bench.pieces[s];
         EXPECT_NEAR(end[kTime][s], piece.end[kTime] - piece.start[kTime], 1e-13 * piece.end[kTime]);
-        for (const int i : bench.moving()) {
+        for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
           const double size = std::max(std::abs(piece.end[i]), bench.scale(i));
           EXPECT_NEAR(end[i][s], piece.end[i], 1e-13 * size) << "step " << s << " component " << i;
         }
@@ -132,29 +130,27 @@ TEST_P(StepsSideBySide, HaveTheDerivativesOfTheWholeMarch) {
     for (const InstructionSet set : supported_instruction_sets()) {
       SCOPED_TRACE(FlankContactBatch::name(set));
       Columns end(kWheelSpeed + 1, kSteps);
-      const auto moving = bench.moving();
-      const std::size_t unknowns = unknowns_of(bench.system.driveline());
-      Columns derivatives(unknowns * unknowns, kSteps);
+      Columns derivatives(CycleDerivatives::kMatrix, kSteps);
       ASSERT_TRUE(take_steps(set, bench.block(), bench.response, end, &derivatives));
-      CycleDerivatives composed(kSteps, static_cast<int>(unknowns));
+      CycleDerivatives composed(kSteps);
       compose_steps(set, derivatives, composed);
-      const double* const whole = composed.from_section.get() + composed.matrix() * kSteps;
-      for (std::size_t j = 0; j < unknowns; ++j) {
+      const double* const whole = composed.from_section.get() + CycleDerivatives::kMatrix * kSteps;
+      for (int j = 0; j < kStepUnknowns; ++j) {
         // By components' sizes: their derivatives have many units.
-        const bool by_torque = j == moving.size();
+        const bool by_torque = j + 1 == kStepUnknowns;
         const double by =
-            by_torque ? march_scales(bench.system, Bench::kSpeed).torque : bench.scale(moving[j]);
-        const int column = by_torque ? SectionMap::kUnknowns - 1 : moving[j] - 1;
-        for (std::size_t i = 0; i < moving.size(); ++i) {
-          EXPECT_NEAR(whole[unknowns * j + i] * by / bench.scale(moving[i]),
-                      bench.sensitivity[moving[i]](column) * by / bench.scale(moving[i]), 1e-11)
-              << moving[i] << " by " << j;
+            by_torque ? march_scales(bench.system, Bench::kSpeed).torque : bench.scale(j + 1);
+        for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
+          EXPECT_NEAR(whole[kStepUnknowns * j + i - 1] * by / bench.scale(i),
+                      bench.sensitivity[i](j) * by / bench.scale(i), 1e-11)
+              << i << " by " << j;
         }
         double time = 0;
         for (int s = 1; s <= kSteps; ++s) {
-          time += composed.from_section[composed.matrix() * s + unknowns * (j + 1) - 1];
+          time +=
+              composed.from_section[CycleDerivatives::kMatrix * s + kStepUnknowns * (j + 1) - 1];
         }
-        EXPECT_NEAR(time * by, bench.sensitivity[kTime](column) * by,
+        EXPECT_NEAR(time * by, bench.sensitivity[kTime](j) * by,
                     1e-11 * bench.pieces.back().end[kTime]);
       }
     }
@@ -241,34 +237,24 @@ TEST_P(StepsSideBySide, AreGivenUpWhereTheyMeanNothing) {
 struct Given {
   Given(InstructionSet set, const Bench& bench)
       : steps(bench.grid.steps()),
-        unknowns(bench.moving().size() + 1),
         end(kWheelSpeed + 1, steps),
-        derivatives(unknowns * unknowns, steps),
-        composed(steps, static_cast<int>(unknowns)),
+        derivatives(CycleDerivatives::kMatrix, steps),
+        composed(steps),
         filled(bench.response),
-        particular(unknowns * (steps + 1)),
+        particular(kStepUnknowns * (steps + 1)),
         seen(kSeenRows, bench.grid.contacts().node.size()) {
     EXPECT_TRUE(take_steps(set, bench.block(), bench.response, end, &derivatives));
     compose_steps(set, derivatives, composed);
     EXPECT_TRUE(fill_response(set, bench.block(), filled));
     follow_residuals(set, composed, bench.response, end, particular.data());
-    // Of the moving states, then of the torque.
-    constexpr double kSection[] = {1e-6, -2e-7, 3e-6, 0.1, -0.2, 0.05, 0.03};
-    constexpr double kPerScale[] = {1e5, 1e6, 1e5, 10, 10, 30, 30};
-    std::vector<double> section, per_scale;
-    for (const int i : bench.moving()) {
-      section.push_back(kSection[i - 1]);
-      per_scale.push_back(kPerScale[i - 1]);
-    }
-    section.push_back(0.5);
-    per_scale.push_back(0);
-    longest =
-        add_section_change(set, composed, section.data(), per_scale.data(), particular.data());
+    // Of the states, then of the torque.
+    constexpr double kSection[] = {1e-6, -2e-7, 3e-6, 0.1, -0.2, 0.05, 0.03, 0.5};
+    constexpr double kPerScale[] = {1e5, 1e6, 1e5, 10, 10, 30, 30, 0};
+    longest = add_section_change(set, composed, kSection, kPerScale, particular.data());
     see_contacts(set, bench.block(), bench.grid.contacts(), filled, seen);
   }
 
   int steps;
-  std::size_t unknowns;
   Columns end, derivatives;
   CycleDerivatives composed;
   CycleResponse filled;
@@ -302,11 +288,11 @@ TEST_P(StepsSideBySide, AreTheSameBitsInEveryWidthWithFusedMultiplyAdds) {
     const Given narrow(InstructionSet::kAvx2, bench), wide(InstructionSet::kAvx512, bench);
     const auto count = static_cast<std::size_t>(steps);
     EXPECT_TRUE(same_bits(narrow.end, wide.end, kWheelSpeed + 1, count));
-    const std::size_t matrix = narrow.unknowns * narrow.unknowns;
-    EXPECT_TRUE(same_bits(narrow.derivatives, wide.derivatives, static_cast<int>(matrix), count));
-    EXPECT_TRUE(same_bits(narrow.composed.step.get(), wide.composed.step.get(), matrix * count));
+    constexpr std::size_t kMatrix = CycleDerivatives::kMatrix;
+    EXPECT_TRUE(same_bits(narrow.derivatives, wide.derivatives, static_cast<int>(kMatrix), count));
+    EXPECT_TRUE(same_bits(narrow.composed.step.get(), wide.composed.step.get(), kMatrix * count));
     EXPECT_TRUE(same_bits(narrow.composed.from_section.get(), wide.composed.from_section.get(),
-                          matrix * (count + 1)));
+                          kMatrix * (count + 1)));
     EXPECT_TRUE(
         same_bits(narrow.particular.data(), wide.particular.data(), narrow.particular.size()));
     EXPECT_EQ(narrow.longest, wide.longest);
@@ -367,24 +353,20 @@ INSTANTIATE_TEST_SUITE_P(
                  [](Scene& s) { s.options.subtract_contact_point_motion = true; }},
         StepCase{"gear_set_b", 60, [](Scene& s) { s.gear_set = reference_gear_set("B"); }},
         StepCase{"no_damping", 40, [](Scene& s) { s.gear_set.dynamics.mesh_damping = 0; }},
-        StepCase{"constant_torques", 40, {}, Driveline::kConstantTorques},
-        StepCase{"constant_torques_coast", -25, {}, Driveline::kConstantTorques},
-        StepCase{"constant_torques_energy_consistent", 40,
-                 [](Scene& s) { s.options.energy_consistent = true; },
-                 Driveline::kConstantTorques}),
+        StepCase{"energy_consistent_coast", -25,
+                 [](Scene& s) { s.options.energy_consistent = true; }}),
     [](const auto& place) { return place.param.name; });
 
 /// A system at a speed and under a torque with all that its periodic responses need.
 struct OrbitBench {
   OrbitBench(double pinion_torque, double pinion_speed, bool wheel_torque = false,
-             std::optional<InstructionSet> set = std::nullopt,
-             Driveline driveline = Driveline::kElasticShafts)
+             std::optional<InstructionSet> set = std::nullopt)
       : scene(reference_scene()),
         mesh(scene.gear_set),
         contacts({scene.lubricant, scene.solid, scene.roughness, scene.boundary,
                   scene.sump_temperature, scene.inlet_temperature_rise, scene.options}),
         batch(set ? FlankContactBatch(contacts, *set) : FlankContactBatch(contacts)),
-        system(mesh, contacts, scene.gear_set.dynamics, scene.options, driveline),
+        system(mesh, contacts, scene.gear_set.dynamics, scene.options),
         grids(mesh, scene.gear_set.dynamics.half_backlash,
               reduced_modulus(scene.solid.youngs_modulus, scene.solid.poissons_ratio),
               scene.options),
@@ -464,16 +446,13 @@ void expect_same_bits(const PeriodicOrbit& a, const PeriodicOrbit& b) {
   }
 }
 
-class MultipleShootingOn : public testing::TestWithParam<Driveline> {};
-
-TEST_P(MultipleShootingOn, FindsWhatSingleShootingFindsForEitherTorque) {
-  // By maps from near. Of shafts a multiplier hardly depends on the response, of the mesh it does.
-  const double near = GetParam() == Driveline::kElasticShafts ? 2e-3 : 6e-3;
+TEST(MultipleShooting, FindsWhatSingleShootingFindsForEitherTorque) {
+  constexpr double kNear = 2e-3;  // by maps from near
   for (const bool wheel : {false, true}) {
     for (const double torque : {40.0, -25.0}) {
       for (const double speed : {60.0, 230.0, 400.0}) {
         SCOPED_TRACE(testing::Message() << torque << " N m at " << speed << " rad/s, " << wheel);
-        OrbitBench bench(torque, speed, wheel, std::nullopt, GetParam());
+        OrbitBench bench(torque, speed, wheel);
         PeriodicOrbit together;
         ASSERT_TRUE(
             MultipleShooting::applies(bench.grids.with_steps(24), bench.request, bench.origin));
@@ -481,8 +460,8 @@ TEST_P(MultipleShootingOn, FindsWhatSingleShootingFindsForEitherTorque) {
         const PeriodicOrbit alone = bench.alone(24);
         expect_near(together, alone);
         const double expected = alone.map->largest_multiplier();
-        EXPECT_NEAR(together.map->largest_multiplier(), expected, near);
-        EXPECT_TRUE(together.map->multipliers_are_below(1.01 * expected + 0.5 * near));
+        EXPECT_NEAR(together.map->largest_multiplier(), expected, kNear);
+        EXPECT_TRUE(together.map->multipliers_are_below(1.01 * expected + 0.5 * kNear));
         EXPECT_FALSE(together.map->multipliers_are_below(0.99 * expected));
       }
     }
@@ -626,13 +605,6 @@ TEST(OrbitSolver, FindsTheSameBitsInEveryWidthWithFusedMultiplyAdds) {
     }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Drivelines, MultipleShootingOn,
-                         testing::Values(Driveline::kElasticShafts, Driveline::kConstantTorques),
-                         [](const auto& place) {
-                           return place.param == Driveline::kElasticShafts ? "ElasticShafts"
-                                                                           : "ConstantTorques";
-                         });
 
 }  // namespace
 }  // namespace tribodyn

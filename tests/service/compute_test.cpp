@@ -71,8 +71,6 @@ std::vector<v1::Simulation> scenes() {
     out.push_back(point_of(lubricant, 100));
     out.back().mutable_operating_point()->set_model(v1::POINT_MODEL_QUASI_STATIC);
     out.push_back(point_of(lubricant, 60));
-    out.back().mutable_operating_point()->set_model(v1::POINT_MODEL_ONE_DEGREE);
-    out.push_back(point_of(lubricant, 60));
     out.back().mutable_model_options()->set_exact_hertz(true);
     v1::PrescribedTorque* coast = out.emplace_back(point_of(lubricant, 0))
                                       .mutable_operating_point()

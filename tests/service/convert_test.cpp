@@ -230,9 +230,6 @@ TEST(FromCore, ModelAndMethodOfAPointAreConverted) {
   };
   EXPECT_EQ(arrived(PointModel::kFull).model(), v1::POINT_MODEL_FULL);
   EXPECT_EQ(arrived(PointModel::kFull).steady_state_method(), v1::STEADY_STATE_METHOD_SHOOTING);
-  EXPECT_EQ(arrived(PointModel::kOneDegree).model(), v1::POINT_MODEL_ONE_DEGREE);
-  EXPECT_EQ(arrived(PointModel::kOneDegree).steady_state_method(),
-            v1::STEADY_STATE_METHOD_SHOOTING);
   EXPECT_EQ(arrived(PointModel::kQuasiStatic).model(), v1::POINT_MODEL_QUASI_STATIC);
   EXPECT_EQ(arrived(PointModel::kQuasiStatic).steady_state_method(),
             v1::STEADY_STATE_METHOD_UNSPECIFIED);

@@ -73,7 +73,6 @@ TEST(Inputs, EveryModelIsConverted) {
   EXPECT_EQ(arrived(v1::POINT_MODEL_AUTOMATIC), PointModel::kAutomatic);
   EXPECT_EQ(arrived(v1::POINT_MODEL_FULL), PointModel::kFull);
   EXPECT_EQ(arrived(v1::POINT_MODEL_QUASI_STATIC), PointModel::kQuasiStatic);
-  EXPECT_EQ(arrived(v1::POINT_MODEL_ONE_DEGREE), PointModel::kOneDegree);
 }
 
 TEST(Inputs, EveryOperatingConditionIsConverted) {

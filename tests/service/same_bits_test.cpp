@@ -57,10 +57,8 @@ std::vector<v1::Simulation> requests() {
     point.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(speed);
     point.mutable_operating_point()->mutable_history()->add_columns("mesh_force_newtons");
     out.push_back(point);
-    for (const v1::PointModel model : {v1::POINT_MODEL_QUASI_STATIC, v1::POINT_MODEL_ONE_DEGREE}) {
-      point.mutable_operating_point()->set_model(model);
-      out.push_back(point);
-    }
+    point.mutable_operating_point()->set_model(v1::POINT_MODEL_QUASI_STATIC);
+    out.push_back(point);
   }
   out.push_back(curve_simulation());
   out.push_back(curve_simulation());

@@ -87,6 +87,15 @@ TEST(Simulation, ReasonableRequestsPass) {
   EXPECT_THAT(check(curve_simulation()), IsEmpty());
 }
 
+TEST(Simulation, RemovedModelIsRefusedWithWhatToUse) {
+  v1::Simulation simulation = point_simulation();
+  simulation.mutable_operating_point()->set_model(static_cast<v1::PointModel>(4));
+  EXPECT_THAT(
+      check(simulation),
+      violation("simulation.operating_point.model",
+                "model = 4 (POINT_MODEL_ONE_DEGREE) was removed; use POINT_MODEL_FULL and"));
+}
+
 TEST(Simulation, AllViolationsAreReportedTogether) {
   v1::Simulation simulation;
   simulation.set_lubricant("lubricants/paper-fluid-x");

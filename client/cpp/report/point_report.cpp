@@ -188,17 +188,14 @@ void add_energy_balance(const v1::PointResult& result, const Precision& precisio
 }
 
 std::string model_name(v1::PointModel model) {
-  if (model == v1::POINT_MODEL_QUASI_STATIC) return "quasi-static";
-  return model == v1::POINT_MODEL_ONE_DEGREE ? "one degree of freedom"
-                                             : "full (4 degrees of freedom)";
+  return model == v1::POINT_MODEL_QUASI_STATIC ? "quasi-static" : "full (4 degrees of freedom)";
 }
 
 /// Returns the reason for the model that was used.
 std::string model_reason(const v1::Simulation& simulation, const v1::PointResult& result) {
   const v1::OperatingPointStudy& study = simulation.operating_point();
   if (simulation.has_inefficiency_curve()) return "";
-  if (study.model() == v1::POINT_MODEL_FULL || study.model() == v1::POINT_MODEL_QUASI_STATIC ||
-      study.model() == v1::POINT_MODEL_ONE_DEGREE) {
+  if (study.model() == v1::POINT_MODEL_FULL || study.model() == v1::POINT_MODEL_QUASI_STATIC) {
     return "as requested";
   }
   if (result.model() == v1::POINT_MODEL_QUASI_STATIC)

@@ -19,7 +19,7 @@ struct KnownWarning {
   bool forbids_ranking;
 };
 
-constexpr std::array<KnownWarning, 21> kKnownWarnings = {{
+constexpr std::array<KnownWarning, 20> kKnownWarnings = {{
     {"COLD_INLET", "cold inlet, do not rank oils here", true, true},
     {"FILM_RATIO", "film thinner than the asperity model holds for", true, false},
     {"LIMITING_STRESS", "most of the loaded area on the limiting shear stress", true, false},
@@ -31,7 +31,6 @@ constexpr std::array<KnownWarning, 21> kKnownWarnings = {{
      false},
     {"ISOTHERMAL", "isothermal model", false, false},
     {"NOT_SETTLED", "no steady period, averages over a record", false, false},
-    {"ONE_DEGREE", "model of one degree of freedom", false, false},
     {"PERIOD", "response with a period of several mesh cycles", false, false},
     {"QUASI_STATIC", "quasi-static model", false, false},
     {"BASE_OIL_UNSPECIFIED", "class of base oil not stated", false, false},
