@@ -12,6 +12,14 @@ void check(bool is_done) {
   if (!is_done) throw std::runtime_error("SHA-256 is not available");
 }
 
+/// Returns the algorithm. EVP_sha256() would look it up anew for every hash, which takes longer
+/// than a short hash.
+const EVP_MD* algorithm() {
+  static const EVP_MD* const kept = EVP_MD_fetch(nullptr, "SHA256", nullptr);  // until exit
+  check(kept != nullptr);
+  return kept;
+}
+
 }  // namespace
 
 struct Sha256::Context {
@@ -23,7 +31,7 @@ struct Sha256::Context {
 };
 
 Sha256::Sha256() : context_(std::make_unique<Context>()) {
-  check(EVP_DigestInit_ex(context_->state, EVP_sha256(), nullptr) == 1);
+  check(EVP_DigestInit_ex(context_->state, algorithm(), nullptr) == 1);
 }
 
 Sha256::~Sha256() = default;

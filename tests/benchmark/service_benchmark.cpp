@@ -236,9 +236,11 @@ double page_seconds(int jobs) {
     SQLite::Database db(server.database(), SQLite::OPEN_READWRITE);
     db.exec(fmt::format(
         "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < {}) "
-        "INSERT INTO simulations (state, sequence, create_time, start_time, end_time, request, "
+        "INSERT INTO simulations (number, state, sequence, create_time, start_time, end_time, "
+        "request, "
         "request_hash, input_hash, result, ledger, lubricant, gear_set, surface, vehicle) "
-        "SELECT state, 0, create_time + 1000 * i, start_time, end_time, request, request_hash, "
+        "SELECT number + i, state, 0, create_time + 1000 * i, start_time, end_time, request, "
+        "request_hash, "
         "input_hash, result, ledger, lubricant, gear_set, surface, vehicle FROM n, simulations",
         jobs - 1));
   }
