@@ -98,8 +98,17 @@ void CallDispatcher::run(const IncomingCall& call, std::function<void()> task,
                          const std::function<void(const google::rpc::Status&)>& refuse) {
   const std::size_t bytes = call.request_size();
   const CallLane lane = bytes > kUsualRequestBytes ? CallLane::kHeavy : call.method.lane;
+  const bool is_short = lane == CallLane::kRead && lanes_.is_empty(lane);
+  if (is_short && call.may_run_on_calling_thread() && run_here(task)) return;
   if (lanes_.run(lane, bytes, task)) return;
   refuse(lane_full(lane));
+}
+
+bool CallDispatcher::run_here(const std::function<void()>& task) {
+  if (runs_here_.exchange(true)) return false;
+  task();
+  runs_here_ = false;
+  return true;
 }
 
 void CallDispatcher::answer(UnaryCall& call) {
@@ -123,6 +132,10 @@ void CallDispatcher::open(StreamCall& call) {
 }
 
 void CallDispatcher::step(std::function<void()> task) { lanes_.run(CallLane::kStream, 0, task); }
+
+void CallDispatcher::short_step(const std::function<void()>& task) {
+  if (!run_here(task)) step(task);
+}
 
 void CallDispatcher::ended(const IncomingCall& call, const google::rpc::Status& status) try {
   const double seconds = call.watch.seconds();

@@ -2,6 +2,7 @@
 
 #include <google/protobuf/io/zero_copy_stream.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -41,6 +42,9 @@ class IncomingCall {
   virtual std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() = 0;
   /// Frees the serialised request.
   virtual void drop_request() = 0;
+  /// Returns true if the thread that passes the call to the dispatcher may run it: if the transport
+  /// has a further thread that reads requests and writes answers meanwhile.
+  virtual bool may_run_on_calling_thread() const { return false; }
 
   const Method& method;
   CallContext context;  ///< its limits are the stricter ones of client and server
@@ -80,19 +84,27 @@ class CallDispatcher {
   void open(StreamCall& call);
   /// Queues the next step of an open stream.
   void step(std::function<void()> task);
+  /// Runs a short step (AnyMessageSource::is_short) on the calling thread, or queues it. Requires
+  /// that the transport has a further thread that reads requests and writes answers meanwhile.
+  void short_step(const std::function<void()>& task);
   /// Counts a call that has ended, and logs it if it failed or was slow. Throws nothing.
   void ended(const IncomingCall& call, const google::rpc::Status& status);
 
  private:
   void run(const IncomingCall& call, std::function<void()> task,
            const std::function<void(const google::rpc::Status&)>& refuse);
+  /// Runs a short task on the calling thread, without the two changes of threads of a lane. Returns
+  /// false if another task runs so: only one may, so that a slow disk blocks at most one thread of
+  /// a transport.
+  bool run_here(const std::function<void()>& task);
   template <class Answer>
   Outcome<Answer> outcome_of(IncomingCall& call, const Method::UseCase<Answer>& use_case);
 
   Application& application_;
   const TimeLimits limits_;
   const std::vector<Method> methods_;
-  CallLanes lanes_;  // last: its threads use all of the above
+  std::atomic<bool> runs_here_ = false;  // a transport's thread is in run_here()
+  CallLanes lanes_;                      // last: its threads use all of the above
 };
 
 }  // namespace tribodyn::server

@@ -32,6 +32,8 @@ class CallLanes {
   bool run(CallLane lane, std::size_t bytes, std::function<void()>& task) {
     return workers_[static_cast<std::size_t>(lane)].run(bytes, task);
   }
+  /// Returns true if no task of the lane waits.
+  bool is_empty(CallLane lane) { return workers_[static_cast<std::size_t>(lane)].is_empty(); }
 
  private:
   static constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();

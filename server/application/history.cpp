@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <google/protobuf/arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -97,6 +98,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
     return Step::kMessage;
   }
 
+  bool is_short() const override { return rows_ <= kHistoryBlock; }
   google::rpc::Status error() const override { return error_; }
 
  private:
@@ -228,7 +230,8 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
     Violations violations;
     auto rows = window(request, shape, violations);
     if (!rows) return invalid(violations);
-    v1::SimulationResult result;
+    google::protobuf::Arena arena;  // a result has hundreds of parts
+    auto& result = *google::protobuf::Arena::CreateMessage<v1::SimulationResult>(&arena);
     result.ParseFromString(application.store.result(stored.id, call.limits).value_or(""));
     return Source(std::make_shared<HistorySource>(application, request.name(), std::move(shape),
                                                   std::move(*rows), result, call));

@@ -24,6 +24,8 @@ class AnyMessageSource {
   virtual Step next_message(google::protobuf::Message& out) = 0;
   /// Starts telling the observer. Called once, before `next_message`.
   virtual void observe(const std::weak_ptr<Observer>&) {}
+  /// Returns true if each message takes about a millisecond or less. Constant.
+  virtual bool is_short() const { return false; }
   /// OK (code 0) or why the stream broke off.
   virtual google::rpc::Status error() const { return {}; }
 };

@@ -15,7 +15,7 @@ void StreamMachine::open(ReplySource source, Clock::time_point end) {
     end_ = end;
     state_ = State::kAsking;
   }
-  transport_.run_step();
+  step();
 }
 
 void StreamMachine::refuse(const google::rpc::Status& status) { finish(status); }
@@ -51,7 +51,7 @@ void StreamMachine::written(bool ok) {
     const std::lock_guard lock(mutex_);
     state_ = State::kAsking;
   }
-  transport_.run_step();
+  source_->is_short() ? transport_.run_short_step() : transport_.run_step();
 }
 
 void StreamMachine::step() {

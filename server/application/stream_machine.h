@@ -21,6 +21,8 @@ class StreamTransport {
   virtual ~StreamTransport() = default;
   /// Calls StreamMachine::step() soon, on another thread.
   virtual void run_step() = 0;
+  /// Calls StreamMachine::step(), which takes about a millisecond, now or soon, on any thread.
+  virtual void run_short_step() { run_step(); }
   /// Begins to write a message, and calls StreamMachine::written() once at its end, on any thread.
   /// Returns an error, and begins nothing, if the message cannot be written.
   virtual std::optional<google::rpc::Status> write(const google::protobuf::Message& message) = 0;
@@ -33,10 +35,10 @@ class StreamTransport {
 
 /// The states of one server stream, for every transport: pulls the messages of a source and writes
 /// one at a time, the next one only when the one before is written, so that no more than one
-/// message waits for a slow client. Asks the source again when the source says that something
-/// changed. Closes the stream at its end, or when the transport or a shutdown wishes, as soon as no
-/// write is under way; cuts off a client that reads nothing. Safe for concurrent access: whoever
-/// brings it into kAsking or kWriting owns the source until it leaves that state.
+/// message waits for a slow client. Pulls again when the source reports a change. Closes the stream
+/// at its end, or when the transport or a shutdown requests it, as soon as no write is under way;
+/// cuts off a client that reads nothing. Safe for concurrent access: the thread that brings it into
+/// kAsking or kWriting owns the source until it leaves that state.
 class StreamMachine : public Observer {
  public:
   using Clock = std::chrono::steady_clock;
@@ -46,7 +48,8 @@ class StreamMachine : public Observer {
                 Clock::duration unread)
       : transport_(transport), prototype_(prototype), unread_(unread) {}
 
-  /// Starts a stream that lasts until `end`. Called once, and so is refuse() instead.
+  /// Starts a stream that lasts until `end`, and pulls the first message on the calling thread.
+  /// Called once, and so is refuse() instead.
   void open(ReplySource source, Clock::time_point end);
   /// Ends a stream that was not opened.
   void refuse(const google::rpc::Status& status);
@@ -57,7 +60,8 @@ class StreamMachine : public Observer {
   void close(const google::rpc::Status& status);
   /// A write has ended; `ok` is false if the client is gone.
   void written(bool ok);
-  /// Asks the source, and writes or ends. Only as StreamTransport::run_step() wants it.
+  /// Pulls from the source, and writes or ends. Only the two functions of StreamTransport above may
+  /// call it.
   void step();
 
   /// Closes the stream at its end, and cuts off a client that has not read a message for `unread`,

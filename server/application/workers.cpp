@@ -29,6 +29,11 @@ bool Workers::run(std::size_t bytes, std::function<void()>& task) {
   return true;
 }
 
+bool Workers::is_empty() {
+  const std::lock_guard lock(mutex_);
+  return tasks_.empty();
+}
+
 void Workers::work() {
   std::unique_lock lock(mutex_);
   for (;;) {

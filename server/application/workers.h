@@ -22,6 +22,8 @@ class Workers {
 
   /// Queues a task. Returns false, and does not change `task`, if the queue is full.
   bool run(std::size_t bytes, std::function<void()>& task);
+  /// Returns true if no task waits.
+  bool is_empty();
 
  private:
   struct Task {

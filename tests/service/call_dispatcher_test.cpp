@@ -82,6 +82,7 @@ class TestCall : public UnaryCall {
         bytes_.data(), static_cast<int>(bytes_.size()));
   }
   void drop_request() override { bytes_.clear(); }
+  bool may_run_on_calling_thread() const override { return may_run_here; }
   void answered(Outcome<Reply> outcome) override {
     if (held_.valid() && outcome.ok()) held_.wait();
     answer_.set_value(outcome.ok() ? google::rpc::Status() : outcome.error());
@@ -95,6 +96,7 @@ class TestCall : public UnaryCall {
   google::rpc::Status wait() { return answer_of_.get(); }
 
   std::atomic<bool> cancelled = false;
+  bool may_run_here = false;
 
  private:
   std::string bytes_;
@@ -232,6 +234,47 @@ TEST_F(CallDispatcherTest, ReadsDoNotWaitForHeavyCalls) {
   for (const auto& each : heavy) EXPECT_EQ(each->wait().code(), google::rpc::OK);
   std::nth_element(seconds.begin(), seconds.begin() + 10, seconds.end());
   EXPECT_LT(seconds[10], batches.seconds() / 10);
+}
+
+TEST_F(CallDispatcherTest, AReadRunsOnTheThreadThatBringsItIfTheTransportAllows) {
+  TestCall read(get());
+  read.may_run_here = true;
+  dispatcher_.answer(read);
+  EXPECT_TRUE(read.is_answered());
+}
+
+TEST_F(CallDispatcherTest, OnlyOneCallRunsOnAThreadOfATransport) {
+  std::promise<void> release;
+  const std::shared_future<void> released = release.get_future().share();
+  TestCall stuck(get());  // e.g. by a slow disk
+  stuck.may_run_here = true;
+  stuck.hold(released);
+  std::thread transport([&] { dispatcher_.answer(stuck); });
+  ASSERT_TRUE(eventually([&] {
+    TestCall probe(get());
+    probe.may_run_here = true;
+    dispatcher_.answer(probe);
+    const bool is_answered = probe.is_answered();
+    probe.wait();
+    return !is_answered;
+  }));
+  TestCall other(get());
+  other.may_run_here = true;
+  other.hold(released);  // answer() would block if it ran the call
+  dispatcher_.answer(other);
+  EXPECT_FALSE(other.is_answered());
+  release.set_value();
+  EXPECT_EQ(stuck.wait().code(), google::rpc::OK);
+  EXPECT_EQ(other.wait().code(), google::rpc::OK);
+  transport.join();
+}
+
+TEST_F(CallDispatcherTest, LongCallsAndWritesNeverRunOnAThreadOfATransport) {
+  TestCall check(batch(500));
+  check.may_run_here = true;
+  dispatcher_.answer(check);
+  EXPECT_FALSE(check.is_answered());
+  EXPECT_EQ(check.wait().code(), google::rpc::OK);
 }
 
 TEST_F(CallDispatcherTest, ACallToAFullLaneIsToldTheLimitAndWhatToDo) {

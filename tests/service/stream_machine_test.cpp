@@ -36,6 +36,8 @@ google::rpc::Status status_of(google::rpc::Code code) {
 /// Messages 1, 2, ... as they become available. Complains if it is asked by two threads at once.
 class CountingSource : public AnyMessageSource {
  public:
+  explicit CountingSource(bool is_short = false) : is_short_(is_short) {}
+  bool is_short() const override { return is_short_; }
   Step next_message(google::protobuf::Message& out) override {
     EXPECT_FALSE(is_asked_.exchange(true)) << "two threads ask at once";
     EXPECT_FALSE(has_ended_) << "asked after the end";
@@ -55,6 +57,7 @@ class CountingSource : public AnyMessageSource {
   std::atomic<bool> is_closed = false;  // set after the last message is available
 
  private:
+  const bool is_short_;
   std::atomic<bool> is_asked_ = false;
   int given_ = 0;  // the machine lets one thread ask at a time
   bool has_ended_ = false;
@@ -212,6 +215,43 @@ TEST(StreamMachine, HoldsOneMessageForASlowClient) {
   EXPECT_EQ(stream.transport.begun(), 1);
 }
 
+TEST(StreamMachine, TheFirstMessageNeedsNoFurtherThread) {
+  ManualTransport transport;
+  StreamMachine machine(transport, v1::SimulationEvent::default_instance(),
+                        std::chrono::minutes(1));
+  const auto source = std::make_shared<CountingSource>();
+  source->available = 1;
+  machine.open(source, Clock::now() + std::chrono::hours(1));
+  EXPECT_EQ(transport.begun(), 1);
+  EXPECT_FALSE(transport.is_step_due);
+}
+
+/// Runs short steps on the thread that reports the end of a write.
+class InlineTransport : public ManualTransport {
+ public:
+  void run_short_step() override { machine->step(); }
+  StreamMachine* machine = nullptr;
+};
+
+TEST(StreamMachine, OnlyTheEndOfAWriteCausesAShortStep) {
+  InlineTransport transport;
+  StreamMachine machine(transport, v1::SimulationEvent::default_instance(),
+                        std::chrono::minutes(1));
+  transport.machine = &machine;
+  const auto source = std::make_shared<CountingSource>(true);
+  source->available = 2;
+  machine.open(source, Clock::now() + std::chrono::hours(1));
+  for (int written = 1; written <= 2; ++written) {
+    EXPECT_EQ(transport.begun(), written);
+    transport.end_write();
+    machine.written(true);
+  }
+  EXPECT_FALSE(transport.is_step_due);
+  ++source->available;
+  machine.changed();
+  EXPECT_TRUE(transport.is_step_due) << "observers are told on threads that must not wait";
+}
+
 TEST(StreamMachine, CutsOffAClientThatDoesNotReadAMessage) {
   Manual stream(milliseconds(100));
   stream.feed();
@@ -263,7 +303,6 @@ TEST(StreamMachine, AShutdownWhileItIsOpenedEndsIt) {
   machine.close(status_of(google::rpc::UNAVAILABLE));
   EXPECT_FALSE(transport.end()) << "whoever opens it owns it";
   machine.open(std::make_shared<CountingSource>(), Clock::now() + std::chrono::hours(1));
-  machine.step();
   EXPECT_EQ(transport.end()->code(), google::rpc::UNAVAILABLE);
 }
 

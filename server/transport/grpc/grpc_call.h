@@ -33,6 +33,8 @@ class GrpcCall : public Call {
     return std::make_unique<grpc::ProtoBufferReader>(&request_);
   }
   void drop_request() override { request_.Clear(); }
+  /// gRPC calls callbacks from two threads or more, and any of them may take the next event.
+  bool may_run_on_calling_thread() const override { return true; }
 
  protected:
   void set_cancelled() { cancelled_ = true; }

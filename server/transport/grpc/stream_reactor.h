@@ -81,6 +81,9 @@ class StreamReactor final : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   void run_step() override {
     dispatcher_.step([this] { machine_.step(); });
   }
+  void run_short_step() override {
+    dispatcher_.short_step([this] { machine_.step(); });
+  }
   std::optional<google::rpc::Status> write(const google::protobuf::Message& message) override {
     bytes_.Clear();
     bool own = false;
