@@ -1,0 +1,68 @@
+"""Reads time histories, resumed after a broken connection."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Sequence
+
+import grpc
+import numpy as np
+
+from tribodyn._transport import Backoff, Transport
+from tribodyn.errors import service_error
+from tribodyn.v1 import simulations_pb2 as pb
+
+_READ_RETRIES = 20  # about 40 s in all: long enough for a server that restarts
+
+
+async def read_history(
+    transport: Transport,
+    name: str,
+    columns: Sequence[str],
+    start_row: int,
+    row_count: int,
+    max_points: int,
+) -> tuple[pb.HistorySchema, list[np.ndarray]]:
+    """Returns the schema of a history, and its columns."""
+    request = pb.ReadHistoryRequest(name=name, columns=columns, max_points=max_points)
+    schema: pb.HistorySchema | None = None
+    parts: list[list[np.ndarray]] = []
+    backoff, tries_left = Backoff(), _READ_RETRIES
+    while True:
+        # Whole columns arrive in turns; a resumed stream begins at the first row that is missing in
+        # any of them. The buckets of an envelope depend on its first row: it is read again.
+        done = min((sum(map(len, part)) for part in parts), default=0)
+        if schema is None or schema.rows_per_pair > 0:
+            schema, done = None, 0
+        parts = [_first(part, done) for part in parts] if schema else []
+        request.start_row = start_row + done
+        request.row_count = row_count - done if row_count else 0
+        if schema is not None and done == schema.row_count:
+            break
+        try:
+            async for answer in transport.stream("SimulationService", "ReadHistory", request):
+                backoff.reset()
+                if answer.HasField("schema"):
+                    if schema is None:
+                        schema = answer.schema
+                        parts = [[] for _ in schema.columns]
+                else:
+                    tries_left = _READ_RETRIES
+                    parts[answer.chunk.column].append(np.frombuffer(answer.chunk.values, "<f8"))
+            break
+        except grpc.aio.AioRpcError as error:
+            broken = error.code() in (
+                grpc.StatusCode.UNAVAILABLE,
+                grpc.StatusCode.DEADLINE_EXCEEDED,
+            )
+            tries_left -= 1
+            if not broken or tries_left == 0:
+                raise service_error(error, transport.settings.server) from None
+            await asyncio.sleep(backoff.next(0.25))
+    assert schema is not None
+    return schema, [np.concatenate(part) if part else np.empty(0) for part in parts]
+
+
+def _first(arrays: list[np.ndarray], count: int) -> list[np.ndarray]:
+    """Returns the first values of a column."""
+    return [np.concatenate(arrays)[:count]] if arrays else []

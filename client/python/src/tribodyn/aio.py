@@ -1,0 +1,376 @@
+"""The client with coroutines. Its classes and methods are those of ``tribodyn``, which describes
+them."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import Any, Mapping, Sequence
+
+from tribodyn import _evaluate, _studies
+from tribodyn._csv import rows_of
+from tribodyn._frames import Frame, columns_of, frame, in_columns, point_row, result_attrs
+from tribodyn._history import read_history
+from tribodyn._jobs import Outcome, run_all
+from tribodyn._progress import Progress
+from tribodyn._resources import AsyncResources
+from tribodyn._studies import Arguments, Options, full_name
+from tribodyn._transport import Transport
+from tribodyn.errors import TribodynError
+from tribodyn.settings import read_settings
+from tribodyn.units import Quantity
+from tribodyn.v1.gear_sets_pb2 import GearSet
+from tribodyn.v1.lubricants_pb2 import Lubricant
+from tribodyn.v1.schemas_pb2 import GetSchemaRequest, Schema
+from tribodyn.v1 import simulations_pb2 as pb
+from tribodyn.v1.surfaces_pb2 import Surface
+from tribodyn.v1.vehicles_pb2 import Vehicle
+
+
+class Client:
+    """A server and a project, for one event loop. As tribodyn.Client, with coroutines."""
+
+    def __init__(
+        self,
+        server: str | None = None,
+        project: str | None = None,
+        *,
+        timeout_seconds: float | None = None,
+        progress: str | None = None,
+        client_name: str | None = None,
+    ) -> None:
+        self._settings = read_settings(server, project, timeout_seconds, progress)
+        self._transport = Transport(self._settings, client_name)
+        self.lubricants = AsyncResources(self._transport, Lubricant, "lubricants")
+        self.gear_sets = AsyncResources(self._transport, GearSet, "gearSets")
+        self.surfaces = AsyncResources(self._transport, Surface, "surfaces")
+        self.vehicles = AsyncResources(self._transport, Vehicle, "vehicles")
+
+    @property
+    def server(self) -> str:
+        return self._settings.server
+
+    @property
+    def project(self) -> str:
+        return self._settings.project
+
+    async def close(self) -> None:
+        await self._transport.close()
+
+    async def __aenter__(self) -> Client:
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        await self.close()
+
+    async def schema(self, message: str = "") -> Schema:
+        return await self._transport.call(
+            "SchemaService", "GetSchema", GetSchemaRequest(message=message)
+        )
+
+    async def point(
+        self,
+        lubricant: str,
+        *,
+        speed_kilometres_per_hour: Quantity | None = None,
+        acceleration_metres_per_second_squared: Quantity | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        pinion_torque_newton_metres: Quantity | None = None,
+        pinion_speed_radians_per_second: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        arguments = Arguments()
+        simulation = _studies.scene(
+            arguments,
+            lubricant,
+            options,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            sump_temperature_celsius=sump_temperature_celsius,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            tolerance=tolerance,
+        )
+        _studies.point(
+            arguments,
+            simulation,
+            options,
+            model=model,
+            speed_kilometres_per_hour=speed_kilometres_per_hour,
+            acceleration_metres_per_second_squared=acceleration_metres_per_second_squared,
+            ascent_angle_degrees=ascent_angle_degrees,
+            pinion_torque_newton_metres=pinion_torque_newton_metres,
+            pinion_speed_radians_per_second=pinion_speed_radians_per_second,
+        )
+        (found,) = await self._run(arguments, [simulation], options, "point")
+        return frame(_columns(found), result_attrs(found))
+
+    async def curve(
+        self,
+        lubricant: str,
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] | None = None,
+        direction: str | None = None,
+        independent_points: bool = False,
+        ascent_angle_degrees: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        curves = await self._curves(
+            [lubricant],
+            speeds_kilometres_per_hour,
+            direction,
+            independent_points,
+            ascent_angle_degrees,
+            gear_set,
+            surface,
+            vehicle,
+            sump_temperature_celsius,
+            inlet_temperature_rise_kelvin,
+            tolerance,
+            model,
+            options,
+        )
+        return frame(_columns(curves[0]), result_attrs(curves[0]))
+
+    async def compare(
+        self,
+        lubricants: Sequence[str],
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] | None = None,
+        direction: str | None = None,
+        independent_points: bool = False,
+        ascent_angle_degrees: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        if isinstance(lubricants, str):
+            lubricants = [lubricants]
+        curves = await self._curves(
+            list(lubricants),
+            speeds_kilometres_per_hour,
+            direction,
+            independent_points,
+            ascent_angle_degrees,
+            gear_set,
+            surface,
+            vehicle,
+            sump_temperature_celsius,
+            inlet_temperature_rise_kelvin,
+            tolerance,
+            model,
+            options,
+        )
+        rows = []
+        for name, each in zip(lubricants, curves):
+            rows += [{"lubricant": name, **point_row(point)} for point in each.result.points]
+        attrs = {name: result_attrs(each) for name, each in zip(lubricants, curves)}
+        return frame(in_columns(rows), {"results": attrs})
+
+    async def histories(
+        self,
+        lubricant: str,
+        columns: Sequence[str],
+        *,
+        mesh_cycles: int = 1,
+        samples_per_mesh_cycle: int = 192,
+        speed_kilometres_per_hour: Quantity | None = None,
+        acceleration_metres_per_second_squared: Quantity | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        pinion_torque_newton_metres: Quantity | None = None,
+        pinion_speed_radians_per_second: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        arguments = Arguments()
+        simulation = _studies.scene(
+            arguments,
+            lubricant,
+            options,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            sump_temperature_celsius=sump_temperature_celsius,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            tolerance=tolerance,
+        )
+        study = _studies.point(
+            arguments,
+            simulation,
+            options,
+            model=model,
+            speed_kilometres_per_hour=speed_kilometres_per_hour,
+            acceleration_metres_per_second_squared=acceleration_metres_per_second_squared,
+            ascent_angle_degrees=ascent_angle_degrees,
+            pinion_torque_newton_metres=pinion_torque_newton_metres,
+            pinion_speed_radians_per_second=pinion_speed_radians_per_second,
+        )
+        study.history.columns[:] = [columns] if isinstance(columns, str) else columns
+        study.history.mesh_cycles = mesh_cycles
+        study.history.samples_per_mesh_cycle = samples_per_mesh_cycle
+        (found,) = await self._run(arguments, [simulation], options, "history")
+        history = await self.read_history(found.name)
+        history.attrs = {**result_attrs(found), **history.attrs}
+        return history
+
+    async def read_history(
+        self,
+        simulation: str,
+        *,
+        columns: Sequence[str] = (),
+        start_row: int = 0,
+        row_count: int = 0,
+        max_points: int = 0,
+    ) -> Frame:
+        name = full_name("simulations", simulation)
+        schema, values = await read_history(
+            self._transport, name, columns, start_row, row_count, max_points
+        )
+        attrs = {
+            "simulation": name,
+            "start_row": schema.start_row,
+            "total_rows": schema.total_rows,
+            "rows_per_pair": schema.rows_per_pair,
+            "units": {each.name: each.unit for each in schema.columns},
+            "input_warnings": {each.code: each.message for each in schema.input_warnings},
+        }
+        return frame({each.name: column for each, column in zip(schema.columns, values)}, attrs)
+
+    async def evaluate(
+        self, table: Any, *, options: Options = Options(), **parameters: Any
+    ) -> Frame:
+        unknown = [name for name in parameters if name not in _evaluate.PARAMETERS]
+        if unknown:
+            raise TypeError(
+                f"evaluate() has no parameter {', '.join(unknown)}; parameters: "
+                + ", ".join(_evaluate.PARAMETERS)
+            )
+        given = in_columns(rows_of(table)) if isinstance(table, str) else columns_of(table)
+        count = len(next(iter(given.values()), []))
+        rows = [
+            {
+                **parameters,
+                **{name: column[i] for name, column in given.items() if column[i] is not None},
+            }
+            for i in range(count)
+        ]
+
+        async def run(requests: Sequence[pb.CreateSimulationRequest]) -> Sequence[Outcome]:
+            return await run_all(self._transport, requests, self._progress(len(requests), "points"))
+
+        cells = await _evaluate.evaluate_rows(rows, options, run)
+        results = in_columns(cells)
+        out = frame(
+            {**given, **{name: column for name, column in results.items() if name not in given}}, {}
+        )
+        if hasattr(table, "columns") and hasattr(out, "index"):  # both are DataFrames
+            out.index = table.index
+        return out
+
+    async def _curves(
+        self,
+        lubricants: Sequence[str],
+        speeds: Sequence[Quantity] | None,
+        direction: str | None,
+        independent_points: bool,
+        ascent: Quantity | None,
+        gear_set: str | None,
+        surface: str | None,
+        vehicle: str | None,
+        sump: Quantity | None,
+        rise: Quantity | None,
+        tolerance: float | None,
+        model: str | None,
+        options: Options,
+    ) -> list[pb.Simulation]:
+        arguments = Arguments()
+        simulations: list[pb.Simulation] = []
+        for lubricant in lubricants:
+            if simulations:
+                simulations.append(pb.Simulation())
+                simulations[-1].CopyFrom(simulations[0])
+                simulations[-1].lubricant = full_name("lubricants", lubricant)
+                continue
+            simulation = _studies.scene(
+                arguments,
+                lubricant,
+                options,
+                gear_set=gear_set,
+                surface=surface,
+                vehicle=vehicle,
+                sump_temperature_celsius=sump,
+                inlet_temperature_rise_kelvin=rise,
+                tolerance=tolerance,
+            )
+            _studies.curve(
+                arguments,
+                simulation,
+                options,
+                speeds_kilometres_per_hour=speeds,
+                direction=direction,
+                independent_points=independent_points,
+                ascent_angle_degrees=ascent,
+                model=model,
+            )
+            simulations.append(simulation)
+        return await self._run(arguments, simulations, options, "curve")
+
+    async def _run(
+        self,
+        arguments: Arguments,
+        simulations: Sequence[pb.Simulation],
+        options: Options,
+        title: str,
+    ) -> list[pb.Simulation]:
+        """Runs all; raises the first error of one."""
+        several = len(simulations) > 1
+        requests = [
+            _studies.request(arguments, each, options, i if several else None)
+            for i, each in enumerate(simulations)
+        ]
+        arguments.check()
+        outcomes = await run_all(
+            self._transport, requests, self._progress(len(requests), title), all_or_none=True
+        )
+        found = []
+        for outcome in outcomes:
+            if isinstance(outcome, TribodynError):
+                raise outcome
+            found.append(outcome)
+        return found
+
+    def _progress(self, total: int, title: str) -> Progress:
+        return Progress(self._settings.progress, total, title)
+
+
+def _columns(simulation: pb.Simulation) -> Mapping[str, Sequence[Any]]:
+    return in_columns(point_row(point) for point in simulation.result.points)

@@ -1,0 +1,428 @@
+"""The blocking client: ``Client`` and the resources of a project."""
+
+from __future__ import annotations
+
+import asyncio
+import atexit
+import threading
+from types import TracebackType
+from typing import Any, Coroutine, Generic, List, Sequence, TypeVar
+
+from google.protobuf.message import Message
+
+from tribodyn import aio
+from tribodyn._frames import Frame
+from tribodyn._resources import AsyncResources
+from tribodyn._studies import Options
+from tribodyn.units import Quantity
+from tribodyn.v1.gear_sets_pb2 import GearSet
+from tribodyn.v1.lubricants_pb2 import Lubricant
+from tribodyn.v1.schemas_pb2 import Schema
+from tribodyn.v1.surfaces_pb2 import Surface
+from tribodyn.v1.vehicles_pb2 import Vehicle
+
+R = TypeVar("R", bound=Message)
+T = TypeVar("T")
+
+
+class _Loop:
+    """The event loop of all blocking clients, in a thread of its own: so they also work in
+    notebooks, where another loop runs already."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    def run(self, work: Coroutine[Any, Any, T]) -> T:
+        """Runs the work to its end; an interruption (Ctrl-C) cancels it."""
+        future = asyncio.run_coroutine_threadsafe(work, self._started())
+        try:
+            return future.result()
+        except BaseException:
+            future.cancel()
+            raise
+
+    def _started(self) -> asyncio.AbstractEventLoop:
+        with self._lock:
+            if self._loop is None:
+                self._loop = asyncio.new_event_loop()
+                # gRPC's poller reports a wake-up that another loop of the process has consumed.
+                self._loop.set_exception_handler(_report)
+                thread = threading.Thread(
+                    target=self._loop.run_forever, name="tribodyn", daemon=True
+                )
+                thread.start()
+                atexit.register(self._stop, self._loop, thread)
+            return self._loop
+
+    @staticmethod
+    def _stop(loop: asyncio.AbstractEventLoop, thread: threading.Thread) -> None:
+        loop.call_soon_threadsafe(loop.stop)
+        thread.join(1.0)
+
+
+def _report(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    if not isinstance(context.get("exception"), BlockingIOError):
+        loop.default_exception_handler(context)
+
+
+_LOOP = _Loop()
+
+
+class Resources(Generic[R]):
+    """The resources of one kind in a project: lubricants, gear sets, surfaces or vehicles.
+
+    A field of a resource is stated under its name, with a plain number in the unit that the name
+    ends in or a text with a unit (``relaxation_time_seconds="450 ns"``); without the unit in the
+    name if the text has one (``relaxation_time="450 ns"``); or under the names of data sheets:
+    ``kv40``, ``kv100``, ``kv100_sheared`` (mm2/s), ``density15`` (kg/m3), ``alpha`` ("20/GPa"),
+    ``brookfield_-40_C`` (mPa s). Lists of measurements are texts ("205 mm2/s at 20 C; 31 mm2/s at
+    100 C"), other nested messages have the form of JSON. ``labels.KEY`` is a label;
+    ``FIELD.provenance``, ``FIELD.source``, ``FIELD.standard_uncertainty`` and ``FIELD.warning`` are
+    the origin of a number. Pass names that are no Python words as ``**{"labels.project": "axle"}``.
+
+    Names may have their collection ("lubricants/my-oil") and a revision ("my-oil@2").
+    """
+
+    def __init__(self, resources: AsyncResources[R]) -> None:
+        self._resources = resources
+
+    def list(
+        self,
+        filter: str = "",
+        *,
+        order_by: str = "",
+        show_deleted: bool = False,
+        limit: int | None = None,
+    ) -> List[R]:
+        """Returns the resources that match a filter, e.g. ``kv100 > 13.5 AND labels.project =
+        "axle"`` (`tribodyn help filters`), from all pages; at most ``limit``."""
+        return _LOOP.run(
+            self._resources.list(filter, order_by=order_by, show_deleted=show_deleted, limit=limit)
+        )
+
+    def frame(self, filter: str = "", *, order_by: str = "", limit: int | None = None) -> Frame:
+        """Returns the resources that match a filter as a table: one a row, units in the names of
+        columns, labels in columns "labels.KEY"."""
+        return _LOOP.run(self._resources.frame(filter, order_by=order_by, limit=limit))
+
+    def get(self, name: str) -> R:
+        """Returns the newest revision, or that of "NAME@REVISION"."""
+        return _LOOP.run(self._resources.get(name))
+
+    def create(
+        self, name: str, like: R | str | None = None, *, validate_only: bool = False, **fields: Any
+    ) -> R:
+        """Creates a resource and returns it as stored: with fitted and estimated parameters and the
+        provenance of each. ``like``: a resource, or the name of one, that sets all other fields.
+        ``validate_only``: checks everything and writes nothing."""
+        return _LOOP.run(self._resources.create(name, like, validate_only=validate_only, **fields))
+
+    def update(self, name: str, *, validate_only: bool = False, **fields: Any) -> R:
+        """Makes a new revision with other values of these fields, and returns it; None clears a
+        field. Fails with ETAG_MISMATCH if somebody else changes the resource meanwhile."""
+        return _LOOP.run(self._resources.update(name, validate_only=validate_only, **fields))
+
+    def delete(self, name: str) -> R:
+        """Hides the resource from lists and new studies. Results keep pointing at it."""
+        return _LOOP.run(self._resources.delete(name))
+
+    def undelete(self, name: str) -> R:
+        """Restores a deleted resource."""
+        return _LOOP.run(self._resources.undelete(name))
+
+    def import_table(
+        self, table: Any, *, replace: bool = False, validate_only: bool = False
+    ) -> List[str]:
+        """Creates one resource for each row, all or none, and returns their names.
+
+        ``table`` is a DataFrame, a mapping of columns, a sequence of rows, or the path of a CSV
+        file; a column "name" and others as above, headers with units in brackets ("Density15
+        (g/cm3)") among them; 1 to 20,000 rows. Empty cells set nothing. ``replace``: a row whose
+        name exists changes the fields of its columns; labels replace all labels."""
+        return _LOOP.run(
+            self._resources.import_table(table, replace=replace, validate_only=validate_only)
+        )
+
+
+class Client:
+    """A server and a project. Safe for concurrent use; the constructor sends nothing.
+
+    ``server`` is "HOST:PORT" or "unix:PATH"; without it TRIBODYN_SERVER, then the configuration
+    file of the command line (~/.config/tribodyn/config), then 127.0.0.1:50651. ``project``,
+    ``timeout_seconds`` (of one call; 30) and ``progress`` ("auto": bars in notebooks and terminals,
+    "lines" or "none") likewise. ``client_name`` separates programs of one user in the server's fair
+    queue: a notebook with another name than a screening does not wait for it.
+
+    Every method raises TribodynError. A call is repeated, where that is safe, after the pause that
+    the server states, when the server is lost or turns it away. Studies are jobs of the server,
+    which goes on when this program ends; equal inputs are computed once.
+    """
+
+    def __init__(
+        self,
+        server: str | None = None,
+        project: str | None = None,
+        *,
+        timeout_seconds: float | None = None,
+        progress: str | None = None,
+        client_name: str | None = None,
+    ) -> None:
+        self._client = aio.Client(
+            server,
+            project,
+            timeout_seconds=timeout_seconds,
+            progress=progress,
+            client_name=client_name,
+        )
+        self.lubricants: Resources[Lubricant] = Resources(self._client.lubricants)
+        self.gear_sets: Resources[GearSet] = Resources(self._client.gear_sets)
+        self.surfaces: Resources[Surface] = Resources(self._client.surfaces)
+        self.vehicles: Resources[Vehicle] = Resources(self._client.vehicles)
+
+    @property
+    def server(self) -> str:
+        """The address of the server."""
+        return self._client.server
+
+    @property
+    def project(self) -> str:
+        """The name of the project."""
+        return self._client.project
+
+    def close(self) -> None:
+        """Closes the connection."""
+        _LOOP.run(self._client.close())
+
+    def __enter__(self) -> Client:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def schema(self, message: str = "") -> Schema:
+        """Returns the constraints of one message, e.g. "Lubricant", with units and allowed ranges;
+        of all messages with the allowed words, e.g. the columns of histories."""
+        return _LOOP.run(self._client.schema(message))
+
+    def point(
+        self,
+        lubricant: str,
+        *,
+        speed_kilometres_per_hour: Quantity | None = None,
+        acceleration_metres_per_second_squared: Quantity | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        pinion_torque_newton_metres: Quantity | None = None,
+        pinion_speed_radians_per_second: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns the figures of one operating point: a table of one row.
+
+        The point is a speed (0.1 to 400 km/h), with an acceleration (-50 to 50 m/s2) and an ascent
+        (-45 to 45 degrees, or "6%"), or a torque of the pinion (-1e5 to 1e5 N m; negative: coast)
+        with its speed (0.01 to 1e4 rad/s). ``sump_temperature_celsius``: -70 to 200, None: 40;
+        ``inlet_temperature_rise_kelvin`` (eq 14): 0 to 300, None: 20. ``tolerance``: wanted
+        relative error of inefficiencies, torque and transmission error, 1e-8 to 0.01, None: 1e-3.
+        ``model``: "automatic" (the cheapest within the tolerance), "full" or "quasi-static".
+
+        Columns are the fields of PointResult, with units in their names; a figure that is not there
+        is NaN. ``attrs`` holds input_hash, model_version, platform, estimated_relative_error,
+        warnings, input_warnings, the revisions used and the name of the simulation.
+        """
+        return _LOOP.run(
+            self._client.point(
+                lubricant,
+                speed_kilometres_per_hour=speed_kilometres_per_hour,
+                acceleration_metres_per_second_squared=acceleration_metres_per_second_squared,
+                ascent_angle_degrees=ascent_angle_degrees,
+                pinion_torque_newton_metres=pinion_torque_newton_metres,
+                pinion_speed_radians_per_second=pinion_speed_radians_per_second,
+                gear_set=gear_set,
+                surface=surface,
+                vehicle=vehicle,
+                sump_temperature_celsius=sump_temperature_celsius,
+                inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+                tolerance=tolerance,
+                model=model,
+                options=options,
+            )
+        )
+
+    def curve(
+        self,
+        lubricant: str,
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] | None = None,
+        direction: str | None = None,
+        independent_points: bool = False,
+        ascent_angle_degrees: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns the figures at each speed, in ascending order: a table of one row a speed.
+
+        ``speeds_kilometres_per_hour``: up to 1000 speeds; None: 20 to 140 km/h by 5. Each point
+        starts from the steady state of the one before, ``direction`` "up" or "down";
+        ``independent_points``: each is solved alone, in about a third of the time. A speed without
+        a result has NaN, and the reason in ``status``. Other arguments, columns and ``attrs`` as of
+        point(); ``branch_ends`` holds the pairs of speeds between which a branch ends.
+        """
+        return _LOOP.run(
+            self._client.curve(
+                lubricant,
+                speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+                direction=direction,
+                independent_points=independent_points,
+                ascent_angle_degrees=ascent_angle_degrees,
+                gear_set=gear_set,
+                surface=surface,
+                vehicle=vehicle,
+                sump_temperature_celsius=sump_temperature_celsius,
+                inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+                tolerance=tolerance,
+                model=model,
+                options=options,
+            )
+        )
+
+    def compare(
+        self,
+        lubricants: Sequence[str],
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] | None = None,
+        direction: str | None = None,
+        independent_points: bool = False,
+        ascent_angle_degrees: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns the curves of several lubricants in one table, with a column ``lubricant``.
+
+        Arguments as of curve(). The curves run together; one refused lubricant refuses all.
+        ``attrs["results"]`` holds the attributes of each curve by the name of its lubricant.
+        """
+        return _LOOP.run(
+            self._client.compare(
+                lubricants,
+                speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+                direction=direction,
+                independent_points=independent_points,
+                ascent_angle_degrees=ascent_angle_degrees,
+                gear_set=gear_set,
+                surface=surface,
+                vehicle=vehicle,
+                sump_temperature_celsius=sump_temperature_celsius,
+                inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+                tolerance=tolerance,
+                model=model,
+                options=options,
+            )
+        )
+
+    def histories(
+        self,
+        lubricant: str,
+        columns: Sequence[str],
+        *,
+        mesh_cycles: int = 1,
+        samples_per_mesh_cycle: int = 192,
+        speed_kilometres_per_hour: Quantity | None = None,
+        acceleration_metres_per_second_squared: Quantity | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        pinion_torque_newton_metres: Quantity | None = None,
+        pinion_speed_radians_per_second: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        model: str | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns time histories of the steady state at one operating point: one row a sample.
+
+        ``columns``: names such as "mesh_force_newtons"; schema() lists them as "history.columns".
+        ``mesh_cycles`` times ``samples_per_mesh_cycle`` rows, at most 20 million values. Other
+        arguments as of point(). ``attrs["units"]`` holds the symbols of the units.
+        """
+        return _LOOP.run(
+            self._client.histories(
+                lubricant,
+                columns,
+                mesh_cycles=mesh_cycles,
+                samples_per_mesh_cycle=samples_per_mesh_cycle,
+                speed_kilometres_per_hour=speed_kilometres_per_hour,
+                acceleration_metres_per_second_squared=acceleration_metres_per_second_squared,
+                ascent_angle_degrees=ascent_angle_degrees,
+                pinion_torque_newton_metres=pinion_torque_newton_metres,
+                pinion_speed_radians_per_second=pinion_speed_radians_per_second,
+                gear_set=gear_set,
+                surface=surface,
+                vehicle=vehicle,
+                sump_temperature_celsius=sump_temperature_celsius,
+                inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+                tolerance=tolerance,
+                model=model,
+                options=options,
+            )
+        )
+
+    def read_history(
+        self,
+        simulation: str,
+        *,
+        columns: Sequence[str] = (),
+        start_row: int = 0,
+        row_count: int = 0,
+        max_points: int = 0,
+    ) -> Frame:
+        """Returns the history of a simulation, or a part of it; ``columns`` empty: all. With
+        ``max_points`` (4 to 1,000,000) and more rows than that a min/max envelope: row 2k is the
+        least and row 2k+1 the greatest value of ``attrs["rows_per_pair"]`` rows."""
+        return _LOOP.run(
+            self._client.read_history(
+                simulation,
+                columns=columns,
+                start_row=start_row,
+                row_count=row_count,
+                max_points=max_points,
+            )
+        )
+
+    def evaluate(self, table: Any, *, options: Options = Options(), **parameters: Any) -> Frame:
+        """Returns the figures of many operating points: rows in, rows out, in their order.
+
+        ``table`` is a DataFrame, a mapping of columns, a sequence of rows, or the path of a CSV
+        file. Its columns are the arguments of point(): lubricant, gear_set, surface, vehicle,
+        sump_temperature_celsius, speed_kilometres_per_hour and so on; ``parameters`` hold for the
+        rows that state none. Other columns ride along. The points are solved in parallel, each
+        alone. A row that fails has NaN, the reason in ``status`` and a sentence in
+        ``status_message``; the others have "OK". ``options.request_id`` is not used: equal inputs
+        are computed once anyway.
+        """
+        return _LOOP.run(self._client.evaluate(table, options=options, **parameters))

@@ -1,0 +1,93 @@
+"""A real tribodynd for the tests, on a free port of loopback."""
+
+import os
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+import pytest
+
+import tribodyn
+
+TREE = Path(os.environ["TRIBODYN_TREE"])
+
+
+class Server:
+    """A tribodynd with a database of its own, which may be killed and started again."""
+
+    def __init__(self, folder, *options):
+        self.folder = Path(folder)
+        self.options = options
+        self.address = "127.0.0.1:0"
+        self.start()
+
+    def start(self):
+        """Starts it, again on the port that it had."""
+        port = self.folder / "port"
+        port.unlink(missing_ok=True)
+        with open(self.folder / "log", "ab") as log:
+            self.process = subprocess.Popen(
+                [
+                    os.environ["TRIBODYND"],
+                    "--listen",
+                    self.address,
+                    "--database",
+                    self.folder / "db.sqlite",
+                    "--port-file",
+                    port,
+                    *self.options,
+                ],
+                stdout=log,
+                stderr=log,
+            )
+        for _ in range(600):
+            if port.exists() and port.read_text():
+                self.address = port.read_text().strip()
+                return
+            assert self.process.poll() is None, (self.folder / "log").read_text()
+            time.sleep(0.05)
+        raise AssertionError("the server did not start")
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+    def stop(self):
+        self.process.terminate()
+        try:
+            self.process.wait(30)
+        except subprocess.TimeoutExpired:
+            self.kill()
+
+
+@pytest.fixture
+def new_server():
+    """Starts servers that end with the test: new_server(option...)."""
+    servers = []
+    with tempfile.TemporaryDirectory() as folder:
+
+        def start(*options):
+            own = Path(folder) / str(len(servers))
+            own.mkdir()
+            servers.append(Server(own, *options))
+            return servers[-1]
+
+        yield start
+        for server in servers:
+            server.stop()
+
+
+@pytest.fixture(scope="session")
+def server():
+    """A server for all tests that leave it running."""
+    with tempfile.TemporaryDirectory() as folder:
+        server = Server(folder, "--projects", "axles")
+        yield server
+        server.stop()
+
+
+@pytest.fixture(scope="session")
+def client(server):
+    with tribodyn.Client(server.address) as client:
+        yield client

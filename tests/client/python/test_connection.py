@@ -1,0 +1,205 @@
+import asyncio
+import inspect
+import os
+import subprocess
+import sys
+import threading
+import time
+
+import grpc
+import numpy as np
+import pytest
+
+import tribodyn
+from tribodyn import aio
+from tribodyn.settings import read_settings
+from tribodyn.v1 import simulations_pb2 as pb
+
+FLUID = "paper-fluid-1"
+
+
+def list_simulations(server):
+    """Returns the simulations of a server, newest first."""
+    with grpc.insecure_channel(server.address) as channel:
+        call = channel.unary_unary(
+            "/tribodyn.v1.SimulationService/ListSimulations",
+            pb.ListSimulationsRequest.SerializeToString,
+            pb.ListSimulationsResponse.FromString,
+        )
+        return list(call(pb.ListSimulationsRequest()).simulations)
+
+
+def wait_until(is_true):
+    for _ in range(1000):
+        if is_true():
+            return
+        time.sleep(0.01)
+    raise AssertionError("timed out")
+
+
+class InThread:
+    """Runs a call in a thread."""
+
+    def __init__(self, call):
+        self.outcome = None
+        self._thread = threading.Thread(target=self._run, args=[call])
+        self._thread.start()
+
+    def _run(self, call):
+        try:
+            self.outcome = call()
+        except Exception as error:
+            self.outcome = error
+
+    def result(self):
+        self._thread.join(60)
+        assert not isinstance(self.outcome, Exception), self.outcome
+        return self.outcome
+
+
+def test_a_job_survives_the_death_of_its_server(new_server):
+    server = new_server("--threads", "1")
+    client = tribodyn.Client(server.address)
+    # Marched: a curve that takes seconds.
+    study = dict(
+        speeds_kilometres_per_hour=[40, 60],
+        tolerance=1e-5,
+        options=tribodyn.Options(method="march"),
+    )
+    running = InThread(lambda: client.compare([FLUID, "paper-fluid-2"], **study))
+    wait_until(
+        lambda: any(each.state == pb.Simulation.RUNNING for each in list_simulations(server))
+    )
+    server.kill()
+    time.sleep(0.5)
+    server.start()
+    curves = running.result()
+    assert list(curves["status"]) == ["OK"] * 4
+    jobs = list_simulations(server)
+    assert len(jobs) == 2 and max(each.attempt for each in jobs) == 2
+
+
+def test_calls_wait_for_a_server_that_restarts(new_server):
+    server = new_server()
+    client = tribodyn.Client(server.address)
+    client.lubricants.get(FLUID)
+    server.kill()
+    waiting = InThread(
+        lambda: client.evaluate({"speed_kilometres_per_hour": [20, 30, 40]}, lubricant=FLUID)
+    )
+    time.sleep(0.7)
+    server.start()
+    assert list(waiting.result()["status"]) == ["OK"] * 3
+
+
+def test_jobs_that_a_full_queue_turns_away_are_submitted_again(new_server):
+    server = new_server("--threads", "1", "--waiting-simulations", "4")
+    client = tribodyn.Client(server.address)
+    temperatures = np.linspace(20, 100, 40)
+    points = client.evaluate(
+        {"sump_temperature_celsius": temperatures},
+        lubricant=FLUID,
+        speed_kilometres_per_hour=80,
+        tolerance=1e-6,
+    )
+    assert list(points["status"]) == ["OK"] * 40
+    assert len(list_simulations(server)) == 40
+
+
+def test_a_repeated_request_id_finds_the_job(client, server):
+    options = tribodyn.Options(request_id="once", force=True)
+    first = client.point(FLUID, speed_kilometres_per_hour=61, options=options)
+    again = client.point(FLUID, speed_kilometres_per_hour=61, options=options)
+    assert first.attrs["simulation"] == again.attrs["simulation"]
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.point(FLUID, speed_kilometres_per_hour=62, options=options)
+    assert caught.value.reason == "REQUEST_ID_REUSED"
+
+
+def test_a_cancelled_job_is_an_error_with_that_reason(new_server):
+    server = new_server("--threads", "1")
+    client = tribodyn.Client(server.address)
+    running = InThread(
+        lambda: client.curve(FLUID, tolerance=1e-7, options=tribodyn.Options(method="march"))
+    )
+    wait_until(lambda: list_simulations(server))
+    with grpc.insecure_channel(server.address) as channel:
+        channel.unary_unary(
+            "/tribodyn.v1.SimulationService/CancelSimulation",
+            pb.CancelSimulationRequest.SerializeToString,
+            pb.Simulation.FromString,
+        )(pb.CancelSimulationRequest(name=list_simulations(server)[0].name))
+    with pytest.raises(AssertionError):
+        running.result()
+    assert isinstance(running.outcome, tribodyn.TribodynError)
+    assert running.outcome.reason == "CANCELLED"
+
+
+def test_no_server_is_an_error_at_once():
+    started = time.monotonic()
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        tribodyn.Client("127.0.0.1:1").point(FLUID, speed_kilometres_per_hour=60)
+    assert caught.value.reason == "CANNOT_CONNECT" and "127.0.0.1:1" in str(caught.value)
+    assert time.monotonic() - started < 5
+
+
+def test_settings_come_from_arguments_then_environment_then_file(monkeypatch, tmp_path):
+    file = tmp_path / "config"
+    file.write_text(
+        "# the plant's server\nserver = 10.0.0.1:1\nproject = 'axles'\ncolor = auto\n"
+        "timeout-seconds = 60\n"
+    )
+    monkeypatch.setenv("TRIBODYN_CONFIG", str(file))
+    monkeypatch.setenv("TRIBODYN_PROJECT", "gearboxes")
+    found = read_settings(timeout_seconds=5)
+    assert (found.server, found.project, found.timeout_seconds) == ("10.0.0.1:1", "gearboxes", 5)
+    monkeypatch.setenv("TRIBODYN_TIMEOUT_SECONDS", "soon")
+    with pytest.raises(tribodyn.TribodynError, match="timeout_seconds = soon"):
+        read_settings()
+    monkeypatch.setenv("TRIBODYN_CONFIG", str(tmp_path / "missing"))
+    with pytest.raises(tribodyn.TribodynError, match="cannot read"):
+        read_settings()
+
+
+def test_coroutines_have_the_names_and_arguments_of_the_blocking_client():
+    def signatures(kind):
+        return {
+            name: list(inspect.signature(member).parameters.values())
+            for name, member in vars(kind).items()
+            if not name.startswith("_") and callable(member)
+        }
+
+    assert signatures(aio.Client) == signatures(tribodyn.Client)
+    from tribodyn._resources import AsyncResources
+
+    assert signatures(AsyncResources) == signatures(tribodyn.Resources)
+
+
+def test_coroutines_run_together(server):
+    async def run():
+        async with aio.Client(server.address) as client:
+            return await asyncio.gather(
+                client.point(FLUID, speed_kilometres_per_hour=63),
+                client.curve(FLUID, speeds_kilometres_per_hour=[20, 64]),
+                client.lubricants.get(FLUID),
+                client.evaluate({"speed_kilometres_per_hour": [65]}, lubricant=FLUID),
+            )
+
+    point, curve, lubricant, points = asyncio.run(run())
+    assert len(point) == 1 and len(curve) == 2 and lubricant.revision == 1
+    assert points["status"][0] == "OK"
+
+
+def test_a_terminal_has_a_bar_and_a_program_without_one_is_silent(server):
+    code = (
+        "import tribodyn; tribodyn.Client(progress='auto').point('paper-fluid-3', "
+        "speed_kilometres_per_hour=60, tolerance=1e-5)"
+    )
+    environment = {**os.environ, "TRIBODYN_SERVER": server.address}
+    terminal = ["script", "-qec", f'{sys.executable} -c "{code}"', "/dev/null"]
+    bar = subprocess.run(terminal, capture_output=True, text=True, check=True, env=environment)
+    assert "point: " in bar.stdout and "100%" in bar.stdout
+    silent = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
+    )
+    assert silent.stderr == "" and silent.stdout == ""

@@ -1,0 +1,57 @@
+import os
+import re
+import subprocess
+import sys
+
+from conftest import TREE
+
+PYTHON = TREE / "client/python"
+
+
+def run(server, folder, *command):
+    done = subprocess.run(
+        [sys.executable, *command],
+        capture_output=True,
+        text=True,
+        cwd=folder,
+        env={**os.environ, "TRIBODYN_SERVER": server.address},
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_the_code_of_the_readme_runs(server, tmp_path):
+    code = "\n".join(re.findall(r"```python\n(.*?)```", (PYTHON / "README.md").read_text(), re.S))
+    out = run(server, tmp_path, "-c", code)
+    assert "too fast" in out and "('simulation.sump_temperature_celsius', '900 C'" in out
+
+
+def test_two_oils_are_compared_with_a_plot(server, tmp_path):
+    out = run(server, tmp_path, PYTHON / "examples/compare_two_oils.py", "oils.svg")
+    assert "saved_watts" in out and (tmp_path / "oils.svg").stat().st_size > 10_000
+
+
+def test_the_loop_of_optimisation_ends_inside_its_bounds(server, tmp_path):
+    out = run(server, tmp_path, PYTHON / "examples/find_best_temperature.py")
+    found = re.search(r"at ([\d.]+) C, film ratio ([\d.]+), after (\d+) evaluations", out)
+    assert 60 < float(found[1]) < 90 and float(found[2]) > 0.59 and int(found[3]) < 30
+
+
+def test_type_hints_hold():
+    done = subprocess.run(
+        [
+            "/usr/bin/mypy",
+            "--config-file",
+            PYTHON / "pyproject.toml",
+            "--python-executable",
+            sys.executable,
+            "--cache-dir",
+            os.path.join(os.environ["TRIBODYN_FOLDER"], "mypy"),
+            "-p",
+            "tribodyn",
+        ],
+        capture_output=True,
+        text=True,
+        cwd=os.environ["TRIBODYN_FOLDER"],
+    )
+    assert done.returncode == 0, done.stdout + done.stderr

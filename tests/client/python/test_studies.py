@@ -1,0 +1,186 @@
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pandas
+import pytest
+
+import tribodyn
+
+FLUID = "paper-fluid-1"
+
+
+def test_a_point_is_a_row_with_what_it_rests_on(client):
+    point = client.point(FLUID, speed_kilometres_per_hour="20 m/s", sump_temperature_celsius="90 C")
+    assert len(point) == 1 and point["status"][0] == "OK"
+    assert point["vehicle_speed_kilometres_per_hour"][0] == pytest.approx(72)
+    assert 0.5 < point["inefficiency_energy_mean_percent"][0] < 3
+    assert len(point.attrs["input_hash"]) == 64
+    assert point.attrs["model_version"].startswith("tribodyn-model-")
+    assert point.attrs["lubricant"] == "lubricants/paper-fluid-1@1"
+    assert 0 < point.attrs["estimated_relative_error"] <= 1e-3
+    again = client.point(FLUID, speed_kilometres_per_hour=72, sump_temperature_celsius=90)
+    assert again.attrs["cache_hit"] and again.attrs["input_hash"] == point.attrs["input_hash"]
+
+
+def test_what_a_result_does_not_have_is_nan_and_not_zero(client):
+    point = client.point(FLUID, speed_kilometres_per_hour=60)
+    assert np.isnan(point["coexisting_response_inefficiency_rms_percent"][0])
+
+
+def test_a_torque_and_model_options_are_taken(client):
+    coast = client.point(
+        FLUID,
+        pinion_torque_newton_metres=-60,
+        pinion_speed_radians_per_second="2000 rpm",
+        model="quasi-static",
+        options=tribodyn.Options(
+            model_options={
+                "isothermal": True,
+                "pressure_viscosity_index": "houpert",
+                "as_published": {"eq17_atan": True},
+            }
+        ),
+    )
+    assert coast["model"][0] == "quasi-static" and coast["pinion_torque_newton_metres"][0] == -60
+
+
+def test_a_comparison_is_one_table_with_the_same_bits_as_curves(client):
+    speeds = [20, 60, 100]
+    both = client.compare(
+        [FLUID, "paper-fluid-2"], speeds_kilometres_per_hour=speeds, direction="down"
+    )
+    assert list(both["lubricant"]) == [FLUID] * 3 + ["paper-fluid-2"] * 3
+    one = client.curve(
+        "paper-fluid-2", speeds_kilometres_per_hour=np.array(speeds), direction="down"
+    )
+    assert list(both["mesh_loss_power_watts"][3:]) == list(one["mesh_loss_power_watts"])
+    assert both.attrs["results"]["paper-fluid-2"]["input_hash"] == one.attrs["input_hash"]
+
+
+def test_a_refused_lubricant_refuses_a_comparison(client):
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.compare([FLUID, "nothing"], speeds_kilometres_per_hour=[33, 34])
+    assert caught.value.violations[0].field == "simulation.lubricant"
+
+
+def test_histories_have_units_in_their_columns(client):
+    history = client.histories(
+        FLUID,
+        ["time_seconds", "mesh_force_newtons"],
+        mesh_cycles=2,
+        samples_per_mesh_cycle=96,
+        speed_kilometres_per_hour=60,
+    )
+    assert list(history.columns) == ["time_seconds", "mesh_force_newtons"] and len(history) == 192
+    assert history.attrs["units"]["mesh_force_newtons"] == "N" and history.attrs["input_hash"]
+    name = history.attrs["simulation"]
+    part = client.read_history(name, columns=["mesh_force_newtons"], start_row=100, row_count=5)
+    assert list(part["mesh_force_newtons"]) == list(history["mesh_force_newtons"][100:105])
+    envelope = client.read_history(name, max_points=10)
+    assert envelope.attrs["rows_per_pair"] > 0 and len(envelope) <= 10
+
+
+def test_all_wrong_arguments_are_reported_together(client):
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.point(
+            FLUID,
+            speed_kilometres_per_hour="5,4",
+            model="best",
+            options=tribodyn.Options(model_options={"isothermic": True}),
+        )
+    assert caught.value.reason == "INVALID_FIELDS"
+    assert [each.field for each in caught.value.violations] == [
+        "model_options.isothermic",
+        "speed_kilometres_per_hour",
+        "model",
+    ]
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.point(FLUID, speed_kilometres_per_hour=5000, sump_temperature_celsius=900)
+    assert [(each.value, each.allowed) for each in caught.value.violations] == [
+        ("900 C", "-70 to 200 C"),
+        ("5000 km/h", "0.1 to 400 km/h"),
+    ]
+
+
+def test_evaluated_rows_have_the_bits_of_single_points(client):
+    table = pandas.DataFrame(
+        {
+            "speed_kilometres_per_hour": [90, 30, "25 m/s", 30],
+            "sump_temperature_celsius": [90, 90, 90, np.nan],
+            "note": list("abcd"),
+        },
+        index=[7, 5, 3, 1],
+    )
+    points = client.evaluate(table, lubricant=FLUID, sump_temperature_celsius="50 C")
+    assert list(points.index) == [7, 5, 3, 1] and list(points["note"]) == list("abcd")
+    losses = list(points["mesh_loss_power_watts"])
+    assert losses[0] == losses[2] and losses[1] != losses[3]
+    single = client.point(FLUID, speed_kilometres_per_hour=30, sump_temperature_celsius=50)
+    assert losses[3] == single["mesh_loss_power_watts"][0]
+    alone = client.point(FLUID, speed_kilometres_per_hour=90, sump_temperature_celsius=90)
+    assert losses[0] == alone["mesh_loss_power_watts"][0]
+
+
+def test_a_row_that_fails_has_nan_and_its_reason(client):
+    points = client.evaluate(
+        [
+            {"speed_kilometres_per_hour": 40},
+            {"speed_kilometres_per_hour": -4},
+            {"speed_kilometres_per_hour": 50, "lubricant": "nothing"},
+            {"speed_kilometres_per_hour": "fast"},
+            {"speed_kilometres_per_hour": 60},
+            {"pinion_torque_newton_metres": 50, "pinion_speed_radians_per_second": 200},
+            {},
+        ],
+        lubricant=FLUID,
+    )
+    assert list(points["status"]) == [
+        "OK",
+        "INVALID_FIELDS",
+        "INVALID_FIELDS",
+        "INVALID_FIELDS",
+        "OK",
+        "OK",
+        "INVALID_FIELDS",
+    ]
+    assert list(np.isnan(points["mesh_loss_power_watts"])) == [
+        False,
+        True,
+        True,
+        True,
+        False,
+        False,
+        True,
+    ]
+    assert "allowed: 0.1 to 400 km/h" in points["status_message"][1]
+    assert "does not exist" in points["status_message"][2]
+
+
+def test_results_are_structured_arrays_without_pandas(server):
+    code = """
+import sys
+sys.modules["pandas"] = sys.modules["tqdm"] = sys.modules["tqdm.auto"] = None
+import json, tribodyn
+client = tribodyn.Client(progress="auto")
+table = client.compare(["paper-fluid-1"], speeds_kilometres_per_hour=[20, 60])
+rows = client.evaluate({"speed_kilometres_per_hour": [20, -1]}, lubricant="paper-fluid-1")
+print(json.dumps([type(table).__name__, list(table["speed_kilometres_per_hour"]),
+                  list(table.attrs["results"]), list(rows["status"])]))
+"""
+    found = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "TRIBODYN_SERVER": server.address},
+    )
+    assert json.loads(found.stdout) == [
+        "Table",
+        [20, 60],
+        ["paper-fluid-1"],
+        ["OK", "INVALID_FIELDS"],
+    ]
+    assert found.stderr == ""
