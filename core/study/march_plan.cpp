@@ -42,7 +42,7 @@ void refuse_what_is_too_slow(const GearPairSystem& system, const OperatingTarget
 }  // namespace
 
 double march_tolerance(const PointOptions& options) {
-  return std::clamp(1e-3 * options.tolerance, 1e-11, options.relative_tolerance);
+  return std::clamp(1e-3 * options.tolerance, 1e-11, options.march_step_tolerance);
 }
 
 MarchState point_start(GearPairSystem& system, const FlankContactBatch& contacts, MeshGrids& grids,

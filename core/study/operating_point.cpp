@@ -59,7 +59,7 @@ PointResult solve_by_marching(GearPairSystem& system, const OperatingTarget& tar
   request.mean_pinion_speed = target.mean_pinion_speed;
   request.solve_wheel_torque = target.solve_wheel_torque;
   request.march.relative_tolerance = march_tolerance(options);
-  request.tolerance = std::min(0.1 * options.tolerance, options.settling_tolerance);
+  request.tolerance = std::min(0.1 * options.tolerance, options.march_settling_tolerance);
   request.maximum_mesh_cycles = plan.maximum_mesh_cycles;
   request.progress = options.progress;
   double reported = 0;

@@ -74,9 +74,9 @@ struct PointOptions {
   double tolerance = 1e-3;
   /// Only a march reads the next two, and takes less where `tolerance` asks for it. A point that
   /// was not marched warns of one that is not the default (MARCH_TOLERANCE_UNUSED).
-  double relative_tolerance = 1e-7;  ///< of the march, per step [1e-11, 1e-3]
-  double settling_tolerance =
-      1e-6;  ///< relative change of the response per period that counts as settled
+  double march_step_tolerance = 1e-7;  ///< relative error of each step of a march [1e-11, 1e-3]
+  /// Relative change of a marched response per period that counts as settled.
+  double march_settling_tolerance = 1e-6;
   int maximum_mesh_cycles = 4000;  ///< work limit of the search for the steady state
   int recorded_mesh_cycles = 50;   ///< averaged when no period is found (the paper's 50)
   HistoryRequest history;          ///< empty: none computed

@@ -17,8 +17,9 @@ std::optional<RangeWarning> unused_march_tolerance(const PointOptions& options,
     if (value == default_value) return;
     unread += (count++ > 0 ? " and " : "") + std::string(name) + " = " + number_text(value);
   };
-  add("relative_tolerance", options.relative_tolerance, defaults.relative_tolerance);
-  add("settling_tolerance", options.settling_tolerance, defaults.settling_tolerance);
+  add("march_step_tolerance", options.march_step_tolerance, defaults.march_step_tolerance);
+  add("march_settling_tolerance", options.march_settling_tolerance,
+      defaults.march_settling_tolerance);
   if (count == 0) return std::nullopt;
   return RangeWarning{"MARCH_TOLERANCE_UNUSED",
                       unread +

@@ -6,8 +6,8 @@
 
 namespace tribodyn {
 
-/// MARCH_TOLERANCE_UNUSED, if relative_tolerance or settling_tolerance differs from its default and
-/// nothing read it: only a march does. Returns nullopt otherwise.
+/// MARCH_TOLERANCE_UNUSED, if march_step_tolerance or march_settling_tolerance differs from its
+/// default and nothing read it: only a march does. Returns nullopt otherwise.
 std::optional<RangeWarning> unused_march_tolerance(const PointOptions& options,
                                                    const PointResult& result);
 

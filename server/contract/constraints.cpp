@@ -179,11 +179,11 @@ constexpr Constraint kConstraints[] = {
     {"InefficiencyCurveStudy", "speed_step_kilometres_per_hour", "km/h", 1e-3, 400, "eq 7", "",
      Zero::kUnset},
     {"InefficiencyCurveStudy", "ascent_angle_degrees", "degrees", -45, 45, "eq 7", ""},
-    {"SolverOptions", "relative_tolerance", "", 1e-11, 1e-3, "eqs 1-6",
+    {"SolverOptions", "march_step_tolerance", "", 1e-11, 1e-3, "eqs 1-6",
      "below it lies round-off, above it no steady state", Zero::kUnset},
     {"SolverOptions", "tolerance", "", 1e-8, 1e-2, "eq 30", "what shooting can estimate and keep",
      Zero::kUnset},
-    {"SolverOptions", "settling_tolerance", "", 1e-12, 1e-1, "eq 30", "", Zero::kUnset},
+    {"SolverOptions", "march_settling_tolerance", "", 1e-12, 1e-1, "eq 30", "", Zero::kUnset},
     {"SolverOptions", "maximum_mesh_cycles", "", 1, 100000, "work limit", "", Zero::kUnset},
     {"SolverOptions", "recorded_mesh_cycles", "", 1, 1000, "work limit", "", Zero::kUnset},
 

@@ -93,7 +93,7 @@ constexpr InputFields kInputFields[] = {
      "eq43_44_polynomials eq46_square_root_of_sum",
      ""},
     {"SolverOptions",
-     "relative_tolerance settling_tolerance maximum_mesh_cycles recorded_mesh_cycles "
+     "march_step_tolerance march_settling_tolerance maximum_mesh_cycles recorded_mesh_cycles "
      "tolerance method",
      ""},
     {"OperatingPointStudy",

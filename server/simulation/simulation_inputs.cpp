@@ -30,11 +30,11 @@ void fill_options(v1::ModelOptions* options) {
 
 void fill_solver(v1::SolverOptions* solver) {
   const PointOptions defaults;
-  if (solver->relative_tolerance() == 0) {
-    solver->set_relative_tolerance(defaults.relative_tolerance);
+  if (solver->march_step_tolerance() == 0) {
+    solver->set_march_step_tolerance(defaults.march_step_tolerance);
   }
-  if (solver->settling_tolerance() == 0) {
-    solver->set_settling_tolerance(defaults.settling_tolerance);
+  if (solver->march_settling_tolerance() == 0) {
+    solver->set_march_settling_tolerance(defaults.march_settling_tolerance);
   }
   if (solver->tolerance() == 0) solver->set_tolerance(defaults.tolerance);
   if (solver->method() == v1::STEADY_STATE_METHOD_UNSPECIFIED)
@@ -97,6 +97,10 @@ v1::Simulation with_defaults(v1::Simulation simulation) {
 }
 
 void check_study(const v1::Simulation& request, const std::string& path, Violations& violations) {
+  check_march_tolerances(request.solver_options(),
+                         request.has_inefficiency_curve() ? request.inefficiency_curve().model()
+                                                          : request.operating_point().model(),
+                         join_path(path, "solver_options"), violations);
   if (request.has_operating_point()) {
     check_operating_point(request.operating_point(), join_path(path, "operating_point"),
                           violations);
@@ -159,8 +163,8 @@ PointOptions point_options(const v1::SolverOptions& solver, v1::PointModel model
                                                        : PointStart::kQuasiStatic;
   out.method = steady_state_method(solver.method());
   out.tolerance = solver.tolerance();
-  out.relative_tolerance = solver.relative_tolerance();
-  out.settling_tolerance = solver.settling_tolerance();
+  out.march_step_tolerance = solver.march_step_tolerance();
+  out.march_settling_tolerance = solver.march_settling_tolerance();
   out.maximum_mesh_cycles = solver.maximum_mesh_cycles();
   out.recorded_mesh_cycles = solver.recorded_mesh_cycles();
   return out;

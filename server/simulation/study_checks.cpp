@@ -133,6 +133,25 @@ void check_operating_point(const v1::OperatingPointStudy& study, const std::stri
   if (study.has_history()) check_history(study.history(), join_path(path, "history"), violations);
 }
 
+void check_march_tolerances(const v1::SolverOptions& options, v1::PointModel model,
+                            const std::string& path, Violations& violations) {
+  const bool is_quasi_static = model == v1::POINT_MODEL_QUASI_STATIC;
+  if (!is_quasi_static && options.method() != v1::STEADY_STATE_METHOD_SHOOTING) return;
+  const auto check = [&](const char* field, double value, double unset) {
+    if (value == 0 || value == unset) return;
+    violations.push_back(
+        {join_path(path, field),
+         fmt::format("{} = {} has no effect: {} never marches; leave it unset and set tolerance, "
+                     "which every method keeps, or set {}",
+                     field, value, is_quasi_static ? "model = QUASI_STATIC" : "method = SHOOTING",
+                     is_quasi_static ? "model = FULL and method = MARCH" : "method = MARCH")});
+  };
+  const PointOptions defaults;
+  check("march_step_tolerance", options.march_step_tolerance(), defaults.march_step_tolerance);
+  check("march_settling_tolerance", options.march_settling_tolerance(),
+        defaults.march_settling_tolerance);
+}
+
 void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOptions& options,
                  const std::string& path, Violations& violations) {
   if (study.independent_points() && study.direction() != v1::SWEEP_DIRECTION_UNSPECIFIED) {

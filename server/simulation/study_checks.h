@@ -29,6 +29,11 @@ void check_operating_point(const v1::OperatingPointStudy& study, const std::stri
 void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOptions& options,
                  const std::string& path, Violations& violations);
 
+/// Refuses tolerances of a march, other than their defaults, if the method or the model never
+/// marches.
+void check_march_tolerances(const v1::SolverOptions& options, v1::PointModel model,
+                            const std::string& path, Violations& violations);
+
 /// Refuses switches that have no effect in a contact.
 void check_model_options(const v1::ModelOptions& options, const std::string& path,
                          Violations& violations);

@@ -86,8 +86,8 @@ PointResult truth_of(PreparedScene& scene, const OperatingCondition& condition, 
   options.method = SteadyStateMethod::kMarch;
   options.start = start;
   options.tolerance = 1e-8;
-  options.relative_tolerance = 1e-10;
-  options.settling_tolerance = 1e-9;
+  options.march_step_tolerance = 1e-10;
+  options.march_settling_tolerance = 1e-9;
   return solve_prepared_point(scene, condition, options);
 }
 
@@ -181,8 +181,8 @@ int run(const std::string& results, const std::string& table, int turns) {
         options.method = method;
         options.tolerance = tolerance;
         if (method == SteadyStateMethod::kMarch) {
-          options.relative_tolerance = std::min(1e-3, tolerance);
-          options.settling_tolerance = std::min(1e-2, 0.1 * tolerance);
+          options.march_step_tolerance = std::min(1e-3, tolerance);
+          options.march_settling_tolerance = std::min(1e-2, 0.1 * tolerance);
         }
         PointFigures r;
         contest.microseconds[name][tolerance].push_back(

@@ -372,8 +372,8 @@ v1::Simulation endless() {
   curve->set_last_speed_kilometres_per_hour(80);
   curve->set_speed_step_kilometres_per_hour(0.0201);
   out.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
-  out.mutable_solver_options()->set_relative_tolerance(1e-11);
-  out.mutable_solver_options()->set_settling_tolerance(1e-12);
+  out.mutable_solver_options()->set_march_step_tolerance(1e-11);
+  out.mutable_solver_options()->set_march_settling_tolerance(1e-12);
   out.mutable_solver_options()->set_maximum_mesh_cycles(10'000);
   return out;
 }
@@ -849,7 +849,7 @@ std::vector<EstimatedCase> estimated_cases() {
   out[3].simulation.mutable_operating_point()->set_model(v1::POINT_MODEL_QUASI_STATIC);
   out[4].simulation.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
   out[5].simulation.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
-  out[5].simulation.mutable_solver_options()->set_relative_tolerance(1e-9);
+  out[5].simulation.mutable_solver_options()->set_march_step_tolerance(1e-9);
   out[8].simulation.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
   const std::array<std::pair<int, int>, 3> lengths = {{{10, 10'000}, {1000, 1000}, {100, 1000}}};
   for (std::size_t i = 0; i < lengths.size(); ++i) {

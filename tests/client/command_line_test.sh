@@ -42,9 +42,9 @@ err_has "'one-degree' was removed; use full and a gear set with stiffnesses"
 
 echo "--- errors of the server: every violation at once"
 expect 1 point --lubricant paper-fluid-7 --speed -5 --sump-temperature-celsius 900 \
-  --relative-tolerance 1 --gear-set Z
+  --march-step-tolerance 1 --gear-set Z
 for part in '--speed = -5 km/h; allowed: 0\.1 to 400' \
-  '--sump-temperature-celsius = 900 C; allowed: -70 to 200' '--relative-tolerance = 1; allowed' \
+  '--sump-temperature-celsius = 900 C; allowed: -70 to 200' '--march-step-tolerance = 1; allowed' \
   'lubricants/paper-fluid-7' 'gearSets/Z'; do
   err_has "$part"
 done
@@ -223,7 +223,7 @@ out_has '"totalRows": "16"'
 
 echo "--- jobs"
 long=(--lubricant paper-fluid-1 --label project=axle --first-speed 20 --last-speed 140 --speed-step 0.2 --method march \
-  --relative-tolerance 1e-11 --settling-tolerance 1e-12)
+  --march-step-tolerance 1e-11 --march-settling-tolerance 1e-12)
 expect 0 curve "${long[@]}" --detach
 job=$(sed -n 's,^simulations/\([^ ]*\) .*,\1,p' "$folder/out")
 [ -n "$job" ] || fail "no name from --detach"

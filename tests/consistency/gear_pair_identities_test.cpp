@@ -395,7 +395,7 @@ TEST_P(PowerBalanceIdentities, ClosesInTheReportOfAPoint) {
        {SteadyStateMethod::kMarch, SteadyStateMethod::kAutomatic}) {
     PointOptions options;
     options.method = method;
-    options.relative_tolerance = kShortRun ? 1e-6 : 1e-8;
+    options.march_step_tolerance = kShortRun ? 1e-6 : 1e-8;
     const PointResult point = solve_operating_point(scene, cruise(p.kilometres_per_hour), options);
     const PowerBalance& w = point.power_balance;
     const double residual = w.input - w.output - w.friction - w.shaft_damping - w.mesh_damping -
@@ -405,7 +405,7 @@ TEST_P(PowerBalanceIdentities, ClosesInTheReportOfAPoint) {
     ASSERT_EQ(point.method == SteadyStateMethod::kShooting, shot);
     EXPECT_NEAR(
         residual, 0,
-        (shot ? point.estimated_relative_error.value() : options.relative_tolerance) * w.input);
+        (shot ? point.estimated_relative_error.value() : options.march_step_tolerance) * w.input);
     const double cycle_time = point.recorded_mesh_cycles / point.mesh_frequency;
     EXPECT_NEAR(w.input, point.input_power * cycle_time, 1e-12 * w.input);
     EXPECT_NEAR(w.friction, point.mesh_loss_power * cycle_time, 1e-12 * w.input);

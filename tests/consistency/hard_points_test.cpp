@@ -410,8 +410,8 @@ TEST(HardPoints, HeavyTorqueKnocksAcrossTheBacklash) {
 TEST(HardPoints, SharperTolerancesErrLessAndTakeMoreWork) {
   PointOptions exact_march;
   exact_march.method = SteadyStateMethod::kMarch;
-  exact_march.relative_tolerance = 1e-9;
-  exact_march.settling_tolerance = 1e-8;
+  exact_march.march_step_tolerance = 1e-9;
+  exact_march.march_settling_tolerance = 1e-8;
   const PointResult exact = solve_operating_point(reference_scene(), cruise(72.5), exact_march);
   long work = 0;
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
@@ -428,12 +428,12 @@ TEST(HardPoints, SharperTolerancesErrLessAndTakeMoreWork) {
 }
 
 TEST(HardPoints, SharperTolerancesOfTheMarchErrLessAndTakeMoreWork) {
-  const auto marched = [](double relative_tolerance, double settling_tolerance) {
+  const auto marched = [](double march_step_tolerance, double march_settling_tolerance) {
     PointOptions options;
     options.method = SteadyStateMethod::kMarch;
     options.tolerance = 1e-2;
-    options.relative_tolerance = relative_tolerance;
-    options.settling_tolerance = settling_tolerance;
+    options.march_step_tolerance = march_step_tolerance;
+    options.march_settling_tolerance = march_settling_tolerance;
     return solve_operating_point(reference_scene(), cruise(72.5), options);
   };
   const PointResult exact = marched(1e-9, 1e-8);
@@ -461,17 +461,17 @@ TEST(HardPoints, TolerancesOfTheMarchThatNothingReadAreTold) {
   };
   EXPECT_EQ(told({}), "");
   PointOptions sharp;
-  sharp.relative_tolerance = 1e-10;
+  sharp.march_step_tolerance = 1e-10;
   EXPECT_EQ(told(sharp),
-            "relative_tolerance = 1e-10 was not read: only a march reads it, and this point was "
+            "march_step_tolerance = 1e-10 was not read: only a march reads it, and this point was "
             "found by shooting, to tolerance = 0.001");
-  sharp.settling_tolerance = 1e-8;
-  EXPECT_NE(told(sharp).find("settling_tolerance = 1e-08"), std::string::npos) << told(sharp);
+  sharp.march_settling_tolerance = 1e-8;
+  EXPECT_NE(told(sharp).find("march_settling_tolerance = 1e-08"), std::string::npos) << told(sharp);
   PointOptions quasi_static = sharp;
   quasi_static.model = PointModel::kQuasiStatic;
   EXPECT_NE(told(quasi_static).find("quasi-static"), std::string::npos) << told(quasi_static);
   sharp.method = SteadyStateMethod::kMarch;
-  sharp.relative_tolerance = 1e-6;
+  sharp.march_step_tolerance = 1e-6;
   EXPECT_EQ(told(sharp), "");
 }
 
@@ -557,8 +557,8 @@ TEST(HardPoints, InertiasAThousandTimesOffAreMarchedToAnAnswer) {
     PointOptions options;
     options.method = SteadyStateMethod::kMarch;
     options.tolerance = 1e-2;
-    options.relative_tolerance = 1e-4;
-    options.settling_tolerance = 1e-3;
+    options.march_step_tolerance = 1e-4;
+    options.march_settling_tolerance = 1e-3;
     options.maximum_mesh_cycles = 400;
     options.recorded_mesh_cycles = 1;
     EXPECT_EQ(refusal_reason([&] { solve_operating_point(place.scene, place.condition, options); }),

@@ -178,7 +178,7 @@ TEST(MultiplierAcrossGaps, IsThatOfTheAdaptiveMarch) {
   PointOptions march = shoot;
   march.method = SteadyStateMethod::kMarch;
   march.carried_state = carried_from(shot);
-  march.relative_tolerance = 1e-9;
+  march.march_step_tolerance = 1e-9;
   const PointResult marched = solve_operating_point(frictionless_scene(), cruise(72.5), march);
   ASSERT_TRUE(marched.settled);
   ASSERT_TRUE(marched.contact_loss);

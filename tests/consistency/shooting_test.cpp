@@ -28,8 +28,8 @@ PointOptions marched(PointStart start = PointStart::kQuasiStatic) {
   PointOptions options;
   options.method = SteadyStateMethod::kMarch;
   options.start = start;
-  options.relative_tolerance = 1e-10;
-  options.settling_tolerance = 1e-9;
+  options.march_step_tolerance = 1e-10;
+  options.march_settling_tolerance = 1e-9;
   return options;
 }
 
@@ -137,7 +137,7 @@ TEST(ShootingOverRandomScenes, EstimatesBoundTheErrorAndAreNotFarAbove) {
       if (r.method != SteadyStateMethod::kShooting) continue;
       ++shot;
       PointOptions from_there = marched();
-      if (full_run()) from_there.relative_tolerance = 1e-11;
+      if (full_run()) from_there.march_step_tolerance = 1e-11;
       from_there.carried_state = carried_from(r);
       const PointResult exact = solve_operating_point(place.scene, place.condition, from_there);
       if (!exact.settled) {

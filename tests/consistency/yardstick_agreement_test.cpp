@@ -35,8 +35,8 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   PointOptions options;
   options.tolerance = 1e-6;
   options.start = place.start;
-  options.relative_tolerance = 1e-9;
-  options.settling_tolerance = 1e-7;
+  options.march_step_tolerance = 1e-9;
+  options.march_settling_tolerance = 1e-7;
   const PointResult ours = solve_operating_point(scene, condition, options);
   ASSERT_TRUE(ours.settled);
   ASSERT_EQ(ours.pinion_torque < 0, place.ascent_angle < 0);

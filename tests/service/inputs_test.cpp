@@ -57,8 +57,8 @@ TEST(Inputs, DefaultsAreThoseOfTheContract) {
   EXPECT_EQ(point.condition.vehicle_speed, 65 / 3.6);
   EXPECT_EQ(point.options.model, PointModel::kAutomatic);
   EXPECT_EQ(point.options.start, PointStart::kQuasiStatic);
-  EXPECT_EQ(point.options.relative_tolerance, 1e-7);
-  EXPECT_EQ(point.options.settling_tolerance, 1e-6);
+  EXPECT_EQ(point.options.march_step_tolerance, 1e-7);
+  EXPECT_EQ(point.options.march_settling_tolerance, 1e-6);
   EXPECT_EQ(point.options.maximum_mesh_cycles, 4000);
   EXPECT_EQ(point.options.recorded_mesh_cycles, 50);
   EXPECT_TRUE(point.options.history.columns.empty());
@@ -249,7 +249,7 @@ TEST(Hash, ExplicitDefaultsHaveTheHashOfImplicitOnes) {
   stated.set_gear_set("gearSets/reference-axle");
   stated.set_sump_temperature_celsius(40);
   stated.set_inlet_temperature_rise_kelvin(20);
-  stated.mutable_solver_options()->set_relative_tolerance(1e-7);
+  stated.mutable_solver_options()->set_march_step_tolerance(1e-7);
   stated.mutable_operating_point()->set_model(v1::POINT_MODEL_AUTOMATIC);
   stated.mutable_operating_point()->mutable_cruise()->set_ascent_angle_degrees(-0.0);
   EXPECT_EQ(input_hash(inputs_of(stated)), input_hash(inputs_of(point_simulation())));

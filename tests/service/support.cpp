@@ -165,8 +165,8 @@ v1::Simulation long_simulation(v1::SteadyStateMethod method) {
   v1::SolverOptions* solver = out.mutable_solver_options();
   solver->set_method(method);
   solver->set_tolerance(1e-8);
-  solver->set_relative_tolerance(1e-11);
-  solver->set_settling_tolerance(1e-12);
+  solver->set_march_step_tolerance(1e-11);
+  solver->set_march_settling_tolerance(1e-12);
   solver->set_maximum_mesh_cycles(10000);
   return out;
 }

@@ -96,6 +96,30 @@ TEST(Simulation, RemovedModelIsRefusedWithWhatToUse) {
                 "model = 4 (POINT_MODEL_ONE_DEGREE) was removed; use POINT_MODEL_FULL and"));
 }
 
+TEST(Simulation, MarchTolerancesAreRefusedWhereNothingMarches) {
+  const std::string path = "simulation.solver_options.";
+  v1::Simulation simulation = point_simulation();
+  simulation.mutable_solver_options()->set_march_step_tolerance(1e-9);
+  simulation.mutable_solver_options()->set_march_settling_tolerance(1e-9);
+  EXPECT_THAT(check(simulation), IsEmpty());  // AUTOMATIC may march
+  simulation.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);
+  EXPECT_THAT(check(simulation), IsEmpty());
+  simulation.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_SHOOTING);
+  const Violations found = check(simulation);
+  EXPECT_THAT(found,
+              violation(path + "march_step_tolerance",
+                        "march_step_tolerance = 1e-09 has no effect: method = SHOOTING never "
+                        "marches; leave it unset and set tolerance"));
+  EXPECT_THAT(found, violation(path + "march_settling_tolerance", "or set method = MARCH"));
+  simulation.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_AUTOMATIC);
+  simulation.mutable_operating_point()->set_model(v1::POINT_MODEL_QUASI_STATIC);
+  EXPECT_THAT(check(simulation), violation(path + "march_step_tolerance", "model = QUASI_STATIC"));
+  // Stored requests state the defaults.
+  simulation.mutable_solver_options()->set_march_step_tolerance(1e-7);
+  simulation.mutable_solver_options()->set_march_settling_tolerance(1e-6);
+  EXPECT_THAT(check(simulation), IsEmpty());
+}
+
 TEST(Simulation, AllViolationsAreReportedTogether) {
   v1::Simulation simulation;
   simulation.set_lubricant("lubricants/paper-fluid-x");
@@ -103,7 +127,7 @@ TEST(Simulation, AllViolationsAreReportedTogether) {
   simulation.set_surface("runin");
   simulation.set_vehicle("vehicles/passenger_car");
   simulation.set_sump_temperature_celsius(-300);
-  simulation.mutable_solver_options()->set_relative_tolerance(1);
+  simulation.mutable_solver_options()->set_march_step_tolerance(1);
   v1::OperatingPointStudy* point = simulation.mutable_operating_point();
   point->set_model(static_cast<v1::PointModel>(17));
   point->mutable_history()->add_columns("mesh_force");
@@ -113,7 +137,7 @@ TEST(Simulation, AllViolationsAreReportedTogether) {
   EXPECT_THAT(found, violation("simulation.surface", "surfaces/run-in"));
   EXPECT_THAT(found, violation("simulation.vehicle", "vehicles/passenger-car"));
   EXPECT_THAT(found, violation("simulation.sump_temperature_celsius", "-300 C"));
-  EXPECT_THAT(found, violation("simulation.solver_options.relative_tolerance", "= 1"));
+  EXPECT_THAT(found, violation("simulation.solver_options.march_step_tolerance", "= 1"));
   EXPECT_THAT(found,
               violation("simulation.operating_point.model",
                         "POINT_MODEL_FULL, POINT_MODEL_QUASI_STATIC, POINT_MODEL_AUTOMATIC"));

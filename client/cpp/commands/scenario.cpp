@@ -26,13 +26,14 @@ void add_solver_flags(FlagList& flags, v1::Simulation& simulation) {
                "all methods",
                [&](double value) { simulation.mutable_solver_options()->set_tolerance(value); });
   flags.number(
-      "--relative-tolerance", {"-", "1e-11 to 1e-3", "1e-7"},
+      "--march-step-tolerance", {"-", "1e-11 to 1e-3", "1e-7"},
       "Relative error of each step of the time march; used only where a point is marched",
-      [&](double value) { simulation.mutable_solver_options()->set_relative_tolerance(value); });
-  flags.number(
-      "--settling-tolerance", {"-", "1e-12 to 0.1", "1e-6"},
-      "Relative change per period below which a marched response is steady",
-      [&](double value) { simulation.mutable_solver_options()->set_settling_tolerance(value); });
+      [&](double value) { simulation.mutable_solver_options()->set_march_step_tolerance(value); });
+  flags.number("--march-settling-tolerance", {"-", "1e-12 to 0.1", "1e-6"},
+               "Relative change per period below which a marched response is steady",
+               [&](double value) {
+                 simulation.mutable_solver_options()->set_march_settling_tolerance(value);
+               });
   flags.whole_number("--maximum-mesh-cycles", {"mesh cycles", "1 to 100000", "4000"},
                      "Limit of the search for the steady state", [&](int value) {
                        simulation.mutable_solver_options()->set_maximum_mesh_cycles(value);

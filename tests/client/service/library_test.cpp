@@ -304,8 +304,8 @@ v1::Simulation endless_curve() {
   curve->set_speed_step_kilometres_per_hour(0.0201);
   auto* solver = out.mutable_solver_options();
   solver->set_method(v1::STEADY_STATE_METHOD_MARCH);
-  solver->set_relative_tolerance(1e-11);
-  solver->set_settling_tolerance(1e-12);
+  solver->set_march_step_tolerance(1e-11);
+  solver->set_march_settling_tolerance(1e-12);
   solver->set_maximum_mesh_cycles(10'000);
   return out;
 }
