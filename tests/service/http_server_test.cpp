@@ -4,10 +4,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -16,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/service/http_client.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -26,73 +23,6 @@ using std::chrono::steady_clock;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-
-/// A connection of a client that writes its own HTTP.
-class Connection {
- public:
-  explicit Connection(int port) : socket_(socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in name{};
-    name.sin_family = AF_INET;
-    name.sin_port = htons(static_cast<std::uint16_t>(port));
-    name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(connect(socket_, reinterpret_cast<const sockaddr*>(&name), sizeof name), 0);
-  }
-  ~Connection() { hang_up(); }
-  Connection(Connection&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  Connection& operator=(Connection&&) = delete;
-
-  void hang_up() {
-    if (socket_ >= 0) close(socket_);
-    socket_ = -1;
-  }
-  /// Returns false once the server has closed the connection.
-  bool send(const std::string& text) {
-    return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) ==
-           static_cast<ssize_t>(text.size());
-  }
-  /// Sends a text of any length. Returns false once the server has closed the connection.
-  bool send_all(std::string_view text) {
-    while (!text.empty()) {
-      const ssize_t count = ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL);
-      if (count <= 0) return false;
-      text.remove_prefix(static_cast<std::size_t>(count));
-    }
-    return true;
-  }
-  /// Reads until `end` has come, the server closes, or `limit` is over.
-  std::string read_until(const std::string& end, milliseconds limit = milliseconds(20'000)) {
-    std::string out;
-    const auto last = steady_clock::now() + limit;
-    while (out.find(end) == std::string::npos || end.empty()) {
-      const auto left = std::chrono::duration_cast<milliseconds>(last - steady_clock::now());
-      pollfd ready{socket_, POLLIN, 0};
-      if (left.count() <= 0 || poll(&ready, 1, static_cast<int>(left.count())) != 1) break;
-      char part[65536];
-      const ssize_t count = recv(socket_, part, sizeof part, 0);
-      if (count <= 0) {
-        is_closed_ = true;
-        break;
-      }
-      out.append(part, static_cast<std::size_t>(count));
-    }
-    return out;
-  }
-  /// All that comes until the server closes.
-  std::string read_all() { return read_until(""); }
-  bool is_closed() const { return is_closed_; }
-
- private:
-  int socket_;
-  bool is_closed_ = false;
-};
-
-constexpr char kHost[] = "Host: localhost\r\n";
-
-std::string get(const std::string& target, const std::string& headers = {}) {
-  return "GET " + target + " HTTP/1.1\r\n" + kHost + headers + "\r\n";
-}
 
 constexpr std::size_t kLongPage = 50'000'000;  // [bytes], more than the buffers of both ends hold
 
@@ -128,7 +58,7 @@ class HttpServerTest : public testing::Test {
 
 TEST_F(HttpServerTest, OneConnectionCarriesManyRequestsAlsoWhenSentAtOnce) {
   const auto served = serve();
-  Connection client(served->port());
+  HttpConnection client(served->port());
   client.send(get("/hello") + get("/v1/lubricants/paper-fluid-1") +
               get("/hello", "Connection: close\r\n"));
   const std::string all = client.read_all();
@@ -145,7 +75,7 @@ TEST_F(HttpServerTest, OneConnectionCarriesManyRequestsAlsoWhenSentAtOnce) {
 
 TEST_F(HttpServerTest, HeadAnswersTheLengthWithoutTheBody) {
   const auto served = serve();
-  Connection client(served->port());
+  HttpConnection client(served->port());
   client.send("HEAD /hello HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   const std::string head = client.read_all();
   EXPECT_THAT(head, StartsWith("HTTP/1.1 200 OK\r\n"));
@@ -155,7 +85,7 @@ TEST_F(HttpServerTest, HeadAnswersTheLengthWithoutTheBody) {
 
 TEST_F(HttpServerTest, AClientThatAsksBeforeItSendsIsInvited) {
   const auto served = serve();
-  Connection client(served->port());
+  HttpConnection client(served->port());
   const std::string body = R"({"load_newtons": 0})";
   client.send(std::string("POST /v1/contacts:evaluate HTTP/1.1\r\n") + kHost +
               "Content-Type: application/json\r\nExpect: 100-continue\r\nContent-Length: " +
@@ -182,7 +112,7 @@ TEST_F(HttpServerTest, WhatIsNoRequestIsRefusedAndTheConnectionClosed) {
       {std::string("POST /v1/simulations HTTP/1.1\r\n") + kHost + "Content-Length: -1\r\n\r\n",
        "400"}};
   for (const auto& [request, status] : cases) {
-    Connection client(served->port());
+    HttpConnection client(served->port());
     client.send(request);
     const std::string answer = client.read_all();
     EXPECT_THAT(answer, StartsWith("HTTP/1.1 " + status)) << request.substr(0, 60);
@@ -199,13 +129,13 @@ TEST_F(HttpServerTest, SlowClientsAreClosedAtTheLimitOfTheirState) {
   const std::string half_body = std::string("POST /v1/simulations HTTP/1.1\r\n") + kHost +
                                 "Content-Type: application/json\r\nContent-Length: 10\r\n\r\n{";
   for (const std::string& beginning : {std::string(), std::string("GET /hel"), half_body}) {
-    Connection client(served->port());
+    HttpConnection client(served->port());
     client.send(beginning);
     EXPECT_EQ(client.read_all(), "") << beginning;
     EXPECT_TRUE(client.is_closed()) << beginning;
   }
   // One byte at a time does not lengthen the limit.
-  Connection trickle(served->port());
+  HttpConnection trickle(served->port());
   const auto begin = steady_clock::now();
   for (const char each : get("/hello", "X: " + std::string(1000, 'x') + "\r\n")) {
     if (!trickle.send({each})) break;
@@ -219,17 +149,17 @@ TEST_F(HttpServerTest, ConnectionsBeyondTheLimitAreClosedAndTheOthersServed) {
   limits.connections = 20;
   limits.connections_of_a_peer = 15;
   const auto served = serve(limits);
-  std::vector<Connection> silent;
+  std::vector<HttpConnection> silent;
   for (int i = 0; i < 14; ++i) silent.emplace_back(served->port());
-  Connection active(served->port());
+  HttpConnection active(served->port());
   active.send(get("/hello"));
   EXPECT_THAT(active.read_until("hello"), StartsWith("HTTP/1.1 200"));
-  Connection further(served->port());
+  HttpConnection further(served->port());
   further.send(get("/hello"));
   EXPECT_EQ(further.read_all(), "");
   silent.pop_back();
   EXPECT_TRUE(eventually([&] {
-    Connection another(served->port());
+    HttpConnection another(served->port());
     another.send(get("/hello"));
     return another.read_until("hello", milliseconds(2000)).starts_with("HTTP/1.1 200");
   })) << "room again";
@@ -244,16 +174,16 @@ TEST_F(HttpServerTest, BodiesThatAreReadTogetherAreLimited) {
            "Content-Type: application/json\r\nContent-Length: " + std::to_string(length) +
            "\r\n\r\n";
   };
-  Connection first(served->port());
+  HttpConnection first(served->port());
   first.send(head(900) + "{");
   EXPECT_TRUE(eventually([&] {
-    Connection second(served->port());
+    HttpConnection second(served->port());
     second.send(head(200) + "{}");
     return second.read_until("\r\n\r\n", milliseconds(200)).starts_with("HTTP/1.1 429");
   }));
   first.hang_up();
   EXPECT_TRUE(eventually([&] {
-    Connection third(served->port());
+    HttpConnection third(served->port());
     third.send(head(900) + std::string(900, ' '));
     return third.read_until("\r\n\r\n", milliseconds(2000)).starts_with("HTTP/1.1 400");
   })) << "counted no longer";
@@ -268,7 +198,7 @@ TEST_F(HttpServerTest, ACallWhoseClientHangsUpIsCancelled) {
   }
   batch += "]}";
   {
-    Connection client(served->port());
+    HttpConnection client(served->port());
     client.send(std::string("POST /v1/lubricants:batchCreate HTTP/1.1\r\n") + kHost +
                 "Content-Type: application/json\r\nContent-Length: " +
                 std::to_string(batch.size()) + "\r\n\r\n");
@@ -282,7 +212,7 @@ TEST_F(HttpServerTest, ACallWhoseClientHangsUpIsCancelled) {
                    "tribodyn_calls_total{code=\"CANCELLED\",method=\"tribodyn.v1.LubricantService."
                    "BatchCreateLubricants\"} 1\n") != std::string::npos;
   }));
-  Connection other(served->port());
+  HttpConnection other(served->port());
   other.send(get("/v1/lubricants?filter=name:many&read_mask=name", "Connection: close\r\n"));
   EXPECT_THAT(other.read_all(), Not(HasSubstr("many-1"))) << "nothing is written";
 }
@@ -291,14 +221,14 @@ TEST_F(HttpServerTest, AClientThatDoesNotReadItsAnswerIsClosedAtTheWriteLimit) {
   HttpLimits limits;
   limits.write_time = milliseconds(300);
   const auto served = serve(limits);
-  Connection slow(served->port());
+  HttpConnection slow(served->port());
   slow.send(get("/long"));
   EXPECT_THAT(slow.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 200"));
   std::this_thread::sleep_for(milliseconds(800));
   EXPECT_LT(slow.read_all().size(), kLongPage) << "cut off";
   EXPECT_TRUE(slow.is_closed());
   const auto patient = serve();
-  Connection reader(patient->port());
+  HttpConnection reader(patient->port());
   reader.send(get("/long", "Connection: close\r\n"));
   EXPECT_GT(reader.read_all().size(), kLongPage);
 }
@@ -306,13 +236,13 @@ TEST_F(HttpServerTest, AClientThatDoesNotReadItsAnswerIsClosedAtTheWriteLimit) {
 TEST_F(HttpServerTest, TheServerEndsWhileClientsAreConnectedAndCallsRun) {
   for (int round = 0; round < 20; ++round) {
     auto served = serve();
-    std::vector<Connection> clients;
+    std::vector<HttpConnection> clients;
     for (int i = 0; i < 10; ++i) {
       clients.emplace_back(served->port());
       clients.back().send(i % 2 == 0 ? get("/v1/lubricants") : "GET /v1/lubr");
     }
     served.reset();
-    for (Connection& each : clients) each.read_all();
+    for (HttpConnection& each : clients) each.read_all();
   }
 }
 

@@ -400,10 +400,38 @@ TEST_F(RestTest, UnknownPathsAndVerbsSayWhatThereIs) {
   EXPECT_EQ(send("GET", "/v1/lubricants?" + std::string(9000, 'x')).status, 414);
 }
 
-TEST_F(RestTest, AMethodThatAnswersWithAStreamSaysThatGrpcCarriesIt) {
-  const HttpResponse response = send("GET", "/v1/simulations/1:watch");
-  EXPECT_EQ(response.status, 501);
-  EXPECT_THAT(response.body, HasSubstr("WatchSimulation answers with a stream"));
+TEST_F(RestTest, TheFormOfAnAnswerIsOneThatTheMethodHas) {
+  const auto status = [&](const std::string& target, const std::string& accept) {
+    return send("GET", target, "", {{"accept", accept}}).status;
+  };
+  for (const char* accept : {"", "*/*", "application/json", "text/html, application/*;q=0.5",
+                             "text/html;q=0.9, */*;q=0.1", "APPLICATION/JSON; charset=utf-8"}) {
+    EXPECT_EQ(status("/v1/lubricants", accept), 200) << accept;
+  }
+  for (const char* accept : {"text/html", "application/json;q=0", "*/*, application/json;q=0"}) {
+    EXPECT_EQ(status("/v1/lubricants", accept), 406) << accept;
+  }
+  EXPECT_THAT(send("GET", "/v1/lubricants", "", {{"accept", "text/html"}}).body,
+              HasSubstr("this method answers application/json"));
+  EXPECT_EQ(status("/v1/lubricants?alt=json", "text/html"), 200) << "the parameter decides";
+  EXPECT_EQ(status("/v1/lubricants?alt=sse", ""), 400);
+  EXPECT_THAT(send("GET", "/v1/simulations/1:watch?alt=csv").body,
+              HasSubstr("alt is \\\"csv\\\"; allowed: sse, ndjson"));
+}
+
+TEST_F(RestTest, AStreamThatCannotOpenIsAnsweredWithItsError) {
+  EXPECT_EQ(send("GET", "/v1/simulations/77:watch").status, 404);
+  EXPECT_EQ(send("HEAD", "/v1/simulations/77:watch").status, 405);
+  EXPECT_EQ(send("GET", "/v1/simulations:watch").status, 400) << "neither names nor filter";
+  EXPECT_EQ(send("GET", "/v1/simulations:watch?filter=x&names=y").status, 400);
+  const HttpResponse late =
+      send("GET", "/v1/simulations:watch?filter=lubricant=%22paper-fluid-1%22", "",
+           {{"last-event-id", "last"}});
+  EXPECT_THAT(violations(late).at("Last-Event-ID"), HasSubstr("is last; allowed: the id"));
+  const HttpResponse future =
+      send("GET", "/v1/simulations:watch?filter=lubricant=%22paper-fluid-1%22", "",
+           {{"last-event-id", "9"}});
+  EXPECT_THAT(violations(future).at("after_event_number"), HasSubstr("9; allowed: 0 to 0"));
 }
 
 TEST_F(RestTest, PagesOfOtherOriginsAreRefused) {

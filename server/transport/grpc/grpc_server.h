@@ -9,10 +9,10 @@
 
 #include "server/application/call_dispatcher.h"
 #include "server/transport/acceptor.h"
-#include "server/transport/grpc/live_streams.h"
 #include "server/transport/grpc/services.h"
 #include "server/transport/grpc/unknown_methods.h"
 #include "server/transport/listen_address.h"
+#include "server/transport/live_streams.h"
 
 namespace tribodyn::server {
 

@@ -16,7 +16,7 @@
 #include "server/application/stream_machine.h"
 #include "server/transport/grpc/grpc_call.h"
 #include "server/transport/grpc/grpc_status.h"
-#include "server/transport/grpc/live_streams.h"
+#include "server/transport/live_streams.h"
 
 namespace tribodyn::server {
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -21,10 +23,40 @@ struct HttpRequest {
   }
 };
 
+/// The connection that a streamed body is written to. Safe for concurrent access; each function
+/// returns at once.
+class HttpStreamWriter {
+ public:
+  virtual ~HttpStreamWriter() = default;
+  /// Writes a part, and calls HttpStream::written() once at its end. The next part comes after
+  /// that.
+  virtual void write(std::string part) = 0;
+  /// Writes the last part and ends the response well.
+  virtual void finish(std::string part) = 0;
+  /// Breaks the response off, so that the client notices that the end is missing.
+  virtual void cut_off() = 0;
+  /// Calls HttpStream::wake() at this time. A further call replaces the time.
+  virtual void wake_at(std::chrono::steady_clock::time_point time) = 0;
+};
+
+/// A body that is made while it is sent. One thread calls at a time; no call may block.
+class HttpStream {
+ public:
+  virtual ~HttpStream() = default;
+  /// The head of the response is written. Called once, unless hang_up() comes first.
+  virtual void start(std::shared_ptr<HttpStreamWriter> writer) = 0;
+  /// A part is written; `ok` is false if the client has gone, and then no further part is.
+  virtual void written(bool ok) = 0;
+  virtual void wake() = 0;
+  /// The client has gone while no part was written. Parts that are written afterwards fail.
+  virtual void hang_up() = 0;
+};
+
 struct HttpResponse {
   int status = 200;
   std::map<std::string, std::string> headers;  ///< by name as it is sent
   std::string body;
+  std::shared_ptr<HttpStream> stream = nullptr;  ///< if set: makes the body
 };
 
 }  // namespace tribodyn::server

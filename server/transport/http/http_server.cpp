@@ -7,10 +7,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/basic_stream.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
@@ -19,8 +21,10 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>  // Asio's headers need it and do not include it
@@ -81,10 +85,12 @@ std::string lower_case(std::string_view text) {
 }
 
 constexpr double kBusySeconds = 2;  // until a body of usual length has been read
+constexpr auto kShutdownGrace = std::chrono::seconds(1);  // for answers under way
+constexpr std::size_t kStrayBytes = 65'536;  // that a client may send while it reads a stream
 
 }  // namespace
 
-/// All connections of a server. Runs on its one thread but for accept(), answer() and stop(). A
+/// All connections of a server. Runs on its one thread but for post(), answer() and stop(). A
 /// call that is answered after the server has stopped may hold the last reference.
 class HttpServer::Connections : public std::enable_shared_from_this<Connections> {
  public:
@@ -97,7 +103,12 @@ class HttpServer::Connections : public std::enable_shared_from_this<Connections>
 
  private:
   class Session;
+  class Writer;
 
+  /// Runs a task on the thread. Returns false, and does not run it, if the thread has ended.
+  bool post(std::function<void()> task);
+  void begin_stop();
+  void end_stop();
   void add(int connection);
   static void answer(const std::weak_ptr<Connections>& all, const std::weak_ptr<Session>& session,
                      HttpResponse response);
@@ -108,10 +119,14 @@ class HttpServer::Connections : public std::enable_shared_from_this<Connections>
   std::set<std::shared_ptr<Session>> sessions_;
   std::map<std::string, int> of_peer_;
   std::size_t body_bytes_ = 0;  // of all requests that are being read or answered
+  bool is_stopping_ = false;
+  std::mutex posting_;
+  bool is_closed_ = false;  // guarded by posting_: nothing is posted any more
   // Its destructor destroys the handlers that wait, and with them the last sessions: below all that
   // a session uses.
   asio::io_context context_{1};
   asio::executor_work_guard<asio::io_context::executor_type> work_{context_.get_executor()};
+  asio::steady_timer grace_{context_};
   Acceptor acceptor_;
   std::thread thread_;
 };
@@ -121,7 +136,7 @@ class HttpServer::Connections : public std::enable_shared_from_this<Connections>
 class HttpServer::Connections::Session : public std::enable_shared_from_this<Session> {
  public:
   Session(Connections& all, int connection, std::string its_peer)
-      : peer(std::move(its_peer)), all_(all), stream_(all.context_) {
+      : peer(std::move(its_peer)), all_(all), stream_(all.context_), timer_(all.context_) {
     const int on = 1;
     setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);  // fails for a Unix socket
     stream_.socket().assign(Protocol(family_of(connection), 0), connection);
@@ -132,15 +147,21 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
 
   void close() {
     *cancelled_ = true;
+    timer_.cancel();
     Error ignored;
     stream_.socket().shutdown(asio::socket_base::shutdown_both, ignored);
     stream_.socket().close(ignored);
   }
 
+  bool is_open() const { return stream_.socket().is_open(); }
+  /// True from the end of a request to the end of its answer.
+  bool is_answering() const { return is_answering_; }
+
   /// Sends the answer of the request.
   void write(HttpResponse response) {
     ++answered_;
     release_body();
+    if (response.stream != nullptr) return begin_stream(response);
     response_.emplace();
     response_->version(version_);
     response_->result(static_cast<unsigned>(response.status));
@@ -152,15 +173,108 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
     stream_.expires_after(all_.limits_.write_time);
     http::async_write(stream_, *response_, [self = shared_from_this()](Error failure, std::size_t) {
       self->response_.reset();
-      if (failure || !self->is_kept_) return self->end();
+      if (failure || !self->is_kept_ || self->all_.is_stopping_) return self->end();
       self->read_head();
     });
+  }
+
+  /// Returns false if the client has gone meanwhile.
+  bool write_part(std::string part, bool is_last) {
+    if (body_stream_ == nullptr) return false;
+    is_writing_ = true;
+    part_ = std::move(part);
+    frame_[0].clear();
+    frame_[1].clear();
+    if (is_chunked_) {
+      if (!part_.empty()) {
+        std::ostringstream size;
+        size << std::hex << part_.size() << "\r\n";
+        frame_[0] = size.str();
+        frame_[1] = "\r\n";
+      }
+      if (is_last) frame_[1] += "0\r\n\r\n";
+    }
+    const std::array<asio::const_buffer, 3> buffers = {asio::buffer(frame_[0]), asio::buffer(part_),
+                                                       asio::buffer(frame_[1])};
+    asio::async_write(stream_, buffers,
+                      [self = shared_from_this(), is_last](Error failure, std::size_t) {
+                        self->part_written(failure, is_last);
+                      });
+    return true;
+  }
+  void wake_at(std::chrono::steady_clock::time_point time) {
+    if (body_stream_ == nullptr) return;
+    timer_.expires_at(time);
+    timer_.async_wait([self = shared_from_this()](Error failure) {
+      if (!failure && self->body_stream_ != nullptr) self->body_stream_->wake();
+    });
+  }
+  /// Ends a connection whose client is gone or reads too slowly; one without a stream likewise.
+  void drop() {
+    close();
+    // A write that is under way fails now, and says so.
+    if (const auto body = is_writing_ ? nullptr : std::exchange(body_stream_, nullptr)) {
+      body->hang_up();
+    }
+    all_.remove(shared_from_this());
   }
 
   const std::string peer;
 
  private:
+  /// Writes the head of a response, then has its body made part by part.
+  void begin_stream(const HttpResponse& response) {
+    is_kept_ = false;
+    body_stream_ = response.stream;
+    http::response_header<> head;
+    head.version(version_);
+    head.result(static_cast<unsigned>(response.status));
+    for (const auto& [name, value] : response.headers) head.set(name, value);
+    head.set(http::field::date, date_now());
+    head.set(http::field::connection, "close");
+    is_chunked_ = version_ >= 11 && !response.headers.contains("Content-Length");
+    if (is_chunked_) head.set(http::field::transfer_encoding, "chunked");
+    std::ostringstream text;
+    text << head;
+    part_ = text.str();
+    is_writing_ = true;
+    stream_.expires_after(all_.limits_.write_time);
+    asio::async_write(stream_, asio::buffer(part_),
+                      [self = shared_from_this()](Error failure, std::size_t) {
+                        self->is_writing_ = false;
+                        if (failure) return self->drop();
+                        self->stream_.expires_never();  // the stream limits the time of a part
+                        self->drop_input();
+                        self->start_body();
+                      });
+  }
+
+  void start_body();
+
+  void part_written(Error failure, bool is_last) {
+    is_writing_ = false;
+    const auto body = is_last || failure ? std::exchange(body_stream_, nullptr) : body_stream_;
+    if (is_last || failure) end();
+    if (!is_last && body != nullptr) body->written(!failure);
+  }
+
+  /// Reads and drops what a client sends while it receives a stream, to notice its hang-up.
+  void drop_input() {
+    stream_.socket().async_wait(
+        asio::socket_base::wait_read, [self = shared_from_this()](Error failure) {
+          if (failure || self->body_stream_ == nullptr) return;
+          char bytes[4096];
+          const ssize_t count =
+              recv(self->stream_.socket().native_handle(), bytes, sizeof bytes, MSG_DONTWAIT);
+          const bool has_none = count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+          if (count > 0) self->stray_bytes_ += static_cast<std::size_t>(count);
+          if ((count <= 0 && !has_none) || self->stray_bytes_ > kStrayBytes) return self->drop();
+          self->drop_input();
+        });
+  }
+
   void read_head() {
+    is_answering_ = false;
     head_.emplace();
     head_->header_limit(static_cast<std::uint32_t>(all_.limits_.head_bytes));
     head_->body_limit(std::numeric_limits<std::uint64_t>::max());  // limited by head_read()
@@ -242,6 +356,7 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
 
   void handle() {
     head_.reset();
+    is_answering_ = true;
     stream_.expires_never();  // the dispatcher limits the time of a call
     is_head_ = request_.verb == "HEAD";
     watch_for_hangup();
@@ -268,6 +383,7 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
   void refuse(int status, const std::string& message) { refuse(http_error(status, message)); }
   void refuse(HttpResponse response) {
     is_kept_ = false;
+    is_answering_ = true;
     head_.reset();
     response.headers.insert(security_headers().begin(), security_headers().end());
     write(std::move(response));
@@ -289,6 +405,7 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
 
   Connections& all_;
   Stream stream_;
+  asio::steady_timer timer_;  // of a streamed body
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> head_;
   std::optional<http::request_parser<http::string_body>> body_;
@@ -300,7 +417,63 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
   unsigned answered_ = 0;
   bool is_kept_ = false;
   bool is_head_ = false;
+  bool is_answering_ = false;
+  // Of a streamed body: null from its end on, or from the failure of a write.
+  std::shared_ptr<HttpStream> body_stream_;
+  std::string part_;
+  std::array<std::string, 2> frame_;  // what HTTP puts around a part
+  std::size_t stray_bytes_ = 0;
+  bool is_chunked_ = false;
+  bool is_writing_ = false;
 };
+
+/// Passes the parts of a body to the thread of the connections.
+class HttpServer::Connections::Writer : public HttpStreamWriter {
+ public:
+  Writer(std::weak_ptr<Connections> all, const std::shared_ptr<Session>& session,
+         const std::shared_ptr<HttpStream>& body)
+      : all_(std::move(all)), session_(session), body_(body) {}
+
+  void write(std::string part) override { send(std::move(part), false); }
+  void finish(std::string part) override { send(std::move(part), true); }
+  void cut_off() override {
+    post([session = session_] {
+      if (const auto open = session.lock()) open->drop();
+    });
+  }
+  void wake_at(std::chrono::steady_clock::time_point time) override {
+    post([session = session_, time] {
+      if (const auto open = session.lock()) open->wake_at(time);
+    });
+  }
+
+ private:
+  bool post(std::function<void()> task) const {
+    const auto all = all_.lock();
+    return all != nullptr && all->post(std::move(task));
+  }
+  void send(std::string part, bool is_last) const {
+    const auto fail = [body = body_, is_last] {
+      const auto waiting = is_last ? nullptr : body.lock();
+      if (waiting != nullptr) waiting->written(false);
+    };
+    const bool is_posted =
+        post([session = session_, part = std::move(part), is_last, fail]() mutable {
+          const auto open = session.lock();
+          if (open == nullptr || !open->write_part(std::move(part), is_last)) fail();
+        });
+    if (!is_posted) fail();
+  }
+
+  const std::weak_ptr<Connections> all_;
+  const std::weak_ptr<Session> session_;
+  const std::weak_ptr<HttpStream> body_;
+};
+
+void HttpServer::Connections::Session::start_body() {
+  body_stream_->start(
+      std::make_shared<Writer>(all_.weak_from_this(), shared_from_this(), body_stream_));
+}
 
 HttpServer::Connections::Connections(RestHandler& handler, const ListenAddress& address,
                                      const HttpLimits& limits)
@@ -324,21 +497,54 @@ void HttpServer::Connections::start() {
 
 void HttpServer::Connections::stop() {
   acceptor_.stop();
-  asio::post(context_, [this] {
-    for (const auto& session : sessions_) session->close();
-    sessions_.clear();
-    work_.reset();
-  });
+  handler_.close_streams();
+  post([this] { begin_stop(); });
   thread_.join();
+}
+
+bool HttpServer::Connections::post(std::function<void()> task) {
+  const std::lock_guard lock(posting_);
+  if (is_closed_) return false;
+  asio::post(context_, std::move(task));
+  return true;
+}
+
+/// Ends connections without a request under way, and the others once they are answered.
+void HttpServer::Connections::begin_stop() {
+  is_stopping_ = true;
+  for (const auto& session : std::set(sessions_)) {
+    if (!session->is_answering()) session->drop();
+  }
+  if (sessions_.empty()) return end_stop();
+  grace_.expires_after(kShutdownGrace);
+  grace_.async_wait([this](Error failure) {
+    if (!failure) end_stop();
+  });
+}
+
+/// Ends what is left, and then the thread.
+void HttpServer::Connections::end_stop() {
+  {
+    const std::lock_guard lock(posting_);
+    if (std::exchange(is_closed_, true)) return;
+  }
+  for (const auto& session : std::set(sessions_)) session->drop();
+  grace_.cancel();
+  work_.reset();
 }
 
 void HttpServer::Connections::answer(const std::weak_ptr<Connections>& all,
                                      const std::weak_ptr<Session>& session, HttpResponse response) {
+  const auto hang_up = [stream = response.stream] {
+    if (stream != nullptr) stream->hang_up();
+  };
   const auto connections = all.lock();
-  if (!connections) return;
-  asio::post(connections->context_, [session, response = std::move(response)]() mutable {
-    if (const auto waiting = session.lock()) waiting->write(std::move(response));
-  });
+  const auto send = [session, response = std::move(response), hang_up]() mutable {
+    const auto waiting = session.lock();
+    if (waiting == nullptr || !waiting->is_open()) return hang_up();
+    waiting->write(std::move(response));
+  };
+  if (connections == nullptr || !connections->post(send)) hang_up();
 }
 
 void HttpServer::Connections::add(int connection) try {
@@ -358,6 +564,7 @@ void HttpServer::Connections::add(int connection) try {
 
 void HttpServer::Connections::remove(const std::shared_ptr<Session>& session) {
   if (sessions_.erase(session) == 0) return;
+  if (is_stopping_ && sessions_.empty()) end_stop();
   const auto found = of_peer_.find(session->peer);
   if (--found->second == 0) of_peer_.erase(found);
 }

@@ -28,7 +28,8 @@ class HttpServer {
  public:
   /// Listens at once. `handler` must outlive the object. Throws ListenError.
   HttpServer(RestHandler& handler, const ListenAddress& address, const HttpLimits& limits = {});
-  /// Closes all connections.
+  /// Ends the handler's streams, lets calls under way be answered within a second, and closes all
+  /// connections.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;

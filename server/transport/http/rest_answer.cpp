@@ -23,16 +23,6 @@ namespace {
 constexpr char kJson[] = "application/json; charset=utf-8";
 constexpr std::size_t kLeastCompressed = 1024;  // shorter bodies fit into a packet [bytes]
 
-std::string json_of(const google::protobuf::Message& message, bool with_zeros) {
-  google::protobuf::util::JsonPrintOptions options;
-  options.preserve_proto_field_names = true;
-  options.always_print_primitive_fields = with_zeros;
-  std::string out;
-  const auto status = google::protobuf::util::MessageToJsonString(message, &out, options);
-  if (!status.ok()) throw std::logic_error(status.ToString());
-  return out;
-}
-
 template <class Detail>
 std::optional<Detail> detail_of(const google::rpc::Status& error) {
   Detail out;
@@ -40,13 +30,6 @@ std::optional<Detail> detail_of(const google::rpc::Status& error) {
     if (detail.UnpackTo(&out)) return out;
   }
   return std::nullopt;
-}
-
-/// Text as a JSON string, with its quotes.
-std::string quoted(const std::string& text) {
-  google::protobuf::StringValue value;
-  value.set_value(text);
-  return json_of(value, false);
 }
 
 /// The value of the message's own field "etag", or "".
@@ -84,6 +67,27 @@ bool accepts_gzip(std::string_view header) {
     if (each == "gzip" || (each.starts_with("gzip;q=") && each != "gzip;q=0")) return true;
   }
   return false;
+}
+
+}  // namespace
+
+std::string json_of(const google::protobuf::Message& message, bool with_zeros) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.preserve_proto_field_names = true;
+  options.always_print_primitive_fields = with_zeros;
+  std::string out;
+  const auto status = google::protobuf::util::MessageToJsonString(message, &out, options);
+  if (!status.ok()) throw std::logic_error(status.ToString());
+  return out;
+}
+
+namespace {
+
+/// Text as a JSON string, with its quotes.
+std::string quoted(const std::string& text) {
+  google::protobuf::StringValue value;
+  value.set_value(text);
+  return json_of(value, false);
 }
 
 }  // namespace

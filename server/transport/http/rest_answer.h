@@ -2,6 +2,7 @@
 
 #include <google/protobuf/message.h>
 
+#include <string>
 #include <string_view>
 
 #include "google/rpc/status.pb.h"
@@ -20,10 +21,14 @@ HttpResponse error_response(const google::rpc::Status& error, int status);
 /// A request that is no HTTP which the server serves: INVALID_HTTP.
 HttpResponse http_error(int status, const std::string& message);
 
-/// Returns the message as JSON: names in snake_case, 64-bit integers as texts, "NaN" and
-/// "Infinity". `with_zeros` is false if the request has a read_mask: a zero of a field that the
-/// mask leaves out would read as the field's value. With ETag: the message's own etag, else a hash
-/// of the body. Status 304 without a body if `request` is a GET or HEAD that has this tag already.
+/// Returns the message in JSON without line breaks: names in snake_case, 64-bit integers as texts,
+/// "NaN" and "Infinity". Throws std::logic_error.
+std::string json_of(const google::protobuf::Message& message, bool with_zeros);
+
+/// Returns the message as JSON. `with_zeros` is false if the request has a read_mask: a zero of a
+/// field that the mask leaves out would read as the field's value. With ETag: the message's own
+/// etag, else a hash of the body. Status 304 without a body if `request` is a GET or HEAD that has
+/// this tag already.
 HttpResponse message_response(const google::protobuf::Message& message, const HttpRequest& request,
                               bool with_zeros);
 

@@ -1,7 +1,6 @@
 #include "server/transport/http/rest_handler.h"
 
 #include <fmt/format.h>
-#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 
 #include <algorithm>
 #include <chrono>
@@ -13,9 +12,11 @@
 #include "server/application/guard.h"
 #include "server/application/log_text.h"
 #include "server/contract/resource_names.h"
-#include "server/transport/call_words.h"
+#include "server/transport/http/media_types.h"
 #include "server/transport/http/rest_answer.h"
-#include "server/transport/http/rest_request.h"
+#include "server/transport/http/rest_call.h"
+#include "server/transport/http/rest_stream.h"
+#include "server/transport/http/stream_format.h"
 
 namespace tribodyn::server {
 namespace {
@@ -83,39 +84,16 @@ std::optional<HttpResponse> wrong_body(const HttpRequest& request) {
 }
 
 /// A unary call over HTTP; deletes itself once it has been answered.
-class RestCall final : public UnaryCall {
+class RestUnary final : public RestCall<UnaryCall> {
  public:
-  RestCall(RouteMatch route, HttpRequest request,
-           std::shared_ptr<const std::atomic<bool>> cancelled, RestHandler::Reply reply,
-           std::chrono::milliseconds limit)
-      : UnaryCall(*route.method),
-        route_(std::move(route)),
-        request_(std::move(request)),
-        cancelled_(std::move(cancelled)),
-        reply_(std::move(reply)) {
-    context = call_context({.client = request_.header("tribodyn-client"),
-                            .request_id = request_.header("tribodyn-request-id"),
-                            .peer = request_.peer},
-                           limit, *cancelled_);
-  }
-
-  std::size_t request_size() const override {
-    return is_prepared_ ? written_.wire.size() : request_.body.size() + request_.target.size();
-  }
-  std::optional<google::rpc::Status> prepare() override {
-    is_prepared_ = true;
-    auto refused = write_request(route_, request_, written_);
-    std::string().swap(request_.body);
-    return refused;
-  }
-  std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() override {
-    return std::make_unique<google::protobuf::io::ArrayInputStream>(
-        written_.wire.data(), static_cast<int>(written_.wire.size()));
-  }
-  void drop_request() override { std::string().swap(written_.wire); }
+  RestUnary(RouteMatch its_route, HttpRequest its_request,
+            std::shared_ptr<const std::atomic<bool>> cancelled, RestHandler::Reply reply,
+            std::chrono::milliseconds limit)
+      : RestCall(std::move(its_route), std::move(its_request), std::move(cancelled), limit),
+        reply_(std::move(reply)) {}
 
   void answered(Outcome<Reply> outcome) override {
-    const std::unique_ptr<RestCall> self(this);
+    const std::unique_ptr<RestUnary> self(this);
     reply_(response(outcome));
   }
 
@@ -123,19 +101,22 @@ class RestCall final : public UnaryCall {
   HttpResponse response(const Outcome<Reply>& outcome) const {
     try {
       if (!outcome.ok()) return error_response(outcome.error());
-      return message_response(*outcome.message(), request_, !written_.has_read_mask);
+      return message_response(*outcome.message(), request, !written.has_read_mask);
     } catch (...) {
       return error_response(error_of_exception());
     }
   }
 
-  const RouteMatch route_;
-  HttpRequest request_;
-  const std::shared_ptr<const std::atomic<bool>> cancelled_;
   const RestHandler::Reply reply_;
-  bool is_prepared_ = false;
-  WrittenRequest written_;
 };
+
+/// The forms in which a method answers, the usual one first.
+std::vector<Form> forms_of(const Method& method) {
+  if (method.answer) return {Form::kMessage};
+  // Events have positions that a client resumes after; other messages are parts of one whole.
+  if (resume_fields(*method.descriptor)) return {Form::kEvents, Form::kLines};
+  return {Form::kLines};
+}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string out;
@@ -155,8 +136,12 @@ const std::map<std::string, std::string>& security_headers() {
   return kHeaders;
 }
 
-RestHandler::RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages)
-    : dispatcher_(dispatcher), routes_(dispatcher.methods()), pages_(std::move(pages)) {}
+RestHandler::RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages,
+                         const RestLimits& limits)
+    : dispatcher_(dispatcher),
+      routes_(dispatcher.methods()),
+      pages_(std::move(pages)),
+      streams_(limits.streams, limits.streams_of_peer) {}
 
 std::size_t RestHandler::maximum_body_bytes(const HttpRequest& head) const {
   const auto route = routes_.find(head.verb, path_of(head));
@@ -171,7 +156,7 @@ void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<
                        encoding =
                            std::string(request.header("accept-encoding"))](HttpResponse response) {
     response.headers.insert(security_headers().begin(), security_headers().end());
-    compress(encoding, response);
+    if (response.stream == nullptr) compress(encoding, response);
     reply(std::move(response));
   };
   if (request.target.size() > kLongestTarget) {
@@ -198,15 +183,24 @@ void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<
     if (!others.empty()) response.headers["Allow"] = joined(others);
     return answer(std::move(response));
   }
-  if (!route->method->answer) {
-    const std::string& name = route->method->descriptor->name();
-    return answer(error_response(error(google::rpc::UNIMPLEMENTED, v1::ERROR_REASON_UNKNOWN_METHOD,
-                                       name + " answers with a stream, which gRPC alone carries",
-                                       {{"method", name}})));
+  const Method& method = *route->method;
+  if (method.open && request.verb == "HEAD") {
+    HttpResponse response = http_error(405, method.descriptor->name() + " streams; send GET");
+    response.headers["Allow"] = "GET";
+    return answer(std::move(response));
   }
   if (auto wrong = wrong_body(request)) return answer(*std::move(wrong));
-  auto* call = new RestCall(*std::move(route), std::move(request), std::move(cancelled), answer,
-                            dispatcher_.limits().call);  // deletes itself
+  HttpResponse unacceptable;
+  const auto form = requested_form(request, forms_of(method), unacceptable);
+  if (!form) return answer(std::move(unacceptable));
+  if (method.open) {
+    auto format =
+        *form == Form::kEvents ? event_stream_format(*method.descriptor) : json_lines_format();
+    return open_rest_stream(dispatcher_, streams_, *std::move(route), std::move(request),
+                            std::move(cancelled), std::move(format), answer);
+  }
+  auto* call = new RestUnary(*std::move(route), std::move(request), std::move(cancelled), answer,
+                             dispatcher_.limits().call);  // deletes itself
   dispatcher_.answer(*call);
 }
 

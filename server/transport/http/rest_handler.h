@@ -10,19 +10,28 @@
 #include "server/application/call_dispatcher.h"
 #include "server/transport/http/http_message.h"
 #include "server/transport/http/http_routes.h"
+#include "server/transport/live_streams.h"
 
 namespace tribodyn::server {
 
+/// What the streams of a RestHandler may take.
+struct RestLimits {
+  std::size_t streams = 1500;  ///< open at a time; other calls have the other connections
+  std::size_t streams_of_peer = 1200;
+};
+
 /// Serves the methods of the contract as REST: requests in, responses out, whatever carries them.
-/// Routes are those of google.api.http, bodies are protobuf's JSON, errors AIP-193's. Refuses what
-/// a web page of another origin may send. Safe for concurrent access.
+/// Routes are those of google.api.http, bodies are protobuf's JSON, errors AIP-193's. Methods that
+/// stream answer with server-sent events or JSON lines. Refuses what a web page of another origin
+/// may send. Safe for concurrent access.
 class RestHandler {
  public:
   /// A page of the server's own, by its path: GET and HEAD. Called on the thread of handle().
   using Page = std::function<HttpResponse()>;
 
   /// `dispatcher` must outlive the object. Throws std::logic_error as HttpRoutes does.
-  explicit RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages = {});
+  explicit RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages = {},
+                       const RestLimits& limits = {});
 
   /// Called once, on any thread.
   using Reply = std::function<void(HttpResponse)>;
@@ -32,6 +41,9 @@ class RestHandler {
 
   /// Answers a request. `cancelled` is true once the client has gone.
   void handle(HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled, Reply reply);
+
+  /// Ends all streams with SHUTTING_DOWN and opens none any more.
+  void close_streams() { streams_.close_all(); }
 
   /// A body may have so many times the bytes of the method's longest binary request: numbers in
   /// indented JSON take 3.2 times the bytes of the binary form. No body is longer than
@@ -45,6 +57,7 @@ class RestHandler {
   CallDispatcher& dispatcher_;
   const HttpRoutes routes_;
   const std::map<std::string, Page> pages_;
+  LiveStreams streams_;
 };
 
 /// Returns the headers of every response, for those that are made without a handler.

@@ -19,6 +19,8 @@
 #include "server/application/errors.h"
 #include "server/contract/resource_names.h"
 #include "server/contract/violations.h"
+#include "server/transport/http/media_types.h"
+#include "server/transport/http/stream_format.h"
 
 namespace tribodyn::server {
 namespace {
@@ -193,6 +195,7 @@ void add_query(const RouteMatch& route, std::string_view query, Message& message
   for (const auto& [name, value] : pairs_of(query, violations)) {
     const std::string shown = plain_excerpt(name);
     const std::string first = name.substr(0, name.find('.'));
+    if (name == kFormParameter) continue;  // says how the answer is written
     if (route.body_field == "*") {
       violations.push_back(
           {shown, "this method takes no query; its fields stand in the JSON body"});
@@ -297,6 +300,17 @@ std::optional<Violation> append_body(const RouteMatch& route, const std::string&
   return std::nullopt;
 }
 
+/// A browser that connects again states the position of the last event that it has.
+void add_last_event_id(const RouteMatch& route, std::string_view header, Message& message,
+                       Violations& violations) {
+  const auto fields = resume_fields(*route.method->descriptor);
+  if (header.empty() || !route.method->descriptor->server_streaming() || !fields) return;
+  if (!set_field(message, *fields->request, std::string(header)).empty()) {
+    violations.push_back(
+        {"Last-Event-ID", "is " + plain_excerpt(header) + "; allowed: the id of an event"});
+  }
+}
+
 bool has_read_mask(const Message& request) {
   const FieldDescriptor* field = request.GetDescriptor()->FindFieldByName("read_mask");
   if (field == nullptr || field->message_type() != google::protobuf::FieldMask::descriptor()) {
@@ -326,6 +340,7 @@ std::optional<google::rpc::Status> write_request(const RouteMatch& route,
               violations);
   }
   add_condition(route, request.header("if-match"), *beside_body, violations);
+  add_last_event_id(route, request.header("last-event-id"), *beside_body, violations);
   out = {};
   if (!route.body_field.empty()) {
     if (auto violation = append_body(route, request.body, out.wire)) {

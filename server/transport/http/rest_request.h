@@ -16,7 +16,8 @@ struct WrittenRequest {
 };
 
 /// Writes the request message of a method: fields of the path, the query and the header If-Match
-/// (the field "etag") over those of the JSON body. No message is built from the body, so that the
+/// (the field "etag") over those of the JSON body; Last-Event-ID is the field that a stream resumes
+/// after. No message is built from the body, so that the
 /// dispatcher counts its elements before anything grows. Returns INVALID_ARGUMENT that names each
 /// wrong parameter, or the place of the body that cannot be read.
 std::optional<google::rpc::Status> write_request(const RouteMatch& route,

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "google/rpc/status.pb.h"
+#include "server/transport/http/http_message.h"
+
+namespace tribodyn::server {
+
+/// A form of an answer.
+enum class Form {
+  kMessage,  ///< one message in protobuf's JSON
+  kEvents,   ///< server-sent events
+  kLines,    ///< messages as JSON lines
+};
+
+/// Returns the form that a client asks for: the query parameter "alt", else the header Accept. The
+/// first of `offered` if the client has no wish. Returns nullopt, and an error that lists the
+/// forms, if the client wants none of them.
+std::optional<Form> requested_form(const HttpRequest& request, const std::vector<Form>& offered,
+                                   HttpResponse& refusal);
+
+/// Returns the first value of a query parameter without decoding it, or nullopt.
+std::optional<std::string_view> query_value(std::string_view target, std::string_view name);
+
+inline constexpr std::string_view kFormParameter = "alt";
+
+}  // namespace tribodyn::server

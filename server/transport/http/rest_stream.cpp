@@ -1,0 +1,138 @@
+#include "server/transport/http/rest_stream.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "server/application/errors.h"
+#include "server/application/guard.h"
+#include "server/application/stream_machine.h"
+#include "server/transport/http/rest_answer.h"
+#include "server/transport/http/rest_call.h"
+
+namespace tribodyn::server {
+namespace {
+
+/// A stream over HTTP that a StreamMachine drives. LiveStreams keeps it alive until its end.
+class RestStream final : public RestCall<StreamCall>,
+                         public StreamTransport,
+                         public LiveStream,
+                         public HttpStream,
+                         public std::enable_shared_from_this<RestStream> {
+ public:
+  using Reply = std::function<void(HttpResponse)>;
+
+  RestStream(CallDispatcher& dispatcher, LiveStreams& live, RouteMatch its_route,
+             HttpRequest its_request, std::shared_ptr<const std::atomic<bool>> cancelled,
+             std::unique_ptr<StreamFormat> format, Reply reply)
+      : RestCall(std::move(its_route), std::move(its_request), std::move(cancelled),
+                 dispatcher.limits().stream),
+        dispatcher_(dispatcher),
+        live_(live),
+        format_(std::move(format)),
+        reply_(std::move(reply)),
+        machine_(*this, *method.response, dispatcher.limits().unread) {}
+
+  /// Hands the call to the dispatcher; alive until opened() at least.
+  void open() {
+    self_ = shared_from_this();
+    dispatcher_.open(*this);
+  }
+
+  void opened(Outcome<ReplySource> outcome) override {
+    const auto self = std::move(self_);
+    // The dispatcher has counted a refusal of its own.
+    if (!outcome.ok()) return reply_(error_response(outcome.error()));
+    if (const auto refused = live_.add(self, request.peer)) {
+      dispatcher_.ended(*this, *refused);
+      return reply_(error_response(*refused));
+    }
+    source_ = std::move(outcome.message());
+    HttpResponse response;
+    response.headers = format_->headers();
+    response.stream = self;
+    reply_(std::move(response));
+  }
+
+  void start(std::shared_ptr<HttpStreamWriter> writer) override {
+    writer_ = std::move(writer);
+    // The first message may take long: not on the thread of all connections.
+    dispatcher_.step([self = shared_from_this()] { self->open_machine(); });
+  }
+  void written(bool ok) override { machine_.written(ok); }
+  void wake() override {
+    if (const auto next = machine_.look_at_clock()) writer_->wake_at(*next);
+  }
+  void hang_up() override {
+    const auto status =
+        error(google::rpc::CANCELLED, v1::ERROR_REASON_CANCELLED, "the client hung up");
+    if (writer_ == nullptr) return machine_.refuse(status);
+    machine_.close(status);
+  }
+  void close(const google::rpc::Status& status) override { machine_.close(status); }
+
+ private:
+  void open_machine() {
+    source_->observe(std::shared_ptr<Observer>(shared_from_this(), &machine_));
+    machine_.open(std::move(source_), context.limits.deadline);
+    wake();
+  }
+  void run_step() override {
+    dispatcher_.step([self = shared_from_this()] { self->machine_.step(); });
+  }
+  std::optional<google::rpc::Status> write(const google::protobuf::Message& message) override {
+    std::string part;
+    try {
+      part = format_->part(message);
+    } catch (...) {
+      return error_of_exception();
+    }
+    if (part.empty()) {
+      machine_.written(true);
+    } else {
+      writer_->write(std::move(part));
+    }
+    return std::nullopt;
+  }
+  void finish(const google::rpc::Status& status) override {
+    const auto self = shared_from_this();
+    dispatcher_.ended(*this, status);
+    live_.remove(this);
+    if (writer_ == nullptr) return;
+    if (auto last = end_text(status)) {
+      writer_->finish(*std::move(last));
+    } else {
+      writer_->cut_off();
+    }
+  }
+  std::optional<std::string> end_text(const google::rpc::Status& status) {
+    try {
+      return format_->end(status);
+    } catch (const std::exception&) {  // no memory for the text
+      return std::nullopt;
+    }
+  }
+  void cut_off() override { writer_->cut_off(); }
+
+  CallDispatcher& dispatcher_;
+  LiveStreams& live_;
+  const std::unique_ptr<StreamFormat> format_;
+  const Reply reply_;
+  std::shared_ptr<RestStream> self_;          // until opened()
+  ReplySource source_;                        // from opened() to start()
+  std::shared_ptr<HttpStreamWriter> writer_;  // set by start()
+  StreamMachine machine_;
+};
+
+}  // namespace
+
+void open_rest_stream(CallDispatcher& dispatcher, LiveStreams& live, RouteMatch route,
+                      HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled,
+                      std::unique_ptr<StreamFormat> format,
+                      std::function<void(HttpResponse)> reply) {
+  std::make_shared<RestStream>(dispatcher, live, std::move(route), std::move(request),
+                               std::move(cancelled), std::move(format), std::move(reply))
+      ->open();
+}
+
+}  // namespace tribodyn::server

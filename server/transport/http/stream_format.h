@@ -1,0 +1,45 @@
+#pragma once
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "google/rpc/status.pb.h"
+
+namespace tribodyn::server {
+
+/// The form in which the messages of a stream become the body of a response.
+class StreamFormat {
+ public:
+  virtual ~StreamFormat() = default;
+  /// Returns the headers that the form needs.
+  virtual std::map<std::string, std::string> headers() const = 0;
+  /// Returns the text of the next message; "" if it waits for further ones.
+  virtual std::string part(const google::protobuf::Message& message) = 0;
+  /// Returns the text of the end of the stream, or nullopt if the form cannot express such an end:
+  /// the response is then broken off.
+  virtual std::optional<std::string> end(const google::rpc::Status& status) = 0;
+};
+
+/// A position that clients resume a stream after: the field "after_x" of the request stands for the
+/// field "x" of a message.
+struct ResumeFields {
+  const google::protobuf::FieldDescriptor* request = nullptr;
+  const google::protobuf::FieldDescriptor* message = nullptr;
+};
+/// Returns the fields of a method, or nullopt if its streams cannot be resumed so.
+std::optional<ResumeFields> resume_fields(const google::protobuf::MethodDescriptor& method);
+
+/// Server-sent events: a message each, as JSON; its position is the event's id. A heartbeat is a
+/// comment with an id. An event "end" follows the last message, an event "failure" with the error
+/// one that is missing.
+std::unique_ptr<StreamFormat> event_stream_format(const google::protobuf::MethodDescriptor& method);
+
+/// JSON, a line each: {"result": message}, and after the last one {"error": ...} if any is missing.
+std::unique_ptr<StreamFormat> json_lines_format();
+
+}  // namespace tribodyn::server
