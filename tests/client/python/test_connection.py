@@ -116,6 +116,32 @@ def test_a_repeated_request_id_finds_the_job(client, server):
     assert caught.value.reason == "REQUEST_ID_REUSED"
 
 
+def test_every_option_reaches_the_server(client, server):
+    options = tribodyn.Options(
+        model_options={"isothermal": True},
+        start="large-vibration",
+        method="march",
+        march_step_tolerance=1e-6,
+        march_settling_tolerance=1e-5,
+        maximum_mesh_cycles=3000,
+        recorded_mesh_cycles=40,
+        display_name="a title",
+        labels={"project": "axle"},
+        force=True,
+        scheduling_class="interactive",
+        deadline_seconds=600,
+        request_id="of-all-options",
+    )
+    client.point(FLUID, speed_kilometres_per_hour=40, model="full", options=options)
+    job = list_simulations(server)[0]
+    solver = job.solver_options
+    assert job.model_options.isothermal and solver.method and job.operating_point.start
+    assert (solver.march_step_tolerance, solver.march_settling_tolerance) == (1e-6, 1e-5)
+    assert (solver.maximum_mesh_cycles, solver.recorded_mesh_cycles) == (3000, 40)
+    assert (job.display_name, job.labels[0].value) == ("a title", "axle")
+    assert (job.deadline_seconds, job.request_id) == (600, "of-all-options")
+
+
 def test_a_cancelled_job_is_an_error_with_that_reason(new_server):
     server = new_server("--threads", "1")
     client = tribodyn.Client(server.address)

@@ -26,8 +26,10 @@ class Options:
     start: str | None = None
     #: how the steady state is found: "automatic", "shooting" or "march"
     method: str | None = None
-    relative_tolerance: float | None = None  #: of each step of a march, 1e-11 to 1e-3; None: 1e-7
-    settling_tolerance: float | None = None  #: of a marched response, 1e-12 to 0.1; None: 1e-6
+    march_step_tolerance: float | None = None  #: of each step of a march, 1e-11 to 1e-3; None: 1e-7
+    march_settling_tolerance: float | None = (
+        None  #: of a marched response, 1e-12 to 0.1; None: 1e-6
+    )
     maximum_mesh_cycles: int | None = None  #: longest march, 1 to 100,000; None: 4000
     recorded_mesh_cycles: int | None = None  #: record without a period, 1 to 1000; None: 50
     display_name: str = ""  #: title of the job
@@ -117,8 +119,8 @@ def scene(
         out.deadline_seconds = options.deadline_seconds
     solver = out.solver_options
     for name in (
-        "relative_tolerance",
-        "settling_tolerance",
+        "march_step_tolerance",
+        "march_settling_tolerance",
         "maximum_mesh_cycles",
         "recorded_mesh_cycles",
     ):
