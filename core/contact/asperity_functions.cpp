@@ -130,71 +130,46 @@ const Table& table() {
 }
 
 // Estrin's scheme: four levels deep where Horner's is eleven.
-double polynomial(const std::array<double, kPolynomialTerms>& a, double d) {
+template <class Real>
+Real polynomial(const std::array<double, kPolynomialTerms>& a, Real d) {
   static_assert(kPolynomialTerms == 12);
-  const double d2 = d * d;
-  const double d4 = d2 * d2;
-  const double low = (a[0] + a[1] * d) + (a[2] + a[3] * d) * d2;
-  const double high = (a[4] + a[5] * d) + (a[6] + a[7] * d) * d2;
-  const double top = (a[8] + a[9] * d) + (a[10] + a[11] * d) * d2;
+  const Real d2 = d * d;
+  const Real d4 = d2 * d2;
+  const Real low = (a[0] + a[1] * d) + (a[2] + a[3] * d) * d2;
+  const Real high = (a[4] + a[5] * d) + (a[6] + a[7] * d) * d2;
+  const Real top = (a[8] + a[9] * d) + (a[10] + a[11] * d) * d2;
   return low + (high + top * d4) * d4;
 }
 
-// Where on the table a film ratio in [0, kVanishes) lies.
-struct Place {
-  const Piece& piece;
-  double offset;    // d
-  double gaussian;  // exp(-d (c + d/2))
-};
-
-Place find(double film_ratio) {
+// Both functions on the table, which covers [0, kVanishes).
+template <class Real>
+AsperityFunctionsOf<Real> in_table(Real film_ratio) {
   // The nearest centre; film_ratio is not negative here. (lround would cost a call on the hot
   // path.)
-  const int k =
-      static_cast<int>(film_ratio / kCentreSpacing + 0.5);  // NOLINT(bugprone-incorrect-roundings)
-  const double centre = k * kCentreSpacing;
-  const double offset = film_ratio - centre;
-  return {table()[k], offset, std::exp(-offset * (centre + 0.5 * offset))};
+  const int k = static_cast<int>(laws::value_of(film_ratio) / kCentreSpacing +
+                                 0.5);  // NOLINT(bugprone-incorrect-roundings)
+  const Piece& piece = table()[k];
+  const double centre = k * kCentreSpacing, root = piece.root_of_gaussian;
+  const Real offset = film_ratio - centre;  // d
+  const Real gaussian = laws::exponential(-offset * (centre + 0.5 * offset));
+  return {polynomial(piece.f2, offset) * gaussian * root * root,
+          polynomial(piece.f5_2, offset) * gaussian * root * root};
 }
 
-double scaled(const Place& place, double polynomial_value) {
-  const double root = place.piece.root_of_gaussian;
-  return polynomial_value * place.gaussian * root * root;
-}
-
-bool in_table(double film_ratio) { return film_ratio >= 0 && film_ratio < kVanishes; }
-
-double outside_table(double film_ratio) {
-  return film_ratio >= kVanishes ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+template <class Real>
+AsperityFunctionsOf<Real> anywhere(Real film_ratio) {
+  const double l = laws::value_of(film_ratio);
+  if (l >= 0 && l < kVanishes) return in_table(film_ratio);
+  const Real outside = l >= kVanishes ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  return {outside, outside};
 }
 
 }  // namespace
 
-AsperityFunctions asperity_functions(double film_ratio) {
-  if (!in_table(film_ratio)) return {outside_table(film_ratio), outside_table(film_ratio)};
-  const Place place = find(film_ratio);
-  return {scaled(place, polynomial(place.piece.f2, place.offset)),
-          scaled(place, polynomial(place.piece.f5_2, place.offset))};
-}
+AsperityFunctions asperity_functions(double film_ratio) { return anywhere(film_ratio); }
 
-double asperity_function_2(double film_ratio) {
-  if (!in_table(film_ratio)) return outside_table(film_ratio);
-  const Place place = find(film_ratio);
-  return scaled(place, polynomial(place.piece.f2, place.offset));
-}
-
-double asperity_function_5_2(double film_ratio) {
-  if (!in_table(film_ratio)) return outside_table(film_ratio);
-  const Place place = find(film_ratio);
-  return scaled(place, polynomial(place.piece.f5_2, place.offset));
-}
-
-AsperityFunctions asperity_functions_as_published(double film_ratio) {
-  const double l = film_ratio;
-  AsperityFunctions f;
-  f.f5_2 = ((((-0.0046 * l + 0.0574) * l - 0.2958) * l + 0.7844) * l - 1.0776) * l + 0.6167;
-  f.f2 = ((((-0.0018 * l + 0.0281) * l - 0.1728) * l + 0.5258) * l - 0.8043) * l + 0.5003;
-  return f;
+AsperityFunctionsOf<laws::Dual<double, 1>> asperity_functions_and_slopes(double film_ratio) {
+  return anywhere(laws::Dual<double, 1>::variable(film_ratio, 0));
 }
 
 }  // namespace tribodyn

@@ -1,12 +1,16 @@
 #pragma once
 
+#include "core/laws/laws.h"
+
 namespace tribodyn {
 
 /// F_2 and F_5/2 at one film ratio.
-struct AsperityFunctions {
-  double f2 = 0;    ///< F_2, asperity area (eq 42) [-]
-  double f5_2 = 0;  ///< F_5/2, asperity load (eq 41) [-]
+template <class Real>
+struct AsperityFunctionsOf {
+  Real f2 = 0.0;    ///< F_2, asperity area (eq 42) [-]
+  Real f5_2 = 0.0;  ///< F_5/2, asperity load (eq 41) [-]
 };
+using AsperityFunctions = AsperityFunctionsOf<double>;
 
 /// The Greenwood-Tripp integrals over a Gaussian distribution of summit heights,
 ///
@@ -23,15 +27,15 @@ struct AsperityFunctions {
 /// Source: J. A. Greenwood and J. H. Tripp, Proc. IMechE 185 (1970-71) 625-633.
 AsperityFunctions asperity_functions(double film_ratio);
 
-/// F_2 alone; see asperity_functions.
-double asperity_function_2(double film_ratio);
+/// The same with derivatives by the film ratio, -n F_{n-1}, of 1e-12 (relative).
+AsperityFunctionsOf<laws::Dual<double, 1>> asperity_functions_and_slopes(double film_ratio);
 
-/// F_5/2 alone; see asperity_functions.
-double asperity_function_5_2(double film_ratio);
-
-/// The fitted polynomials as printed in eqs 43 (F_5/2) and 44 (F_2), for any film ratio [-].
-/// Printed without a range. Against the exact integrals they are within 2 % only for l < 1.4, and
-/// negative from l = 2.224 (F_5/2) and 2.294 (F_2): asperities that pull. Nothing is clipped here.
-AsperityFunctions asperity_functions_as_published(double film_ratio);
+template <int kCount>
+AsperityFunctionsOf<laws::Dual<double, kCount>> asperity_functions(
+    const laws::Dual<double, kCount>& film_ratio) {
+  const auto f = asperity_functions_and_slopes(film_ratio.value);
+  return {chained(f.f2.value, f.f2.slope[0], film_ratio),
+          chained(f.f5_2.value, f.f5_2.slope[0], film_ratio)};
+}
 
 }  // namespace tribodyn

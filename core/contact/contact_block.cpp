@@ -8,6 +8,10 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "core/laws/asperities-inl.h"
+#include "core/laws/film-inl.h"
+#include "core/laws/heat-inl.h"
+#include "core/laws/shear-inl.h"
 #include "core/numerics/dispatch.h"
 #include "core/numerics/pack-inl.h"
 // NOLINTEND(bugprone-suspicious-include,misc-redundant-expression)
@@ -17,7 +21,6 @@
 #include <numbers>
 
 #include "core/contact/contact_block.h"
-#include "core/lubricant/viscosity.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tribodyn {
@@ -25,8 +28,6 @@ namespace HWY_NAMESPACE {
 namespace {
 
 using Tables = ContactBlockTables;
-
-constexpr double kSpeedExponent = 0.68, kFilmLoadExponent = 0.073;
 
 /// What one stage leaves to the next. Stages are short loops over the block: a processor then works
 /// on several contacts at a time, and all that a stage needs stays in registers.
@@ -87,7 +88,7 @@ HWY_INLINE void take_logarithms(const ContactBlockInputs& in, Work& work, int i)
   const Pack curvature_x = load_any(in.curvature_x + i), curvature_y = load_any(in.curvature_y + i);
   const Pack mean_x2 = square(0.5 * (pinion_x + gear_x));
   const Pack mean_y2 = square(0.5 * (pinion_y + gear_y));
-  const Pack speed2 = mean_x2 + mean_y2;
+  const Pack speed2 = entrainment_speed_squared(mean_x2, mean_y2);
   const Pack slide2 = square(pinion_x - gear_x) + square(pinion_y - gear_y);
   const Mask eligible = within(load_all, 1e-10, 1e8) & within(speed2, 1e-14, 1e8) &
                         within(slide2, 1e-18, 1e8) & within(curvature_x, 1e-5, 1e6) &
@@ -95,8 +96,10 @@ HWY_INLINE void take_logarithms(const ContactBlockInputs& in, Work& work, int i)
   store(as_number(eligible), work.eligible + i);
   store(slide2, work.slide2 + i);
   // 1/R_e = Q_e/U^2, 1/R_s = Q_s/U^2.
-  store(logarithm(fused(mean_x2, curvature_x, mean_y2 * curvature_y)), work.log_along + i);
-  store(logarithm(fused(mean_y2, curvature_x, mean_x2 * curvature_y)), work.log_across + i);
+  store(logarithm(curvature_along_entrainment(mean_x2, mean_y2, curvature_x, curvature_y)),
+        work.log_along + i);
+  store(logarithm(curvature_across_entrainment(mean_x2, mean_y2, curvature_x, curvature_y)),
+        work.log_across + i);
   store(logarithm(speed2), work.log_speed2 + i);
   store(logarithm(load_all), work.log_load + i);
 }
@@ -104,15 +107,11 @@ HWY_INLINE void take_logarithms(const ContactBlockInputs& in, Work& work, int i)
 /// Eq 12 under all the load.
 HWY_INLINE void film_under_all(const Tables& t, const ContactBlockInputs& in, Work& work, int i) {
   const Pack log_along = load(work.log_along + i), log_load = load(work.log_load + i);
-  constexpr double kRadiusExponent = 1 - kSpeedExponent + 2 * kFilmLoadExponent;
-  Pack log_film =
-      fused(kSpeedExponent / 2 + kRadiusExponent, load(work.log_speed2 + i), t.log_film);
-  log_film = less_product(kRadiusExponent, log_along, log_film);
-  log_film = less_product(kFilmLoadExponent, log_load, log_film);
-  const Mask eligible = (load(work.eligible + i) > 0) & within(log_film, -70, 7);
-  const Pack ratio = exponential((2.0 / 3) * (log_along - load(work.log_across + i)));
-  const Pack side_leakage = 1 - exponential(greatest(-1.23 * ratio, -600));
-  const Pack film = exponential(log_film) * side_leakage;
+  const Pack log_speed2 = load(work.log_speed2 + i);
+  const Pack log_thickness = log_film(t.log_film, log_speed2, log_along - log_speed2, log_load);
+  const Mask eligible = (load(work.eligible + i) > 0) & within(log_thickness, -70, 7);
+  const Pack film =
+      exponential(log_thickness) * side_leakage(log_along - load(work.log_across + i));
   store(as_number(eligible), work.eligible + i);
   store(film, work.film_under_all + i);
   const Pack per_root = exponential((-1.0 / 3) * log_load);
@@ -162,7 +161,7 @@ HWY_INLINE bool share_step(const Tables& t, Work& work, int i) {
   if (!kFirst) {
     r = load(work.log_share + i);
     third = exponential((1.0 / 3) * r);
-    thinner = exponential(-kFilmLoadExponent * r);
+    thinner = film_thinning(r);
   }
   const Pack film_ratio = least(ratio_all * thinner, kAsperityEnd);
   const Pack v = 1 / (film_ratio + kAsperityShift);
@@ -238,9 +237,9 @@ HWY_INLINE void part_loads(const Tables& t, const ContactBlockInputs& in,
   const Pack asperity_area = where(~alone, t.asperity_area_factor * contact_area * f2);
   store(load_root, work.load_root + i);
   store(contact_area, work.contact_area + i);
-  store(greatest(0, contact_area - asperity_area), work.viscous_area + i);
-  store(fused(t.tribofilm_shear_strength, asperity_area,
-              t.asperity_friction_coefficient * asperity_load),
+  store(viscous_area(contact_area, asperity_area), work.viscous_area + i);
+  store(boundary_friction(t.boundary.tribofilm_shear_strength, asperity_area,
+                          t.boundary.asperity_friction_coefficient, asperity_load),
         block.boundary_friction + i);
   store(square(third) * third * load_any(in.load + i), block.film_load + i);
   store(asperity_load, block.asperity_load + i);
@@ -254,28 +253,30 @@ HWY_INLINE void connect_heat(const Tables& t, const ContactBlockInputs& in,
                              ContactBlockResults& block, Work& work, int i) {
   const Pack film = load(block.film_thickness + i);
   const Pack contact_area = load(work.contact_area + i);
-  // U_i/l_i = sqrt((u/semi_x)^2 + (v/semi_y)^2) for eq 36: no direction is needed.
+  // The semi-axes and the area are those at 1 N: A sqrt(U/l) grows as (W^(1/3))^(3/2) with the
+  // load.
   const Pack per_x = load_any(in.per_semi_x + i), per_y = load_any(in.per_semi_y + i);
   const Pack load_root = load(work.load_root + i);
-  const Pack per_rate =
-      t.conductance_factor * load_any(in.unit_area + i) * load_root * root(load_root);
-  const Pack pinion_conductance = per_rate * root(root(square(load_any(in.pinion_x + i) * per_x) +
-                                                       square(load_any(in.pinion_y + i) * per_y)));
-  const Pack gear_conductance =
-      per_rate *
-      root(root(square(load_any(in.gear_x + i) * per_x) + square(load_any(in.gear_y + i) * per_y)));
-  // R_cf = film/twice, twice = 2 k_f A.
-  const Pack twice = 2 * t.oil_conductivity * contact_area;
-  const Pack both = film * gear_conductance;
+  const Pack area = load_any(in.unit_area + i) * load_root * root(load_root);
+  const auto conductance = [&](double factor, const double* x, const double* y) HWY_ATTR {
+    return moving_source_conductance(
+        factor, area, speed_per_length(load_any(x + i), load_any(y + i), per_x, per_y));
+  };
+  const Pack conductance_1 = conductance(t.conductance_factor_1, in.pinion_x, in.pinion_y);
+  const Pack conductance_2 = conductance(t.conductance_factor_2, in.gear_x, in.gear_y);
+  const double oil_conductivity = t.shear.lubricant.thermal_conductivity;
   const Pack slide = root(load(work.slide2 + i));
-  const Pack flash_slide =
-      slide * (twice + both) /
-      fused(both + both, pinion_conductance, twice * (pinion_conductance + gear_conductance));
-  const Pack gain = fused(flash_slide, load(work.viscous_area + i),
-                          slide * film * (1 / (8 * t.oil_conductivity)));
-  const Pack boundary_heat = flash_slide * load(block.boundary_friction + i);
-  store(t.inlet_temperature + (t.isothermal ? Pack(0) : boundary_heat), work.base + i);
-  store(t.isothermal ? Pack(0) : gain, work.gain + i);
+  ThermalLine<Pack> temperature{t.inlet_temperature, 0};
+  if (!t.isothermal) {
+    temperature =
+        contact_temperature(t.inlet_temperature,
+                            slide * flash_resistance(2 * oil_conductivity * contact_area, film,
+                                                     conductance_1, conductance_2),
+                            load(block.boundary_friction + i), load(work.viscous_area + i),
+                            oil_rise_per_stress(slide, film, oil_conductivity));
+  }
+  store(temperature.base, work.base + i);
+  store(temperature.gain, work.gain + i);
   store(load_any(in.start_temperature + i), work.start + i);
   store(slide, block.sliding_speed + i);
 }
@@ -283,7 +284,7 @@ HWY_INLINE void connect_heat(const Tables& t, const ContactBlockInputs& in,
 /// Eq 18, and logarithms and powers that stay while the temperature is sought.
 HWY_INLINE void prepare_heat(const Tables& t, Pack slide, Pack film, Pack pressure,
                              double* shear_rate, Work& work, int i) {
-  const double rim_limit = t.lubricant.limiting_shear_stress_at_zero_pressure;
+  const double rim_limit = t.shear.lubricant.limiting_shear_stress_at_zero_pressure;
   const Pack scaled = kRoelandsPressureCoefficient * pressure;
   const Pack inverse = 1 / (scaled * film);
   const Pack rate = slide * scaled * inverse;
@@ -294,52 +295,28 @@ HWY_INLINE void prepare_heat(const Tables& t, Pack slide, Pack film, Pack pressu
   store(logarithm(rate), work.log_shear_rate + i);
   store(scaled, work.scaled_pressure + i);
   store(end, work.end + i);
-  store(exponential(t.index * end) - 1, work.end_growth + i);
+  store(exponential(t.shear.index * end) - 1, work.end_growth + i);
   if (t.limited) {
-    store(logarithm(fused(t.limit_slope, end_pressure, rim_limit)), work.end_log_limit + i);
-    store(fused(t.limit_slope * 2 / 3, scaled, rim_limit), work.all_limit + i);
+    store(logarithm(limiting_shear_stress(rim_limit, t.limit_slope, end_pressure)),
+          work.end_log_limit + i);
+    store(mean_limiting_shear_stress(rim_limit, t.limit_slope, scaled), work.all_limit + i);
   }
 }
 
 /// ln tau = law_base + factor (e^{Z s} - 1) at T = base + rise, with slopes in temperature.
 template <Digits kDigits>
 HWY_INLINE void take_law(const Tables& t, Work& work, int i) {
-  const Lubricant& oil = t.lubricant;
-  const Pack temperature = load(work.base + i) + load(work.rise + i);
-  const Pack inverse = 1 / (temperature - oil.vogel_reference_temperature);
-  const Pack vogel = oil.vogel_temperature_coefficient * inverse;
-  const Pack log_viscosity = vogel + t.log_vogel_prefactor;
-  const Pack factor_slope = -(vogel * inverse);
-  store(log_viscosity + kRoelandsLogViscosity, work.factor + i);
-  store(factor_slope, work.factor_slope + i);
-  Pack law_base = log_viscosity + load(work.log_shear_rate + i), law_base_slope = factor_slope;
-  if (!t.newtonian) {
-    const Pack density =
-        fused(oil.density_temperature_slope, temperature, oil.density_at_zero_kelvin);
-    const Pack product = temperature * density;
-    const Pack x =
-        oil.havriliak_negami_alpha * (law_base - logarithm<kDigits>(product) + t.log_relaxation);
-    const Pack power = exponential<kDigits>(clamped(x, -600, 600));
-    const Pack sum = power + 1;
-    law_base = less_product(oil.havriliak_negami_beta, logarithm<kDigits>(sum), law_base);
-    const double both = oil.havriliak_negami_alpha * oil.havriliak_negami_beta;
-    Pack slope, product_slope;
-    if (kDigits == Digits::kHalf) {
-      slope = both * (power / sum);
-      product_slope = t.density_term;
-    } else {  // one division for two quotients
-      const Pack per_both = 1 / (product * sum);
-      slope = both * power * (product * per_both);
-      product_slope = fused(oil.density_temperature_slope, temperature, density) * (sum * per_both);
-    }
-    law_base_slope = less_product(slope, factor_slope - product_slope, law_base_slope);
-  }
-  store(law_base, work.law_base + i);
-  store(law_base_slope, work.law_base_slope + i);
+  const LogStress<Pack> law = log_stress<kDigits>(
+      t.shear, load(work.base + i) + load(work.rise + i), load(work.log_shear_rate + i));
+  store(law.factor, work.factor + i);
+  store(law.factor_slope, work.factor_slope + i);
+  store(law.base, work.law_base + i);
+  store(law.base_slope, work.law_base_slope + i);
 }
 
 HWY_INLINE Pack excess_at_end(const Work& work, int i) {
-  return fused(load(work.factor + i), load(work.end_growth + i), load(work.law_base + i)) -
+  return log_under_pressure(load(work.law_base + i), load(work.factor + i),
+                            load(work.end_growth + i)) -
          load(work.end_log_limit + i);
 }
 
@@ -353,11 +330,12 @@ HWY_INLINE void take_stress(const Tables& t, Work& work, int i) {
     store(cut, work.cut + i);
     store(as_number(clipped), work.clipped + i);
   }
-  const Pack e_growth = exponential<kDigits>(t.index * cut);
+  const Pack e_growth = exponential<kDigits>(t.shear.index * cut);
   store(e_growth, work.e_growth + i);
   store(exponential<kDigits>(cut), work.e_cut + i);
-  const Pack log_stress = fused(load(work.factor + i), e_growth - 1, load(work.law_base + i));
-  store(exponential<kDigits>(clamped(log_stress, -600, 100)), work.stress + i);
+  const Pack log_value =
+      log_under_pressure(load(work.law_base + i), load(work.factor + i), e_growth - 1);
+  store(exponential<kDigits>(clamped(log_value, -600, 100)), work.stress + i);
 }
 
 /// R and its slope in L.
@@ -427,14 +405,15 @@ HWY_INLINE Step step_from(const Tables& t, const Work& work, int i) {
   Pack mean_slope = weighted * fused(ratio, log_slope, load(work.ratio_slope + i) * factor_slope);
   Pack cut_steepness = 0;  // -1/e' where the cut moves
   if (t.limited) {
-    const double rim_limit = t.lubricant.limiting_shear_stress_at_zero_pressure;
-    const Pack limit = fused(t.limit_slope, q, rim_limit);
+    const double rim_limit = t.shear.lubricant.limiting_shear_stress_at_zero_pressure;
+    const Pack limit = limiting_shear_stress(rim_limit, t.limit_slope, q);
     const Pack on_limit = fused((t.limit_slope * 2 / 3) * scaled, less_product(part2, part, 1),
                                 rim_limit * (1 - part2));
     const Fraction e = alike(stress, limit);
-    const Pack e_slope_limit = greatest(
-        less_product(t.limit_slope, e_cut, load(work.factor + i) * t.index * e_growth * limit),
-        0.05 * limit);
+    const Pack e_slope_limit =
+        greatest(less_product(t.limit_slope, e_cut,
+                              load(work.factor + i) * t.shear.index * e_growth * limit),
+                 0.05 * limit);
     const Pack inverse = where(clipped & ~all_limited, -limit / (e.under * e_slope_limit));
     step.cut_change = e.over * inverse;
     cut_steepness = e.under * inverse;
@@ -525,11 +504,11 @@ HWY_INLINE void start_cut(const Tables& t, Work& work, int i) {
   const Pack end = load(work.end + i);
   const auto meeting = [&](Pack log_limit) HWY_ATTR {
     const Pack folds = greatest((log_limit - base) * per_factor, 1e-3);
-    return least(logarithm<kHalf>(folds + 1) * (1 / t.index), end);
+    return least(logarithm<kHalf>(folds + 1) * (1 / t.shear.index), end);
   };
   const Pack cut = meeting(load(work.end_log_limit + i));
-  const Pack limit = fused(t.limit_slope, exponential<kHalf>(cut) - 1,
-                           t.lubricant.limiting_shear_stress_at_zero_pressure);
+  const Pack limit = limiting_shear_stress(t.shear.lubricant.limiting_shear_stress_at_zero_pressure,
+                                           t.limit_slope, exponential<kHalf>(cut) - 1);
   store(meeting(logarithm<kHalf>(limit)), work.cut + i);
 }
 
@@ -638,11 +617,11 @@ HWY_INLINE void conclude(const Tables& t, ContactBlockResults& block, const Work
     solved = solved & whole;
   }
   const Pack stress = t.isothermal ? load(work.mean + i) : next_rise / load(work.gain + i);
-  const Pack viscous = load(work.viscous_area + i) * stress;
-  const Pack friction = viscous + load(block.boundary_friction + i);
-  solved = solved & (friction < 1e200);  // also false for NaN
+  const Pack viscous = viscous_friction(load(work.viscous_area + i), stress);
+  const Pack total = friction(viscous, load(block.boundary_friction + i));
+  solved = solved & (total < 1e200);  // also false for NaN
   store(viscous, block.viscous_friction + i);
-  store(friction, block.friction + i);
+  store(total, block.friction + i);
   store(temperature, block.contact_temperature + i);
   store(stress, block.mean_shear_stress + i);
   store(share, block.limited_area_share + i);

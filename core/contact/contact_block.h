@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "core/contact/contact_block_tables.h"
-#include "core/contact/flank_contact_batch.h"
+#include "core/numerics/instruction_set.h"
 
 namespace tribodyn {
 

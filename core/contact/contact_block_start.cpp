@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/contact/contact_block.h"
-#include "core/lubricant/viscosity.h"
+#include "core/laws/laws.h"
 #include "core/numerics/chebyshev.h"
 
 namespace tribodyn {
@@ -27,7 +27,7 @@ void fit_start(InstructionSet instruction_set, ContactBlockTables& tables) {
     scaled_pressure[k] = std::expm1(at(1));
     most_rise[k] = std::exp(at(2));
   }
-  const double rim_limit = tables.lubricant.limiting_shear_stress_at_zero_pressure;
+  const double rim_limit = tables.shear.lubricant.limiting_shear_stress_at_zero_pressure;
   using Cube = std::array<std::array<std::array<double, kPoints>, kPoints>, kPoints>;
   Cube value;
   for (int start = 0; start < kSamples; start += kBlockContacts) {
@@ -38,7 +38,7 @@ void fit_start(InstructionSet instruction_set, ContactBlockTables& tables) {
       const double scaled = scaled_pressure[i / kPoints % kPoints];
       const double limit = rim_limit + tables.limit_slope * 2 / 3 * scaled;
       samples.shear_rate[n] = shear_rate[i / (kPoints * kPoints)];
-      samples.pressure[n] = scaled / kRoelandsPressureCoefficient;
+      samples.pressure[n] = scaled / laws::kRoelandsPressureCoefficient;
       samples.gain[n] = most_rise[i % kPoints] / limit;
     }
     sample_rises(instruction_set, tables, samples, rise);

@@ -100,11 +100,12 @@ bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double 
   for (int i = 0; i < kTerms; ++i) factor[i] = centre + half * chebyshev<kTerms>().point[i];
   // 3 GPa, or a viscosity 32 e-folds above ambient.
   constexpr double kDeepest = 2.79, kMostFolds = 32;
-  double deepest =
-      std::min(kDeepest, std::log1p(kMostFolds / std::max(greatest_factor, 1e-3)) / tables.index);
+  double deepest = std::min(
+      kDeepest, std::log1p(kMostFolds / std::max(greatest_factor, 1e-3)) / tables.shear.index);
   RatioSquare coefficients;
   for (int attempt = 0; attempt < 8; ++attempt, deepest *= 0.85) {
-    ratio_coefficients(instruction_set, ratio_rule(), factor, deepest, tables.index, coefficients);
+    ratio_coefficients(instruction_set, ratio_rule(), factor, deepest, tables.shear.index,
+                       coefficients);
     if (!converged(coefficients)) continue;
     tables.deepest = deepest;
     tables.deepest_pressure = std::expm1(deepest);

@@ -3,8 +3,9 @@
 #include <array>
 #include <vector>
 
-#include "core/lubricant/lubricant.h"
+#include "core/laws/shear_law.h"
 #include "core/numerics/instruction_set.h"
+#include "core/surface/surface.h"
 
 namespace tribodyn {
 
@@ -42,21 +43,15 @@ struct ContactBlockTables {
   /// False: everything goes to the reference.
   bool covered = false;
 
-  // Film (eq 12): ln h = log_film + 0.806 ln U^2 - 0.466 ln Q_e - 0.073 ln W + ln side leakage.
-  double log_film = 0;
+  double log_film = 0;           ///< see log_film_constant
   double inverse_roughness = 0;  ///< 1/sigma_G [1/m]
   double asperity_load_factor = 0, asperity_area_factor = 0;
-  double tribofilm_shear_strength = 0, asperity_friction_coefficient = 0;  ///< 0: no F_b
-  double conductance_factor = 0;  ///< k_s/(1.06 sqrt(diffusivity))
-  double oil_conductivity = 0;
+  BoundaryFriction boundary{};  ///< 0: no F_b
+  double conductance_factor_1 = 0, conductance_factor_2 = 0;
   double inlet_temperature = 0;
-  bool isothermal = false, newtonian = false, limited = false;
+  bool isothermal = false, limited = false;
 
-  Lubricant lubricant{};
-  double log_vogel_prefactor = 0;
-  double index = 0;               ///< Z
-  double log_relaxation = 0;      ///< ln lambda less the reference terms of eq 25
-  double density_term = 0;        ///< about d ln(rho T)/dT [1/K]
+  ShearLaw<double> shear{};
   double log_limit_at_rim = 0;    ///< ln tau_L0
   double limit_slope = 0;         ///< gamma_L/c [Pa]
   double monotone_factor = 0;     ///< from this L on, ln(tau/tau_L) rises inwards

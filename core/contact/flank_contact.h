@@ -1,23 +1,11 @@
 #pragma once
 
-#include "core/contact/asperity_functions.h"
-#include "core/lubricant/lubricant.h"
+#include "core/contact/contact_equations.h"
 #include "core/model_options.h"
-#include "core/surface/surface.h"
 
 namespace tribodyn {
 
-/// One flank contact at one instant: what the friction kernel is asked. SI units.
-/// x is the direction of R_x (the minor axis while R_y >= R_x), y the direction of R_y.
-struct ContactConditions {
-  double load;               ///< W, normal load [N]
-  double radius_x;           ///< R_zx, effective radius of curvature [m]
-  double radius_y;           ///< R_zy [m]
-  double pinion_velocity_x;  ///< u_s,p [m/s]
-  double pinion_velocity_y;  ///< v_s,p [m/s]
-  double gear_velocity_x;    ///< u_s,g [m/s]
-  double gear_velocity_y;    ///< v_s,g [m/s]
-};
+using ContactConditions = ContactConditionsOf<double>;
 
 enum class ContactStatus {
   kOk,
@@ -95,7 +83,7 @@ class FlankContactModel {
   /// bath_temperature, inlet_temperature_rise in K.
   /// Throws Refusal when T_in is at or below the Vogel reference temperature, when no Z gives
   /// alpha* back, or when a parameter is outside the law's domain.
-  FlankContactModel(const Lubricant& lubricant, const Solid& solid, const Roughness& roughness,
+  FlankContactModel(const Lubricant& lubricant, const SolidPair& solids, const Roughness& roughness,
                     const BoundaryFriction& boundary, double bath_temperature,
                     double inlet_temperature_rise, const ModelOptions& options);
 
@@ -103,31 +91,22 @@ class FlankContactModel {
   /// Any finite input gives a finite answer (but for the infinities documented above) or a refusal.
   ContactSolution solve(const ContactConditions& conditions) const;
 
-  double inlet_temperature() const { return inlet_temperature_; }
-  double pressure_viscosity_index() const { return roelands_index_; }
-  double reduced_modulus() const { return reduced_modulus_; }  ///< E', eq 13 [Pa]
+  double inlet_temperature() const { return constants_.inlet_temperature; }
+  double pressure_viscosity_index() const { return constants_.shear.index; }
+  double reduced_modulus() const { return constants_.reduced_modulus; }  ///< E', eq 13 [Pa]
   const ModelOptions& options() const { return options_; }
+  const ContactParametersOf<double>& parameters() const { return parameters_; }
+  const ContactConstants<double>& constants() const { return constants_; }
 
  private:
-  friend class FlankContactBatch;
+  ContactStatus share_load(const ContactConditions& conditions, SharedContact<double>& shared,
+                           ContactSolution& out) const;
+  ContactStatus heat(const ContactConditions& conditions, const SharedContact<double>& shared,
+                     ContactSolution& out) const;
 
-  ContactStatus share_load(const ContactConditions& conditions, ContactSolution& out) const;
-  ContactStatus heat(const ContactConditions& conditions, ContactSolution& out) const;
-
-  Lubricant lubricant_;
-  Solid solid_;
-  Roughness roughness_;
-  BoundaryFriction boundary_;
+  ContactParametersOf<double> parameters_;
   ModelOptions options_;
-  double inlet_temperature_;
-  double inlet_viscosity_;
-  double inlet_pressure_viscosity_coefficient_;
-  double roelands_index_;
-  double reduced_modulus_;
-  double time_temperature_reference_;
-  double asperity_load_factor_;  ///< W_asp / (A_EHL F_5/2), eq 41 [Pa]
-  double asperity_area_factor_;  ///< A_asp / (A_EHL F_2), eq 42 [-]
-  bool can_limit_;               ///< tau_L restricts the stress
+  ContactConstants<double> constants_;
 };
 
 }  // namespace tribodyn

@@ -8,7 +8,6 @@
 #include "core/contact/contact_block.h"
 #include "core/contact/contact_block_tables.h"
 #include "core/contact/hertz.h"
-#include "core/lubricant/rheology.h"
 #include "core/lubricant/viscosity.h"
 
 namespace tribodyn {
@@ -102,56 +101,42 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
     : model_(model), instruction_set_(instruction_set) {
   auto tables = std::make_unique<Tables>();
   Tables& t = *tables;
-  const Lubricant& oil = model.lubricant_;
-  const ModelOptions& options = model.options_;
-  const double modulus = model.reduced_modulus_;
-  const double sigma = model.roughness_.composite_rms_height;
-  t.log_film = std::log(4.31) + 0.68 * std::log(model.inlet_viscosity_ / modulus) +
-               0.49 * std::log(model.inlet_pressure_viscosity_coefficient_ * modulus) +
-               0.073 * std::log(modulus);
-  t.inverse_roughness = 1 / sigma;
-  t.asperity_load_factor = model.asperity_load_factor_;
-  t.asperity_area_factor = model.asperity_area_factor_;
-  if (!options.no_boundary_friction) {
-    t.tribofilm_shear_strength = model.boundary_.tribofilm_shear_strength;
-    t.asperity_friction_coefficient = model.boundary_.asperity_friction_coefficient;
-  }
-  const Solid& solid = model.solid_;
-  t.conductance_factor =
-      std::sqrt(solid.thermal_conductivity * solid.density * solid.specific_heat_capacity) / 1.06;
-  t.oil_conductivity = oil.thermal_conductivity;
-  t.inlet_temperature = model.inlet_temperature_;
+  const ContactParametersOf<double>& in = model.parameters();
+  const ContactConstants<double>& constants = model.constants();
+  const Lubricant& oil = in.lubricant;
+  const ModelOptions& options = model.options();
+  t.log_film = constants.log_film;
+  t.inverse_roughness = 1 / in.roughness.composite_rms_height;
+  t.asperity_load_factor = constants.asperity_load_factor;
+  t.asperity_area_factor = constants.asperity_area_factor;
+  if (!options.no_boundary_friction) t.boundary = in.boundary;
+  t.conductance_factor_1 = constants.conductance_factor_1;
+  t.conductance_factor_2 = constants.conductance_factor_2;
+  t.inlet_temperature = constants.inlet_temperature;
   t.isothermal = options.isothermal;
-  t.newtonian = options.newtonian;
-  t.limited = model.can_limit_;
-  t.lubricant = oil;
-  t.log_vogel_prefactor = std::log(oil.vogel_viscosity_prefactor);
-  t.index = model.roelands_index_;
-  t.log_relaxation = std::log(oil.relaxation_time) - model.time_temperature_reference_;
-
-  t.density_term =
-      1 / t.inlet_temperature + oil.density_temperature_slope / density(oil, t.inlet_temperature);
+  t.limited = !options.no_limiting_shear_stress;
+  t.shear = constants.shear;
   const double tau_zero = oil.limiting_shear_stress_at_zero_pressure;
   const double gamma = oil.limiting_shear_stress_coefficient;
   if (t.limited) {
-    const double tau_zero_c = tau_zero * kRoelandsPressureCoefficient;
+    const double tau_zero_c = tau_zero * laws::kRoelandsPressureCoefficient;
     t.log_limit_at_rim = std::log(tau_zero);
-    t.limit_slope = gamma / kRoelandsPressureCoefficient;
-    t.monotone_factor = gamma / (t.index * least_steepness(t.index, tau_zero_c, gamma));
+    t.limit_slope = gamma / laws::kRoelandsPressureCoefficient;
+    t.monotone_factor = gamma / (t.shear.index * least_steepness(t.shear.index, tau_zero_c, gamma));
     if (gamma == 0) t.monotone_factor = 0;
-    t.falls_then_rises = t.index >= 1 || tau_zero_c <= gamma;
+    t.falls_then_rises = t.shear.index >= 1 || tau_zero_c <= gamma;
   }
 
   double end_of_density = kInfinity;
-  if (!t.newtonian && oil.density_temperature_slope < 0) {
+  if (!t.shear.newtonian && oil.density_temperature_slope < 0) {
     end_of_density = -oil.density_at_zero_kelvin / oil.density_temperature_slope;
   }
-  t.proved_temperature = proved_temperature(oil, t.newtonian);
+  t.proved_temperature = proved_temperature(oil, t.shear.newtonian);
   const bool one_equilibrium = t.isothermal || t.proved_temperature >= end_of_density;
   if (one_equilibrium) t.proved_temperature = kInfinity;
 
   const auto factor_at = [&](double temperature) {
-    return log_ambient_viscosity(oil, temperature) + kRoelandsLogViscosity;
+    return laws::roelands_factor(tribodyn::log_ambient_viscosity(oil, temperature));
   };
   t.hottest = std::min(t.inlet_temperature + 200, 0.9 * end_of_density);
   const AsPublished& p = options.as_published;
@@ -160,7 +145,7 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   t.covered =
       !p.eq17_atan && !p.eq31_32_logarithm && !p.eq43_44_polynomials &&
       options.hertz_load == HertzLoad::kFilmLoad && one_switch_at_most && proved &&
-      (t.newtonian || oil.relaxation_time > 0) && t.hottest > t.inlet_temperature + 1 &&
+      (t.shear.newtonian || oil.relaxation_time > 0) && t.hottest > t.inlet_temperature + 1 &&
       std::isfinite(t.log_film) &&
       tabulate_ratio(instruction_set, factor_at(t.hottest), factor_at(t.inlet_temperature), t);
   tabulate_asperities(t);
@@ -299,9 +284,9 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
         i, results);
     ++by_reference;
   };
-  const bool covered = tables_->covered && g.reduced_modulus_ == model_.reduced_modulus_ &&
-                       g.hertz_solution_ == model_.options_.hertz_solution &&
-                       equal(g.as_published_, model_.options_.as_published);
+  const bool covered = tables_->covered && g.reduced_modulus_ == model_.reduced_modulus() &&
+                       g.hertz_solution_ == model_.options().hertz_solution &&
+                       equal(g.as_published_, model_.options().as_published);
   if (!covered) {
     for (std::size_t i = 0; i < count; ++i) reference(i);
     return by_reference;

@@ -3,23 +3,14 @@
 #include <cmath>
 #include <limits>
 
-#include "core/contact/asperity_functions.h"
 #include "core/numerics/bracketed_root.h"
 
 namespace tribodyn {
 namespace {
 
-constexpr double kFilmLoadExponent = -0.073;
-
 /// Scan of the polynomials' balance over W_EHL/W in (e^-30, e^3): they need not be monotone.
 SharedLoad solve_as_published(const LoadSharing& in) {
-  const double area_exponent = in.ellipse_from_total_load ? 0 : 2.0 / 3;
-  const auto excess = [&](double r) {
-    const double ratio = in.film_ratio_under_all * std::exp(kFilmLoadExponent * r);
-    return std::exp(r) - 1 +
-           in.asperity_load_per_f5_2 / in.load * std::exp(area_exponent * r) *
-               asperity_functions_as_published(ratio).f5_2;
-  };
+  const auto excess = [&](double r) { return carried_share(in, r) - 1; };
   constexpr double kStep = 1.0 / 64;
   SharedLoad nearest{false, 0};
   double distance = std::numeric_limits<double>::infinity();
@@ -30,7 +21,7 @@ SharedLoad solve_as_published(const LoadSharing& in) {
       const double r = bracketed_root(excess, left, right, f_left, f_right);
       if (std::abs(r) < distance) {
         distance = std::abs(r);
-        nearest = {true, in.load * std::exp(r)};
+        nearest = {true, r};
       }
     }
     right = left;
@@ -44,33 +35,24 @@ SharedLoad solve_as_published(const LoadSharing& in) {
 SharedLoad solve_load_sharing(const LoadSharing& in) {
   if (in.as_published_polynomials) return solve_as_published(in);
 
-  // g(r) = ln(e^r + w_asp(r)), r = ln(W_EHL/W); rising; root in r <= 0.
-  const double area_exponent = in.ellipse_from_total_load ? 0 : 2.0 / 3;
-  const double scale = in.asperity_load_per_f5_2 / in.load;
+  // ln of the share, which rises with r; root in r <= 0.
+  using Number = laws::Dual<double, 1>;
+  const LoadSharingOf<Number> dual{in.load, in.film_ratio_under_all, in.asperity_load_per_f5_2,
+                                   in.ellipse_from_total_load, false};
   const auto balance = [&](double r) {
-    const double ratio = in.film_ratio_under_all * std::exp(kFilmLoadExponent * r);
-    const AsperityFunctions f = asperity_functions(ratio);
-    const double film = std::exp(r), asperities = scale * std::exp(area_exponent * r) * f.f5_2;
-    // d ln F_5/2 / d lambda = -2.5 F_3/2 / F_5/2; F_n / Gamma(n+1) is log-concave in n, so F_3/2
-    // comes from F_2 and F_5/2 to a few percent: enough for a slope.
-    double log_slope = 0;
-    if (f.f5_2 > 0) {
-      constexpr double kGammas = 1.329340388179137 * 3.323350970447843 / 4;
-      log_slope = 2.5 * kGammas * (f.f2 / f.f5_2) * (f.f2 / f.f5_2) * ratio * -kFilmLoadExponent;
-    }
-    return ValueAndSlope{std::log(film + asperities),
-                         (film + asperities * (area_exponent + log_slope)) / (film + asperities)};
+    const Number excess = logarithm(carried_share(dual, Number::variable(r, 0)));
+    return ValueAndSlope{excess.value, excess.slope[0]};
   };
   const ValueAndSlope all = balance(0);
-  if (all.value <= 0) return {true, in.load};
-  double lower = area_exponent > 0 ? -1.5 * all.value - 1e-12 : -1;
+  if (all.value <= 0) return {true, 0};
+  double lower = in.ellipse_from_total_load ? -1 : -1.5 * all.value - 1e-12;
   // With the ellipse from W_EHL the slope is at least 2/3, which closes the bracket unseen.
-  while (area_exponent == 0 && balance(lower).value > 0) {
+  while (in.ellipse_from_total_load && balance(lower).value > 0) {
     lower *= 2;
     if (lower < -2000) return {false, 0};
   }
   const double r = safeguarded_newton(balance, lower, 0, -all.value / all.slope, true);
-  return {true, in.load * std::exp(r)};
+  return {true, r};
 }
 
 }  // namespace tribodyn

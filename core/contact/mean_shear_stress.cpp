@@ -4,26 +4,24 @@
 #include <array>
 #include <cmath>
 
-#include "core/lubricant/rheology.h"
-#include "core/lubricant/viscosity.h"
 #include "core/numerics/bracketed_root.h"
 #include "core/numerics/gauss_legendre.h"
 
 namespace tribodyn {
 namespace {
 
-constexpr double kC = kRoelandsPressureCoefficient;  // c of the formulas [1/Pa]
+constexpr double kC = laws::kRoelandsPressureCoefficient;  // c of the formulas [1/Pa]
 
 /// ln tau(s) = base + factor (e^{Z s} - 1) at one temperature, with slopes in temperature.
-struct Law {
-  double base, base_slope;
-  double factor, factor_slope;
+struct Law : laws::LogStress<double> {
   double index;
   double tau_zero, gamma;  // tau_L = tau_zero + gamma p
 
-  double log_stress(double s) const { return base + factor * std::expm1(index * s); }
+  double log_stress(double s) const {
+    return laws::log_under_pressure(base, factor, std::expm1(index * s));
+  }
   double pressure(double s) const { return std::expm1(s) / kC; }
-  double limit(double s) const { return tau_zero + gamma * pressure(s); }
+  double limit(double s) const { return laws::limiting_shear_stress(tau_zero, gamma, pressure(s)); }
   /// ln(tau / tau_L): positive where the stress is limited.
   ValueAndSlope excess(double s) const {
     const double growth = std::exp(index * s), u = std::exp(s);
@@ -34,36 +32,21 @@ struct Law {
 };
 
 Law law_at(const ShearedFilm& film, double temperature) {
-  const Lubricant& oil = *film.lubricant;
-  const double log_eta = log_ambient_viscosity(oil, temperature);
-  const double above = temperature - oil.vogel_reference_temperature;
-  const double log_eta_slope = -oil.vogel_temperature_coefficient / (above * above);
-  Law law{};
-  law.index = film.pressure_viscosity_index;
-  law.factor = roelands_factor(log_eta, film.as_published);
-  law.factor_slope = log_eta_slope;
-  if (film.as_published.eq31_32_logarithm) {
-    law.factor_slope *=
-        std::exp(log_eta - law.factor);  // d ln(eta + 9.67) = eta/(eta + 9.67) d ln eta
-  }
-  law.base = log_eta + film.log_shear_rate;
-  law.base_slope = log_eta_slope;
-  if (!film.newtonian) {
-    const auto shift = time_temperature_shift(oil, film.time_temperature_reference, temperature,
-                                              log_eta, log_eta_slope);
-    const auto thinning = havriliak_negami(
-        oil, std::log(oil.relaxation_time) + shift.log_factor + film.log_shear_rate);
-    law.base -= thinning.log_function;
-    law.base_slope -= thinning.slope * shift.slope;
-  }
-  law.tau_zero = oil.limiting_shear_stress_at_zero_pressure;
-  law.gamma = oil.limiting_shear_stress_coefficient;
-  return law;
+  const Lubricant& oil = film.law->lubricant;
+  return {log_stress(*film.law, temperature, film.log_shear_rate), film.law->index,
+          oil.limiting_shear_stress_at_zero_pressure, oil.limiting_shear_stress_coefficient};
 }
 
-/// int tau p dp over [from, to] in s, and the same weighted with d ln tau/dT, both over exp(shift).
+/// int tau p dp over [from, to] in s, and the same weighted with d ln tau/d factor and d ln tau/dZ,
+/// all over exp(shift).
 struct Moment {
-  double shift = 0, value = 0, slope = 0;
+  double shift = 0, value = 0, by_factor = 0, by_index = 0;
+
+  void add(double scale, const Moment& part) {
+    value += scale * part.value;
+    by_factor += scale * part.by_factor;
+    by_index += scale * part.by_index;
+  }
 };
 
 template <int N>
@@ -78,7 +61,8 @@ void add_panel(const Law& law, double from, double to, Moment& out) {
   const Array weighted = (to - from) / (kC * kC) * rule.weight *
                          (law.base - out.shift + law.factor * growth).exp() * q * u;
   out.value += weighted.sum();
-  out.slope += (weighted * (law.base_slope + law.factor_slope * growth)).sum();
+  out.by_factor += (weighted * growth).sum();
+  out.by_index += law.factor * (weighted * s * (growth + 1)).sum();
 }
 
 Moment moment(const Law& law, double from, double to) {
@@ -137,17 +121,39 @@ int monotone_pieces(const Law& law, double end, std::array<double, 5>& points) {
   return count;
 }
 
+/// int tau_L p dp over what sits on the limit, by tau_L0 and by gamma_L.
+struct OnLimit {
+  double by_zero = 0, by_coefficient = 0;
+};
+
+MeanShearStress mean_of(const Law& law, double pressure, const Moment& sheared, const OnLimit& on,
+                        double log_stress_at_centre) {
+  const double integral = sheared.value + law.tau_zero * on.by_zero + law.gamma * on.by_coefficient;
+  MeanShearStress out{};
+  out.log_value = std::log(2.0) - 2 * std::log(pressure) + sheared.shift + std::log(integral);
+  out.by_base = sheared.value / integral;
+  out.by_factor = sheared.by_factor / integral;
+  out.by_index = sheared.by_index / integral;
+  out.slope = law.base_slope * out.by_base + law.factor_slope * out.by_factor;
+  out.by_log_pressure = 2 * std::exp(log_stress_at_centre - out.log_value) - 2;
+  out.by_limit_at_zero_pressure = on.by_zero / integral;
+  out.by_limit_coefficient = on.by_coefficient / integral;
+  out.limited_area_share = std::min(1.0, 2 * on.by_zero / (pressure * pressure));
+  return out;
+}
+
 }  // namespace
 
 MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
                                   double& switch_guess) {
   const Law law = law_at(film, temperature);
   const double end = std::log1p(kC * film.maximum_pressure);
-  const double log_scale = std::log(2.0) - 2 * std::log(film.maximum_pressure);
-  if (!film.limited) {
+  const auto unlimited = [&] {
+    const double centre = law.log_stress(end);
     const Moment all = moment(law, 0, end);
-    return {log_scale + all.shift + std::log(all.value), all.slope / all.value, 0, 0, false};
-  }
+    return mean_of(law, film.maximum_pressure, all, {}, centre);
+  };
+  if (!film.limited) return unlimited();
 
   std::array<double, 5> pieces{};
   const int points = monotone_pieces(law, end, pieces);
@@ -180,28 +186,26 @@ MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
   const int switches = cut_count - 1;
   cuts[cut_count] = end;
 
-  if (switches == 0 && !limited_at_rim) {
-    const Moment all = moment(law, 0, end);
-    return {log_scale + all.shift + std::log(all.value), all.slope / all.value, 0, 0, false};
-  }
-  double value = 0, slope = 0, share = 0;
+  if (switches == 0 && !limited_at_rim) return unlimited();
+  Moment sheared;
+  OnLimit on;
   bool on_limit = limited_at_rim;
-  const double area_scale = 1 / (film.maximum_pressure * film.maximum_pressure);
   for (int i = 0; i < cut_count; ++i, on_limit = !on_limit) {
     if (on_limit) {
       const double p0 = law.pressure(cuts[i]);
       const double p1 = i == switches ? film.maximum_pressure : law.pressure(cuts[i + 1]);
-      value += 0.5 * law.tau_zero * (p1 - p0) * (p1 + p0) +
-               law.gamma / 3 * (p1 - p0) * (p1 * p1 + p1 * p0 + p0 * p0);
-      share += (p1 - p0) * (p1 + p0) * area_scale;
+      on.by_zero += 0.5 * (p1 - p0) * (p1 + p0);
+      on.by_coefficient += (p1 - p0) * (p1 * p1 + p1 * p0 + p0 * p0) / 3;
     } else {
       const Moment part = moment(law, cuts[i], cuts[i + 1]);
-      const double scale = std::exp(part.shift);
-      value += scale * part.value;
-      slope += scale * part.slope;
+      sheared.add(std::exp(part.shift), part);
     }
   }
-  return {log_scale + std::log(value), slope / value, std::min(share, 1.0), switches, limited};
+  MeanShearStress out = mean_of(law, film.maximum_pressure, sheared, on,
+                                limited ? std::log(law.limit(end)) : law.log_stress(end));
+  out.switches = switches;
+  out.limited_at_centre = limited;
+  return out;
 }
 
 }  // namespace tribodyn

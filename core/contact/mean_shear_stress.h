@@ -1,22 +1,29 @@
 #pragma once
 
-#include "core/lubricant/lubricant.h"
-#include "core/model_options.h"
+#include "core/laws/laws.h"
 
 namespace tribodyn {
 
 /// A film under a Hertzian pressure, sheared at one rate: what the mean stress depends on besides
 /// temperature.
 struct ShearedFilm {
-  const Lubricant* lubricant;
-  AsPublished as_published;
-  double maximum_pressure;            ///< p_max [Pa] > 0
-  double pressure_viscosity_index;    ///< Z [-]
-  double log_shear_rate;              ///< ln of eq 18, gamma_dot in 1/s
-  double time_temperature_reference;  ///< see rheology.h; unused when newtonian
-  bool newtonian;                     ///< F = 1
-  bool limited;                       ///< stress restricted to tau_L
+  const ShearLaw<double>* law;
+  double maximum_pressure;  ///< p_max [Pa] > 0
+  double log_shear_rate;    ///< ln of eq 18, gamma_dot in 1/s
+  bool limited;             ///< stress restricted to tau_L
 };
+
+/// log_stress with eq 31 as chosen.
+template <class Real>
+laws::LogStress<Real> log_stress(const ShearLaw<Real>& law, Real temperature, Real log_shear_rate) {
+  auto out = laws::log_stress<laws::Digits::kFull>(law, temperature, log_shear_rate);
+  if (!law.roelands_misprinted) return out;
+  const Real log_viscosity = out.factor - laws::kRoelandsLogViscosity;
+  out.factor = laws::roelands_factor_as_published(log_viscosity);
+  // d ln(eta + 9.67) = eta/(eta + 9.67) d ln eta
+  out.factor_slope = out.factor_slope * laws::exponential(log_viscosity - out.factor);
+  return out;
+}
 
 /// The area mean of eq 23 and how it came about.
 struct MeanShearStress {
@@ -25,6 +32,11 @@ struct MeanShearStress {
   double limited_area_share;  ///< share of the area on tau_L [-]
   int switches;               ///< radii at which eq 23 meets tau_L
   bool limited_at_centre;
+  // Derivatives of ln tau_bar by base and factor of LogStress, Z, ln p_max, tau_L0 and gamma_L. The
+  // places where eq 23 meets tau_L do not enter: there the integrand is continuous.
+  double by_base, by_factor, by_index, by_log_pressure;
+  double by_limit_at_zero_pressure;  ///< [1/Pa]
+  double by_limit_coefficient;
 };
 
 /// tau_bar(T) = 2 int_0^1 min(tau(p_max xi), tau_L(p_max xi)) xi dxi: position enters only through

@@ -15,8 +15,8 @@ namespace {
 /// Both terms fall in size with temperature: over a short span the one at its hot end and the other
 /// at its cold end are a proof.
 bool provably_falling(const ShearedFilm& film, double cold, double hot) {
-  if (film.newtonian) return true;
-  const Lubricant& oil = *film.lubricant;
+  if (film.law->newtonian) return true;
+  const Lubricant& oil = film.law->lubricant;
   const double product = oil.havriliak_negami_alpha * oil.havriliak_negami_beta;
   constexpr int kMostSpans = 16;
   const double from = cold - oil.vogel_reference_temperature;
@@ -49,13 +49,13 @@ double lambert_start(double z) {
 ThermalEquilibrium solve_thermal_equilibrium(const ShearedFilm& film, double base, double gain) {
   double guess = 0;
   // Only asperities that pull (eqs 43, 44 as printed) can cool the film out of eq 34's range.
-  if (!(base > film.lubricant->vogel_reference_temperature)) return {0, base, {}};
+  if (!(base > film.law->lubricant.vogel_reference_temperature)) return {0, base, {}};
   const MeanShearStress cold = mean_shear_stress(film, base, guess);
   if (!(gain > 0)) return {1, base, cold};
 
-  const Lubricant& oil = *film.lubricant;
+  const Lubricant& oil = film.law->lubricant;
   double hottest = std::numeric_limits<double>::infinity();
-  if (!film.newtonian && oil.density_temperature_slope < 0) {
+  if (!film.law->newtonian && oil.density_temperature_slope < 0) {
     hottest = (1 - 1e-9) * -oil.density_at_zero_kelvin / oil.density_temperature_slope;
   }
   if (base >= hottest) return {0, base, cold};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/celsius.h"
+#include "core/laws/laws.h"
 #include "core/lubricant/viscosity.h"
 #include "core/lubricant/viscosity_index.h"
 #include "core/lubricant/viscosity_temperature.h"
@@ -38,7 +39,7 @@ LubricantFigures lubricant_figures(const Lubricant& lubricant, const ModelOption
     if (!(here > 0) || !std::isfinite(log_eta)) continue;
     figures.at.push_back({temperature, std::exp(log_eta),
                           std::exp(log_viscosity_under_pressure(log_eta, here, index, kGigapascal)),
-                          houpert ? index * kRoelandsPressureCoefficient * here
+                          houpert ? index * laws::kRoelandsPressureCoefficient * here
                                   : reciprocal_asymptotic_coefficient(here, index)});
   }
   return figures;

@@ -5,9 +5,6 @@
 
 namespace tribodyn {
 
-inline constexpr double kRoelandsPressureCoefficient = 5.1e-9;  ///< of eqs 31, 32 [1/Pa]
-inline constexpr double kRoelandsLogViscosity = 9.67;           ///< of eqs 31, 32 [-]
-
 /// ln eta_0(T), eq 34 (Vogel 1921). eta in Pa s, temperature in K.
 /// Valid for temperature > T_0,ref; +inf or meaningless at or below it: callers check.
 double log_ambient_viscosity(const Lubricant& lubricant, double temperature);

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "core/numerics/real-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace tribodyn {
 namespace HWY_NAMESPACE {
@@ -158,10 +160,6 @@ HWY_INLINE Pack where(Mask mask, Pack x) {
 }
 HWY_INLINE Pack as_number(Mask mask) { return where(mask, 1); }
 HWY_INLINE Mask within(Pack x, double low, double high) { return (x >= low) & (x <= high); }
-
-// Digits: kFull is within 2 units in the last place, kHalf within 2e-8 (for iterations that are
-// corrected afterwards).
-enum class Digits { kFull, kHalf };
 
 /// x = n ln 2 + r, |r| <= ln 2/2: n in the lowest bits of `shifted`, and e^r - 1 by Taylor's
 /// series.

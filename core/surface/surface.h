@@ -3,25 +3,43 @@
 namespace tribodyn {
 
 /// Greenwood-Tripp description of the composite rough surface (eqs 41, 42, 48).
-struct Roughness {
-  double asperity_density;      ///< eta_G [1/m2]
-  double asperity_radius;       ///< beta_G, mean summit radius [m]
-  double composite_rms_height;  ///< sigma_G [m]
+template <class Real>
+struct RoughnessOf {
+  Real asperity_density;      ///< eta_G [1/m2]
+  Real asperity_radius;       ///< beta_G, mean summit radius [m]
+  Real composite_rms_height;  ///< sigma_G [m]
 };
+using Roughness = RoughnessOf<double>;
 
 /// Boundary friction of eq 40: F_b = tau_0 A_asp + zeta W_asp.
-struct BoundaryFriction {
-  double tribofilm_shear_strength;       ///< tau_0 [Pa]
-  double asperity_friction_coefficient;  ///< zeta [-]
+template <class Real>
+struct BoundaryFrictionOf {
+  Real tribofilm_shear_strength;       ///< tau_0 [Pa]
+  Real asperity_friction_coefficient;  ///< zeta [-]
 };
+using BoundaryFriction = BoundaryFrictionOf<double>;
 
-/// The solid under the flanks; both members are made of it.
-struct Solid {
-  double youngs_modulus;          ///< E [Pa]
-  double poissons_ratio;          ///< nu [-]
-  double thermal_conductivity;    ///< k_s [W/(m K)]
-  double density;                 ///< rho_s [kg/m3]
-  double specific_heat_capacity;  ///< c_p,s [J/(kg K)]
+/// The material of a body in contact.
+template <class Real>
+struct SolidOf {
+  Real youngs_modulus;          ///< E [Pa]
+  Real poissons_ratio;          ///< nu [-]
+  Real thermal_conductivity;    ///< k_s [W/(m K)]
+  Real density;                 ///< rho_s [kg/m3]
+  Real specific_heat_capacity;  ///< c_p,s [J/(kg K)]
 };
+using Solid = SolidOf<double>;
+
+/// The materials of both bodies.
+template <class Real>
+struct SolidPairOf {
+  SolidOf<Real> body_1, body_2;
+
+  SolidPairOf() = default;
+  SolidPairOf(const SolidOf<Real>& both) : body_1(both), body_2(both) {}  // NOLINT: of one material
+  SolidPairOf(const SolidOf<Real>& first, const SolidOf<Real>& second)
+      : body_1(first), body_2(second) {}
+};
+using SolidPair = SolidPairOf<double>;
 
 }  // namespace tribodyn

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/contact/film_thickness.h"
 #include "tests/consistency/contact_case.h"
+#include "tests/support/central_film.h"
 
 // What must hold for every contact: directions, continuity, and an answer or a named refusal for
 // whatever numbers come in. RC_PARAMS="seed=..." repeats a run.
@@ -43,13 +43,13 @@ RC_GTEST_PROP(FilmProperties, RisesWithViscosityCoefficientAndSpeedFallsWithLoad
   FilmConditions film{s.entrainment_radius, s.side_leakage_radius,
                       s.inlet_viscosity,    s.inlet_pressure_viscosity_coefficient,
                       s.entrainment_speed,  s.reduced_modulus};
-  const double h = chittenden_dowson_central_film(film, s.film_load);
-  RC_ASSERT(chittenden_dowson_central_film(film, s.film_load * growth) < h);
+  const double h = central_film(film, s.film_load);
+  RC_ASSERT(central_film(film, s.film_load * growth) < h);
   for (double* rising :
        {&film.viscosity, &film.pressure_viscosity_coefficient, &film.entrainment_speed}) {
     const double before = *rising;
     *rising *= growth;
-    RC_ASSERT(chittenden_dowson_central_film(film, s.film_load) > h);
+    RC_ASSERT(central_film(film, s.film_load) > h);
     *rising = before;
   }
 }

@@ -22,9 +22,9 @@ TEST(ReciprocalAsymptotic, IsThatOfQuadratureAndGivesItsIndexBack) {
 
 TEST(ReciprocalAsymptotic, IsThatOfBarusWhereTheIndexIsOne) {
   for (const double factor : {0.5, 5.0, 50.0}) {
-    EXPECT_NEAR(
-        reciprocal_asymptotic_coefficient(factor, 1) / (kRoelandsPressureCoefficient * factor), 1,
-        1e-15);
+    EXPECT_NEAR(reciprocal_asymptotic_coefficient(factor, 1) /
+                    (laws::kRoelandsPressureCoefficient * factor),
+                1, 1e-15);
   }
 }
 

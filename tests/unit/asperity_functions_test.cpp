@@ -13,6 +13,12 @@
 namespace tribodyn {
 namespace {
 
+double asperity_function_2(double film_ratio) { return asperity_functions(film_ratio).f2; }
+double asperity_function_5_2(double film_ratio) { return asperity_functions(film_ratio).f5_2; }
+AsperityFunctions asperity_functions_as_published(double film_ratio) {
+  return {laws::f2_as_published(film_ratio), laws::f5_2_as_published(film_ratio)};
+}
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLastNormal = 37.2;  // F_n is a normal number up to here
 
@@ -201,11 +207,13 @@ TEST(AsperityFunctions, AreNotANumberOutsideTheirDomain) {
   EXPECT_EQ(asperity_function_2(-0.0), asperity_function_2(0.0));
 }
 
-TEST(AsperityFunctions, AreTheSameBitsCombinedAndSingle) {
-  for (double l = 0; l < 40; l += 0.0123) {
-    const AsperityFunctions both = asperity_functions(l);
-    EXPECT_EQ(both.f2, asperity_function_2(l)) << l;
-    EXPECT_EQ(both.f5_2, asperity_function_5_2(l)) << l;
+TEST(AsperityFunctions, HaveTheSlopesOfTheIntegrals) {
+  for (double l = 0; l < 12; l += 0.0431) {
+    const auto f = asperity_functions_and_slopes(l);
+    EXPECT_EQ(f.f2.value, asperity_functions(l).f2) << l;
+    EXPECT_EQ(f.f5_2.value, asperity_functions(l).f5_2) << l;
+    EXPECT_LT(relative_error(f.f2.slope[0] / -2, quadrature(1.0L, l)), 1e-12) << l;
+    EXPECT_LT(relative_error(f.f5_2.slope[0] / -2.5, quadrature(1.5L, l)), 1e-12) << l;
   }
 }
 

@@ -96,7 +96,7 @@ TEST(Hertz, MatchesWorkedContacts) {
     const HertzFit fit = is_exact ? exact_ellipticity(rx, ry) : simplified_ellipticity(rx, ry, {});
     const double modulus = reduced_modulus(in.at("steel").at("E"), in.at("steel").at("nu"));
     const EllipseAxes axes =
-        ellipse_axes(unit_load_ellipse(fit, rx, ry, modulus, {}), out.at("W_EHL"));
+        ellipse_axes(unit_load_ellipse(fit, rx, ry, modulus, {}), out.at("W_EHL").get<double>());
     EXPECT_NEAR(axes.semi_major / out.at("a_c").get<double>(), 1, 1e-14);
     EXPECT_NEAR(axes.semi_minor / out.at("b_c").get<double>(), 1, 1e-14);
     EXPECT_NEAR(axes.maximum_pressure / out.at("p_max").get<double>(), 1, 1e-14);
@@ -231,11 +231,11 @@ TEST(SimplifiedEllipticity, ShowsTheMisprintsItIsKeptToShow) {
     const HertzFit fit = simplified_ellipticity(1, ratio, form);
     return unit_load_ellipse(fit, 1, ratio, kModulus, form).maximum_pressure;
   };
-  EXPECT_DOUBLE_EQ(simplified_ellipticity(1, 20, printed).second_integral, 1.0003 + 0.5968 * 20);
+  EXPECT_DOUBLE_EQ(simplified_ellipticity(1.0, 20.0, printed).second_integral, 1.0003 + 0.5968 * 20);
   // Eq 20 alone: a_c too long by eps^(1/3).
   AsPublished eq20;
   eq20.eq20_semi_major = true;
-  const HertzFit fit = simplified_ellipticity(1, 5, {});
+  const HertzFit fit = simplified_ellipticity(1.0, 5.0, {});
   EXPECT_NEAR(unit_load_ellipse(fit, 1, 5, kModulus, eq20).semi_major /
                   unit_load_ellipse(fit, 1, 5, kModulus, {}).semi_major,
               std::cbrt(fit.second_integral), 1e-15);

@@ -1,0 +1,263 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "core/contact/hertz.h"
+#include "core/contact/load_sharing.h"
+#include "core/contact/mean_shear_stress.h"
+#include "core/laws/laws.h"
+#include "core/lubricant/lubricant.h"
+#include "core/model_options.h"
+#include "core/surface/surface.h"
+
+// The equations of one contact, in the order in which they follow from its parameters, from its
+// conditions, from how film and asperities share the load and from its temperature. Real is double,
+// or a dual number for the derivatives. What has to be solved for stands elsewhere: Z
+// (core/lubricant/viscosity.h), the share (load_sharing.h), the temperature
+// (thermal_equilibrium.h).
+
+namespace tribodyn {
+
+/// All scalar parameters of a contact. SI units.
+template <class Real>
+struct ContactParametersOf {
+  LubricantOf<Real> lubricant;
+  SolidPairOf<Real> solids;
+  RoughnessOf<Real> roughness;
+  BoundaryFrictionOf<Real> boundary;
+  Real bath_temperature;        ///< T_b [K]
+  Real inlet_temperature_rise;  ///< of eq 14 [K]
+};
+
+/// Load, geometry and velocities of one contact at one instant. SI units. x is the direction of R_x
+/// (the minor axis while R_y >= R_x), y the direction of R_y.
+template <class Real>
+struct ContactConditionsOf {
+  Real load;               ///< W, normal load [N]
+  Real radius_x;           ///< R_zx, effective radius of curvature [m]
+  Real radius_y;           ///< R_zy [m]
+  Real pinion_velocity_x;  ///< u_s,p [m/s]
+  Real pinion_velocity_y;  ///< v_s,p [m/s]
+  Real gear_velocity_x;    ///< u_s,g [m/s]
+  Real gear_velocity_y;    ///< v_s,g [m/s]
+};
+
+/// What follows from the parameters alone.
+template <class Real>
+struct ContactConstants {
+  Real inlet_temperature;               ///< T_in [K]
+  Real log_inlet_viscosity;             ///< ln eta_0(T_in), Pa s
+  Real pressure_viscosity_coefficient;  ///< alpha*(T_in) [1/Pa]
+  Real reduced_modulus;                 ///< E' [Pa]
+  Real log_film;                        ///< see log_film_constant
+  Real asperity_load_factor;            ///< W_asp/(A_EHL F_5/2) [Pa]
+  Real asperity_area_factor;            ///< A_asp/(A_EHL F_2) [-]
+  Real conductance_factor_1, conductance_factor_2;
+  ShearLaw<Real> shear;
+};
+
+/// ln eta_0(T) in Pa s.
+template <class Real>
+Real log_ambient_viscosity(const LubricantOf<Real>& oil, const Real& temperature) {
+  return laws::log_vogel_viscosity(laws::logarithm(oil.vogel_viscosity_prefactor),
+                                   oil.vogel_temperature_coefficient,
+                                   oil.vogel_reference_temperature, temperature)
+      .value;
+}
+
+/// index_of(L, alpha*) gives Z by eq 33 at the temperature where alpha* was measured.
+template <class Real, class Index>
+ContactConstants<Real> contact_constants(const ContactParametersOf<Real>& in,
+                                         const ModelOptions& options, Index&& index_of) {
+  const LubricantOf<Real>& oil = in.lubricant;
+  const bool misprinted = options.as_published.eq31_32_logarithm;
+  const auto factor_at = [&](const Real& log_viscosity) {
+    return misprinted ? laws::roelands_factor_as_published(log_viscosity)
+                      : laws::roelands_factor(log_viscosity);
+  };
+  ContactConstants<Real> out;
+  out.inlet_temperature = in.bath_temperature + in.inlet_temperature_rise;  // (eq 14)
+  out.log_inlet_viscosity = log_ambient_viscosity(oil, out.inlet_temperature);
+
+  ShearLaw<Real>& shear = out.shear;
+  shear.lubricant = oil;
+  shear.log_vogel_prefactor = laws::logarithm(oil.vogel_viscosity_prefactor);
+  shear.newtonian = options.newtonian;
+  shear.roelands_misprinted = misprinted;
+  shear.log_relaxation_time = laws::logarithm(oil.relaxation_time);
+  const auto heat_density = [&](const Real& temperature) {
+    return temperature * laws::linear_density(oil.density_at_zero_kelvin,
+                                              oil.density_temperature_slope, temperature);
+  };
+  const Real& reference = oil.rheology_reference_temperature;
+  shear.shift_reference =
+      log_ambient_viscosity(oil, reference) - laws::logarithm(heat_density(reference));
+  shear.coarse_heat_density_slope = 1 / laws::value_of(out.inlet_temperature) +
+                                    laws::value_of(oil.density_temperature_slope) *
+                                        laws::value_of(out.inlet_temperature) /
+                                        laws::value_of(heat_density(out.inlet_temperature));
+
+  const Real where_measured =
+      factor_at(log_ambient_viscosity(oil, oil.pressure_viscosity_temperature));
+  const Real at_inlet = factor_at(out.log_inlet_viscosity);
+  if (misprinted || options.pressure_viscosity_index == PressureViscosityIndex::kHoupert) {
+    shear.index = laws::houpert_index(where_measured, oil.pressure_viscosity_coefficient);
+    out.pressure_viscosity_coefficient =
+        shear.index * laws::kRoelandsPressureCoefficient * at_inlet;
+  } else {
+    shear.index = index_of(where_measured, oil.pressure_viscosity_coefficient);
+    out.pressure_viscosity_coefficient =
+        laws::roelands_reciprocal_asymptotic(at_inlet, shear.index);
+  }
+
+  out.reduced_modulus = reduced_modulus(in.solids);
+  out.log_film = laws::log_film_constant(out.log_inlet_viscosity,
+                                         laws::logarithm(out.pressure_viscosity_coefficient),
+                                         laws::logarithm(out.reduced_modulus));
+  out.asperity_load_factor = laws::asperity_load_factor(in.roughness, out.reduced_modulus);
+  out.asperity_area_factor = laws::asperity_area_factor(in.roughness);
+  out.conductance_factor_1 = laws::conductance_factor(in.solids.body_1);
+  out.conductance_factor_2 = laws::conductance_factor(in.solids.body_2);
+  return out;
+}
+
+/// The contact if the film carried all of its load.
+template <class Real>
+struct LoadedContact {
+  Real entrainment_speed;    ///< U_eff, eq 17 [m/s]
+  Real entrainment_radius;   ///< R_e, eq 15 [m]
+  Real side_leakage_radius;  ///< R_s, eq 16 [m]
+  UnitLoadEllipseOf<Real> unit;
+  Real film_thickness;  ///< h_cen [m]
+  LoadSharingOf<Real> sharing;
+};
+
+template <class Real>
+LoadedContact<Real> loaded_contact(const ContactParametersOf<Real>& in,
+                                   const ContactConstants<Real>& constants,
+                                   const ModelOptions& options,
+                                   const ContactConditionsOf<Real>& k) {
+  LoadedContact<Real> out;
+  const Real mean_x2 = laws::square(0.5 * (k.pinion_velocity_x + k.gear_velocity_x));
+  const Real mean_y2 = laws::square(0.5 * (k.pinion_velocity_y + k.gear_velocity_y));
+  const Real speed2 = laws::entrainment_speed_squared(mean_x2, mean_y2);
+  out.entrainment_speed = laws::root(speed2);
+  const bool entrained = speed2 > 0;
+  const Real cosine2 = entrained ? mean_x2 / speed2 : Real(1.0);
+  const Real sine2 = entrained ? mean_y2 / speed2 : Real(0.0);
+  const Real curvature_x = 1 / k.radius_x, curvature_y = 1 / k.radius_y;
+  const Real along = laws::curvature_along_entrainment(cosine2, sine2, curvature_x, curvature_y);
+  const Real across = laws::curvature_across_entrainment(cosine2, sine2, curvature_x, curvature_y);
+  out.entrainment_radius = 1 / along;
+  out.side_leakage_radius = 1 / across;
+
+  const HertzFitOf<Real> fit =
+      options.hertz_solution == HertzSolution::kExact
+          ? exact_ellipticity(k.radius_x, k.radius_y)
+          : simplified_ellipticity(k.radius_x, k.radius_y, options.as_published);
+  out.unit = unit_load_ellipse(fit, k.radius_x, k.radius_y, constants.reduced_modulus,
+                               options.as_published);
+  const EllipseAxesOf<Real> axes = ellipse_axes(out.unit, k.load);
+  const Real log_along = laws::logarithm(along);
+  out.film_thickness =
+      entrained ? laws::exponential(laws::log_film(constants.log_film, laws::logarithm(speed2),
+                                                   log_along, laws::logarithm(k.load))) *
+                      laws::side_leakage(log_along - laws::logarithm(across))
+                : Real(0.0);
+  out.sharing = {
+      k.load, out.film_thickness / in.roughness.composite_rms_height,
+      constants.asperity_load_factor * std::numbers::pi * axes.semi_major * axes.semi_minor,
+      options.hertz_load == HertzLoad::kTotalLoad, options.as_published.eq43_44_polynomials};
+  return out;
+}
+
+/// The contact as film and asperities share its load.
+template <class Real>
+struct SharedContact {
+  Real film_load;  ///< W_EHL [N]
+  EllipseAxesOf<Real> axes;
+  Real contact_area;    ///< A_EHL [m2]
+  Real film_thickness;  ///< h_cen [m]
+  Real film_ratio;      ///< lambda_s [-]
+  Real asperity_load;   ///< W_asp [N]
+  Real asperity_area;   ///< A_asp [m2]
+};
+
+/// log_share is ln(W_EHL/W).
+template <class Real>
+SharedContact<Real> shared_contact(const ContactParametersOf<Real>& in,
+                                   const ContactConstants<Real>& constants,
+                                   const LoadedContact<Real>& loaded, const Real& log_share) {
+  SharedContact<Real> out;
+  out.film_load = loaded.sharing.load * laws::exponential(log_share);
+  out.axes = ellipse_axes(
+      loaded.unit, loaded.sharing.ellipse_from_total_load ? loaded.sharing.load : out.film_load);
+  out.contact_area = std::numbers::pi * out.axes.semi_major * out.axes.semi_minor;
+  out.film_thickness = loaded.film_thickness * laws::film_thinning(log_share);
+  out.film_ratio = out.film_thickness / in.roughness.composite_rms_height;
+  const AsperityFunctionsOf<Real> functions =
+      asperity_functions(out.film_ratio, loaded.sharing.as_published_polynomials);
+  out.asperity_load = constants.asperity_load_factor * out.contact_area * functions.f5_2;
+  out.asperity_area = constants.asperity_area_factor * out.contact_area * functions.f2;
+  return out;
+}
+
+/// What heats and cools the contact.
+template <class Real>
+struct HeatedContact {
+  Real sliding_speed;                 ///< V_s [m/s]
+  Real shear_rate;                    ///< gamma_dot, eq 18 [1/s]
+  Real boundary_friction;             ///< F_b [N]
+  Real viscous_area;                  ///< [m2]
+  Real rate_1, rate_2;                ///< U_i/l_i [1/s]
+  Real film_conduction;               ///< 2 k_f A [W m/K]
+  Real conductance_1, conductance_2;  ///< 1/R_f,i [W/K]
+  Real flash_resistance;              ///< R_f1 a_h [K/W]
+  laws::ThermalLine<Real> temperature;
+};
+
+template <class Real>
+HeatedContact<Real> heated_contact(const ContactParametersOf<Real>& in,
+                                   const ContactConstants<Real>& constants,
+                                   const ModelOptions& options, const ContactConditionsOf<Real>& k,
+                                   const SharedContact<Real>& contact) {
+  HeatedContact<Real> out;
+  const Real slide2 = laws::square(k.pinion_velocity_x - k.gear_velocity_x) +
+                      laws::square(k.pinion_velocity_y - k.gear_velocity_y);
+  out.sliding_speed = slide2 > 0 ? laws::root(slide2) : Real(0.0);
+  out.shear_rate =
+      slide2 > 0 ? laws::shear_rate(out.sliding_speed, contact.film_thickness) : Real(0.0);
+  out.boundary_friction =
+      options.no_boundary_friction
+          ? Real(0.0)
+          : laws::boundary_friction(in.boundary.tribofilm_shear_strength, contact.asperity_area,
+                                    in.boundary.asperity_friction_coefficient,
+                                    contact.asperity_load);
+  out.viscous_area = laws::viscous_area(contact.contact_area, contact.asperity_area);
+
+  const bool major_along_y = k.radius_y >= k.radius_x;
+  const Real per_minor = 1 / contact.axes.semi_minor, per_major = 1 / contact.axes.semi_major;
+  const Real& per_x = major_along_y ? per_minor : per_major;
+  const Real& per_y = major_along_y ? per_major : per_minor;
+  out.rate_1 = laws::speed_per_length(k.pinion_velocity_x, k.pinion_velocity_y, per_x, per_y);
+  out.rate_2 = laws::speed_per_length(k.gear_velocity_x, k.gear_velocity_y, per_x, per_y);
+  out.film_conduction = 2 * in.lubricant.thermal_conductivity * contact.contact_area;
+  out.conductance_1 = laws::moving_source_conductance(constants.conductance_factor_1,
+                                                      contact.contact_area, out.rate_1);
+  out.conductance_2 = laws::moving_source_conductance(constants.conductance_factor_2,
+                                                      contact.contact_area, out.rate_2);
+  out.flash_resistance = laws::flash_resistance(out.film_conduction, contact.film_thickness,
+                                                out.conductance_1, out.conductance_2);
+  out.temperature = {constants.inlet_temperature, Real(0.0)};
+  if (!options.isothermal && slide2 > 0) {
+    out.temperature = laws::contact_temperature(
+        constants.inlet_temperature, out.flash_resistance * out.sliding_speed,
+        out.boundary_friction, out.viscous_area,
+        laws::oil_rise_per_stress(out.sliding_speed, contact.film_thickness,
+                                  in.lubricant.thermal_conductivity));
+  }
+  return out;
+}
+
+}  // namespace tribodyn
