@@ -1,0 +1,187 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "core/contact/flank_contact.h"
+
+// Derivatives of one contact by all of its scalar inputs.
+//
+// The equations of contact_equations.h are evaluated in dual numbers (core/numerics/dual-inl.h) at
+// a solved contact. What has been solved for is not iterated again: Z (eq 33), the film's share of
+// the load (eq 41) and the contact temperature (eq 38) are differentiated by the implicit function
+// theorem, one Newton step in dual numbers at the converged root. The mean stress is an integral
+// whose derivatives are integrals; the places where the stress meets its limit do not enter,
+// because there the integrand is continuous.
+
+namespace tribodyn {
+
+/// The scalar inputs of a contact: parameters of the model first, then the conditions of the
+/// instant. Body 1 is the one of the pinion_velocity fields; where both are of one material, the
+/// derivative by its property is the sum of those by both bodies'.
+enum class ContactInput {
+  kVogelViscosityPrefactor,
+  kVogelTemperatureCoefficient,
+  kVogelReferenceTemperature,
+  kPressureViscosityCoefficient,
+  kPressureViscosityTemperature,
+  kRelaxationTime,
+  kHavriliakNegamiAlpha,
+  kHavriliakNegamiBeta,
+  kRheologyReferenceTemperature,
+  kLimitingShearStressAtZeroPressure,
+  kLimitingShearStressCoefficient,
+  kThermalConductivity,
+  kDensityAtZeroKelvin,
+  kDensityTemperatureSlope,
+  kAsperityDensity,
+  kAsperityRadius,
+  kCompositeRmsHeight,
+  kTribofilmShearStrength,
+  kAsperityFrictionCoefficient,
+  kBody1YoungsModulus,
+  kBody1PoissonsRatio,
+  kBody1ThermalConductivity,
+  kBody1Density,
+  kBody1SpecificHeatCapacity,
+  kBody2YoungsModulus,
+  kBody2PoissonsRatio,
+  kBody2ThermalConductivity,
+  kBody2Density,
+  kBody2SpecificHeatCapacity,
+  kBathTemperature,
+  kInletTemperatureRise,
+  kLoad,  ///< from here on conditions
+  kRadiusX,
+  kRadiusY,
+  kVelocity1X,
+  kVelocity1Y,
+  kVelocity2X,
+  kVelocity2Y,
+};
+inline constexpr int kContactParameters = 31;
+inline constexpr int kContactInputs = 38;
+
+struct ContactInputName {
+  const char* name;  ///< as in the fields of the structures, with the structure before a dot
+  const char* unit;  ///< SI; "1" for none
+};
+
+/// By ContactInput.
+const std::array<ContactInputName, kContactInputs>& contact_input_names();
+
+/// Where the inputs stand in the structures, by ContactInput: to read, to seed or to perturb them.
+template <class Real>
+std::array<Real*, kContactInputs> contact_inputs(ContactParametersOf<Real>& parameters,
+                                                 ContactConditionsOf<Real>& conditions) {
+  LubricantOf<Real>& oil = parameters.lubricant;
+  SolidOf<Real>&one = parameters.solids.body_1, &two = parameters.solids.body_2;
+  RoughnessOf<Real>& surface = parameters.roughness;
+  return {&oil.vogel_viscosity_prefactor,
+          &oil.vogel_temperature_coefficient,
+          &oil.vogel_reference_temperature,
+          &oil.pressure_viscosity_coefficient,
+          &oil.pressure_viscosity_temperature,
+          &oil.relaxation_time,
+          &oil.havriliak_negami_alpha,
+          &oil.havriliak_negami_beta,
+          &oil.rheology_reference_temperature,
+          &oil.limiting_shear_stress_at_zero_pressure,
+          &oil.limiting_shear_stress_coefficient,
+          &oil.thermal_conductivity,
+          &oil.density_at_zero_kelvin,
+          &oil.density_temperature_slope,
+          &surface.asperity_density,
+          &surface.asperity_radius,
+          &surface.composite_rms_height,
+          &parameters.boundary.tribofilm_shear_strength,
+          &parameters.boundary.asperity_friction_coefficient,
+          &one.youngs_modulus,
+          &one.poissons_ratio,
+          &one.thermal_conductivity,
+          &one.density,
+          &one.specific_heat_capacity,
+          &two.youngs_modulus,
+          &two.poissons_ratio,
+          &two.thermal_conductivity,
+          &two.density,
+          &two.specific_heat_capacity,
+          &parameters.bath_temperature,
+          &parameters.inlet_temperature_rise,
+          &conditions.load,
+          &conditions.radius_x,
+          &conditions.radius_y,
+          &conditions.pinion_velocity_x,
+          &conditions.pinion_velocity_y,
+          &conditions.gear_velocity_x,
+          &conditions.gear_velocity_y};
+}
+
+/// An output and its derivatives, each in the output's unit over the input's, by ContactInput.
+struct ContactDerivatives {
+  double value = 0;
+  std::array<double, kContactInputs> by{};
+
+  double by_input(ContactInput input) const { return by[static_cast<int>(input)]; }
+};
+
+enum class SensitivityStatus {
+  kOk,
+  kNoLoad,         ///< W <= 0: all outputs and derivatives are zero
+  kNotSolved,      ///< the contact is refused; see ContactSolution::status
+  kNoEntrainment,  ///< no film, of which eq 12 has no finite derivative
+  kNoSliding,      ///< V_s = |u_1 - u_2| has no derivative at 0
+  kSurfaceAtRest,  ///< its conductance, proportional to the root of its speed, has none either
+};
+
+/// Where the derivatives exist, and from which side:
+/// - Where stress meets its limit, at the onset of limiting and where asperities begin to touch
+///   outputs have continuous first derivatives; only the second ones jump.
+/// - `one_sided` is true within 1e-9 (relative) of R_x = R_y with the simplified Hertz fits, which
+///   jump there, and of A_asp = A_EHL, where the area that shears lubricant ends. The derivatives
+///   are those of the side on which the contact is.
+/// - With several thermal equilibria they are those of the coldest; `several_equilibria` is true.
+/// - A relaxation time of 0 stands for F = 1: derivatives by it and by the exponents are 0.
+struct ContactSensitivity {
+  SensitivityStatus status = SensitivityStatus::kNoLoad;
+  bool one_sided = false;
+  bool several_equilibria = false;
+  ContactDerivatives friction;              ///< F_fr [N]
+  ContactDerivatives viscous_friction;      ///< F_v [N]
+  ContactDerivatives boundary_friction;     ///< F_b [N]
+  ContactDerivatives friction_coefficient;  ///< F_fr/W [-]
+  ContactDerivatives heat_rate;             ///< F_fr V_s [W]
+  ContactDerivatives film_thickness;        ///< h_cen [m]
+  ContactDerivatives film_ratio;            ///< lambda_s [-]
+  ContactDerivatives film_load_share;       ///< W_EHL/W [-]
+  ContactDerivatives maximum_pressure;      ///< p_max [Pa]
+  ContactDerivatives contact_temperature;   ///< T_c [K]
+  ContactDerivatives mean_shear_stress;     ///< tau_bar [Pa]
+};
+
+/// Derivatives of the contacts of one model. Immutable after construction, safe for concurrent use;
+/// allocates nothing per contact, never throws after construction.
+class ContactSensitivityModel {
+ public:
+  explicit ContactSensitivityModel(const FlankContactModel& model);
+  ~ContactSensitivityModel();
+  ContactSensitivityModel(ContactSensitivityModel&&) noexcept;
+  ContactSensitivityModel& operator=(ContactSensitivityModel&&) noexcept;
+
+  /// Solves the contact, then differentiates.
+  ContactSensitivity at(const ContactConditions& conditions) const;
+
+  /// Differentiates a contact that has been solved, by FlankContactModel or FlankContactBatch, with
+  /// the film load [N] and contact temperature [K] found. An error of either enters the derivatives
+  /// in the first order.
+  ContactSensitivity at(const ContactConditions& conditions, double film_load,
+                        double contact_temperature) const;
+
+ private:
+  struct Constants;
+
+  FlankContactModel model_;
+  std::unique_ptr<const Constants> constants_;
+};
+
+}  // namespace tribodyn
