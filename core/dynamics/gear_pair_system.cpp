@@ -149,7 +149,7 @@ void GearPairSystem::evaluate(double phase, const double* y, Instant& out) {
     const ContactFigures& contact = out.contact[k];
     const FlankMotion& motion = out.motion[k];
     if (contact.status != ContactStatus::kOk) refuse(contact.status);
-    out.pinion_friction_torque += motion.pinion_friction_arm * contact.friction;
+    out.pinion_friction_torque += motion.pinion_friction_arm * contact.friction;  // (eq 29)
     out.gear_friction_torque += motion.gear_friction_arm * contact.friction;
     out.loss_power += motion.sliding_speed * contact.friction;
   }

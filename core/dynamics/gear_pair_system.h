@@ -213,11 +213,12 @@ inline void GearPairSystem::kinematics(const MeshPhase& phase, const double* y,
   out.mesh = mesh_.functions(phase, lag_per_winding_ * y[kWinding]);
   const MeshFunctions& m = out.mesh;
   const double b = dynamics_.half_backlash;
-  out.transmission_error = b + y[kWinding] + m.radius_integral - m.static_transmission_error;
+  out.transmission_error =
+      b + y[kWinding] + m.radius_integral - m.static_transmission_error;  // (eq 6)
   out.transmission_velocity =
       (m.pinion_contact_radius - m.static_transmission_error_slope) * y[kPinionSpeed] -
       m.gear_contact_radius * y[kGearSpeed];
-  out.deflection = regime.side == 0 ? 0 : out.transmission_error - regime.side * b;
+  out.deflection = regime.side == 0 ? 0 : out.transmission_error - regime.side * b;  // (eq 5)
   out.damper_force = regime.side == 0 && options_.damping_in_contact_only
                          ? 0
                          : dynamics_.mesh_damping * out.transmission_velocity;
@@ -264,18 +265,18 @@ inline void GearPairSystem::motion(const double* y, const Mechanics& at, double*
   if (options_.energy_consistent) pinion_torque += at.parametric_torque();
   const double gear_torque =
       m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque;
-  // Eqs 1-4 in time, then by phase.
   const double time = cycle_angle_ / y[kPinionSpeed];
   dy[kTime] = time;
   dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
   dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
                          mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
   dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
-  dy[kPinionShaftSpeed] =
-      time * ((torques_.pinion - at.pinion_shaft_torque) * inverse_.pinion_shaft_inertia);
-  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);
-  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);
-  dy[kWheelSpeed] = time * ((at.gear_shaft_torque - torques_.wheel) * inverse_.wheel_inertia);
+  const double pinion_shaft_torque = torques_.pinion - at.pinion_shaft_torque;
+  const double wheel_torque = at.gear_shaft_torque - torques_.wheel;
+  dy[kPinionShaftSpeed] = time * (pinion_shaft_torque * inverse_.pinion_shaft_inertia);  // (eq 1)
+  dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);                   // (eq 2)
+  dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);                         // (eq 3)
+  dy[kWheelSpeed] = time * (wheel_torque * inverse_.wheel_inertia);                      // (eq 4)
 }
 
 }  // namespace tribodyn

@@ -126,11 +126,11 @@ MeshPhase MeshData::at_phase(double theta_p) const {
   const double cosine = std::cos(theta_p), sine = std::sin(theta_p);
   double c = cosine, s = sine;
   for (const Harmonic& h : harmonics_) {
-    f.pinion_contact_radius += h.radius_p_sin * s + h.radius_p_cos * c;
+    f.pinion_contact_radius += h.radius_p_sin * s + h.radius_p_cos * c;  // (eq 9)
     f.radius_integral += (h.radius_p_cos * s - h.radius_p_sin * c) / h.pinion_order;
-    f.mesh_stiffness += h.stiffness_sin * s + h.stiffness_cos * c;
+    f.mesh_stiffness += h.stiffness_sin * s + h.stiffness_cos * c;  // (eq 10)
     f.mesh_stiffness_slope += h.pinion_order * (h.stiffness_sin * c - h.stiffness_cos * s);
-    f.static_transmission_error += h.error_sin * s + h.error_cos * c;
+    f.static_transmission_error += h.error_sin * s + h.error_cos * c;  // (eq 11)
     f.static_transmission_error_slope += h.pinion_order * (h.error_sin * c - h.error_cos * s);
     const double next = c * cosine - s * sine;
     s = s * cosine + c * sine;
@@ -148,7 +148,7 @@ std::array<double, 2> MeshData::gear_functions(const MeshPhase& phase, double la
   const double cosine = std::cos(theta), sine = std::sin(theta);
   double c = cosine, s = sine, ripple = 0, integral = 0;
   for (const Harmonic& h : harmonics_) {
-    ripple += h.radius_g_sin * s + h.radius_g_cos * c;
+    ripple += h.radius_g_sin * s + h.radius_g_cos * c;  // (eq 8)
     integral -= (h.radius_g_cos * s - h.radius_g_sin * c) / h.gear_order;
     const double next = c * cosine - s * sine;
     s = s * cosine + c * sine;

@@ -72,7 +72,8 @@ SpectralMoments spectral_moments(std::span<const double> heights, double spacing
   }
   const double interior = static_cast<double>(z.size() - 2);
   const SpectralMoments moments{squared_heights / static_cast<double>(z.size()),
-                                squared_slopes / interior, squared_curvatures / interior};
+                                squared_slopes / interior,
+                                squared_curvatures / interior};  // (eq 45)
   if (!std::isfinite(moments.m0 + moments.m2 + moments.m4)) {
     throw Refusal("PROFILE_UNUSABLE",
                   "The profile cannot be used. Its heights are so large, or its spacing so small, "
@@ -90,14 +91,14 @@ SpectralMoments equivalent_isotropic_moments(const SpectralMoments& axial,
                                              const SpectralMoments& radial,
                                              const AsPublished& as_published) {
   const auto equivalent = [&](double a, double r) {
-    return as_published.eq46_square_root_of_sum ? std::sqrt(a + r) : std::sqrt(a * r);
+    return as_published.eq46_square_root_of_sum ? std::sqrt(a + r) : std::sqrt(a * r);  // (eq 46)
   };
   return {0.5 * (axial.m0 + radial.m0), equivalent(axial.m2, radial.m2),
           equivalent(axial.m4, radial.m4)};
 }
 
 SpectralMoments composite_moments(const SpectralMoments& pinion, const SpectralMoments& gear) {
-  return {pinion.m0 + gear.m0, pinion.m2 + gear.m2, pinion.m4 + gear.m4};
+  return {pinion.m0 + gear.m0, pinion.m2 + gear.m2, pinion.m4 + gear.m4};  // (eq 47)
 }
 
 Roughness greenwood_tripp_roughness(const SpectralMoments& composite) {
@@ -110,7 +111,7 @@ Roughness greenwood_tripp_roughness(const SpectralMoments& composite) {
   }
   Roughness roughness;
   roughness.asperity_density =
-      composite.m4 / composite.m2 / (6 * std::numbers::pi * std::numbers::sqrt3);
+      composite.m4 / composite.m2 / (6 * std::numbers::pi * std::numbers::sqrt3);  // (eq 48)
   roughness.asperity_radius = 0.375 * std::sqrt(std::numbers::pi / composite.m4);
   roughness.composite_rms_height = std::sqrt(composite.m0);
   return roughness;

@@ -19,7 +19,7 @@ double wheel_torque(const Vehicle& vehicle, double speed, double ascent_angle,
   const double grade = weight * std::sin(ascent_angle);
   const double drag =
       vehicle.drag_coefficient * vehicle.frontal_area * 0.5 * vehicle.air_density * speed * speed;
-  return vehicle.wheel_radius * (rolling + grade + drag + vehicle.mass * acceleration);
+  return vehicle.wheel_radius * (rolling + grade + drag + vehicle.mass * acceleration);  // (eq 7)
 }
 
 }  // namespace tribodyn
