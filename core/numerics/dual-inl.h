@@ -177,20 +177,26 @@ template <class X, class Y, class Real, int kCount>
 HWY_INLINE Dual<Real, kCount> less_product(const X& x, const Y& y, const Dual<Real, kCount>& z) {
   return z - x * y;
 }
-template <int kCount>
-HWY_INLINE Dual<double, kCount> least(const Dual<double, kCount>& x,
-                                      const Dual<double, kCount>& y) {
-  return x.value < y.value ? x : y;
+/// Of x where the mask says so, of y elsewhere.
+template <class Mask, class Real, int kCount>
+HWY_INLINE Dual<Real, kCount> select(const Mask& where, const Dual<Real, kCount>& x,
+                                     const Dual<Real, kCount>& y) {
+  Dual<Real, kCount> out;
+  out.value = select(where, x.value, y.value);
+  for (int i = 0; i < kCount; ++i) out.slope[i] = select(where, x.slope[i], y.slope[i]);
+  return out;
 }
-template <int kCount>
-HWY_INLINE Dual<double, kCount> greatest(const Dual<double, kCount>& x, double y) {
-  return x.value > y ? x : Dual<double, kCount>(y);
+template <class Real, int kCount>
+HWY_INLINE Dual<Real, kCount> least(const Dual<Real, kCount>& x, const Dual<Real, kCount>& y) {
+  return select(x.value < y.value, x, y);
 }
-template <int kCount>
-HWY_INLINE Dual<double, kCount> clamped(const Dual<double, kCount>& x, double low, double high) {
-  return x.value < low    ? Dual<double, kCount>(low)
-         : x.value > high ? Dual<double, kCount>(high)
-                          : x;
+template <class Real, int kCount>
+HWY_INLINE Dual<Real, kCount> greatest(const Dual<Real, kCount>& x, double y) {
+  return select(x.value > Real(y), x, Dual<Real, kCount>(y));
+}
+template <class Real, int kCount>
+HWY_INLINE Dual<Real, kCount> clamped(const Dual<Real, kCount>& x, double low, double high) {
+  return least(greatest(x, low), Dual<Real, kCount>(high));
 }
 
 template <int kCount>

@@ -43,6 +43,8 @@ HWY_INLINE double clamped(double x, double low, double high) {
   return least(greatest(x, low), high);
 }
 
+HWY_INLINE double select(bool where, double yes, double no) { return where ? yes : no; }
+
 /// The number without derivatives.
 HWY_INLINE double value_of(double x) { return x; }
 
