@@ -15,8 +15,8 @@ using ContactLanes = double[kBlockContacts];
 
 /// Conditions, and geometry as in ContactGeometries. Arrays of kBlockContacts, of any alignment.
 struct ContactBlockInputs {
-  const double *load, *pinion_x, *pinion_y, *gear_x, *gear_y;
-  const double* start_temperature;  ///< 0: none
+  const double *load, *x_1, *y_1, *x_2, *y_2;  ///< x and y: velocities of both bodies
+  const double* start_temperature;             ///< 0: none
   const double *curvature_x, *curvature_y, *unit_area, *per_semi_x, *per_semi_y, *unit_pressure;
 };
 

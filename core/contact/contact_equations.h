@@ -31,16 +31,17 @@ struct ContactParametersOf {
 };
 
 /// Load, geometry and velocities of one contact at one instant. SI units. x is the direction of R_x
-/// (the minor axis while R_y >= R_x), y the direction of R_y.
+/// (the minor axis while R_y >= R_x), y the direction of R_y. Bodies 1 and 2 are the paper's pinion
+/// (p) and gear (g), or any other two.
 template <class Real>
 struct ContactConditionsOf {
-  Real load;               ///< W, normal load [N]
-  Real radius_x;           ///< R_zx, effective radius of curvature [m]
-  Real radius_y;           ///< R_zy [m]
-  Real pinion_velocity_x;  ///< u_s,p [m/s]
-  Real pinion_velocity_y;  ///< v_s,p [m/s]
-  Real gear_velocity_x;    ///< u_s,g [m/s]
-  Real gear_velocity_y;    ///< v_s,g [m/s]
+  Real load;          ///< W, normal load [N]
+  Real radius_x;      ///< R_zx, effective radius of curvature [m]
+  Real radius_y;      ///< R_zy [m]
+  Real velocity_1_x;  ///< u_s,p [m/s]
+  Real velocity_1_y;  ///< v_s,p [m/s]
+  Real velocity_2_x;  ///< u_s,g [m/s]
+  Real velocity_2_y;  ///< v_s,g [m/s]
 };
 
 /// What follows from the parameters alone.
@@ -139,8 +140,8 @@ LoadedContact<Real> loaded_contact(const ContactParametersOf<Real>& in,
                                    const ModelOptions& options,
                                    const ContactConditionsOf<Real>& k) {
   LoadedContact<Real> out;
-  const Real mean_x2 = laws::square(0.5 * (k.pinion_velocity_x + k.gear_velocity_x));
-  const Real mean_y2 = laws::square(0.5 * (k.pinion_velocity_y + k.gear_velocity_y));
+  const Real mean_x2 = laws::square(0.5 * (k.velocity_1_x + k.velocity_2_x));
+  const Real mean_y2 = laws::square(0.5 * (k.velocity_1_y + k.velocity_2_y));
   const Real speed2 = laws::entrainment_speed_squared(mean_x2, mean_y2);
   out.entrainment_speed = laws::root(speed2);
   const bool entrained = speed2 > 0;
@@ -223,8 +224,8 @@ HeatedContact<Real> heated_contact(const ContactParametersOf<Real>& in,
                                    const ModelOptions& options, const ContactConditionsOf<Real>& k,
                                    const SharedContact<Real>& contact) {
   HeatedContact<Real> out;
-  const Real slide2 = laws::square(k.pinion_velocity_x - k.gear_velocity_x) +
-                      laws::square(k.pinion_velocity_y - k.gear_velocity_y);
+  const Real slide2 =
+      laws::square(k.velocity_1_x - k.velocity_2_x) + laws::square(k.velocity_1_y - k.velocity_2_y);
   out.sliding_speed = slide2 > 0 ? laws::root(slide2) : Real(0.0);
   out.shear_rate =
       slide2 > 0 ? laws::shear_rate(out.sliding_speed, contact.film_thickness) : Real(0.0);
@@ -240,8 +241,8 @@ HeatedContact<Real> heated_contact(const ContactParametersOf<Real>& in,
   const Real per_minor = 1 / contact.axes.semi_minor, per_major = 1 / contact.axes.semi_major;
   const Real& per_x = major_along_y ? per_minor : per_major;
   const Real& per_y = major_along_y ? per_major : per_minor;
-  out.rate_1 = laws::speed_per_length(k.pinion_velocity_x, k.pinion_velocity_y, per_x, per_y);
-  out.rate_2 = laws::speed_per_length(k.gear_velocity_x, k.gear_velocity_y, per_x, per_y);
+  out.rate_1 = laws::speed_per_length(k.velocity_1_x, k.velocity_1_y, per_x, per_y);
+  out.rate_2 = laws::speed_per_length(k.velocity_2_x, k.velocity_2_y, per_x, per_y);
   out.film_conduction = 2 * in.lubricant.thermal_conductivity * contact.contact_area;
   out.conductance_1 = laws::moving_source_conductance(constants.conductance_factor_1,
                                                       contact.contact_area, out.rate_1);

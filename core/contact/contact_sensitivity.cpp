@@ -97,14 +97,13 @@ ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, doubl
     return out;
   };
   const auto moves = [](double x, double y) { return x != 0 || y != 0; };
-  if (!moves(k.pinion_velocity_x + k.gear_velocity_x, k.pinion_velocity_y + k.gear_velocity_y)) {
+  if (!moves(k.velocity_1_x + k.velocity_2_x, k.velocity_1_y + k.velocity_2_y)) {
     return refused(SensitivityStatus::kNoEntrainment);
   }
-  if (!moves(k.pinion_velocity_x - k.gear_velocity_x, k.pinion_velocity_y - k.gear_velocity_y)) {
+  if (!moves(k.velocity_1_x - k.velocity_2_x, k.velocity_1_y - k.velocity_2_y)) {
     return refused(SensitivityStatus::kNoSliding);
   }
-  if (!moves(k.pinion_velocity_x, k.pinion_velocity_y) ||
-      !moves(k.gear_velocity_x, k.gear_velocity_y)) {
+  if (!moves(k.velocity_1_x, k.velocity_1_y) || !moves(k.velocity_2_x, k.velocity_2_y)) {
     return refused(SensitivityStatus::kSurfaceAtRest);
   }
   out.status = SensitivityStatus::kOk;

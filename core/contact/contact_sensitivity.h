@@ -17,8 +17,8 @@
 namespace tribodyn {
 
 /// The scalar inputs of a contact: parameters of the model first, then the conditions of the
-/// instant. Body 1 is the one of the pinion_velocity fields; where both are of one material, the
-/// derivative by its property is the sum of those by both bodies'.
+/// instant. Where both bodies are of one material, the derivative by a property of it is the sum of
+/// the derivatives by that property of body 1 and of body 2.
 enum class ContactInput {
   kVogelViscosityPrefactor,
   kVogelTemperatureCoefficient,
@@ -111,10 +111,10 @@ std::array<Real*, kContactInputs> contact_inputs(ContactParametersOf<Real>& para
           &conditions.load,
           &conditions.radius_x,
           &conditions.radius_y,
-          &conditions.pinion_velocity_x,
-          &conditions.pinion_velocity_y,
-          &conditions.gear_velocity_x,
-          &conditions.gear_velocity_y};
+          &conditions.velocity_1_x,
+          &conditions.velocity_1_y,
+          &conditions.velocity_2_x,
+          &conditions.velocity_2_y};
 }
 
 /// An output and its derivatives, each in the output's unit over the input's, by ContactInput.

@@ -22,7 +22,7 @@ bool all_finite(std::initializer_list<double> values) {
 
 /// False where a law overflowed: only shear rate and thermal resistances of solids may be infinite.
 bool representable(const ContactSolution& s) {
-  return !std::isnan(s.shear_rate + s.pinion_thermal_resistance + s.gear_thermal_resistance) &&
+  return !std::isnan(s.shear_rate + s.thermal_resistance_1 + s.thermal_resistance_2) &&
          all_finite({s.film_load,
                      s.asperity_load,
                      s.contact_area,
@@ -40,8 +40,8 @@ bool representable(const ContactSolution& s) {
                      s.contact_temperature,
                      s.flash_temperature_rise,
                      s.oil_temperature_rise,
-                     s.pinion_active_length,
-                     s.gear_active_length,
+                     s.active_length_1,
+                     s.active_length_2,
                      s.film_thermal_resistance,
                      s.heat_partition,
                      s.mean_shear_stress,
@@ -103,8 +103,8 @@ ContactSolution FlankContactModel::solve(const ContactConditions& conditions) co
     return out;
   };
   const ContactConditions& k = conditions;
-  if (!all_finite({k.load, k.radius_x, k.radius_y, k.pinion_velocity_x, k.pinion_velocity_y,
-                   k.gear_velocity_x, k.gear_velocity_y})) {
+  if (!all_finite({k.load, k.radius_x, k.radius_y, k.velocity_1_x, k.velocity_1_y, k.velocity_2_x,
+                   k.velocity_2_y})) {
     return refuse(ContactStatus::kRefusedNotFinite);
   }
   if (!(k.load > 0)) return refuse(ContactStatus::kNoLoad);
@@ -123,8 +123,8 @@ ContactSolution FlankContactModel::solve(const ContactConditions& conditions) co
 ContactStatus FlankContactModel::share_load(const ContactConditions& k,
                                             SharedContact<double>& shared,
                                             ContactSolution& out) const {
-  const double mean_x = 0.5 * (k.pinion_velocity_x + k.gear_velocity_x);
-  const double mean_y = 0.5 * (k.pinion_velocity_y + k.gear_velocity_y);
+  const double mean_x = 0.5 * (k.velocity_1_x + k.velocity_2_x);
+  const double mean_y = 0.5 * (k.velocity_1_y + k.velocity_2_y);
   const LoadedContact<double> loaded = loaded_contact(parameters_, constants_, options_, k);
   if (loaded.entrainment_speed > 0) {
     const bool misprinted = options_.as_published.eq17_atan;
@@ -174,11 +174,11 @@ ContactStatus FlankContactModel::heat(const ContactConditions& k,
   const auto active_length = [&](double velocity_x, double velocity_y, double rate) {
     return rate > 0 ? std::hypot(velocity_x, velocity_y) / rate : semi_x;
   };
-  out.pinion_active_length = active_length(k.pinion_velocity_x, k.pinion_velocity_y, heated.rate_1);
-  out.gear_active_length = active_length(k.gear_velocity_x, k.gear_velocity_y, heated.rate_2);
+  out.active_length_1 = active_length(k.velocity_1_x, k.velocity_1_y, heated.rate_1);
+  out.active_length_2 = active_length(k.velocity_2_x, k.velocity_2_y, heated.rate_2);
   out.film_thermal_resistance = shared.film_thickness / heated.film_conduction;
-  out.pinion_thermal_resistance = 1 / heated.conductance_1;
-  out.gear_thermal_resistance = 1 / heated.conductance_2;
+  out.thermal_resistance_1 = 1 / heated.conductance_1;
+  out.thermal_resistance_2 = 1 / heated.conductance_2;
   const bool both_rest = heated.conductance_1 + heated.conductance_2 == 0;
   out.heat_partition = both_rest ? 0.5 : heated.conductance_1 * heated.flash_resistance;
 

@@ -60,17 +60,17 @@ struct ContactSolution : ContactFigures {
   double reduced_modulus = 0;                       ///< E', eq 13 [Pa]
   double flash_temperature_rise = 0;                ///< (dT_f)_av, eq 39 [K]
   double oil_temperature_rise = 0;                  ///< (dT_oil)_av, eq 39 [K]
-  double pinion_active_length = 0;                  ///< l_p, eq 36 [m]
-  double gear_active_length = 0;                    ///< l_g, eq 36 [m]
+  double active_length_1 = 0;                       ///< l_p, eq 36 [m]
+  double active_length_2 = 0;                       ///< l_g, eq 36 [m]
   double film_thermal_resistance = 0;               ///< R_cf, eq 35 [K/W]
-  double pinion_thermal_resistance = 0;  ///< R_fp, eq 35 [K/W]; infinite for a surface at rest
-  double gear_thermal_resistance = 0;    ///< R_fg, eq 35 [K/W]; infinite for a surface at rest
-  double heat_partition = 0;             ///< a_h, eq 37 [-]
-  double mean_shear_stress = 0;          ///< tau_bar, area mean of eq 23 under the limit [Pa]
-  double heat_rate = 0;                  ///< q_dot = F_fr V_s [W]
-  double friction_coefficient = 0;       ///< F_fr / W [-]
-  int limiting_stress_switches = 0;      ///< radii at which the stress meets tau_L
-  int thermal_roots = 1;  ///< thermal equilibria found; above 1 the coldest is returned
+  double thermal_resistance_1 = 0;   ///< R_fp, eq 35 [K/W]; infinite for a surface at rest
+  double thermal_resistance_2 = 0;   ///< R_fg, eq 35 [K/W]; infinite for a surface at rest
+  double heat_partition = 0;         ///< a_h, eq 37 [-]
+  double mean_shear_stress = 0;      ///< tau_bar, area mean of eq 23 under the limit [Pa]
+  double heat_rate = 0;              ///< q_dot = F_fr V_s [W]
+  double friction_coefficient = 0;   ///< F_fr / W [-]
+  int limiting_stress_switches = 0;  ///< radii at which the stress meets tau_L
+  int thermal_roots = 1;             ///< thermal equilibria found; above 1 the coldest is returned
 };
 
 /// The friction kernel of one fluid on one surface at one sump temperature.

@@ -259,8 +259,8 @@ class Collected {
 
  private:
   using In = ContactBlockInputs;
-  static constexpr std::array kColumns{&In::load,        &In::pinion_x,    &In::pinion_y,
-                                       &In::gear_x,      &In::gear_y,      &In::start_temperature,
+  static constexpr std::array kColumns{&In::load,        &In::x_1,         &In::y_1,
+                                       &In::x_2,         &In::y_2,         &In::start_temperature,
                                        &In::curvature_x, &In::curvature_y, &In::unit_area,
                                        &In::per_semi_x,  &In::per_semi_y,  &In::unit_pressure};
   alignas(64) ContactLanes column_[kColumns.size()];
@@ -278,9 +278,8 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
   const FlankContactBatchConditions& k = conditions;
   std::size_t by_reference = 0;
   const auto reference = [&](std::size_t i) {
-    put(model_.solve({k.load[i], g.radius_x_[first + i], g.radius_y_[first + i],
-                      k.pinion_velocity_x[i], k.pinion_velocity_y[i], k.gear_velocity_x[i],
-                      k.gear_velocity_y[i]}),
+    put(model_.solve({k.load[i], g.radius_x_[first + i], g.radius_y_[first + i], k.velocity_1_x[i],
+                      k.velocity_1_y[i], k.velocity_2_x[i], k.velocity_2_y[i]}),
         i, results);
     ++by_reference;
   };
@@ -296,10 +295,10 @@ std::size_t FlankContactBatch::solve(const ContactGeometries& geometries, std::s
   const auto inputs = [&](std::size_t i) {
     const std::size_t at = first + i;
     return ContactBlockInputs{k.load + i,
-                              k.pinion_velocity_x + i,
-                              k.pinion_velocity_y + i,
-                              k.gear_velocity_x + i,
-                              k.gear_velocity_y + i,
+                              k.velocity_1_x + i,
+                              k.velocity_1_y + i,
+                              k.velocity_2_x + i,
+                              k.velocity_2_y + i,
                               k.start_temperature != nullptr ? k.start_temperature + i : kNoStart,
                               g.curvature_x_.data() + at,
                               g.curvature_y_.data() + at,

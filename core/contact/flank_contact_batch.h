@@ -46,11 +46,11 @@ class ContactGeometries {
 
 /// Loads and surface velocities, one array each; see ContactConditions.
 struct FlankContactBatchConditions {
-  const double* load;               ///< W [N]
-  const double* pinion_velocity_x;  ///< u_s,p [m/s]
-  const double* pinion_velocity_y;  ///< v_s,p [m/s]
-  const double* gear_velocity_x;    ///< u_s,g [m/s]
-  const double* gear_velocity_y;    ///< v_s,g [m/s]
+  const double* load;          ///< W [N]
+  const double* velocity_1_x;  ///< u_s,p [m/s]
+  const double* velocity_1_y;  ///< v_s,p [m/s]
+  const double* velocity_2_x;  ///< u_s,g [m/s]
+  const double* velocity_2_y;  ///< v_s,g [m/s]
   /// Temperatures near T_c to start from [K], such as a previous sweep's: saves a tenth of the
   /// time. Null, or 0 for a contact: none. They change results by less than 1e-10.
   const double* start_temperature = nullptr;

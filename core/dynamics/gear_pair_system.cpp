@@ -82,10 +82,10 @@ void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPa
   std::array<double, kFlankPairs> pinion_x, pinion_y, gear_x, gear_y;
   for (int k = 0; k < kFlankPairs; ++k) {
     const ContactConditions& c = conditions[k];
-    pinion_x[k] = c.pinion_velocity_x;
-    pinion_y[k] = c.pinion_velocity_y;
-    gear_x[k] = c.gear_velocity_x;
-    gear_y[k] = c.gear_velocity_y;
+    pinion_x[k] = c.velocity_1_x;
+    pinion_y[k] = c.velocity_1_y;
+    gear_x[k] = c.velocity_2_x;
+    gear_y[k] = c.velocity_2_y;
     if (out.load[k] > 0) geometries_->set(k, c.radius_x, c.radius_y);
   }
   using Column = std::array<double, kFlankPairs>;

@@ -187,10 +187,10 @@ int OrbitFriction::gather(const MeshGrid& grid, const std::vector<OrbitPiece>& p
                  [&](int k, const FlankKinematics& flank, const ContactConditions& c) {
                    const FlankMotion& motion = at.motion[k];
                    seen_[kSeenLoad][count] = c.load;
-                   seen_[kSeenPinionX][count] = c.pinion_velocity_x;
-                   seen_[kSeenPinionY][count] = c.pinion_velocity_y;
-                   seen_[kSeenGearX][count] = c.gear_velocity_x;
-                   seen_[kSeenGearY][count] = c.gear_velocity_y;
+                   seen_[kSeenPinionX][count] = c.velocity_1_x;
+                   seen_[kSeenPinionY][count] = c.velocity_1_y;
+                   seen_[kSeenGearX][count] = c.velocity_2_x;
+                   seen_[kSeenGearY][count] = c.velocity_2_y;
                    seen_[kSeenSlidingSpeed][count] = motion.sliding_speed;
                    seen_[kSeenPinionArm][count] = motion.pinion_friction_arm;
                    seen_[kSeenGearArm][count] = motion.gear_friction_arm;

@@ -152,11 +152,11 @@ v1::EvaluateContactResponse to_message(const ContactSolution& s) {
   out.set_contact_temperature_kelvin(s.contact_temperature);
   out.set_flash_temperature_rise_kelvin(s.flash_temperature_rise);
   out.set_oil_temperature_rise_kelvin(s.oil_temperature_rise);
-  out.set_pinion_active_length_metres(s.pinion_active_length);
-  out.set_gear_active_length_metres(s.gear_active_length);
+  out.set_pinion_active_length_metres(s.active_length_1);
+  out.set_gear_active_length_metres(s.active_length_2);
   out.set_film_thermal_resistance_kelvin_per_watt(s.film_thermal_resistance);
-  out.set_pinion_thermal_resistance_kelvin_per_watt(s.pinion_thermal_resistance);
-  out.set_gear_thermal_resistance_kelvin_per_watt(s.gear_thermal_resistance);
+  out.set_pinion_thermal_resistance_kelvin_per_watt(s.thermal_resistance_1);
+  out.set_gear_thermal_resistance_kelvin_per_watt(s.thermal_resistance_2);
   out.set_heat_partition(s.heat_partition);
   out.set_mean_shear_stress_pascals(s.mean_shear_stress);
   out.set_viscous_friction_newtons(s.viscous_friction);

@@ -156,10 +156,10 @@ ContactConditions contact_conditions(const v1::EvaluateContactRequest& message) 
   return {.load = message.load_newtons(),
           .radius_x = message.radius_x_metres(),
           .radius_y = message.radius_y_metres(),
-          .pinion_velocity_x = message.pinion_velocity_x_metres_per_second(),
-          .pinion_velocity_y = message.pinion_velocity_y_metres_per_second(),
-          .gear_velocity_x = message.gear_velocity_x_metres_per_second(),
-          .gear_velocity_y = message.gear_velocity_y_metres_per_second()};
+          .velocity_1_x = message.pinion_velocity_x_metres_per_second(),
+          .velocity_1_y = message.pinion_velocity_y_metres_per_second(),
+          .velocity_2_x = message.gear_velocity_x_metres_per_second(),
+          .velocity_2_y = message.gear_velocity_y_metres_per_second()};
 }
 
 Roughness roughness(const v1::EvaluateContactRequest& message) {

@@ -7,12 +7,14 @@
 #include <vector>
 
 #include "core/contact/contact_block.h"
+#include "core/contact/contact_sensitivity.h"
 #include "tests/benchmark/measurements.h"
 #include "tests/support/contact_batch.h"
 #include "tests/support/realistic_contacts.h"
 
 // Nanoseconds per contact of the friction kernel, one at a time and in batches, and the latter in
-// units of the library's vector exponential of the same width. Contacts: the reference gear set at
+// units of the library's vector exponential of the same width; and of the derivatives of solved
+// contacts by all inputs, one at a time. Contacts: the reference gear set at
 // 20 to 140 km/h, sump 20, 40 and 90 C, three fluids; 256 at a time, and 16 at a time.
 // Everything is measured in turns, again and again; figures are medians over the turns.
 namespace tribodyn {
@@ -92,7 +94,7 @@ int run(const std::string& path, int turns) {
     for (const SceneContacts& scene : scenes) batches[s].emplace_back(scene.model, sets[s]);
   }
 
-  std::vector<double> scalar, set_up;
+  std::vector<double> scalar, derivatives, set_up;
   std::vector<Timings> timings(sets.size());
   std::size_t by_reference = 0;
   double sum = 0;  // keeps the compiler honest
@@ -105,6 +107,19 @@ int run(const std::string& path, int turns) {
                        }
                      }) /
                      static_cast<double>(contacts));
+    derivatives.push_back(nanoseconds([&] {
+                            for (SceneContacts& scene : scenes) {
+                              const ContactSensitivityModel sensitivity(scene.model);
+                              const FlankContactBatchResults solved = scene.warm.results();
+                              for (std::size_t i = 0; i < scene.conditions.size(); ++i) {
+                                sum += sensitivity
+                                           .at(scene.conditions[i], solved.film_load[i],
+                                               solved.contact_temperature[i])
+                                           .friction.by[0];
+                              }
+                            }
+                          }) /
+                          static_cast<double>(contacts));
     set_up.push_back(nanoseconds([&] { FlankContactBatch{scenes[0].model}; }));
     for (std::size_t s = 0; s < sets.size(); ++s) {
       Timings& t = timings[s];
@@ -126,6 +141,7 @@ int run(const std::string& path, int turns) {
   const std::string unit = "vector exponentials";
   std::vector<Measurement> out;
   out.push_back({"friction kernel, one at a time", median(scalar), "ns/contact", {}});
+  out.push_back({"derivatives of a solved contact", median(derivatives), "ns/contact", {}});
   out.push_back({"friction kernel, set-up of a batch", median(set_up) / 1000, "us/model", {}});
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const std::string name = std::string(", ") + FlankContactBatch::name(sets[s]);

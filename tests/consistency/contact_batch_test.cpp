@@ -124,7 +124,7 @@ std::vector<ContactConditions> mixed_conditions(Draw& draw, int count) {
     out.push_back(random_contact_case(draw).conditions);
     if (i % 7 == 3) out.back().load = 0;
     if (i % 11 == 5) out.back().radius_x = -1;
-    if (i % 13 == 6) out.back().gear_velocity_y = std::numeric_limits<double>::quiet_NaN();
+    if (i % 13 == 6) out.back().velocity_2_y = std::numeric_limits<double>::quiet_NaN();
   }
   return out;
 }
@@ -230,13 +230,8 @@ TEST(ContactBatch, HardContacts) {
                            std::numeric_limits<double>::quiet_NaN()}) {
     for (int j = 0; j < 7; ++j) {
       ContactConditions k = typical;
-      double* const members[] = {&k.load,
-                                 &k.radius_x,
-                                 &k.radius_y,
-                                 &k.pinion_velocity_x,
-                                 &k.pinion_velocity_y,
-                                 &k.gear_velocity_x,
-                                 &k.gear_velocity_y};
+      double* const members[] = {&k.load,         &k.radius_x,     &k.radius_y,    &k.velocity_1_x,
+                                 &k.velocity_1_y, &k.velocity_2_x, &k.velocity_2_y};
       *members[j] = bad;
       hard.push_back(k);
     }

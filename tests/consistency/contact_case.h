@@ -88,10 +88,10 @@ inline ContactCase random_contact_case(Draw& draw) {
   k.radius_x = draw.log_between(3e-3, 60e-3);
   k.radius_y = k.radius_x * draw.log_between(0.4, 1000);
   k.load = draw.log_between(0.01, 2e4);
-  k.pinion_velocity_x = draw.signed_log_between(0.01, 30);
-  k.pinion_velocity_y = draw.signed_log_between(0.01, 30);
-  k.gear_velocity_x = draw.signed_log_between(0.01, 30);
-  k.gear_velocity_y = draw.signed_log_between(0.01, 30);
+  k.velocity_1_x = draw.signed_log_between(0.01, 30);
+  k.velocity_1_y = draw.signed_log_between(0.01, 30);
+  k.velocity_2_x = draw.signed_log_between(0.01, 30);
+  k.velocity_2_y = draw.signed_log_between(0.01, 30);
   return c;
 }
 

@@ -41,8 +41,8 @@ void add_film_and_load(const ContactCase& c, const ContactSolution& s, Residuals
   const double modulus = c.solid.youngs_modulus / (1 - square(c.solid.poissons_ratio));
   out["eq 13 E'"] = difference(s.reduced_modulus, modulus);
 
-  const double mean_x = (k.pinion_velocity_x + k.gear_velocity_x) / 2;
-  const double mean_y = (k.pinion_velocity_y + k.gear_velocity_y) / 2;
+  const double mean_x = (k.velocity_1_x + k.velocity_2_x) / 2;
+  const double mean_y = (k.velocity_1_y + k.velocity_2_y) / 2;
   const double cosine = std::cos(s.entrainment_angle), sine = std::sin(s.entrainment_angle);
   const double speeds = std::abs(mean_x) + std::abs(mean_y);
   out["eq 17 U_eff"] = std::abs(s.entrainment_speed - (mean_x * cosine + mean_y * sine)) / speeds;
@@ -143,8 +143,7 @@ double active_length(const ContactCase& c, const ContactSolution& s, double u, d
 
 void add_heat(const ContactCase& c, const ContactSolution& s, Residuals& out) {
   const ContactConditions& k = c.conditions;
-  const double slide =
-      std::hypot(k.pinion_velocity_x - k.gear_velocity_x, k.pinion_velocity_y - k.gear_velocity_y);
+  const double slide = std::hypot(k.velocity_1_x - k.velocity_2_x, k.velocity_1_y - k.velocity_2_y);
   out["V_s"] = difference(s.sliding_speed, slide);
   out["eq 18 shear rate"] = difference(s.shear_rate, slide / s.central_film_thickness);
 
@@ -154,18 +153,18 @@ void add_heat(const ContactCase& c, const ContactSolution& s, Residuals& out) {
     return 1.06 / (s.contact_area * c.solid.thermal_conductivity) *
            std::sqrt(diffusivity * length / std::hypot(u, v));
   };
-  const double l_p = active_length(c, s, k.pinion_velocity_x, k.pinion_velocity_y);
-  const double l_g = active_length(c, s, k.gear_velocity_x, k.gear_velocity_y);
+  const double l_p = active_length(c, s, k.velocity_1_x, k.velocity_1_y);
+  const double l_g = active_length(c, s, k.velocity_2_x, k.velocity_2_y);
   const double film =
       s.central_film_thickness / (2 * c.lubricant.thermal_conductivity * s.contact_area);
-  const double pinion = resistance(l_p, k.pinion_velocity_x, k.pinion_velocity_y);
-  const double gear = resistance(l_g, k.gear_velocity_x, k.gear_velocity_y);
+  const double pinion = resistance(l_p, k.velocity_1_x, k.velocity_1_y);
+  const double gear = resistance(l_g, k.velocity_2_x, k.velocity_2_y);
   const double partition = (gear + film) / (pinion + gear + 2 * film);
-  out["eq 36 l_p"] = difference(s.pinion_active_length, l_p);
-  out["eq 36 l_g"] = difference(s.gear_active_length, l_g);
+  out["eq 36 l_p"] = difference(s.active_length_1, l_p);
+  out["eq 36 l_g"] = difference(s.active_length_2, l_g);
   out["eq 35 R_cf"] = difference(s.film_thermal_resistance, film);
-  out["eq 35 R_fp"] = difference(s.pinion_thermal_resistance, pinion);
-  out["eq 35 R_fg"] = difference(s.gear_thermal_resistance, gear);
+  out["eq 35 R_fp"] = difference(s.thermal_resistance_1, pinion);
+  out["eq 35 R_fg"] = difference(s.thermal_resistance_2, gear);
   out["eq 37 a_h"] = difference(s.heat_partition, partition);
 
   const auto stress_at = [&](double temperature) {
@@ -296,8 +295,8 @@ TEST(ContactIdentities, MisprintedEquations) {
   const int states = kRandomStates / 4;
   const auto forward = [](ContactCase& c) {
     c.options.as_published.eq17_atan = true;
-    c.conditions.pinion_velocity_x = std::abs(c.conditions.pinion_velocity_x);
-    c.conditions.gear_velocity_x = std::abs(c.conditions.gear_velocity_x);
+    c.conditions.velocity_1_x = std::abs(c.conditions.velocity_1_x);
+    c.conditions.velocity_2_x = std::abs(c.conditions.velocity_2_x);
   };
   expect_identities("eq 17 as printed, forwards", 9, forward, states);
   expect_identities(

@@ -186,8 +186,8 @@ TEST(ContactLimits, RelabellingTheAxesChangesNothing) {
   for_random_contacts(40, [](ContactCase c, const ContactSolution& s) {
     ContactConditions& k = c.conditions;
     std::swap(k.radius_x, k.radius_y);
-    std::swap(k.pinion_velocity_x, k.pinion_velocity_y);
-    std::swap(k.gear_velocity_x, k.gear_velocity_y);
+    std::swap(k.velocity_1_x, k.velocity_1_y);
+    std::swap(k.velocity_2_x, k.velocity_2_y);
     expect_same(c.solve(), s, 1e-10);  // a steep stress multiplies rounding
   });
 }
@@ -195,14 +195,13 @@ TEST(ContactLimits, RelabellingTheAxesChangesNothing) {
 TEST(ContactLimits, SwappingTheSurfacesOrTurningBothAroundChangesNoForce) {
   for_random_contacts(41, [](ContactCase c, const ContactSolution& s) {
     ContactConditions& k = c.conditions;
-    std::swap(k.pinion_velocity_x, k.gear_velocity_x);
-    std::swap(k.pinion_velocity_y, k.gear_velocity_y);
+    std::swap(k.velocity_1_x, k.velocity_2_x);
+    std::swap(k.velocity_1_y, k.velocity_2_y);
     const ContactSolution swapped = c.solve();
     if (swapped.status != ContactStatus::kOk) return;  // R_fp a_h is not symmetric: hotter
     EXPECT_EQ(swapped.central_film_thickness, s.central_film_thickness);
     EXPECT_LE(std::abs(swapped.heat_partition + s.heat_partition - 1), 1e-14);
-    for (double* v :
-         {&k.pinion_velocity_x, &k.pinion_velocity_y, &k.gear_velocity_x, &k.gear_velocity_y}) {
+    for (double* v : {&k.velocity_1_x, &k.velocity_1_y, &k.velocity_2_x, &k.velocity_2_y}) {
       *v = -*v;
     }
     expect_same(c.solve(), swapped);
@@ -213,7 +212,7 @@ TEST(PublishedMisprints, Eq17RefusesBackwardEntrainmentAndChangesNothingElse) {
   for_random_contacts(51, [](ContactCase c, const ContactSolution& s) {
     c.options.as_published.eq17_atan = true;
     const ContactSolution printed = c.solve();
-    if (c.conditions.pinion_velocity_x + c.conditions.gear_velocity_x < 0) {
+    if (c.conditions.velocity_1_x + c.conditions.velocity_2_x < 0) {
       EXPECT_EQ(printed.status, ContactStatus::kRefusedNegativeEntrainment);
     } else {
       expect_same(printed, s, 1e-9);

@@ -31,8 +31,7 @@ ContactSolution solved(const ContactCase& c) {
 }
 
 void speed_up(ContactConditions& k, double growth) {
-  for (double* v :
-       {&k.pinion_velocity_x, &k.pinion_velocity_y, &k.gear_velocity_x, &k.gear_velocity_y}) {
+  for (double* v : {&k.velocity_1_x, &k.velocity_1_y, &k.velocity_2_x, &k.velocity_2_y}) {
     *v *= growth;
   }
 }
@@ -130,13 +129,8 @@ void shake(const std::vector<double*>& numbers, int one_in) {
 }
 
 std::vector<double*> numbers_of(ContactConditions& k) {
-  return {&k.load,
-          &k.radius_x,
-          &k.radius_y,
-          &k.pinion_velocity_x,
-          &k.pinion_velocity_y,
-          &k.gear_velocity_x,
-          &k.gear_velocity_y};
+  return {&k.load,         &k.radius_x,     &k.radius_y,    &k.velocity_1_x,
+          &k.velocity_1_y, &k.velocity_2_x, &k.velocity_2_y};
 }
 
 std::vector<double*> numbers_of_fluid_and_surface(ContactCase& c) {
@@ -213,8 +207,8 @@ void assert_answer_or_refusal(const ContactSolution& s) {
   FINITE(contact_temperature);
   FINITE(flash_temperature_rise);
   FINITE(oil_temperature_rise);
-  FINITE(pinion_active_length);
-  FINITE(gear_active_length);
+  FINITE(active_length_1);
+  FINITE(active_length_2);
   FINITE(film_thermal_resistance);
   FINITE(heat_partition);
   FINITE(mean_shear_stress);
@@ -226,8 +220,8 @@ void assert_answer_or_refusal(const ContactSolution& s) {
   FINITE(limiting_stress_area_share);
 #undef FINITE
   RC_ASSERT(!std::isnan(s.shear_rate));
-  RC_ASSERT(!std::isnan(s.pinion_thermal_resistance));
-  RC_ASSERT(!std::isnan(s.gear_thermal_resistance));
+  RC_ASSERT(!std::isnan(s.thermal_resistance_1));
+  RC_ASSERT(!std::isnan(s.thermal_resistance_2));
 }
 
 RC_GTEST_PROP(ContactFuzz, AnyFiniteConditionsGiveAnAnswerOrANamedRefusal, ()) {

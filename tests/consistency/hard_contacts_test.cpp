@@ -50,7 +50,7 @@ double temperature_of(const ContactCase& c, const ContactSolution& s, double str
   const double friction = (s.contact_area - s.asperity_area) * stress + s.boundary_friction;
   return c.inlet_temperature() +
          s.sliding_speed *
-             (s.pinion_thermal_resistance * s.heat_partition * friction +
+             (s.thermal_resistance_1 * s.heat_partition * friction +
               stress * s.central_film_thickness / (8 * c.lubricant.thermal_conductivity));
 }
 
@@ -77,8 +77,8 @@ ContactSolution expect_yardstick(const ContactCase& c, double tolerance = 1e-9) 
   if (!in_reach) return s;
   const ContactConditions& k = c.conditions;
   const yardstick::ContactResult y =
-      yardstick_of(c).Evaluate({k.load, k.radius_x, k.radius_y, k.pinion_velocity_x,
-                                k.pinion_velocity_y, k.gear_velocity_x, k.gear_velocity_y});
+      yardstick_of(c).Evaluate({k.load, k.radius_x, k.radius_y, k.velocity_1_x, k.velocity_1_y,
+                                k.velocity_2_x, k.velocity_2_y});
   const auto expect = [tolerance](const char* name, double ours, double theirs) {
     EXPECT_LE(difference(ours, theirs), tolerance) << name << " " << ours << " " << theirs;
   };
@@ -90,7 +90,7 @@ ContactSolution expect_yardstick(const ContactCase& c, double tolerance = 1e-9) 
   expect("R_e", s.entrainment_radius, y.entrainment_radius);
   expect("h_cen", s.central_film_thickness, y.central_film_thickness);
   expect("T_c", s.contact_temperature, y.temperature);
-  expect("l_p", s.pinion_active_length, y.pinion_active_length);
+  expect("l_p", s.active_length_1, y.pinion_active_length);
   expect("a_h", s.heat_partition, y.heat_partition);
   expect("tau_bar", s.mean_shear_stress, y.mean_shear_stress);
   expect("F_v", s.viscous_friction, y.viscous_friction);
@@ -153,7 +153,7 @@ TEST(HardContacts, SlowSlidingTendsToPureRolling) {
   c.conditions = {2000, 0.015, 0.3, 5, 1, 5, 1};
   const ContactSolution rolling = c.solve();
   for (const double creep : {1e-3, 1e-6, 1e-9, 1e-12}) {
-    c.conditions.gear_velocity_x = 5 - creep;
+    c.conditions.velocity_2_x = 5 - creep;
     const ContactSolution s = c.solve();
     ASSERT_EQ(s.status, ContactStatus::kOk);
     // tau is at most the ambient stress times exp(alpha p): linear in the creep.
@@ -196,13 +196,13 @@ TEST(HardContacts, ZeroEntrainmentSitsOnTheLimitingStress) {
     const double limit = 4e6 + 0.029 * s.maximum_pressure * 2 / 3;
     EXPECT_LE(difference(s.mean_shear_stress, limit), 1e-14);
     EXPECT_EQ(s.limiting_stress_area_share, 1);
-    const double flash = s.pinion_thermal_resistance * s.heat_partition * s.heat_rate;
+    const double flash = s.thermal_resistance_1 * s.heat_partition * s.heat_rate;
     EXPECT_LE(difference(s.contact_temperature, c.inlet_temperature() + flash), 1e-14);
 
     c.options.no_limiting_shear_stress = true;
     EXPECT_EQ(c.solve().status, ContactStatus::kRefusedUnboundedShear);
-    c.conditions.gear_velocity_x = c.conditions.gear_velocity_y = 0;
-    c.conditions.pinion_velocity_x = c.conditions.pinion_velocity_y = 0;
+    c.conditions.velocity_2_x = c.conditions.velocity_2_y = 0;
+    c.conditions.velocity_1_x = c.conditions.velocity_1_y = 0;
     EXPECT_EQ(c.solve().status, ContactStatus::kOk);  // no film, but no sliding either
   }
 }
@@ -212,9 +212,9 @@ TEST(HardContacts, NearlyZeroEntrainmentTendsToIt) {
   c.conditions = {2000, 0.015, 0.3, 3, 0, -3, 0};
   const ContactSolution still = c.solve();
   for (const double speed : {1e-6, 1e-12, 1e-50, 1e-300}) {
-    c.conditions.gear_velocity_x = -3 + speed;
-    c.conditions.pinion_velocity_x = 3;
-    c.conditions.pinion_velocity_y = speed;
+    c.conditions.velocity_2_x = -3 + speed;
+    c.conditions.velocity_1_x = 3;
+    c.conditions.velocity_1_y = speed;
     const ContactSolution s = c.solve();
     ASSERT_EQ(s.status, ContactStatus::kOk);
     if (speed < 1e-9) {
@@ -231,24 +231,23 @@ TEST(HardContacts, SurfaceAtRestTakesNoHeat) {
   c.conditions = {2000, 0.015, 0.3, 5, 1, 0, 0};
   const ContactSolution gear = c.solve();
   ASSERT_EQ(gear.status, ContactStatus::kOk);
-  EXPECT_EQ(gear.gear_thermal_resistance, kInfinity);
+  EXPECT_EQ(gear.thermal_resistance_2, kInfinity);
   EXPECT_DOUBLE_EQ(gear.heat_partition, 1);
-  EXPECT_LE(
-      difference(gear.flash_temperature_rise, gear.pinion_thermal_resistance * gear.heat_rate),
-      1e-14);
+  EXPECT_LE(difference(gear.flash_temperature_rise, gear.thermal_resistance_1 * gear.heat_rate),
+            1e-14);
 
   c.conditions = {2000, 0.015, 0.3, 0, 0, 5, 1};
   const ContactSolution pinion = c.solve();
   ASSERT_EQ(pinion.status, ContactStatus::kOk);
-  EXPECT_EQ(pinion.pinion_thermal_resistance, kInfinity);
+  EXPECT_EQ(pinion.thermal_resistance_1, kInfinity);
   EXPECT_EQ(pinion.heat_partition, 0);
   // The limit of R_fp a_h: through the film into the gear.
-  EXPECT_LE(difference(pinion.flash_temperature_rise,
-                       (pinion.gear_thermal_resistance + pinion.film_thermal_resistance) *
-                           pinion.heat_rate),
-            1e-14);
+  EXPECT_LE(
+      difference(pinion.flash_temperature_rise,
+                 (pinion.thermal_resistance_2 + pinion.film_thermal_resistance) * pinion.heat_rate),
+      1e-14);
   // and it is the limit of a slow pinion.
-  c.conditions.pinion_velocity_x = 1e-20;
+  c.conditions.velocity_1_x = 1e-20;
   EXPECT_LE(difference(c.solve().friction, pinion.friction), 1e-8);
 }
 
@@ -313,9 +312,9 @@ TEST(HardContacts, FilmFarThinnerThanTheRoughness) {
     SCOPED_TRACE(speed);
     ContactCase c;
     c.roughness = {5e8, 15e-6, 5e-6};
-    c.conditions.pinion_velocity_x = 1.2 * speed;
-    c.conditions.gear_velocity_x = 0.8 * speed;
-    c.conditions.pinion_velocity_y = c.conditions.gear_velocity_y = 0.1 * speed;
+    c.conditions.velocity_1_x = 1.2 * speed;
+    c.conditions.velocity_2_x = 0.8 * speed;
+    c.conditions.velocity_1_y = c.conditions.velocity_2_y = 0.1 * speed;
     const ContactSolution s = expect_yardstick(c);
     EXPECT_LT(s.film_ratio, 0.2);
     EXPECT_GT(s.asperity_load, 0.15 * c.conditions.load);

@@ -58,11 +58,11 @@ TEST(LimitingStress, ZeroEverywhereIsNoViscousFriction) {
   EXPECT_EQ(s.friction, s.boundary_friction);
   EXPECT_EQ(s.limiting_stress_area_share, 1);
   EXPECT_LE(difference(s.contact_temperature,
-                       c.inlet_temperature() + s.pinion_thermal_resistance * s.heat_partition *
+                       c.inlet_temperature() + s.thermal_resistance_1 * s.heat_partition *
                                                    s.boundary_friction * s.sliding_speed),
             1e-14);
-  c.conditions.gear_velocity_x = -c.conditions.pinion_velocity_x;  // nor without a film
-  c.conditions.gear_velocity_y = -c.conditions.pinion_velocity_y;
+  c.conditions.velocity_2_x = -c.conditions.velocity_1_x;  // nor without a film
+  c.conditions.velocity_2_y = -c.conditions.velocity_1_y;
   EXPECT_EQ(c.solve().viscous_friction, 0);
 }
 

@@ -199,10 +199,10 @@ TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
           FlankMotion motion;
           const ContactConditions c = system.contact_conditions(flank, load, y.data(), motion);
           EXPECT_NEAR(seen[kSeenLoad][n], c.load, 1e-12 * (c.load + 1));
-          EXPECT_NEAR(seen[kSeenPinionX][n], c.pinion_velocity_x, 1e-12);
-          EXPECT_NEAR(seen[kSeenPinionY][n], c.pinion_velocity_y, 1e-12);
-          EXPECT_NEAR(seen[kSeenGearX][n], c.gear_velocity_x, 1e-12);
-          EXPECT_NEAR(seen[kSeenGearY][n], c.gear_velocity_y, 1e-12);
+          EXPECT_NEAR(seen[kSeenPinionX][n], c.velocity_1_x, 1e-12);
+          EXPECT_NEAR(seen[kSeenPinionY][n], c.velocity_1_y, 1e-12);
+          EXPECT_NEAR(seen[kSeenGearX][n], c.velocity_2_x, 1e-12);
+          EXPECT_NEAR(seen[kSeenGearY][n], c.velocity_2_y, 1e-12);
           EXPECT_NEAR(seen[kSeenSlidingSpeed][n], motion.sliding_speed, 1e-12);
           EXPECT_NEAR(seen[kSeenPinionArm][n], motion.pinion_friction_arm, 1e-12);
           EXPECT_NEAR(seen[kSeenGearArm][n], motion.gear_friction_arm, 1e-12);

@@ -23,7 +23,7 @@ class Excess {
     film_ = cold.solve();
     EXPECT_EQ(film_.status, ContactStatus::kOk);
   }
-  double flash_resistance() const { return film_.pinion_thermal_resistance * film_.heat_partition; }
+  double flash_resistance() const { return film_.thermal_resistance_1 * film_.heat_partition; }
   double base() const {
     return case_.inlet_temperature() +
            flash_resistance() * film_.boundary_friction * film_.sliding_speed;

@@ -19,8 +19,8 @@ class ContactArrays {
     for (std::size_t i = 0; i < conditions.size(); ++i) {
       const ContactConditions& k = conditions[i];
       geometries_.set(i, k.radius_x, k.radius_y);
-      const double row[kInputs] = {k.load, k.pinion_velocity_x, k.pinion_velocity_y,
-                                   k.gear_velocity_x, k.gear_velocity_y};
+      const double row[kInputs] = {k.load, k.velocity_1_x, k.velocity_1_y, k.velocity_2_x,
+                                   k.velocity_2_y};
       for (int c = 0; c < kInputs; ++c) in_[c].push_back(row[c]);
     }
     for (auto& column : out_) column.resize(conditions.size());
