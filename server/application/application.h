@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "server/execution/simulation_jobs.h"
+#include "server/simulation/prepared_gear_sets.h"
 #include "server/storage/store.h"
 
 namespace tribodyn::server {
@@ -16,6 +17,8 @@ struct Application {
   std::shared_ptr<std::atomic<int>> open_histories = std::make_shared<std::atomic<int>>(0);
   /// Watches with a filter that are open; shared for the same reason.
   std::shared_ptr<std::atomic<int>> open_filters = std::make_shared<std::atomic<int>>(0);
+  /// For calls that compute; the executor has its own.
+  std::shared_ptr<PreparedGearSets> gear_sets = std::make_shared<PreparedGearSets>();
 };
 
 }  // namespace tribodyn::server

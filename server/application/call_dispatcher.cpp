@@ -59,7 +59,8 @@ google::rpc::Status lane_full(CallLane lane) {
       v1::ERROR_REASON_TOO_MANY_CALLS,
       fmt::format("no more than {} calls of this kind may wait; try again in {} s, or send fewer "
                   "calls at a time",
-                  CallLanes::kWaiting, kBusySeconds),
+                  lane == CallLane::kCompute ? CallLanes::kHeavyWaiting : CallLanes::kWaiting,
+                  kBusySeconds),
       kBusySeconds);
 }
 

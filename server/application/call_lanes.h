@@ -10,17 +10,18 @@ namespace tribodyn::server {
 
 /// The group of threads that answers a call. A call waits only for other calls of its lane.
 enum class CallLane {
-  kRead,    ///< takes about a millisecond or less
-  kWrite,   ///< waits for the disk
-  kSearch,  ///< reads many rows, or computes
-  kHeavy,   ///< a batch, an import, or any large request
-  kStream,  ///< the next message of a stream
+  kRead,     ///< takes about a millisecond or less
+  kWrite,    ///< waits for the disk
+  kSearch,   ///< reads many rows, or computes for some milliseconds
+  kHeavy,    ///< a batch, an import, or any large request
+  kCompute,  ///< computes for up to seconds
+  kStream,   ///< the next message of a stream
 };
 
 /// The threads of all lanes. Safe for concurrent access. The destructor runs the accepted tasks.
 class CallLanes {
  public:
-  /// Largest number of waiting calls in a lane, and in the lane of heavy calls.
+  /// Largest number of waiting calls in a lane, and in those of heavy and of computing calls.
   static constexpr std::size_t kWaiting = 10'000;  // small requests take gRPC a few kB each
   static constexpr std::size_t kHeavyWaiting = 64;
   /// Largest size of all heavy requests that wait or run [bytes]: two of the longest. Parsed, they
@@ -40,10 +41,11 @@ class CallLanes {
 
   // In the order of CallLane: threads, waiting tasks, bytes. More threads would only wait for the
   // processors; eight writers share their commits.
-  Workers workers_[5] = {{4, kWaiting, kUnlimited},
+  Workers workers_[6] = {{4, kWaiting, kUnlimited},
                          {8, kWaiting, kUnlimited},
                          {2, kWaiting, kUnlimited},
                          {2, kHeavyWaiting, kHeavyBytes},
+                         {2, kHeavyWaiting, kUnlimited},
                          {2, kUnlimited, kUnlimited}};  // each open stream has at most one task
 };
 

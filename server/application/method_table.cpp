@@ -8,6 +8,7 @@
 
 #include "server/application/contacts.h"
 #include "server/application/imports.h"
+#include "server/application/points.h"
 #include "server/application/resource_writes.h"
 #include "server/application/schemas.h"
 #include "server/application/simulations.h"
@@ -141,6 +142,7 @@ std::vector<Method> rows() {
 
       unary(kRead, get_schema),
       unary<v1::EvaluateContactRequest, v1::EvaluateContactResponse>(kSearch, evaluate_contact),
+      unary<v1::EvaluatePointsRequest, v1::EvaluatePointsResponse>(kCompute, evaluate_points),
 
       unary(kWrite, create_simulation),
       unary(kRead, get_simulation),

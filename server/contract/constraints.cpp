@@ -163,6 +163,10 @@ constexpr Constraint kConstraints[] = {
     {"Simulation", "deadline_seconds", "s", 0.001, 31'622'400, "work limit", "at most a year"},
     {"Cruise", "speed_kilometres_per_hour", "km/h", 0.1, 400, "eq 7", ""},
     {"Cruise", "ascent_angle_degrees", "degrees", -45, 45, "eq 7", ""},
+    {"PointCondition", "speed_kilometres_per_hour", "km/h", 0.1, 400, "eq 7", ""},
+    {"PointCondition", "ascent_angle_degrees", "degrees", -45, 45, "eq 7", ""},
+    {"PointCondition", "sump_temperature_celsius", "C", -70, 200, "eq 14", ""},
+    {"PointCondition", "inlet_temperature_rise_kelvin", "K", 0, 300, "eq 14", ""},
     {"DriveCycleSnapshot", "speed_kilometres_per_hour", "km/h", 0.1, 400, "eq 7", ""},
     {"DriveCycleSnapshot", "acceleration_metres_per_second_squared", "m/s2", -50, 50, "eq 7", ""},
     {"DriveCycleSnapshot", "ascent_angle_degrees", "degrees", -45, 45, "eq 7", ""},
@@ -186,6 +190,9 @@ constexpr Constraint kConstraints[] = {
     {"SolverOptions", "march_settling_tolerance", "", 1e-12, 1e-1, "eq 30", "", Zero::kUnset},
     {"SolverOptions", "maximum_mesh_cycles", "", 1, 100000, "work limit", "", Zero::kUnset},
     {"SolverOptions", "recorded_mesh_cycles", "", 1, 1000, "work limit", "", Zero::kUnset},
+
+    {"EvaluatePointsRequest", "tolerance", "", 1e-8, 1e-2, "eq 30",
+     "what shooting can estimate and keep", Zero::kUnset},
 
     {"BatchCreateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
      "requests of one transaction"},

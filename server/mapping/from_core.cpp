@@ -89,17 +89,8 @@ void set_losses(v1::PointResult* out, const PointResult& result) {
   out->set_boundary_to_viscous_friction_ratio(result.boundary_to_viscous_friction_ratio);
 }
 
-v1::PointModel point_model(PointModel model) {
-  switch (model) {
-    case PointModel::kQuasiStatic:
-      return v1::POINT_MODEL_QUASI_STATIC;
-    default:
-      return v1::POINT_MODEL_FULL;
-  }
-}
-
 void set_solver(v1::PointResult* out, const PointResult& result) {
-  out->set_model(point_model(result.model));
+  out->set_model(to_message(result.model));
   if (result.model != PointModel::kQuasiStatic) {
     out->set_steady_state_method(result.method == SteadyStateMethod::kShooting
                                      ? v1::STEADY_STATE_METHOD_SHOOTING
@@ -170,6 +161,15 @@ v1::EvaluateContactResponse to_message(const ContactSolution& s) {
   out.set_thermal_roots(s.thermal_roots);
   out.set_model_version(kModelVersion);
   return out;
+}
+
+v1::PointModel to_message(PointModel model) {
+  switch (model) {
+    case PointModel::kQuasiStatic:
+      return v1::POINT_MODEL_QUASI_STATIC;
+    default:
+      return v1::POINT_MODEL_FULL;
+  }
 }
 
 v1::PointResult to_message(const PointResult& result, int maximum_contact_losses) {

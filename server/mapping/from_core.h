@@ -11,6 +11,9 @@ namespace tribodyn::server {
 /// Converts every field of a solved contact and adds the model version.
 v1::EvaluateContactResponse to_message(const ContactSolution& solution);
 
+/// Converts the name of a model.
+v1::PointModel to_message(PointModel model);
+
 /// Converts a point with its first `maximum_contact_losses` contact losses and the number of the
 /// others.
 v1::PointResult to_message(const PointResult& result, int maximum_contact_losses);

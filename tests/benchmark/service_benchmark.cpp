@@ -36,6 +36,7 @@
 #include "tests/service/support.h"
 #include "tests/support/paths.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
+#include "tribodyn/v1/points.grpc.pb.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
 
 namespace tribodyn::server {
@@ -807,12 +808,52 @@ double screen_over_the_wire(const Server& server, const std::vector<v1::Simulati
   return process_figures(server.id()).processor_seconds - begin;
 }
 
-/// What pipelines do: many fluids at the same speeds and sumps, as curves or as points, against the
-/// same points screened in the core alone.
+/// Fluids at every speed and sump as a request of EvaluatePoints.
+v1::EvaluatePointsRequest evaluation(std::span<const v1::Lubricant> fluids) {
+  v1::EvaluatePointsRequest out;
+  out.set_lubricant("lubricants/paper-fluid-1");
+  const google::protobuf::Descriptor& lubricant = *v1::Lubricant::descriptor();
+  for (int i = 0; i < lubricant.field_count(); ++i) {
+    const google::protobuf::FieldDescriptor* field = lubricant.field(i);
+    if (field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) continue;
+    v1::CandidateColumn& column = *out.add_candidate_columns();
+    column.set_path("lubricant." + field->name());
+    for (const v1::Lubricant& fluid : fluids) {
+      column.add_values(fluid.GetReflection()->GetDouble(fluid, field));
+    }
+  }
+  for (const double sump : kSumpCelsius) {
+    for (int i = 0; i < kSpeeds; ++i) {
+      v1::PointCondition& condition = *out.add_conditions();
+      condition.set_speed_kilometres_per_hour(20 + 10 * i);
+      condition.set_sump_temperature_celsius(sump);
+    }
+  }
+  return out;
+}
+
+/// Processor time of the server for all candidates in calls of EvaluatePoints [s].
+double evaluate_over_the_wire(const Server& server, std::span<const v1::Lubricant> fluids) {
+  constexpr std::size_t kTogether = 50;  // times 39 conditions: nearly the 2000 points allowed
+  const auto stub = v1::PointService::NewStub(connect(server.address()));
+  const double begin = process_figures(server.id()).processor_seconds;
+  for (std::size_t first = 0; first < fluids.size(); first += kTogether) {
+    grpc::ClientContext context;
+    v1::EvaluatePointsResponse response;
+    const grpc::Status status =
+        stub->EvaluatePoints(&context, evaluation(fluids.subspan(first, kTogether)), &response);
+    if (!status.ok()) throw std::runtime_error(status.error_message());
+    if (response.refusals_size() > 0) throw std::runtime_error(response.refusals(0).message());
+  }
+  return process_figures(server.id()).processor_seconds - begin;
+}
+
+/// What pipelines do: many fluids at the same speeds and sumps, as curves, as points or as calls
+/// that store nothing, against the same points screened in the core alone.
 void measure_screening(std::vector<Measurement>& out) {
   const std::vector<v1::Lubricant> fluids = candidates(kCandidates);
   const auto milliseconds_a_point = [](double total) { return 1e3 * total / kScreened; };
-  std::vector<double> core, curves, points;
+  std::vector<double> core, curves, points, calls;
   for (int run = 0; run < 3; ++run) {
     core.push_back(milliseconds_a_point(screen_in_core(fluids)));
     for (const bool as_curves : {true, false}) {
@@ -822,10 +863,14 @@ void measure_screening(std::vector<Measurement>& out) {
           .push_back(milliseconds_a_point(screen_over_the_wire(
               server, as_curves ? screening_curves(fluids) : screening_points(fluids))));
     }
+    calls.push_back(milliseconds_a_point(evaluate_over_the_wire(Server(), fluids)));
   }
   out.push_back({"screened_point_in_the_core", median(core), "ms", {}});
   out.push_back({"screened_point_over_the_wire_in_a_curve", median(curves), "ms", 0.45});
   out.push_back({"screened_point_over_the_wire_of_its_own", median(points), "ms", 2.3});
+  out.push_back({"screened_point_over_the_wire_by_evaluate_points", median(calls), "ms", {}});
+  out.push_back(
+      {"screened_point_by_evaluate_points_over_the_core", median(calls) / median(core), "-", {}});
   out.push_back(
       {"screened_point_in_a_curve_over_the_core", median(curves) / median(core), "-", {}});
   out.push_back(

@@ -16,6 +16,7 @@
 #include "server/resources/gear_set_checks.h"
 #include "server/resources/imports/import_surface.h"
 #include "server/simulation/contact_inputs.h"
+#include "server/simulation/point_evaluation.h"
 #include "server/simulation/simulation_inputs.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/schemas.pb.h"
@@ -51,6 +52,13 @@ Violations check(const v1::EvaluateContactRequest& request) {
   return violations;
 }
 
+v1::EvaluatePointsRequest one_point() {
+  v1::EvaluatePointsRequest out;
+  out.set_lubricant("lubricants/paper-fluid-1");
+  out.add_conditions()->set_speed_kilometres_per_hour(50);
+  return out;
+}
+
 /// A request with the message of a row inside it, and the check that applies.
 struct Subject {
   v1::Simulation simulation = point_simulation();
@@ -60,6 +68,7 @@ struct Subject {
   v1::ImportSurfaceProfilesRequest profiles;
   v1::Vehicle vehicle = seed<v1::Vehicle>("vehicles/passenger-car");
   v1::GearSet gear_set = seed<v1::GearSet>("gearSets/reference-axle");
+  v1::EvaluatePointsRequest points = one_point();
   std::unique_ptr<Message> batch;
   Message* message = nullptr;
   std::string path;
@@ -86,6 +95,10 @@ struct Subject {
       use(&profiles, "");
     } else if (name == "EvaluateContactRequest") {
       use(&contact, "");
+    } else if (name == "EvaluatePointsRequest") {
+      use(&points, "");
+    } else if (name == "PointCondition") {
+      use(points.mutable_conditions(0), "conditions[0].");
     } else if (name == "Simulation") {
       use(&simulation, "simulation.");
     } else if (name == "Cruise") {
@@ -142,6 +155,10 @@ struct Subject {
     if (path.starts_with("simulation.")) return server::check(simulation);
     if (path == "lubricant_parameters." || message == &contact) return server::check(contact);
     Violations violations;
+    if (message == &points || path == "conditions[0].") {
+      read_points(points, seed_lookup(), violations);
+      return violations;
+    }
     if (message == &profiles) {
       import_surface(profiles, "surfaces/x", seed_lookup(), violations);
       return violations;

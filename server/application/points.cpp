@@ -1,0 +1,25 @@
+#include "server/application/points.h"
+
+#include "core/refusal.h"
+#include "server/application/errors.h"
+#include "server/simulation/point_evaluation.h"
+#include "server/storage/resource_lookup.h"
+
+namespace tribodyn::server {
+
+Outcome<v1::EvaluatePointsResponse> evaluate_points(Application& application,
+                                                    const v1::EvaluatePointsRequest& request,
+                                                    const CallContext& call) {
+  Violations violations;
+  const auto evaluation = read_points(
+      request, resource_lookup(application.store, call.project, call.limits), violations);
+  if (!evaluation) return invalid(violations);
+  try {
+    return evaluate_points(*evaluation, *application.gear_sets,
+                           [&call] { return call.limits.are_over(); });
+  } catch (const Cancelled&) {
+    return call_over(call.limits);
+  }
+}
+
+}  // namespace tribodyn::server

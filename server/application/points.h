@@ -1,0 +1,15 @@
+#pragma once
+
+#include "server/application/application.h"
+#include "server/application/call_context.h"
+#include "server/application/outcome.h"
+#include "tribodyn/v1/points.pb.h"
+
+namespace tribodyn::server {
+
+/// Computes all points of the request and returns their figures. Stores nothing.
+Outcome<v1::EvaluatePointsResponse> evaluate_points(Application& application,
+                                                    const v1::EvaluatePointsRequest& request,
+                                                    const CallContext& call = {});
+
+}  // namespace tribodyn::server

@@ -1,0 +1,325 @@
+#include "server/simulation/point_evaluation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "core/refusal.h"
+#include "core/version.h"
+#include "server/contract/check_message.h"
+#include "server/contract/constraints.h"
+#include "server/mapping/from_core.h"
+#include "server/mapping/to_core.h"
+#include "server/simulation/input_fields.h"
+#include "server/simulation/solver_defaults.h"
+#include "server/simulation/study_checks.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+/// Returns "lubricant.relaxation_time_seconds" and so on for each parameter that the model uses.
+const std::map<std::string, const FieldDescriptor*>& candidate_parameters() {
+  static const auto out = [] {
+    std::map<std::string, const FieldDescriptor*> all;
+    const auto add = [&all](const std::string& prefix, const Descriptor& resource) {
+      for (int i = 0; i < resource.field_count(); ++i) {
+        const FieldDescriptor* field = resource.field(i);
+        if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && !field->is_repeated() &&
+            input_role(*field) == InputRole::kInput) {
+          all.emplace(prefix + field->name(), field);
+        }
+      }
+    };
+    add("lubricant.", *v1::Lubricant::descriptor());
+    add("surface.", *v1::Surface::descriptor());
+    return all;
+  }();
+  return out;
+}
+
+std::string unknown_parameter_text(const std::string& path) {
+  std::vector<std::string> known;
+  for (const auto& [name, field] : candidate_parameters()) known.push_back(name);
+  return fmt::format("\"{}\" is no parameter of a lubricant or surface that the model uses{}",
+                     plain_excerpt(path), meant_text(path, known));
+}
+
+/// Checks the values of a column against the allowed range of its parameter.
+void check_values(const v1::CandidateColumn& column, const FieldDescriptor& field,
+                  const std::string& path, Violations& violations) {
+  const Constraint* row = find_constraint(field.containing_type()->name(), field.name());
+  if (row == nullptr) return;  // check_message() has found that the values are finite
+  int reported = 0;
+  for (int k = 0; k < column.values_size() && reported < kMaximumReportedElements; ++k) {
+    const double value = column.values(k);
+    if (!std::isfinite(value) || (value >= row->minimum && value <= row->maximum)) continue;
+    ++reported;
+    violations.push_back({fmt::format("{}.values[{}]", path, k), out_of_range_text(*row, value)});
+  }
+}
+
+std::vector<PointEvaluation::Column> read_columns(const v1::EvaluatePointsRequest& request,
+                                                  Violations& violations) {
+  std::vector<PointEvaluation::Column> out;
+  std::set<std::string> paths;
+  for (int i = 0; i < request.candidate_columns_size(); ++i) {
+    const v1::CandidateColumn& column = request.candidate_columns(i);
+    const std::string path = fmt::format("candidate_columns[{}]", i);
+    const auto found = candidate_parameters().find(column.path());
+    if (found == candidate_parameters().end()) {
+      violations.push_back({path + ".path", unknown_parameter_text(column.path())});
+      continue;
+    }
+    if (!paths.insert(column.path()).second) {
+      violations.push_back(
+          {path + ".path", fmt::format("\"{}\" is listed twice; allowed: once", column.path())});
+    }
+    const int rows = request.candidate_columns(0).values_size();
+    if (column.values_size() != rows || rows == 0) {
+      violations.push_back(
+          {path + ".values",
+           fmt::format("{} values; allowed: one for each candidate, at least one and as many as in "
+                       "candidate_columns[0], which has {}",
+                       column.values_size(), rows)});
+    }
+    check_values(column, *found->second, path, violations);
+    out.push_back({found->second, {column.values().begin(), column.values().end()}});
+  }
+  return out;
+}
+
+double sump_temperature(const v1::PointCondition& condition) {
+  return condition.has_sump_temperature_celsius() ? condition.sump_temperature_celsius()
+                                                  : kDefaultSumpTemperatureCelsius;
+}
+
+double inlet_rise(const v1::PointCondition& condition) {
+  return condition.has_inlet_temperature_rise_kelvin() ? condition.inlet_temperature_rise_kelvin()
+                                                       : kDefaultInletTemperatureRiseKelvin;
+}
+
+/// Returns the simulation of the base at a condition.
+v1::Simulation simulation_of(const v1::EvaluatePointsRequest& request,
+                             const v1::PointCondition& condition) {
+  v1::Simulation out;
+  out.set_lubricant(request.lubricant());
+  out.set_gear_set(request.gear_set());
+  out.set_surface(request.surface());
+  out.set_vehicle(request.vehicle());
+  if (request.has_model_options()) *out.mutable_model_options() = request.model_options();
+  out.mutable_solver_options()->set_tolerance(request.tolerance());
+  out.set_sump_temperature_celsius(sump_temperature(condition));
+  out.set_inlet_temperature_rise_kelvin(inlet_rise(condition));
+  v1::Cruise& cruise = *out.mutable_operating_point()->mutable_cruise();
+  cruise.set_speed_kilometres_per_hour(condition.speed_kilometres_per_hour());
+  cruise.set_ascent_angle_degrees(condition.ascent_angle_degrees());
+  return out;
+}
+
+std::vector<PointEvaluation::Group> groups_of(const v1::EvaluatePointsRequest& request,
+                                              SimulationInputs base) {
+  std::map<std::pair<double, double>, std::size_t> positions;
+  std::vector<PointEvaluation::Group> out;
+  for (int k = 0; k < request.conditions_size(); ++k) {
+    const v1::PointCondition& condition = request.conditions(k);
+    const double sump = sump_temperature(condition), rise = inlet_rise(condition);
+    const auto [at, is_new] = positions.emplace(std::pair(sump, rise), out.size());
+    if (is_new) out.push_back({sump, rise, {}});
+    *base.effective.mutable_operating_point()->mutable_cruise() =
+        simulation_of(request, condition).operating_point().cruise();
+    out[at->second].conditions.emplace_back(k, std::get<PointStudy>(study(base)).condition);
+  }
+  return out;
+}
+
+/// The rows of the answer.
+class Rows {
+ public:
+  explicit Rows(int rows) {
+    for (auto* column :
+         {out_.mutable_pinion_torque_newton_metres(), out_.mutable_wheel_torque_newton_metres(),
+          out_.mutable_inefficiency_rms_percent(), out_.mutable_inefficiency_energy_mean_percent(),
+          out_.mutable_mesh_loss_power_watts(),
+          out_.mutable_dynamic_transmission_error_minimum_metres(),
+          out_.mutable_dynamic_transmission_error_maximum_metres(),
+          out_.mutable_estimated_relative_error()}) {
+      column->Resize(rows, kAbsent);
+    }
+    out_.mutable_refusal_numbers()->Resize(rows, 0);
+    out_.mutable_contact_loss()->Resize(rows, false);
+    out_.mutable_settled()->Resize(rows, false);
+    out_.mutable_period_in_mesh_cycles()->Resize(rows, 0);
+    out_.mutable_model()->Resize(rows, v1::POINT_MODEL_UNSPECIFIED);
+  }
+
+  /// Sets the figures of a row, or a refusal if one of them is not finite.
+  void set(int row, const PointFigures& figures) {
+    for (const double each :
+         {figures.pinion_torque, figures.wheel_torque, figures.inefficiency_rms.value_or(0),
+          figures.inefficiency_energy_mean.value_or(0), figures.mesh_loss_power,
+          figures.dte_minimum, figures.dte_maximum}) {
+      if (!std::isfinite(each)) {
+        return refuse(row, "RESULT_NOT_FINITE", "a figure of the point is not finite");
+      }
+    }
+    out_.set_pinion_torque_newton_metres(row, figures.pinion_torque);
+    out_.set_wheel_torque_newton_metres(row, figures.wheel_torque);
+    out_.set_inefficiency_rms_percent(row, figures.inefficiency_rms.value_or(kAbsent));
+    out_.set_inefficiency_energy_mean_percent(row,
+                                              figures.inefficiency_energy_mean.value_or(kAbsent));
+    out_.set_mesh_loss_power_watts(row, figures.mesh_loss_power);
+    out_.set_dynamic_transmission_error_minimum_metres(row, figures.dte_minimum);
+    out_.set_dynamic_transmission_error_maximum_metres(row, figures.dte_maximum);
+    out_.set_contact_loss(row, figures.contact_loss);
+    out_.set_settled(row, figures.settled);
+    out_.set_period_in_mesh_cycles(row, figures.period_in_mesh_cycles);
+    out_.set_estimated_relative_error(row, figures.estimated_relative_error.value_or(kAbsent));
+    out_.set_model(row, to_message(figures.model));
+  }
+
+  void refuse(int row, const std::string& reason, const std::string& message) {
+    const auto [at, is_new] =
+        numbers_.emplace(std::pair(reason, message), out_.refusals_size() + 1);
+    if (is_new) {
+      v1::PointRefusal& refusal = *out_.add_refusals();
+      refusal.set_reason(reason);
+      refusal.set_message(message);
+    }
+    out_.set_refusal_numbers(row, at->second);
+  }
+
+  v1::EvaluatePointsResponse take() { return std::move(out_); }
+
+ private:
+  v1::EvaluatePointsResponse out_;
+  std::map<std::pair<std::string, std::string>, int> numbers_;  // of refusals, from 1
+};
+
+/// Computes the points of one candidate at one group of conditions. `first_row` is the row of the
+/// candidate's first condition.
+void compute_group(const Scene& scene, const PointEvaluation::Group& group,
+                   const PointOptions& options, const std::shared_ptr<PreparedGearSet>& gear_set,
+                   int first_row, Rows& rows) {
+  const auto refuse_all = [&](const std::string& reason, const std::string& message) {
+    for (const auto& [position, condition] : group.conditions) {
+      rows.refuse(first_row + position, reason, message);
+    }
+  };
+  std::optional<PreparedScene> prepared;
+  try {
+    prepared.emplace(scene, gear_set);
+  } catch (const Refusal& refusal) {
+    return refuse_all(refusal.reason(), refusal.what());
+  }
+  for (const auto& [position, condition] : group.conditions) {
+    if (!options.progress(0)) throw Cancelled();
+    try {
+      rows.set(first_row + position, screen_point(*prepared, condition, options));
+    } catch (const Refusal& refusal) {
+      rows.refuse(first_row + position, refusal.reason(), refusal.what());
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& request,
+                                           const ResourceLookup& lookup, Violations& violations) {
+  const std::size_t before = violations.size();
+  check_message(request, "", violations);
+  PointEvaluation out;
+  out.columns = read_columns(request, violations);
+  if (!out.columns.empty()) out.candidates = static_cast<int>(out.columns.front().values.size());
+  out.conditions = request.conditions_size();
+  if (out.conditions == 0) {
+    violations.push_back({"conditions", "not set; allowed: at least one"});
+  } else if (out.candidates > kMaximumEvaluatedPoints / out.conditions) {
+    violations.push_back(
+        {"conditions",
+         fmt::format("{} candidates at {} conditions are {} points; allowed: at most "
+                     "{} in one request; send several",
+                     out.candidates, out.conditions,
+                     static_cast<long>(out.candidates) * out.conditions, kMaximumEvaluatedPoints)});
+  }
+  // The conditions are valid by now, so that what the base adds is about the base.
+  const v1::PointCondition usual = [] {
+    v1::PointCondition condition;
+    condition.set_speed_kilometres_per_hour(50);
+    return condition;
+  }();
+  const bool is_valid = violations.size() == before;
+  auto base = read_simulation(simulation_of(request, is_valid ? request.conditions(0) : usual),
+                              lookup, "", violations);
+  if (!base || violations.size() > before) return std::nullopt;
+  out.base = std::move(*base);
+  out.groups = groups_of(request, out.base);
+  return out;
+}
+
+v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,
+                                           PreparedGearSets& gear_sets,
+                                           const std::function<bool()>& is_over) {
+  Rows rows(evaluation.candidates * evaluation.conditions);
+  Scene physical = scene(evaluation.base);
+  PointOptions options = std::get<PointStudy>(study(evaluation.base)).options;
+  options.progress = [&is_over](double) { return !is_over(); };
+  const std::shared_ptr<PreparedGearSet> gear_set =
+      gear_sets.take(evaluation.base.gear_set, physical);
+
+  v1::Lubricant lubricant = *evaluation.base.lubricant;
+  v1::Surface surface = *evaluation.base.surface;
+  for (int i = 0; i < evaluation.candidates; ++i) {
+    for (const PointEvaluation::Column& column : evaluation.columns) {
+      google::protobuf::Message& resource =
+          column.field->containing_type() == v1::Lubricant::descriptor()
+              ? static_cast<google::protobuf::Message&>(lubricant)
+              : surface;
+      resource.GetReflection()->SetDouble(&resource, column.field,
+                                          column.values[static_cast<std::size_t>(i)]);
+    }
+    physical.lubricant = to_core(lubricant);
+    physical.roughness = roughness(surface);
+    physical.boundary = boundary_friction(surface);
+    const int first_row = i * evaluation.conditions;
+    for (const PointEvaluation::Group& group : evaluation.groups) {
+      Violations inlet;
+      check_fluid_at_inlet(lubricant, group.sump_temperature_celsius,
+                           group.inlet_temperature_rise_kelvin, "lubricant", inlet);
+      if (!inlet.empty()) {
+        for (const auto& [position, condition] : group.conditions) {
+          rows.refuse(first_row + position, "INVALID_AT_INLET", inlet.front().description);
+        }
+        continue;
+      }
+      physical.sump_temperature = group.sump_temperature_celsius + kZeroCelsius;
+      physical.inlet_temperature_rise = group.inlet_temperature_rise_kelvin;
+      compute_group(physical, group, options, gear_set, first_row, rows);
+    }
+  }
+  // An exception may leave the gear set half prepared: then it is not given back.
+  gear_sets.give_back(evaluation.base.gear_set, physical.options, gear_set);
+
+  v1::EvaluatePointsResponse out = rows.take();
+  out.set_candidates(evaluation.candidates);
+  out.set_conditions(evaluation.conditions);
+  const v1::Simulation& effective = evaluation.base.effective;
+  out.set_lubricant_revision(effective.lubricant_revision());
+  out.set_gear_set_revision(effective.gear_set_revision());
+  out.set_surface_revision(effective.surface_revision());
+  out.set_vehicle_revision(effective.vehicle_revision());
+  out.set_model_version(kModelVersion);
+  return out;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "server/contract/resource_names.h"
+#include "server/contract/violations.h"
+#include "server/simulation/prepared_gear_sets.h"
+#include "server/simulation/simulation_inputs.h"
+#include "tribodyn/v1/points.pb.h"
+
+namespace tribodyn::server {
+
+/// Largest number of points of one request: candidates times conditions. They take 0.1 to 1 s.
+inline constexpr int kMaximumEvaluatedPoints = 2000;
+
+/// Points to evaluate: every candidate at every condition.
+struct PointEvaluation {
+  /// Parameter of a lubricant or surface, and one value for each candidate.
+  struct Column {
+    const google::protobuf::FieldDescriptor* field;
+    std::vector<double> values;
+  };
+  /// Conditions with the same temperatures. A scene is prepared once for each candidate and group.
+  struct Group {
+    double sump_temperature_celsius;
+    double inlet_temperature_rise_kelvin;
+    std::vector<std::pair<int, OperatingCondition>> conditions;  ///< with their position
+  };
+
+  SimulationInputs base;  ///< the base of all candidates, at the first condition
+  std::vector<Column> columns;
+  std::vector<Group> groups;
+  int candidates = 1;
+  int conditions = 0;
+};
+
+/// Checks the request and finds its resources. Returns nullopt and adds all violations if the
+/// request is invalid.
+std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& request,
+                                           const ResourceLookup& lookup, Violations& violations);
+
+/// Computes all points by screen_point(). A point that the core refuses is a refused row. Throws
+/// Cancelled soon after `is_over` returns true.
+v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,
+                                           PreparedGearSets& gear_sets,
+                                           const std::function<bool()>& is_over);
+
+}  // namespace tribodyn::server

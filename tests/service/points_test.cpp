@@ -1,0 +1,206 @@
+// EvaluatePoints: columns of figures of candidates at conditions, without a simulation of each.
+#include "server/application/points.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/study/operating_point.h"
+#include "server/contract/resource_names.h"
+#include "server/simulation/point_evaluation.h"
+#include "server/simulation/simulation_inputs.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kSpeeds[] = {30, 66, 110};  // in contact, at the resonance, above it
+
+void add_column(v1::EvaluatePointsRequest& request, const std::string& path,
+                const std::vector<double>& values) {
+  v1::CandidateColumn& column = *request.add_candidate_columns();
+  column.set_path(path);
+  for (const double value : values) column.add_values(value);
+}
+
+/// Three candidates, which differ in a parameter of the lubricant and one of the surface, at three
+/// speeds with two sump temperatures.
+v1::EvaluatePointsRequest request_of_candidates() {
+  v1::EvaluatePointsRequest out;
+  out.set_lubricant("lubricants/paper-fluid-1");
+  add_column(out, "lubricant.pressure_viscosity_coefficient_per_pascal", {1.2e-8, 1.6e-8, 2e-8});
+  add_column(out, "surface.asperity_friction_coefficient", {0.08, 0.1, 0.12});
+  for (const double sump : {40.0, 90.0}) {
+    for (const double speed : kSpeeds) {
+      v1::PointCondition& condition = *out.add_conditions();
+      condition.set_speed_kilometres_per_hour(speed);
+      condition.set_sump_temperature_celsius(sump);
+    }
+  }
+  return out;
+}
+
+v1::EvaluatePointsResponse evaluate(const v1::EvaluatePointsRequest& request) {
+  Violations violations;
+  const auto evaluation = read_points(request, seed_lookup(), violations);
+  if (!evaluation) throw std::runtime_error(violations.front().description);
+  PreparedGearSets gear_sets;
+  return evaluate_points(*evaluation, gear_sets, [] { return false; });
+}
+
+std::string violations_of(const v1::EvaluatePointsRequest& request) {
+  Violations violations;
+  read_points(request, seed_lookup(), violations);
+  std::string out;
+  for (const Violation& each : violations) out += each.field + ": " + each.description + "\n";
+  return out;
+}
+
+/// Returns the point of a candidate at a condition as a simulation finds it.
+PointResult simulated(const v1::EvaluatePointsRequest& request, int candidate, int condition) {
+  v1::Simulation simulation;
+  simulation.set_lubricant(request.lubricant());
+  const v1::PointCondition& at = request.conditions(condition);
+  simulation.set_sump_temperature_celsius(at.sump_temperature_celsius());
+  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(
+      at.speed_kilometres_per_hour());
+  Violations violations;
+  auto inputs = read_simulation(simulation, seed_lookup(), "", violations);
+  if (!inputs) throw std::runtime_error(violations.front().description);
+  Scene physical = scene(*inputs);
+  physical.lubricant.pressure_viscosity_coefficient =
+      request.candidate_columns(0).values(candidate);
+  physical.boundary.asperity_friction_coefficient = request.candidate_columns(1).values(candidate);
+  const PointStudy point = std::get<PointStudy>(study(*inputs));
+  return solve_operating_point(physical, point.condition, point.options);
+}
+
+TEST(EvaluatePoints, RowsAgreeWithSimulationsOfTheirCandidatesWithinTheEstimatedErrors) {
+  const v1::EvaluatePointsRequest request = request_of_candidates();
+  const v1::EvaluatePointsResponse out = evaluate(request);
+  ASSERT_EQ(out.candidates(), 3);
+  ASSERT_EQ(out.conditions(), 6);
+  ASSERT_EQ(out.inefficiency_rms_percent_size(), 18);
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 6; ++k) {
+      SCOPED_TRACE(testing::Message() << "candidate " << i << " at condition " << k);
+      const int row = 6 * i + k;
+      const PointResult alone = simulated(request, i, k);
+      ASSERT_EQ(out.refusal_numbers(row), 0);
+      const double error =
+          out.estimated_relative_error(row) + alone.estimated_relative_error.value_or(0);
+      EXPECT_LT(error, 3e-3);
+      const auto agrees = [&](double screened, double simulated_value) {
+        EXPECT_NEAR(screened, simulated_value, error * std::abs(simulated_value));
+      };
+      agrees(out.inefficiency_rms_percent(row), alone.inefficiency_rms.value());
+      agrees(out.inefficiency_energy_mean_percent(row), alone.inefficiency_energy_mean.value());
+      agrees(out.mesh_loss_power_watts(row), alone.mesh_loss_power);
+      agrees(out.pinion_torque_newton_metres(row), alone.pinion_torque);
+      EXPECT_EQ(out.contact_loss(row), alone.contact_loss);
+      EXPECT_EQ(out.settled(row), alone.settled);
+    }
+  }
+}
+
+TEST(EvaluatePoints, ARowHasTheSameBitsWhicheverRowsComeWithIt) {
+  const v1::EvaluatePointsRequest request = request_of_candidates();
+  const v1::EvaluatePointsResponse together = evaluate(request);
+  v1::EvaluatePointsRequest alone = request;
+  for (v1::CandidateColumn& column : *alone.mutable_candidate_columns()) {
+    column.mutable_values()->erase(column.values().begin(), column.values().begin() + 2);
+  }
+  alone.mutable_conditions()->DeleteSubrange(0, 5);
+  const v1::EvaluatePointsResponse last = evaluate(alone);
+  ASSERT_EQ(last.inefficiency_rms_percent_size(), 1);
+  EXPECT_EQ(last.inefficiency_rms_percent(0), together.inefficiency_rms_percent(17));
+  EXPECT_EQ(last.mesh_loss_power_watts(0), together.mesh_loss_power_watts(17));
+  EXPECT_EQ(last.dynamic_transmission_error_maximum_metres(0),
+            together.dynamic_transmission_error_maximum_metres(17));
+}
+
+TEST(EvaluatePoints, WithoutColumnsTheBaseIsTheOnlyCandidate) {
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  request.clear_candidate_columns();
+  const v1::EvaluatePointsResponse out = evaluate(request);
+  EXPECT_EQ(out.candidates(), 1);
+  EXPECT_EQ(out.model_size(), 6);
+  EXPECT_EQ(out.lubricant_revision(), "lubricants/paper-fluid-1@1");
+}
+
+// A candidate that solidifies at the inlet says nothing about the others.
+TEST(EvaluatePoints, ARefusedRowHasItsReasonAndNoFigures) {
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  request.clear_candidate_columns();
+  add_column(request, "lubricant.vogel_reference_temperature_kelvin", {150, 350, 151});
+  const v1::EvaluatePointsResponse out = evaluate(request);
+  for (int row = 0; row < 18; ++row) {
+    const bool refused = row / 6 == 1;
+    EXPECT_EQ(out.refusal_numbers(row) > 0, refused) << row;
+    EXPECT_EQ(std::isnan(out.inefficiency_rms_percent(row)), refused) << row;
+  }
+  for (int row = 6; row < 9; ++row) {  // 350 K is above the inlet of 40 C + 20 K
+    const v1::PointRefusal& refusal = out.refusals(out.refusal_numbers(row) - 1);
+    EXPECT_EQ(refusal.reason(), "INVALID_AT_INLET");
+    EXPECT_THAT(refusal.message(), HasSubstr("350"));
+  }
+}
+
+TEST(EvaluatePoints, AllViolationsNameTheFieldAsStated) {
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  request.mutable_candidate_columns(0)->set_path("lubricant.relaxation_time_second");
+  request.mutable_candidate_columns(1)->set_values(2, 11);
+  add_column(request, "lubricant.havriliak_negami_alpha", {0.5});
+  request.mutable_conditions(3)->set_speed_kilometres_per_hour(-5);
+  const std::string all = violations_of(request);
+  EXPECT_THAT(all, HasSubstr("candidate_columns[0].path: \"lubricant.relaxation_time_second\" is "
+                             "no parameter of a lubricant or surface that the model uses; did you "
+                             "mean \"lubricant.relaxation_time_seconds\"?"));
+  EXPECT_THAT(all, HasSubstr("candidate_columns[1].values[2]: asperity_friction_coefficient = 11; "
+                             "allowed: 0 to 10"));
+  EXPECT_THAT(all, HasSubstr("candidate_columns[2].values: 1 values; allowed: one for each"));
+  EXPECT_THAT(all, HasSubstr("conditions[3].speed_kilometres_per_hour: "
+                             "speed_kilometres_per_hour = -5 km/h; allowed: 0.1 to 400 km/h"));
+}
+
+TEST(EvaluatePoints, MorePointsThanAllowedAreRefused) {
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  request.clear_candidate_columns();
+  add_column(request, "lubricant.havriliak_negami_beta", std::vector<double>(334, 0.5));
+  EXPECT_THAT(violations_of(request),
+              HasSubstr("conditions: 334 candidates at 6 conditions are 2004 points; allowed: at "
+                        "most 2000"));
+  request.clear_conditions();
+  EXPECT_THAT(violations_of(request), HasSubstr("conditions: not set"));
+}
+
+TEST(EvaluatePoints, TheBasesAreThoseOfTheStore) {
+  Bench bench;
+  Application application = bench.application();
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  const auto out = evaluate_points(application, request);
+  ASSERT_TRUE(out.ok());
+  EXPECT_EQ(out.message().inefficiency_rms_percent(4),
+            evaluate(request).inefficiency_rms_percent(4));
+  request.set_surface("surfaces/run-im");
+  EXPECT_THAT(complaints(evaluate_points(application, request).error()),
+              HasSubstr("did you mean \"surfaces/run-in\"?"));
+}
+
+TEST(EvaluatePoints, WorkEndsSoonAfterTheClientHasCancelled) {
+  Violations violations;
+  const auto evaluation = read_points(request_of_candidates(), seed_lookup(), violations);
+  ASSERT_TRUE(evaluation);
+  PreparedGearSets gear_sets;
+  int looks = 0;
+  EXPECT_THROW(evaluate_points(*evaluation, gear_sets, [&] { return ++looks > 5; }), Cancelled);
+  EXPECT_LE(looks, 6);
+}
+
+}  // namespace
+}  // namespace tribodyn::server
