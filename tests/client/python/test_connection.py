@@ -85,7 +85,7 @@ def test_calls_wait_for_a_server_that_restarts(new_server):
     client.lubricants.get(FLUID)
     server.kill()
     waiting = InThread(
-        lambda: client.evaluate({"speed_kilometres_per_hour": [20, 30, 40]}, lubricant=FLUID)
+        lambda: client.points({"speed_kilometres_per_hour": [20, 30, 40]}, lubricant=FLUID)
     )
     time.sleep(0.7)
     server.start()
@@ -96,7 +96,7 @@ def test_jobs_that_a_full_queue_turns_away_are_submitted_again(new_server):
     server = new_server("--threads", "1", "--waiting-simulations", "4")
     client = tribodyn.Client(server.address)
     temperatures = np.linspace(20, 100, 40)
-    points = client.evaluate(
+    points = client.points(
         {"sump_temperature_celsius": temperatures},
         lubricant=FLUID,
         speed_kilometres_per_hour=80,
@@ -208,7 +208,7 @@ def test_coroutines_run_together(server):
                 client.point(FLUID, speed_kilometres_per_hour=63),
                 client.curve(FLUID, speeds_kilometres_per_hour=[20, 64]),
                 client.lubricants.get(FLUID),
-                client.evaluate({"speed_kilometres_per_hour": [65]}, lubricant=FLUID),
+                client.points({"speed_kilometres_per_hour": [65]}, lubricant=FLUID),
             )
 
     point, curve, lubricant, points = asyncio.run(run())

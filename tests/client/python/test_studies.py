@@ -105,7 +105,7 @@ def test_all_wrong_arguments_are_reported_together(client):
     ]
 
 
-def test_evaluated_rows_have_the_bits_of_single_points(client):
+def test_rows_of_points_have_the_bits_of_single_points(client):
     table = pandas.DataFrame(
         {
             "speed_kilometres_per_hour": [90, 30, "25 m/s", 30],
@@ -114,7 +114,7 @@ def test_evaluated_rows_have_the_bits_of_single_points(client):
         },
         index=[7, 5, 3, 1],
     )
-    points = client.evaluate(table, lubricant=FLUID, sump_temperature_celsius="50 C")
+    points = client.points(table, lubricant=FLUID, sump_temperature_celsius="50 C")
     assert list(points.index) == [7, 5, 3, 1] and list(points["note"]) == list("abcd")
     losses = list(points["mesh_loss_power_watts"])
     assert losses[0] == losses[2] and losses[1] != losses[3]
@@ -125,7 +125,7 @@ def test_evaluated_rows_have_the_bits_of_single_points(client):
 
 
 def test_a_row_that_fails_has_nan_and_its_reason(client):
-    points = client.evaluate(
+    points = client.points(
         [
             {"speed_kilometres_per_hour": 40},
             {"speed_kilometres_per_hour": -4},
@@ -157,6 +157,78 @@ def test_a_row_that_fails_has_nan_and_its_reason(client):
     ]
     assert "allowed: 0.1 to 400 km/h" in points["status_message"][1]
     assert "does not exist" in points["status_message"][2]
+
+
+def test_variants_are_screened_without_jobs(client):
+    before = client.point(FLUID, speed_kilometres_per_hour=40)
+    table = pandas.DataFrame(
+        {
+            "lubricant.alpha": ["15/GPa", "18/GPa", None, "18/GPa"],
+            "surface.asperity_friction_coefficient": [0.1, 0.12, np.nan, 0.12],
+            "speed_kilometres_per_hour": [40, 40, 40, "20 m/s"],
+            "cost": [1, 2, 3, 4],
+        },
+        index=[4, 3, 2, 1],
+    )
+    found = client.evaluate(table, lubricant=FLUID, surface="run-in")
+    assert list(found.index) == [4, 3, 2, 1] and list(found["cost"]) == [1, 2, 3, 4]
+    assert list(found["status"]) == ["OK"] * 4 and list(found["model"]) == ["full"] * 4
+    losses = found["mesh_loss_power_watts"]
+    assert len(set(losses)) == 4
+    base = client.point(FLUID, speed_kilometres_per_hour=40)
+    jobs = [int(each.attrs["simulation"].split("/")[1]) for each in (before, base)]
+    assert jobs[1] == jobs[0] + 1
+    error = base["estimated_relative_error"][0] + found["estimated_relative_error"][2]
+    assert losses[2] == pytest.approx(base["mesh_loss_power_watts"][0], rel=error)
+    assert "lubricants/paper-fluid-1@1" in found.attrs["revisions"]
+    assert found.attrs["model_version"] == base.attrs["model_version"]
+
+
+def test_a_variant_is_the_lubricant_with_that_parameter(client):
+    client.lubricants.create("variant", FLUID, relaxation_time="300 ns")
+    speeds = {"speed_kilometres_per_hour": [40, 90]}
+    found = client.evaluate(speeds, lubricant=FLUID, **{"lubricant.relaxation_time": "300 ns"})
+    kept = client.evaluate(speeds, lubricant="variant")
+    assert list(found["mesh_loss_power_watts"]) == list(kept["mesh_loss_power_watts"])
+
+
+def test_a_refused_variant_leaves_the_others(client):
+    alpha = "lubricant.havriliak_negami_alpha"
+    found = client.evaluate(
+        [
+            {"speed_kilometres_per_hour": 40},
+            {"speed_kilometres_per_hour": -40},
+            {"speed_kilometres_per_hour": 50, alpha: 0.5},
+            {"speed_kilometres_per_hour": 50, alpha: 50},
+            {"speed_kilometres_per_hour": 500, alpha: 0.5},
+            {"speed_kilometres_per_hour": 50, "lubricant": "nothing"},
+            {"speed_kilometres_per_hour": 50, "lubricant.kv40": 5},
+            {"speed_kilometres_per_hour": 50, "lubricant.vogel_reference_temperature": "350 K"},
+            {"speed_kilometres_per_hour": "fast"},
+        ],
+        lubricant=FLUID,
+    )
+    assert list(found["status"] == "OK") == [True, False, True] + [False] * 6
+    assert list(np.isnan(found["mesh_loss_power_watts"])) == [False, True, False] + [True] * 6
+    messages = found["status_message"]
+    assert "-40 km/h; allowed: 0.1 to 400 km/h" in messages[1]
+    assert "havriliak_negami_alpha = 50; allowed" in messages[3]
+    assert "does not exist" in messages[5] and "no parameter of a lubricant" in messages[6]
+    assert "350 K" in messages[7] and "is not a number in km/h" in messages[8]
+
+
+def test_a_thousand_variants_are_screened_in_their_order(client):
+    count = 1200
+    friction = 0.05 + 1e-4 * np.arange(count)
+    table = {
+        "surface.asperity_friction_coefficient": friction,
+        "speed_kilometres_per_hour": [60, 80] * (count // 2),
+    }
+    found = client.evaluate(table, lubricant=FLUID, model_options={"isothermal": True})
+    losses = np.asarray(found["mesh_loss_power_watts"])
+    assert (np.diff(losses[0::2]) > 0).all() and (np.diff(losses[1::2]) > 0).all()
+    with pytest.raises(TypeError, match="no such parameter: speed"):
+        client.evaluate(table, speed=3)
 
 
 def test_results_are_structured_arrays_without_pandas(server):

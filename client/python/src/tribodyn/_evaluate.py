@@ -1,180 +1,242 @@
-"""Many operating points at once: rows in, rows out."""
+"""Screening: variants of a lubricant and a surface at many conditions, without a job of each."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any, Awaitable, Callable, Mapping, Sequence
+import asyncio
+import re
+from dataclasses import dataclass, field
+from typing import Any, Mapping, Sequence
 
-from tribodyn import _studies
-from tribodyn._frames import empty_row, point_row
-from tribodyn._jobs import Outcome
-from tribodyn._studies import Arguments, Options
-from tribodyn._transport import new_request_id
-from tribodyn.errors import TribodynError
-from tribodyn.v1 import simulations_pb2 as pb
+from tribodyn._frames import enum_word
+from tribodyn._rows import find_column
+from tribodyn._studies import Arguments, full_name, set_switches
+from tribodyn._transport import Transport
+from tribodyn.errors import TribodynError, Violation
+from tribodyn.units import Quantity, QuantityError, quantity
+from tribodyn.v1 import points_pb2, results_pb2
+from tribodyn.v1.lubricants_pb2 import Lubricant
+from tribodyn.v1.surfaces_pb2 import Surface
 
-# Rows of one scene share a curve of independent points, whose figures equal those of single points
-# to the last bit at a fraction of the cost of jobs. Several curves use several processors.
-_MOST_SPEEDS = 50
-
-SCENE = (
-    "gear_set",
-    "surface",
-    "vehicle",
-    "sump_temperature_celsius",
-    "inlet_temperature_rise_kelvin",
-    "tolerance",
-)
+BASE = ("lubricant", "gear_set", "surface", "vehicle", "tolerance")
 CONDITION = (
     "speed_kilometres_per_hour",
-    "acceleration_metres_per_second_squared",
     "ascent_angle_degrees",
-    "pinion_torque_newton_metres",
-    "pinion_speed_radians_per_second",
+    "sump_temperature_celsius",
+    "inlet_temperature_rise_kelvin",
 )
-PARAMETERS = ("lubricant", *SCENE, *CONDITION, "model")
+_VARIED = {"lubricant": Lubricant, "surface": Surface}
 
-RunAll = Callable[[Sequence[pb.CreateSimulationRequest]], Awaitable[Sequence[Outcome]]]
+# The server takes 2000. Smaller requests share its threads, and end within its time limit.
+_MOST_POINTS = 500
+_CALLS_AT_A_TIME = 4
+# Fields of the answer that are no figures of points.
+_OF_THE_WHOLE = {"candidates", "conditions", "refusal_numbers", "refusals"}
+_FIGURES = [
+    each
+    for each in points_pb2.EvaluatePointsResponse.DESCRIPTOR.fields
+    if each.label == each.LABEL_REPEATED and each.name not in _OF_THE_WHOLE
+]
+
+Values = tuple[float | None, ...]
+
+
+def is_parameter(name: str) -> bool:
+    """Whether evaluate() takes the name: an argument, or "lubricant." or "surface." and a field."""
+    return name in BASE or name in CONDITION or name.partition(".")[0] in _VARIED
 
 
 @dataclass
-class _Job:
-    """A request and the rows that it computes."""
+class _Group:
+    """Rows of one base, whose candidates differ in the same parameters."""
 
-    request: pb.CreateSimulationRequest
-    rows: list[int]
-
-
-async def evaluate_rows(
-    rows: Sequence[Mapping[str, Any]], options: Options, run_all: RunAll
-) -> list[dict[str, Any]]:
-    """Returns the cells of each row: figures and status "OK", or NaN and the reason."""
-    cells: dict[int, dict[str, Any]] = {}
-    points: dict[int, pb.Simulation] = {}
-    for index, row in enumerate(rows):
-        try:
-            points[index] = _point(row, options)
-        except TribodynError as error:
-            cells[index] = _refused(error)
-    jobs = _jobs(points, options)
-    outcomes = await run_all([job.request for job in jobs])
-    singly: list[_Job] = []
-    for job, outcome in zip(jobs, outcomes):
-        if (
-            isinstance(outcome, TribodynError)
-            and outcome.reason == "INVALID_FIELDS"
-            and job.request.simulation.HasField("inefficiency_curve")
-        ):
-            # One wrong row refuses the curve: the others are computed without it.
-            singly += [_Job(_request(points[row], options), [row]) for row in job.rows]
-        else:
-            _place(job, outcome, points, cells)
-    for job, outcome in zip(singly, await run_all([job.request for job in singly])):
-        _place(job, outcome, points, cells)
-    return [cells[index] for index in range(len(rows))]
+    base: tuple[Any, ...]
+    paths: tuple[str, ...]
+    candidates: dict[Values, dict[Values, list[int]]] = field(default_factory=dict)
 
 
-def _point(row: Mapping[str, Any], options: Options) -> pb.Simulation:
-    arguments = Arguments()
-    if row.get("lubricant") is None:
-        arguments.wrong("lubricant", "lubricant is missing")
-    simulation = _studies.scene(
-        arguments, row.get("lubricant") or "", options, **{name: row.get(name) for name in SCENE}
-    )
-    _studies.point(
-        arguments,
-        simulation,
-        options,
-        model=row.get("model"),
-        **{name: row.get(name) for name in CONDITION},
-    )
-    arguments.check()
-    return simulation
+@dataclass
+class _Request:
+    """A request, and the rows of the table that its candidates and conditions are."""
+
+    message: points_pb2.EvaluatePointsRequest
+    rows: list[list[list[int]]]  # by candidate, then by condition
+
+    def at(self, candidate: int | None, condition: int | None) -> list[int]:
+        """Returns the rows of a candidate or of a condition; None: of all."""
+        chosen = self.rows if candidate is None else [self.rows[candidate]]
+        cells = [
+            cell for row in chosen for cell in (row if condition is None else [row[condition]])
+        ]
+        return [index for cell in cells for index in cell]
 
 
-def _request(simulation: pb.Simulation, options: Options) -> pb.CreateSimulationRequest:
-    arguments = Arguments()
-    request = _studies.request(arguments, simulation, options)
-    arguments.check()
-    # The jobs of a table depend on all of its rows, so that the id of the options cannot name one.
-    request.request_id = new_request_id()
-    return request
+class Evaluation:
+    """Evaluates the rows of one table."""
 
+    def __init__(self, transport: Transport, model_options: Mapping[str, Any]) -> None:
+        self._transport = transport
+        self._model_options = points_pb2.EvaluatePointsRequest().model_options
+        arguments = Arguments()
+        set_switches(arguments, "model_options", model_options, self._model_options)
+        arguments.check()
+        self._calls = asyncio.Semaphore(_CALLS_AT_A_TIME)
+        self._cells: dict[int, dict[str, Any]] = {}
+        self.attrs: dict[str, Any] = {"model_version": "", "revisions": []}
 
-def _jobs(points: Mapping[int, pb.Simulation], options: Options) -> list[_Job]:
-    """Returns a curve for each scene of several cruise speeds, and a job for each other row."""
-    groups: dict[bytes, list[int]] = {}
-    jobs = []
-    for index, simulation in points.items():
-        study = simulation.operating_point
-        if study.WhichOneof("condition") != "cruise":
-            jobs.append(_Job(_request(simulation, options), [index]))
-            continue
-        scene = pb.Simulation()
-        scene.CopyFrom(simulation)
-        scene.operating_point.cruise.speed_kilometres_per_hour = 0
-        groups.setdefault(scene.SerializeToString(deterministic=True), []).append(index)
-    for group in groups.values():
-        for first in range(0, len(group), _MOST_SPEEDS):
-            rows = group[first : first + _MOST_SPEEDS]
-            jobs.append(_Job(_request(_curve([points[row] for row in rows]), options), rows))
-    return jobs
+    async def run(self, rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        """Returns the cells of each row: figures and status "OK", or NaN and the reason."""
+        groups: dict[tuple[Any, ...], _Group] = {}
+        for index, row in enumerate(rows):
+            arguments = Arguments()
+            base, varied, condition = _read(arguments, row)
+            if arguments.violations:
+                self._refuse([index], "INVALID_FIELDS", arguments.violations)
+                continue
+            paths = tuple(varied)
+            group = groups.setdefault((base, paths), _Group(base, paths))
+            conditions = group.candidates.setdefault(tuple(varied.values()), {})
+            conditions.setdefault(condition, []).append(index)
+        requests = [each for group in groups.values() for each in self._requests(group)]
+        await asyncio.gather(*map(self._evaluate, requests))
+        return [self._cells[index] for index in range(len(rows))]
 
+    def _requests(self, group: _Group) -> list[_Request]:
+        """Returns requests for candidates with equal conditions, so that no other point is solved."""
+        by_conditions: dict[tuple[Values, ...], list[Values]] = {}
+        for candidate, cells in group.candidates.items():
+            by_conditions.setdefault(tuple(cells), []).append(candidate)
+        out = []
+        for conditions, candidates in by_conditions.items():
+            width = min(len(conditions), _MOST_POINTS)
+            height = max(1, _MOST_POINTS // width)
+            for left in range(0, len(conditions), width):
+                for top in range(0, len(candidates), height):
+                    chosen, at = candidates[top : top + height], conditions[left : left + width]
+                    rows = [[group.candidates[each][one] for one in at] for each in chosen]
+                    out.append(_Request(self._message(group, chosen, at), rows))
+        return out
 
-def _curve(simulations: Sequence[pb.Simulation]) -> pb.Simulation:
-    """Returns a curve of independent points through points of one scene; of one speed, the
-    point."""
-    speeds = sorted({_speed(each) for each in simulations})
-    if len(speeds) == 1:
-        return simulations[0]
-    out = pb.Simulation()
-    out.CopyFrom(simulations[0])
-    study = simulations[0].operating_point
-    out.inefficiency_curve.CopyFrom(
-        pb.InefficiencyCurveStudy(
-            speeds_kilometres_per_hour=speeds,
-            ascent_angle_degrees=study.cruise.ascent_angle_degrees,
-            model=study.model,
-            start=study.start,
-            independent_points=True,
+    def _message(
+        self, group: _Group, candidates: Sequence[Values], conditions: Sequence[Values]
+    ) -> points_pb2.EvaluatePointsRequest:
+        lubricant, gear_set, surface, vehicle, tolerance = group.base
+        out = points_pb2.EvaluatePointsRequest(
+            lubricant=full_name("lubricants", lubricant or ""),
+            gear_set=full_name("gearSets", gear_set or ""),
+            surface=full_name("surfaces", surface or ""),
+            vehicle=full_name("vehicles", vehicle or ""),
+            model_options=self._model_options,
+            tolerance=tolerance or 0.0,
         )
+        for i, path in enumerate(group.paths):
+            out.candidate_columns.add(path=path, values=[each[i] for each in candidates])
+        for values in conditions:
+            stated = {name: value for name, value in zip(CONDITION, values) if value is not None}
+            out.conditions.add(**stated)
+        return out
+
+    async def _evaluate(self, request: _Request) -> None:
+        """Evaluates a request; the rows that the server refuses are left out of a second one."""
+        while request.rows and request.rows[0]:
+            try:
+                async with self._calls:
+                    answer = await self._transport.call(
+                        "PointService", "EvaluatePoints", request.message, patient=True
+                    )
+                return self._place(request, answer)
+            except TribodynError as error:
+                if error.reason in ("CANNOT_CONNECT", "NO_ANSWER"):
+                    raise
+                if not self._leave_out(request, error):
+                    return self._refuse(
+                        request.at(None, None), error.reason, error.violations, error.message
+                    )
+
+    def _place(self, request: _Request, answer: points_pb2.EvaluatePointsResponse) -> None:
+        columns = {each.name: getattr(answer, each.name) for each in _FIGURES}
+        self.attrs["model_version"] = answer.model_version
+        for kind in ("lubricant", "gear_set", "surface", "vehicle"):
+            revision = getattr(answer, kind + "_revision")
+            if revision not in self.attrs["revisions"]:
+                self.attrs["revisions"].append(revision)
+        for i, candidate in enumerate(request.rows):
+            for k, indices in enumerate(candidate):
+                at = answer.conditions * i + k
+                number = answer.refusal_numbers[at]
+                if number:
+                    refusal = answer.refusals[number - 1]
+                    self._refuse(indices, refusal.reason, (), refusal.message)
+                    continue
+                cells = {name: values[at] for name, values in columns.items()}
+                cells["model"] = enum_word(results_pb2.PointModel.DESCRIPTOR, cells["model"])
+                for index in indices:
+                    self._cells[index] = {**cells, "status": "OK", "status_message": ""}
+
+    def _leave_out(self, request: _Request, error: TribodynError) -> bool:
+        """Removes the candidates and conditions that the server refuses. Returns false if it refuses
+        something else."""
+        bad: list[dict[int, list[Violation]]] = [{}, {}]  # candidates, conditions
+        for each in error.violations:
+            candidate = re.match(r"candidate_columns\[\d+\]\.values\[(\d+)\]", each.field)
+            condition = re.match(r"conditions\[(\d+)\]", each.field)
+            found = candidate or condition
+            if found is None:
+                continue
+            bad[0 if candidate else 1].setdefault(int(found[1]), []).append(each)
+        for i in sorted(bad[0], reverse=True):
+            self._refuse(request.at(i, None), error.reason, bad[0][i])
+            del request.rows[i]
+            for column in request.message.candidate_columns:
+                del column.values[i]
+        for k in sorted(bad[1], reverse=True):
+            self._refuse(request.at(None, k), error.reason, bad[1][k])
+            del request.message.conditions[k]
+            for row in request.rows:
+                del row[k]
+        return bool(bad[0] or bad[1])
+
+    def _refuse(
+        self,
+        indices: Sequence[int],
+        reason: str,
+        violations: Sequence[Violation],
+        message: str = "",
+    ) -> None:
+        empty: dict[str, Any] = {each.name: float("nan") for each in _FIGURES}
+        text = "; ".join(each.description for each in violations) or message
+        for index in indices:
+            self._cells[index] = {**empty, "model": "", "status": reason, "status_message": text}
+
+
+def _read(
+    arguments: Arguments, row: Mapping[str, Any]
+) -> tuple[tuple[Any, ...], dict[str, float], Values]:
+    """Returns base, varied parameters and condition of a row."""
+    base = tuple(row.get(name) for name in BASE)
+    if not base[0]:
+        arguments.wrong("lubricant", "lubricant is missing")
+    condition = tuple(
+        None if row.get(name) is None else arguments.number(name, row[name]) for name in CONDITION
     )
-    return out
+    if condition[0] is None:
+        arguments.wrong(CONDITION[0], f"{CONDITION[0]} is missing")
+    varied = {}
+    for name, value in row.items():
+        owner, dot, parameter = name.partition(".")
+        if dot and owner in _VARIED and value is not None:
+            varied.update(_varied(arguments, owner, parameter, value))
+    return base, varied, condition
 
 
-def _speed(simulation: pb.Simulation) -> float:
-    return simulation.operating_point.cruise.speed_kilometres_per_hour
-
-
-def _place(
-    job: _Job,
-    outcome: Outcome,
-    points: Mapping[int, pb.Simulation],
-    cells: dict[int, dict[str, Any]],
-) -> None:
-    for row in job.rows:
-        if isinstance(outcome, TribodynError):
-            cells[row] = _refused(outcome)
-            continue
-        found = outcome.result.points[0]
-        if outcome.HasField("inefficiency_curve"):
-            speed = _speed(points[row])
-            found = min(
-                outcome.result.points, key=lambda each: abs(each.speed_kilometres_per_hour - speed)
-            )
-        cells[row] = {
-            **point_row(found),
-            "simulation": outcome.name,
-            "input_hash": outcome.result.input_hash,
-            "model_version": outcome.result.model_version,
-        }
-
-
-def _refused(error: TribodynError) -> dict[str, Any]:
-    message = "; ".join(each.description for each in error.violations) or error.message
-    return {
-        **empty_row(error.reason or error.code, message),
-        "simulation": "",
-        "input_hash": "",
-        "model_version": "",
-    }
+def _varied(arguments: Arguments, owner: str, parameter: str, value: Quantity) -> dict[str, float]:
+    """Returns the path of a parameter and its value in the parameter's unit."""
+    column = find_column(_VARIED[owner], parameter)
+    if column is None or column.kind != "field" or column.block is not None:
+        arguments.wrong(f"{owner}.{parameter}", f"{parameter} is no parameter of a {owner}")
+        return {}
+    try:
+        number = quantity(value, column.field.name, unit=column.unit)
+    except QuantityError as error:
+        arguments.wrong(f"{owner}.{parameter}", f"{value!r} {error}")
+        return {}
+    return {f"{owner}.{column.field.name}": number}

@@ -132,7 +132,7 @@ def scene(
         solver.method = arguments.word(
             "method", options.method, results_pb2.SteadyStateMethod, "STEADY_STATE_METHOD_"
         )
-    _set_switches(arguments, "model_options", options.model_options, out.model_options)
+    set_switches(arguments, "model_options", options.model_options, out.model_options)
     return out
 
 
@@ -248,14 +248,14 @@ def _set_model(arguments: Arguments, study: Any, model: str | None, options: Opt
         study.start = arguments.word("start", options.start, results_pb2.PointStart, "POINT_START_")
 
 
-def _set_switches(arguments: Arguments, path: str, switches: Mapping[str, Any], out: Any) -> None:
+def set_switches(arguments: Arguments, path: str, switches: Mapping[str, Any], out: Any) -> None:
     fields = out.DESCRIPTOR.fields_by_name
     for name, value in switches.items():
         described = fields.get(name)
         if described is None:
             arguments.wrong(f"{path}.{name}", f"{name} is unknown; allowed: {', '.join(fields)}")
         elif described.message_type is not None:
-            _set_switches(arguments, f"{path}.{name}", value, getattr(out, name))
+            set_switches(arguments, f"{path}.{name}", value, getattr(out, name))
         elif described.enum_type is not None:
             kind = getattr(type(out), described.enum_type.name)
             setattr(out, name, arguments.word(f"{path}.{name}", value, kind, name.upper() + "_"))

@@ -3,11 +3,13 @@ them."""
 
 from __future__ import annotations
 
+import os
 from types import TracebackType
-from typing import Any, Mapping, Sequence
+from typing import Any, Callable, Mapping, Sequence
 
-from tribodyn import _evaluate, _studies
+from tribodyn import _points, _studies
 from tribodyn._csv import rows_of
+from tribodyn._evaluate import Evaluation, is_parameter
 from tribodyn._frames import Frame, columns_of, frame, in_columns, point_row, result_attrs
 from tribodyn._history import read_history
 from tribodyn._jobs import Outcome, run_all
@@ -265,36 +267,20 @@ class Client:
         }
         return frame({each.name: column for each, column in zip(schema.columns, values)}, attrs)
 
-    async def evaluate(
-        self, table: Any, *, options: Options = Options(), **parameters: Any
-    ) -> Frame:
-        unknown = [name for name in parameters if name not in _evaluate.PARAMETERS]
-        if unknown:
-            raise TypeError(
-                f"evaluate() has no parameter {', '.join(unknown)}; parameters: "
-                + ", ".join(_evaluate.PARAMETERS)
-            )
-        given = in_columns(rows_of(table)) if isinstance(table, str) else columns_of(table)
-        count = len(next(iter(given.values()), []))
-        rows = [
-            {
-                **parameters,
-                **{name: column[i] for name, column in given.items() if column[i] is not None},
-            }
-            for i in range(count)
-        ]
+    async def points(self, table: Any, *, options: Options = Options(), **parameters: Any) -> Frame:
+        given, rows = _rows(table, parameters, lambda name: name in _points.PARAMETERS)
 
         async def run(requests: Sequence[pb.CreateSimulationRequest]) -> Sequence[Outcome]:
             return await run_all(self._transport, requests, self._progress(len(requests), "points"))
 
-        cells = await _evaluate.evaluate_rows(rows, options, run)
-        results = in_columns(cells)
-        out = frame(
-            {**given, **{name: column for name, column in results.items() if name not in given}}, {}
-        )
-        if hasattr(table, "columns") and hasattr(out, "index"):  # both are DataFrames
-            out.index = table.index
-        return out
+        return _joined(table, given, await _points.solve_rows(rows, options, run), {})
+
+    async def evaluate(
+        self, table: Any, *, model_options: Mapping[str, Any] | None = None, **parameters: Any
+    ) -> Frame:
+        given, rows = _rows(table, parameters, is_parameter)
+        evaluation = Evaluation(self._transport, model_options or {})
+        return _joined(table, given, await evaluation.run(rows), evaluation.attrs)
 
     async def _curves(
         self,
@@ -374,3 +360,37 @@ class Client:
 
 def _columns(simulation: pb.Simulation) -> Mapping[str, Sequence[Any]]:
     return in_columns(point_row(point) for point in simulation.result.points)
+
+
+def _rows(
+    table: Any, parameters: Mapping[str, Any], is_known: Callable[[str], bool]
+) -> tuple[dict[str, list[Any]], list[dict[str, Any]]]:
+    """Returns the columns of a table, and its rows with the parameters that they do not state."""
+    unknown = [name for name in parameters if not is_known(name)]
+    if unknown:
+        raise TypeError(f"no such parameter: {', '.join(unknown)}")
+    is_file = isinstance(table, (str, os.PathLike))
+    given = in_columns(rows_of(table)) if is_file else columns_of(table)
+    count = len(next(iter(given.values()), []))
+    rows = [
+        {
+            **parameters,
+            **{name: values[i] for name, values in given.items() if values[i] is not None},
+        }
+        for i in range(count)
+    ]
+    return given, rows
+
+
+def _joined(
+    table: Any,
+    given: Mapping[str, list[Any]],
+    cells: Sequence[Mapping[str, Any]],
+    attrs: Mapping[str, Any],
+) -> Frame:
+    """Returns the columns of the table with those of the results beside them."""
+    results = {name: each for name, each in in_columns(cells).items() if name not in given}
+    out = frame({**given, **results}, attrs)
+    if hasattr(table, "columns") and hasattr(out, "index"):  # both are DataFrames
+        out.index = table.index
+    return out

@@ -6,7 +6,7 @@ import asyncio
 import atexit
 import threading
 from types import TracebackType
-from typing import Any, Coroutine, Generic, List, Sequence, TypeVar
+from typing import Any, Coroutine, Generic, List, Mapping, Sequence, TypeVar
 
 from google.protobuf.message import Message
 
@@ -414,15 +414,32 @@ class Client:
             )
         )
 
-    def evaluate(self, table: Any, *, options: Options = Options(), **parameters: Any) -> Frame:
-        """Returns the figures of many operating points: rows in, rows out, in their order.
+    def points(self, table: Any, *, options: Options = Options(), **parameters: Any) -> Frame:
+        """Returns the whole record of many operating points: rows in, rows out, in their order.
 
         ``table`` is a DataFrame, a mapping of columns, a sequence of rows, or the path of a CSV
         file. Its columns are the arguments of point(): lubricant, gear_set, surface, vehicle,
         sump_temperature_celsius, speed_kilometres_per_hour and so on; ``parameters`` hold for the
-        rows that state none. Other columns ride along. The points are solved in parallel, each
-        alone. A row that fails has NaN, the reason in ``status`` and a sentence in
-        ``status_message``; the others have "OK". ``options.request_id`` is not used: equal inputs
-        are computed once anyway.
+        rows that state none. Other columns ride along. The points are jobs, with the bits of
+        point(), solved in parallel. A row that fails has NaN, the reason in ``status`` and a
+        sentence in ``status_message``; the others have "OK". ``options.request_id`` is not used:
+        equal inputs are computed once anyway.
         """
-        return _LOOP.run(self._client.evaluate(table, options=options, **parameters))
+        return _LOOP.run(self._client.points(table, options=options, **parameters))
+
+    def evaluate(
+        self, table: Any, *, model_options: Mapping[str, Any] | None = None, **parameters: Any
+    ) -> Frame:
+        """Returns the main figures of many variants at many conditions, without jobs: rows in, rows
+        out, in their order. For screening, and for loops of optimisation.
+
+        ``table`` is as of points(), with columns lubricant, gear_set, surface, vehicle, tolerance,
+        speed_kilometres_per_hour, ascent_angle_degrees, sump_temperature_celsius and
+        inlet_temperature_rise_kelvin. A column "lubricant.FIELD" or "surface.FIELD" states what a
+        row has in place of the parameter of its lubricant or surface, with units as of create():
+        "lubricant.relaxation_time_seconds", "surface.asperity_friction_coefficient". The server
+        keeps nothing. A figure agrees with that of a point within the estimated errors of both.
+        ``model_options`` as of Options; ``status`` as of points(). ``attrs`` holds model_version and
+        the revisions used.
+        """
+        return _LOOP.run(self._client.evaluate(table, model_options=model_options, **parameters))

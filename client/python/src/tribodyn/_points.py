@@ -1,0 +1,180 @@
+"""Many operating points as jobs: rows in, rows out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Awaitable, Callable, Mapping, Sequence
+
+from tribodyn import _studies
+from tribodyn._frames import empty_row, point_row
+from tribodyn._jobs import Outcome
+from tribodyn._studies import Arguments, Options
+from tribodyn._transport import new_request_id
+from tribodyn.errors import TribodynError
+from tribodyn.v1 import simulations_pb2 as pb
+
+# Rows of one scene share a curve of independent points, whose figures equal those of single points
+# to the last bit at a fraction of the cost of jobs. Several curves use several processors.
+_MOST_SPEEDS = 50
+
+SCENE = (
+    "gear_set",
+    "surface",
+    "vehicle",
+    "sump_temperature_celsius",
+    "inlet_temperature_rise_kelvin",
+    "tolerance",
+)
+CONDITION = (
+    "speed_kilometres_per_hour",
+    "acceleration_metres_per_second_squared",
+    "ascent_angle_degrees",
+    "pinion_torque_newton_metres",
+    "pinion_speed_radians_per_second",
+)
+PARAMETERS = ("lubricant", *SCENE, *CONDITION, "model")
+
+RunAll = Callable[[Sequence[pb.CreateSimulationRequest]], Awaitable[Sequence[Outcome]]]
+
+
+@dataclass
+class _Job:
+    """A request and the rows that it computes."""
+
+    request: pb.CreateSimulationRequest
+    rows: list[int]
+
+
+async def solve_rows(
+    rows: Sequence[Mapping[str, Any]], options: Options, run_all: RunAll
+) -> list[dict[str, Any]]:
+    """Returns the cells of each row: figures and status "OK", or NaN and the reason."""
+    cells: dict[int, dict[str, Any]] = {}
+    points: dict[int, pb.Simulation] = {}
+    for index, row in enumerate(rows):
+        try:
+            points[index] = _point(row, options)
+        except TribodynError as error:
+            cells[index] = _refused(error)
+    jobs = _jobs(points, options)
+    outcomes = await run_all([job.request for job in jobs])
+    singly: list[_Job] = []
+    for job, outcome in zip(jobs, outcomes):
+        if (
+            isinstance(outcome, TribodynError)
+            and outcome.reason == "INVALID_FIELDS"
+            and job.request.simulation.HasField("inefficiency_curve")
+        ):
+            # One wrong row refuses the curve: the others are computed without it.
+            singly += [_Job(_request(points[row], options), [row]) for row in job.rows]
+        else:
+            _place(job, outcome, points, cells)
+    for job, outcome in zip(singly, await run_all([job.request for job in singly])):
+        _place(job, outcome, points, cells)
+    return [cells[index] for index in range(len(rows))]
+
+
+def _point(row: Mapping[str, Any], options: Options) -> pb.Simulation:
+    arguments = Arguments()
+    if row.get("lubricant") is None:
+        arguments.wrong("lubricant", "lubricant is missing")
+    simulation = _studies.scene(
+        arguments, row.get("lubricant") or "", options, **{name: row.get(name) for name in SCENE}
+    )
+    _studies.point(
+        arguments,
+        simulation,
+        options,
+        model=row.get("model"),
+        **{name: row.get(name) for name in CONDITION},
+    )
+    arguments.check()
+    return simulation
+
+
+def _request(simulation: pb.Simulation, options: Options) -> pb.CreateSimulationRequest:
+    arguments = Arguments()
+    request = _studies.request(arguments, simulation, options)
+    arguments.check()
+    # The jobs of a table depend on all of its rows, so that the id of the options cannot name one.
+    request.request_id = new_request_id()
+    return request
+
+
+def _jobs(points: Mapping[int, pb.Simulation], options: Options) -> list[_Job]:
+    """Returns a curve for each scene of several cruise speeds, and a job for each other row."""
+    groups: dict[bytes, list[int]] = {}
+    jobs = []
+    for index, simulation in points.items():
+        study = simulation.operating_point
+        if study.WhichOneof("condition") != "cruise":
+            jobs.append(_Job(_request(simulation, options), [index]))
+            continue
+        scene = pb.Simulation()
+        scene.CopyFrom(simulation)
+        scene.operating_point.cruise.speed_kilometres_per_hour = 0
+        groups.setdefault(scene.SerializeToString(deterministic=True), []).append(index)
+    for group in groups.values():
+        for first in range(0, len(group), _MOST_SPEEDS):
+            rows = group[first : first + _MOST_SPEEDS]
+            jobs.append(_Job(_request(_curve([points[row] for row in rows]), options), rows))
+    return jobs
+
+
+def _curve(simulations: Sequence[pb.Simulation]) -> pb.Simulation:
+    """Returns a curve of independent points through points of one scene; of one speed, the
+    point."""
+    speeds = sorted({_speed(each) for each in simulations})
+    if len(speeds) == 1:
+        return simulations[0]
+    out = pb.Simulation()
+    out.CopyFrom(simulations[0])
+    study = simulations[0].operating_point
+    out.inefficiency_curve.CopyFrom(
+        pb.InefficiencyCurveStudy(
+            speeds_kilometres_per_hour=speeds,
+            ascent_angle_degrees=study.cruise.ascent_angle_degrees,
+            model=study.model,
+            start=study.start,
+            independent_points=True,
+        )
+    )
+    return out
+
+
+def _speed(simulation: pb.Simulation) -> float:
+    return simulation.operating_point.cruise.speed_kilometres_per_hour
+
+
+def _place(
+    job: _Job,
+    outcome: Outcome,
+    points: Mapping[int, pb.Simulation],
+    cells: dict[int, dict[str, Any]],
+) -> None:
+    for row in job.rows:
+        if isinstance(outcome, TribodynError):
+            cells[row] = _refused(outcome)
+            continue
+        found = outcome.result.points[0]
+        if outcome.HasField("inefficiency_curve"):
+            speed = _speed(points[row])
+            found = min(
+                outcome.result.points, key=lambda each: abs(each.speed_kilometres_per_hour - speed)
+            )
+        cells[row] = {
+            **point_row(found),
+            "simulation": outcome.name,
+            "input_hash": outcome.result.input_hash,
+            "model_version": outcome.result.model_version,
+        }
+
+
+def _refused(error: TribodynError) -> dict[str, Any]:
+    message = "; ".join(each.description for each in error.violations) or error.message
+    return {
+        **empty_row(error.reason or error.code, message),
+        "simulation": "",
+        "input_hash": "",
+        "model_version": "",
+    }
