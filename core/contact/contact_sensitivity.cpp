@@ -1,44 +1,68 @@
 #include "core/contact/contact_sensitivity.h"
 
+#include <array>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "core/contact/contact_equations.h"
 
 namespace tribodyn {
 namespace {
 
-/// One derivative per input; the last is for the unknown of root_with_slopes, the one before pads
-/// to a whole number of vectors.
-constexpr int kDirections = kContactInputs + 2;
+constexpr int kConditions = kContactInputs - kContactParameters;
+
+/// By all inputs; the last direction is for the unknown of root_with_slopes.
+constexpr int kDirections = kContactInputs + 1;
 using Number = laws::Dual<double, kDirections>;
 
-/// The structures with a variable in place of each input.
-struct Seeded {
-  ContactParametersOf<Number> parameters;
-  ContactConditionsOf<Number> conditions;
+// What the contact and the stress at one temperature depend on directly is less than all inputs.
+// They are evaluated with derivatives by that, and by all inputs through the chain rule.
 
-  Seeded(ContactParametersOf<double> from, ContactConditions k) {
-    const auto values = contact_inputs(from, k);
-    const auto numbers = contact_inputs(parameters, conditions);
-    for (int i = 0; i < kContactInputs; ++i) *numbers[i] = Number::variable(*values[i], i);
-  }
-};
+/// By the conditions and contact_level; the last direction is for the unknown.
+constexpr int kContactLevel = 11;
+constexpr int kContactDirections = kConditions + kContactLevel + 1;
+using ContactNumber = laws::Dual<double, kContactDirections>;
 
-/// ln tau_bar at a temperature from its derivatives by what it is an integral of.
-Number log_mean_stress(const MeanShearStress& stress, const ShearLaw<Number>& law,
-                       const laws::LogStress<Number>& at, const Number& pressure) {
-  Number out;
-  out.value = stress.log_value;
-  const LubricantOf<Number>& oil = law.lubricant;
-  const double by_pressure = stress.by_log_pressure / pressure.value;
-  for (int i = 0; i < kDirections; ++i) {
-    out.slope[i] =
-        stress.by_base * at.base.slope[i] + stress.by_factor * at.factor.slope[i] +
-        stress.by_index * law.index.slope[i] + by_pressure * pressure.slope[i] +
-        stress.by_limit_at_zero_pressure * oil.limiting_shear_stress_at_zero_pressure.slope[i] +
-        stress.by_limit_coefficient * oil.limiting_shear_stress_coefficient.slope[i];
-  }
-  return out;
+template <class Real>
+std::array<Real*, kContactLevel> contact_level(ContactParametersOf<Real>& parameters,
+                                               ContactConstants<Real>& constants) {
+  return {&parameters.roughness.composite_rms_height,
+          &parameters.boundary.tribofilm_shear_strength,
+          &parameters.boundary.asperity_friction_coefficient,
+          &parameters.lubricant.thermal_conductivity,
+          &constants.inlet_temperature,
+          &constants.log_film,
+          &constants.reduced_modulus,
+          &constants.asperity_load_factor,
+          &constants.asperity_area_factor,
+          &constants.conductance_factor_1,
+          &constants.conductance_factor_2};
+}
+
+/// By temperature, logarithm of the shear rate and stress_level.
+constexpr int kStressLevel = 9;
+using StressNumber = laws::Dual<double, 2 + kStressLevel>;
+
+template <class Real>
+std::array<Real*, kStressLevel> stress_level(ShearLaw<Real>& law) {
+  LubricantOf<Real>& oil = law.lubricant;
+  return {&law.log_vogel_prefactor,
+          &law.log_relaxation_time,
+          &law.shift_reference,
+          &oil.vogel_temperature_coefficient,
+          &oil.vogel_reference_temperature,
+          &oil.havriliak_negami_alpha,
+          &oil.havriliak_negami_beta,
+          &oil.density_at_zero_kelvin,
+          &oil.density_temperature_slope};
+}
+
+/// Adds derivatives times a factor. x need not have any where the factor is 0, as those of the
+/// shift of the relaxation time where F = 1.
+void add(double factor, const Number& x, Number& sum) {
+  if (factor == 0) return;
+  for (int i = 0; i < kContactInputs; ++i) sum.slope[i] += factor * x.slope[i];
 }
 
 void take(const Number& from, ContactDerivatives& to) {
@@ -51,23 +75,58 @@ bool alike(double x, double y) { return std::abs(x - y) <= 1e-9 * std::abs(y); }
 }  // namespace
 
 struct ContactSensitivityModel::Constants {
-  ContactParametersOf<Number> parameters;
-  ContactConstants<Number> constants;
+  std::array<Number, kContactLevel> contact;
+  std::array<Number, kStressLevel> stress;
+  Number index, limit_at_zero_pressure, limit_coefficient;
+  ContactParametersOf<ContactNumber> parameters;
+  ContactConstants<ContactNumber> constants;
+  ShearLaw<StressNumber> shear;
+
+  Number by_inputs(const ContactNumber& x) const {
+    Number out(x.value);
+    for (int i = 0; i < kConditions; ++i) out.slope[kContactParameters + i] = x.slope[i];
+    for (int i = 0; i < kContactLevel; ++i) add(x.slope[kConditions + i], contact[i], out);
+    return out;
+  }
 };
 
 ContactSensitivityModel::ContactSensitivityModel(const FlankContactModel& model) : model_(model) {
-  auto constants = std::make_unique<Constants>();
-  constants->parameters = Seeded(model.parameters(), ContactConditions{}).parameters;
+  ContactParametersOf<double> values = model.parameters();
+  ContactConditions no_conditions{};
+  ContactParametersOf<Number> parameters;
+  ContactConditionsOf<Number> conditions;
+  const auto from = contact_inputs(values, no_conditions);
+  const auto to = contact_inputs(parameters, conditions);
+  for (int i = 0; i < kContactInputs; ++i) *to[i] = Number::variable(*from[i], i);
   ModelOptions options = model.options();
-  if (model.parameters().lubricant.relaxation_time == 0) options.newtonian = true;
+  if (values.lubricant.relaxation_time == 0) options.newtonian = true;
   const auto index_of = [&](const Number& factor, const Number& coefficient) {
     return laws::root_with_slopes<kDirections>(
         model.pressure_viscosity_index(), [&](const Number& index) {
           return laws::roelands_reciprocal_asymptotic(factor, index) / coefficient - 1;
         });
   };
-  constants->constants = contact_constants(constants->parameters, options, index_of);
-  constants_ = std::move(constants);
+  ContactConstants<Number> constants = contact_constants(parameters, options, index_of);
+
+  auto kept = std::make_unique<Constants>();
+  const auto contact = contact_level(parameters, constants);
+  const auto contact_variables = contact_level(kept->parameters, kept->constants);
+  for (int i = 0; i < kContactLevel; ++i) {
+    kept->contact[i] = *contact[i];
+    *contact_variables[i] = ContactNumber::variable(contact[i]->value, kConditions + i);
+  }
+  const auto stress = stress_level(constants.shear);
+  const auto stress_variables = stress_level(kept->shear);
+  for (int i = 0; i < kStressLevel; ++i) {
+    kept->stress[i] = *stress[i];
+    *stress_variables[i] = StressNumber::variable(stress[i]->value, 2 + i);
+  }
+  kept->shear.newtonian = constants.shear.newtonian;
+  kept->shear.roelands_misprinted = constants.shear.roelands_misprinted;
+  kept->index = constants.shear.index;
+  kept->limit_at_zero_pressure = parameters.lubricant.limiting_shear_stress_at_zero_pressure;
+  kept->limit_coefficient = parameters.lubricant.limiting_shear_stress_coefficient;
+  constants_ = std::move(kept);
 }
 
 ContactSensitivityModel::~ContactSensitivityModel() = default;
@@ -109,46 +168,64 @@ ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, doubl
   out.status = SensitivityStatus::kOk;
 
   const ModelOptions& options = model_.options();
-  const ContactParametersOf<Number>& parameters = constants_->parameters;
-  const ContactConstants<Number>& constants = constants_->constants;
-  const ContactConditionsOf<Number> conditions = Seeded(model_.parameters(), k).conditions;
-
-  const LoadedContact<Number> loaded = loaded_contact(parameters, constants, options, conditions);
-  const Number log_share = laws::root_with_slopes<kDirections>(
+  const Constants& c = *constants_;
+  const auto variable = [](double x, int i) { return ContactNumber::variable(x, i); };
+  const ContactConditionsOf<ContactNumber> conditions{
+      variable(k.load, 0),         variable(k.radius_x, 1),     variable(k.radius_y, 2),
+      variable(k.velocity_1_x, 3), variable(k.velocity_1_y, 4), variable(k.velocity_2_x, 5),
+      variable(k.velocity_2_y, 6)};
+  const LoadedContact<ContactNumber> loaded =
+      loaded_contact(c.parameters, c.constants, options, conditions);
+  const ContactNumber log_share = laws::root_with_slopes<kContactDirections>(
       std::log(film_load / k.load),
-      [&](const Number& r) { return carried_share(loaded.sharing, r) - 1; });
-  const SharedContact<Number> shared = shared_contact(parameters, constants, loaded, log_share);
-  const HeatedContact<Number> heated =
-      heated_contact(parameters, constants, options, conditions, shared);
+      [&](const ContactNumber& r) { return carried_share(loaded.sharing, r) - 1; });
+  const SharedContact<ContactNumber> shared =
+      shared_contact(c.parameters, c.constants, loaded, log_share);
+  const HeatedContact<ContactNumber> heated =
+      heated_contact(c.parameters, c.constants, options, conditions, shared);
 
-  const Number& pressure = shared.axes.maximum_pressure;
-  const Number log_shear_rate = laws::logarithm(heated.shear_rate);
-  const bool limited = !options.no_limiting_shear_stress;
-  const ShearedFilm film{&model_.constants().shear, pressure.value, log_shear_rate.value, limited};
+  // The mean stress at a temperature: explicit_part + by_temperature (T - T_c), as a logarithm.
+  const Number pressure = c.by_inputs(shared.axes.maximum_pressure);
+  const Number log_shear_rate = c.by_inputs(laws::logarithm(heated.shear_rate));
+  const ShearedFilm film{&model_.constants().shear, pressure.value, log_shear_rate.value,
+                         !options.no_limiting_shear_stress, true};
   double switch_guess = 0;
   const MeanShearStress stress = mean_shear_stress(film, contact_temperature, switch_guess);
-  Number mean_stress;
-  const auto mean_stress_at = [&](const Number& temperature) {
-    return laws::exponential(
-        log_mean_stress(stress, constants.shear,
-                        log_stress(constants.shear, temperature, log_shear_rate), pressure));
+  const auto log_stress_there = log_stress(c.shear, StressNumber::variable(contact_temperature, 0),
+                                           StressNumber::variable(log_shear_rate.value, 1));
+  const auto by_stress_level = [&](int i) {
+    return stress.by_base * log_stress_there.base.slope[i] +
+           stress.by_factor * log_stress_there.factor.slope[i];
   };
-  const Number temperature =
-      laws::root_with_slopes<kDirections>(contact_temperature, [&](const Number& t) {
-        return t - heated.temperature.base - heated.temperature.gain * mean_stress_at(t);
-      });
-  mean_stress = mean_stress_at(temperature);
+  const double by_temperature = by_stress_level(0);
+  Number explicit_part(stress.log_value);
+  add(by_stress_level(1), log_shear_rate, explicit_part);
+  for (int i = 0; i < kStressLevel; ++i) add(by_stress_level(2 + i), c.stress[i], explicit_part);
+  add(stress.by_index, c.index, explicit_part);
+  add(stress.by_log_pressure / pressure.value, pressure, explicit_part);
+  add(stress.by_limit_at_zero_pressure, c.limit_at_zero_pressure, explicit_part);
+  add(stress.by_limit_coefficient, c.limit_coefficient, explicit_part);
+  const auto mean_stress_at = [&](const Number& temperature) {
+    return laws::exponential(explicit_part + by_temperature * (temperature - contact_temperature));
+  };
+  const Number base = c.by_inputs(heated.temperature.base);
+  const Number gain = c.by_inputs(heated.temperature.gain);
+  const Number temperature = laws::root_with_slopes<kDirections>(
+      contact_temperature, [&](const Number& t) { return t - base - gain * mean_stress_at(t); });
+  const Number mean_stress = mean_stress_at(temperature);
 
-  const Number viscous = laws::viscous_friction(heated.viscous_area, mean_stress);
-  const Number friction = laws::friction(viscous, heated.boundary_friction);
+  const Number boundary = c.by_inputs(heated.boundary_friction);
+  const Number viscous = laws::viscous_friction(c.by_inputs(heated.viscous_area), mean_stress);
+  const Number friction = laws::friction(viscous, boundary);
   take(friction, out.friction);
   take(viscous, out.viscous_friction);
-  take(heated.boundary_friction, out.boundary_friction);
-  take(friction / conditions.load, out.friction_coefficient);
-  take(friction * heated.sliding_speed, out.heat_rate);
-  take(shared.film_thickness, out.film_thickness);
-  take(shared.film_ratio, out.film_ratio);
-  take(laws::exponential(log_share), out.film_load_share);
+  take(boundary, out.boundary_friction);
+  const int load = static_cast<int>(ContactInput::kLoad);
+  take(friction / Number::variable(k.load, load), out.friction_coefficient);
+  take(friction * c.by_inputs(heated.sliding_speed), out.heat_rate);
+  take(c.by_inputs(shared.film_thickness), out.film_thickness);
+  take(c.by_inputs(shared.film_ratio), out.film_ratio);
+  take(c.by_inputs(laws::exponential(log_share)), out.film_load_share);
   take(pressure, out.maximum_pressure);
   take(temperature, out.contact_temperature);
   take(mean_stress, out.mean_shear_stress);

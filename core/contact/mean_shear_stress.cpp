@@ -16,6 +16,7 @@ constexpr double kC = laws::kRoelandsPressureCoefficient;  // c of the formulas 
 struct Law : laws::LogStress<double> {
   double index;
   double tau_zero, gamma;  // tau_L = tau_zero + gamma p
+  bool all_derivatives;
 
   double log_stress(double s) const {
     return laws::log_under_pressure(base, factor, std::expm1(index * s));
@@ -34,7 +35,8 @@ struct Law : laws::LogStress<double> {
 Law law_at(const ShearedFilm& film, double temperature) {
   const Lubricant& oil = film.law->lubricant;
   return {log_stress(*film.law, temperature, film.log_shear_rate), film.law->index,
-          oil.limiting_shear_stress_at_zero_pressure, oil.limiting_shear_stress_coefficient};
+          oil.limiting_shear_stress_at_zero_pressure, oil.limiting_shear_stress_coefficient,
+          film.all_derivatives};
 }
 
 /// int tau p dp over [from, to] in s, and the same weighted with d ln tau/d factor and d ln tau/dZ,
@@ -62,7 +64,7 @@ void add_panel(const Law& law, double from, double to, Moment& out) {
                          (law.base - out.shift + law.factor * growth).exp() * q * u;
   out.value += weighted.sum();
   out.by_factor += (weighted * growth).sum();
-  out.by_index += law.factor * (weighted * s * (growth + 1)).sum();
+  if (law.all_derivatives) out.by_index += law.factor * (weighted * s * (growth + 1)).sum();
 }
 
 Moment moment(const Law& law, double from, double to) {
@@ -127,18 +129,23 @@ struct OnLimit {
 };
 
 MeanShearStress mean_of(const Law& law, double pressure, const Moment& sheared, const OnLimit& on,
-                        double log_stress_at_centre) {
+                        bool limited_at_centre) {
   const double integral = sheared.value + law.tau_zero * on.by_zero + law.gamma * on.by_coefficient;
   MeanShearStress out{};
   out.log_value = std::log(2.0) - 2 * std::log(pressure) + sheared.shift + std::log(integral);
   out.by_base = sheared.value / integral;
   out.by_factor = sheared.by_factor / integral;
-  out.by_index = sheared.by_index / integral;
   out.slope = law.base_slope * out.by_base + law.factor_slope * out.by_factor;
-  out.by_log_pressure = 2 * std::exp(log_stress_at_centre - out.log_value) - 2;
+  out.limited_area_share = std::min(1.0, 2 * on.by_zero / (pressure * pressure));
+  out.limited_at_centre = limited_at_centre;
+  if (!law.all_derivatives) return out;
+  const double centre = std::log1p(kC * pressure);
+  const double log_stress =
+      limited_at_centre ? std::log(law.limit(centre)) : law.log_stress(centre);
+  out.by_index = sheared.by_index / integral;
+  out.by_log_pressure = 2 * std::exp(log_stress - out.log_value) - 2;
   out.by_limit_at_zero_pressure = on.by_zero / integral;
   out.by_limit_coefficient = on.by_coefficient / integral;
-  out.limited_area_share = std::min(1.0, 2 * on.by_zero / (pressure * pressure));
   return out;
 }
 
@@ -149,9 +156,7 @@ MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
   const Law law = law_at(film, temperature);
   const double end = std::log1p(kC * film.maximum_pressure);
   const auto unlimited = [&] {
-    const double centre = law.log_stress(end);
-    const Moment all = moment(law, 0, end);
-    return mean_of(law, film.maximum_pressure, all, {}, centre);
+    return mean_of(law, film.maximum_pressure, moment(law, 0, end), {}, false);
   };
   if (!film.limited) return unlimited();
 
@@ -201,10 +206,8 @@ MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
       sheared.add(std::exp(part.shift), part);
     }
   }
-  MeanShearStress out = mean_of(law, film.maximum_pressure, sheared, on,
-                                limited ? std::log(law.limit(end)) : law.log_stress(end));
+  MeanShearStress out = mean_of(law, film.maximum_pressure, sheared, on, limited);
   out.switches = switches;
-  out.limited_at_centre = limited;
   return out;
 }
 

@@ -8,9 +8,10 @@ namespace tribodyn {
 /// temperature.
 struct ShearedFilm {
   const ShearLaw<double>* law;
-  double maximum_pressure;  ///< p_max [Pa] > 0
-  double log_shear_rate;    ///< ln of eq 18, gamma_dot in 1/s
-  bool limited;             ///< stress restricted to tau_L
+  double maximum_pressure;       ///< p_max [Pa] > 0
+  double log_shear_rate;         ///< ln of eq 18, gamma_dot in 1/s
+  bool limited;                  ///< stress restricted to tau_L
+  bool all_derivatives = false;  ///< not that by temperature alone
 };
 
 /// log_stress with eq 31 as chosen.
@@ -32,8 +33,9 @@ struct MeanShearStress {
   double limited_area_share;  ///< share of the area on tau_L [-]
   int switches;               ///< radii at which eq 23 meets tau_L
   bool limited_at_centre;
-  // Derivatives of ln tau_bar by base and factor of LogStress, Z, ln p_max, tau_L0 and gamma_L. The
-  // places where eq 23 meets tau_L do not enter: there the integrand is continuous.
+  // If all_derivatives: those of ln tau_bar by base and factor of LogStress, Z, ln p_max, tau_L0
+  // and gamma_L. The places where eq 23 meets tau_L do not enter: there the integrand is
+  // continuous.
   double by_base, by_factor, by_index, by_log_pressure;
   double by_limit_at_zero_pressure;  ///< [1/Pa]
   double by_limit_coefficient;
