@@ -231,6 +231,15 @@ def test_a_thousand_variants_are_screened_in_their_order(client):
         client.evaluate(table, speed=3)
 
 
+def test_a_server_that_is_not_there_is_an_error_and_not_a_status_of_rows():
+    nobody = tribodyn.Client("127.0.0.1:1")
+    rows = {"lubricant": [FLUID] * 2, "speed_kilometres_per_hour": [40, 60]}
+    for call in (nobody.points, nobody.evaluate):
+        with pytest.raises(tribodyn.TribodynError) as caught:
+            call(rows)
+        assert caught.value.reason == "CANNOT_CONNECT"
+
+
 def test_results_are_structured_arrays_without_pandas(server):
     code = """
 import sys

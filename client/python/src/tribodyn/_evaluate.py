@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 from typing import Any, Mapping, Sequence
 
 from tribodyn._frames import enum_word
+from tribodyn._jobs import gather
+from tribodyn._progress import Progress
 from tribodyn._rows import find_column
 from tribodyn._studies import Arguments, full_name, set_switches
 from tribodyn._transport import Transport
-from tribodyn.errors import TribodynError, Violation
+from tribodyn.errors import TribodynError, Violation, is_about_the_request
 from tribodyn.units import Quantity, QuantityError, quantity
 from tribodyn.v1 import points_pb2, results_pb2
 from tribodyn.v1.lubricants_pb2 import Lubricant
@@ -83,7 +85,9 @@ class Evaluation:
         self._cells: dict[int, dict[str, Any]] = {}
         self.attrs: dict[str, Any] = {"model_version": "", "revisions": []}
 
-    async def run(self, rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    async def run(
+        self, rows: Sequence[Mapping[str, Any]], progress_form: str
+    ) -> list[dict[str, Any]]:
         """Returns the cells of each row: figures and status "OK", or NaN and the reason."""
         groups: dict[tuple[Any, ...], _Group] = {}
         for index, row in enumerate(rows):
@@ -97,7 +101,16 @@ class Evaluation:
             conditions = group.candidates.setdefault(tuple(varied.values()), {})
             conditions.setdefault(condition, []).append(index)
         requests = [each for group in groups.values() for each in self._requests(group)]
-        await asyncio.gather(*map(self._evaluate, requests))
+        progress = Progress(progress_form, len(requests), "evaluate")
+
+        async def evaluate(number: int, request: _Request) -> None:
+            await self._evaluate(request)
+            progress.update(str(number), 1)
+
+        try:
+            await gather(*(evaluate(*each) for each in enumerate(requests)))
+        finally:
+            progress.close()
         return [self._cells[index] for index in range(len(rows))]
 
     def _requests(self, group: _Group) -> list[_Request]:
@@ -145,7 +158,7 @@ class Evaluation:
                     )
                 return self._place(request, answer)
             except TribodynError as error:
-                if error.reason in ("CANNOT_CONNECT", "NO_ANSWER"):
+                if not is_about_the_request(error):
                     raise
                 if not self._leave_out(request, error):
                     return self._refuse(

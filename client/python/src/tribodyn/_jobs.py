@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Callable, Sequence, Union
+from typing import Any, Awaitable, Callable, Sequence, Union
 
 import grpc
 
 from tribodyn._progress import Progress
 from tribodyn._transport import Backoff, Transport
-from tribodyn.errors import TribodynError, details_of, service_error
+from tribodyn.errors import TribodynError, details_of, is_about_the_request, service_error
 from tribodyn.v1 import simulations_pb2 as pb
 
 Outcome = Union[pb.Simulation, TribodynError]
@@ -36,15 +36,13 @@ async def run_all(
     connection starts no second simulation: each has a request_id.
     """
     run = _Run(transport, requests, progress, all_or_none)
-    tasks = [
-        asyncio.ensure_future(run.run_some(range(first, min(first + _MOST_WATCHED, len(requests)))))
+    groups = [
+        range(first, min(first + _MOST_WATCHED, len(requests)))
         for first in range(0, len(requests), _MOST_WATCHED)
     ]
     try:
-        await asyncio.gather(*tasks)
+        await gather(*map(run.run_some, groups))
     finally:
-        for task in tasks:
-            task.cancel()
         progress.close()
     return [run.outcomes[index] for index in range(len(requests))]
 
@@ -69,10 +67,11 @@ class _Run:
         """Runs at most a thousand of the requests."""
         open_: dict[str, list[int]] = {}
         async with self._one_group_submits:
-            created = await _gather([self._create(index) for index in indices])
+            created = await gather(*(self._create(index) for index in indices))
         refused = [each for each in created if isinstance(each, TribodynError)]
         if refused and self._all_or_none:
-            await _gather([self._cancel(each.name) for each in created if each not in refused])
+            started = [each for each in created if each not in refused]
+            await gather(*(self._cancel(each.name) for each in started))
             raise refused[0]
         ended: list[tuple[str, list[int]]] = []
         for index, simulation in zip(indices, created):
@@ -97,7 +96,7 @@ class _Run:
                     _SERVICE, "CreateSimulation", self._requests[index], patient=True
                 )
             except TribodynError as error:
-                if error.reason in ("CANNOT_CONNECT", "NO_ANSWER"):
+                if not is_about_the_request(error):
                     raise
                 return error
 
@@ -195,7 +194,7 @@ def _deleted(name: str) -> TribodynError:
     return TribodynError(f"{name} was deleted", reason="SIMULATION_DELETED")
 
 
-async def _gather(calls: list) -> list:
+async def gather(*calls: Awaitable[Any]) -> list[Any]:
     """Awaits all; the first that raises cancels the others."""
     tasks = [asyncio.ensure_future(each) for each in calls]
     try:

@@ -280,7 +280,8 @@ class Client:
     ) -> Frame:
         given, rows = _rows(table, parameters, is_parameter)
         evaluation = Evaluation(self._transport, model_options or {})
-        return _joined(table, given, await evaluation.run(rows), evaluation.attrs)
+        cells = await evaluation.run(rows, self._settings.progress)
+        return _joined(table, given, cells, evaluation.attrs)
 
     async def _curves(
         self,

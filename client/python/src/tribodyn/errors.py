@@ -79,6 +79,18 @@ def invalid_fields(
     )
 
 
+def is_about_the_request(error: TribodynError) -> bool:
+    """Whether other requests may succeed where this one failed: not if the server is lost, refuses
+    the caller, or has a defect."""
+    return error.code in (
+        "INVALID_ARGUMENT",
+        "NOT_FOUND",
+        "ALREADY_EXISTS",
+        "FAILED_PRECONDITION",
+        "OUT_OF_RANGE",
+    )
+
+
 def service_error(error: grpc.aio.AioRpcError, address: str) -> TribodynError:
     """Returns what the server answered, or why it did not."""
     status = details_of(error)
