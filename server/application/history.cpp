@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "server/application/errors.h"
-#include "server/application/guard.h"
 #include "server/application/simulation_lookup.h"
 #include "server/application/streams.h"
 #include "server/contract/constraints.h"
@@ -212,30 +211,28 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
                                                     const v1::ReadHistoryRequest& request,
                                                     const CallContext& call) {
   using Source = std::shared_ptr<MessageSource<v1::ReadHistoryResponse>>;
-  return guarded<Source>([&]() -> Outcome<Source> {
-    const auto found = find_simulation(application, request.name(), call);
-    if (!found.ok()) return found.error();
-    const StoredSimulation& stored = found.message();
-    if (stored.state != StoredState::kSucceeded) {
-      return not_possible(v1::ERROR_REASON_NO_RESULT_YET, "tribodyn.v1.Simulation", request.name(),
-                          request.name() + " has not succeeded, so it has no history",
-                          {{"state", v1::Simulation::State_Name(
-                                         static_cast<v1::Simulation::State>(stored.state))}});
-    }
-    HistoryShape shape = application.store.history_shape(stored.id, call.limits);
-    if (shape.names.empty()) {
-      return not_found(kHistoryType, history_name(request.name()),
-                       request.name() + " was run without history", v1::ERROR_REASON_NO_HISTORY);
-    }
-    Violations violations;
-    auto rows = window(request, shape, violations);
-    if (!rows) return invalid(violations);
-    google::protobuf::Arena arena;  // a result has hundreds of parts
-    auto& result = *google::protobuf::Arena::CreateMessage<v1::SimulationResult>(&arena);
-    result.ParseFromString(application.store.result(stored.id, call.limits).value_or(""));
-    return Source(std::make_shared<HistorySource>(application, request.name(), std::move(shape),
-                                                  std::move(*rows), result, call));
-  });
+  const auto found = find_simulation(application, request.name(), call);
+  if (!found.ok()) return found.error();
+  const StoredSimulation& stored = found.message();
+  if (stored.state != StoredState::kSucceeded) {
+    return not_possible(
+        v1::ERROR_REASON_NO_RESULT_YET, "tribodyn.v1.Simulation", request.name(),
+        request.name() + " has not succeeded, so it has no history",
+        {{"state", v1::Simulation::State_Name(static_cast<v1::Simulation::State>(stored.state))}});
+  }
+  HistoryShape shape = application.store.history_shape(stored.id, call.limits);
+  if (shape.names.empty()) {
+    return not_found(kHistoryType, history_name(request.name()),
+                     request.name() + " was run without history", v1::ERROR_REASON_NO_HISTORY);
+  }
+  Violations violations;
+  auto rows = window(request, shape, violations);
+  if (!rows) return invalid(violations);
+  google::protobuf::Arena arena;  // a result has hundreds of parts
+  auto& result = *google::protobuf::Arena::CreateMessage<v1::SimulationResult>(&arena);
+  result.ParseFromString(application.store.result(stored.id, call.limits).value_or(""));
+  return Source(std::make_shared<HistorySource>(application, request.name(), std::move(shape),
+                                                std::move(*rows), result, call));
 }
 
 }  // namespace tribodyn::server

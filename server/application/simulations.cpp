@@ -204,21 +204,22 @@ bool is_ascending(const std::string& order_by, Violations& violations) {
 }
 
 /// Returns the row after which the page of a token begins; nullopt if the token has no such row.
-std::optional<SimulationQuery::Place> place(const PageStart& start) {
+std::optional<SimulationQuery::Cursor> cursor(const PageStart& start) {
   const auto* time = std::get_if<std::int64_t>(&start.value);
   const auto number = simulation_id(start.name);
   if (time == nullptr || !number) return std::nullopt;
-  return SimulationQuery::Place{*time, *number};
+  return SimulationQuery::Cursor{*time, *number};
 }
 
 /// Logs the names of request, simulation and inputs, which connect them. Logs no inputs.
-void log_submission(const CallContext& call, const NewSimulation& simulation, const Added& added) {
+void log_submission(const CallContext& call, const NewSimulation& simulation,
+                    const AddOutcome& added) {
   spdlog::info(
       "event=simulation_{} simulation={} request_id={} client={} input_hash={} cost_seconds={:.6f} "
       "call={}",
-      added.kind == Added::Kind::kQueued   ? "queued"
-      : added.kind == Added::Kind::kServed ? "served"
-                                           : "not_added",
+      added.kind == AddOutcome::Kind::kQueued   ? "queued"
+      : added.kind == AddOutcome::Kind::kServed ? "served"
+                                                : "not_added",
       added.id == 0 ? "-" : name_of(added.stored), simulation.request_id, simulation.client,
       simulation.key.input_hash, simulation.cost_seconds, call.request_id);
 }
@@ -264,8 +265,8 @@ Outcome<v1::Simulation> create_simulation(Application& application,
   const auto [added, retry_seconds] = application.jobs.submit(
       simulation, std::make_shared<const SimulationInputs>(std::move(*inputs)), call.limits);
   log_submission(call, simulation, added);
-  if (added.kind == Added::Kind::kNoPlace) return no_place(application, retry_seconds);
-  if (added.kind == Added::Kind::kRequestIdTaken) {
+  if (added.kind == AddOutcome::Kind::kNoPlace) return no_place(application, retry_seconds);
+  if (added.kind == AddOutcome::Kind::kRequestIdTaken) {
     return request_id_taken(added.stored, request, text);
   }
   return to_message(application, added.stored);
@@ -333,7 +334,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   query.counts_all = request.page_token().empty();
   if (!query.counts_all) {
     const auto token = parse_page_token(scope, request.page_token());
-    if (token) query.after = place(token->last);
+    if (token) query.after = cursor(token->last);
     if (query.after) total = token->total;
     if (!query.after) add_bad_page_token(violations);
   }

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "server/application/errors.h"
-#include "server/application/guard.h"
 #include "server/application/simulation_lookup.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
@@ -356,44 +355,40 @@ Outcome<Source> watch_filtered(Application& application, const v1::WatchSimulati
 StreamOutcome<v1::SimulationEvent> watch_simulations(Application& application,
                                                      const v1::WatchSimulationsRequest& request,
                                                      const CallContext& call) {
-  return guarded<Source>([&]() -> Outcome<Source> {
-    if ((request.names_size() > 0) == !request.filter().empty()) {
-      return invalid({{"names", "state either names or a filter"}});
-    }
-    if (auto refused = unresumable(application.store, request.after_event_number(), call.limits)) {
-      return *std::move(refused);
-    }
-    return request.names_size() > 0 ? watch_named(application, request, call)
-                                    : watch_filtered(application, request, call);
-  });
+  if ((request.names_size() > 0) == !request.filter().empty()) {
+    return invalid({{"names", "state either names or a filter"}});
+  }
+  if (auto refused = unresumable(application.store, request.after_event_number(), call.limits)) {
+    return *std::move(refused);
+  }
+  return request.names_size() > 0 ? watch_named(application, request, call)
+                                  : watch_filtered(application, request, call);
 }
 
 StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
                                                     const v1::WatchSimulationRequest& request,
                                                     const CallContext& call) {
-  return guarded<Source>([&]() -> Outcome<Source> {
-    const auto found = find_simulation(application, request.name(), call);
-    if (!found.ok()) return found.error();
-    auto opened = application.jobs.watch(found.message().id, call.limits);
-    if (!opened) return does_not_exist(request.name());
-    const StoredSimulation simulation = opened->simulation;
-    const std::int64_t after = request.after_sequence();
-    if (after < 0 || after > simulation.sequence) {
-      return invalid({{"after_sequence", fmt::format("after_sequence = {}; allowed: 0 to {}", after,
-                                                     simulation.sequence)}});
-    }
-    Simulations simulations;
-    if (!has_ended(simulation.state) || after < simulation.sequence) {
-      simulations[simulation.id] = watched(std::move(*opened));
-    }
-    std::int64_t number = 0;
-    if (after > 0) {
-      const auto last = application.store.next_event(simulation.id, after - 1, call.limits);
-      if (!last) return does_not_exist(request.name());
-      number = last->number;
-    }
-    return Source(std::make_shared<Watch>(application, std::move(simulations), number, call));
-  });
+  const auto found = find_simulation(application, request.name(), call);
+  if (!found.ok()) return found.error();
+  auto opened = application.jobs.watch(found.message().id, call.limits);
+  if (!opened) return does_not_exist(request.name());
+  const StoredSimulation simulation = opened->simulation;
+  const std::int64_t after = request.after_sequence();
+  if (after < 0 || after > simulation.sequence) {
+    return invalid({{"after_sequence", fmt::format("after_sequence = {}; allowed: 0 to {}", after,
+                                                   simulation.sequence)}});
+  }
+  Simulations simulations;
+  if (!has_ended(simulation.state) || after < simulation.sequence) {
+    simulations[simulation.id] = watched(std::move(*opened));
+  }
+  std::int64_t number = 0;
+  if (after > 0) {
+    const auto last = application.store.next_event(simulation.id, after - 1, call.limits);
+    if (!last) return does_not_exist(request.name());
+    number = last->number;
+  }
+  return Source(std::make_shared<Watch>(application, std::move(simulations), number, call));
 }
 
 }  // namespace tribodyn::server

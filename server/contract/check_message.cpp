@@ -17,30 +17,30 @@ using google::protobuf::Message;
 using google::protobuf::Reflection;
 
 /// One field of one message, with the arguments of its check.
-struct Place {
+struct FieldCheck {
   const FieldDescriptor& field;
   std::string path;
   Violations& violations;
   Missing missing;
 };
 
-void check_number(const Place& place, double value) {
+void check_number(const FieldCheck& check, double value) {
   const Constraint* row =
-      find_constraint(place.field.containing_type()->name(), place.field.name());
+      find_constraint(check.field.containing_type()->name(), check.field.name());
   if (row == nullptr) {
     if (!std::isfinite(value)) {
-      place.violations.push_back(
-          {place.path, fmt::format("{} = {}; must be finite", place.field.name(), value)});
+      check.violations.push_back(
+          {check.path, fmt::format("{} = {}; must be finite", check.field.name(), value)});
     }
     return;
   }
-  if (value == 0 && row->zero == Zero::kUnset && !place.field.has_presence()) return;
+  if (value == 0 && row->zero == Zero::kUnset && !check.field.has_presence()) return;
   if (value >= row->minimum && value <= row->maximum) return;  // false for NaN
   std::string text = out_of_range_text(*row, value);
-  if (value == 0 && !place.field.has_presence() && !place.field.is_repeated()) {
+  if (value == 0 && !check.field.has_presence() && !check.field.is_repeated()) {
     text += "; 0 also means not set";
   }
-  place.violations.push_back({place.path, std::move(text)});
+  check.violations.push_back({check.path, std::move(text)});
 }
 
 /// A value of an enum that the contract had once, and what to use instead.
@@ -56,39 +56,39 @@ constexpr RemovedValue kRemovedValues[] = {
      "use POINT_MODEL_FULL and a gear set with stiffnesses and dampings of both shafts divided by "
      "1000: figures agree within 5e-5"}};
 
-void check_enum(const Place& place, int value) {
-  if (place.field.enum_type()->FindValueByNumber(value) != nullptr) return;
+void check_enum(const FieldCheck& check, int value) {
+  if (check.field.enum_type()->FindValueByNumber(value) != nullptr) return;
   for (const RemovedValue& removed : kRemovedValues) {
-    if (place.field.enum_type()->name() != removed.type || value != removed.number) continue;
-    place.violations.push_back(
-        {place.path, fmt::format("{} = {} ({}) was removed; {}", place.field.name(), value,
+    if (check.field.enum_type()->name() != removed.type || value != removed.number) continue;
+    check.violations.push_back(
+        {check.path, fmt::format("{} = {} ({}) was removed; {}", check.field.name(), value,
                                  removed.name, removed.instead)});
     return;
   }
   std::string names;
-  for (int i = 0; i < place.field.enum_type()->value_count(); ++i) {
-    names += (i == 0 ? "" : ", ") + place.field.enum_type()->value(i)->name();
+  for (int i = 0; i < check.field.enum_type()->value_count(); ++i) {
+    names += (i == 0 ? "" : ", ") + check.field.enum_type()->value(i)->name();
   }
-  place.violations.push_back(
-      {place.path, fmt::format("{} = {}; allowed: {}", place.field.name(), value, names)});
+  check.violations.push_back(
+      {check.path, fmt::format("{} = {}; allowed: {}", check.field.name(), value, names)});
 }
 
-void check_text(const Place& place, const std::string& value) {
-  const std::string& name = place.field.name();
-  const auto& options = place.field.options();
+void check_text(const FieldCheck& check, const std::string& value) {
+  const std::string& name = check.field.name();
+  const auto& options = check.field.options();
   const int longest = options.HasExtension(v1::max_bytes) ? options.GetExtension(v1::max_bytes)
                                                           : kMaximumTextLength;
   if (value.size() <= static_cast<std::size_t>(longest)) return;
-  place.violations.push_back({place.path, fmt::format("{} has {} bytes; allowed: at most {}", name,
+  check.violations.push_back({check.path, fmt::format("{} has {} bytes; allowed: at most {}", name,
                                                       value.size(), longest)});
 }
 
 /// Adds a violation if an unset field is required.
-void check_missing(const Place& place) {
+void check_missing(const FieldCheck& check) {
   const Constraint* row =
-      find_constraint(place.field.containing_type()->name(), place.field.name());
+      find_constraint(check.field.containing_type()->name(), check.field.name());
   if (row == nullptr || !is_required(*row)) return;
-  place.violations.push_back({place.path, not_set_text(*row)});
+  check.violations.push_back({check.path, not_set_text(*row)});
 }
 
 /// Returns true for the tables of a gear set, which gear_set_checks.h checks by row and column.
@@ -98,49 +98,49 @@ bool is_table(const FieldDescriptor& field) {
   return type == "MeshSeries" || type == "FlankSlot" || type == "LoadShareAtTorque";
 }
 
-void check_singular(const Message& message, const Reflection& reflection, const Place& place) {
-  switch (place.field.cpp_type()) {
+void check_singular(const Message& message, const Reflection& reflection, const FieldCheck& check) {
+  switch (check.field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
-      return check_number(place, reflection.GetDouble(message, &place.field));
+      return check_number(check, reflection.GetDouble(message, &check.field));
     case FieldDescriptor::CPPTYPE_INT32:
-      return check_number(place, reflection.GetInt32(message, &place.field));
+      return check_number(check, reflection.GetInt32(message, &check.field));
     case FieldDescriptor::CPPTYPE_ENUM:
-      return check_enum(place, reflection.GetEnumValue(message, &place.field));
+      return check_enum(check, reflection.GetEnumValue(message, &check.field));
     case FieldDescriptor::CPPTYPE_STRING:
-      return check_text(place, reflection.GetString(message, &place.field));
+      return check_text(check, reflection.GetString(message, &check.field));
     case FieldDescriptor::CPPTYPE_MESSAGE:
-      return check_message(reflection.GetMessage(message, &place.field), place.path,
-                           place.violations, place.missing);
+      return check_message(reflection.GetMessage(message, &check.field), check.path,
+                           check.violations, check.missing);
     default:
       return;
   }
 }
 
 void check_element(const Message& message, const Reflection& reflection, int index,
-                   const Place& place) {
-  switch (place.field.cpp_type()) {
+                   const FieldCheck& check) {
+  switch (check.field.cpp_type()) {
     case FieldDescriptor::CPPTYPE_DOUBLE:
-      return check_number(place, reflection.GetRepeatedDouble(message, &place.field, index));
+      return check_number(check, reflection.GetRepeatedDouble(message, &check.field, index));
     case FieldDescriptor::CPPTYPE_STRING:
-      return check_text(place, reflection.GetRepeatedString(message, &place.field, index));
+      return check_text(check, reflection.GetRepeatedString(message, &check.field, index));
     case FieldDescriptor::CPPTYPE_MESSAGE:
-      return check_message(reflection.GetRepeatedMessage(message, &place.field, index), place.path,
-                           place.violations, place.missing);
+      return check_message(reflection.GetRepeatedMessage(message, &check.field, index), check.path,
+                           check.violations, check.missing);
     default:
       return;
   }
 }
 
 /// Checks the elements of a list, and adds at most kMaximumReportedElements violations.
-void check_repeated(const Message& message, const Reflection& reflection, const Place& place) {
-  const FieldDescriptor& field = place.field;
-  const std::string& path = place.path;
-  Violations& violations = place.violations;
+void check_repeated(const Message& message, const Reflection& reflection, const FieldCheck& check) {
+  const FieldDescriptor& field = check.field;
+  const std::string& path = check.path;
+  Violations& violations = check.violations;
   const int count = std::min(reflection.FieldSize(message, &field), kMaximumCurvePoints);
   Violations found;
   for (int i = 0; i < count; ++i) {
     check_element(message, reflection, i,
-                  {field, fmt::format("{}[{}]", path, i), found, place.missing});
+                  {field, fmt::format("{}[{}]", path, i), found, check.missing});
   }
   const std::size_t reported =
       std::min(found.size(), static_cast<std::size_t>(kMaximumReportedElements));
@@ -199,13 +199,13 @@ void check_message(const Message& message, const std::string& path, Violations& 
   for (int i = 0; i < descriptor.field_count(); ++i) {
     const FieldDescriptor& field = *descriptor.field(i);
     if (is_output_only(field) || is_table(field)) continue;
-    const Place place{field, join_path(path, field.name()), violations, missing};
+    const FieldCheck check{field, join_path(path, field.name()), violations, missing};
     if (field.is_repeated()) {
-      check_repeated(message, reflection, place);
+      check_repeated(message, reflection, check);
     } else if (!field.has_presence() || reflection.HasField(message, &field)) {
-      check_singular(message, reflection, place);
+      check_singular(message, reflection, check);
     } else if (missing == Missing::kViolation) {
-      check_missing(place);
+      check_missing(check);
     }
   }
 }

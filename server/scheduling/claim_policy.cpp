@@ -6,7 +6,8 @@ namespace tribodyn::server {
 namespace {
 
 constexpr double kShareOfOne = 0.75;  // share of each limit that one principal may use
-constexpr double kWorthAsking = 0.1;  // share of the waiting work that is done before a retry
+constexpr double kRetryProgressShare =
+    0.1;  // share of the waiting work that is done before a retry
 /// Processor time around a small job: its call, its commits and its answer [s].
 constexpr double kServiceSeconds = 2e-3;
 /// Time used over estimate. service_benchmark finds estimates right within a factor of three.
@@ -36,7 +37,7 @@ Admission ClaimPolicy::reserve(const QueuedJob& job, Turns::Time now) {
   if (!has_room) {
     if (own.jobs == 0) reserved_of_.erase(job.principal);
     const int threads = std::max(1, threads_);
-    return {false, turns_.next(job.principal, kWorthAsking * all_seconds / threads,
+    return {false, turns_.next(job.principal, kRetryProgressShare * all_seconds / threads,
                                std::max(job.cost_seconds, kServiceSeconds) / threads, now)};
   }
   for (Reserved* each : {&own, &reserved_}) {

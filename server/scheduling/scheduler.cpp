@@ -16,25 +16,25 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr auto kLookAround = milliseconds(20);
+constexpr auto kDrainPollInterval = milliseconds(20);
 constexpr auto kFirstPause = milliseconds(100);
 constexpr auto kLongestPause = milliseconds(30'000);
-constexpr Microseconds kLookAgain = 1'000'000;
+constexpr Microseconds kDeadlineRetryDelay = 1'000'000;
 /// Size of the inputs that are kept for waiting simulations [bytes]: some 8,000 points. claim()
 /// reads the inputs of other simulations from the store.
 constexpr std::size_t kMostKnownBytes = 16 << 20;
 
-Submission submission_of(Added::Kind kind) {
+Submission submission_of(AddOutcome::Kind kind) {
   switch (kind) {
-    case Added::Kind::kQueued:
+    case AddOutcome::Kind::kQueued:
       return Submission::kQueued;
-    case Added::Kind::kServed:
+    case AddOutcome::Kind::kServed:
       return Submission::kCacheHit;
-    case Added::Kind::kRepeated:
+    case AddOutcome::Kind::kRepeated:
       return Submission::kRepeated;
-    case Added::Kind::kRequestIdTaken:
+    case AddOutcome::Kind::kRequestIdTaken:
       return Submission::kInvalid;
-    case Added::Kind::kNoPlace:
+    case AddOutcome::Kind::kNoPlace:
       break;
   }
   return Submission::kTurnedAway;
@@ -93,9 +93,9 @@ void Scheduler::note_change() {
 }
 
 std::size_t Scheduler::resume() {
-  const std::vector<Waiting> unfinished = store_.requeue_unfinished(options_.clock());
+  const std::vector<UnfinishedSimulation> unfinished = store_.requeue_unfinished(options_.clock());
   std::size_t queued = 0;
-  for (const Waiting& each : unfinished) {
+  for (const UnfinishedSimulation& each : unfinished) {
     if (each.deadline_time) timekeeper_.set_deadline(each.id, *each.deadline_time);
     const bool last_chance = each.lost_attempts + 1 >= kMaximumLostAttempts;
     const QueuedJob job{each.id, each.principal, each.cost_seconds, last_chance,
@@ -151,7 +151,7 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
     const std::lock_guard lock(mutex_);
     if (admission.is_admitted) policy_.release(job);
   };
-  Added added;
+  AddOutcome added;
   const StopWatch watch;
   try {
     added = store_.add_simulation(simulation, options_.clock(), admission.is_admitted, limits);
@@ -161,7 +161,7 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
   }
   metrics_.observe(Phase::kStore, watch.seconds());
   metrics_.count(submission_of(added.kind));
-  if (added.kind != Added::Kind::kQueued) {
+  if (added.kind != AddOutcome::Kind::kQueued) {
     release();
     return {added, admission.retry_seconds};
   }
@@ -213,7 +213,7 @@ void Scheduler::expire(std::int64_t id) {
     end_otherwise(id, event);
   } catch (const StoreError& error) {
     spdlog::error("simulation of row {}: {}", id, error.what());
-    timekeeper_.set_deadline(id, options_.clock() + kLookAgain);
+    timekeeper_.set_deadline(id, options_.clock() + kDeadlineRetryDelay);
   }
 }
 
@@ -300,7 +300,8 @@ std::optional<Lease> Scheduler::claim_beside(const std::string& worker, const Le
 /// Repeats the action while it throws StoreError, with growing pauses. Rethrows the error once the
 /// simulation is asked to stop.
 template <class Action>
-auto Scheduler::insist(std::int64_t id, const StopSignal& stop, const Action& action) const {
+auto Scheduler::retry_on_store_error(std::int64_t id, const StopSignal& stop,
+                                     const Action& action) const {
   for (auto pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
     try {
       return action();
@@ -312,7 +313,7 @@ auto Scheduler::insist(std::int64_t id, const StopSignal& stop, const Action& ac
 }
 
 template <class Action>
-bool Scheduler::guarded(const Lease& lease, const Action& action) {
+bool Scheduler::run_or_fail(const Lease& lease, const Action& action) {
   try {
     try {
       action();
@@ -338,7 +339,7 @@ bool Scheduler::guarded(const Lease& lease, const Action& action) {
 /// accepted with. After a restart the model may be a newer one, so the inputs are checked again.
 Scheduler::Known Scheduler::load(std::int64_t id, const StopSignal& stop) {
   const StopWatch watch;
-  auto stored = insist(id, stop, [&] { return store_.simulation(id); });
+  auto stored = retry_on_store_error(id, stop, [&] { return store_.simulation(id); });
   if (!stored) throw Refusal("STORED_REQUEST_UNREADABLE", "the stored request is gone");
   v1::Simulation request;
   if (!request.ParseFromString(stored->request)) {
@@ -346,7 +347,7 @@ Scheduler::Known Scheduler::load(std::int64_t id, const StopSignal& stop) {
   }
   set_accepted_names(*stored, request);
   Violations violations;
-  auto inputs = insist(id, stop, [&] {
+  auto inputs = retry_on_store_error(id, stop, [&] {
     violations.clear();
     return read_simulation(request, accepted_lookup(store_, *stored), "simulation", violations);
   });
@@ -382,7 +383,7 @@ std::optional<Lease> Scheduler::lease_of(const QueuedJob& job, const std::string
   }
   std::optional<Lease> out;
   bool waits = false;
-  guarded(lease, [&] {
+  run_or_fail(lease, [&] {
     if (!known.is_loaded) known = load(job.id, *lease.stop);
     lease.name = known.name;
     {
@@ -413,7 +414,7 @@ std::optional<Lease> Scheduler::start(const Known& known, Lease lease, const std
   const ResultKey key{known.input_hash, kModelVersion, platform};
   const Microseconds lease_time =
       std::chrono::duration_cast<std::chrono::microseconds>(options_.lease).count();
-  const auto started = insist(lease.id, *lease.stop, [&] {
+  const auto started = retry_on_store_error(lease.id, *lease.stop, [&] {
     const Microseconds now = options_.clock();
     return store_.mark_running(lease.id, now, key, {worker, now + lease_time});
   });
@@ -487,7 +488,7 @@ void Scheduler::complete(const Lease& lease, internal::v1::ComputeResult result)
     if (!is_current(lease)) return;
   }
   bool goes_back = false;
-  const bool is_written = guarded(lease, [&] {
+  const bool is_written = run_or_fail(lease, [&] {
     if (result.has_refusal()) {
       fail(lease, result.refusal().reason(), result.refusal().message());
     } else if (result.has_result()) {
@@ -523,7 +524,7 @@ void Scheduler::save(const Lease& lease, internal::v1::ComputeResult& result) {
   const NewResult stored{{lease.task.input_hash(), result.model_version(), result.platform()},
                          std::move(*result.mutable_result()),
                          take_history(result)};
-  const auto ended = insist(lease.id, *lease.stop, [&] {
+  const auto ended = retry_on_store_error(lease.id, *lease.stop, [&] {
     return store_.mark_succeeded(lease.id, options_.clock(), stored, lease.attempt);
   });
   metrics_.observe(Phase::kStore, storing.seconds());
@@ -540,7 +541,7 @@ void Scheduler::save(const Lease& lease, internal::v1::ComputeResult& result) {
 /// this process.
 bool Scheduler::stopped(const Lease& lease) {
   const auto back = [&](const char* reason) {
-    const auto event = insist(lease.id, *lease.stop, [&] {
+    const auto event = retry_on_store_error(lease.id, *lease.stop, [&] {
       return store_.mark_queued(lease.id, options_.clock(), reason, lease.attempt);
     });
     publish(lease.id, event);
@@ -577,7 +578,7 @@ void Scheduler::fail(const Lease& lease, const std::string& reason, const std::s
       "event=simulation_failed simulation={} "
       "reason={}",
       name_of(lease), reason);
-  const auto event = insist(lease.id, *lease.stop, [&] {
+  const auto event = retry_on_store_error(lease.id, *lease.stop, [&] {
     return store_.mark_failed(lease.id, options_.clock(), reason, message);
   });
   if (event) metrics_.count(SimulationOutcome::kFailed);
@@ -678,7 +679,7 @@ bool Scheduler::drain(std::chrono::milliseconds limit, const std::function<bool(
   stopping_ = true;
   changed_.notify_all();
   while (!leased_.empty() && std::chrono::steady_clock::now() < end && !give_up()) {
-    ended_.wait_for(lock, kLookAround);
+    ended_.wait_for(lock, kDrainPollInterval);
   }
   return leased_.empty();
 }

@@ -79,7 +79,7 @@ class Scheduler {
   /// scheduler keeps `inputs` for the lease; without them, or without room, claim() reads them from
   /// the store.
   struct Admitted {
-    Added added;
+    AddOutcome added;
     double retry_seconds = 0;
   };
   Admitted admit(const NewSimulation& simulation, std::shared_ptr<const SimulationInputs> inputs,
@@ -158,11 +158,11 @@ class Scheduler {
   };
 
   template <class Action>
-  auto insist(std::int64_t id, const StopSignal& stop, const Action& action) const;
+  auto retry_on_store_error(std::int64_t id, const StopSignal& stop, const Action& action) const;
   /// Runs the action and marks the simulation FAILED if it throws. Returns false if the store
   /// cannot be written.
   template <class Action>
-  bool guarded(const Lease& lease, const Action& action);
+  bool run_or_fail(const Lease& lease, const Action& action);
   std::optional<Lease> lease_of(const QueuedJob& job, const std::string& worker,
                                 const std::string& platform);
   std::optional<Lease> start(const Known& known, Lease lease, const std::string& worker,

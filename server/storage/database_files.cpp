@@ -116,19 +116,19 @@ DatabaseFiles::DatabaseFiles(const fs::path& database) {
   }
 }
 
-DatabaseFiles::Place DatabaseFiles::place_of(const File& file) {
+DatabaseFiles::FileAtPath DatabaseFiles::file_at(const File& file) {
   struct stat found {};
-  if (stat(file.path.c_str(), &found) != 0) return Place::kEmpty;
+  if (stat(file.path.c_str(), &found) != 0) return FileAtPath::kEmpty;
   const bool is_held = found.st_dev == file.device && found.st_ino == file.number;
-  return is_held ? Place::kHeld : Place::kOfAnother;
+  return is_held ? FileAtPath::kHeld : FileAtPath::kOfAnother;
 }
 
 std::string DatabaseFiles::misplaced() const {
   for (const File& file : files_) {
-    const Place place = place_of(file);
-    if (place == Place::kHeld) continue;
+    const FileAtPath found = file_at(file);
+    if (found == FileAtPath::kHeld) continue;
     return file.path.string() + " was " +
-           (place == Place::kOfAnother ? "replaced" : "deleted or renamed") +
+           (found == FileAtPath::kOfAnother ? "replaced" : "deleted or renamed") +
            " while this server has it open; nothing is written until the file is back";
   }
   return {};
@@ -140,7 +140,7 @@ std::string DatabaseFiles::record() const {
 
 fs::path DatabaseFiles::set_log_aside() const {
   const File& log = files_[1];
-  if (place_of(files_[0]) != Place::kOfAnother || place_of(log) != Place::kHeld) return {};
+  if (file_at(files_[0]) != FileAtPath::kOfAnother || file_at(log) != FileAtPath::kHeld) return {};
   std::error_code unknown;
   if (fs::file_size(log.path, unknown) == 0) return {};
   std::string name = log.path.string() + ".left-XXXXXX";

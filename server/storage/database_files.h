@@ -51,8 +51,8 @@ class DatabaseFiles {
     dev_t device;
     ino_t number;
   };
-  enum class Place { kHeld, kEmpty, kOfAnother };
-  static Place place_of(const File& file);
+  enum class FileAtPath { kHeld, kEmpty, kOfAnother };
+  static FileAtPath file_at(const File& file);
 
   std::vector<File> files_;  // the database, its write-ahead log
 };

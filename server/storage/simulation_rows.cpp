@@ -83,13 +83,13 @@ std::int64_t next_number(Connection& db, const std::string& project) {
 
 /// Returns the simulation that an earlier request with the same request_id added to the
 /// same project.
-std::optional<Added> repeated_request(Connection& db, const NewSimulation& simulation) {
+std::optional<AddOutcome> repeated_request(Connection& db, const NewSimulation& simulation) {
   if (simulation.request_id.empty()) return std::nullopt;
   auto stored = query_simulation_of_request(db, simulation.project, simulation.request_id);
   if (!stored) return std::nullopt;
   const bool is_same = stored->request_hash == simulation.request_hash;
-  return Added{is_same ? Added::Kind::kRepeated : Added::Kind::kRequestIdTaken, stored->id,
-               std::move(*stored)};
+  return AddOutcome{is_same ? AddOutcome::Kind::kRepeated : AddOutcome::Kind::kRequestIdTaken,
+                    stored->id, std::move(*stored)};
 }
 
 void insert_labels(Connection& db, std::int64_t id,
@@ -372,20 +372,20 @@ std::optional<StoredSimulation> query_simulation_of_request(Connection& db,
   return stored_simulation(query);
 }
 
-Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
-                        bool may_wait) {
+AddOutcome insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
+                             bool may_wait) {
   if (auto repeated = repeated_request(db, simulation)) return std::move(*repeated);
   std::optional<std::int64_t> result;
   if (!simulation.is_forced) result = result_row(db, simulation.project, simulation.key);
-  if (!result && !may_wait) return {Added::Kind::kNoPlace, 0};
+  if (!result && !may_wait) return {AddOutcome::Kind::kNoPlace, 0};
   const std::int64_t number = next_number(db, simulation.project);
   const std::int64_t id = insert_row(db, simulation, number, now);
-  Added added{Added::Kind::kQueued, id, inserted_simulation(simulation, id, number, now)};
+  AddOutcome added{AddOutcome::Kind::kQueued, id, inserted_simulation(simulation, id, number, now)};
   if (!result) return added;
   const auto event = change_state(
       db,
       {.id = id, .to = StoredState::kSucceeded, .time = now, .result = result, .cache_hit = true});
-  added.kind = Added::Kind::kServed;
+  added.kind = AddOutcome::Kind::kServed;
   added.stored.state = event->state;
   added.stored.sequence = event->sequence;
   added.stored.end_time = event->time;
@@ -535,7 +535,7 @@ bool extend_lease(Connection& db, std::int64_t id, int attempt, Microseconds exp
   return update.exec() > 0;
 }
 
-std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
+std::vector<UnfinishedSimulation> requeue_lost(Connection& db, Microseconds now) {
   std::vector<std::pair<std::int64_t, int>> lost;
   Prepared find(db,
                 "SELECT id, attempt FROM simulations WHERE state IN (1, 2) AND state = 2 AND "
@@ -546,19 +546,19 @@ std::vector<Waiting> requeue_lost(Connection& db, Microseconds now) {
     lost.emplace_back(find.getColumn(0).getInt64(), find.getColumn(1).getInt());
   }
   for (const auto& [id, attempt] : lost) lose_attempt(db, id, attempt, now, "SERVER_LOST");
-  std::vector<Waiting> waiting;
+  std::vector<UnfinishedSimulation> waiting;
   Prepared query(db,
                  "SELECT id, attempt, lost_attempts, deadline_time, principal, scheduling_class, "
                  "cost_seconds, lease_worker, lease_expire_time FROM simulations "
                  "WHERE state IN (1, 2) ORDER BY id");
   while (query.executeStep()) {
-    Waiting each{.id = query.getColumn(0).getInt64(),
-                 .attempt = query.getColumn(1).getInt(),
-                 .lost_attempts = query.getColumn(2).getInt(),
-                 .deadline_time = time_of(query.getColumn(3)),
-                 .principal = query.getColumn(4).getString(),
-                 .scheduling_class = query.getColumn(5).getInt(),
-                 .cost_seconds = query.getColumn(6).getDouble()};
+    UnfinishedSimulation each{.id = query.getColumn(0).getInt64(),
+                              .attempt = query.getColumn(1).getInt(),
+                              .lost_attempts = query.getColumn(2).getInt(),
+                              .deadline_time = time_of(query.getColumn(3)),
+                              .principal = query.getColumn(4).getString(),
+                              .scheduling_class = query.getColumn(5).getInt(),
+                              .cost_seconds = query.getColumn(6).getDouble()};
     if (!query.getColumn(7).isNull()) {
       each.lease = LeaseTerms{query.getColumn(7).getString(), query.getColumn(8).getInt64()};
     }

@@ -35,8 +35,8 @@ std::optional<StoredSimulation> query_simulation_of_request(Connection& db,
                                                             const std::string& request_id);
 
 /// As Store::add_simulation.
-Added insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
-                        bool may_wait);
+AddOutcome insert_simulation(Connection& db, const NewSimulation& simulation, Microseconds now,
+                             bool may_wait);
 
 /// One step of the state machine, and what the row says afterwards.
 struct StateChange {
@@ -66,7 +66,7 @@ std::optional<StoredEvent> start_simulation(Connection& db, std::int64_t id, Mic
 std::optional<StoredEvent> finish_simulation(Connection& db, std::int64_t id, Microseconds now,
                                              const NewResult& result, std::optional<int> attempt,
                                              const std::vector<CompressedColumn>& history);
-std::vector<Waiting> requeue_lost(Connection& db, Microseconds now);
+std::vector<UnfinishedSimulation> requeue_lost(Connection& db, Microseconds now);
 // As Store::mark_lost and extend_lease.
 std::optional<StoredEvent> lose_attempt(Connection& db, std::int64_t id, int attempt,
                                         Microseconds now, const std::string& reason);

@@ -314,9 +314,9 @@ bool Store::undelete_resource(const StoredResource& present, const CallLimits& l
   });
 }
 
-Added Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait,
-                            const CallLimits& limits) {
-  Added added;
+AddOutcome Store::add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait,
+                                 const CallLimits& limits) {
+  AddOutcome added;
   write_together(limits,
                  [&](Connection& db) { added = insert_simulation(db, simulation, now, may_wait); });
   return added;
@@ -529,10 +529,10 @@ std::optional<StoredEvent> Store::mark_succeeded(std::int64_t id, Microseconds n
       {}, [&](Connection& db) { return finish_simulation(db, id, now, result, attempt, history); });
 }
 
-std::vector<Waiting> Store::requeue_unfinished(Microseconds now) {
+std::vector<UnfinishedSimulation> Store::requeue_unfinished(Microseconds now) {
   return write({}, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
-    std::vector<Waiting> waiting = requeue_lost(db, now);
+    std::vector<UnfinishedSimulation> waiting = requeue_lost(db, now);
     transaction.commit();
     return waiting;
   });

@@ -90,8 +90,8 @@ class Store {
   /// Adds a simulation, or returns the one that an earlier request with the same request_id added
   /// to the same project.
   /// If not `may_wait`, adds it only if its result exists.
-  Added add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait = true,
-                       const CallLimits& limits = {});
+  AddOutcome add_simulation(const NewSimulation& simulation, Microseconds now, bool may_wait = true,
+                            const CallLimits& limits = {});
   /// Returns the simulation of a row, over all projects. Clients know numbers, not rows.
   std::optional<StoredSimulation> simulation(std::int64_t id, const CallLimits& limits = {});
   std::optional<StoredSimulation> numbered_simulation(const std::string& project,
@@ -189,7 +189,7 @@ class Store {
   /// Treats, after a crash, the attempts of this process and those whose lease has expired as
   /// mark_lost() does. Returns all simulations that have not ended then, oldest first; those that
   /// another process computes come with their lease.
-  std::vector<Waiting> requeue_unfinished(Microseconds now);
+  std::vector<UnfinishedSimulation> requeue_unfinished(Microseconds now);
 
   // These functions compare stored bytes with their checksums and throw StoreError kDataLoss if
   // they differ.

@@ -87,11 +87,11 @@ struct SimulationQuery {
   /// "labels.KEY".
   std::vector<Restriction> restrictions = {};
   bool ascending = false;
-  struct Place {
+  struct Cursor {
     Microseconds create_time = 0;
     std::int64_t number = 0;
   };
-  std::optional<Place> after = {};
+  std::optional<Cursor> after = {};
   int limit = 0;
   std::size_t byte_limit = 0;  ///< bytes of requests; a page has at least one row
   bool counts_all = false;  ///< sets Page::total; only of a query from the start, without `after`
@@ -163,7 +163,7 @@ struct LeaseTerms {
 };
 
 /// A simulation that has not ended.
-struct Waiting {
+struct UnfinishedSimulation {
   std::int64_t id = 0;
   int attempt = 1;
   int lost_attempts = 0;
@@ -175,7 +175,7 @@ struct Waiting {
 };
 
 /// Outcome of Store::add_simulation().
-struct Added {
+struct AddOutcome {
   enum class Kind {
     kQueued,
     kServed,          ///< SUCCEEDED at once: equal inputs have a result

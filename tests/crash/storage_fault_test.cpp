@@ -28,7 +28,7 @@
 namespace tribodyn::crash {
 namespace {
 
-using server::Added;
+using server::AddOutcome;
 using server::ResultKey;
 using server::Store;
 using server::StoredEvent;
@@ -154,13 +154,13 @@ class Session {
 
   void submit(const std::string& request_id, char input) {
     step([&] {
-      const Added added = store_->add_simulation({.request = "",
-                                                  .key = key(input),
-                                                  .request_id = request_id,
-                                                  .request_hash = std::string(1, input)},
-                                                 2);
+      const AddOutcome added = store_->add_simulation({.request = "",
+                                                       .key = key(input),
+                                                       .request_id = request_id,
+                                                       .request_hash = std::string(1, input)},
+                                                      2);
       told_.simulations[request_id] = added.id;
-      if (added.kind == Added::Kind::kServed) told_.results[added.id] = input;
+      if (added.kind == AddOutcome::Kind::kServed) told_.results[added.id] = input;
     });
   }
 

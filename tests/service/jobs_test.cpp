@@ -387,7 +387,7 @@ TEST(SimulationJobs, AFullQueueRefusesSimulations) {
   EXPECT_EQ(bench.jobs()
                 .submit({.request = "request", .key = {std::string(64, 'a'), "model", "platform"}})
                 .added.kind,
-            Added::Kind::kNoPlace);
+            AddOutcome::Kind::kNoPlace);
   *release = true;
 }
 

@@ -319,11 +319,11 @@ TEST_F(LifeCycle, AResultOfAnotherModelOrPlatformIsNotReused) {
   for (const ResultKey& key :
        {ResultKey{hash, model, "other processor"}, ResultKey{hash, "newer model", machine}}) {
     EXPECT_EQ(bench.store().add_simulation({.request = "r", .key = key}, 1, false).kind,
-              Added::Kind::kNoPlace);
+              AddOutcome::Kind::kNoPlace);
   }
   EXPECT_EQ(
       bench.store().add_simulation({.request = "r", .key = {hash, model, machine}}, 1, false).kind,
-      Added::Kind::kServed);
+      AddOutcome::Kind::kServed);
 }
 
 TEST_F(LifeCycle, AQueuedSimulationGetsTheResultOfEqualInputs) {

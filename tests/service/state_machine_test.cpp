@@ -112,27 +112,27 @@ class Schedule {
     const std::string request_hash = input + (forced ? "forced" : "");
     const bool may_wait = draw(4) != 0;
     log_ += fmt::format("submit {} {} {} {}\n", input.substr(58), forced, request_id, may_wait);
-    const Added added = store_.add_simulation({.request = "",
-                                               .key = key(input),
-                                               .request_id = request_id,
-                                               .request_hash = request_hash,
-                                               .is_forced = forced},
-                                              now_, may_wait);
+    const AddOutcome added = store_.add_simulation({.request = "",
+                                                    .key = key(input),
+                                                    .request_id = request_id,
+                                                    .request_hash = request_hash,
+                                                    .is_forced = forced},
+                                                   now_, may_wait);
     const auto earlier = request_ids_.find(request_id);
     if (earlier != request_ids_.end()) {
       EXPECT_EQ(added.id, earlier->second) << log_;
       EXPECT_EQ(added.kind, jobs_.at(added.id).request_hash == request_hash
-                                ? Added::Kind::kRepeated
-                                : Added::Kind::kRequestIdTaken)
+                                ? AddOutcome::Kind::kRepeated
+                                : AddOutcome::Kind::kRequestIdTaken)
           << log_;
       return;
     }
     const bool served = !forced && results_.contains(input);
     if (!served && !may_wait) {
-      EXPECT_EQ(added.kind, Added::Kind::kNoPlace) << log_;
+      EXPECT_EQ(added.kind, AddOutcome::Kind::kNoPlace) << log_;
       return;
     }
-    EXPECT_EQ(added.kind, served ? Added::Kind::kServed : Added::Kind::kQueued) << log_;
+    EXPECT_EQ(added.kind, served ? AddOutcome::Kind::kServed : AddOutcome::Kind::kQueued) << log_;
     EXPECT_FALSE(jobs_.contains(added.id)) << log_;
     Expected& job = jobs_[added.id];
     job = {.hash = input, .request_hash = request_hash, .is_forced = forced, .events = {}};
@@ -231,7 +231,7 @@ class Schedule {
       if (!has_ended(job.state)) waiting.push_back(id);
     }
     std::vector<std::int64_t> found;
-    for (const Waiting& each : store_.requeue_unfinished(now_)) {
+    for (const UnfinishedSimulation& each : store_.requeue_unfinished(now_)) {
       found.push_back(each.id);
       EXPECT_EQ(each.lease.has_value(), jobs_.at(each.id).state == StoredState::kRunning) << log_;
     }

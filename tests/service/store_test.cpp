@@ -203,7 +203,7 @@ TEST_F(StoreTest, AfterACrashInterruptedSimulationsAreQueuedAndResultsKept) {
     store.mark_succeeded(done, 5, {kKey, "result", {}});
   }
   Store store(path());
-  const std::vector<Waiting> waiting = store.requeue_unfinished(6);
+  const std::vector<UnfinishedSimulation> waiting = store.requeue_unfinished(6);
   ASSERT_EQ(waiting.size(), 2U);
   EXPECT_EQ(waiting[0].id, queued);
   EXPECT_EQ(waiting[1].id, running);

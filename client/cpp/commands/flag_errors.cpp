@@ -14,7 +14,7 @@ constexpr char kAllowed[] = "allowed: ";
 
 /// A field's path, split into the flag that sets it and the index of the value among that flag's
 /// values.
-struct Place {
+struct FlagValue {
   const TypedFlag* flag = nullptr;
   std::optional<std::size_t> index;  ///< for a field in a list
 };
@@ -22,7 +22,7 @@ struct Place {
 /// Returns the innermost part of a path that a flag sets: "density_15_..." for
 /// "lubricant.measurements.density_15_...", "brookfield_viscosities" for
 /// "...brookfield_viscosities[1].temperature_celsius". The first part of the path is the resource.
-Place place_of(const std::string& path, const TypedFlags& typed) {
+FlagValue flag_value_of(const std::string& path, const TypedFlags& typed) {
   const std::vector<std::string> parts = split(path, '.');
   for (std::size_t i = parts.size(); i-- > (parts.size() > 1 ? 1U : 0U);) {
     const std::size_t bracket = parts[i].find('[');
@@ -55,12 +55,12 @@ std::optional<AllowedRange> allowed_range_of(const std::string& description) {
 }
 
 /// Returns the text of a violation in terms of the command line.
-std::string described_by_flag(const FieldViolation& violation, const Place& place) {
-  const TypedFlag& flag = *place.flag;
+std::string described_by_flag(const FieldViolation& violation, const FlagValue& value) {
+  const TypedFlag& flag = *value.flag;
   std::string leaf = violation.field.substr(violation.field.rfind('.') + 1);
   leaf = leaf.substr(0, leaf.find('['));
-  const std::size_t index = place.index.value_or(0);
-  const bool is_one_text = place.index ? index < flag.texts.size() : flag.texts.size() == 1;
+  const std::size_t index = value.index.value_or(0);
+  const bool is_one_text = value.index ? index < flag.texts.size() : flag.texts.size() == 1;
   const std::string typed = is_one_text ? printable(flag.texts[index]) : "";
   const bool is_pair = typed.find('=') != std::string::npos;
   if (is_pair) return flag.name + " " + typed + ": " + violation.description;
@@ -91,9 +91,9 @@ ServiceError with_flag_names(const ServiceError& error, const TypedFlags& typed)
   std::string text = error.what();
   std::vector<FieldViolation> violations = error.violations();
   for (FieldViolation& violation : violations) {
-    const Place place = place_of(violation.field, typed);
-    if (place.flag == nullptr) continue;
-    const std::string described = described_by_flag(violation, place);
+    const FlagValue value = flag_value_of(violation.field, typed);
+    if (value.flag == nullptr) continue;
+    const std::string described = described_by_flag(violation, value);
     for (const std::string& line : {"\n  " + violation.field + ": " + violation.description,
                                     "\n  " + violation.description}) {
       const std::size_t at = text.find(line);
@@ -101,7 +101,7 @@ ServiceError with_flag_names(const ServiceError& error, const TypedFlags& typed)
       text.replace(at, line.size(), "\n  " + described);
       break;
     }
-    violation.field = place.flag->name;
+    violation.field = value.flag->name;
     violation.description = described;
   }
   return {text, error.status_code(), error.reason(), violations, error.retry_delay_seconds()};
