@@ -45,13 +45,16 @@ std::string new_name(const std::string& id, const std::string& stated, Violation
   std::string name = id.empty() ? stated : collection + "/" + id;
   if (is_resource_name(name, collection)) return name;
   const std::string field = std::string(Kind<Resource>::kField) + "_id";
+  const std::string& wrong = id.empty() ? stated : id;
+  const std::string allowed = "allowed: letters, digits, '-', '_' and '.'";
+  const std::string meant = allowed_id(wrong);
   violations.push_back(
-      {field,
-       id.empty() && stated.empty()
-           ? field + " is not set; allowed: letters, digits, '-', '_' and '.'"
-           : fmt::format("\"{}\"; allowed: letters, digits, '-', '_' and '.', at most {} bytes",
-                         plain_excerpt(id.empty() ? stated : id),
-                         kMaximumTextLength - collection.size() - 1)});
+      {field, wrong.empty() ? field + " is not set; " + allowed
+                            : fmt::format("\"{}\"; {}, at most {} bytes{}", plain_excerpt(wrong),
+                                          allowed, kMaximumTextLength - collection.size() - 1,
+                                          meant.empty() || meant == wrong
+                                              ? ""
+                                              : fmt::format("; did you mean \"{}\"?", meant))});
   return {};
 }
 
@@ -71,10 +74,10 @@ Outcome<Resource> store_new(Application& application, const Resource& accepted, 
   return answer<Resource>(stored->front());
 }
 
-/// What the request of a create or an update comes to, from its first look at the store to the
-/// resource that is to be stored.
+/// A create or an update of one resource, from the first read of the store to the resource that is
+/// to be stored.
 template <class Resource>
-struct Draft {
+struct PendingWrite {
   std::string name;                       ///< relative, of the resource; empty where it is wrong
   std::optional<Resource> stated;         ///< whole; none: not to be judged, or accepted
   std::optional<StoredResource> present;  ///< that an update starts from; none: it is a new one
@@ -91,105 +94,105 @@ struct Draft {
 };
 
 template <class Resource, class Request>
-void draft_create(Application& application, const Request& request, Draft<Resource>& draft,
+void begin_create(Application& application, const Request& request, PendingWrite<Resource>& write,
                   const CallContext& call) {
-  draft.stated = Kind<Resource>::of(request);
-  draft.name =
-      new_name<Resource>(Kind<Resource>::id(request), draft.stated->name(), draft.violations);
-  draft.stated->set_name(draft.name);
-  if (draft.name.empty()) return;
-  const std::string full = full_name(call.project, draft.name);
+  write.stated = Kind<Resource>::of(request);
+  write.name =
+      new_name<Resource>(Kind<Resource>::id(request), write.stated->name(), write.violations);
+  write.stated->set_name(write.name);
+  if (write.name.empty()) return;
+  const std::string full = full_name(call.project, write.name);
   if (const auto taken = application.store.resource(full, call.limits)) {
-    draft.refuse(name_taken<Resource>(full, taken->delete_time.has_value()), "name");
+    write.refuse(name_taken<Resource>(full, taken->delete_time.has_value()), "name");
   }
 }
 
 template <class Resource, class Request>
-void draft_update(Application& application, const Request& request, Draft<Resource>& draft,
+void begin_update(Application& application, const Request& request, PendingWrite<Resource>& write,
                   const CallContext& call) {
   const Resource& stated = Kind<Resource>::of(request);
   const std::string problem = name_problem<Resource>(application, stated.name(), false, call);
   if (!problem.empty()) {
-    draft.violations.push_back({join_path(Kind<Resource>::kField, "name"), problem});
+    write.violations.push_back({join_path(Kind<Resource>::kField, "name"), problem});
     return;
   }
-  draft.name = stated.name();
+  write.name = stated.name();
   const auto found = find_named<Resource>(application, stated.name(), call);
   if (!found) {
     if (!request.allow_missing()) {
-      return draft.refuse(unknown_name<Resource>(application, stated.name(), call), "name");
+      return write.refuse(unknown_name<Resource>(application, stated.name(), call), "name");
     }
-    draft.stated = stated;
+    write.stated = stated;
     return;
   }
   const StoredResource& present = *found;
   if (present.delete_time) {
-    return draft.refuse(not_possible(v1::ERROR_REASON_DELETED, Resource::descriptor()->full_name(),
+    return write.refuse(not_possible(v1::ERROR_REASON_DELETED, Resource::descriptor()->full_name(),
                                      present.name, deleted_name_text(present.name)),
                         "name");
   }
   if (!stated.etag().empty() && stated.etag() != etag_of(present)) {
-    return draft.refuse(etag_mismatch<Resource>(present.name, stated.etag()), "etag");
+    return write.refuse(etag_mismatch<Resource>(present.name, stated.etag()), "etag");
   }
   Resource merged;
   if (!merged.ParseFromString(present.body)) {
-    return draft.refuse(unreadable(present.name), "name");
+    return write.refuse(unreadable(present.name), "name");
   }
-  merge(stated, request.update_mask(), merged, draft.violations);
-  if (!draft.violations.empty()) return;
-  merged.set_name(draft.name);
-  draft.stated = std::move(merged);
-  draft.present = present;
+  merge(stated, request.update_mask(), merged, write.violations);
+  if (!write.violations.empty()) return;
+  merged.set_name(write.name);
+  write.stated = std::move(merged);
+  write.present = present;
 }
 
-/// The draft of a Create...Request or an Update...Request.
+/// Begins the write of a Create...Request or an Update...Request.
 template <class Resource, class Request>
-Draft<Resource> draft_of(Application& application, const Request& request,
-                         const CallContext& call) {
-  Draft<Resource> draft;
+PendingWrite<Resource> begin_write(Application& application, const Request& request,
+                                   const CallContext& call) {
+  PendingWrite<Resource> write;
   if (!Kind<Resource>::is_in(request)) {
-    draft.violations.push_back({Kind<Resource>::kField, "not set"});
+    write.violations.push_back({Kind<Resource>::kField, "not set"});
   } else if constexpr (requires { request.update_mask(); }) {
-    draft_update(application, request, draft, call);
+    begin_update(application, request, write, call);
   } else {
-    draft_create(application, request, draft, call);
+    begin_create(application, request, write, call);
   }
-  return draft;
+  return write;
 }
 
 template <class Resource>
-void accept_draft(const ResourceLookup& lookup, Draft<Resource>& draft) {
-  if (!draft.stated) return;
+void accept_write(const ResourceLookup& lookup, PendingWrite<Resource>& write) {
+  if (!write.stated) return;
   std::optional<Resource> before;
-  if (draft.present) before.emplace().ParseFromString(draft.present->body);
-  const auto accepted = accept(*draft.stated, before ? &*before : nullptr, lookup,
-                               Kind<Resource>::kField, draft.violations);
+  if (write.present) before.emplace().ParseFromString(write.present->body);
+  const auto accepted = accept(*write.stated, before ? &*before : nullptr, lookup,
+                               Kind<Resource>::kField, write.violations);
   if (!accepted) return;
-  draft.body = accepted->SerializeAsString();
-  draft.stated.reset();
+  write.body = accepted->SerializeAsString();
+  write.stated.reset();
 }
 
-/// Stores what has been accepted, all or none, and says what is stored then; what is as it was
-/// makes no revision. Nothing when somebody else has been faster.
+/// Stores the accepted resources, all or none, and returns them as stored. An unchanged resource
+/// gets no revision. Returns nullopt if another call has changed one of them meanwhile.
 template <class Resource>
-std::optional<std::vector<StoredResource>> store_drafts(Application& application,
-                                                        std::vector<Draft<Resource>> drafts,
+std::optional<std::vector<StoredResource>> store_writes(Application& application,
+                                                        std::vector<PendingWrite<Resource>> writes,
                                                         const CallContext& call) {
-  std::vector<StoredResource> all(drafts.size());
-  std::vector<ResourceWrite> writes;
-  std::vector<std::size_t> places;  // of the writes
-  for (std::size_t i = 0; i < drafts.size(); ++i) {
-    Draft<Resource>& draft = drafts[i];
-    if (draft.present && draft.present->body == draft.body) {
-      all[i] = std::move(*draft.present);
+  std::vector<StoredResource> all(writes.size());
+  std::vector<ResourceWrite> changes;
+  std::vector<std::size_t> places;  // of the changes in `all`
+  for (std::size_t i = 0; i < writes.size(); ++i) {
+    PendingWrite<Resource>& write = writes[i];
+    if (write.present && write.present->body == write.body) {
+      all[i] = std::move(*write.present);
     } else {
       places.push_back(i);
-      writes.push_back(
-          {{full_name(call.project, draft.name), std::move(draft.body)}, std::move(draft.present)});
+      changes.push_back(
+          {{full_name(call.project, write.name), std::move(write.body)}, std::move(write.present)});
     }
   }
-  if (writes.empty()) return all;
-  auto written = application.store.write_resources(writes, system_time(), call.limits);
+  if (changes.empty()) return all;
+  auto written = application.store.write_resources(changes, system_time(), call.limits);
   if (!written) return std::nullopt;
   for (std::size_t i = 0; i < places.size(); ++i) all[places[i]] = std::move((*written)[i]);
   return all;
@@ -200,13 +203,14 @@ template <class Resource, class Request>
 Outcome<Resource> write_resource(Application& application, const Request& request,
                                  const CallContext& call) {
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
-    std::vector<Draft<Resource>> drafts;
-    Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request, call));
-    accept_draft(resource_lookup(application.store, call.project, call.limits), draft);
-    if (!draft.violations.empty()) return invalid(draft.violations);
-    if (draft.refusal) return *draft.refusal;
-    if (request.validate_only()) return preview<Resource>(draft.body, call);
-    if (const auto stored = store_drafts(application, std::move(drafts), call)) {
+    std::vector<PendingWrite<Resource>> writes;
+    PendingWrite<Resource>& write =
+        writes.emplace_back(begin_write<Resource>(application, request, call));
+    accept_write(resource_lookup(application.store, call.project, call.limits), write);
+    if (!write.violations.empty()) return invalid(write.violations);
+    if (write.refusal) return *write.refusal;
+    if (request.validate_only()) return preview<Resource>(write.body, call);
+    if (const auto stored = store_writes(application, std::move(writes), call)) {
       return answer<Resource>(stored->front());
     }
   }
@@ -215,14 +219,14 @@ Outcome<Resource> write_resource(Application& application, const Request& reques
 
 /// Where each resource of a batch stands in it; a violation for each that stands in it twice.
 template <class Resource>
-std::map<std::string, std::size_t> places_of(std::vector<Draft<Resource>>& drafts) {
+std::map<std::string, std::size_t> places_of(std::vector<PendingWrite<Resource>>& writes) {
   std::map<std::string, std::size_t> places;
-  for (std::size_t i = 0; i < drafts.size(); ++i) {
-    const std::string& name = drafts[i].name;
-    if (!drafts[i].stated || name.empty()) continue;
+  for (std::size_t i = 0; i < writes.size(); ++i) {
+    const std::string& name = writes[i].name;
+    if (!writes[i].stated || name.empty()) continue;
     const auto [first, is_new] = places.emplace(name, i);
     if (is_new) continue;
-    drafts[i].violations.push_back(
+    writes[i].violations.push_back(
         {join_path(Kind<Resource>::kField, "name"),
          fmt::format("{} stands in requests[{}] too; allowed: once", name, first->second)});
   }
@@ -231,15 +235,15 @@ std::map<std::string, std::size_t> places_of(std::vector<Draft<Resource>>& draft
 
 /// The store as it will be with a batch: so that one resource of it may descend from another one.
 template <class Resource>
-ResourceLookup lookup_with(const std::vector<Draft<Resource>>& drafts,
+ResourceLookup lookup_with(const std::vector<PendingWrite<Resource>>& writes,
                            const std::map<std::string, std::size_t>& places,
                            const ResourceLookup& stored) {
-  return {[&drafts, &places, stored](const RevisionName& name) -> std::optional<FoundResource> {
+  return {[&writes, &places, stored](const RevisionName& name) -> std::optional<FoundResource> {
             const auto found = places.find(name.name);
             if (found == places.end() || name.revision != 0) return stored.find(name);
-            const Draft<Resource>& draft = drafts[found->second];
+            const PendingWrite<Resource>& write = writes[found->second];
             return FoundResource{0, false,
-                                 draft.stated ? draft.stated->SerializeAsString() : draft.body};
+                                 write.stated ? write.stated->SerializeAsString() : write.body};
           },
           [&places, stored](const std::string& collection) {
             std::vector<std::string> names = stored.names(collection);
@@ -253,71 +257,72 @@ ResourceLookup lookup_with(const std::vector<Draft<Resource>>& drafts,
 /// Everything that is wrong with a batch, or nothing. A refusal that no violation goes with keeps
 /// its code.
 template <class Resource>
-std::optional<google::rpc::Status> refusal_of(const std::vector<Draft<Resource>>& drafts) {
+std::optional<google::rpc::Status> refusal_of(const std::vector<PendingWrite<Resource>>& writes) {
   Violations violations;
   const google::rpc::Status* first = nullptr;
   bool all_refusals = true;
-  for (std::size_t i = 0; i < drafts.size() && violations.size() < kMaximumBatchViolations; ++i) {
+  for (std::size_t i = 0; i < writes.size() && violations.size() < kMaximumBatchViolations; ++i) {
     const std::string path = fmt::format("requests[{}]", i);
-    for (const Violation& each : drafts[i].violations) {
+    for (const Violation& each : writes[i].violations) {
       violations.push_back({join_path(path, each.field), each.description});
       all_refusals = false;
     }
-    if (!drafts[i].refusal) continue;
-    if (first == nullptr) first = &*drafts[i].refusal;
-    violations.push_back({join_path(path, drafts[i].refused_field), drafts[i].refusal->message()});
+    if (!writes[i].refusal) continue;
+    if (first == nullptr) first = &*writes[i].refusal;
+    violations.push_back({join_path(path, writes[i].refused_field), writes[i].refusal->message()});
   }
   if (violations.empty()) return std::nullopt;
   return all_refusals ? with_violations(*first, violations) : invalid(violations);
 }
 
-/// Returns the drafts of a batch, each accepted or with its violations. Stops after
+/// Returns the writes of a batch, each accepted or with its violations. Stops after
 /// kMaximumBatchViolations bad requests, and when the limits of the call are over: further requests
-/// then have no draft or one that is not checked. Throws StoreError.
+/// then have no write or one that is not checked. Throws StoreError.
 template <class Resource, class Batch>
-std::vector<Draft<Resource>> drafts_of(Application& application, const Batch& batch,
-                                       const CallContext& call) {
-  std::vector<Draft<Resource>> drafts;
+std::vector<PendingWrite<Resource>> begin_writes(Application& application, const Batch& batch,
+                                                 const CallContext& call) {
+  std::vector<PendingWrite<Resource>> writes;
   std::size_t bad = 0;
   for (const auto& request : batch.requests()) {
-    Draft<Resource>& draft = drafts.emplace_back(draft_of<Resource>(application, request, call));
+    PendingWrite<Resource>& write =
+        writes.emplace_back(begin_write<Resource>(application, request, call));
     if (request.validate_only() && !batch.validate_only()) {
-      draft.violations.push_back(
+      write.violations.push_back(
           {"validate_only", "set for one of a batch; allowed: for the whole batch"});
     }
-    if (draft.is_bad() && ++bad >= kMaximumBatchViolations) return drafts;
+    if (write.is_bad() && ++bad >= kMaximumBatchViolations) return writes;
   }
-  const auto places = places_of(drafts);
+  const auto places = places_of(writes);
   const ResourceLookup lookup =
-      lookup_with(drafts, places, resource_lookup(application.store, call.project, call.limits));
+      lookup_with(writes, places, resource_lookup(application.store, call.project, call.limits));
   bad = 0;
-  for (Draft<Resource>& draft : drafts) {
-    if (call.limits.are_over()) return drafts;
-    accept_draft(lookup, draft);
-    if (draft.is_bad() && ++bad >= kMaximumBatchViolations) return drafts;
+  for (PendingWrite<Resource>& write : writes) {
+    if (call.limits.are_over()) return writes;
+    accept_write(lookup, write);
+    if (write.is_bad() && ++bad >= kMaximumBatchViolations) return writes;
   }
-  return drafts;
+  return writes;
 }
 
 /// The answer to a batch before anything is written; INVALID_ARGUMENT if it would take more than
 /// kMaximumBatchAnswerBytes.
 template <class Resource, class Response>
-Outcome<Response> draft_answer(const std::vector<Draft<Resource>>& drafts, const ReadMask& mask,
-                               const CallContext& call) {
+Outcome<Response> preview_answer(const std::vector<PendingWrite<Resource>>& writes,
+                                 const ReadMask& mask, const CallContext& call) {
   Response response;
   std::size_t bytes = 0;
-  for (std::size_t i = 0; i < drafts.size(); ++i) {
+  for (std::size_t i = 0; i < writes.size(); ++i) {
     if (call.limits.are_over()) return call_over(call.limits);
     Resource& answered = *Kind<Resource>::add(response);
-    answered = preview<Resource>(drafts[i].body, call, mask);
-    bytes += answered.ByteSizeLong() + drafts[i].name.size() + kStoredFieldBytes;
+    answered = preview<Resource>(writes[i].body, call, mask);
+    bytes += answered.ByteSizeLong() + writes[i].name.size() + kStoredFieldBytes;
     if (bytes <= kMaximumBatchAnswerBytes) continue;
     return invalid(
         {{"read_mask", fmt::format("the answer would take {} bytes with {} of {} resources; "
                                    "allowed: at most {}. Ask for less, e.g. read_mask = "
                                    "\"name,etag,revision\", or send smaller batches; "
                                    "nothing was written",
-                                   bytes, i + 1, drafts.size(), kMaximumBatchAnswerBytes)}});
+                                   bytes, i + 1, writes.size(), kMaximumBatchAnswerBytes)}});
   }
   return response;
 }
@@ -331,12 +336,12 @@ Outcome<Response> write_batch(Application& application, const Batch& batch,
   const ReadMask mask(batch.read_mask(), *Resource::descriptor(), violations);
   if (!violations.empty()) return invalid(violations);
   for (int attempt = 0; attempt < kUpdateAttempts; ++attempt) {
-    std::vector<Draft<Resource>> drafts = drafts_of<Resource>(application, batch, call);
+    std::vector<PendingWrite<Resource>> writes = begin_writes<Resource>(application, batch, call);
     if (call.limits.are_over()) return call_over(call.limits);
-    if (const auto refusal = refusal_of(drafts)) return *refusal;
-    auto answer = draft_answer<Resource, Response>(drafts, mask, call);
+    if (const auto refusal = refusal_of(writes)) return *refusal;
+    auto answer = preview_answer<Resource, Response>(writes, mask, call);
     if (!answer.ok() || batch.validate_only()) return answer;
-    if (const auto stored = store_drafts(application, std::move(drafts), call)) {
+    if (const auto stored = store_writes(application, std::move(writes), call)) {
       for (std::size_t i = 0; i < stored->size(); ++i) {
         Resource& answered = *Kind<Resource>::all(answer.message())->Mutable(static_cast<int>(i));
         set_stored_fields((*stored)[i], answered);

@@ -95,6 +95,19 @@ bool is_resource_name(std::string_view name, std::string_view collection) {
   return std::all_of(id.begin(), id.end(), is_id_character);
 }
 
+std::string allowed_id(std::string_view text) {
+  std::string out;
+  for (const char c : text.substr(0, kMaximumTextLength)) {
+    if (is_id_character(c)) {
+      out += c;
+    } else if (!out.empty() && out.back() != '-') {
+      out += '-';
+    }
+  }
+  while (!out.empty() && out.back() == '-') out.pop_back();
+  return out;
+}
+
 std::optional<RevisionName> parse_revision_name(std::string_view name,
                                                 std::string_view collection) {
   const std::size_t at = name.find('@');

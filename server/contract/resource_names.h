@@ -96,6 +96,10 @@ std::string relative_name(std::string_view name);
 /// and '.'.
 bool is_resource_name(std::string_view name, std::string_view collection);
 
+/// Returns an allowed id that resembles a text: "Mobil-1" for "Mobil 1". Empty if no character of
+/// the text is allowed.
+std::string allowed_id(std::string_view text);
+
 /// Parses "collection/id" or "collection/id@revision". Returns nullopt if `name` has another form.
 std::optional<RevisionName> parse_revision_name(std::string_view name, std::string_view collection);
 /// Returns the name with its revision, e.g. "lubricants/paper-fluid-1@2".

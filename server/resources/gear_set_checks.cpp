@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/refusal.h"
 #include "server/contract/constraints.h"
@@ -133,28 +134,63 @@ void check_continuity(const v1::GearSet& set, const LocateSample& locate,
   }
 }
 
+/// Terms of the power balance of a sample, which add up to 0 (power in = power lost).
+struct PowerBalance {
+  double arms = 0;     ///< r_fr,p + r_fr,g N_p/N_g [m]
+  double sliding = 0;  ///< A [m/s per rad/s]
+  bool holds = false;
+};
+
+/// `ratio` is N_p/N_g.
+PowerBalance power_balance(const v1::FlankSlot& slot, int sample, double ratio) {
+  const double pinion =
+      std::hypot(slot.pinion_velocity_x_metres(sample), slot.pinion_velocity_y_metres(sample));
+  PowerBalance out;
+  out.sliding = std::hypot(
+      slot.pinion_velocity_x_metres(sample) - ratio * slot.gear_velocity_x_metres(sample),
+      slot.pinion_velocity_y_metres(sample) - ratio * slot.gear_velocity_y_metres(sample));
+  out.arms =
+      slot.pinion_friction_arm_metres(sample) + ratio * slot.gear_friction_arm_metres(sample);
+  out.holds = std::abs(out.arms + out.sliding) <= kPowerTolerance * std::max(pinion, out.sliding);
+  return out;
+}
+
 void check_power(const v1::GearSet& set, const LocateSample& locate, TableViolations& limited) {
   const double ratio = static_cast<double>(set.pinion_teeth()) / set.gear_teeth();
   for (int k = 0; k < kFlankPairs; ++k) {
     const v1::FlankSlot& slot = set.flank_slots(k);
     for (int j = 0; j < slot.load_share_size(); ++j) {
-      const double pinion =
-          std::hypot(slot.pinion_velocity_x_metres(j), slot.pinion_velocity_y_metres(j));
-      const double sliding =
-          std::hypot(slot.pinion_velocity_x_metres(j) - ratio * slot.gear_velocity_x_metres(j),
-                     slot.pinion_velocity_y_metres(j) - ratio * slot.gear_velocity_y_metres(j));
-      const double arms =
-          slot.pinion_friction_arm_metres(j) + ratio * slot.gear_friction_arm_metres(j);
-      if (std::abs(arms + sliding) <= kPowerTolerance * std::max(pinion, sliding)) continue;
+      const PowerBalance balance = power_balance(slot, j, ratio);
+      if (balance.holds) continue;
       limited.add([&] { return locate(k, j, "pinion_friction_arm_metres"); },
                   [&] {
                     return fmt::format(
                         "r_fr,p + r_fr,g N_p/N_g = {} m, sliding speed A = {} m per rad/s; "
                         "allowed: a sum equal to -A (power in = power lost)",
-                        arms, sliding);
+                        balance.arms, balance.sliding);
                   });
     }
   }
+}
+
+/// Returns N_g/N_p of the tooth contact data if series and flank slots agree on a ratio that is not
+/// the one of the teeth: somebody changed the teeth of a set and kept its data.
+std::optional<double> other_ratio_of_data(const v1::GearSet& set) {
+  if (!set.has_series() || set.pinion_teeth() <= 0 || set.gear_teeth() <= 0) return std::nullopt;
+  const double pinion = set.series().pinion_contact_radius_metres().mean();
+  const double gear = set.series().gear_contact_radius_metres().mean();
+  const double of_teeth = static_cast<double>(set.gear_teeth()) / set.pinion_teeth();
+  if (!(pinion > 0) || !(gear > 0) || !std::isfinite(gear / pinion)) return std::nullopt;
+  const double of_data = gear / pinion;
+  if (std::abs(of_data - of_teeth) <= kRatioTolerance * of_teeth) return std::nullopt;
+  Violations ignored;
+  if (!check_sizes(set, "", ignored)) return std::nullopt;
+  for (const v1::FlankSlot& slot : set.flank_slots()) {
+    for (int j = 0; j < slot.load_share_size(); ++j) {
+      if (!power_balance(slot, j, 1 / of_data).holds) return std::nullopt;
+    }
+  }
+  return of_data;
 }
 
 void check_range(std::string_view message, std::string_view field, double value,
@@ -273,8 +309,11 @@ void check_series(const v1::MeshSeries& series, const v1::GearSet& gear_set,
                                     gear, expected, kRatioTolerance)});
 }
 
-void check_gear_set(const v1::GearSet& gear_set, const LocateSample& locate,
-                    const std::string& path, Violations& violations) {
+namespace {
+
+/// Checks series, dynamics and tables. Checks against the ratio need the numbers of teeth.
+void check_tables(const v1::GearSet& gear_set, const LocateSample& locate, const std::string& path,
+                  Violations& violations) {
   const std::size_t before = violations.size();
   if (!gear_set.has_series()) {
     violations.push_back({join_path(path, "series"), "not set (eqs 8-11)"});
@@ -295,6 +334,25 @@ void check_gear_set(const v1::GearSet& gear_set, const LocateSample& locate,
   check_torques(gear_set.load_share_by_torque(), shares, violations);
   if (violations.size() > before) return;
   check_shares_by_torque(gear_set, shares, violations);
+}
+
+}  // namespace
+
+void check_gear_set(const v1::GearSet& gear_set, const LocateSample& locate,
+                    const std::string& path, Violations& violations) {
+  const std::size_t before = violations.size();
+  if (const auto ratio = other_ratio_of_data(gear_set)) {
+    violations.push_back(
+        {join_path(path, "gear_teeth"),
+         fmt::format("{}/{} teeth; the series (R_g0/R_p0) and the flank slots belong to a ratio of "
+                     "{:.6g}; a gear set of another ratio needs tooth contact data of its own",
+                     gear_set.gear_teeth(), gear_set.pinion_teeth(), *ratio)});
+    v1::GearSet without_teeth = gear_set;  // the checks against the ratio need them
+    without_teeth.clear_pinion_teeth();
+    without_teeth.clear_gear_teeth();
+    return check_tables(without_teeth, locate, path, violations);
+  }
+  check_tables(gear_set, locate, path, violations);
   if (violations.size() > before) return;
   try {
     check(to_core(gear_set));

@@ -117,7 +117,7 @@ expect 0 lubricants get paper-fluid-2
 out_has 'relaxation time +0.45  us'
 expect 0 lubricants get lubricants/paper-fluid-2 -o json
 out_is_json
-out_has '"pressureViscosityCoefficientPerPascal": 1.931e-0?8'
+out_has '"pressure_viscosity_coefficient_per_pascal": 1.931e-0?8'
 expect 0 lubricants get paper-fluid-2 -o csv
 out_lines 2
 
@@ -129,7 +129,7 @@ out_is_csv
 out_lines 2
 expect 0 contact --output json
 out_is_json
-out_has '"centralFilmThicknessMetres": [0-9.]+e-0?[67]'
+out_has '"central_film_thickness_metres": [0-9.]+e-0?[67]'
 
 echo "--- point"
 expect 0 point --lubricant paper-fluid-1 --speed-kilometres-per-hour 72.5 --progress lines
@@ -149,7 +149,7 @@ out_lines 2
 out_has ',mesh_loss_power_watts,'
 expect 0 point --lubricant paper-fluid-1 --speed 50 --model quasi-static --output json
 out_is_json
-out_has '"inefficiencyEnergyMeanPercent": [0-9]'
+out_has '"inefficiency_energy_mean_percent": [0-9]'
 expect 0 point --lubricant paper-fluid-1 --speed 72.5 --model quasi-static
 out_has 'relative solver error +not estimated'
 expect 0 point --lubricant paper-fluid-1 --speed 1
@@ -219,7 +219,7 @@ out_has 'dynamic_transmission_error_metres +16'
 job=$(sed -n 's,^simulations/\([^:]*\):.*,\1,p' "$folder/out")
 expect 0 history --simulation "$job" --output json
 out_is_json
-out_has '"totalRows": "16"'
+out_has '"total_rows": "16"'
 
 echo "--- jobs"
 long=(--lubricant paper-fluid-1 --label project=axle --first-speed 20 --last-speed 140 --speed-step 0.2 --method march \
@@ -290,12 +290,12 @@ echo "--- a job is computed once, and again with --force"
 point=(point --lubricant paper-fluid-2 --speed 50 --model quasi-static --output json)
 expect 0 "${point[@]}"
 expect 0 "${point[@]}"
-out_has '"cacheHit": true'
+out_has '"cache_hit": true'
 name=$(sed -n 's,^ "name": "simulations/\(.*\)".*,\1,p' "$folder/out")
 expect 0 "${point[@]}" --force
-out_has '"cacheHit": false'
+out_has '"cache_hit": false'
 expect 0 jobs rerun "$name" --output json
-out_has '"cacheHit": false'
+out_has '"cache_hit": false'
 out_has '"lubricant": "lubricants/paper-fluid-2@1"'
 expect 0 jobs wait "$name" --output csv
 out_has 'SUCCEEDED'

@@ -56,8 +56,8 @@ out_has 'pressure viscosity coefficient +20 +1/GPa +0.5 +measured'
 out_has 'relaxation time +0.45 +us +user'
 out_has 'SAE J306 grade +75W-80'
 expect 0 lubricants get units --output json
-out_has '"pressureViscosityCoefficientPerPascal": 2e-0?8'
-out_has '"relaxationTimeSeconds": 4.5e-0?7'
+out_has '"pressure_viscosity_coefficient_per_pascal": 2e-0?8'
+out_has '"relaxation_time_seconds": 4.5e-0?7'
 
 echo "--- errors: all at once, with the nearest name"
 expect 2 lubricants create x --kv40 thick --kv100 8,86 --pressure-viscosity 20s --densty15 8
@@ -302,9 +302,9 @@ for oil in paper-fluid-1 paper-fluid-2 paper-fluid-3 excel cold my-oil; do
   sed "2s,^lubricants/$oil,lubricants/back-$oil," there.csv >back.csv
   expect 0 lubricants import back.csv
   expect 0 lubricants get "$oil" --output json
-  grep -vE '"(name|etag|revision|createTime|revisionCreateTime)"' "$folder/out" >there.json
+  grep -vE '"(name|etag|revision|create_time|revision_create_time)"' "$folder/out" >there.json
   expect 0 lubricants get "back-$oil" --output json
-  grep -vE '"(name|etag|revision|createTime|revisionCreateTime)"' "$folder/out" >back.json
+  grep -vE '"(name|etag|revision|create_time|revision_create_time)"' "$folder/out" >back.json
   cmp -s there.json back.json || fail "lubricants/$oil is not the same after export and import"
 done
 expect 0 lubricants get back-cold

@@ -438,9 +438,9 @@ TEST(ContactReport, ShowsEveryNumberOfTheResponse) {
 
 TEST(Json, WritesZerosAndRoundTrips) {
   const std::string text = json_text(sample_point());
-  EXPECT_TRUE(holds(text, "\"coastSideContact\": false"));
+  EXPECT_TRUE(holds(text, "\"coast_side_contact\": false"));
   v1::Simulation blank;
-  EXPECT_EQ(json_text(blank).find("sumpTemperatureCelsius"), std::string::npos);
+  EXPECT_EQ(json_text(blank).find("sump_temperature_celsius"), std::string::npos);
 }
 
 TEST(WriteFile, ReplacesTheFileOrReportsTheError) {

@@ -777,6 +777,29 @@ TEST_F(ResourcesTest, TheSchemaIsTheTableAndTheWordsThatAreAccepted) {
   EXPECT_EQ(get_schema(app_, one).message().constraints_size(), 7);
 }
 
+TEST_F(ResourcesTest, AnotherRatioWithTheSameToothDataIsRefusedInOneSentence) {
+  v1::CreateGearSetRequest request;
+  request.set_gear_set_id("other-ratio");
+  *request.mutable_gear_set() = seed<v1::GearSet>("gearSets/reference-axle");
+  request.mutable_gear_set()->set_gear_teeth(41);
+  EXPECT_EQ(
+      complaints(create_gear_set(app_, request).error()),
+      "gear_set.gear_teeth: 41/13 teeth; the series (R_g0/R_p0) and the flank slots belong to "
+      "a ratio of 2.76923; a gear set of another ratio needs tooth contact data of its own\n");
+}
+
+TEST_F(ResourcesTest, ANameWithOtherCharactersIsRefusedWithAnAllowedOne) {
+  v1::CreateLubricantRequest request;
+  *request.mutable_lubricant() = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  const auto complaint_of = [&](const std::string& id) {
+    request.set_lubricant_id(id);
+    return complaints(create_lubricant(app_, request).error());
+  };
+  EXPECT_THAT(complaint_of("Mobil 1  75W-90"), HasSubstr("; did you mean \"Mobil-1-75W-90\"?"));
+  EXPECT_THAT(complaint_of(" Öl (neu) "), HasSubstr("; did you mean \"l-neu\"?"));
+  EXPECT_THAT(complaint_of("***"), Not(HasSubstr("did you mean")));
+}
+
 TEST_F(ResourcesTest, AnInvalidGearSetTableIsReportedBySample) {
   v1::CreateGearSetRequest request;
   request.set_gear_set_id("bad");

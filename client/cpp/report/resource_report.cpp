@@ -204,6 +204,10 @@ void add_identity(const Message& resource, Sheet& sheet) {
 std::string gear_set_tables_text(const v1::GearSet& gear_set) {
   Sheet sheet;
   sheet.heading("Tooth contact data");
+  if (gear_set.pinion_teeth() > 0) {
+    const double ratio = static_cast<double>(gear_set.gear_teeth()) / gear_set.pinion_teeth();
+    sheet.line("ratio", significant(ratio, 5));
+  }
   const int samples =
       gear_set.flank_slots_size() > 0 ? gear_set.flank_slots(0).load_share_size() : 0;
   sheet.line("flank slots", std::to_string(gear_set.flank_slots_size()) + " of " +
@@ -305,7 +309,7 @@ std::string list_cell(const Message& resource, const ListColumn& column) {
 }
 
 std::string list_json(const ResourceKind& kind, const std::vector<ResourcePointer>& resources) {
-  std::string text = "{\n \"" + kind.collection + "\": [";
+  std::string text = "{\n \"" + kind.list_field + "\": [";
   for (std::size_t i = 0; i < resources.size(); ++i) {
     std::string part = json_text(*resources[i]);
     part.erase(part.find_last_not_of('\n') + 1);

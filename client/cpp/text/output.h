@@ -8,7 +8,8 @@ namespace tribodyn::client {
 
 enum class OutputFormat { kTable, kCsv, kJson };
 
-/// Returns the message in protobuf's JSON mapping, indented, with fields that are zero.
+/// Returns the message in protobuf's JSON mapping with the field names of the protos (snake_case),
+/// indented, with fields that are zero.
 std::string json_text(const google::protobuf::Message& message);
 
 /// Replaces the file in one step: a reader sees either the old text or the new text. Throws Failure
