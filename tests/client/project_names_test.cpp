@@ -70,5 +70,15 @@ TEST(ProjectNames, AreAnsweredRelative) {
   EXPECT_EQ(page.simulations(1).name(), "projects/acme2/simulations/1");
 }
 
+TEST(ProjectNames, OfTheDefaultAreAnsweredInFullToOtherProjects) {
+  v1::Lubricant answer;
+  answer.set_name("lubricants/x");  // as the server answers for "projects/default/lubricants/x"
+  remove_project("acme", answer);
+  EXPECT_EQ(answer.name(), "projects/default/lubricants/x");
+  v1::Simulation preview;  // no name yet
+  remove_project("acme", preview);
+  EXPECT_EQ(preview.name(), "");
+}
+
 }  // namespace
 }  // namespace tribodyn::client

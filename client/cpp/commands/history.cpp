@@ -32,7 +32,8 @@ void add_history_flags(FlagList& list, HistoryFlags& flags) {
              "Columns to record, separated by commas; each name ends in its unit. Others: "
              "pinion_speed_..., "
              "gear_friction_torque_newton_metres, flank_load_newtons (three flank slots), ...; the "
-             "error of a wrong name suggests the nearest one. Time is always recorded. Default: "
+             "error of an unknown name suggests a similar one or lists all. Time is always "
+             "recorded. Default: "
              "dynamic_transmission_error_metres,mesh_force_newtons,mesh_loss_power_watts.",
              [&](const std::string& column) { flags.history.add_columns(column); });
   list.whole_number("--mesh-cycles", {"mesh cycles", "1 to 1000", "1"},

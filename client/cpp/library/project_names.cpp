@@ -89,7 +89,10 @@ void remove_project(const std::string& project, Message& response) {
   if (project == kDefaultProject) return;
   const std::string prefix = prefix_of(project);
   const auto relative = [&](const std::string& name) {
-    return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
+    if (name.starts_with(prefix)) return name.substr(prefix.size());
+    // The server answers with short names of the project `default`.
+    const bool is_of_default = is_relative(name) && name.find('/') != std::string::npos;
+    return is_of_default ? prefix_of(kDefaultProject) + name : name;
   };
   change_names(response, relative);
   visit_resources(response, [&](Message& resource) { change_names(resource, relative); });

@@ -19,7 +19,8 @@ struct ProjectAndName {
 ProjectAndName split_name(const std::string& project, const std::string& name);
 
 /// Removes the project from the names of the resources of an answer, so that they are relative to
-/// the project of the connection. A name of another project keeps it.
+/// the project of the connection. A name of another project keeps it; one of the project `default`,
+/// which the server answers without it, gets it.
 void remove_project(const std::string& project, google::protobuf::Message& response);
 
 }  // namespace tribodyn::client

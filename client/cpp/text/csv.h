@@ -27,7 +27,10 @@ struct CsvLine {
 /// in the header.
 char csv_separator(std::string_view text);
 
-/// Returns the first `most` lines of a CSV text. csv_separator() separates the cells; a quoted cell
+/// Returns the first `most` lines of a CSV text. The server's reader
+/// (resources/imports/csv_table.h) is apart: it limits and judges the text of strangers, and the
+/// client links nothing of the server.
+///  csv_separator() separates the cells; a quoted cell
 /// may hold any text. Drops empty lines, lines that begin with '#', blanks around cells and a byte
 /// order mark.
 std::vector<CsvLine> read_csv(std::string_view text, std::size_t most = SIZE_MAX);
