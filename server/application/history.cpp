@@ -53,7 +53,15 @@ class OpenHistory {
     return std::clamp(share / kHistoryBlock * kHistoryBlock, kHistoryBlock, kChunkValues);
   }
 
+  /// Rows of a run at present whose columns a reader keeps together.
+  std::int64_t row_run(std::int64_t columns) const {
+    const std::int64_t share = kOpenHistoryValues / std::max(1, open_->load()) / columns;
+    const std::int64_t unit = share < kHistoryBlock ? kLeastRun : kHistoryBlock;
+    return std::clamp(share / unit * unit, kLeastRun, kChunkValues);
+  }
+
  private:
+  static constexpr std::int64_t kLeastRun = 512;  // rows; even, as pairs of an overview are
   std::shared_ptr<std::atomic<int>> open_;
 };
 
@@ -75,6 +83,8 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
     rows_ = 2 * overview_->pairs();
   }
 
+  void set_order(Order order) override { order_ = order; }
+
   Step next(v1::ReadHistoryResponse& out) override {
     out.Clear();
     if (!told_schema_) {
@@ -83,14 +93,19 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
       return Step::kMessage;
     }
     if (next_row_ >= rows_) return Step::kEnd;
-    if (column_ == 0) run_ = std::min(open_.chunk_values(), rows_ - next_row_);
+    if (column_ == 0 || order_ == Order::kColumns) {
+      run_ = std::min(longest_run(), rows_ - next_row_);
+    }
     const std::vector<double> values = read(shape_.columns[window_.columns[column_]]);
     v1::HistoryChunk& chunk = *out.mutable_chunk();
     chunk.set_column(static_cast<int>(column_));
     chunk.set_first_row(next_row_);
     chunk.set_values(values.data(), values.size() * sizeof(double));
     if (error_.code() != 0) return Step::kEnd;
-    if (++column_ == window_.columns.size()) {
+    if (order_ == Order::kColumns) {
+      next_row_ += run_;
+      if (next_row_ == rows_ && ++column_ < window_.columns.size()) next_row_ = 0;
+    } else if (++column_ == window_.columns.size()) {
       column_ = 0;
       next_row_ += run_;
     }
@@ -101,6 +116,11 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
   google::rpc::Status error() const override { return error_; }
 
  private:
+  std::int64_t longest_run() const {
+    if (order_ != Order::kRows) return open_.chunk_values();
+    return open_.row_run(static_cast<std::int64_t>(window_.columns.size()));
+  }
+
   void tell_schema(v1::HistorySchema& out) const {
     for (const std::size_t place : window_.columns) {
       v1::HistorySchema::Column* column = out.add_columns();
@@ -142,6 +162,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
   std::int64_t next_row_ = 0;
   std::int64_t run_ = 0;  // rows of the present chunks
   std::size_t column_ = 0;
+  Order order_ = Order::kChunks;
   google::rpc::Status error_;
 };
 

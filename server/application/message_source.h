@@ -19,7 +19,15 @@ class AnyMessageSource {
     kWait,     ///< nothing yet; the observer is told when to ask again
     kEnd,      ///< no more; error() says whether that is well
   };
+  /// The order of a source of columns.
+  enum class Order {
+    kChunks,   ///< long runs of rows, each column of a run in a message
+    kRows,     ///< the same in short runs, for a reader that keeps a whole run
+    kColumns,  ///< each column to its end before the next one
+  };
   virtual ~AnyMessageSource() = default;
+  /// Sets the order of a source of columns; kChunks at first. Called before `next_message`.
+  virtual void set_order(Order) {}
   /// `out` must be of the type of the source.
   virtual Step next_message(google::protobuf::Message& out) = 0;
   /// Starts telling the observer. Called once, before `next_message`.

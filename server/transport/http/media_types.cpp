@@ -18,7 +18,11 @@ struct Words {
 };
 constexpr std::array kWords = {Words{Form::kMessage, "json", "application/json"},
                                Words{Form::kEvents, "sse", "text/event-stream"},
-                               Words{Form::kLines, "ndjson", "application/x-ndjson"}};
+                               Words{Form::kLines, "ndjson", "application/x-ndjson"},
+                               Words{Form::kColumns, "columns", "application/json"},
+                               Words{Form::kCsv, "csv", "text/csv"},
+                               Words{Form::kNumpy, "npy", "application/x-npy"},
+                               Words{Form::kBinary, "binary", "application/octet-stream"}};
 
 const Words& words_of(Form form) {
   return *std::find_if(kWords.begin(), kWords.end(),
@@ -74,6 +78,12 @@ std::string list_of(const std::vector<Form>& offered, std::string_view Words::*w
 }
 
 }  // namespace
+
+std::string content_type(Form form) {
+  const std::string_view type = words_of(form).media_type;
+  const bool is_text = type.starts_with("text/") || type == "application/json";
+  return std::string(type) + (is_text ? "; charset=utf-8" : "");
+}
 
 std::optional<std::string_view> query_value(std::string_view target, std::string_view name) {
   const std::size_t question = target.find('?');

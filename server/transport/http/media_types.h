@@ -15,6 +15,10 @@ enum class Form {
   kMessage,  ///< one message in protobuf's JSON
   kEvents,   ///< server-sent events
   kLines,    ///< messages as JSON lines
+  kColumns,  ///< columns in JSON
+  kCsv,      ///< columns as a table with a header line
+  kNumpy,    ///< columns as a structured array in a .npy file
+  kBinary,   ///< columns of little-endian doubles after a JSON header
 };
 
 /// Returns the form that a client asks for: the query parameter "alt", else the header Accept. The
@@ -22,6 +26,9 @@ enum class Form {
 /// forms, if the client wants none of them.
 std::optional<Form> requested_form(const HttpRequest& request, const std::vector<Form>& offered,
                                    HttpResponse& refusal);
+
+/// Returns the value of the header Content-Type for a form.
+std::string content_type(Form form);
 
 /// Returns the first value of a query parameter without decoding it, or nullopt.
 std::optional<std::string_view> query_value(std::string_view target, std::string_view name);

@@ -162,19 +162,22 @@ HttpResponse message_response(const google::protobuf::Message& message, const Ht
   out.headers["Content-Type"] = kJson;
   out.body = json_of(message, with_zeros);
   const std::string own = own_etag(message);
-  const std::string tag = '"' + (own.empty() ? sha256(out.body) : own) + '"';
-  out.headers["ETag"] = tag;
-  const bool is_get = request.verb == "GET" || request.verb == "HEAD";
-  if (is_get && lists_tag(request.header("if-none-match"), tag)) {
-    out.status = 304;
-    out.headers.erase("Content-Type");
-    out.body.clear();
-  }
+  set_etag(own.empty() ? sha256(out.body) : own, request, out);
   return out;
 }
 
+void set_etag(const std::string& tag, const HttpRequest& request, HttpResponse& response) {
+  const std::string quoted_tag = '"' + tag + '"';
+  response.headers["ETag"] = quoted_tag;
+  const bool is_get = request.verb == "GET" || request.verb == "HEAD";
+  if (!is_get || !lists_tag(request.header("if-none-match"), quoted_tag)) return;
+  response.status = 304;
+  response.headers.erase("Content-Type");
+  response.body.clear();
+}
+
 void compress(std::string_view accept_encoding, HttpResponse& response) {
-  response.headers["Vary"] = "Accept-Encoding";
+  response.headers["Vary"] = "Accept, Accept-Encoding";
   if (response.body.size() < kLeastCompressed || !accepts_gzip(accept_encoding)) {
     return;
   }

@@ -32,6 +32,10 @@ std::string json_of(const google::protobuf::Message& message, bool with_zeros);
 HttpResponse message_response(const google::protobuf::Message& message, const HttpRequest& request,
                               bool with_zeros);
 
+/// Gives the response an ETag. Makes it 304 without a body if `request` is a GET or HEAD that has
+/// this tag already.
+void set_etag(const std::string& tag, const HttpRequest& request, HttpResponse& response);
+
 /// Compresses the body if the header Accept-Encoding allows gzip and the body is long enough to
 /// gain.
 void compress(std::string_view accept_encoding, HttpResponse& response);

@@ -12,6 +12,9 @@
 #include "server/application/guard.h"
 #include "server/application/log_text.h"
 #include "server/contract/resource_names.h"
+#include "server/support/sha256.h"
+#include "server/transport/http/curve_table.h"
+#include "server/transport/http/history_format.h"
 #include "server/transport/http/media_types.h"
 #include "server/transport/http/rest_answer.h"
 #include "server/transport/http/rest_call.h"
@@ -83,14 +86,50 @@ std::optional<HttpResponse> wrong_body(const HttpRequest& request) {
                     : "Content-Encoding is \"" + plain_excerpt(encoding) + "\"; allowed: none");
 }
 
+/// A request for the points of a simulation as columns.
+struct TableRequest {
+  Form form;
+  std::vector<std::string> columns;  ///< empty: all
+};
+
+/// Takes the columns out of the query and puts the view of the whole result in its place. Returns
+/// nullopt, and a refusal, if the query has any other parameter than these and "alt".
+std::optional<TableRequest> take_table(Form form, HttpRequest& request, HttpResponse& refusal) {
+  TableRequest out{form, {}};
+  std::string_view query = request.target;
+  query.remove_prefix(std::min(query.find('?'), query.size()));
+  while (!query.empty()) {
+    query.remove_prefix(1);
+    const std::string_view pair = query.substr(0, query.find('&'));
+    query.remove_prefix(pair.size());
+    const std::size_t equals = std::min(pair.find('='), pair.size());
+    const auto value = percent_decoded(pair.substr(std::min(equals + 1, pair.size())));
+    if (pair.empty() || pair.starts_with("alt=")) continue;
+    if (!pair.starts_with("columns=") || !value) {
+      refusal = http_error(
+          400, "a table takes the parameters alt and columns, not " + plain_excerpt(pair));
+      return std::nullopt;
+    }
+    std::string_view list = *value;
+    while (!list.empty()) {
+      const std::string_view name = list.substr(0, list.find(','));
+      list.remove_prefix(std::min(name.size() + 1, list.size()));
+      if (!name.empty()) out.columns.emplace_back(name);
+    }
+  }
+  request.target = std::string(path_of(request)) + "?view=SIMULATION_VIEW_FULL";
+  return out;
+}
+
 /// A unary call over HTTP; deletes itself once it has been answered.
 class RestUnary final : public RestCall<UnaryCall> {
  public:
   RestUnary(RouteMatch its_route, HttpRequest its_request,
             std::shared_ptr<const std::atomic<bool>> cancelled, RestHandler::Reply reply,
-            std::chrono::milliseconds limit)
+            std::chrono::milliseconds limit, std::optional<TableRequest> table)
       : RestCall(std::move(its_route), std::move(its_request), std::move(cancelled), limit),
-        reply_(std::move(reply)) {}
+        reply_(std::move(reply)),
+        table_(std::move(table)) {}
 
   void answered(Outcome<Reply> outcome) override {
     const std::unique_ptr<RestUnary> self(this);
@@ -101,21 +140,42 @@ class RestUnary final : public RestCall<UnaryCall> {
   HttpResponse response(const Outcome<Reply>& outcome) const {
     try {
       if (!outcome.ok()) return error_response(outcome.error());
+      if (table_) return table_response(static_cast<const v1::Simulation&>(*outcome.message()));
       return message_response(*outcome.message(), request, !written.has_read_mask);
     } catch (...) {
       return error_response(error_of_exception());
     }
   }
 
+  HttpResponse table_response(const v1::Simulation& simulation) const {
+    auto table = curve_table(simulation, table_->columns, table_->form);
+    if (!table.ok()) return error_response(table.error());
+    set_etag(sha256(table.message().body), request, table.message());
+    return std::move(table.message());
+  }
+
   const RestHandler::Reply reply_;
+  const std::optional<TableRequest> table_;
 };
 
 /// The forms in which a method answers, the usual one first.
 std::vector<Form> forms_of(const Method& method) {
+  if (method.descriptor->input_type() == v1::GetSimulationRequest::descriptor()) {
+    return {Form::kMessage, Form::kColumns, Form::kCsv, Form::kNumpy};
+  }
   if (method.answer) return {Form::kMessage};
   // Events have positions that a client resumes after; other messages are parts of one whole.
   if (resume_fields(*method.descriptor)) return {Form::kEvents, Form::kLines};
+  if (method.descriptor->output_type() == v1::ReadHistoryResponse::descriptor()) {
+    return {Form::kColumns, Form::kCsv, Form::kNumpy, Form::kBinary, Form::kLines};
+  }
   return {Form::kLines};
+}
+
+std::unique_ptr<StreamFormat> stream_format(Form form, const Method& method) {
+  if (form == Form::kEvents) return event_stream_format(*method.descriptor);
+  if (form == Form::kLines) return json_lines_format();
+  return history_format(form);
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -194,13 +254,16 @@ void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<
   const auto form = requested_form(request, forms_of(method), unacceptable);
   if (!form) return answer(std::move(unacceptable));
   if (method.open) {
-    auto format =
-        *form == Form::kEvents ? event_stream_format(*method.descriptor) : json_lines_format();
     return open_rest_stream(dispatcher_, streams_, *std::move(route), std::move(request),
-                            std::move(cancelled), std::move(format), answer);
+                            std::move(cancelled), stream_format(*form, method), answer);
+  }
+  std::optional<TableRequest> table;
+  if (*form != Form::kMessage) {
+    table = take_table(*form, request, unacceptable);
+    if (!table) return answer(std::move(unacceptable));
   }
   auto* call = new RestUnary(*std::move(route), std::move(request), std::move(cancelled), answer,
-                             dispatcher_.limits().call);  // deletes itself
+                             dispatcher_.limits().call, std::move(table));  // deletes itself
   dispatcher_.answer(*call);
 }
 

@@ -48,6 +48,7 @@ class RestStream final : public RestCall<StreamCall>,
       return reply_(error_response(*refused));
     }
     source_ = std::move(outcome.message());
+    source_->set_order(format_->order());
     HttpResponse response;
     response.headers = format_->headers();
     response.stream = self;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "google/rpc/status.pb.h"
+#include "server/application/message_source.h"
 
 namespace tribodyn::server {
 
@@ -16,6 +17,8 @@ namespace tribodyn::server {
 class StreamFormat {
  public:
   virtual ~StreamFormat() = default;
+  /// Returns the order in which the form takes columns.
+  virtual AnyMessageSource::Order order() const { return AnyMessageSource::Order::kChunks; }
   /// Returns the headers that the form needs.
   virtual std::map<std::string, std::string> headers() const = 0;
   /// Returns the text of the next message; "" if it waits for further ones.

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "server/transport/http/media_types.h"
+#include "server/transport/http/stream_format.h"
+
+namespace tribodyn::server {
+
+/// Returns the format of a history (ReadHistoryResponse) in the form kColumns, kCsv, kNumpy or
+/// kBinary. A stream that fails is broken off: no form of columns can express a failure.
+std::unique_ptr<StreamFormat> history_format(Form form);
+
+}  // namespace tribodyn::server
