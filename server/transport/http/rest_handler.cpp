@@ -201,7 +201,7 @@ RestHandler::RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page>
     : dispatcher_(dispatcher),
       routes_(dispatcher.methods()),
       pages_(std::move(pages)),
-      streams_(limits.streams, limits.streams_of_peer) {}
+      streams_(std::make_shared<LiveStreams>(limits.streams, limits.streams_of_peer)) {}
 
 std::size_t RestHandler::maximum_body_bytes(const HttpRequest& head) const {
   const auto route = routes_.find(head.verb, path_of(head));

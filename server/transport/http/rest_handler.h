@@ -43,7 +43,7 @@ class RestHandler {
   void handle(HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled, Reply reply);
 
   /// Ends all streams with SHUTTING_DOWN and opens none any more.
-  void close_streams() { streams_.close_all(); }
+  void close_streams() { streams_->close_all(); }
 
   /// A body may have so many times the bytes of the method's longest binary request: numbers in
   /// indented JSON take 3.2 times the bytes of the binary form. No body is longer than
@@ -57,7 +57,7 @@ class RestHandler {
   CallDispatcher& dispatcher_;
   const HttpRoutes routes_;
   const std::map<std::string, Page> pages_;
-  LiveStreams streams_;
+  const std::shared_ptr<LiveStreams> streams_;
 };
 
 /// Returns the headers of every response, for those that are made without a handler.

@@ -22,13 +22,13 @@ class RestStream final : public RestCall<StreamCall>,
  public:
   using Reply = std::function<void(HttpResponse)>;
 
-  RestStream(CallDispatcher& dispatcher, LiveStreams& live, RouteMatch its_route,
+  RestStream(CallDispatcher& dispatcher, std::shared_ptr<LiveStreams> live, RouteMatch its_route,
              HttpRequest its_request, std::shared_ptr<const std::atomic<bool>> cancelled,
              std::unique_ptr<StreamFormat> format, Reply reply)
       : RestCall(std::move(its_route), std::move(its_request), std::move(cancelled),
                  dispatcher.limits().stream),
         dispatcher_(dispatcher),
-        live_(live),
+        live_(std::move(live)),
         format_(std::move(format)),
         reply_(std::move(reply)),
         machine_(*this, *method.response, dispatcher.limits().unread) {}
@@ -43,7 +43,7 @@ class RestStream final : public RestCall<StreamCall>,
     const auto self = std::move(self_);
     // The dispatcher has counted a refusal of its own.
     if (!outcome.ok()) return reply_(error_response(outcome.error()));
-    if (const auto refused = live_.add(self, request.peer)) {
+    if (const auto refused = live_->add(self, request.peer)) {
       dispatcher_.ended(*this, *refused);
       return reply_(error_response(*refused));
     }
@@ -98,7 +98,7 @@ class RestStream final : public RestCall<StreamCall>,
   void finish(const google::rpc::Status& status) override {
     const auto self = shared_from_this();
     dispatcher_.ended(*this, status);
-    live_.remove(this);
+    live_->remove(this);
     if (writer_ == nullptr) return;
     if (auto last = end_text(status)) {
       writer_->finish(*std::move(last));
@@ -116,7 +116,8 @@ class RestStream final : public RestCall<StreamCall>,
   void cut_off() override { writer_->cut_off(); }
 
   CallDispatcher& dispatcher_;
-  LiveStreams& live_;
+  // A last step may run on the dispatcher when the handler is gone.
+  const std::shared_ptr<LiveStreams> live_;
   const std::unique_ptr<StreamFormat> format_;
   const Reply reply_;
   std::shared_ptr<RestStream> self_;          // until opened()
@@ -127,11 +128,12 @@ class RestStream final : public RestCall<StreamCall>,
 
 }  // namespace
 
-void open_rest_stream(CallDispatcher& dispatcher, LiveStreams& live, RouteMatch route,
-                      HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled,
+void open_rest_stream(CallDispatcher& dispatcher, std::shared_ptr<LiveStreams> live,
+                      RouteMatch route, HttpRequest request,
+                      std::shared_ptr<const std::atomic<bool>> cancelled,
                       std::unique_ptr<StreamFormat> format,
                       std::function<void(HttpResponse)> reply) {
-  std::make_shared<RestStream>(dispatcher, live, std::move(route), std::move(request),
+  std::make_shared<RestStream>(dispatcher, std::move(live), std::move(route), std::move(request),
                                std::move(cancelled), std::move(format), std::move(reply))
       ->open();
 }
