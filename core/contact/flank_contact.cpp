@@ -139,7 +139,8 @@ ContactStatus FlankContactModel::share_load(const ContactConditions& k,
   out.pressure_viscosity_index = constants_.shear.index;
   out.reduced_modulus = constants_.reduced_modulus;
 
-  if (!std::isfinite(loaded.film_thickness) ||
+  // The equations have its logarithm only, which stays finite where the viscosity does not.
+  if (!std::isnormal(out.inlet_viscosity) || !std::isfinite(loaded.film_thickness) ||
       (loaded.film_thickness == 0 && loaded.entrainment_speed > 0)) {
     return ContactStatus::kRefusedOverflow;
   }

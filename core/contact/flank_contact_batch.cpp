@@ -147,6 +147,7 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
       options.hertz_load == HertzLoad::kFilmLoad && one_switch_at_most && proved &&
       (t.shear.newtonian || oil.relaxation_time > 0) && t.hottest > t.inlet_temperature + 1 &&
       std::isfinite(t.log_film) &&
+      std::isnormal(std::exp(tribodyn::log_ambient_viscosity(oil, t.inlet_temperature))) &&
       tabulate_ratio(instruction_set, factor_at(t.hottest), factor_at(t.inlet_temperature), t);
   tabulate_asperities(t);
   if (t.covered && t.limited && !t.isothermal) fit_start(instruction_set, t);
