@@ -12,6 +12,7 @@
 
 #include "server/application/stored_inputs.h"
 #include "server/daemon/daemon.h"
+#include "server/daemon/token_command.h"
 #include "server/storage/maintenance.h"
 #include "server/storage/store_error.h"
 
@@ -26,6 +27,8 @@ int run_command(const Settings& settings) {
     if (const auto kept = restore_database(settings.file, settings.database)) {
       std::printf("the former database is kept as %s\n", kept->c_str());
     }
+  } else if (settings.command == "tokens") {
+    return change_tokens(settings);
   } else {
     const std::vector<std::string> problems = check_database(settings.database, hash_stored_inputs);
     for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());
@@ -74,7 +77,7 @@ int run(const std::vector<std::string>& arguments) {
   try {
     if (!settings->command.empty()) return run_command(*settings);
     if (settings->check_only) return check(*settings);
-    return serve(*settings, parse_listen_address(settings->listen), kSignals);
+    return serve(*settings, listen_addresses(*settings), kSignals);
   } catch (const ListenError& error) {
     return complain(kExitCannotListen, error.what());
   } catch (const StoreError& error) {

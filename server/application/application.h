@@ -3,6 +3,7 @@
 #include <atomic>
 #include <memory>
 
+#include "server/application/authorizer.h"
 #include "server/execution/simulation_jobs.h"
 #include "server/simulation/prepared_gear_sets.h"
 #include "server/storage/store.h"
@@ -13,6 +14,8 @@ namespace tribodyn::server {
 struct Application {
   Store& store;
   SimulationJobs& jobs;
+  /// Shared, because a stream may outlive the object.
+  std::shared_ptr<Authorizer> authorizer = std::make_shared<Authorizer>();
   /// Number of histories that are being read. Shared, because a reader may outlive the object.
   std::shared_ptr<std::atomic<int>> open_histories = std::make_shared<std::atomic<int>>(0);
   /// Watches with a filter that are open; shared for the same reason.

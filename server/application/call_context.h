@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "server/application/grant.h"
 #include "server/contract/resource_names.h"
 #include "server/storage/call_limits.h"
 
@@ -10,7 +11,7 @@ namespace tribodyn::server {
 /// What a use case knows about its call: who calls, on whose behalf, and for how long the client
 /// waits. The default is a call of this process, which waits without limit.
 struct CallContext {
-  std::string principal = "local";        ///< who calls; always "local" so far
+  GrantPointer grant = owner_grant();     ///< who calls, and what that principal may do
   std::string project = kDefaultProject;  ///< of the request (request_project.h)
   std::string client = {};                ///< name of the client; clients share the processors
   std::string request_id = {};            ///< identifies the call in log lines

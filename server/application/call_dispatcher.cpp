@@ -64,6 +64,54 @@ google::rpc::Status lane_full(CallLane lane) {
       kBusySeconds);
 }
 
+/// The grant of a call that is refused.
+const GrantPointer& nobody() {
+  static const GrantPointer kNobody = [] {
+    auto out = std::make_shared<Grant>();
+    out->principal = "-";
+    out->is_revoked = true;
+    return out;
+  }();
+  return kNobody;
+}
+
+std::string text_of(Scope scope) {
+  switch (scope) {
+    case Scope::kRead:
+      return "read";
+    case Scope::kWrite:
+      return "write";
+    default:
+      return "admin";
+  }
+}
+
+/// The messages of a source until a grant ends.
+class GrantedSource final : public AnyMessageSource {
+ public:
+  GrantedSource(ReplySource source, GrantPointer grant, std::shared_ptr<Authorizer> authorizer)
+      : source_(std::move(source)), grant_(std::move(grant)), authorizer_(std::move(authorizer)) {}
+
+  Step next_message(google::protobuf::Message& out) override {
+    has_ended_ = !grant_->is_valid(system_time());
+    return has_ended_ ? Step::kEnd : source_->next_message(out);
+  }
+  void observe(const std::weak_ptr<Observer>& observer) override {
+    authorizer_->observers().add(observer);
+    source_->observe(observer);
+  }
+  bool is_short() const override { return source_->is_short(); }
+  google::rpc::Status error() const override {
+    return has_ended_ ? token_refused() : source_->error();
+  }
+
+ private:
+  const ReplySource source_;
+  const GrantPointer grant_;
+  const std::shared_ptr<Authorizer> authorizer_;
+  bool has_ended_ = false;
+};
+
 std::string reason_of(const google::rpc::Status& status) {
   google::rpc::ErrorInfo info;
   for (const auto& detail : status.details()) {
@@ -76,6 +124,22 @@ std::string reason_of(const google::rpc::Status& status) {
 
 CallDispatcher::CallDispatcher(Application& application, const TimeLimits& limits)
     : application_(application), limits_(limits), methods_(method_table()) {}
+
+/// Sets the grant of a call. Returns UNAUTHENTICATED, or PERMISSION_DENIED if the scope of the
+/// grant is too small. Reads nothing of the request and no row.
+std::optional<google::rpc::Status> CallDispatcher::authorize(IncomingCall& call) const {
+  auto grant = application_.authorizer->authenticate(call.credentials, system_time());
+  call.credentials = {};
+  if (!grant.ok()) {
+    call.context.grant = nobody();
+    return grant.error();
+  }
+  call.context.grant = std::move(grant.message());
+  if (call.context.grant->scope < call.method.scope) {
+    return scope_too_small(text_of(call.method.scope));
+  }
+  return std::nullopt;
+}
 
 template <class Answer>
 Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
@@ -117,6 +181,7 @@ void CallDispatcher::answer(UnaryCall& call) {
     ended(call, outcome.ok() ? google::rpc::Status() : outcome.error());
     call.answered(std::move(outcome));
   };
+  if (auto refused = authorize(call)) return finish(*std::move(refused));
   run(
       call, [this, &call, finish] { finish(outcome_of(call, call.method.answer)); },
       [&](const google::rpc::Status& refusal) { finish(refusal); });
@@ -127,8 +192,17 @@ void CallDispatcher::open(StreamCall& call) {
     if (!outcome.ok()) ended(call, outcome.error());
     call.opened(std::move(outcome));
   };
+  if (auto refused = authorize(call)) return finish(*std::move(refused));
   run(
-      call, [this, &call, finish] { finish(outcome_of(call, call.method.open)); },
+      call,
+      [this, &call, finish] {
+        Outcome<ReplySource> outcome = outcome_of(call, call.method.open);
+        if (outcome.ok()) {
+          outcome.message() = std::make_shared<GrantedSource>(
+              std::move(outcome.message()), call.context.grant, application_.authorizer);
+        }
+        finish(std::move(outcome));
+      },
       [&](const google::rpc::Status& refusal) { finish(refusal); });
 }
 
@@ -145,9 +219,10 @@ void CallDispatcher::ended(const IncomingCall& call, const google::rpc::Status& 
   application_.jobs.metrics().count_call(method.full_name(), code, seconds);
   const bool is_slow = seconds > kSlowSeconds && !method.server_streaming();
   if (status.code() == google::rpc::OK && !is_slow) return;
-  spdlog::info("event=call method={} code={} reason={} seconds={:.3f} client={} call={}",
-               method.name(), code, reason_of(status), seconds, call.context.client,
-               call.context.request_id);
+  spdlog::info(
+      "event=call method={} code={} reason={} seconds={:.3f} client={} call={} principal={}",
+      method.name(), code, reason_of(status), seconds, call.context.client, call.context.request_id,
+      call.context.grant->principal);
 } catch (const std::exception&
              failure) {  // e.g. out of memory: the call is answered although it is not counted
   spdlog::error("event=call_not_counted cause=\"{}\"", failure.what());

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "server/application/authorizer.h"
 #include "server/application/call_lanes.h"
 #include "server/application/method_table.h"
 #include "server/metrics/metrics.h"
@@ -47,6 +48,7 @@ class IncomingCall {
   virtual bool may_run_on_calling_thread() const { return false; }
 
   const Method& method;
+  Credentials credentials;
   CallContext context;  ///< its limits are the stricter ones of client and server
   const StopWatch watch;
 };
@@ -68,8 +70,9 @@ class StreamCall : public IncomingCall {
   virtual void opened(Outcome<ReplySource> outcome) = 0;
 };
 
-/// Answers the calls of every transport: checks the size of a request, runs the use case of its
-/// method on a thread of the method's lane, turns exceptions into errors, counts each call, and
+/// Answers the calls of every transport: authenticates the caller and checks the scope before
+/// anything else happens, then checks the size of a request, runs the use case of its method on a
+/// thread of the method's lane, turns exceptions into errors, counts each call, and
 /// logs calls that fail or are slow. Safe for concurrent access. Must outlive all calls. The
 /// destructor answers the calls that wait.
 class CallDispatcher {
@@ -79,8 +82,10 @@ class CallDispatcher {
 
   const std::vector<Method>& methods() const { return methods_; }
   const TimeLimits& limits() const { return limits_; }
+  const Authorizer& authorizer() const { return *application_.authorizer; }
 
   void answer(UnaryCall& call);
+  /// The stream ends with UNAUTHENTICATED as soon as the token of the call is no longer valid.
   void open(StreamCall& call);
   /// Queues the next step of an open stream.
   void step(std::function<void()> task);
@@ -93,6 +98,7 @@ class CallDispatcher {
  private:
   void run(const IncomingCall& call, std::function<void()> task,
            const std::function<void(const google::rpc::Status&)>& refuse);
+  std::optional<google::rpc::Status> authorize(IncomingCall& call) const;
   /// Runs a short task on the calling thread, without the two changes of threads of a lane. Returns
   /// false if another task runs so: only one may, so that a slow disk blocks at most one thread of
   /// a transport.

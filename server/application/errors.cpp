@@ -207,6 +207,29 @@ google::rpc::Status stream_deadline_exceeded() {
                "the stream has been open for as long as it may be; call again to continue");
 }
 
+google::rpc::Status unauthenticated(const std::string& what) {
+  return error(google::rpc::UNAUTHENTICATED, v1::ERROR_REASON_UNAUTHENTICATED,
+               what +
+                   "; name the file of a token in TRIBODYN_TOKEN_FILE or with --token-file (the "
+                   "server keeps the owner's beside its database, as DATABASE.token), or send it "
+                   "as \"authorization: Bearer TOKEN\"");
+}
+
+google::rpc::Status token_refused() {
+  return unauthenticated("the token is unknown, has expired or was revoked");
+}
+
+google::rpc::Status scope_too_small(const std::string& scope) {
+  return error(google::rpc::PERMISSION_DENIED, v1::ERROR_REASON_SCOPE_TOO_SMALL,
+               "the token does not allow this; the method needs one of scope " + scope,
+               {{"scope", scope}});
+}
+
+google::rpc::Status project_not_granted(const std::string& project) {
+  return error(google::rpc::PERMISSION_DENIED, v1::ERROR_REASON_PROJECT_NOT_GRANTED,
+               "the token is not for the project " + project, {{"project", project}});
+}
+
 google::rpc::Status shutting_down() {
   google::rpc::Status status = error(google::rpc::UNAVAILABLE, v1::ERROR_REASON_SHUTTING_DOWN,
                                      "the server is shutting down");

@@ -83,6 +83,15 @@ google::rpc::Status call_over(const CallLimits& limits);
 /// DEADLINE_EXCEEDED, STREAM_TIME_LIMIT: the stream reached its longest duration.
 google::rpc::Status stream_deadline_exceeded();
 
+/// UNAUTHENTICATED: `what` is wrong with the credentials of the call. The message adds what to do.
+google::rpc::Status unauthenticated(const std::string& what);
+/// unauthenticated(): the token is not, or no longer, valid. The message does not say why.
+google::rpc::Status token_refused();
+/// PERMISSION_DENIED: the method needs a token of `scope`: "read", "write" or "admin".
+google::rpc::Status scope_too_small(const std::string& scope);
+/// PERMISSION_DENIED, whether or not the project exists.
+google::rpc::Status project_not_granted(const std::string& project);
+
 /// UNAVAILABLE, SHUTTING_DOWN, with RetryInfo.
 google::rpc::Status shutting_down();
 

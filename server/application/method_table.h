@@ -13,6 +13,7 @@
 #include "server/application/message_source.h"
 #include "server/application/outcome.h"
 #include "server/application/request_limits.h"
+#include "server/storage/stored_token.h"
 
 namespace tribodyn::server {
 
@@ -29,6 +30,7 @@ struct Method {
   const google::protobuf::MethodDescriptor* descriptor;
   const google::protobuf::Message* request;   ///< prototype
   const google::protobuf::Message* response;  ///< prototype
+  Scope scope;                                ///< that a principal needs
   CallLane lane;              ///< of requests up to kUsualRequestBytes; larger ones take kHeavy
   UseCase<Reply> answer;      ///< null for a streaming method
   UseCase<ReplySource> open;  ///< null for a unary method

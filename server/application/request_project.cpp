@@ -108,6 +108,19 @@ void find_names(Message& message, const std::string& path, bool is_resource_of_r
   }
 }
 
+/// True if a request of the type may hold a name, and so is about a project.
+bool takes_names(const Descriptor& type) {
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    if (holds_name(field)) return true;
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE &&
+        is_resource(*field.message_type()) && field.containing_oneof() == nullptr) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// The project in "projects/{project}"; nullopt if the text has another form.
 std::optional<std::string> project_of_parent(const std::string& text) {
   const auto parts = split_name(text);
@@ -172,6 +185,9 @@ std::optional<google::rpc::Status> enter_project(Application& application, Messa
                                                  CallContext& context) {
   Violations violations;
   context.project = take_project(request, violations);
+  if (!context.grant->covers(context.project) && takes_names(*request.GetDescriptor())) {
+    return project_not_granted(context.project);
+  }
   if (!violations.empty()) return invalid(violations);
   if (application.store.has_project(context.project)) return std::nullopt;
   const std::string name = fmt::format("{}/{}", kProjects, context.project);

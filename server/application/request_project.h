@@ -19,8 +19,9 @@ namespace tribodyn::server {
 /// of a project.
 std::string take_project(google::protobuf::Message& request, Violations& violations);
 
-/// Sets the project of a call as take_project() does. Returns INVALID_ARGUMENT for a request about
-/// two projects and NOT_FOUND for an unknown project; else nullopt. Reads no row of the store.
+/// Sets the project of a call as take_project() does. Returns PERMISSION_DENIED if the grant of the
+/// call does not cover the project, which may exist or not; INVALID_ARGUMENT for a request about
+/// two projects; NOT_FOUND for an unknown project; else nullopt. Reads no row of the store.
 std::optional<google::rpc::Status> enter_project(Application& application,
                                                  google::protobuf::Message& request,
                                                  CallContext& context);

@@ -57,6 +57,12 @@ std::optional<Microseconds> deadline_time(const v1::Simulation& requested, Micro
   return now + static_cast<Microseconds>(1e6 * requested.deadline_seconds());
 }
 
+/// Returns whose share of the processors pays for a simulation. The owner's programs are told apart
+/// by the names that they give themselves.
+std::string payer(const CallContext& call) {
+  return call.grant->principal == kOwner ? call.client : call.grant->principal;
+}
+
 NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
                              const SimulationInputs& inputs, const std::string& request_hash,
                              const CallContext& call) {
@@ -74,7 +80,7 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
           .is_forced = request.force(),
           .deadline_time = deadline_time(inputs.requested, system_time()),
           .client = call.client,
-          .principal = call.client,
+          .principal = payer(call),
           .scheduling_class = request.scheduling_class(),
           .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
           .labels = std::move(labels),

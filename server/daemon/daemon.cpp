@@ -1,5 +1,6 @@
 #include "server/daemon/daemon.h"
 
+#include <fmt/format.h>
 #include <malloc.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,7 +20,9 @@
 
 #include "core/version.h"
 #include "server/application/stored_inputs.h"
+#include "server/daemon/owner_token.h"
 #include "server/daemon/service_manager.h"
+#include "server/daemon/token_watch.h"
 #include "server/simulation/golden_case.h"
 #include "server/simulation/result_key.h"
 #include "server/storage/database_files.h"
@@ -27,6 +31,7 @@
 #include "server/storage/schema.h"
 #include "server/storage/seeds.h"
 #include "server/storage/store.h"
+#include "server/storage/token_table.h"
 #include "server/transport/grpc/grpc_server.h"
 #include "server/transport/http/http_server.h"
 #include "server/transport/http/rest_handler.h"
@@ -44,11 +49,14 @@ milliseconds to_milliseconds(double value) {
   return milliseconds(static_cast<std::int64_t>(1000 * value));
 }
 
-/// Writes the address under another name and renames the file, so that a reader never sees a part
-/// of it.
-void write_port_file(const std::string& path, const std::string& address) {
+/// Writes the addresses, a line each, under another name and renames the file, so that a reader
+/// never sees a part of it.
+void write_port_file(const std::string& path, const std::vector<std::string>& addresses) {
   const std::string unfinished = path + ".new";
-  std::ofstream(unfinished) << address << '\n';
+  {
+    std::ofstream file(unfinished);
+    for (const std::string& each : addresses) file << each << '\n';
+  }
   std::filesystem::rename(unfinished, path);
 }
 
@@ -157,7 +165,7 @@ struct Rest {
 };
 
 /// The page /healthz: 503 while gRPC's health check answers NOT_SERVING.
-RestHandler::Page health_page(const GrpcServer& server) {
+std::function<HttpResponse()> health_page(const GrpcServer& server) {
   return [&server] {
     HttpResponse out;
     out.headers["Content-Type"] = "text/plain; charset=utf-8";
@@ -171,7 +179,7 @@ RestHandler::Page health_page(const GrpcServer& server) {
 }
 
 /// The page /metrics.
-RestHandler::Page metrics_page(SimulationJobs& jobs) {
+std::function<HttpResponse()> metrics_page(SimulationJobs& jobs) {
   return [&jobs] {
     HttpResponse out;
     out.headers["Content-Type"] = "text/plain; version=0.0.4; charset=utf-8";
@@ -186,8 +194,8 @@ std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& 
   if (settings.http_listen.empty()) return nullptr;
   jobs.metrics().set_build(TRIBODYN_VERSION, kModelVersion, platform());
   std::map<std::string, RestHandler::Page> pages;
-  pages["/metrics"] = metrics_page(jobs);
-  pages["/healthz"] = health_page(server);
+  pages["/metrics"] = {metrics_page(jobs)};
+  pages["/healthz"] = {health_page(server), true};
   auto out = std::make_unique<Rest>(dispatcher, std::move(pages),
                                     parse_listen_address(settings.http_listen));
   spdlog::info("REST at http://{}", to_text(out->server.address()));
@@ -196,7 +204,12 @@ std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& 
 
 }  // namespace
 
-int serve(const Settings& settings, const ListenAddress& address, const sigset_t& signals) {
+std::vector<ListenAddress> listen_addresses(const Settings& settings) {
+  return settings.listen.empty() ? default_addresses() : parse_listen_addresses(settings.listen);
+}
+
+int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
+          const sigset_t& signals) {
   Store store(settings.database);
   if (store.migration_backup()) {
     spdlog::info("the database was brought to schema {}; {} holds it as it was before",
@@ -208,19 +221,26 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
   const SimulationJobs::Options options = job_options(settings);
   SimulationJobs jobs(store, options);
   Application application{store, jobs};
+  TokenTable tokens(settings.database);
+  provide_owner_token(tokens, settings.database, system_time());
+  const TokenWatch token_watch(tokens, *application.authorizer);
   const std::size_t resumed = jobs.resume();  // before clients can submit
   if (resumed > 0) spdlog::info("{} unfinished simulations are queued again", resumed);
   CallDispatcher dispatcher(application, {to_milliseconds(settings.call_limit_seconds),
                                           to_milliseconds(settings.stream_limit_seconds),
                                           to_milliseconds(settings.unread_limit_seconds)});
-  GrpcServer server(dispatcher, address);
+  GrpcServer server(dispatcher, addresses);
   const std::unique_ptr<Rest> rest = listen_for_http(settings, dispatcher, jobs, server);
   const std::string wrong = jobs.start();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);
   server.set_serving(true);
   spdlog::info("tribodynd " TRIBODYN_VERSION " ({}) listens on {} with {} threads", kModelVersion,
-               server.address(), options.threads);
-  if (!settings.port_file.empty()) write_port_file(settings.port_file, server.address());
+               fmt::join(server.addresses(), " and "), options.threads);
+  spdlog::info(
+      "programs that do not use the Unix socket of the owner need a token; the owner's is "
+      "in {}",
+      owner_token_file(settings.database).string());
+  if (!settings.port_file.empty()) write_port_file(settings.port_file, server.addresses());
   notify_service_manager("READY=1");
 
   DatabaseFileWatch file_watch(store, server);
@@ -232,7 +252,7 @@ int serve(const Settings& settings, const ListenAddress& address, const sigset_t
 }
 
 int check(const Settings& settings) {
-  parse_listen_address(settings.listen);
+  listen_addresses(settings);
   if (std::filesystem::exists(settings.database)) {
     const std::vector<std::string> problems = check_database(settings.database, hash_stored_inputs);
     for (const std::string& problem : problems) std::fprintf(stderr, "%s\n", problem.c_str());

@@ -7,8 +7,10 @@
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 #include "core/version.h"
+#include "server/application/grant.h"
 #include "server/contract/resource_names.h"
 
 namespace tribodyn::server {
@@ -16,26 +18,6 @@ namespace {
 
 constexpr double kLongestDrainSeconds = 25;              // [s], of the 30 s of a shutdown
 constexpr std::uintmax_t kLargestConfigBytes = 1 << 20;  // one line for each flag takes 1 KiB
-
-/// Adds the subcommands, which run instead of the server; each requires --database.
-void add_commands(CLI::App& app, Settings& settings) {
-  app.require_subcommand(0, 1);
-  const auto add = [&](const char* name, const char* description, bool with_file) {
-    CLI::App* command = app.add_subcommand(name, description);
-    command->add_option("--database", settings.database, "SQLite file")->required();
-    if (with_file) command->add_option("FILE", settings.file, "Backup file")->required();
-  };
-  add("backup", "Copy a database to FILE, also while a server uses it. An existing FILE is refused",
-      true);
-  add("restore",
-      "Replace a database by the backup FILE and print the name of the replaced database "
-      "(DATABASE.replaced). A database in use by a server and a damaged FILE are refused",
-      true);
-  add("check",
-      "Print every problem of a database: damage, broken references, gaps in revisions and events, "
-      "contents that differ from their checksum. The exit code is 3 if there is a problem",
-      false);
-}
 
 /// Returns a check of the range of a number with a decimal point. CLI::Range accepts NaN.
 CLI::Validator between(double least, double most) {
@@ -56,6 +38,85 @@ CLI::Validator project_id() {
                                             "letters, digits and '-', first a letter, last no '-'";
           },
           ""};
+}
+
+/// Adds `tokens create|list|revoke|rotate`.
+void add_token_commands(CLI::App& app, Settings& settings) {
+  TokenSettings& token = settings.token;
+  CLI::App* tokens = app.add_subcommand(
+      "tokens",
+      "Create, list, revoke and rotate bearer tokens of a database, also while a server uses it: "
+      "a change holds when the command ends, for running streams too");
+  tokens->require_subcommand(1);
+  const auto add = [&](const char* action, const char* description) {
+    CLI::App* command = tokens->add_subcommand(action, description);
+    command->add_option("--database", settings.database, "SQLite file")->required();
+    command->parse_complete_callback([&token, action] { token.action = action; });
+    return command;
+  };
+  const auto add_name = [&](CLI::App* command) {
+    command->add_option("NAME", token.name, "Who uses the token, e.g. anna-laptop")
+        ->required()
+        ->check(project_id());
+  };
+  const auto add_expiry = [&](CLI::App* command) {
+    command
+        ->add_option("--expire-days", token.expire_days,
+                     "The token is refused after this time; 0: never")
+        ->check(between(0, 36500))
+        ->capture_default_str();
+  };
+  CLI::App* create = add("create", "Print a new token to standard output");
+  add_name(create);
+  create
+      ->add_option("--scope", token.scope,
+                   "read; write: also change resources and run simulations; admin: also purge")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Scope>{
+              {"read", Scope::kRead}, {"write", Scope::kWrite}, {"admin", Scope::kAdmin}},
+          CLI::ignore_case))
+      ->default_str("write");
+  create
+      ->add_option("--projects", token.projects,
+                   "Projects that the token is for, e.g. gearboxes,axles. Default: all")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->check(project_id());
+  add_expiry(create);
+  add("list", "Print all tokens, also expired and revoked ones, without their secrets");
+  add_name(add("revoke", "Refuse every token of NAME from now on, and end its streams"));
+  CLI::App* rotate = add(
+      "rotate",
+      "Print a new token in place of that of NAME, with the same scope and projects. The owner's "
+      "goes to DATABASE.token");
+  add_name(rotate);
+  add_expiry(rotate);
+  rotate
+      ->add_option("--overlap-hours", token.overlap_hours,
+                   "The former token stays valid for this time")
+      ->check(between(0, 8760))
+      ->capture_default_str();
+}
+
+/// Adds the subcommands, which run instead of the server; each requires --database.
+void add_commands(CLI::App& app, Settings& settings) {
+  app.require_subcommand(0, 1);
+  const auto add = [&](const char* name, const char* description, bool with_file) {
+    CLI::App* command = app.add_subcommand(name, description);
+    command->add_option("--database", settings.database, "SQLite file")->required();
+    if (with_file) command->add_option("FILE", settings.file, "Backup file")->required();
+  };
+  add("backup", "Copy a database to FILE, also while a server uses it. An existing FILE is refused",
+      true);
+  add("restore",
+      "Replace a database by the backup FILE and print the name of the replaced database "
+      "(DATABASE.replaced). A database in use by a server and a damaged FILE are refused",
+      true);
+  add("check",
+      "Print every problem of a database: damage, broken references, gaps in revisions and events, "
+      "contents that differ from their checksum. The exit code is 3 if there is a problem",
+      false);
 }
 
 /// Returns a check that refuses devices, folders, missing and too large files.
@@ -85,8 +146,10 @@ void add_flags(CLI::App& app, Settings& settings) {
       "--check", settings.check_only,
       "Check settings, database and a computed case, then exit: 0 if the server would start");
   app.add_option("--listen", settings.listen,
-                 "Loopback address and port (0: any free one), or unix:PATH")
-      ->capture_default_str();
+                 "Addresses with commas between them, each a loopback address and port (0: any "
+                 "free one) or unix:PATH. Only the owner's processes reach a Unix socket, and they "
+                 "need no token. Default: the socket at which tribodyn looks first, and "
+                 "127.0.0.1:50651");
   app.add_option("--database", settings.database,
                  "SQLite file; created if missing. Use a local disk");
   app.add_option("--projects", settings.projects,
@@ -185,6 +248,7 @@ std::optional<Settings> read_settings(const std::vector<std::string>& arguments,
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   add_flags(app, settings);
   add_commands(app, settings);
+  add_token_commands(app, settings);
   std::vector<std::string> words = from_environment(app);
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::reverse(words.begin(), words.end());  // CLI11 expects the last argument first
@@ -193,6 +257,12 @@ std::optional<Settings> read_settings(const std::vector<std::string>& arguments,
     if (settings.database.empty()) throw CLI::RequiredError("--database");
   } catch (const CLI::ParseError& error) {
     *exit_code = app.exit(error) == 0 ? kExitStopped : kExitBadSettings;
+    return std::nullopt;
+  }
+  if (settings.token.action == "create" && settings.token.name == kOwner) {
+    fmt::print(stderr, "tribodynd: the server makes the token of {} by itself; use another name\n",
+               kOwner);
+    *exit_code = kExitBadSettings;
     return std::nullopt;
   }
   if (!app.get_subcommands().empty()) settings.command = app.get_subcommands().front()->get_name();

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "server/storage/stored_token.h"
+
 namespace tribodyn::server {
 
 // Exit codes; scripts that start the server use them.
@@ -14,14 +16,25 @@ inline constexpr int kExitBadDatabase = 3;
 inline constexpr int kExitCannotListen = 4;
 inline constexpr int kExitWrongResults = 5;
 
+/// What `tribodynd tokens` is to do.
+struct TokenSettings {
+  std::string action;  ///< "create", "list", "revoke", "rotate"
+  std::string name;    ///< of the principal
+  Scope scope = Scope::kWrite;
+  std::vector<std::string> projects;  ///< empty: all
+  double expire_days = 90;            ///< 0: never
+  double overlap_hours = 0;           ///< that the replaced token stays valid
+};
+
 /// Settings of the server. A value comes from its flag, or else from the environment
 /// (TRIBODYND_LISTEN for --listen), or else from the file of --config, or else it is the default
 /// below.
 struct Settings {
-  std::string command;  ///< empty: serve; "backup", "restore", "check"
+  std::string command;  ///< empty: serve; "backup", "restore", "check", "tokens"
   std::string file;     ///< argument of backup and restore
+  TokenSettings token;  ///< of "tokens"
   bool check_only = false;
-  std::string listen = "127.0.0.1:50651";
+  std::string listen;  ///< addresses, with commas between them; empty: default_addresses()
   std::string database;
   int threads = 0;
   std::vector<std::string> projects;  ///< beside `default`

@@ -15,6 +15,7 @@
 #include "server/storage/resource_types.h"
 #include "server/storage/schema_texts.h"
 #include "server/storage/simulation_rows.h"
+#include "server/support/random_bytes.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::server {
@@ -110,6 +111,13 @@ void add_checksums(Connection& db) {
       "JOIN history_blocks b ON b.history_column = c.id WHERE c.result = results.id)");
 }
 
+/// The key of page tokens is made with the table, so that there always is one.
+void start_token_log(Connection& db) {
+  SQLite::Statement insert(db, "INSERT INTO token_log VALUES (1, 0, 0, ?)");
+  bind_blob(insert, 1, random_bytes(32));
+  insert.exec();
+}
+
 void bring_from(Connection& database, int from, int to, Microseconds now) {
   const auto passes = [from, to](int version) { return from < version && version <= to; };
   if (passes(1)) database.exec(kSchema1);
@@ -132,6 +140,10 @@ void bring_from(Connection& database, int from, int to, Microseconds now) {
   if (passes(6)) database.exec(kSchema6);
   if (passes(7)) database.exec(kSchema7);
   if (passes(8)) database.exec(kSchema8);
+  if (passes(9)) {
+    database.exec(kSchema9);
+    start_token_log(database);
+  }
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(to));
 }

@@ -8,7 +8,7 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 8. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 9. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   projects     one row per project; last_number is that of its latest simulation, removed or not
@@ -56,10 +56,15 @@ namespace tribodyn::server {
 ///                compressed (column_codec.h): level 0 as it is, levels above it the least and
 ///                largest values of runs of its rows (pyramid.h), written once with it. checksum:
 ///                of data
+///   tokens       one row for each bearer token: SHA-256 of its secret, the name of its principal,
+///                Scope, projects joined by commas (empty: all), and until when it is accepted. A
+///                token is never removed, and a revoked one never changes
+///   token_log    one row: the number of changes of tokens, the number of those that the server has
+///                applied, and the key of page tokens
 ///
 /// The text of a schema that a release has written never changes: the tables of a database are
 /// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 8;
+inline constexpr int kSchemaVersion = 9;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

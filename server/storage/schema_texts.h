@@ -359,4 +359,29 @@ CREATE INDEX simulations_by_surface ON simulations (surface);
 CREATE INDEX simulations_by_vehicle ON simulations (vehicle);
 )sql";
 
+inline constexpr char kSchema9[] = R"sql(
+CREATE TABLE tokens (
+  hash TEXT PRIMARY KEY CHECK (length(hash) = 64),
+  name TEXT NOT NULL CHECK (length(name) BETWEEN 1 AND 63),
+  scope INTEGER NOT NULL CHECK (scope BETWEEN 1 AND 3),
+  projects TEXT NOT NULL,
+  create_time INTEGER NOT NULL,
+  expire_time INTEGER,
+  revoke_time INTEGER
+) STRICT, WITHOUT ROWID;
+CREATE INDEX tokens_by_name ON tokens (name);
+CREATE TRIGGER tokens_stay BEFORE DELETE ON tokens
+BEGIN SELECT RAISE(ABORT, 'a token is revoked, never removed'); END;
+CREATE TRIGGER tokens_stay_revoked BEFORE UPDATE ON tokens
+WHEN OLD.revoke_time IS NOT NULL
+BEGIN SELECT RAISE(ABORT, 'a revoked token never changes'); END;
+
+CREATE TABLE token_log (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  change INTEGER NOT NULL,
+  acknowledged INTEGER NOT NULL,
+  page_token_key BLOB NOT NULL CHECK (length(page_token_key) = 32)
+) STRICT;
+)sql";
+
 }  // namespace tribodyn::server

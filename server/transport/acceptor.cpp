@@ -56,6 +56,15 @@ SocketName socket_name(const ListenAddress& address) {
   return out;
 }
 
+/// True if the process at the other end of a Unix socket belongs to the user of this process. The
+/// system keeps that from the time of the connect.
+bool is_of_this_user(int connection) {
+  ucred peer{};
+  socklen_t size = sizeof(peer);
+  return getsockopt(connection, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 &&
+         peer.uid == geteuid();
+}
+
 int open_socket(const SocketName& name) {
   return socket(name.storage.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
 }
@@ -141,7 +150,10 @@ void Acceptor::run(const Take& take) const {
     if (events[1].revents != 0) return;
     const int connection = accept4(listener_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     const bool none_left = connection < 0 && (errno == EMFILE || errno == ENFILE);
-    if (connection >= 0 && connection < highest) {
+    if (connection >= 0 && address_.is_unix() && !is_of_this_user(connection)) {
+      spdlog::warn("event=connection_refused address={} cause=\"another user\"", to_text(address_));
+      close(connection);
+    } else if (connection >= 0 && connection < highest) {
       scarce = false;
       take(listener_, connection);
     } else if (connection >= 0 || none_left) {

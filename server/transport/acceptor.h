@@ -11,7 +11,8 @@ namespace tribodyn::server {
 /// own acceptor, which stops for good once the process has run out of file descriptors (grpc/grpc
 /// issue 20418), so that any client with enough connections could block all others. This class
 /// closes new connections beyond `maximum_connections` and while descriptors are scarce, and
-/// reserves some for the database. One thread must construct, start and stop the object.
+/// reserves some for the database. It closes connections of other users to a Unix socket, so that
+/// every call over one is the owner's. One thread must construct, start and stop the object.
 class Acceptor {
  public:
   /// Binds and listens. Replaces the socket file of a killed server. Throws ListenError if the

@@ -2,13 +2,21 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <sys/stat.h>
 #include <sys/un.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <cstdlib>
+#include <set>
+#include <system_error>
 
 namespace tribodyn::server {
 namespace {
 
+constexpr int kDefaultPort = 50651;
 constexpr char kForms[] = "use 127.0.0.1:PORT, [::1]:PORT or unix:PATH";
 
 bool is_loopback(const std::string& host) {
@@ -20,6 +28,22 @@ bool is_loopback(const std::string& host) {
     return IN6_IS_ADDR_LOOPBACK(&v6) != 0;
   }
   return false;
+}
+
+/// Makes a folder for the owner only. Throws ListenError if it cannot be made, or belongs to
+/// another user, or another user may write to it.
+void require_own_folder(const std::string& folder) {
+  struct stat found {};
+  const bool is_made = mkdir(folder.c_str(), 0700) == 0 || errno == EEXIST;
+  if (!is_made || lstat(folder.c_str(), &found) != 0) {
+    throw ListenError("cannot make the folder " + folder + " for the socket: " +
+                      std::generic_category().message(errno) + "; set --listen");
+  }
+  if (!S_ISDIR(found.st_mode) || found.st_uid != geteuid() || (found.st_mode & 077) != 0) {
+    throw ListenError("the folder " + folder +
+                      " for the socket is not the owner's alone; set its owner and chmod 700, or "
+                      "set --listen");
+  }
 }
 
 ListenAddress parse_unix(const std::string& path) {
@@ -48,11 +72,45 @@ ListenAddress parse_listen_address(const std::string& text) {
   }
   if (out.host == "localhost") out.host = "127.0.0.1";
   if (!is_loopback(out.host)) {
-    throw ListenError("refusing to listen on \"" + text +
-                      "\": tribodynd has no TLS and no authentication yet, so it only serves "
-                      "this machine; " +
-                      kForms);
+    throw ListenError(
+        "refusing to listen on \"" + text +
+        "\": tribodynd has no TLS yet, and beyond this machine a token must not travel "
+        "without it; " +
+        kForms);
   }
+  return out;
+}
+
+std::vector<ListenAddress> parse_listen_addresses(const std::string& text) {
+  std::vector<ListenAddress> out;
+  std::set<std::string> seen;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    out.push_back(parse_listen_address(text.substr(begin, end - begin)));
+    const bool picks_port = !out.back().is_unix() && out.back().port == 0;
+    if (!picks_port && !seen.insert(to_text(out.back())).second) {
+      throw ListenError("\"" + text + "\" has " + to_text(out.back()) + " twice");
+    }
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::vector<ListenAddress> default_addresses() {
+  std::vector<ListenAddress> out;
+  const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+  const char* home = std::getenv("HOME");
+  std::string folder;
+  if (runtime != nullptr && *runtime != '\0') {
+    folder = std::string(runtime) + "/tribodyn";
+  } else if (home != nullptr && *home != '\0') {
+    folder = std::string(home) + "/.tribodyn";
+  }
+  if (!folder.empty()) {
+    require_own_folder(folder);
+    out.push_back(parse_unix(folder + "/socket"));
+  }
+  out.push_back({.host = "127.0.0.1", .port = kDefaultPort, .socket_path = ""});
   return out;
 }
 

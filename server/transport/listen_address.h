@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace tribodyn::server {
 
@@ -22,6 +23,16 @@ struct ListenAddress {
 /// Parses "127.0.0.1:50651", "[::1]:0", "localhost:50651" or "unix:/run/tribodyn.sock". Throws
 /// ListenError for other forms, and for addresses that are not loopback, as there is no TLS yet.
 ListenAddress parse_listen_address(const std::string& text);
+
+/// Parses addresses with commas between them. Throws ListenError as parse_listen_address() does,
+/// and for an address that stands twice.
+std::vector<ListenAddress> parse_listen_addresses(const std::string& text);
+
+/// Returns the addresses of a server that is told none: a Unix socket in a folder of the owner's,
+/// $XDG_RUNTIME_DIR/tribodyn or else $HOME/.tribodyn, and port 50651 of loopback. Makes the folder,
+/// for the owner only. There is no socket if neither variable is set.
+/// Throws ListenError if the folder cannot be made or others may write to it.
+std::vector<ListenAddress> default_addresses();
 
 /// Returns the address in the form of gRPC and of clients.
 std::string to_text(const ListenAddress& address);

@@ -78,12 +78,7 @@ class Server {
   const std::string& address() const { return address_; }
   int id() const { return server_of(database()); }
   Stub& stub() const { return *stub_; }
-  std::shared_ptr<grpc::Channel> another_channel() const {
-    grpc::ChannelArguments own;  // a connection of its own
-    own.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
-    own.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
-    return grpc::CreateCustomChannel(address_, grpc::InsecureChannelCredentials(), own);
-  }
+  std::shared_ptr<grpc::Channel> another_channel() const { return connect(address_, true); }
   std::unique_ptr<Stub> another_stub() const {
     return v1::SimulationService::NewStub(another_channel());
   }

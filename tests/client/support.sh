@@ -26,7 +26,8 @@ start_server() {
     exit 1
   fi
   TRIBODYN_SERVER=$(<"$folder/port")
-  export TRIBODYN_SERVER
+  TRIBODYN_TOKEN_FILE=$folder/db.sqlite.token
+  export TRIBODYN_SERVER TRIBODYN_TOKEN_FILE
 }
 
 stop_server() {
@@ -85,7 +86,7 @@ out_is_json() {
 
 # Ignores the configuration file of the user who runs the test.
 export XDG_CONFIG_HOME=$folder/settings
-unset TRIBODYN_CONFIG TRIBODYN_PROJECT TRIBODYN_OUTPUT TRIBODYN_TIMEOUT_SECONDS TRIBODYN_PROGRESS TRIBODYN_COLOR
+unset TRIBODYN_CONFIG TRIBODYN_PROJECT TRIBODYN_TOKEN_FILE TRIBODYN_OUTPUT TRIBODYN_TIMEOUT_SECONDS TRIBODYN_PROGRESS TRIBODYN_COLOR
 
 finish() {
   [ "$failures" -eq 0 ] || echo "$failures failures"

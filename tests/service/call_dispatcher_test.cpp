@@ -71,6 +71,7 @@ class TestCall : public UnaryCall {
  public:
   explicit TestCall(const google::protobuf::Message& request)
       : UnaryCall(row_of(request)), bytes_(request.SerializeAsString()) {
+    credentials.is_owner = true;
     context.client = "tester";
     context.request_id = "call-1";
     context.limits.cancelled = &cancelled;

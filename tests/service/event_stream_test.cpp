@@ -110,6 +110,7 @@ class EventClient {
 
 class EventStreamTest : public testing::Test {
  protected:
+  EventStreamTest() { accept_owner(app_); }
   struct Served {
     Served(Application& app, const TimeLimits& times, const RestLimits& limits)
         : dispatcher(app, times),
@@ -244,7 +245,7 @@ TEST_F(EventStreamTest, JsonLinesHaveTheSameMessages) {
   EXPECT_THAT(all, HasSubstr("{\"result\":{\"state\":\"SUCCEEDED\","));
   EXPECT_THAT(all, testing::EndsWith("\n\r\n0\r\n\r\n"));
   HttpConnection old(served->port());
-  old.send("GET /v1/" + name + ":watch HTTP/1.0\r\nHost: localhost\r\n\r\n");
+  old.send("GET /v1/" + name + ":watch HTTP/1.0\r\n" + kHost + "\r\n");
   const std::string plain = old.read_all();
   EXPECT_THAT(plain, testing::Not(HasSubstr("chunked")));
   EXPECT_THAT(plain, testing::EndsWith("event: end\ndata: {}\n\n"));

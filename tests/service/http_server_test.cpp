@@ -35,12 +35,14 @@ HttpResponse page(std::string text) {
 
 class HttpServerTest : public testing::Test {
  protected:
+  HttpServerTest() { accept_owner(app_); }
   /// A server with its own limits.
   struct Served {
     Served(Application& app, const HttpLimits& limits)
         : dispatcher(app),
-          handler(dispatcher, {{"/hello", [] { return page("hello"); }},
-                               {"/long", [] { return page(std::string(kLongPage, 'x')); }}}),
+          handler(dispatcher,
+                  {{"/hello", {[] { return page("hello"); }, true}},
+                   {"/long", {[] { return page(std::string(kLongPage, 'x')); }, true}}}),
           server(handler, {"127.0.0.1", 0, ""}, limits) {}
     int port() const { return server.address().port; }
 

@@ -30,8 +30,9 @@ std::string http(const std::string& method, int port, const std::string& path) {
   name.sin_port = htons(static_cast<std::uint16_t>(port));
   name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   EXPECT_EQ(connect(connection, reinterpret_cast<const sockaddr*>(&name), sizeof(name)), 0);
-  const std::string request =
-      method + " " + path + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n";
+  const std::string request = method + " " + path +
+                              " HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer " +
+                              owner_token() + "\r\nConnection: close\r\n\r\n";
   EXPECT_EQ(send(connection, request.data(), request.size(), 0),
             static_cast<ssize_t>(request.size()));
   std::string out;

@@ -49,7 +49,7 @@ class RestTest : public testing::Test {
   }
   HttpResponse send(const std::string& verb, const std::string& target,
                     const std::string& body = {}, std::map<std::string, std::string> headers = {}) {
-    return send(HttpRequest{verb, target, std::move(headers), body, "127.0.0.1"});
+    return send(HttpRequest{verb, target, std::move(headers), body, "127.0.0.1", true});
   }
   static json parsed(const HttpResponse& response) { return json::parse(response.body); }
 
@@ -69,8 +69,40 @@ class RestTest : public testing::Test {
   Bench bench_;
   Application app_ = bench_.application();
   CallDispatcher dispatcher_{app_};
-  RestHandler handler_{dispatcher_, {{"/hello", hello}}};
+  RestHandler handler_{dispatcher_, {{"/hello", {hello, true}}}};
 };
+
+TEST_F(RestTest, EveryRouteRefusesWhoeverHasNoValidTokenBeforeItReadsTheRequest) {
+  for (const HttpRoutes::Route& route : handler_.routes().all()) {
+    if (!route.method->answer) continue;
+    std::string path;
+    for (const std::string& segment : route.segments)
+      path += "/" + (segment == "*" ? "x" : segment);
+    if (!route.custom_verb.empty()) path += ":" + route.custom_verb;
+    for (const char* header : {"", "Bearer unknown", "Basic YTpi"}) {
+      const HttpResponse response =
+          send(HttpRequest{route.verb, path, {{"authorization", header}}, "", "127.0.0.1", false});
+      EXPECT_EQ(response.status, 401) << route.verb << " " << path;
+      EXPECT_EQ(response.headers.at("WWW-Authenticate"), "Bearer realm=\"tribodyn\"");
+      EXPECT_EQ(parsed(response)["error"]["details"][0]["reason"], "UNAUTHENTICATED");
+    }
+  }
+}
+
+TEST_F(RestTest, ATokenOpensWhatItIsFor) {
+  StoredToken token{.name = "anna", .hash = token_hash("secret"), .scope = Scope::kRead};
+  token.projects = {"default"};
+  app_.authorizer->set_tokens({token}, 0);
+  const auto status = [&](const std::string& verb, const std::string& path) {
+    return send(
+        HttpRequest{verb, path, {{"authorization", "Bearer secret"}}, "", "127.0.0.1", false});
+  };
+  EXPECT_EQ(status("GET", "/v1/lubricants/paper-fluid-1").status, 200);
+  const HttpResponse denied = status("DELETE", "/v1/lubricants/paper-fluid-1");
+  EXPECT_EQ(denied.status, 403);
+  EXPECT_THAT(denied.headers.at("WWW-Authenticate"), HasSubstr("insufficient_scope"));
+  EXPECT_EQ(status("GET", "/v1/projects/acme/lubricants/paper-fluid-1").status, 403);
+}
 
 TEST_F(RestTest, EveryMethodHasARouteThatFindsIt) {
   std::set<std::string> found;

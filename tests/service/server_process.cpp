@@ -2,21 +2,61 @@
 
 #include <fcntl.h>
 #include <grpcpp/create_channel.h>
+#include <grpcpp/support/client_interceptor.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
 
 namespace tribodyn::server {
+namespace {
+
+/// The token of the owner of the server at each address.
+std::map<std::string, std::string>& tokens() {
+  static std::map<std::string, std::string> all;
+  return all;
+}
+
+/// Sends a token with every call of a channel.
+class TokenAdder final : public grpc::experimental::ClientInterceptorFactoryInterface {
+ public:
+  explicit TokenAdder(const std::string& token) : authorization_("Bearer " + token) {}
+  grpc::experimental::Interceptor* CreateClientInterceptor(
+      grpc::experimental::ClientRpcInfo*) override {
+    return new Adding(authorization_);  // gRPC deletes it
+  }
+
+ private:
+  class Adding final : public grpc::experimental::Interceptor {
+   public:
+    explicit Adding(const std::string& authorization) : authorization_(authorization) {}
+    void Intercept(grpc::experimental::InterceptorBatchMethods* methods) override {
+      using Point = grpc::experimental::InterceptionHookPoints;
+      if (methods->QueryInterceptionHookPoint(Point::PRE_SEND_INITIAL_METADATA)) {
+        methods->GetSendInitialMetadata()->emplace("authorization", authorization_);
+      }
+      methods->Proceed();
+    }
+
+   private:
+    const std::string authorization_;
+  };
+  const std::string authorization_;
+};
+
+}  // namespace
 
 ServerProcess::ServerProcess(const std::vector<std::string>& arguments, std::string log,
                              int maximum_files, const std::string& program)
-    : log_(std::move(log)) {
+    : log_(std::move(log)), arguments_(arguments) {
   std::vector<std::string> words;
   if (maximum_files > 0) {
     words = {"/bin/sh", "-c", "ulimit -n " + std::to_string(maximum_files) + "; exec \"$@\"", "sh"};
@@ -81,20 +121,48 @@ std::string ServerProcess::log() const {
   return text.str();
 }
 
+std::string ServerProcess::flag(const std::string& name) const {
+  const auto found = std::find(arguments_.begin(), arguments_.end(), name);
+  return found == arguments_.end() || found + 1 == arguments_.end() ? "" : found[1];
+}
+
 std::string wait_for_address(const std::string& port_file, ServerProcess& process) {
   while (process.running()) {
     std::ifstream file(port_file);
     std::string line;
-    if (std::getline(file, line)) return line;
+    if (std::getline(file, line)) {
+      const std::string token = process.flag("--database") + ".token";
+      setenv("TRIBODYN_TOKEN_FILE", token.c_str(), 1);
+      tokens()[line] = owner_token();
+      return line;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return {};
 }
 
-std::shared_ptr<grpc::Channel> connect(const std::string& address) {
+std::string owner_token() {
+  const char* path = std::getenv("TRIBODYN_TOKEN_FILE");
+  std::ifstream file(path == nullptr ? "" : path);
+  std::string out;
+  std::getline(file, out);
+  return out;
+}
+
+std::shared_ptr<grpc::Channel> connect(const std::string& address, bool with_own_connection) {
+  const auto token = tokens().find(address);
+  return connect_with(address, token == tokens().end() ? "" : token->second, with_own_connection);
+}
+
+std::shared_ptr<grpc::Channel> connect_with(const std::string& address, const std::string& token,
+                                            bool with_own_connection) {
   grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, with_own_connection ? 1 : 0);
   arguments.SetInt(GRPC_ARG_HTTP2_BDP_PROBE, 0);
-  return grpc::CreateCustomChannel(address, grpc::InsecureChannelCredentials(), arguments);
+  std::vector<std::unique_ptr<grpc::experimental::ClientInterceptorFactoryInterface>> interceptors;
+  if (!token.empty()) interceptors.push_back(std::make_unique<TokenAdder>(token));
+  return grpc::experimental::CreateCustomChannelWithInterceptors(
+      address, grpc::InsecureChannelCredentials(), arguments, std::move(interceptors));
 }
 
 }  // namespace tribodyn::server

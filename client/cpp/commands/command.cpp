@@ -1,5 +1,7 @@
 #include "client/cpp/commands/command.h"
 
+#include <stdexcept>
+
 #include "client/cpp/resources/kind.h"
 
 namespace tribodyn::client {
@@ -10,17 +12,28 @@ ProgressForm CommonOptions::progress_form() const {
   return standard_error_is_terminal() ? ProgressForm::kBars : ProgressForm::kNone;
 }
 
+Connection CommonOptions::connect(std::chrono::duration<double> timeout) const try {
+  return Connection(server_address(server), timeout, project,
+                    tribodyn::client::token_file(token_file));
+} catch (const std::invalid_argument& error) {
+  throw Failure(kExitUsage, error.what());
+}
+
 void add_common_flags(FlagList& flags, CommonOptions& options) {
   flags.group("Every command");
   flags.text(
       "--server", "HOST:PORT",
       "Address of tribodynd; unix:PATH for a Unix socket. Default: TRIBODYN_SERVER, else the "
-      "configuration file, else 127.0.0.1:50651.",
+      "configuration file, else the socket of your own tribodynd, else 127.0.0.1:50651.",
       [&](const std::string& text) { options.server = text; });
   flags.text("--project", "NAME",
              "Project of the resources and jobs; names without a project mean its own. Default: "
              "default.",
              [&](const std::string& text) { options.project = text; });
+  flags.text("--token-file", "FILE",
+             "File whose first line is the token for the server; a Unix socket of your own "
+             "tribodynd needs none. Default: TRIBODYN_TOKEN_FILE.",
+             [&](const std::string& text) { options.token_file = text; });
   flags.number("--timeout-seconds", {"s", "above 0 to 86400", "30"},
                "Time limit of one call; it does not limit the run time of a simulation",
                [&](double value) { options.timeout_seconds = value; });

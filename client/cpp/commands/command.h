@@ -23,6 +23,7 @@ enum class ProgressChoice { kAuto, kLines, kNone };
 struct CommonOptions {
   std::string server;
   std::string project = kDefaultProject;
+  std::string token_file;
   double timeout_seconds = 30;
   OutputFormat output_format = OutputFormat::kTable;
   ColourChoice colour = ColourChoice::kAuto;
@@ -31,10 +32,9 @@ struct CommonOptions {
 
   ProgressForm progress_form() const;
 
-  Connection connect() const {
-    return Connection(server_address(server), std::chrono::duration<double>(timeout_seconds),
-                      project);
-  }
+  Connection connect() const { return connect(std::chrono::duration<double>(timeout_seconds)); }
+  /// Throws Failure if the token cannot be read.
+  Connection connect(std::chrono::duration<double> timeout) const;
 };
 
 /// A command of the command line. Its closures own the variables to which the flags write.

@@ -67,7 +67,7 @@ std::vector<std::string> names_of(const std::string& collection, const std::stri
                                   const CommonOptions& options) {
   std::vector<std::string> names;
   try {
-    Connection connection(server_address(options.server), kCompletionTimeout);
+    Connection connection = options.connect(kCompletionTimeout);
     if (collection == "simulations") {
       for (const auto& simulation : connection.list_simulations({.limit = 50}).resources) {
         names.push_back(resource_id(simulation.name()));

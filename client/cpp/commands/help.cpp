@@ -137,8 +137,8 @@ std::optional<v1::Schema> schema_for_help(const Command& command, const CommonOp
                                   [](const Flag& flag) { return !flag.constraint_field.empty(); });
   if (!needed) return std::nullopt;
   try {
-    return Connection(server_address(options.server), kSchemaTimeout).schema();
-  } catch (const ServiceError&) {
+    return options.connect(kSchemaTimeout).schema();
+  } catch (const std::runtime_error&) {
     return std::nullopt;  // help works without a server
   }
 }

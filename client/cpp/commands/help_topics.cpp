@@ -109,13 +109,14 @@ false), create_time, end_time, input_hash and labels.
 A flag overrides the environment, the environment overrides the file.
   file:         $XDG_CONFIG_HOME/tribodyn/config, else ~/.config/tribodyn/config;
                 TRIBODYN_CONFIG names another file
-  environment:  TRIBODYN_SERVER, TRIBODYN_PROJECT, TRIBODYN_TIMEOUT_SECONDS, TRIBODYN_OUTPUT,
-                TRIBODYN_PROGRESS, TRIBODYN_COLOR; NO_COLOR turns colours off
+  environment:  TRIBODYN_SERVER, TRIBODYN_PROJECT, TRIBODYN_TOKEN_FILE, TRIBODYN_TIMEOUT_SECONDS,
+                TRIBODYN_OUTPUT, TRIBODYN_PROGRESS, TRIBODYN_COLOR; NO_COLOR turns colours off
 
 The file sets flags that every command has, one per line, without their dashes:
   # the plant's server
   server = 127.0.0.1:50651
   project = default
+  token-file = /home/anna/.config/tribodyn/token
   timeout-seconds = 60
   output = table
   progress = auto
@@ -124,8 +125,10 @@ The file sets flags that every command has, one per line, without their dashes:
       {"options", "options of all commands",
        R"(Options of every command
 
-  --server HOST:PORT   address of the server (127.0.0.1:50651); unix:PATH for a Unix socket
+  --server HOST:PORT   address of the server (the socket of your own tribodynd, or
+                       127.0.0.1:50651); unix:PATH for a Unix socket
   --project NAME       project of the resources and jobs (default)
+  --token-file FILE    file with the token for the server
   --timeout-seconds S  time limit of one call (30)
   --output, -o FORM    table for people, csv and json for programs
   --progress FORM      auto (bars, only on a terminal), lines (for a log) or none

@@ -1,20 +1,59 @@
 #include "tribodyn/client/connection.h"
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "client/cpp/library/services.h"
 
 namespace tribodyn::client {
 
+namespace {
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+/// The socket at which tribodynd listens by default.
+std::string own_socket() {
+  const std::string runtime = environment("XDG_RUNTIME_DIR"), home = environment("HOME");
+  if (!runtime.empty()) return runtime + "/tribodyn/socket";
+  return home.empty() ? "" : home + "/.tribodyn/socket";
+}
+
+/// Returns the first word of a file. Throws std::invalid_argument.
+std::string read_token(const std::string& path) {
+  std::ifstream file(path);
+  std::string out;
+  if (!(file >> out)) throw std::invalid_argument("no token can be read from the file " + path);
+  return out;
+}
+
+}  // namespace
+
 std::string server_address(const std::string& address) {
   if (!address.empty()) return address;
-  const char* environment = std::getenv(kServerVariable);
-  return environment != nullptr && *environment != '\0' ? environment : kDefaultServer;
+  if (std::string named = environment(kServerVariable); !named.empty()) return named;
+  const std::string socket = own_socket();
+  std::error_code missing;
+  if (!socket.empty() && std::filesystem::is_socket(socket, missing)) return "unix:" + socket;
+  return kDefaultServer;
+}
+
+std::string token_file(const std::string& path) {
+  return path.empty() ? environment(kTokenFileVariable) : path;
+}
+
+void Connection::Services::prepare(grpc::ClientContext& context) const {
+  if (!token.empty()) context.AddMetadata("authorization", "Bearer " + token);
 }
 
 Connection::Connection(std::string address, std::chrono::duration<double> timeout,
-                       std::string project)
+                       std::string project, const std::string& token)
     : services_(std::make_unique<Services>()) {
   grpc::ChannelArguments arguments;
   // With BDP probes, gRPC would buffer megabytes of a watch stream that is not read.
@@ -27,6 +66,7 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   services_->address = std::move(address);
   services_->timeout = timeout;
   services_->project = std::move(project);
+  if (!token.empty()) services_->token = read_token(token);
   services_->channel =
       grpc::CreateCustomChannel(services_->address, grpc::InsecureChannelCredentials(), arguments);
   services_->lubricants = v1::LubricantService::NewStub(services_->channel);

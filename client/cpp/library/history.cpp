@@ -51,6 +51,7 @@ void Connection::stream_history(const std::string& name, const HistoryOptions& o
     request.set_row_count(options.row_count == 0 ? 0 : options.row_count - skipped);
     if (schema && done == schema->row_count()) return;
     grpc::ClientContext context;
+    services_->prepare(context);
     const auto reader = services_->simulations->ReadHistory(&context, request);
     std::optional<RowJoiner> joiner;
     for (v1::ReadHistoryResponse part; reader->Read(&part);) {

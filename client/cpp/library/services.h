@@ -29,6 +29,7 @@ struct Connection::Services {
   std::string address;
   std::chrono::duration<double> timeout;
   std::string project;
+  std::string token;  ///< empty: none
   std::shared_ptr<grpc::Channel> channel;
   std::unique_ptr<v1::LubricantService::Stub> lubricants;
   std::unique_ptr<v1::GearSetService::Stub> gear_sets;
@@ -37,6 +38,9 @@ struct Connection::Services {
   std::unique_ptr<v1::SimulationService::Stub> simulations;
   std::unique_ptr<v1::ContactService::Stub> contacts;
   std::unique_ptr<v1::SchemaService::Stub> schemas;
+
+  /// Adds what every call carries.
+  void prepare(grpc::ClientContext& context) const;
 
   /// Makes one call about the project within the time limit. Retries with pauses where that is
   /// safe: when the server was lost or turned the request away.
@@ -53,6 +57,7 @@ struct Connection::Services {
     for (int tries = 1;; ++tries) {
       grpc::ClientContext context;
       context.set_deadline(deadline);
+      prepare(context);
       Response response;
       const grpc::Status status = (stub.*method)(&context, request, &response);
       if (status.ok()) {

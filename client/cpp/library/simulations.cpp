@@ -140,6 +140,7 @@ void Connection::watch_some(const std::string& project, std::set<std::string> op
     request.clear_names();
     for (const std::string& name : open) request.add_names(name);
     grpc::ClientContext context;
+    services_->prepare(context);
     context.set_deadline(system_clock::now() + one_watch);
     const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
     const auto reader = services_->simulations->WatchSimulations(&context, request);

@@ -17,6 +17,9 @@ namespace tribodyn::server {
 CallContext call_context(const grpc::CallbackServerContext& context,
                          std::chrono::milliseconds limit, const std::atomic<bool>& cancelled);
 
+/// Returns what a call brings to show who makes it: its header authorization and its connection.
+Credentials credentials_of(const grpc::CallbackServerContext& context);
+
 /// The common part of a UnaryCall and a StreamCall over gRPC. gRPC owns the request and keeps it
 /// until OnDone; only this call uses it.
 template <class Call>
@@ -26,6 +29,7 @@ class GrpcCall : public Call {
            const grpc::ByteBuffer& request, std::chrono::milliseconds limit)
       : Call(its_method), request_(const_cast<grpc::ByteBuffer&>(request)) {
     this->context = call_context(its_context, limit, cancelled_);
+    this->credentials = credentials_of(its_context);
   }
 
   std::size_t request_size() const override { return request_.Length(); }

@@ -29,8 +29,9 @@ constexpr auto kShutdownGrace = std::chrono::seconds(1);
 
 }  // namespace
 
-GrpcServer::GrpcServer(CallDispatcher& dispatcher, const ListenAddress& address)
-    : acceptor_(address), live_(kMaximumOpenStreams), services_(grpc_services(dispatcher, live_)) {
+GrpcServer::GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddress>& addresses)
+    : live_(kMaximumOpenStreams), services_(grpc_services(dispatcher, live_)) {
+  for (const ListenAddress& each : addresses) acceptors_.emplace_back(each);
   log_protobuf_reports();
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
@@ -56,14 +57,22 @@ GrpcServer::GrpcServer(CallDispatcher& dispatcher, const ListenAddress& address)
   for (const auto& each : services_) builder.RegisterService(each.get());
   builder.RegisterCallbackGenericService(&unknown_methods_);
   server_ = builder.BuildAndStart();
-  if (!server_) throw ListenError("gRPC cannot start on " + to_text(address));
+  if (!server_) throw ListenError("gRPC cannot start");
   set_serving(false);
-  acceptor_.start([connections](int listener, int connection) {
-    ExternalConnections::NewConnectionParameters accepted;
-    accepted.listener_fd = listener;
-    accepted.fd = connection;
-    connections->HandleNewConnection(&accepted);
-  });
+  for (Acceptor& each : acceptors_) {
+    each.start([connections](int listener, int connection) {
+      ExternalConnections::NewConnectionParameters accepted;
+      accepted.listener_fd = listener;
+      accepted.fd = connection;
+      connections->HandleNewConnection(&accepted);
+    });
+  }
+}
+
+std::vector<std::string> GrpcServer::addresses() const {
+  std::vector<std::string> out;
+  for (const Acceptor& each : acceptors_) out.push_back(to_text(each.address()));
+  return out;
 }
 
 GrpcServer::~GrpcServer() { shutdown(); }
@@ -75,7 +84,7 @@ void GrpcServer::set_serving(bool serving) {
 
 void GrpcServer::shutdown() {
   if (!server_) return;
-  acceptor_.stop();
+  for (Acceptor& each : acceptors_) each.stop();
   set_serving(false);
   live_.close_all();
   server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);

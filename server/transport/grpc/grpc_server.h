@@ -3,6 +3,7 @@
 #include <grpcpp/server.h>
 
 #include <atomic>
+#include <deque>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,14 +21,14 @@ namespace tribodyn::server {
 /// must call shutdown() and the destructor.
 class GrpcServer {
  public:
-  /// `dispatcher` must outlive the object. Throws ListenError.
-  GrpcServer(CallDispatcher& dispatcher, const ListenAddress& address);
+  /// Listens at all addresses. `dispatcher` must outlive the object. Throws ListenError.
+  GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddress>& addresses);
   ~GrpcServer();
   GrpcServer(const GrpcServer&) = delete;
   GrpcServer& operator=(const GrpcServer&) = delete;
 
-  /// Returns the address with the actual port.
-  std::string address() const { return to_text(acceptor_.address()); }
+  /// Returns the addresses in their order, with actual ports.
+  std::vector<std::string> addresses() const;
 
   /// Sets the answer to health checks. It is NOT_SERVING at first.
   void set_serving(bool serving);
@@ -38,7 +39,7 @@ class GrpcServer {
 
  private:
   std::atomic<bool> is_serving_ = false;
-  Acceptor acceptor_;
+  std::deque<Acceptor> acceptors_;
   LiveStreams live_;
   std::vector<std::unique_ptr<grpc::Service>> services_;
   UnknownMethods unknown_methods_;

@@ -73,6 +73,13 @@ CallContext call_context(const Context& context, std::chrono::milliseconds limit
                       left, cancelled);
 }
 
+Credentials credentials_of(const Context& context) {
+  // gRPC writes the kind of the socket in front of the client's own words. The acceptor has closed
+  // connections of other users to a Unix socket.
+  return {.is_owner = context.peer().starts_with("unix"),
+          .authorization = std::string(header(context, "authorization"))};
+}
+
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(CallDispatcher& dispatcher,
                                                           LiveStreams& live) {
   std::map<const google::protobuf::ServiceDescriptor*, std::unique_ptr<ContractService>> services;

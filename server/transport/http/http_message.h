@@ -14,7 +14,8 @@ struct HttpRequest {
   std::string target;                          ///< path and query, still percent-encoded
   std::map<std::string, std::string> headers;  ///< by name in lower case
   std::string body;
-  std::string peer;  ///< address of the client
+  std::string peer;       ///< address of the client
+  bool is_owner = false;  ///< it came over a Unix socket that only the owner of the server reaches
 
   /// Returns the value of a header, named in lower case, or "".
   std::string_view header(const std::string& name) const {

@@ -300,6 +300,7 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
     request_.verb = std::string(message.method_string());
     request_.target = std::string(message.target());
     request_.peer = peer;
+    request_.is_owner = all_.address().is_unix();
     for (const auto& field : message) {
       const auto [place, is_new] = request_.headers.emplace(
           lower_case({field.name_string().data(), field.name_string().size()}),
@@ -314,6 +315,11 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
     }
     const std::uint64_t length = head_->content_length().value_or(0);
     if (length == 0) return handle();
+    if (auto refused = all_.handler_.refuse_head(request_)) {
+      is_kept_ = false;
+      head_.reset();
+      return write(*std::move(refused));
+    }
     const std::size_t most = all_.handler_.maximum_body_bytes(request_);
     if (length > most) {
       return refuse(413, "the body has " + std::to_string(length) +

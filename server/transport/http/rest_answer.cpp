@@ -138,6 +138,12 @@ HttpResponse error_response(const google::rpc::Status& error, int status) {
     const std::int64_t seconds = retry->retry_delay().seconds();
     out.headers["Retry-After"] = std::to_string(seconds + (retry->retry_delay().nanos() > 0));
   }
+  if (error.code() == google::rpc::UNAUTHENTICATED) {
+    out.headers["WWW-Authenticate"] = "Bearer realm=\"tribodyn\"";
+  } else if (const auto info = detail_of<google::rpc::ErrorInfo>(error);
+             info && info->reason() == reason_text(v1::ERROR_REASON_SCOPE_TOO_SMALL)) {
+    out.headers["WWW-Authenticate"] = "Bearer realm=\"tribodyn\", error=\"insufficient_scope\"";
+  }
   // google.rpc.Status states the code of the call as "code"; AIP-193 puts the HTTP status there.
   google::rpc::Status details;
   *details.mutable_details() = error.details();

@@ -18,6 +18,12 @@
 
 namespace tribodyn::server {
 
+/// Returns what a request brings to show who makes it: its header and its connection.
+inline Credentials credentials_of(const HttpRequest& request) {
+  return {.is_owner = request.is_owner,
+          .authorization = std::string(request.header("authorization"))};
+}
+
 /// The request of a call over HTTP: `Call` is UnaryCall or StreamCall.
 template <class Call>
 class RestCall : public Call {
@@ -32,6 +38,7 @@ class RestCall : public Call {
                                   .request_id = request.header("tribodyn-request-id"),
                                   .peer = request.peer},
                                  limit, *cancelled_);
+    this->credentials = credentials_of(request);
   }
 
   std::size_t request_size() const override {

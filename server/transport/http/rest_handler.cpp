@@ -210,6 +210,14 @@ std::size_t RestHandler::maximum_body_bytes(const HttpRequest& head) const {
                   kJsonGrowth * maximum_request_bytes(*route->method->descriptor));
 }
 
+std::optional<HttpResponse> RestHandler::refuse_head(const HttpRequest& head) const {
+  const auto grant = dispatcher_.authorizer().authenticate(credentials_of(head), system_time());
+  if (grant.ok()) return std::nullopt;
+  HttpResponse out = error_response(grant.error());
+  out.headers.insert(security_headers().begin(), security_headers().end());
+  return out;
+}
+
 void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled,
                          Reply reply) {
   const auto answer = [reply = std::move(reply),
@@ -226,7 +234,12 @@ void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<
   if (auto foreign = foreign_origin(request)) return answer(*std::move(foreign));
   const std::string path(path_of(request));
   if (const auto page = pages_.find(path); page != pages_.end() && is_reading(request)) {
-    return answer(page->second());
+    if (!page->second.is_public) {
+      const auto refused =
+          dispatcher_.authorizer().refuse_overview(credentials_of(request), system_time());
+      if (refused) return answer(error_response(*refused));
+    }
+    return answer(page->second.answer());
   }
   const std::string verb = request.verb == "HEAD" ? "GET" : request.verb;
   auto route = routes_.find(verb, path);

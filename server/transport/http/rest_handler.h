@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "server/application/call_dispatcher.h"
@@ -26,8 +27,11 @@ struct RestLimits {
 /// may send. Safe for concurrent access.
 class RestHandler {
  public:
-  /// A page of the server's own, by its path: GET and HEAD. Called on the thread of handle().
-  using Page = std::function<HttpResponse()>;
+  /// A page of the server's own, by its path: GET and HEAD.
+  struct Page {
+    std::function<HttpResponse()> answer;  ///< called on the thread of handle()
+    bool is_public = false;                ///< else only for those who may read about all projects
+  };
 
   /// `dispatcher` must outlive the object. Throws std::logic_error as HttpRoutes does.
   explicit RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages = {},
@@ -38,6 +42,10 @@ class RestHandler {
 
   /// Returns the longest body of a request with this verb and target [bytes]; 0 if it takes none.
   std::size_t maximum_body_bytes(const HttpRequest& head) const;
+
+  /// Returns the answer to a request whose body is not worth reading: the caller shows no valid
+  /// token. Else nullopt.
+  std::optional<HttpResponse> refuse_head(const HttpRequest& head) const;
 
   /// Answers a request. `cancelled` is true once the client has gone.
   void handle(HttpRequest request, std::shared_ptr<const std::atomic<bool>> cancelled, Reply reply);

@@ -13,6 +13,22 @@ import tribodyn
 TREE = Path(os.environ["TRIBODYN_TREE"])
 
 
+# The token of every server of the tests: a server takes over the one beside its database.
+SECRET = "tribodyn_" + 64 * "7"
+
+
+def write_token(path):
+    path.touch(mode=0o600)
+    path.write_text(SECRET + "\n", "utf-8")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def token_file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("token") / "token"
+    write_token(path)
+    os.environ["TRIBODYN_TOKEN_FILE"] = str(path)
+
+
 class Server:
     """A tribodynd with a database of its own, which may be killed and started again."""
 
@@ -20,6 +36,7 @@ class Server:
         self.folder = Path(folder)
         self.options = options
         self.address = "127.0.0.1:0"
+        write_token(self.folder / "db.sqlite.token")
         self.start()
 
     def start(self):

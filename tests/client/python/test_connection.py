@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 
 import tribodyn
+from conftest import SECRET
 from tribodyn import aio
 from tribodyn.settings import read_settings
 from tribodyn.v1 import simulations_pb2 as pb
 
 FLUID = "paper-fluid-1"
+OWNER = (("authorization", f"Bearer {SECRET}"),)
 
 
 def list_simulations(server):
@@ -26,7 +28,7 @@ def list_simulations(server):
             pb.ListSimulationsRequest.SerializeToString,
             pb.ListSimulationsResponse.FromString,
         )
-        return list(call(pb.ListSimulationsRequest()).simulations)
+        return list(call(pb.ListSimulationsRequest(), metadata=OWNER).simulations)
 
 
 def wait_until(is_true):
@@ -154,7 +156,7 @@ def test_a_cancelled_job_is_an_error_with_that_reason(new_server):
             "/tribodyn.v1.SimulationService/CancelSimulation",
             pb.CancelSimulationRequest.SerializeToString,
             pb.Simulation.FromString,
-        )(pb.CancelSimulationRequest(name=list_simulations(server)[0].name))
+        )(pb.CancelSimulationRequest(name=list_simulations(server)[0].name), metadata=OWNER)
     with pytest.raises(AssertionError):
         running.result()
     assert isinstance(running.outcome, tribodyn.TribodynError)
@@ -229,3 +231,15 @@ def test_a_terminal_has_a_bar_and_a_program_without_one_is_silent(server):
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
     )
     assert silent.stderr == "" and silent.stdout == ""
+
+
+def test_a_token_of_nobody_and_a_missing_token_file_are_errors(server, tmp_path, monkeypatch):
+    token = tmp_path / "token"
+    token.write_text("tribodyn_unknown\n", "utf-8")
+    monkeypatch.setenv("TRIBODYN_TOKEN_FILE", str(token))
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        tribodyn.Client(server.address).point(FLUID, speed_kilometres_per_hour=60)
+    assert caught.value.reason == "UNAUTHENTICATED"
+    token.unlink()
+    with pytest.raises(tribodyn.TribodynError, match="cannot read the token file"):
+        tribodyn.Client(server.address)

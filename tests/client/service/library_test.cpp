@@ -277,7 +277,7 @@ TEST_F(Library, HelpNamesEveryColumnThatTheServerReads) {
 }
 
 TEST(LibraryAlone, AMissingServerIsAConnectionError) {
-  Connection nobody("127.0.0.1:9", std::chrono::seconds(2));
+  Connection nobody("127.0.0.1:9", std::chrono::seconds(2), kDefaultProject, {});
   try {
     nobody.list<v1::Vehicle>();
     FAIL() << "a call succeeded without a server";

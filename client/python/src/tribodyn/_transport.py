@@ -85,7 +85,11 @@ class Transport:
 
     def __init__(self, settings: Settings, client_name: str | None) -> None:
         self.settings = settings
-        self._metadata = (("tribodyn-client", client_name),) if client_name else ()
+        self._metadata: tuple[tuple[str, str], ...] = ()
+        if client_name:
+            self._metadata += (("tribodyn-client", client_name),)
+        if settings.token:
+            self._metadata += (("authorization", f"Bearer {settings.token}"),)
         self._channel: grpc.aio.Channel | None = None
         self._was_connected = False
 

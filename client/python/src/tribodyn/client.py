@@ -149,7 +149,9 @@ class Client:
     """A server and a project. Safe for concurrent use; the constructor sends nothing.
 
     ``server`` is "HOST:PORT" or "unix:PATH"; without it TRIBODYN_SERVER, then the configuration
-    file of the command line (~/.config/tribodyn/config), then 127.0.0.1:50651. ``project``,
+    file of the command line (~/.config/tribodyn/config), then the socket of the user's own
+    tribodynd, then 127.0.0.1:50651. TRIBODYN_TOKEN_FILE, or ``token-file`` in that file, names the
+    file with the token; the socket needs none. ``project``,
     ``timeout_seconds`` (of one call; 30) and ``progress`` ("auto": bars in notebooks and terminals,
     "lines" or "none") likewise. ``client_name`` separates programs of one user in the server's fair
     queue: a notebook with another name than a screening does not wait for it.

@@ -22,6 +22,7 @@ class Settings:
     project: str
     timeout_seconds: float  #: time limit of one call
     progress: str  #: "auto", "lines" or "none"
+    token: str  #: goes with every call; empty for a Unix socket of the same user's server
 
 
 def settings_path() -> Path | None:
@@ -41,6 +42,7 @@ def read_settings(
     project: str | None = None,
     timeout_seconds: float | None = None,
     progress: str | None = None,
+    token_file: str | None = None,
 ) -> Settings:
     """Returns the settings. An argument overrides the environment, which overrides the file."""
     file = _read_file()
@@ -62,11 +64,34 @@ def read_settings(
     if form not in PROGRESS_FORMS:
         raise TribodynError(f"progress = {form}; allowed: {', '.join(PROGRESS_FORMS)}")
     return Settings(
-        text(server, "server", DEFAULT_SERVER),
+        text(server, "server", _own_server()),
         text(project, "project", DEFAULT_PROJECT),
         seconds,
         form,
+        _read_token(text(token_file, "token-file", "")),
     )
+
+
+def _own_server() -> str:
+    """Returns the address at which tribodynd of this user listens by default."""
+    runtime, home = os.environ.get("XDG_RUNTIME_DIR"), os.environ.get("HOME")
+    socket = f"{runtime}/tribodyn/socket" if runtime else f"{home or ''}/.tribodyn/socket"
+    if (runtime or home) and Path(socket).is_socket():
+        return f"unix:{socket}"
+    return DEFAULT_SERVER
+
+
+def _read_token(path: str) -> str:
+    """Returns the first word of the file; empty if there is no path."""
+    if not path:
+        return ""
+    try:
+        words = Path(path).read_text("utf-8").split()
+    except OSError as error:
+        raise TribodynError(f"cannot read the token file {path}: {error.strerror}") from None
+    if not words:
+        raise TribodynError(f"the file {path} holds no token")
+    return words[0]
 
 
 def _read_file() -> dict[str, str]:

@@ -1,0 +1,190 @@
+#include "server/storage/token_table.h"
+
+#include <SQLiteCpp/Transaction.h>
+
+#include "server/storage/connections.h"
+#include "server/storage/database_check.h"
+#include "server/storage/schema.h"
+#include "server/storage/store_error.h"
+#include "server/storage/translate_error.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr char kValid[] = "revoke_time IS NULL AND (expire_time IS NULL OR expire_time > ?2)";
+
+Connection open_for_tokens(const std::filesystem::path& path) try {
+  return {path.string(), SQLite::OPEN_READWRITE, kBusyTimeoutMilliseconds};
+} catch (const SQLite::Exception& error) {
+  throw translate_error(error, path);
+}
+
+std::string joined(const std::vector<std::string>& projects) {
+  std::string out;
+  for (const std::string& each : projects) out += (out.empty() ? "" : ",") + each;
+  return out;
+}
+
+std::vector<std::string> split(const std::string& projects) {
+  std::vector<std::string> out;
+  for (std::size_t begin = 0; begin < projects.size();) {
+    const std::size_t end = std::min(projects.find(',', begin), projects.size());
+    out.push_back(projects.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::optional<Microseconds> time_in(const SQLite::Column& column) {
+  if (column.isNull()) return std::nullopt;
+  return column.getInt64();
+}
+
+void insert_token(Connection& db, const StoredToken& token) {
+  Prepared insert(db,
+                  "INSERT INTO tokens (hash, name, scope, projects, create_time, expire_time) "
+                  "VALUES (?, ?, ?, ?, ?, ?)");
+  insert.bind(1, token.hash);
+  insert.bind(2, token.name);
+  insert.bind(3, static_cast<int>(token.scope));
+  insert.bind(4, joined(token.projects));
+  insert.bind(5, token.create_time);
+  if (token.expire_time) insert.bind(6, *token.expire_time);
+  insert.exec();
+}
+
+bool has_valid_token(Connection& db, const std::string& name, Microseconds now) {
+  Prepared query(db, std::string("SELECT 1 FROM tokens WHERE name = ?1 AND ") + kValid);
+  query.bind(1, name);
+  query.bind(2, now);
+  return query.executeStep();
+}
+
+void count_change(Connection& db) { db.exec("UPDATE token_log SET change = change + 1"); }
+
+}  // namespace
+
+template <class Action>
+auto TokenTable::translated(const Action& action) {
+  try {
+    return action();
+  } catch (const SQLite::Exception& error) {
+    throw translate_error(error, path_);
+  }
+}
+
+TokenTable::TokenTable(const std::filesystem::path& database)
+    : path_(database), connection_(open_for_tokens(database)) {
+  translated([this] {
+    check_identity(connection_, path_);
+    const int version = connection_.execAndGet("PRAGMA user_version").getInt();
+    if (version < kSchemaVersion) {
+      throw StoreError(StoreError::Kind::kFailed,
+                       "database " + path_.string() + " has schema " + std::to_string(version) +
+                           ", used by an older tribodynd; stop that one first");
+    }
+    connection_.exec("PRAGMA synchronous = FULL");
+  });
+}
+
+std::vector<StoredToken> TokenTable::all() {
+  return translated([this] {
+    Prepared query(connection_,
+                   "SELECT name, hash, scope, projects, create_time, expire_time, revoke_time "
+                   "FROM tokens ORDER BY name, create_time, hash");
+    std::vector<StoredToken> out;
+    while (query.executeStep()) {
+      out.push_back({.name = query.getColumn(0).getString(),
+                     .hash = query.getColumn(1).getString(),
+                     .scope = static_cast<Scope>(query.getColumn(2).getInt()),
+                     .projects = split(query.getColumn(3).getString()),
+                     .create_time = query.getColumn(4).getInt64(),
+                     .expire_time = time_in(query.getColumn(5)),
+                     .revoke_time = time_in(query.getColumn(6))});
+    }
+    return out;
+  });
+}
+
+bool TokenTable::add(const StoredToken& token) {
+  return translated([&] {
+    SQLite::Transaction transaction(connection_, SQLite::TransactionBehavior::IMMEDIATE);
+    if (has_valid_token(connection_, token.name, token.create_time)) return false;
+    insert_token(connection_, token);
+    count_change(connection_);
+    transaction.commit();
+    return true;
+  });
+}
+
+bool TokenTable::replace(const StoredToken& token, Microseconds end) {
+  return translated([&] {
+    SQLite::Transaction transaction(connection_, SQLite::TransactionBehavior::IMMEDIATE);
+    if (!has_valid_token(connection_, token.name, token.create_time)) return false;
+    const bool at_once = end <= token.create_time;
+    Prepared change(connection_, std::string(at_once ? "UPDATE tokens SET revoke_time = ?2"
+                                                     : "UPDATE tokens SET expire_time = "
+                                                       "min(coalesce(expire_time, ?3), ?3)") +
+                                     " WHERE name = ?1 AND " + kValid);
+    change.bind(1, token.name);
+    change.bind(2, token.create_time);
+    if (!at_once) change.bind(3, end);
+    change.exec();
+    insert_token(connection_, token);
+    count_change(connection_);
+    transaction.commit();
+    return true;
+  });
+}
+
+int TokenTable::revoke(const std::string& name, Microseconds now) {
+  return translated([&] {
+    SQLite::Transaction transaction(connection_, SQLite::TransactionBehavior::IMMEDIATE);
+    Prepared change(connection_, std::string("UPDATE tokens SET revoke_time = ?2 WHERE name = ?1 "
+                                             "AND ") +
+                                     kValid);
+    change.bind(1, name);
+    change.bind(2, now);
+    const int count = change.exec();
+    count_change(connection_);
+    transaction.commit();
+    return count;
+  });
+}
+
+std::int64_t TokenTable::change() {
+  return translated([this] {
+    const auto single = [this](const char* sql) {
+      Prepared query(connection_, sql);
+      query.executeStep();
+      return query.getColumn(0).getInt64();
+    };
+    const std::int64_t version = single("PRAGMA data_version");
+    if (version != seen_version_) {
+      seen_change_ = single("SELECT change FROM token_log");
+      seen_version_ = version;
+    }
+    return seen_change_;
+  });
+}
+
+std::int64_t TokenTable::acknowledged_change() {
+  return translated(
+      [this] { return connection_.execAndGet("SELECT acknowledged FROM token_log").getInt64(); });
+}
+
+void TokenTable::acknowledge(std::int64_t change) {
+  translated([&] {
+    Prepared update(connection_, "UPDATE token_log SET acknowledged = ?");
+    update.bind(1, change);
+    update.exec();
+  });
+}
+
+std::string TokenTable::page_token_key() {
+  return translated([this] {
+    return connection_.execAndGet("SELECT page_token_key FROM token_log").getString();
+  });
+}
+
+}  // namespace tribodyn::server
