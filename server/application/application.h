@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <string>
 
 #include "server/application/authorizer.h"
 #include "server/execution/simulation_jobs.h"
@@ -16,6 +17,8 @@ struct Application {
   SimulationJobs& jobs;
   /// Shared, because a stream may outlive the object.
   std::shared_ptr<Authorizer> authorizer = std::make_shared<Authorizer>();
+  /// Of the page tokens of lists; the database keeps it.
+  std::string page_token_key = std::string(32, '\0');
   /// Number of histories that are being read. Shared, because a reader may outlive the object.
   std::shared_ptr<std::atomic<int>> open_histories = std::make_shared<std::atomic<int>>(0);
   /// Watches with a filter that are open; shared for the same reason.

@@ -1,6 +1,7 @@
 #include "server/application/page_token.h"
 
 #include <fmt/format.h>
+#include <openssl/crypto.h>
 
 #include <charconv>
 
@@ -9,7 +10,7 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr std::size_t kScopeDigits = 16;
+constexpr std::size_t kSealDigits = 32;  // half of an HMAC: forged by luck once in 2^128
 constexpr std::size_t kLongestToken = 20'000;
 
 std::string to_hex(const std::string& bytes) {
@@ -28,6 +29,18 @@ std::optional<std::string> from_hex(const std::string& hex) {
     out += static_cast<char>(byte);
   }
   return out;
+}
+
+/// Proves that a server with the key wrote the text for the scope.
+std::string seal(const std::string& key, const std::string& scope, const std::string& text) {
+  return hmac_sha256(key, fmt::format("{}\n{}{}", scope.size(), scope, text))
+      .substr(0, kSealDigits);
+}
+
+/// Compares in a time that says nothing of the place of the first difference.
+bool is_same(const std::string& first, const std::string& second) {
+  return first.size() == second.size() &&
+         CRYPTO_memcmp(first.data(), second.data(), first.size()) == 0;
 }
 
 /// Returns the value after a letter for its kind.
@@ -60,18 +73,19 @@ std::optional<PropertyValue> parse_value(const std::string& text) {
 
 }  // namespace
 
-std::string page_token(const std::string& scope, const PageToken& token) {
-  return sha256(scope).substr(0, kScopeDigits) +
-         to_hex(fmt::format("{} {} {}", token.total, token.last.name, text_of(token.last.value)));
+std::string page_token(const std::string& key, const std::string& scope, const PageToken& token) {
+  const std::string text =
+      fmt::format("{} {} {}", token.total, token.last.name, text_of(token.last.value));
+  return seal(key, scope, text) + to_hex(text);
 }
 
-std::optional<PageToken> parse_page_token(const std::string& scope, const std::string& token) {
-  if (token.size() < kScopeDigits ||
-      token.substr(0, kScopeDigits) != sha256(scope).substr(0, kScopeDigits)) {
+std::optional<PageToken> parse_page_token(const std::string& key, const std::string& scope,
+                                          const std::string& token) {
+  if (token.size() < kSealDigits) return std::nullopt;
+  const auto text = from_hex(token.substr(kSealDigits));
+  if (!text || !is_same(token.substr(0, kSealDigits), seal(key, scope, *text))) {
     return std::nullopt;
   }
-  const auto text = from_hex(token.substr(kScopeDigits));
-  if (!text) return std::nullopt;
   PageToken out;
   const char* const end_of_text = text->data() + text->size();
   const auto [end, error] = std::from_chars(text->data(), end_of_text, out.total);

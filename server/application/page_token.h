@@ -14,10 +14,12 @@ struct PageToken {
   std::int64_t total = 0;  ///< length of the whole list when its first page was read
 };
 
-/// Returns an opaque token. `scope` is the part of the request that must not change between pages.
-std::string page_token(const std::string& scope, const PageToken& token);
+/// Returns an opaque token, which nobody makes or changes without the key. `scope` is the part of
+/// the request that must not change between pages.
+std::string page_token(const std::string& key, const std::string& scope, const PageToken& token);
 
-/// Returns nullopt if page_token() did not make the token for this scope.
-std::optional<PageToken> parse_page_token(const std::string& scope, const std::string& token);
+/// Returns nullopt if page_token() did not make the token with this key for this scope.
+std::optional<PageToken> parse_page_token(const std::string& key, const std::string& scope,
+                                          const std::string& token);
 
 }  // namespace tribodyn::server

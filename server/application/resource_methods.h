@@ -275,7 +275,7 @@ Outcome<Response> list_resources(Application& application, const Request& reques
   std::int64_t total = 0;
   query.counts_all = request.page_token().empty();
   if (!query.counts_all) {
-    if (auto token = parse_page_token(scope, request.page_token())) {
+    if (auto token = parse_page_token(application.page_token_key, scope, request.page_token())) {
       query.after = std::move(token->last);
       total = token->total;
     } else {
@@ -295,8 +295,8 @@ Outcome<Response> list_resources(Application& application, const Request& reques
   response.set_total_size(clamped_total(total));
   if (page.more) {
     const StoredResource& last = page.rows.back();
-    response.set_next_page_token(
-        page_token(scope, {{order_value(last, order.key), last.name}, total}));
+    response.set_next_page_token(page_token(application.page_token_key, scope,
+                                            {{order_value(last, order.key), last.name}, total}));
   }
   return response;
 }
@@ -310,7 +310,7 @@ Outcome<Response> list_revisions(Application& application, const Request& reques
   const std::string scope = "revisions of " + name;
   std::optional<PageToken> after;
   if (!request.page_token().empty()) {
-    after = parse_page_token(scope, request.page_token());
+    after = parse_page_token(application.page_token_key, scope, request.page_token());
     if (!after || !std::holds_alternative<std::int64_t>(after->last.value)) {
       add_bad_page_token(violations);
     }
@@ -328,8 +328,8 @@ Outcome<Response> list_revisions(Application& application, const Request& reques
   }
   response.set_total_size(found.message().revision);  // numbered from 1 without gaps
   if (page.more) {
-    response.set_next_page_token(
-        page_token(scope, {{std::int64_t{page.rows.back().revision}, name}}));
+    response.set_next_page_token(page_token(application.page_token_key, scope,
+                                            {{std::int64_t{page.rows.back().revision}, name}}));
   }
   return response;
 }

@@ -339,7 +339,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   std::int64_t total = 0;
   query.counts_all = request.page_token().empty();
   if (!query.counts_all) {
-    const auto token = parse_page_token(scope, request.page_token());
+    const auto token = parse_page_token(application.page_token_key, scope, request.page_token());
     if (token) query.after = cursor(token->last);
     if (query.after) total = token->total;
     if (!query.after) add_bad_page_token(violations);
@@ -367,7 +367,8 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   if (page.more || is_cut) {
     const StoredSimulation& last = page.rows[response.simulations_size() - 1];
     response.set_next_page_token(
-        page_token(scope, {{last.create_time, relative_name(name_of(last))}, total}));
+        page_token(application.page_token_key, scope,
+                   {{last.create_time, relative_name(name_of(last))}, total}));
   }
   return response;
 }

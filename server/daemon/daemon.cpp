@@ -223,6 +223,7 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
   Application application{store, jobs};
   TokenTable tokens(settings.database);
   provide_owner_token(tokens, settings.database, system_time());
+  application.page_token_key = tokens.page_token_key();
   const TokenWatch token_watch(tokens, *application.authorizer);
   const std::size_t resumed = jobs.resume();  // before clients can submit
   if (resumed > 0) spdlog::info("{} unfinished simulations are queued again", resumed);

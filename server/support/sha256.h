@@ -29,4 +29,7 @@ class Sha256 {
 /// Returns the SHA-256 hash of `bytes` as 64 hexadecimal digits.
 std::string sha256(std::string_view bytes);
 
+/// Returns the HMAC with SHA-256 of `bytes` under a key as 64 hexadecimal digits (RFC 2104).
+std::string hmac_sha256(std::string_view key, std::string_view bytes);
+
 }  // namespace tribodyn::server

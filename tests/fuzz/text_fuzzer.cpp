@@ -58,16 +58,18 @@ void read_filter(std::string_view text) {
 }
 
 void read_page_token(std::string_view text) {
-  const std::string scope = "lubricants";
-  server::parse_page_token(scope, std::string(text));
-  // The token follows the hash of its scope, which is not secret.
-  const std::string hash = server::page_token(scope, {}).substr(0, 16);
-  const auto start = server::parse_page_token(scope, hash + std::string(text));
-  if (!start) return;
-  const std::string token = server::page_token(scope, *start);
-  const auto again = server::parse_page_token(scope, token);
-  require(again && server::page_token(scope, *again) == token);
-  require(!server::parse_page_token("vehicles", token));
+  const std::string key = "the server's own", scope = "lubricants";
+  require(!server::parse_page_token(key, scope, std::string(text)));  // nobody guesses a token
+  const std::string seal = server::page_token(key, scope, {}).substr(0, 32);
+  server::parse_page_token(key, scope, seal + std::string(text));
+  const server::PageToken start{.last = {std::string(text), "lubricants/x"},
+                                .total = static_cast<std::int64_t>(text.size())};
+  const std::string token = server::page_token(key, scope, start);
+  const auto again = server::parse_page_token(key, scope, token);
+  require(!again || server::page_token(key, scope, *again) == token);
+  require(again.has_value() || token.size() > 20'000);
+  require(!server::parse_page_token(key, "vehicles", token));
+  require(!server::parse_page_token("another key", scope, token));
 }
 
 void read_field_mask(std::string_view text) {

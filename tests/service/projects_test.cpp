@@ -244,6 +244,23 @@ TEST_F(ProjectsTest, AListHoldsItsProjectOnly) {
   EXPECT_EQ(lubricants("projects/acme", "kv100 > 1").size(), 4U) << "computed fields";
 }
 
+TEST_F(ProjectsTest, APageTokenIsWorthNothingUnderAnotherKeyOrChanged) {
+  v1::ListLubricantsRequest request;
+  request.set_page_size(1);
+  const std::string token = call<v1::ListLubricantsResponse>(request).message().next_page_token();
+  request.set_page_token(token);
+  EXPECT_TRUE(call<v1::ListLubricantsResponse>(request).ok());
+  for (std::size_t at : {std::size_t{0}, token.size() / 2, token.size() - 1}) {
+    std::string changed = token;
+    changed[at] = changed[at] == '0' ? '1' : '0';
+    request.set_page_token(changed);
+    EXPECT_FALSE(call<v1::ListLubricantsResponse>(request).ok()) << at;
+  }
+  request.set_page_token(token);
+  app_.page_token_key = std::string(32, 'k');
+  EXPECT_FALSE(call<v1::ListLubricantsResponse>(request).ok());
+}
+
 TEST_F(ProjectsTest, APageTokenIsOfOneProject) {
   v1::ListLubricantsRequest request;
   request.set_page_size(1);
