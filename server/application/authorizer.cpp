@@ -11,18 +11,27 @@ namespace {
 constexpr std::string_view kBearer = "Bearer ";
 constexpr std::size_t kLongestAuthorization = 200;  // [bytes]; a token of this server has 82
 
+/// What is hashed of a certificate begins so, and the secret of a token never does.
+const std::string kOfCertificate = "certificate:";
+
 /// Returns the secret in "Bearer SECRET"; nullopt for another form.
 std::optional<std::string_view> secret_of(std::string_view authorization) {
   if (authorization.size() <= kBearer.size() || authorization.size() > kLongestAuthorization ||
       strncasecmp(authorization.data(), kBearer.data(), kBearer.size()) != 0) {
     return std::nullopt;
   }
-  return authorization.substr(kBearer.size());
+  const std::string_view secret = authorization.substr(kBearer.size());
+  if (secret.starts_with(kOfCertificate)) return std::nullopt;
+  return secret;
 }
 
 }  // namespace
 
 std::string token_hash(std::string_view secret) { return sha256(secret); }
+
+std::string certificate_hash(std::string_view name) {
+  return sha256(kOfCertificate + std::string(name));
+}
 
 void Authorizer::set_tokens(const std::vector<StoredToken>& tokens, Microseconds now) {
   {
@@ -55,10 +64,16 @@ void Authorizer::set_tokens(const std::vector<StoredToken>& tokens, Microseconds
 Outcome<GrantPointer> Authorizer::authenticate(const Credentials& credentials,
                                                Microseconds now) const {
   if (credentials.is_owner) return owner_grant();
-  if (credentials.authorization.empty()) return unauthenticated("the call has no token");
-  const auto secret = secret_of(credentials.authorization);
-  if (!secret) return unauthenticated("the header authorization is not \"Bearer TOKEN\"");
-  const std::string hash = token_hash(*secret);
+  std::string hash;
+  if (!credentials.authorization.empty()) {
+    const auto secret = secret_of(credentials.authorization);
+    if (!secret) return unauthenticated("the header authorization is not \"Bearer TOKEN\"");
+    hash = token_hash(*secret);
+  } else if (!credentials.certificate.empty()) {
+    hash = certificate_hash(credentials.certificate);
+  } else {
+    return unauthenticated("the call has no token");
+  }
   const std::lock_guard lock(mutex_);
   const auto found = grants_.find(hash);
   if (found == grants_.end() || !found->second->is_valid(now)) return token_refused();

@@ -19,10 +19,14 @@ namespace tribodyn::server {
 struct Credentials {
   bool is_owner = false;  ///< the system says so: a Unix socket that only the owner reaches
   std::string authorization = {};  ///< "Bearer SECRET", as the client sent it; may be empty
+  std::string certificate = {};    ///< common name of a client's certificate that TLS verified
 };
 
 /// Returns what the database keeps of the secret of a token.
 std::string token_hash(std::string_view secret);
+
+/// Returns what the database keeps in place of a secret for those whose certificates have the name.
+std::string certificate_hash(std::string_view name);
 
 /// Decides who calls. Keeps all grants in memory and reads no row. Safe for concurrent access.
 class Authorizer {

@@ -196,8 +196,13 @@ std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& 
   std::map<std::string, RestHandler::Page> pages;
   pages["/metrics"] = {metrics_page(jobs)};
   pages["/healthz"] = {health_page(server), true};
-  auto out = std::make_unique<Rest>(dispatcher, std::move(pages),
-                                    parse_listen_address(settings.http_listen));
+  const ListenAddress address = parse_listen_address(settings.http_listen);
+  if (address.is_remote()) {
+    throw ListenError("refusing to listen on \"" + settings.http_listen +
+                      "\" for REST, which has no TLS of its own: use 127.0.0.1:PORT or unix:PATH, "
+                      "and a proxy such as nginx for other machines");
+  }
+  auto out = std::make_unique<Rest>(dispatcher, std::move(pages), address);
   spdlog::info("REST at http://{}", to_text(out->server.address()));
   return out;
 }
@@ -205,7 +210,11 @@ std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& 
 }  // namespace
 
 std::vector<ListenAddress> listen_addresses(const Settings& settings) {
-  return settings.listen.empty() ? default_addresses() : parse_listen_addresses(settings.listen);
+  std::vector<ListenAddress> out =
+      settings.listen.empty() ? default_addresses() : parse_listen_addresses(settings.listen);
+  for (const ListenAddress& each : out) require_tls(each, settings.tls);
+  if (settings.tls.is_set()) require_usable(settings.tls);
+  return out;
 }
 
 int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
@@ -230,7 +239,7 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
   CallDispatcher dispatcher(application, {to_milliseconds(settings.call_limit_seconds),
                                           to_milliseconds(settings.stream_limit_seconds),
                                           to_milliseconds(settings.unread_limit_seconds)});
-  GrpcServer server(dispatcher, addresses);
+  GrpcServer server(dispatcher, addresses, settings.tls);
   const std::unique_ptr<Rest> rest = listen_for_http(settings, dispatcher, jobs, server);
   const std::string wrong = jobs.start();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);

@@ -83,6 +83,9 @@ void add_token_commands(CLI::App& app, Settings& settings) {
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->check(project_id());
+  create->add_flag(
+      "--certificate", token.of_certificate,
+      "For the client whose TLS certificate has the common name NAME; prints no token");
   add_expiry(create);
   add("list", "Print all tokens, also expired and revoked ones, without their secrets");
   add_name(add("revoke", "Refuse every token of NAME from now on, and end its streams"));
@@ -146,10 +149,21 @@ void add_flags(CLI::App& app, Settings& settings) {
       "--check", settings.check_only,
       "Check settings, database and a computed case, then exit: 0 if the server would start");
   app.add_option("--listen", settings.listen,
-                 "Addresses with commas between them, each a loopback address and port (0: any "
-                 "free one) or unix:PATH. Only the owner's processes reach a Unix socket, and they "
+                 "Addresses with commas between them, each a numeric address and port (0: any "
+                 "free one) or unix:PATH. Addresses beyond loopback need TLS. Only the owner's "
+                 "processes reach a Unix socket, and they "
                  "need no token. Default: the socket at which tribodyn looks first, and "
                  "127.0.0.1:50651");
+  app.add_option("--tls-certificate", settings.tls.certificate,
+                 "PEM file with the certificate of the server and those that sign it, for "
+                 "addresses beyond loopback; read again when it changes. "
+                 "deploy/make-certificates makes one");
+  app.add_option("--tls-key", settings.tls.key, "PEM file with the private key of the certificate");
+  app.add_option(
+      "--tls-client-authorities", settings.tls.client_authorities,
+      "PEM file with the certificates that sign those of clients; then every client "
+      "beyond loopback needs one. `tribodynd tokens create NAME --certificate` says what "
+      "the client whose certificate has the common name NAME may do");
   app.add_option("--database", settings.database,
                  "SQLite file; created if missing. Use a local disk");
   app.add_option("--projects", settings.projects,
@@ -257,6 +271,11 @@ std::optional<Settings> read_settings(const std::vector<std::string>& arguments,
     if (settings.database.empty()) throw CLI::RequiredError("--database");
   } catch (const CLI::ParseError& error) {
     *exit_code = app.exit(error) == 0 ? kExitStopped : kExitBadSettings;
+    return std::nullopt;
+  }
+  if (settings.tls.certificate.empty() != settings.tls.key.empty()) {
+    fmt::print(stderr, "tribodynd: --tls-certificate and --tls-key need each other\n");
+    *exit_code = kExitBadSettings;
     return std::nullopt;
   }
   if (settings.token.action == "create" && settings.token.name == kOwner) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/storage/stored_token.h"
+#include "server/transport/tls_files.h"
 
 namespace tribodyn::server {
 
@@ -23,6 +24,7 @@ struct TokenSettings {
   Scope scope = Scope::kWrite;
   std::vector<std::string> projects;  ///< empty: all
   double expire_days = 90;            ///< 0: never
+  bool of_certificate = false;        ///< for those whose certificates have the name; no secret
   double overlap_hours = 0;           ///< that the replaced token stays valid
 };
 
@@ -35,6 +37,7 @@ struct Settings {
   TokenSettings token;  ///< of "tokens"
   bool check_only = false;
   std::string listen;  ///< addresses, with commas between them; empty: default_addresses()
+  TlsFiles tls;
   std::string database;
   int threads = 0;
   std::vector<std::string> projects;  ///< beside `default`

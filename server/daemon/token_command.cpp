@@ -83,11 +83,12 @@ void list_tokens(TokenTable& tokens, Microseconds now) {
 }
 
 StoredToken token_of(const TokenSettings& settings, const std::string& secret, Microseconds now) {
-  StoredToken out{.name = settings.name,
-                  .hash = token_hash(secret),
-                  .scope = settings.scope,
-                  .projects = settings.projects,
-                  .create_time = now};
+  StoredToken out{
+      .name = settings.name,
+      .hash = settings.of_certificate ? certificate_hash(settings.name) : token_hash(secret),
+      .scope = settings.scope,
+      .projects = settings.projects,
+      .create_time = now};
   if (settings.expire_days > 0) {
     out.expire_time =
         now + static_cast<Microseconds>(24 * kMicrosecondsPerHour * settings.expire_days);
@@ -120,12 +121,22 @@ int change_tokens(const Settings& settings) {
   if (asked.action == "revoke") {
     if (tokens.revoke(asked.name, now) == 0) return refuse(asked.name + " has no valid token");
   } else if (asked.action == "create") {
+    for (const StoredToken& each : tokens.all()) {
+      if (asked.of_certificate && each.hash == certificate_hash(asked.name)) {
+        return refuse(asked.name +
+                      " was granted to a certificate before, which would be valid again; make the "
+                      "new certificate under another name");
+      }
+    }
     if (!tokens.add(token_of(asked, secret, now))) {
       return refuse(asked.name + " has a valid token; rotate or revoke it, or use another name");
     }
   } else {
     const auto present = valid_token(tokens, asked.name, now);
     if (!present) return refuse(asked.name + " has no valid token");
+    if (present->hash == certificate_hash(asked.name)) {
+      return refuse(asked.name + " uses a certificate; give out a new certificate instead");
+    }
     StoredToken next = token_of(asked, secret, now);
     next.scope = present->scope;
     next.projects = present->projects;
@@ -137,7 +148,8 @@ int change_tokens(const Settings& settings) {
                    now + static_cast<Microseconds>(kMicrosecondsPerHour * asked.overlap_hours));
   }
   const int out = is_served ? wait_for_server(tokens) : kExitStopped;
-  if (asked.action != "revoke" && asked.name != kOwner) fmt::print("{}\n", secret);
+  const bool has_secret = asked.action != "revoke" && asked.name != kOwner && !asked.of_certificate;
+  if (has_secret) fmt::print("{}\n", secret);
   return out;
 }
 

@@ -17,17 +17,25 @@ namespace tribodyn::server {
 namespace {
 
 constexpr int kDefaultPort = 50651;
-constexpr char kForms[] = "use 127.0.0.1:PORT, [::1]:PORT or unix:PATH";
+constexpr char kForms[] =
+    "use 127.0.0.1:PORT, [::1]:PORT or unix:PATH, or with TLS 0.0.0.0:PORT or another address of "
+    "this machine";
+
+/// Returns the bytes of a numeric address; empty if the text is none.
+std::string bytes_of(const std::string& host) {
+  std::string out(sizeof(in6_addr), '\0');
+  if (inet_pton(AF_INET, host.c_str(), out.data()) == 1) return out.substr(0, sizeof(in_addr));
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']' &&
+      inet_pton(AF_INET6, host.substr(1, host.size() - 2).c_str(), out.data()) == 1) {
+    return out;
+  }
+  return {};
+}
 
 bool is_loopback(const std::string& host) {
-  in_addr v4{};
-  if (inet_pton(AF_INET, host.c_str(), &v4) == 1) return (ntohl(v4.s_addr) >> 24) == 127;
-  in6_addr v6{};
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']' &&
-      inet_pton(AF_INET6, host.substr(1, host.size() - 2).c_str(), &v6) == 1) {
-    return IN6_IS_ADDR_LOOPBACK(&v6) != 0;
-  }
-  return false;
+  const std::string bytes = bytes_of(host);
+  if (bytes.size() == sizeof(in_addr)) return bytes.front() == 127;
+  return bytes == std::string(sizeof(in6_addr) - 1, '\0') + '\1';
 }
 
 /// Makes a folder for the owner only. Throws ListenError if it cannot be made, or belongs to
@@ -71,15 +79,14 @@ ListenAddress parse_listen_address(const std::string& text) {
     throw ListenError("\"" + text + "\" does not end in a port from 0 to 65535; " + kForms);
   }
   if (out.host == "localhost") out.host = "127.0.0.1";
-  if (!is_loopback(out.host)) {
-    throw ListenError(
-        "refusing to listen on \"" + text +
-        "\": tribodynd has no TLS yet, and beyond this machine a token must not travel "
-        "without it; " +
-        kForms);
+  if (bytes_of(out.host).empty()) {
+    throw ListenError("refusing to listen on \"" + text +
+                      "\": the host is not a numeric address; " + kForms);
   }
   return out;
 }
+
+bool ListenAddress::is_remote() const { return !is_unix() && !is_loopback(host); }
 
 std::vector<ListenAddress> parse_listen_addresses(const std::string& text) {
   std::vector<ListenAddress> out;

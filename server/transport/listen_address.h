@@ -12,16 +12,18 @@ class ListenError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Address of a server: a loopback address with a port, or a Unix socket.
+/// Address of a server: a numeric address with a port, or a Unix socket.
 struct ListenAddress {
   std::string host;         ///< "127.0.0.1", "[::1]"; empty for a Unix socket
   int port = 0;             ///< 0: the system picks one
   std::string socket_path;  ///< empty for TCP
   bool is_unix() const { return !socket_path.empty(); }
+  /// True for addresses that other machines may reach: there TLS is required.
+  bool is_remote() const;
 };
 
-/// Parses "127.0.0.1:50651", "[::1]:0", "localhost:50651" or "unix:/run/tribodyn.sock". Throws
-/// ListenError for other forms, and for addresses that are not loopback, as there is no TLS yet.
+/// Parses "127.0.0.1:50651", "[::1]:0", "localhost:50651", "0.0.0.0:50651" or
+/// "unix:/run/tribodyn.sock". Throws ListenError for other forms.
 ListenAddress parse_listen_address(const std::string& text);
 
 /// Parses addresses with commas between them. Throws ListenError as parse_listen_address() does,

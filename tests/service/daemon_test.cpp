@@ -461,7 +461,7 @@ int run_briefly(const std::vector<std::string>& arguments, std::string* log) {
   return code;
 }
 
-TEST(Flags, AddressesOtherThanLoopbackAreRefused) {
+TEST(Flags, AddressesOtherThanLoopbackAreRefusedWithoutTls) {
   const TemporaryFolder folder;
   for (const char* address : {"0.0.0.0:50651", "192.168.1.5:50651", "[::]:50651", "example.com:80",
                               "10.0.0.1:0", "*:50651"}) {

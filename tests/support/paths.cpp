@@ -12,6 +12,8 @@ std::string seeded_bugs_folder() { return SEEDED_BUGS_FOLDER; }
 
 std::string request_corpus_folder() { return REQUEST_CORPUS_FOLDER; }
 
+std::string make_certificates_program() { return MAKE_CERTIFICATES_PATH; }
+
 std::string empty_server_program() { return EMPTY_SERVER_PATH; }
 
 }  // namespace tribodyn

@@ -21,6 +21,8 @@ std::string seeded_bugs_folder();
 /// in protobuf's text format.
 std::string request_corpus_folder();
 
+std::string make_certificates_program();
+
 /// Returns the path of a server whose answers are empty, the baseline of benchmarks.
 std::string empty_server_program();
 

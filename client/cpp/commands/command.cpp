@@ -13,8 +13,7 @@ ProgressForm CommonOptions::progress_form() const {
 }
 
 Connection CommonOptions::connect(std::chrono::duration<double> timeout) const try {
-  return Connection(server_address(server), timeout, project,
-                    tribodyn::client::token_file(token_file));
+  return Connection(server_address(server), timeout, project, access_files(access));
 } catch (const std::invalid_argument& error) {
   throw Failure(kExitUsage, error.what());
 }
@@ -33,7 +32,16 @@ void add_common_flags(FlagList& flags, CommonOptions& options) {
   flags.text("--token-file", "FILE",
              "File whose first line is the token for the server; a Unix socket of your own "
              "tribodynd needs none. Default: TRIBODYN_TOKEN_FILE.",
-             [&](const std::string& text) { options.token_file = text; });
+             [&](const std::string& text) { options.access.token = text; });
+  flags.text("--ca-file", "FILE",
+             "PEM file with the certificates of those who sign the server's, for TLS. Default: "
+             "TRIBODYN_CA_FILE, else those of the system.",
+             [&](const std::string& text) { options.access.authorities = text; });
+  flags.text("--certificate-file", "FILE",
+             "PEM file with your certificate, for a server that requires one.",
+             [&](const std::string& text) { options.access.certificate = text; });
+  flags.text("--key-file", "FILE", "PEM file with the private key of your certificate.",
+             [&](const std::string& text) { options.access.key = text; });
   flags.number("--timeout-seconds", {"s", "above 0 to 86400", "30"},
                "Time limit of one call; it does not limit the run time of a simulation",
                [&](double value) { options.timeout_seconds = value; });

@@ -23,7 +23,7 @@ enum class ProgressChoice { kAuto, kLines, kNone };
 struct CommonOptions {
   std::string server;
   std::string project = kDefaultProject;
-  std::string token_file;
+  AccessFiles access;
   double timeout_seconds = 30;
   OutputFormat output_format = OutputFormat::kTable;
   ColourChoice colour = ColourChoice::kAuto;
@@ -33,7 +33,7 @@ struct CommonOptions {
   ProgressForm progress_form() const;
 
   Connection connect() const { return connect(std::chrono::duration<double>(timeout_seconds)); }
-  /// Throws Failure if the token cannot be read.
+  /// Throws Failure if a file of `access` cannot be read.
   Connection connect(std::chrono::duration<double> timeout) const;
 };
 

@@ -109,12 +109,14 @@ false), create_time, end_time, input_hash and labels.
 A flag overrides the environment, the environment overrides the file.
   file:         $XDG_CONFIG_HOME/tribodyn/config, else ~/.config/tribodyn/config;
                 TRIBODYN_CONFIG names another file
-  environment:  TRIBODYN_SERVER, TRIBODYN_PROJECT, TRIBODYN_TOKEN_FILE, TRIBODYN_TIMEOUT_SECONDS,
+  environment:  TRIBODYN_SERVER, TRIBODYN_PROJECT, TRIBODYN_TOKEN_FILE, TRIBODYN_CA_FILE,
+                TRIBODYN_CERTIFICATE_FILE, TRIBODYN_KEY_FILE, TRIBODYN_TIMEOUT_SECONDS,
                 TRIBODYN_OUTPUT, TRIBODYN_PROGRESS, TRIBODYN_COLOR; NO_COLOR turns colours off
 
 The file sets flags that every command has, one per line, without their dashes:
   # the plant's server
-  server = 127.0.0.1:50651
+  server = tribodyn.example.com:50651
+  ca-file = /home/anna/.config/tribodyn/ca.pem
   project = default
   token-file = /home/anna/.config/tribodyn/token
   timeout-seconds = 60
@@ -129,6 +131,8 @@ The file sets flags that every command has, one per line, without their dashes:
                        127.0.0.1:50651); unix:PATH for a Unix socket
   --project NAME       project of the resources and jobs (default)
   --token-file FILE    file with the token for the server
+  --ca-file FILE       who signs the server's certificate (TLS, for addresses beyond loopback)
+  --certificate-file, --key-file FILE  your own, for a server that requires one
   --timeout-seconds S  time limit of one call (30)
   --output, -o FORM    table for people, csv and json for programs
   --progress FORM      auto (bars, only on a terminal), lines (for a log) or none

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -25,12 +26,46 @@ std::string own_socket() {
   return home.empty() ? "" : home + "/.tribodyn/socket";
 }
 
-/// Returns the first word of a file. Throws std::invalid_argument.
-std::string read_token(const std::string& path) {
+/// Throws std::invalid_argument.
+std::string read_file(const std::string& path, const char* what) {
+  std::stringstream out;
   std::ifstream file(path);
+  if (!file || !(out << file.rdbuf())) {
+    throw std::invalid_argument(std::string("no ") + what + " can be read from the file " + path);
+  }
+  return out.str();
+}
+
+/// The first word of a file.
+std::string read_token(const std::string& path) {
+  std::istringstream text(read_file(path, "token"));
   std::string out;
-  if (!(file >> out)) throw std::invalid_argument("no token can be read from the file " + path);
+  if (!(text >> out)) throw std::invalid_argument("the file " + path + " holds no token");
   return out;
+}
+
+/// True if nothing that is sent to the address leaves this machine.
+bool is_local(const std::string& address) {
+  return address.starts_with("unix:") || address.starts_with("127.") ||
+         address.starts_with("[::1]") || address.starts_with("localhost:") ||
+         address == "localhost";
+}
+
+std::shared_ptr<grpc::ChannelCredentials> channel_credentials(const std::string& address,
+                                                              const AccessFiles& access) {
+  if (access.authorities.empty() && is_local(address)) return grpc::InsecureChannelCredentials();
+  grpc::SslCredentialsOptions options;
+  if (!access.authorities.empty()) {
+    options.pem_root_certs = read_file(access.authorities, "certificates");
+  }
+  if (access.certificate.empty() != access.key.empty()) {
+    throw std::invalid_argument("a certificate of the client and its key need each other");
+  }
+  if (!access.certificate.empty()) {
+    options.pem_cert_chain = read_file(access.certificate, "certificate");
+    options.pem_private_key = read_file(access.key, "key");
+  }
+  return grpc::SslCredentials(options);
 }
 
 }  // namespace
@@ -44,8 +79,15 @@ std::string server_address(const std::string& address) {
   return kDefaultServer;
 }
 
-std::string token_file(const std::string& path) {
-  return path.empty() ? environment(kTokenFileVariable) : path;
+AccessFiles access_files(AccessFiles files) {
+  const auto complete = [](std::string& path, const char* variable) {
+    if (path.empty()) path = environment(variable);
+  };
+  complete(files.token, "TRIBODYN_TOKEN_FILE");
+  complete(files.authorities, "TRIBODYN_CA_FILE");
+  complete(files.certificate, "TRIBODYN_CERTIFICATE_FILE");
+  complete(files.key, "TRIBODYN_KEY_FILE");
+  return files;
 }
 
 void Connection::Services::prepare(grpc::ClientContext& context) const {
@@ -53,7 +95,7 @@ void Connection::Services::prepare(grpc::ClientContext& context) const {
 }
 
 Connection::Connection(std::string address, std::chrono::duration<double> timeout,
-                       std::string project, const std::string& token)
+                       std::string project, const AccessFiles& access)
     : services_(std::make_unique<Services>()) {
   grpc::ChannelArguments arguments;
   // With BDP probes, gRPC would buffer megabytes of a watch stream that is not read.
@@ -66,9 +108,9 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   services_->address = std::move(address);
   services_->timeout = timeout;
   services_->project = std::move(project);
-  if (!token.empty()) services_->token = read_token(token);
-  services_->channel =
-      grpc::CreateCustomChannel(services_->address, grpc::InsecureChannelCredentials(), arguments);
+  if (!access.token.empty()) services_->token = read_token(access.token);
+  services_->channel = grpc::CreateCustomChannel(
+      services_->address, channel_credentials(services_->address, access), arguments);
   services_->lubricants = v1::LubricantService::NewStub(services_->channel);
   services_->gear_sets = v1::GearSetService::NewStub(services_->channel);
   services_->surfaces = v1::SurfaceService::NewStub(services_->channel);

@@ -3,9 +3,14 @@
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/resource_quota.h>
+#include <grpcpp/security/server_credentials.h>
+#include <grpcpp/security/tls_certificate_provider.h>
+#include <grpcpp/security/tls_credentials_options.h>
 #include <grpcpp/server_builder.h>
 
 #include <chrono>
+#include <memory>
+#include <utility>
 
 #include "server/transport/grpc/protobuf_log.h"
 
@@ -25,21 +30,54 @@ constexpr int kIdleMilliseconds = 600'000;      // then a connection without cal
 /// Age at which a connection accepts no further calls; clients connect again by themselves. It is
 /// closed when its streams must have ended, so that an unfinished request is not kept for ever.
 constexpr int kConnectionAgeMilliseconds = 3'600'000;
+constexpr unsigned kReloadSeconds = 2;  // interval of looks at the TLS files
 constexpr auto kShutdownGrace = std::chrono::seconds(1);
+
+/// Credentials of TLS 1.2 and later, with files that are read again when they change. gRPC goes on
+/// with the former ones while the new key is not that of the new certificate.
+std::shared_ptr<grpc::ServerCredentials> tls_credentials(const TlsFiles& files) {
+  using grpc::experimental::FileWatcherCertificateProvider;
+  require_usable(files);
+  const auto provider = std::make_shared<FileWatcherCertificateProvider>(
+      files.key, files.certificate, files.client_authorities, kReloadSeconds);
+  grpc::experimental::TlsServerCredentialsOptions options(provider);
+  options.watch_identity_key_cert_pairs();
+  if (!files.client_authorities.empty()) {
+    options.watch_root_certs();
+    options.set_cert_request_type(GRPC_SSL_REQUEST_AND_REQUIRE_CLIENT_CERTIFICATE_AND_VERIFY);
+  }
+  return grpc::experimental::TlsServerCredentials(options);
+}
 
 }  // namespace
 
-GrpcServer::GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddress>& addresses)
+void require_tls(const ListenAddress& address, const TlsFiles& tls) {
+  if (!address.is_remote() || tls.is_set()) return;
+  throw ListenError("refusing to listen on \"" + to_text(address) +
+                    "\" without TLS, as other machines may reach it: set --tls-certificate and "
+                    "--tls-key (deploy/make-certificates makes them), or use 127.0.0.1:PORT, "
+                    "[::1]:PORT or unix:PATH");
+}
+
+GrpcServer::GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddress>& addresses,
+                       const TlsFiles& tls)
     : live_(kMaximumOpenStreams), services_(grpc_services(dispatcher, live_)) {
-  for (const ListenAddress& each : addresses) acceptors_.emplace_back(each);
+  for (const ListenAddress& each : addresses) {
+    require_tls(each, tls);
+    acceptors_.emplace_back(each);
+  }
   log_protobuf_reports();
   grpc::EnableDefaultHealthCheckService(true);
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   grpc::ServerBuilder builder;
-  std::shared_ptr<ExternalConnections> connections =
-      builder.experimental().AddExternalConnectionAcceptor(
-          grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
-          grpc::InsecureServerCredentials());
+  const auto add_connections = [&builder](std::shared_ptr<grpc::ServerCredentials> credentials) {
+    return std::shared_ptr<ExternalConnections>(
+        builder.experimental().AddExternalConnectionAcceptor(
+            grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD,
+            std::move(credentials)));
+  };
+  const auto local = add_connections(grpc::InsecureServerCredentials());
+  const auto remote = tls.is_set() ? add_connections(tls_credentials(tls)) : local;
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMaximumStreamsPerConnection);
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMilliseconds);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleMilliseconds);
@@ -60,12 +98,13 @@ GrpcServer::GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddre
   if (!server_) throw ListenError("gRPC cannot start");
   set_serving(false);
   for (Acceptor& each : acceptors_) {
-    each.start([connections](int listener, int connection) {
-      ExternalConnections::NewConnectionParameters accepted;
-      accepted.listener_fd = listener;
-      accepted.fd = connection;
-      connections->HandleNewConnection(&accepted);
-    });
+    each.start(
+        [connections = each.address().is_remote() ? remote : local](int listener, int connection) {
+          ExternalConnections::NewConnectionParameters accepted;
+          accepted.listener_fd = listener;
+          accepted.fd = connection;
+          connections->HandleNewConnection(&accepted);
+        });
   }
 }
 

@@ -14,15 +14,22 @@
 #include "server/transport/grpc/unknown_methods.h"
 #include "server/transport/listen_address.h"
 #include "server/transport/live_streams.h"
+#include "server/transport/tls_files.h"
 
 namespace tribodyn::server {
+
+/// Throws ListenError, which says what to do, if other machines may reach the address and there is
+/// no TLS.
+void require_tls(const ListenAddress& address, const TlsFiles& tls);
 
 /// The gRPC server, with health checks and reflection. The constructor starts it. The same thread
 /// must call shutdown() and the destructor.
 class GrpcServer {
  public:
-  /// Listens at all addresses. `dispatcher` must outlive the object. Throws ListenError.
-  GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddress>& addresses);
+  /// Listens at all addresses, with TLS at those that other machines reach. `dispatcher` must
+  /// outlive the object. Throws ListenError, also if such an address comes without `tls`.
+  GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddress>& addresses,
+             const TlsFiles& tls = {});
   ~GrpcServer();
   GrpcServer(const GrpcServer&) = delete;
   GrpcServer& operator=(const GrpcServer&) = delete;

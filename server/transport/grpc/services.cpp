@@ -1,5 +1,6 @@
 #include "server/transport/grpc/services.h"
 
+#include <grpc/grpc_security_constants.h>
 #include <grpcpp/impl/codegen/proto_utils.h>
 
 #include <algorithm>
@@ -73,11 +74,20 @@ CallContext call_context(const Context& context, std::chrono::milliseconds limit
                       left, cancelled);
 }
 
+/// Returns the common name of the client's certificate if TLS has verified it; else "".
+std::string certificate_name(const Context& context) {
+  const auto connection = context.auth_context();
+  if (!connection || !connection->IsPeerAuthenticated()) return {};
+  const auto names = connection->FindPropertyValues(GRPC_X509_CN_PROPERTY_NAME);
+  return names.size() == 1 ? std::string(names.front().data(), names.front().size()) : "";
+}
+
 Credentials credentials_of(const Context& context) {
   // gRPC writes the kind of the socket in front of the client's own words. The acceptor has closed
   // connections of other users to a Unix socket.
   return {.is_owner = context.peer().starts_with("unix"),
-          .authorization = std::string(header(context, "authorization"))};
+          .authorization = std::string(header(context, "authorization")),
+          .certificate = certificate_name(context)};
 }
 
 std::vector<std::unique_ptr<grpc::Service>> grpc_services(CallDispatcher& dispatcher,

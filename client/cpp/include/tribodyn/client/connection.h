@@ -25,16 +25,22 @@ inline constexpr char kDefaultServer[] = "127.0.0.1:50651";
 inline constexpr char kDefaultProject[] = "default";
 inline constexpr char kServerVariable[] = "TRIBODYN_SERVER";
 
-inline constexpr char kTokenFileVariable[] = "TRIBODYN_TOKEN_FILE";
-
 /// Returns the address of the server: `address` unless it is empty, else the environment variable
 /// TRIBODYN_SERVER, else the Unix socket of the user's own server if there is one, else
 /// 127.0.0.1:50651. "unix:PATH" is a Unix socket.
 std::string server_address(const std::string& address = "");
 
-/// Returns the path of the file with the token: `path` unless it is empty, else the environment
-/// variable TRIBODYN_TOKEN_FILE; empty if there is none.
-std::string token_file(const std::string& path = "");
+/// Files that show the server who calls, and say which servers to trust.
+struct AccessFiles {
+  std::string token = {};        ///< its first word goes with every call; empty: none
+  std::string authorities = {};  ///< PEM: who signs servers' certificates; empty: the system's list
+  std::string certificate = {};  ///< PEM: of the client, for servers that require one
+  std::string key = {};          ///< PEM: private key of the certificate
+};
+
+/// Returns `files` with those of the environment in place of the empty ones: TRIBODYN_TOKEN_FILE,
+/// TRIBODYN_CA_FILE, TRIBODYN_CERTIFICATE_FILE, TRIBODYN_KEY_FILE.
+AccessFiles access_files(AccessFiles files = {});
 
 /// Which resources to list, and in which order.
 struct ListOptions {
@@ -129,13 +135,13 @@ struct HistoryRows {
 class Connection {
  public:
   /// `timeout` limits every call except watch(), wait_for_end() and the reading of histories.
-  /// The first line of the file `token` goes with every call; none if `token` is empty. A Unix
-  /// socket of the same user needs no token. Throws std::invalid_argument if the file cannot be
-  /// read.
+  /// A Unix socket needs no token. The connection uses TLS unless the address is loopback or a Unix
+  /// socket, and always if `access.authorities` is set. Throws std::invalid_argument if a file
+  /// cannot be read.
   explicit Connection(std::string address,
                       std::chrono::duration<double> timeout = std::chrono::seconds(30),
                       std::string project = kDefaultProject,
-                      const std::string& token = token_file());
+                      const AccessFiles& access = access_files());
   ~Connection();
   Connection(Connection&& other) noexcept;
   Connection& operator=(Connection&& other) noexcept;
