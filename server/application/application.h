@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "server/application/audit_log.h"
 #include "server/application/authorizer.h"
 #include "server/execution/simulation_jobs.h"
 #include "server/simulation/prepared_gear_sets.h"
@@ -17,6 +18,7 @@ struct Application {
   SimulationJobs& jobs;
   /// Shared, because a stream may outlive the object.
   std::shared_ptr<Authorizer> authorizer = std::make_shared<Authorizer>();
+  AuditLog audit = AuditLog({});
   /// Of the page tokens of lists; the database keeps it.
   std::string page_token_key = std::string(32, '\0');
   /// Number of histories that are being read. Shared, because a reader may outlive the object.

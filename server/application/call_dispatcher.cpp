@@ -6,6 +6,7 @@
 #include <exception>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "google/rpc/code.pb.h"
@@ -136,7 +137,9 @@ std::optional<google::rpc::Status> CallDispatcher::authorize(IncomingCall& call)
   }
   call.context.grant = std::move(grant.message());
   if (call.context.grant->scope < call.method.scope) {
-    return scope_too_small(text_of(call.method.scope));
+    auto refused = scope_too_small(text_of(call.method.scope));
+    application_.audit.record(call.context, call.method.descriptor->name(), refused, "");
+    return refused;
   }
   return std::nullopt;
 }
@@ -144,6 +147,8 @@ std::optional<google::rpc::Status> CallDispatcher::authorize(IncomingCall& call)
 template <class Answer>
 Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
                                            const Method::UseCase<Answer>& use_case) {
+  std::string names;
+  bool changes = call.method.scope > Scope::kRead;
   Outcome<Answer> out = guarded<Answer>([&]() -> Outcome<Answer> {
     const CallLimits& limits = call.context.limits;
     if (limits.are_over()) return call_over(limits);
@@ -153,9 +158,19 @@ Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
     if (auto refused = enter_project(application_, *request, call.context)) {
       return *std::move(refused);
     }
+    changes = changes && !validates_only(*request);
+    if (changes) names = audited_names(*request);
     return use_case(application_, *request, call.context);
   });
   call.drop_request();
+  if constexpr (std::is_same_v<Answer, Reply>) {
+    // A new simulation has its name from the server.
+    if (changes && names.empty() && out.ok()) names = audited_names(*out.message());
+  }
+  const google::rpc::Status status = out.ok() ? google::rpc::Status() : out.error();
+  if (changes || status.code() == google::rpc::PERMISSION_DENIED) {
+    application_.audit.record(call.context, call.method.descriptor->name(), status, names);
+  }
   return out;
 }
 

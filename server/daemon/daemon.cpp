@@ -229,7 +229,8 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
   for (const std::string& each : settings.projects) store.add_project(each, seeds, system_time());
   const SimulationJobs::Options options = job_options(settings);
   SimulationJobs jobs(store, options);
-  Application application{store, jobs};
+  Application application{
+      .store = store, .jobs = jobs, .audit = AuditLog(settings.database + ".audit")};
   TokenTable tokens(settings.database);
   provide_owner_token(tokens, settings.database, system_time());
   application.page_token_key = tokens.page_token_key();

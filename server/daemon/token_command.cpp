@@ -10,6 +10,7 @@
 #include <string>
 #include <thread>
 
+#include "server/application/audit_log.h"
 #include "server/application/authorizer.h"
 #include "server/daemon/owner_token.h"
 #include "server/storage/store.h"
@@ -147,6 +148,8 @@ int change_tokens(const Settings& settings) {
     tokens.replace(next,
                    now + static_cast<Microseconds>(kMicrosecondsPerHour * asked.overlap_hours));
   }
+  CallContext command{.client = "tribodynd-tokens", .request_id = "-"};
+  AuditLog(settings.database + ".audit").record(command, "tokens-" + asked.action, {}, asked.name);
   const int out = is_served ? wait_for_server(tokens) : kExitStopped;
   const bool has_secret = asked.action != "revoke" && asked.name != kOwner && !asked.of_certificate;
   if (has_secret) fmt::print("{}\n", secret);

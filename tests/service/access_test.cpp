@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -194,6 +195,54 @@ TEST_F(AccessTest, OneCommandClosesEveryWayInOfALostLaptop) {
   EXPECT_EQ(get_with(secret), StatusCode::UNAUTHENTICATED);
   EXPECT_EQ(get(running.name()).state(), v1::Simulation::RUNNING) << "the owner goes on";
   cancel(running.name());
+}
+
+TEST_F(AccessTest, TheAuditSaysWhoDidWhatToWhichNameAndNothingElse) {
+  const std::string secret = tokens({"create", "anna"});
+  const std::string reader = tokens({"create", "bert", "--scope", "read"});
+  const auto create_fluid = [&](const std::string& token, const std::string& name) {
+    v1::CreateLubricantRequest request;
+    request.mutable_lubricant()->set_name("lubricants/" + name);
+    request.mutable_lubricant()->set_display_name("the-secret-formulation");
+    auto& measured = *request.mutable_lubricant()->mutable_measurements();
+    measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(73.3);
+    measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(8.86);
+    measured.set_density_15_celsius_kilograms_per_cubic_metre(870);
+    grpc::ClientContext context;
+    v1::Lubricant answer;
+    return v1::LubricantService::NewStub(connect_with(address_, token))
+        ->CreateLubricant(&context, request, &answer)
+        .error_code();
+  };
+  EXPECT_EQ(create_fluid(secret, "annas-oil"), StatusCode::OK);
+  EXPECT_EQ(create_fluid(secret, "annas-oil"), StatusCode::ALREADY_EXISTS);
+  EXPECT_EQ(create_fluid(secret, "x\ny z=1"), StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(create_fluid(reader, "berts-oil"), StatusCode::PERMISSION_DENIED);
+  v1::Simulation simulation;
+  EXPECT_TRUE(create(point_simulation(), &simulation).ok());
+  get(simulation.name());
+  tokens({"revoke", "anna"});
+  const std::string audit = file_text("tribodyn.db.audit");
+  for (const char* part :
+       {"principal=owner project=default method=tokens-create code=OK names=anna ",
+        "principal=anna project=default method=CreateLubricant code=OK names=lubricants/annas-oil ",
+        "method=CreateLubricant code=ALREADY_EXISTS names=lubricants/annas-oil ",
+        "principal=bert project=default method=CreateLubricant code=PERMISSION_DENIED names=- ",
+        "principal=owner project=default method=CreateSimulation code=OK names=simulations/1 ",
+        "method=tokens-revoke code=OK names=anna "}) {
+    EXPECT_THAT(audit, HasSubstr(part));
+  }
+  EXPECT_EQ(std::count(audit.begin(), audit.end(), '\n'), 8) << audit;
+  struct stat found {};
+  ASSERT_EQ(stat(folder_.file("tribodyn.db.audit").c_str(), &found), 0);
+  EXPECT_EQ(found.st_mode & 0777, 0600U);
+  for (const std::string& text : {audit, process_->log()}) {
+    for (const std::string& unwanted :
+         {secret, reader, owner_token(), std::string("the-secret-formulation"),
+          std::string("73.3")}) {
+      EXPECT_THAT(text, Not(HasSubstr(unwanted)));
+    }
+  }
 }
 
 TEST_F(AccessTest, TheSocketIsClosedToOtherUsersWhateverItsMode) {
