@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "google/rpc/status.pb.h"
 #include "server/application/call_context.h"
