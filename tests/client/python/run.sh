@@ -10,7 +10,7 @@ tests=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 tree=$(cd "$tests/../../.." && pwd)
 
 export HOME=$folder/home XDG_CONFIG_HOME=$folder/home MPLBACKEND=Agg PYTHONDONTWRITEBYTECODE=1
-for variable in CONFIG SERVER TOKEN_FILE PROJECT OUTPUT TIMEOUT_SECONDS PROGRESS COLOR; do
+for variable in CONFIG SERVER TOKEN_FILE CA_FILE CERTIFICATE_FILE KEY_FILE PROJECT OUTPUT TIMEOUT_SECONDS PROGRESS COLOR; do
   unset "TRIBODYN_$variable"
 done
 mkdir -p "$HOME"

@@ -168,7 +168,13 @@ class Transport:
 
     def _connect(self) -> grpc.aio.Channel:
         """Returns a channel with the credentials of the settings. Sends nothing."""
-        return grpc.aio.insecure_channel(self.settings.server, options=_OPTIONS)
+        settings = self.settings
+        if not settings.uses_tls:
+            return grpc.aio.insecure_channel(settings.server, options=_OPTIONS)
+        credentials = grpc.ssl_channel_credentials(
+            settings.authorities, settings.key, settings.certificate
+        )
+        return grpc.aio.secure_channel(settings.server, credentials, options=_OPTIONS)
 
     async def _is_ready(self, seconds: float) -> bool:
         assert self._channel is not None

@@ -23,6 +23,15 @@ class Settings:
     timeout_seconds: float  #: time limit of one call
     progress: str  #: "auto", "lines" or "none"
     token: str  #: goes with every call; empty for a Unix socket of the same user's server
+    authorities: bytes | None  #: PEM: who signs servers' certificates; None: the list of gRPC
+    certificate: bytes | None  #: PEM: of the client, for servers that require one
+    key: bytes | None  #: PEM: private key of the certificate
+
+    @property
+    def uses_tls(self) -> bool:
+        """Whether what is sent may leave this machine, or an authority is named."""
+        local = ("unix:", "127.", "[::1]", "localhost:")
+        return self.authorities is not None or not self.server.startswith(local)
 
 
 def settings_path() -> Path | None:
@@ -69,6 +78,9 @@ def read_settings(
         seconds,
         form,
         _read_token(text(token_file, "token-file", "")),
+        _read_bytes(text(None, "ca-file", "")),
+        _read_bytes(text(None, "certificate-file", "")),
+        _read_bytes(text(None, "key-file", "")),
     )
 
 
@@ -79,6 +91,14 @@ def _own_server() -> str:
     if (runtime or home) and Path(socket).is_socket():
         return f"unix:{socket}"
     return DEFAULT_SERVER
+
+
+def _read_bytes(path: str) -> bytes | None:
+    """Returns the contents of the file; None if there is no path."""
+    try:
+        return Path(path).read_bytes() if path else None
+    except OSError as error:
+        raise TribodynError(f"cannot read {path}: {error.strerror}") from None
 
 
 def _read_token(path: str) -> str:
