@@ -32,10 +32,10 @@ def token_file(tmp_path_factory):
 class Server:
     """A tribodynd with a database of its own, which may be killed and started again."""
 
-    def __init__(self, folder, *options):
+    def __init__(self, folder, *options, address="127.0.0.1:0"):
         self.folder = Path(folder)
         self.options = options
-        self.address = "127.0.0.1:0"
+        self.address = address
         write_token(self.folder / "db.sqlite.token")
         self.start()
 
@@ -84,10 +84,10 @@ def new_server():
     servers = []
     with tempfile.TemporaryDirectory() as folder:
 
-        def start(*options):
+        def start(*options, **named):
             own = Path(folder) / str(len(servers))
             own.mkdir()
-            servers.append(Server(own, *options))
+            servers.append(Server(own, *options, **named))
             return servers[-1]
 
         yield start

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import tribodyn
-from conftest import SECRET
+from conftest import SECRET, TREE
 from tribodyn import aio
 from tribodyn.settings import read_settings
 from tribodyn.v1 import simulations_pb2 as pb
@@ -243,3 +243,33 @@ def test_a_token_of_nobody_and_a_missing_token_file_are_errors(server, tmp_path,
     token.unlink()
     with pytest.raises(tribodyn.TribodynError, match="cannot read the token file"):
         tribodyn.Client(server.address)
+
+
+def test_a_token_file_may_be_an_argument(server, tmp_path):
+    token = tmp_path / "token"
+    token.write_text("tribodyn_unknown\n", "utf-8")
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        tribodyn.Client(server.address, token_file=str(token)).evaluate(
+            {"lubricant": [FLUID], "speed_kilometres_per_hour": [60]}
+        )
+    assert caught.value.reason == "UNAUTHENTICATED"
+
+
+def test_a_server_on_another_machine_is_reached_by_tls(new_server, tmp_path, monkeypatch):
+    certificates = tmp_path / "certificates"
+    make = TREE / "deploy/make-certificates"
+    subprocess.run([make, certificates, "localhost"], check=True, capture_output=True)
+    key = [
+        "--tls-certificate",
+        certificates / "server.pem",
+        "--tls-key",
+        certificates / "server.key",
+    ]
+    server = new_server(*key, address="0.0.0.0:0")
+    address = "localhost:" + server.address.rpartition(":")[2]
+    monkeypatch.setenv("TRIBODYN_CA_FILE", str(certificates / "ca.pem"))
+    assert tribodyn.Client(address).lubricants.get(FLUID).revision == 1
+    monkeypatch.delenv("TRIBODYN_CA_FILE")
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        tribodyn.Client(address).lubricants.get(FLUID)
+    assert caught.value.reason == "CANNOT_CONNECT"

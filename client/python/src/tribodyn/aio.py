@@ -39,8 +39,9 @@ class Client:
         timeout_seconds: float | None = None,
         progress: str | None = None,
         client_name: str | None = None,
+        token_file: str | None = None,
     ) -> None:
-        self._settings = read_settings(server, project, timeout_seconds, progress)
+        self._settings = read_settings(server, project, timeout_seconds, progress, token_file)
         self._transport = Transport(self._settings, client_name)
         self.lubricants = AsyncResources(self._transport, Lubricant, "lubricants")
         self.gear_sets = AsyncResources(self._transport, GearSet, "gearSets")

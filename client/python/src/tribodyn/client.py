@@ -150,11 +150,11 @@ class Client:
 
     ``server`` is "HOST:PORT" or "unix:PATH"; without it TRIBODYN_SERVER, then the configuration
     file of the command line (~/.config/tribodyn/config), then the socket of the user's own
-    tribodynd, then 127.0.0.1:50651. TRIBODYN_TOKEN_FILE, or ``token-file`` in that file, names the
-    file with the token; the socket needs none. ``project``,
-    ``timeout_seconds`` (of one call; 30) and ``progress`` ("auto": bars in notebooks and terminals,
-    "lines" or "none") likewise. ``client_name`` separates programs of one user in the server's fair
-    queue: a notebook with another name than a screening does not wait for it.
+    tribodynd, then 127.0.0.1:50651. ``token_file`` names the file with the token; the socket needs
+    none. It, ``project``, ``timeout_seconds`` (of one call; 30) and ``progress`` ("auto": bars in
+    notebooks and terminals, "lines" or "none") come likewise from the environment
+    (TRIBODYN_TOKEN_FILE) or the file. ``client_name`` separates programs of one user in the
+    server's fair queue: a notebook with another name than a screening does not wait for it.
 
     Every method raises TribodynError. A call is repeated, where that is safe, after the pause that
     the server states, when the server is lost or turns it away. Studies are jobs of the server,
@@ -169,6 +169,7 @@ class Client:
         timeout_seconds: float | None = None,
         progress: str | None = None,
         client_name: str | None = None,
+        token_file: str | None = None,
     ) -> None:
         self._client = aio.Client(
             server,
@@ -176,6 +177,7 @@ class Client:
             timeout_seconds=timeout_seconds,
             progress=progress,
             client_name=client_name,
+            token_file=token_file,
         )
         self.lubricants: Resources[Lubricant] = Resources(self._client.lubricants)
         self.gear_sets: Resources[GearSet] = Resources(self._client.gear_sets)
