@@ -71,10 +71,12 @@ struct ContactRegime {
   }
 };
 
-struct Torques {
-  double pinion = 0;  ///< T_s [N m]
-  double wheel = 0;   ///< T_w [N m]
+template <class Real>
+struct TorquesOf {
+  Real pinion = 0;  ///< T_s [N m]
+  Real wheel = 0;   ///< T_w [N m]
 };
+using Torques = TorquesOf<double>;
 
 /// The power that comes in, which eq 30 divides by, as a torque at the pinion [N m]. In drive power
 /// comes in at the pinion: T_s. In coast (T_s < 0) it comes in at the wheel: -T_w
@@ -84,25 +86,27 @@ inline double input_torque(const Torques& torques, double wheel_per_pinion_speed
   return std::max(torques.pinion, 0.0) + std::max(-torques.wheel * wheel_per_pinion_speed, 0.0);
 }
 
-/// Forces and torques at one instant.
-struct Mechanics {
-  MeshFunctions mesh;
-  double deflection;             ///< f [m]
-  double transmission_error;     ///< x [m]
-  double transmission_velocity;  ///< xdot [m/s]
-  double mesh_force;             ///< k_m f + c xdot [N]; of which the damper:
-  double damper_force;
-  double pinion_shaft_torque;  ///< [N m]
-  double gear_shaft_torque;
-  double pinion_friction_torque;
-  double gear_friction_torque;
-  double loss_power;  ///< sum V_s F_fr [W]
+/// Forces and torques at one instant. Real: double, or a dual number (core/numerics/dual-inl.h).
+template <class Real>
+struct MechanicsOf {
+  MeshFunctionsOf<Real> mesh;
+  Real deflection;             ///< f [m]
+  Real transmission_error;     ///< x [m]
+  Real transmission_velocity;  ///< xdot [m/s]
+  Real mesh_force;             ///< k_m f + c xdot [N]; of which the damper:
+  Real damper_force;
+  Real pinion_shaft_torque;  ///< [N m]
+  Real gear_shaft_torque;
+  Real pinion_friction_torque;
+  Real gear_friction_torque;
+  Real loss_power;  ///< sum V_s F_fr [W]
   /// What eq 2 leaves out: F e' - k_m' f^2/2 [N m].
-  double parametric_torque() const {
+  Real parametric_torque() const {
     return mesh_force * mesh.static_transmission_error_slope -
            0.5 * mesh.mesh_stiffness_slope * deflection * deflection;
   }
 };
+using Mechanics = MechanicsOf<double>;
 
 /// Everything at one instant, for records and histories.
 struct Instant : Mechanics {
@@ -148,7 +152,8 @@ class GearPairSystem {
   void mechanics(double phase, const double* state, Mechanics& out) const {
     mechanics(at_phase(phase), state, out);
   }
-  void mechanics(const MeshPhase& phase, const double* state, Mechanics& out) const;
+  template <class Real>
+  void mechanics(const MeshPhase& phase, const Real* state, MechanicsOf<Real>& out) const;
   /// All of eqs 1-11 and the friction of each loaded flank at mesh phase [cycles]. Counts contacts.
   void evaluate(double phase, const double* state, Instant& out);
   /// Loaded flanks of eqs 2 and 3: what the contact of flank pair k sees under `load` [N] of its
@@ -156,14 +161,21 @@ class GearPairSystem {
   ContactConditions contact_conditions(const FlankKinematics& flank, double load,
                                        const double* state, FlankMotion& motion) const;
   /// d state / d phase of time and the seven states of motion.
-  void motion(const double* state, const Mechanics& at, double* derivative) const;
+  void motion(const double* state, const Mechanics& at, double* derivative) const {
+    motion(state, at, torques_, derivative);
+  }
+  /// The same under other torques.
+  template <class Real>
+  void motion(const Real* state, const MechanicsOf<Real>& at, const TorquesOf<Real>& torques,
+              Real* derivative) const;
   /// d state / d phase of the first kMarchComponents from an instant, and of the record if asked.
   void derivative(const double* state, const Instant& at, bool record, double* derivative) const;
   /// x and mesh force without friction: for events.
   void kinematics(double phase, const double* state, Mechanics& out) const {
     kinematics(at_phase(phase), state, out);
   }
-  void kinematics(const MeshPhase& phase, const double* state, Mechanics& out) const;
+  template <class Real>
+  void kinematics(const MeshPhase& phase, const Real* state, MechanicsOf<Real>& out) const;
   /// Mesh phase [cycles].
   MeshPhase at_phase(double phase) const;
 
@@ -207,26 +219,29 @@ class GearPairSystem {
   ContactStatus refusal_ = ContactStatus::kOk;
 };
 
-inline void GearPairSystem::kinematics(const MeshPhase& phase, const double* y,
-                                       Mechanics& out) const {
+template <class Real>
+void GearPairSystem::kinematics(const MeshPhase& phase, const Real* y,
+                                MechanicsOf<Real>& out) const {
   // N_g phi_g = N_p phi_p - N_g winding/R_g0, because R_g0 N_p = R_p0 N_g.
   out.mesh = mesh_.functions(phase, lag_per_winding_ * y[kWinding]);
-  const MeshFunctions& m = out.mesh;
+  const MeshFunctionsOf<Real>& m = out.mesh;
   const double b = dynamics_.half_backlash;
   out.transmission_error =
       b + y[kWinding] + m.radius_integral - m.static_transmission_error;  // (eq 6)
   out.transmission_velocity =
       (m.pinion_contact_radius - m.static_transmission_error_slope) * y[kPinionSpeed] -
       m.gear_contact_radius * y[kGearSpeed];
-  out.deflection = regime.side == 0 ? 0 : out.transmission_error - regime.side * b;  // (eq 5)
+  out.deflection =
+      regime.side == 0 ? Real(0.0) : out.transmission_error - regime.side * b;  // (eq 5)
   out.damper_force = regime.side == 0 && options_.damping_in_contact_only
-                         ? 0
+                         ? Real(0.0)
                          : dynamics_.mesh_damping * out.transmission_velocity;
   out.mesh_force = m.mesh_stiffness * out.deflection + out.damper_force;
 }
 
-inline void GearPairSystem::mechanics(const MeshPhase& phase, const double* y,
-                                      Mechanics& out) const {
+template <class Real>
+void GearPairSystem::mechanics(const MeshPhase& phase, const Real* y,
+                               MechanicsOf<Real>& out) const {
   kinematics(phase, y, out);
   const DrivelineDynamics& d = dynamics_;
   out.pinion_shaft_torque = d.pinion_shaft_stiffness * y[kPinionShaftTwist] +
@@ -258,21 +273,23 @@ inline ContactConditions GearPairSystem::contact_conditions(const FlankKinematic
           motion.gear_y - drift_y};
 }
 
-inline void GearPairSystem::motion(const double* y, const Mechanics& at, double* dy) const {
-  const MeshFunctions& m = at.mesh;
-  double pinion_torque =
+template <class Real>
+void GearPairSystem::motion(const Real* y, const MechanicsOf<Real>& at,
+                            const TorquesOf<Real>& torques, Real* dy) const {
+  const MeshFunctionsOf<Real>& m = at.mesh;
+  Real pinion_torque =
       -m.pinion_contact_radius * at.mesh_force + at.pinion_shaft_torque + at.pinion_friction_torque;
-  if (options_.energy_consistent) pinion_torque += at.parametric_torque();
-  const double gear_torque =
+  if (options_.energy_consistent) pinion_torque = pinion_torque + at.parametric_torque();
+  const Real gear_torque =
       m.gear_contact_radius * at.mesh_force - at.gear_shaft_torque + at.gear_friction_torque;
-  const double time = cycle_angle_ / y[kPinionSpeed];
+  const Real time = cycle_angle_ / y[kPinionSpeed];
   dy[kTime] = time;
   dy[kPinionShaftTwist] = time * (y[kPinionShaftSpeed] - y[kPinionSpeed]);
   dy[kWinding] = time * (mesh_.mean_pinion_contact_radius() * y[kPinionSpeed] -
                          mesh_.mean_gear_contact_radius() * y[kGearSpeed]);
   dy[kGearShaftTwist] = time * (y[kGearSpeed] - y[kWheelSpeed]);
-  const double pinion_shaft_torque = torques_.pinion - at.pinion_shaft_torque;
-  const double wheel_torque = at.gear_shaft_torque - torques_.wheel;
+  const Real pinion_shaft_torque = torques.pinion - at.pinion_shaft_torque;
+  const Real wheel_torque = at.gear_shaft_torque - torques.wheel;
   dy[kPinionShaftSpeed] = time * (pinion_shaft_torque * inverse_.pinion_shaft_inertia);  // (eq 1)
   dy[kPinionSpeed] = time * (pinion_torque * inverse_.pinion_inertia);                   // (eq 2)
   dy[kGearSpeed] = time * (gear_torque * inverse_.gear_inertia);                         // (eq 3)

@@ -75,18 +75,9 @@ void see_flanks(GearPairSystem& system, const MeshGrid& grid, const OrbitPiece& 
   const double load = piece.regime.load(at.mesh_force);
   if (!(load > 0)) return;
   std::array<FlankKinematics, kFlankPairs> off_grid;
-  const std::array<FlankKinematics, kFlankPairs>* flanks = &off_grid;
-  if (piece.node >= 0) {
-    flanks = &grid.flanks(piece.node + part);
-  } else {
-    const MeshData& mesh = system.mesh();
-    const double inside = std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
-    const int interval =
-        std::clamp(static_cast<int>(inside * mesh.intervals()), 0, mesh.intervals() - 1);
-    mesh.flanks(interval, inside, off_grid);
-  }
+  const auto& flanks = flanks_of(system.mesh(), grid, piece, part, off_grid);
   for (int k = 0; k < kFlankPairs; ++k) {
-    const FlankKinematics& flank = (*flanks)[k];
+    const FlankKinematics& flank = flanks[k];
     at.load[k] = flank.load_share * load;
     if (!(at.load[k] > 0)) continue;
     on_contact(k, flank, system.contact_conditions(flank, at.load[k], state, at.motion[k]));
@@ -111,6 +102,17 @@ constexpr SolvedRow kSolvedRows[] = {
      &ContactFigures::limiting_stress_area_share}};
 
 }  // namespace
+
+const std::array<FlankKinematics, kFlankPairs>& flanks_of(
+    const MeshData& mesh, const MeshGrid& grid, const OrbitPiece& piece, int part,
+    std::array<FlankKinematics, kFlankPairs>& off_grid) {
+  if (piece.node >= 0) return grid.flanks(piece.node + part);
+  const double inside = std::min(piece.phase + 0.5 * part * piece.length - cycle_of(piece), 1.0);
+  const int interval =
+      std::clamp(static_cast<int>(inside * mesh.intervals()), 0, mesh.intervals() - 1);
+  mesh.flanks(interval, inside, off_grid);
+  return off_grid;
+}
 
 void SolvedContacts::resize(std::size_t count) {
   if (count <= size_) return;

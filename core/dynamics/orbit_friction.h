@@ -26,6 +26,12 @@ struct OrbitPiece {
   MarchState start, middle, end;
 };
 
+/// The flank pairs at part 0, 1, 2 of a piece: its start, middle, end. `grid`: what the piece's
+/// node is of; `off_grid` holds them where the piece has none.
+const std::array<FlankKinematics, kFlankPairs>& flanks_of(
+    const MeshData& mesh, const MeshGrid& grid, const OrbitPiece& piece, int part,
+    std::array<FlankKinematics, kFlankPairs>& off_grid);
+
 /// Figures of the contacts of a response, in the order of its instants and of their flank pairs.
 class SolvedContacts {
  public:

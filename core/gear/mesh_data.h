@@ -11,16 +11,19 @@
 namespace tribodyn {
 
 /// Eqs 8-11 at one pair of angles, with what the closed-form transmission error and the energy
-/// terms need. Slopes are per radian of phi_p.
-struct MeshFunctions {
+/// terms need. Slopes are per radian of phi_p. Real: what depends on the gear's angle; double, or a
+/// dual number (core/numerics/dual-inl.h).
+template <class Real>
+struct MeshFunctionsOf {
   double pinion_contact_radius;            ///< R_p [m]
-  double gear_contact_radius;              ///< R_g [m]
-  double radius_integral;                  ///< series part of int R_p dphi_p - int R_g dphi_g [m]
+  Real gear_contact_radius;                ///< R_g [m]
+  Real radius_integral;                    ///< series part of int R_p dphi_p - int R_g dphi_g [m]
   double mesh_stiffness;                   ///< k_m [N/m]
   double mesh_stiffness_slope;             ///< dk_m/dphi_p [N/m/rad]
   double static_transmission_error;        ///< e [m]
   double static_transmission_error_slope;  ///< de/dphi_p [m/rad]
 };
+using MeshFunctions = MeshFunctionsOf<double>;
 
 /// What eqs 8-11 need of the pinion's angle alone: prepared once per phase, used at every state.
 struct MeshPhase {
@@ -53,31 +56,40 @@ inline constexpr double FlankKinematics::*kColumnsButRadii[] = {
     &FlankKinematics::gear_friction_arm};
 
 /// Sliding and lever arms of one flank pair at given speeds.
-struct FlankMotion {
-  double pinion_x, pinion_y, gear_x, gear_y;  ///< surface velocities [m/s]
-  double sliding_speed;                       ///< V_s [m/s]
-  double pinion_friction_arm;  ///< r_fr,p [m]: signed so that T_fr,p = r_fr,p F_fr adds in eq 2
-  double gear_friction_arm;    ///< r_fr,g [m]; r_fr,p phidot_p + r_fr,g phidot_g = -V_s
+template <class Real>
+struct FlankMotionOf {
+  Real pinion_x, pinion_y, gear_x, gear_y;  ///< surface velocities [m/s]
+  Real sliding_speed;                       ///< V_s [m/s]
+  Real pinion_friction_arm;  ///< r_fr,p [m]: signed so that T_fr,p = r_fr,p F_fr adds in eq 2
+  Real gear_friction_arm;    ///< r_fr,g [m]; r_fr,p phidot_p + r_fr,g phidot_g = -V_s
 };
+using FlankMotion = FlankMotionOf<double>;
 
 /// Velocities and lever arms r_p = -(dV . A_p)/V_s, r_g = (dV . A_g)/V_s with dV the sliding
 /// vector: the power identity is exact and holds when a shaft turns backwards. Without sliding both
 /// arms are 0.
-inline FlankMotion flank_motion(const FlankKinematics& k, double pinion_speed, double gear_speed) {
-  FlankMotion m{};
+template <class Real>
+FlankMotionOf<Real> flank_motion_of(const FlankKinematics& k, const Real& pinion_speed,
+                                    const Real& gear_speed) {
+  using std::sqrt;
+  FlankMotionOf<Real> m{};
   m.pinion_x = k.pinion_velocity_x * pinion_speed;
   m.pinion_y = k.pinion_velocity_y * pinion_speed;
   m.gear_x = k.gear_velocity_x * gear_speed;
   m.gear_y = k.gear_velocity_y * gear_speed;
-  const double slide_x = m.pinion_x - m.gear_x, slide_y = m.pinion_y - m.gear_y;
-  m.sliding_speed = std::sqrt(slide_x * slide_x + slide_y * slide_y);
+  const Real slide_x = m.pinion_x - m.gear_x, slide_y = m.pinion_y - m.gear_y;
+  m.sliding_speed = sqrt(slide_x * slide_x + slide_y * slide_y);
   if (m.sliding_speed > 0) {
-    const double per_speed = 1 / m.sliding_speed;
+    const Real per_speed = 1 / m.sliding_speed;
     m.pinion_friction_arm =
         -per_speed * (slide_x * k.pinion_velocity_x + slide_y * k.pinion_velocity_y);
     m.gear_friction_arm = per_speed * (slide_x * k.gear_velocity_x + slide_y * k.gear_velocity_y);
   }
   return m;
+}
+
+inline FlankMotion flank_motion(const FlankKinematics& k, double pinion_speed, double gear_speed) {
+  return flank_motion_of(k, pinion_speed, gear_speed);
 }
 
 /// A gear set packed for evaluation. Immutable; safe for concurrent use; evaluation allocates
@@ -106,6 +118,25 @@ class MeshData {
     f.gear_contact_radius += ripple;
     f.radius_integral += integral;
     return f;
+  }
+
+  /// The same of a lag that is a dual number.
+  template <class Real>
+  requires requires(const Real& lag) { lag.value; }
+  MeshFunctionsOf<Real> functions(const MeshPhase& phase, const Real& lag) const {
+    constexpr double kStep = 1e-5;  // [rad]: error 1e-10 of the ripple of R_g, itself 4e-3 of R_g
+    const MeshFunctions f = functions(phase, lag.value);
+    const double radius_by_lag = (functions(phase, lag.value + kStep).gear_contact_radius -
+                                  functions(phase, lag.value - kStep).gear_contact_radius) /
+                                 (2 * kStep);
+    const double integral_by_lag = (f.gear_contact_radius - gear_radius_) / gear_teeth_;
+    return {f.pinion_contact_radius,
+            chained(f.gear_contact_radius, radius_by_lag, lag),
+            chained(f.radius_integral, integral_by_lag, lag),
+            f.mesh_stiffness,
+            f.mesh_stiffness_slope,
+            f.static_transmission_error,
+            f.static_transmission_error_slope};
   }
 
   /// The expansion around the angle that is nearest to theta, and how far theta is from there. Null

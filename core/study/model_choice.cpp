@@ -32,7 +32,7 @@ bool may_choose(const PointOptions& options, const std::optional<CarriedState>& 
   return options.model == PointModel::kAutomatic &&
          options.method == SteadyStateMethod::kAutomatic &&
          options.start == PointStart::kQuasiStatic && !from && !options.probe_coexisting_response &&
-         options.history.columns.empty();
+         options.history.columns.empty() && !options.sensitivities;
 }
 
 std::optional<QuasiStaticAnswer> choose_quasi_static(GearPairSystem& system,

@@ -149,13 +149,11 @@ SolvedPieces fill_from_orbit(GearPairSystem& system, MeshGrids& grids, const Per
 }
 
 /// By shooting. Nothing where marching must decide.
-std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
-                                             const FlankContactBatch& contacts, MeshGrids& grids,
-                                             const OperatingTarget& target,
-                                             const PointOptions& options, PointStart start,
-                                             const std::optional<CarriedState>& from,
-                                             const HistoryRequest& history_request,
-                                             std::optional<Rattle>& rattle) {
+std::optional<PointResult> solve_by_shooting(
+    GearPairSystem& system, const FlankContactBatch& contacts, MeshGrids& grids,
+    const OperatingTarget& target, const PointOptions& options, PointStart start,
+    const std::optional<CarriedState>& from, const HistoryRequest& history_request,
+    std::optional<Rattle>& rattle, std::optional<OrbitSensitivity>& sensitivity) {
   const std::optional<OrbitSearch> search = search_from(system, target, options, start, from);
   if (!search) return std::nullopt;
   MarchStatistics statistics;
@@ -173,6 +171,12 @@ std::optional<PointResult> solve_by_shooting(GearPairSystem& system,
   HistorySampler history(history_request);
   sample_orbit(system, orbit, solved, history);
   out.history = history.take();
+  // With data at the torque an orbit's gear set depends on its torque, which is not differentiated.
+  if (options.sensitivities && !system.options().load_dependent_mesh_data) {
+    sensitivity = orbit_sensitivity(system, grids.with_steps(refined->steps_per_mesh_cycle),
+                                    ContactSensitivityModel(contacts.model()), orbit,
+                                    target.mean_pinion_speed, target.solve_wheel_torque);
+  }
   out.statistics.right_hand_sides = statistics.right_hand_sides;
   out.statistics.accepted_steps = statistics.accepted_steps;
   out.statistics.rejected_steps = statistics.rejected_steps;
@@ -271,6 +275,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       MeshGrids& grids = gear_set.grids();
       std::optional<QuasiStaticAnswer> chosen;
       std::optional<Rattle> rattle;
+      std::optional<OrbitSensitivity> sensitivity;
       if (options.model == PointModel::kQuasiStatic) {
         result = solve_quasi_static_point(system, contacts, grids, target, options);
       } else if (may_choose(options, from) &&
@@ -279,8 +284,12 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
       } else if (std::optional<PointResult> shot;
                  options.method != SteadyStateMethod::kMarch &&
                  (shot = solve_by_shooting(system, contacts, grids, target, options, start, from,
-                                           history, rattle))) {
+                                           history, rattle, sensitivity))) {
         result = *std::move(shot);
+        if (sensitivity) {
+          result.sensitivities = point_sensitivities(
+              scene, condition, {result.pinion_torque, result.wheel_torque}, *sensitivity);
+        }
       } else if (options.method == SteadyStateMethod::kShooting) {
         refuse_shooting(system, contacts, grids, target, options);
       } else {
@@ -336,6 +345,13 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
   std::move(of_the_march.begin(), of_the_march.end(), std::back_inserter(result.warnings));
   if (auto unused = unused_march_tolerance(options, result)) {
     result.warnings.push_back(*std::move(unused));
+  }
+  if (options.sensitivities && !result.sensitivities) {
+    result.warnings.push_back(
+        {"NO_SENSITIVITIES",
+         "the figures are not differentiated: that needs a response found by shooting whose flanks "
+         "stay together, away from a fold, contacts that slide and entrain, and mesh data that do "
+         "not depend on the torque"});
   }
   return result;
 }

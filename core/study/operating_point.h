@@ -11,6 +11,7 @@
 #include "core/study/history.h"
 #include "core/study/prepared_scene.h"
 #include "core/study/scene.h"
+#include "core/study/sensitivities.h"
 
 namespace tribodyn {
 
@@ -80,6 +81,10 @@ struct PointOptions {
   int maximum_mesh_cycles = 4000;  ///< work limit of the search for the steady state
   int recorded_mesh_cycles = 50;   ///< averaged when no period is found (the paper's 50)
   HistoryRequest history;          ///< empty: none computed
+  /// Also differentiates the figures by all scalar parameters (PointResult::sensitivities). The
+  /// full model answers then; a point that is not found by shooting or loses contact has none and
+  /// says so (NO_SENSITIVITIES).
+  bool sensitivities = false;
   /// Called between mesh cycles with the fraction done in [0, 1]; false cancels (throws Cancelled).
   std::function<bool(double)> progress;
 };
@@ -194,6 +199,7 @@ struct PointResult {
   std::vector<RangeWarning> warnings;
   SectionState section_state;  ///< the steady state at mesh phase 0
   History history;
+  std::optional<PointSensitivities> sensitivities;  ///< if asked for and known
 };
 
 /// A result as the start of a neighbour's search.

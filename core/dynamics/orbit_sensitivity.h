@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "core/contact/contact_sensitivity.h"
+#include "core/dynamics/orbit_friction.h"
+#include "core/dynamics/periodic_orbit.h"
+
+// Derivatives of a periodic orbit's figures by the parameters of its contacts, by its torques and
+// by its mean speed, by the implicit function theorem.
+//
+// The orbit found by shooting solves a discrete system: each piece is a Runge-Kutta step whose
+// friction arms (friction torque over load) at start, middle and end follow the states there. In a
+// small change every piece therefore links only the states at its two ends,
+//   (I - B) dX_1 = L dX_0 + l dT + r dp,
+// with L, B, l and r from the step in dual numbers and from the derivatives of the contacts; the
+// coupling of friction and motion is in B, L and r, so nothing is iterated. Chained over the
+// period, the pieces give the Jacobian of the shooting equations X_N = X_0, t_N = the period's
+// time, and its right-hand sides: one solution of 8 equations for all parameters. Extremes are
+// differentiated at fixed phase. Flanks must stay together: orbits that lose contact are not
+// differentiated. (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010,
+// section 7.4.)
+
+namespace tribodyn {
+
+/// Figures of an orbit that are differentiated. Of a power that comes in at the pinion (drive) or
+/// at the wheel (coast), as in PointResult.
+enum class OrbitFigure {
+  kInefficiencyRms,           ///< [%]
+  kInefficiencyEnergyMean,    ///< [%]
+  kMeshLossPower,             ///< [W]
+  kMeshLossTorque,            ///< [N m]
+  kPinionFrictionTorque,      ///< mean [N m]
+  kFilmRatio,                 ///< mean, weighted with load and time [-]
+  kContactTemperature,        ///< likewise [K]
+  kTransmissionErrorMinimum,  ///< [m]
+  kTransmissionErrorMaximum,  ///< [m]
+};
+inline constexpr int kOrbitFigures = 9;
+
+/// Columns: parameters of the contacts in the order of ContactInput, then these.
+enum OrbitParameter {
+  kKnownTorqueParameter = kContactParameters,  ///< T_w, or T_s where T_w is solved for [N m]
+  kMeanSpeedParameter,                         ///< mean pinion speed at the same torque [rad/s]
+  kOrbitParameters
+};
+
+struct OrbitSensitivity {
+  std::array<double, kOrbitFigures> figure{};
+  /// By OrbitFigure and parameter: the figure's unit over the parameter's.
+  std::array<std::array<double, kOrbitParameters>, kOrbitFigures> derivative{};
+  std::array<double, kOrbitParameters> unknown_torque{};  ///< of T_s, or of T_w [N m over ...]
+  /// Derivatives are those of one side: of some contact (ContactSensitivity::one_sided), or of
+  /// flanks that press with less than 1 % of the mean force.
+  bool one_sided = false;
+};
+
+/// `grid`: what the orbit's pieces are of. The orbit must have been solved for, with its friction
+/// and figures. Returns nullopt if flanks part, if a contact has no derivatives (no sliding, no
+/// entrainment) or if the shooting equations are singular to rounding (a fold). Changes the
+/// system's regime and torques.
+std::optional<OrbitSensitivity> orbit_sensitivity(GearPairSystem& system, const MeshGrid& grid,
+                                                  const ContactSensitivityModel& contacts,
+                                                  const PeriodicOrbit& orbit,
+                                                  double mean_pinion_speed,
+                                                  bool solve_wheel_torque);
+
+}  // namespace tribodyn
