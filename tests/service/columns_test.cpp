@@ -27,6 +27,8 @@ using testing::StartsWith;
 
 class ColumnsTest : public testing::Test {
  protected:
+  ColumnsTest() { accept_owner(app_); }
+
   /// Head and body of the answer; HTTP/1.0 has no chunks.
   std::pair<std::string, std::string> answer(const std::string& target,
                                              const std::string& headers = {}) {
