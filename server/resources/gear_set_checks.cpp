@@ -173,8 +173,8 @@ void check_power(const v1::GearSet& set, const LocateSample& locate, TableViolat
   }
 }
 
-/// Returns N_g/N_p of the tooth contact data if series and flank slots agree on a ratio that is not
-/// the one of the teeth: somebody changed the teeth of a set and kept its data.
+/// Returns N_g/N_p of the tooth contact data if series and flank slots agree on a ratio with which
+/// the teeth disagree: somebody changed the teeth of a set and kept its data. Else nullopt.
 std::optional<double> other_ratio_of_data(const v1::GearSet& set) {
   if (!set.has_series() || set.pinion_teeth() <= 0 || set.gear_teeth() <= 0) return std::nullopt;
   const double pinion = set.series().pinion_contact_radius_metres().mean();
@@ -185,11 +185,14 @@ std::optional<double> other_ratio_of_data(const v1::GearSet& set) {
   if (std::abs(of_data - of_teeth) <= kRatioTolerance * of_teeth) return std::nullopt;
   Violations ignored;
   if (!check_sizes(set, "", ignored)) return std::nullopt;
+  bool slots_fit_the_teeth = true;
   for (const v1::FlankSlot& slot : set.flank_slots()) {
     for (int j = 0; j < slot.load_share_size(); ++j) {
       if (!power_balance(slot, j, 1 / of_data).holds) return std::nullopt;
+      slots_fit_the_teeth = slots_fit_the_teeth && power_balance(slot, j, 1 / of_teeth).holds;
     }
   }
+  if (slots_fit_the_teeth) return std::nullopt;  // then a radius is wrong
   return of_data;
 }
 
