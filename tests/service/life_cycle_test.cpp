@@ -267,17 +267,21 @@ TEST_F(LifeCycle, ADamagedResultIsDataLossUntilAForcedRunWritesItAgain) {
     return outcome.ok() ? 0 : outcome.error().code();
   };
   const auto code_of_history = [&] {
-    Application app = bench.application();
-    v1::ReadHistoryRequest read;
-    read.set_name(name);
-    const auto outcome = read_history(app, read);
-    if (!outcome.ok()) return outcome.error().code();
-    v1::ReadHistoryResponse chunk;
-    google::rpc::Status end;
-    while (next_step(*outcome.message(), chunk, end) ==
-           MessageSource<v1::ReadHistoryResponse>::Step::kMessage) {
+    try {
+      Application app = bench.application();
+      v1::ReadHistoryRequest read;
+      read.set_name(name);
+      const auto outcome = read_history(app, read);
+      if (!outcome.ok()) return outcome.error().code();
+      v1::ReadHistoryResponse chunk;
+      google::rpc::Status end;
+      while (next_step(*outcome.message(), chunk, end) ==
+             MessageSource<v1::ReadHistoryResponse>::Step::kMessage) {
+      }
+      return end.code();
+    } catch (...) {  // as the dispatcher does
+      return error_of_exception().code();
     }
-    return end.code();
   };
   for (const auto& [table, column] : {std::pair("results", "body"), std::pair("ledgers", "body"),
                                       std::pair("history_blocks", "data")}) {
