@@ -14,7 +14,7 @@ constexpr int kConditions = kContactInputs - kContactParameters;
 
 /// By all inputs; the last direction is for the unknown of root_with_slopes.
 constexpr int kDirections = kContactInputs + 1;
-using Number = laws::Dual<double, kDirections>;
+using DualNumber = laws::Dual<double, kDirections>;
 
 // What the contact and the stress at one temperature depend on directly is less than all inputs.
 // They are evaluated with derivatives by that, and by all inputs through the chain rule.
@@ -60,12 +60,12 @@ std::array<Real*, kStressLevel> stress_level(ShearLaw<Real>& law) {
 
 /// Adds derivatives times a factor. x need not have any where the factor is 0, as those of the
 /// shift of the relaxation time where F = 1.
-void add(double factor, const Number& x, Number& sum) {
+void add(double factor, const DualNumber& x, DualNumber& sum) {
   if (factor == 0) return;
   for (int i = 0; i < kContactInputs; ++i) sum.slope[i] += factor * x.slope[i];
 }
 
-void take(const Number& from, ContactDerivatives& to) {
+void take(const DualNumber& from, ContactDerivatives& to) {
   to.value = from.value;
   for (int i = 0; i < kContactInputs; ++i) to.by[i] = from.slope[i];
 }
@@ -75,15 +75,15 @@ bool alike(double x, double y) { return std::abs(x - y) <= 1e-9 * std::abs(y); }
 }  // namespace
 
 struct ContactSensitivityModel::Constants {
-  std::array<Number, kContactLevel> contact;
-  std::array<Number, kStressLevel> stress;
-  Number index, limit_at_zero_pressure, limit_coefficient;
+  std::array<DualNumber, kContactLevel> contact;
+  std::array<DualNumber, kStressLevel> stress;
+  DualNumber index, limit_at_zero_pressure, limit_coefficient;
   ContactParametersOf<ContactNumber> parameters;
   ContactConstants<ContactNumber> constants;
   ShearLaw<StressNumber> shear;
 
-  Number by_inputs(const ContactNumber& x) const {
-    Number out(x.value);
+  DualNumber by_inputs(const ContactNumber& x) const {
+    DualNumber out(x.value);
     for (int i = 0; i < kConditions; ++i) out.slope[kContactParameters + i] = x.slope[i];
     for (int i = 0; i < kContactLevel; ++i) add(x.slope[kConditions + i], contact[i], out);
     return out;
@@ -93,20 +93,20 @@ struct ContactSensitivityModel::Constants {
 ContactSensitivityModel::ContactSensitivityModel(const FlankContactModel& model) : model_(model) {
   ContactParametersOf<double> values = model.parameters();
   ContactConditions no_conditions{};
-  ContactParametersOf<Number> parameters;
-  ContactConditionsOf<Number> conditions;
+  ContactParametersOf<DualNumber> parameters;
+  ContactConditionsOf<DualNumber> conditions;
   const auto from = contact_inputs(values, no_conditions);
   const auto to = contact_inputs(parameters, conditions);
-  for (int i = 0; i < kContactInputs; ++i) *to[i] = Number::variable(*from[i], i);
+  for (int i = 0; i < kContactInputs; ++i) *to[i] = DualNumber::variable(*from[i], i);
   ModelOptions options = model.options();
   if (values.lubricant.relaxation_time == 0) options.newtonian = true;
-  const auto index_of = [&](const Number& factor, const Number& coefficient) {
+  const auto index_of = [&](const DualNumber& factor, const DualNumber& coefficient) {
     return laws::root_with_slopes<kDirections>(
-        model.pressure_viscosity_index(), [&](const Number& index) {
+        model.pressure_viscosity_index(), [&](const DualNumber& index) {
           return laws::roelands_reciprocal_asymptotic(factor, index) / coefficient - 1;
         });
   };
-  ContactConstants<Number> constants = contact_constants(parameters, options, index_of);
+  ContactConstants<DualNumber> constants = contact_constants(parameters, options, index_of);
 
   auto kept = std::make_unique<Constants>();
   const auto contact = contact_level(parameters, constants);
@@ -185,8 +185,8 @@ ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, doubl
       heated_contact(c.parameters, c.constants, options, conditions, shared);
 
   // The mean stress at a temperature: explicit_part + by_temperature (T - T_c), as a logarithm.
-  const Number pressure = c.by_inputs(shared.axes.maximum_pressure);
-  const Number log_shear_rate = c.by_inputs(laws::logarithm(heated.shear_rate));
+  const DualNumber pressure = c.by_inputs(shared.axes.maximum_pressure);
+  const DualNumber log_shear_rate = c.by_inputs(laws::logarithm(heated.shear_rate));
   const ShearedFilm film{&model_.constants().shear, pressure.value, log_shear_rate.value,
                          !options.no_limiting_shear_stress, true};
   double switch_guess = 0;
@@ -198,30 +198,31 @@ ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, doubl
            stress.by_factor * log_stress_there.factor.slope[i];
   };
   const double by_temperature = by_stress_level(0);
-  Number explicit_part(stress.log_value);
+  DualNumber explicit_part(stress.log_value);
   add(by_stress_level(1), log_shear_rate, explicit_part);
   for (int i = 0; i < kStressLevel; ++i) add(by_stress_level(2 + i), c.stress[i], explicit_part);
   add(stress.by_index, c.index, explicit_part);
   add(stress.by_log_pressure / pressure.value, pressure, explicit_part);
   add(stress.by_limit_at_zero_pressure, c.limit_at_zero_pressure, explicit_part);
   add(stress.by_limit_coefficient, c.limit_coefficient, explicit_part);
-  const auto mean_stress_at = [&](const Number& temperature) {
+  const auto mean_stress_at = [&](const DualNumber& temperature) {
     return laws::exponential(explicit_part + by_temperature * (temperature - contact_temperature));
   };
-  const Number base = c.by_inputs(heated.temperature.base);
-  const Number gain = c.by_inputs(heated.temperature.gain);
-  const Number temperature = laws::root_with_slopes<kDirections>(
-      contact_temperature, [&](const Number& t) { return t - base - gain * mean_stress_at(t); });
-  const Number mean_stress = mean_stress_at(temperature);
+  const DualNumber base = c.by_inputs(heated.temperature.base);
+  const DualNumber gain = c.by_inputs(heated.temperature.gain);
+  const DualNumber temperature = laws::root_with_slopes<kDirections>(
+      contact_temperature,
+      [&](const DualNumber& t) { return t - base - gain * mean_stress_at(t); });
+  const DualNumber mean_stress = mean_stress_at(temperature);
 
-  const Number boundary = c.by_inputs(heated.boundary_friction);
-  const Number viscous = laws::viscous_friction(c.by_inputs(heated.viscous_area), mean_stress);
-  const Number friction = laws::friction(viscous, boundary);
+  const DualNumber boundary = c.by_inputs(heated.boundary_friction);
+  const DualNumber viscous = laws::viscous_friction(c.by_inputs(heated.viscous_area), mean_stress);
+  const DualNumber friction = laws::friction(viscous, boundary);
   take(friction, out.friction);
   take(viscous, out.viscous_friction);
   take(boundary, out.boundary_friction);
   const int load = static_cast<int>(ContactInput::kLoad);
-  take(friction / Number::variable(k.load, load), out.friction_coefficient);
+  take(friction / DualNumber::variable(k.load, load), out.friction_coefficient);
   take(friction * c.by_inputs(heated.sliding_speed), out.heat_rate);
   take(c.by_inputs(shared.film_thickness), out.film_thickness);
   take(c.by_inputs(shared.film_ratio), out.film_ratio);

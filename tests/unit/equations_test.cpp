@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -79,21 +78,32 @@ struct Mark {
   std::string file, formula;
 };
 
+/// Returns the number in a mark `// (eq N)` at the end of a line; 0 if the line has none.
+int marked_equation(const std::string& line) {
+  static const std::string kMark = "// (eq ";
+  const std::size_t mark = line.rfind(kMark);
+  if (mark == std::string::npos || !line.ends_with(')')) return 0;
+  const std::string number =
+      line.substr(mark + kMark.size(), line.size() - mark - kMark.size() - 1);
+  const bool is_number =
+      !number.empty() && number.find_first_not_of("0123456789") == std::string::npos;
+  return is_number ? std::stoi(number) : 0;
+}
+
 std::map<int, std::vector<Mark>> marks() {
-  static const std::regex mark(R"(// \(eq (\d+)\)$)");
   std::map<int, std::vector<Mark>> out;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(core_folder())) {
     const std::string extension = entry.path().extension();
     if (extension != ".h" && extension != ".cpp") continue;
     std::ifstream file(entry.path());
     for (std::string line; std::getline(file, line);) {
-      std::smatch found;
-      if (!std::regex_search(line, found, mark)) continue;
+      const int number = marked_equation(line);
+      if (number == 0) continue;
       const std::size_t comment = line.rfind("//");
       const std::size_t start = line.find_first_not_of(' ');
       std::string formula = comment == std::string::npos ? "" : line.substr(start, comment - start);
       while (!formula.empty() && formula.back() == ' ') formula.pop_back();
-      out[std::stoi(found[1])].push_back(
+      out[number].push_back(
           {std::filesystem::relative(entry.path(), core_folder()).generic_string(), formula});
     }
   }
