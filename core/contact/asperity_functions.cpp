@@ -146,8 +146,8 @@ template <class Real>
 AsperityFunctionsOf<Real> in_table(Real film_ratio) {
   // The nearest centre; film_ratio is not negative here. (lround would cost a call on the hot
   // path.)
-  const int k = static_cast<int>(laws::value_of(film_ratio) / kCentreSpacing +
-                                 0.5);  // NOLINT(bugprone-incorrect-roundings)
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings)
+  const int k = static_cast<int>(laws::value_of(film_ratio) / kCentreSpacing + 0.5);
   const Piece& piece = table()[k];
   const double centre = k * kCentreSpacing, root = piece.root_of_gaussian;
   const Real offset = film_ratio - centre;  // d

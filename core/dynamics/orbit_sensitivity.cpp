@@ -50,13 +50,13 @@ enum Sum { kLoss, kFrictionTorque, kLoad, kFilmRatioLoad, kTemperatureLoad, kSum
 
 /// The contacts of an instant, and derivatives by motion and parameters.
 struct Contacts {
-  bool is_told = false;  // the arms follow the motion
-  double arm[2] = {};    // friction torque on pinion and gear over load [m]
   Eigen::Matrix<double, 2, kMotions> arm_by_motion = decltype(arm_by_motion)::Zero();
   ByParameters<2> arm_by_parameter = ByParameters<2>::Zero();
+  double arm[2] = {};  // friction torque on pinion and gear over load [m]
   double sum[kSums] = {};
   Eigen::Matrix<double, kSums, kMotions> sum_by_motion = decltype(sum_by_motion)::Zero();
   ByParameters<kSums> sum_by_parameter = ByParameters<kSums>::Zero();
+  bool is_told = false;  // the arms follow the motion
 };
 
 /// The start, middle or end of a piece: values and derivatives by its own states, both torques and
@@ -118,7 +118,7 @@ class OrbitDifferentiator {
       const OrbitPiece& p = orbit_.pieces[i];
       system_.regime = p.regime;
       for (int half = 0; half < 2; ++half) {
-        double x[2], slope[2];
+        double x[2] = {}, slope[2] = {};
         const double h = state_of(p, half + 1)[kTime] - state_of(p, half)[kTime];
         for (const int end : {0, 1}) {
           Mechanics at;

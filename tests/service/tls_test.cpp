@@ -181,7 +181,7 @@ TEST(Tls, AnAddressBeyondLoopbackIsRefusedWithoutUsableFiles) {
     more.insert(more.end(), {"--listen", "0.0.0.0:0", "--database", folder.file("db")});
     ServerProcess process(more, folder.file("log"));
     EXPECT_EQ(process.wait(), 4);
-    const std::string out = process.log();
+    std::string out = process.log();
     std::filesystem::remove(folder.file("log"));
     return out;
   };
