@@ -231,7 +231,8 @@ TEST(SimplifiedEllipticity, ShowsTheMisprintsItIsKeptToShow) {
     const HertzFit fit = simplified_ellipticity(1, ratio, form);
     return unit_load_ellipse(fit, 1, ratio, kModulus, form).maximum_pressure;
   };
-  EXPECT_DOUBLE_EQ(simplified_ellipticity(1.0, 20.0, printed).second_integral, 1.0003 + 0.5968 * 20);
+  EXPECT_DOUBLE_EQ(simplified_ellipticity(1.0, 20.0, printed).second_integral,
+                   1.0003 + 0.5968 * 20);
   // Eq 20 alone: a_c too long by eps^(1/3).
   AsPublished eq20;
   eq20.eq20_semi_major = true;
