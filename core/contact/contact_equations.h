@@ -13,7 +13,7 @@
 
 // The equations of one contact, in the order in which they follow from its parameters, from its
 // conditions, from how film and asperities share the load and from its temperature. Real is double,
-// or a dual number for the derivatives. What has to be solved for stands elsewhere: Z
+// or a dual number for the derivatives. Other files solve for the implicit quantities: Z
 // (core/lubricant/viscosity.h), the share (load_sharing.h), the temperature
 // (thermal_equilibrium.h).
 

@@ -8,9 +8,9 @@
 // Derivatives of one contact by all of its scalar inputs.
 //
 // The equations of contact_equations.h are evaluated in dual numbers (core/numerics/dual-inl.h) at
-// a solved contact. What has been solved for is not iterated again: Z (eq 33), the film's share of
-// the load (eq 41) and the contact temperature (eq 38) are differentiated by the implicit function
-// theorem, one Newton step in dual numbers at the converged root. The mean stress is an integral
+// a solved contact. The implicit quantities are not iterated again: the implicit function theorem,
+// one Newton step in dual numbers at the converged root, differentiates Z (eq 33), the film's share
+// of the load (eq 41) and the contact temperature (eq 38). The mean stress is an integral
 // whose derivatives are integrals; the places where the stress meets its limit do not enter,
 // because there the integrand is continuous.
 
@@ -70,7 +70,7 @@ struct ContactInputName {
 /// By ContactInput.
 const std::array<ContactInputName, kContactInputs>& contact_input_names();
 
-/// Where the inputs stand in the structures, by ContactInput: to read, to seed or to perturb them.
+/// Returns the address of each input, by ContactInput, so that callers can read or change it.
 template <class Real>
 std::array<Real*, kContactInputs> contact_inputs(ContactParametersOf<Real>& parameters,
                                                  ContactConditionsOf<Real>& conditions) {

@@ -21,6 +21,11 @@
 // differentiated at fixed phase. Flanks must stay together: orbits that lose contact are not
 // differentiated. (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010,
 // section 7.4.)
+//
+// Measured against central differences on the same grid: at 194 of 200 random smooth points all
+// elasticities agree within 1e-5; the largest difference is 3.7e-5, and five of the six exceptions
+// are elasticities near 5 by pressure_viscosity_temperature. Whether the derivative or the
+// difference errs there is open. All derivatives together take 16 to 28 times the point.
 
 namespace tribodyn {
 

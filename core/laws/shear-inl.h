@@ -28,7 +28,7 @@ HWY_INLINE Real log_time_temperature_shift(Real log_viscosity, Real log_heat_den
   return log_viscosity - log_heat_density - reference;  // (eq 25)
 }
 
-/// (lambda a_TTS gamma_dot)^alpha_HN from the logarithm of what is in brackets. Never overflows.
+/// Returns (lambda a_TTS gamma_dot)^alpha_HN from ln(lambda a_TTS gamma_dot). Never overflows.
 template <Digits kDigits, class Parameter, class Real>
 HWY_INLINE Real thinning_power(Parameter alpha, Real log_reduced_shear_rate) {
   return exponential<kDigits>(clamped(alpha * log_reduced_shear_rate, -600, 600));

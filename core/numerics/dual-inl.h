@@ -1,7 +1,7 @@
-// Dual numbers: a value with its derivatives by kCount variables. What is computed with them comes
-// with its derivatives, exact to rounding (forward automatic differentiation; A. Griewank and
-// A. Walther, Evaluating Derivatives, 2nd ed., 2008, chapter 3). Compiled per instruction set as
-// real-inl.h.
+// Dual numbers: a value with its derivatives by kCount variables. Every result that is computed
+// from them has its derivatives, exact to rounding (forward automatic differentiation; A. Griewank
+// and A. Walther, Evaluating Derivatives, 2nd ed., 2008, chapter 3). Compiled per instruction set
+// as real-inl.h.
 #if defined(TRIBODYN_CORE_NUMERICS_DUAL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef TRIBODYN_CORE_NUMERICS_DUAL_INL_H_
 #undef TRIBODYN_CORE_NUMERICS_DUAL_INL_H_

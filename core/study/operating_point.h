@@ -199,7 +199,7 @@ struct PointResult {
   std::vector<RangeWarning> warnings;
   SectionState section_state;  ///< the steady state at mesh phase 0
   History history;
-  std::optional<PointSensitivities> sensitivities;  ///< if asked for and known
+  std::optional<PointSensitivities> sensitivities;  ///< if requested and found
 };
 
 /// A result as the start of a neighbour's search.

@@ -40,7 +40,8 @@ struct PointSensitivities {
   }
 };
 
-/// The parameters of a point, with their names and values, from what its orbit tells.
+/// Converts the derivatives of an orbit to those by the parameters of its point, with their names,
+/// units and values.
 PointSensitivities point_sensitivities(const Scene& scene, const OperatingCondition& condition,
                                        const Torques& torques, const OrbitSensitivity& orbit);
 

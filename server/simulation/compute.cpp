@@ -100,7 +100,8 @@ Solved solve(const SimulationInputs& inputs, const StudyFunctions& studies,
   } else {
     out = solve_curve(std::get<CurveStudy>(asked), physical, gear_set, studies, report);
   }
-  // An exception may leave the gear set half prepared: then it is not given back.
+  // An exception that ends the study may leave the gear set half prepared: then it is not given
+  // back.
   gear_sets.give_back(inputs.gear_set, physical.options, gear_set);
   return out;
 }

@@ -307,7 +307,8 @@ v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,
       compute_group(physical, group, options, gear_set, first_row, rows);
     }
   }
-  // An exception may leave the gear set half prepared: then it is not given back.
+  // An exception that ends the study may leave the gear set half prepared: then it is not given
+  // back. A refused point does not end it, nor does one in a speed sweep.
   gear_sets.give_back(evaluation.base.gear_set, physical.options, gear_set);
 
   v1::EvaluatePointsResponse out = rows.take();
