@@ -85,12 +85,17 @@ class TestCall : public UnaryCall {
   void drop_request() override { bytes_.clear(); }
   bool may_run_on_calling_thread() const override { return may_run_here; }
   void answered(Outcome<Reply> outcome) override {
-    if (held_.valid() && outcome.ok()) held_.wait();
+    if (held_.valid() && outcome.ok()) {
+      is_held_.set_value();
+      held_.wait();
+    }
     answer_.set_value(outcome.ok() ? google::rpc::Status() : outcome.error());
   }
 
   /// Lets every answer wait until `held` is ready, with the thread of its lane.
   void hold(std::shared_future<void> held) { held_ = std::move(held); }
+  /// Returns once the answer of a call for hold() is there and waits.
+  void wait_until_held() { is_held_.get_future().wait(); }
   bool is_answered() const {
     return answer_of_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   }
@@ -102,6 +107,7 @@ class TestCall : public UnaryCall {
  private:
   std::string bytes_;
   std::shared_future<void> held_;
+  std::promise<void> is_held_;
   std::promise<google::rpc::Status> answer_;
   std::future<google::rpc::Status> answer_of_ = answer_.get_future();
 };
@@ -251,14 +257,7 @@ TEST_F(CallDispatcherTest, OnlyOneCallRunsOnAThreadOfATransport) {
   stuck.may_run_here = true;
   stuck.hold(released);
   std::thread transport([&] { dispatcher_.answer(stuck); });
-  ASSERT_TRUE(eventually([&] {
-    TestCall probe(get());
-    probe.may_run_here = true;
-    dispatcher_.answer(probe);
-    const bool is_answered = probe.is_answered();
-    probe.wait();
-    return !is_answered;
-  }));
+  stuck.wait_until_held();
   TestCall other(get());
   other.may_run_here = true;
   other.hold(released);  // answer() would block if it ran the call
