@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -155,13 +156,16 @@ int complain(int code, const std::string& sentence) {
   return code;
 }
 
-/// The REST interface and the HTTP server that carries it.
+/// The REST interface and the HTTP servers that carry it, one for each address.
 struct Rest {
   RestHandler handler;
-  HttpServer server;
+  std::deque<HttpServer> servers;
   Rest(CallDispatcher& dispatcher, std::map<std::string, RestHandler::Page> pages,
-       const ListenAddress& address)
-      : handler(dispatcher, std::move(pages)), server(handler, address) {}
+       const std::vector<ListenAddress>& addresses, const TlsFiles& tls)
+      : handler(dispatcher, std::move(pages)) {
+    for (const ListenAddress& each : addresses)
+      servers.emplace_back(handler, each, HttpLimits(), tls);
+  }
 };
 
 /// The page /healthz: 503 while gRPC's health check answers NOT_SERVING.
@@ -188,6 +192,14 @@ std::function<HttpResponse()> metrics_page(SimulationJobs& jobs) {
   };
 }
 
+/// Returns the addresses of the REST interface. Throws ListenError.
+std::vector<ListenAddress> http_addresses(const Settings& settings) {
+  if (settings.http_listen.empty()) return {};
+  std::vector<ListenAddress> out = parse_listen_addresses(settings.http_listen);
+  for (const ListenAddress& each : out) require_tls(each, settings.tls);
+  return out;
+}
+
 /// Starts the REST interface. Returns null if no address is set.
 std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& dispatcher,
                                       SimulationJobs& jobs, const GrpcServer& server) {
@@ -196,14 +208,12 @@ std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& 
   std::map<std::string, RestHandler::Page> pages;
   pages["/metrics"] = {metrics_page(jobs)};
   pages["/healthz"] = {health_page(server), true};
-  const ListenAddress address = parse_listen_address(settings.http_listen);
-  if (address.is_remote()) {
-    throw ListenError("refusing to listen on \"" + settings.http_listen +
-                      "\" for REST, which has no TLS of its own: use 127.0.0.1:PORT or unix:PATH, "
-                      "and a proxy such as nginx for other machines");
+  auto out =
+      std::make_unique<Rest>(dispatcher, std::move(pages), http_addresses(settings), settings.tls);
+  for (const HttpServer& each : out->servers) {
+    spdlog::info("REST at {}://{}", each.is_encrypted() ? "https" : "http",
+                 to_text(each.address()));
   }
-  auto out = std::make_unique<Rest>(dispatcher, std::move(pages), address);
-  spdlog::info("REST at http://{}", to_text(out->server.address()));
   return out;
 }
 
@@ -213,6 +223,7 @@ std::vector<ListenAddress> listen_addresses(const Settings& settings) {
   std::vector<ListenAddress> out =
       settings.listen.empty() ? default_addresses() : parse_listen_addresses(settings.listen);
   for (const ListenAddress& each : out) require_tls(each, settings.tls);
+  http_addresses(settings);
   if (settings.tls.is_set()) require_usable(settings.tls);
   return out;
 }

@@ -13,7 +13,7 @@ namespace tribodyn::server {
 int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
           const sigset_t& signals);
 
-/// Returns the addresses of the settings. Throws ListenError.
+/// Returns the addresses of gRPC, and checks those of REST. Throws ListenError.
 std::vector<ListenAddress> listen_addresses(const Settings& settings);
 
 /// Checks settings, database and golden case. Prints everything that would prevent a start to

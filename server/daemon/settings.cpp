@@ -217,8 +217,8 @@ void add_flags(CLI::App& app, Settings& settings) {
       "File for the address, written when the server accepts calls and removed at its end");
   app.add_option(
       "--http-listen", settings.http_listen,
-      "Loopback address and port (0: any free one), or unix:PATH, of the REST interface, "
-      "of /metrics for Prometheus and of /healthz; none by default. Recommended: "
+      "Addresses, as those of --listen, of the REST interface, of /metrics for Prometheus and of "
+      "/healthz; none by default. Addresses beyond loopback need TLS. Recommended: "
       "127.0.0.1:50652");
   app.add_option("--log-level", settings.log_level, "Recommended: info")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))

@@ -6,8 +6,6 @@
 #include <cstdio>
 #include <memory>
 
-#include "server/transport/listen_address.h"
-
 namespace tribodyn::server {
 namespace {
 
@@ -55,6 +53,14 @@ void require_usable(const TlsFiles& files) {
     throw ListenError("the certificate " + files.certificate + " has expired");
   }
   if (!files.client_authorities.empty()) read_certificate(files.client_authorities);
+}
+
+void require_tls(const ListenAddress& address, const TlsFiles& tls) {
+  if (!address.is_remote() || tls.is_set()) return;
+  throw ListenError("refusing to listen on \"" + to_text(address) +
+                    "\" without TLS, as other machines may reach it: set --tls-certificate and "
+                    "--tls-key (deploy/make-certificates makes them), or use 127.0.0.1:PORT, "
+                    "[::1]:PORT or unix:PATH");
 }
 
 }  // namespace tribodyn::server

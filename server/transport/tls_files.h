@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "server/transport/listen_address.h"
+
 namespace tribodyn::server {
 
 /// Files of a TLS server, in PEM form. All are read again when they change.
@@ -15,5 +17,9 @@ struct TlsFiles {
 /// Throws ListenError, which names the file, if a file cannot be read, the key is not that of the
 /// certificate, or the certificate has expired.
 void require_usable(const TlsFiles& files);
+
+/// Throws ListenError, which says what to do, if other machines may reach the address and there is
+/// no TLS.
+void require_tls(const ListenAddress& address, const TlsFiles& tls);
 
 }  // namespace tribodyn::server

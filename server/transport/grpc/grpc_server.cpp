@@ -51,14 +51,6 @@ std::shared_ptr<grpc::ServerCredentials> tls_credentials(const TlsFiles& files) 
 
 }  // namespace
 
-void require_tls(const ListenAddress& address, const TlsFiles& tls) {
-  if (!address.is_remote() || tls.is_set()) return;
-  throw ListenError("refusing to listen on \"" + to_text(address) +
-                    "\" without TLS, as other machines may reach it: set --tls-certificate and "
-                    "--tls-key (deploy/make-certificates makes them), or use 127.0.0.1:PORT, "
-                    "[::1]:PORT or unix:PATH");
-}
-
 GrpcServer::GrpcServer(CallDispatcher& dispatcher, const std::vector<ListenAddress>& addresses,
                        const TlsFiles& tls)
     : live_(kMaximumOpenStreams), services_(grpc_services(dispatcher, live_)) {

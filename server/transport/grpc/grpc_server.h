@@ -18,10 +18,6 @@
 
 namespace tribodyn::server {
 
-/// Throws ListenError, which says what to do, if other machines may reach the address and there is
-/// no TLS.
-void require_tls(const ListenAddress& address, const TlsFiles& tls);
-
 /// The gRPC server, with health checks and reflection. The constructor starts it. The same thread
 /// must call shutdown() and the destructor.
 class GrpcServer {

@@ -16,6 +16,8 @@ struct HttpRequest {
   std::string body;
   std::string peer;       ///< address of the client
   bool is_owner = false;  ///< it came over a Unix socket that only the owner of the server reaches
+  bool is_encrypted = false;     ///< it came by TLS
+  std::string certificate = {};  ///< common name of the client's, which TLS has verified; or ""
 
   /// Returns the value of a header, named in lower case, or "".
   std::string_view header(const std::string& name) const {

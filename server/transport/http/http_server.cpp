@@ -3,17 +3,17 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
+#include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
-#include <boost/asio/generic/stream_protocol.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/beast/core/basic_stream.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <cctype>
@@ -31,7 +31,9 @@
 
 #include "server/application/errors.h"
 #include "server/transport/acceptor.h"
+#include "server/transport/http/byte_stream.h"
 #include "server/transport/http/rest_answer.h"
+#include "server/transport/tls_context.h"
 
 namespace tribodyn::server {
 namespace {
@@ -39,8 +41,6 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
-using Protocol = asio::generic::stream_protocol;
-using Stream = beast::basic_stream<Protocol, asio::io_context::executor_type>;
 using Error = beast::error_code;
 
 /// The numeric address of the client; "unix" for a Unix socket.
@@ -61,13 +61,6 @@ std::string peer_of(int connection) {
   return text.c_str();
 }
 
-int family_of(int connection) {
-  sockaddr_storage address{};
-  socklen_t size = sizeof address;
-  getsockname(connection, reinterpret_cast<sockaddr*>(&address), &size);
-  return address.ss_family;
-}
-
 /// The time of day as the header Date has it.
 std::string date_now() {
   const std::time_t now = std::time(nullptr);
@@ -85,7 +78,9 @@ std::string lower_case(std::string_view text) {
 }
 
 constexpr double kBusySeconds = 2;  // until a body of usual length has been read
-constexpr auto kShutdownGrace = std::chrono::seconds(1);  // for answers under way
+constexpr auto kShutdownGrace = std::chrono::seconds(1);          // for answers under way
+constexpr auto kFarewell = std::chrono::seconds(2);               // for a client to end TLS in turn
+constexpr auto kHangupInterval = std::chrono::milliseconds(200);  // of looks at a busy connection
 constexpr std::size_t kStrayBytes = 65'536;  // that a client may send while it reads a stream
 
 }  // namespace
@@ -94,12 +89,14 @@ constexpr std::size_t kStrayBytes = 65'536;  // that a client may send while it 
 /// call that is answered after the server has stopped may hold the last reference.
 class HttpServer::Connections : public std::enable_shared_from_this<Connections> {
  public:
-  Connections(RestHandler& handler, const ListenAddress& address, const HttpLimits& limits);
+  Connections(RestHandler& handler, const ListenAddress& address, const HttpLimits& limits,
+              const TlsFiles& tls);
 
   void start();
   void stop();
 
   const ListenAddress& address() const { return acceptor_.address(); }
+  bool is_encrypted() const { return tls_.has_value(); }
 
  private:
   class Session;
@@ -116,6 +113,7 @@ class HttpServer::Connections : public std::enable_shared_from_this<Connections>
 
   RestHandler& handler_;
   const HttpLimits limits_;
+  std::optional<TlsContext> tls_;
   std::set<std::shared_ptr<Session>> sessions_;
   std::map<std::string, int> of_peer_;
   std::size_t body_bytes_ = 0;  // of all requests that are being read or answered
@@ -136,24 +134,33 @@ class HttpServer::Connections : public std::enable_shared_from_this<Connections>
 class HttpServer::Connections::Session : public std::enable_shared_from_this<Session> {
  public:
   Session(Connections& all, int connection, std::string its_peer)
-      : peer(std::move(its_peer)), all_(all), stream_(all.context_), timer_(all.context_) {
+      : peer(std::move(its_peer)),
+        all_(all),
+        connection_(
+            byte_stream(all.context_, connection, all.tls_ ? all.tls_->current() : nullptr)),
+        stream_(*connection_),
+        timer_(all.context_) {
     const int on = 1;
     setsockopt(connection, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);  // fails for a Unix socket
-    stream_.socket().assign(Protocol(family_of(connection), 0), connection);
   }
   ~Session() { release_body(); }
 
-  void start() { read_head(); }
+  void start() {
+    stream_.expires_after(all_.limits_.handshake_time);
+    stream_.handshake([self = shared_from_this()](Error failure) {
+      if (failure) return self->drop();
+      self->certificate_ = self->stream_.client_certificate();
+      self->read_head();
+    });
+  }
 
   void close() {
     *cancelled_ = true;
     timer_.cancel();
-    Error ignored;
-    stream_.socket().shutdown(asio::socket_base::shutdown_both, ignored);
-    stream_.socket().close(ignored);
+    stream_.close();
   }
 
-  bool is_open() const { return stream_.socket().is_open(); }
+  bool is_open() const { return stream_.descriptor() >= 0; }
   /// True from the end of a request to the end of its answer.
   bool is_answering() const { return is_answering_; }
 
@@ -260,17 +267,15 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
 
   /// Reads and drops what a client sends while it receives a stream, to notice its hang-up.
   void drop_input() {
-    stream_.socket().async_wait(
-        asio::socket_base::wait_read, [self = shared_from_this()](Error failure) {
-          if (failure || self->body_stream_ == nullptr) return;
-          char bytes[4096];
-          const ssize_t count =
-              recv(self->stream_.socket().native_handle(), bytes, sizeof bytes, MSG_DONTWAIT);
-          const bool has_none = count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
-          if (count > 0) self->stray_bytes_ += static_cast<std::size_t>(count);
-          if ((count <= 0 && !has_none) || self->stray_bytes_ > kStrayBytes) return self->drop();
-          self->drop_input();
-        });
+    stream_.wait_for_input([self = shared_from_this()](Error failure) {
+      if (failure || self->body_stream_ == nullptr) return;
+      char bytes[4096];
+      const ssize_t count = recv(self->stream_.descriptor(), bytes, sizeof bytes, MSG_DONTWAIT);
+      const bool has_none = count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+      if (count > 0) self->stray_bytes_ += static_cast<std::size_t>(count);
+      if ((count <= 0 && !has_none) || self->stray_bytes_ > kStrayBytes) return self->drop();
+      self->drop_input();
+    });
   }
 
   void read_head() {
@@ -301,6 +306,8 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
     request_.target = std::string(message.target());
     request_.peer = peer;
     request_.is_owner = all_.address().is_unix();
+    request_.is_encrypted = all_.tls_.has_value();
+    request_.certificate = certificate_;
     for (const auto& field : message) {
       const auto [place, is_new] = request_.headers.emplace(
           lower_case({field.name_string().data(), field.name_string().size()}),
@@ -373,17 +380,23 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
 
   /// Cancels the call if the client goes while it waits for the answer.
   void watch_for_hangup() {
-    stream_.socket().async_wait(
-        asio::socket_base::wait_read,
-        [self = shared_from_this(), answered = answered_](Error failure) {
-          if (failure || self->answered_ != answered) return;
-          char byte = 0;
-          const ssize_t count =
-              recv(self->stream_.socket().native_handle(), &byte, 1, MSG_PEEK | MSG_DONTWAIT);
-          if (count == 0 || (count < 0 && errno != EAGAIN && errno != EWOULDBLOCK)) {
-            *self->cancelled_ = true;
-          }
-        });
+    stream_.wait_for_input([self = shared_from_this(), answered = answered_](Error failure) {
+      if (!failure) self->note_hangup(answered);
+    });
+  }
+
+  /// Before its end a client may have sent the next request, or the end of TLS.
+  void note_hangup(unsigned answered) {
+    if (answered_ != answered || !is_open()) return;
+    pollfd state{stream_.descriptor(), POLLRDHUP, 0};
+    if (poll(&state, 1, 0) == 1) {
+      *cancelled_ = true;
+      return;
+    }
+    timer_.expires_after(kHangupInterval);
+    timer_.async_wait([self = shared_from_this(), answered](Error failure) {
+      if (!failure) self->note_hangup(answered);
+    });
   }
 
   void refuse(int status, const std::string& message) { refuse(http_error(status, message)); }
@@ -401,17 +414,18 @@ class HttpServer::Connections::Session : public std::enable_shared_from_this<Ses
   }
 
   void end() {
-    // The client may still send what nobody reads; with these bytes unread a close would reset the
-    // connection, and the client might lose the answer.
-    Error ignored;
-    stream_.socket().shutdown(asio::socket_base::shutdown_send, ignored);
-    close();
-    all_.remove(shared_from_this());
+    stream_.expires_after(kFarewell);
+    stream_.finish([self = shared_from_this()](Error) {
+      self->close();
+      self->all_.remove(self);
+    });
   }
 
   Connections& all_;
-  Stream stream_;
-  asio::steady_timer timer_;  // of a streamed body
+  const std::unique_ptr<ByteStream> connection_;
+  ByteStream& stream_;        // *connection_, as Beast's functions take it
+  asio::steady_timer timer_;  // of a streamed body, or for a hang-up while a call is under way
+  std::string certificate_;   // common name of the client's
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> head_;
   std::optional<http::request_parser<http::string_body>> body_;
@@ -482,8 +496,11 @@ void HttpServer::Connections::Session::start_body() {
 }
 
 HttpServer::Connections::Connections(RestHandler& handler, const ListenAddress& address,
-                                     const HttpLimits& limits)
-    : handler_(handler), limits_(limits), acceptor_(address) {}
+                                     const HttpLimits& limits, const TlsFiles& tls)
+    : handler_(handler), limits_(limits), acceptor_(address) {
+  require_tls(address, tls);
+  if (address.is_remote()) tls_.emplace(tls);
+}
 
 void HttpServer::Connections::start() {
   thread_ = std::thread([this] {
@@ -575,12 +592,15 @@ void HttpServer::Connections::remove(const std::shared_ptr<Session>& session) {
   if (--found->second == 0) of_peer_.erase(found);
 }
 
-HttpServer::HttpServer(RestHandler& handler, const ListenAddress& address, const HttpLimits& limits)
-    : connections_(std::make_shared<Connections>(handler, address, limits)) {
+HttpServer::HttpServer(RestHandler& handler, const ListenAddress& address, const HttpLimits& limits,
+                       const TlsFiles& tls)
+    : connections_(std::make_shared<Connections>(handler, address, limits, tls)) {
   connections_->start();
 }
 
 HttpServer::~HttpServer() { connections_->stop(); }
+
+bool HttpServer::is_encrypted() const { return connections_->is_encrypted(); }
 
 const ListenAddress& HttpServer::address() const { return connections_->address(); }
 

@@ -6,6 +6,7 @@
 
 #include "server/transport/http/rest_handler.h"
 #include "server/transport/listen_address.h"
+#include "server/transport/tls_files.h"
 
 namespace tribodyn::server {
 
@@ -17,6 +18,7 @@ struct HttpLimits {
   std::size_t bodies_bytes = 128 << 20;  ///< of all requests that are being read
   /// From a connection, or the answer before, until the head of a request is there.
   std::chrono::milliseconds head_time = std::chrono::seconds(30);
+  std::chrono::milliseconds handshake_time = std::chrono::seconds(10);  ///< of TLS
   std::chrono::milliseconds body_time = std::chrono::seconds(60);
   std::chrono::milliseconds write_time = std::chrono::seconds(60);
 };
@@ -26,8 +28,10 @@ struct HttpLimits {
 /// of a connection has a time limit, and nothing is allocated before it is counted.
 class HttpServer {
  public:
-  /// Listens at once. `handler` must outlive the object. Throws ListenError.
-  HttpServer(RestHandler& handler, const ListenAddress& address, const HttpLimits& limits = {});
+  /// Listens at once, with TLS at an address that other machines reach. `handler` must outlive the
+  /// object. Throws ListenError, also if such an address comes without `tls`.
+  HttpServer(RestHandler& handler, const ListenAddress& address, const HttpLimits& limits = {},
+             const TlsFiles& tls = {});
   /// Ends the handler's streams, lets calls under way be answered within a second, and closes all
   /// connections.
   ~HttpServer();
@@ -36,6 +40,7 @@ class HttpServer {
 
   /// Returns the address with the port that the system picked.
   const ListenAddress& address() const;
+  bool is_encrypted() const;
 
  private:
   class Connections;

@@ -21,7 +21,8 @@ namespace tribodyn::server {
 /// Returns what a request brings to show who makes it: its header and its connection.
 inline Credentials credentials_of(const HttpRequest& request) {
   return {.is_owner = request.is_owner,
-          .authorization = std::string(request.header("authorization"))};
+          .authorization = std::string(request.header("authorization")),
+          .certificate = request.certificate};
 }
 
 /// The request of a call over HTTP: `Call` is UnaryCall or StreamCall.

@@ -50,11 +50,12 @@ HttpResponse foreign(const std::string& message) {
 }
 
 /// Refuses what a page of another origin makes a browser send: this server answers whoever reaches
-/// its address, and every page reaches loopback. Returns nullopt if the request is welcome.
+/// its address, and every page reaches loopback. With TLS the server has the names of its
+/// certificate, which the browser checks. Returns nullopt if the request is welcome.
 std::optional<HttpResponse> foreign_origin(const HttpRequest& request) {
   const std::string_view authority = request.header("host");
   const std::string_view host = host_of(authority);
-  if (host != "localhost" && host != "127.0.0.1" && host != "[::1]") {
+  if (!request.is_encrypted && host != "localhost" && host != "127.0.0.1" && host != "[::1]") {
     return foreign("this server is not called \"" + plain_excerpt(authority) +
                    "\"; address it as localhost, 127.0.0.1 or [::1]");
   }
