@@ -19,6 +19,7 @@
 #include "server/application/errors.h"
 #include "server/contract/resource_names.h"
 #include "server/contract/violations.h"
+#include "server/transport/http/body_errors.h"
 #include "server/transport/http/media_types.h"
 #include "server/transport/http/stream_format.h"
 
@@ -66,15 +67,6 @@ bool is_utf8(std::string_view text) {
     if (point < least || point > 0x10ffff || (point >= 0xd800 && point < 0xe000)) return false;
   }
   return true;
-}
-
-std::string values_of(const google::protobuf::EnumDescriptor& type) {
-  std::string out;
-  for (int i = 0; i < type.value_count(); ++i) {
-    if (i > 0) out += ", ";
-    out += type.value(i)->name();
-  }
-  return out;
 }
 
 /// Gives a field the value of a text, or appends the value to a repeated field. Returns what the
@@ -261,17 +253,6 @@ const Descriptor& body_type(const RouteMatch& route) {
   return *request.FindFieldByName(route.body_field)->message_type();
 }
 
-/// The first line of what protobuf says of a body, as printable ASCII. Further lines repeat the
-/// body.
-std::string first_line(std::string_view text) {
-  constexpr std::size_t kLongest = 300;  // [bytes]
-  std::string out(text.substr(0, std::min(text.find('\n'), kLongest)));
-  for (char& character : out) {
-    if (character < ' ' || character > '~') character = '?';
-  }
-  return out;
-}
-
 /// Appends the body of the request. Returns a violation if the body is not JSON of its type.
 std::optional<Violation> append_body(const RouteMatch& route, const std::string& body,
                                      std::string& wire) {
@@ -281,9 +262,8 @@ std::optional<Violation> append_body(const RouteMatch& route, const std::string&
   const auto status = google::protobuf::util::JsonToBinaryString(
       &resolver(), type, body.empty() ? "{}" : body, &binary);
   if (!status.ok()) {
-    return Violation{route.body_field == "*" ? "" : route.body_field,
-                     "the body is no JSON of " + body_type(route).name() + ": " +
-                         first_line({status.message().data(), status.message().size()})};
+    return body_violation(body_type(route), route.body_field == "*" ? "" : route.body_field,
+                          {status.message().data(), status.message().size()});
   }
   if (route.body_field == "*") {
     wire += binary;
