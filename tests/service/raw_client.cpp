@@ -84,6 +84,24 @@ std::pair<grpc::Status, std::string> RawClient::call(const std::string& method,
   return {status, text(response)};
 }
 
+std::pair<grpc::Status, std::vector<std::string>> RawClient::read_all(const std::string& method,
+                                                                      const std::string& request) {
+  const auto stream = open(method, request);
+  stream->call->WritesDone(nullptr);
+  stream->step();
+  std::vector<std::string> out;
+  for (;;) {
+    grpc::ByteBuffer part;
+    stream->call->Read(&part, nullptr);
+    if (!stream->step()) break;
+    out.push_back(text(part));
+  }
+  grpc::Status status;
+  stream->call->Finish(&status, nullptr);
+  stream->step();
+  return {status, out};
+}
+
 std::shared_ptr<RawClient::Stream> RawClient::open(const std::string& method,
                                                    const std::string& request) {
   auto stream = std::make_shared<Stream>();

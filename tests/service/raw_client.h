@@ -18,6 +18,10 @@ class RawClient {
   /// Makes a unary call. Returns the status and the answer as bytes.
   std::pair<grpc::Status, std::string> call(const std::string& method, const std::string& request);
 
+  /// Makes a call that answers with a stream. Returns the status and all answers.
+  std::pair<grpc::Status, std::vector<std::string>> read_all(const std::string& method,
+                                                             const std::string& request);
+
   /// A stream on which one request is sent and nothing is read. It is open while the object exists.
   struct Stream;
   std::shared_ptr<Stream> open(const std::string& method, const std::string& request);
