@@ -43,6 +43,9 @@ struct ModelOptions {
   bool load_dependent_mesh_data = false;       ///< Fourier series and load shares at the torque
   bool tabulated_friction_arms =
       false;  ///< r_fr of the tables, not of the actual sliding direction
+  /// The film of eq 12 times phi_T of P. K. Gupta and others (1992), with the pressure that the
+  /// contact would have if the film carried all of its load.
+  bool inlet_shear_heating = false;
   PressureViscosityIndex pressure_viscosity_index = PressureViscosityIndex::kReciprocalAsymptotic;
   HertzSolution hertz_solution = HertzSolution::kSimplified;
   HertzLoad hertz_load = HertzLoad::kFilmLoad;

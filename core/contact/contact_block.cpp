@@ -77,6 +77,9 @@ void solve_block(const Tables& tables, int count, const ContactBlockInputs& in,
   const ActiveLanes active(count);
   for (const int i : active) eval_logarithms(in, work, i);
   for (const int i : active) eval_film_under_all(tables, in, work, i);
+  if (tables.inlet_shear_heating) {
+    for (const int i : active) heat_inlet(tables, in, work, i);
+  }
   share_loads(tables, active, work);
   for (const int i : active) finish_load_sharing(tables, in, block, work, i);
   for (const int i : active) eval_thermal_network(tables, in, block, work, i);

@@ -43,8 +43,11 @@ struct ContactBlockTables {
   /// False: everything goes to the reference.
   bool covered = false;
 
-  double log_film = 0;           ///< see log_film_constant
-  double inverse_roughness = 0;  ///< 1/sigma_G [1/m]
+  double log_film = 0;  ///< see log_film_constant
+  bool inlet_shear_heating = false;
+  double log_thermal_loading = 0;  ///< see log_thermal_loading of laws
+  double reduced_modulus = 0;      ///< E' [Pa]
+  double inverse_roughness = 0;    ///< 1/sigma_G [1/m]
   double asperity_load_factor = 0, asperity_area_factor = 0;
   BoundaryFriction boundary{};  ///< 0: no F_b
   double conductance_factor_1 = 0, conductance_factor_2 = 0;

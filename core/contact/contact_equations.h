@@ -52,19 +52,24 @@ struct ContactConstants {
   Real pressure_viscosity_coefficient;  ///< alpha*(T_in) [1/Pa]
   Real reduced_modulus;                 ///< E' [Pa]
   Real log_film;                        ///< see log_film_constant
+  Real log_thermal_loading;             ///< see log_thermal_loading of laws
   Real asperity_load_factor;            ///< W_asp/(A_EHL F_5/2) [Pa]
   Real asperity_area_factor;            ///< A_asp/(A_EHL F_2) [-]
   Real conductance_factor_1, conductance_factor_2;
   ShearLaw<Real> shear;
 };
 
-/// ln eta_0(T) in Pa s.
+/// ln eta_0(T) in Pa s, and its derivative by T [1/K].
 template <class Real>
-Real log_ambient_viscosity(const LubricantOf<Real>& oil, const Real& temperature) {
+laws::WithSlope<Real> log_ambient_viscosity_and_slope(const LubricantOf<Real>& oil,
+                                                      const Real& temperature) {
   return laws::log_vogel_viscosity(laws::logarithm(oil.vogel_viscosity_prefactor),
                                    oil.vogel_temperature_coefficient,
-                                   oil.vogel_reference_temperature, temperature)
-      .value;
+                                   oil.vogel_reference_temperature, temperature);
+}
+template <class Real>
+Real log_ambient_viscosity(const LubricantOf<Real>& oil, const Real& temperature) {
+  return log_ambient_viscosity_and_slope(oil, temperature).value;
 }
 
 /// index_of(L, alpha*) gives Z by eq 33 at the temperature where alpha* was measured.
@@ -79,7 +84,10 @@ ContactConstants<Real> contact_constants(const ContactParametersOf<Real>& in,
   };
   ContactConstants<Real> out;
   out.inlet_temperature = in.bath_temperature + in.inlet_temperature_rise;  // (eq 14)
-  out.log_inlet_viscosity = log_ambient_viscosity(oil, out.inlet_temperature);
+  const laws::WithSlope<Real> inlet = log_ambient_viscosity_and_slope(oil, out.inlet_temperature);
+  out.log_inlet_viscosity = inlet.value;
+  out.log_thermal_loading =
+      laws::log_thermal_loading(inlet.value, Real(-inlet.slope), oil.thermal_conductivity);
 
   ShearLaw<Real>& shear = out.shear;
   shear.lubricant = oil;
@@ -166,6 +174,14 @@ LoadedContact<Real> loaded_contact(const ContactParametersOf<Real>& in,
                                                    log_along, laws::logarithm(k.load))) *
                       laws::side_leakage(log_along - laws::logarithm(across))
                 : Real(0.0);
+  if (options.inlet_shear_heating && entrained) {
+    const Real slide2 = laws::square(k.velocity_1_x - k.velocity_2_x) +
+                        laws::square(k.velocity_1_y - k.velocity_2_y);
+    out.film_thickness = out.film_thickness * laws::inlet_heating_factor(
+                                                  constants.log_thermal_loading,
+                                                  laws::logarithm(speed2), laws::logarithm(slide2),
+                                                  axes.maximum_pressure, constants.reduced_modulus);
+  }
   out.sharing = {
       k.load, out.film_thickness / in.roughness.composite_rms_height,
       constants.asperity_load_factor * std::numbers::pi * axes.semi_major * axes.semi_minor,

@@ -20,7 +20,7 @@ using DualNumber = laws::Dual<double, kDirections>;
 // They are evaluated with derivatives by that, and by all inputs through the chain rule.
 
 /// By the conditions and contact_level; the last direction is for the unknown.
-constexpr int kContactLevel = 11;
+constexpr int kContactLevel = 12;
 constexpr int kContactDirections = kConditions + kContactLevel + 1;
 using ContactNumber = laws::Dual<double, kContactDirections>;
 
@@ -33,6 +33,7 @@ std::array<Real*, kContactLevel> contact_level(ContactParametersOf<Real>& parame
           &parameters.lubricant.thermal_conductivity,
           &constants.inlet_temperature,
           &constants.log_film,
+          &constants.log_thermal_loading,
           &constants.reduced_modulus,
           &constants.asperity_load_factor,
           &constants.asperity_area_factor,

@@ -20,6 +20,10 @@ enum class ContactStatus {
   kRefusedOverflow,       ///< a law left the range of double precision
 };
 
+/// Highest contact temperature of an answer about a single contact [K]: steel melts at about 1800
+/// K, and oil decomposes far below.
+inline constexpr double kHottestContact = 1800;
+
 /// Stable UPPER_SNAKE_CASE name of a status, and one sentence for a person.
 const char* contact_status_name(ContactStatus status);
 const char* contact_status_sentence(ContactStatus status);

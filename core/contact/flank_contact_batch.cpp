@@ -106,6 +106,9 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   const Lubricant& oil = in.lubricant;
   const ModelOptions& options = model.options();
   t.log_film = constants.log_film;
+  t.inlet_shear_heating = options.inlet_shear_heating;
+  t.log_thermal_loading = constants.log_thermal_loading;
+  t.reduced_modulus = constants.reduced_modulus;
   t.inverse_roughness = 1 / in.roughness.composite_rms_height;
   t.asperity_load_factor = constants.asperity_load_factor;
   t.asperity_area_factor = constants.asperity_area_factor;

@@ -61,6 +61,15 @@ HWY_INLINE void eval_film_under_all(const Tables& t, const ContactBlockInputs& i
   store(t.asperity_load_factor * load_any(in.unit_area + i) * per_root, work.asperities + i);
 }
 
+/// The same where shear heats the inlet.
+HWY_INLINE void heat_inlet(const Tables& t, const ContactBlockInputs& in, Work& work, int i) {
+  const Pack pressure = load_any(in.unit_pressure + i) * load(work.load_root + i);
+  const Pack factor =
+      inlet_heating_factor(t.log_thermal_loading, load(work.log_speed2 + i),
+                           logarithm(load(work.slide2 + i)), pressure, t.reduced_modulus);
+  store(load(work.film_under_all + i) * factor, work.film_under_all + i);
+}
+
 struct ValueAndSlope {
   Pack value, slope;
 };

@@ -118,6 +118,7 @@ ModelOptions to_core(const v1::ModelOptions& message) {
       .subtract_contact_point_motion = message.subtract_contact_point_motion(),
       .load_dependent_mesh_data = message.load_dependent_mesh_data(),
       .tabulated_friction_arms = message.tabulated_friction_arms(),
+      .inlet_shear_heating = message.inlet_shear_heating(),
       .pressure_viscosity_index =
           message.pressure_viscosity_index() == v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT
               ? PressureViscosityIndex::kHoupert

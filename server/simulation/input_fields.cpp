@@ -86,7 +86,8 @@ constexpr InputFields kInputFields[] = {
      "isothermal newtonian no_limiting_shear_stress no_boundary_friction "
      "damping_in_contact_only energy_consistent subtract_contact_point_motion "
      "load_dependent_mesh_data pressure_viscosity_index exact_hertz "
-     "hertz_from_total_load as_published tabulated_friction_arms",
+     "hertz_from_total_load as_published tabulated_friction_arms "
+     "inlet_shear_heating",
      ""},
     {"AsPublished",
      "eq17_atan eq20_semi_major eq22_inverted_ratio eq31_32_logarithm "

@@ -84,6 +84,7 @@ TEST(ContactBatch, RandomStates) {
     c.options.no_limiting_shear_stress = one_in(8);
     c.options.no_boundary_friction = one_in(8);
     if (one_in(4)) c.options.hertz_solution = HertzSolution::kExact;
+    c.options.inlet_shear_heating = n % 3 == 1;
     std::vector<ContactConditions> conditions;
     for (int i = 0; i < kEach; ++i) conditions.push_back(random_contact_case(draw).conditions);
     try {

@@ -29,6 +29,7 @@ yardstick::ContactFriction yardstick_of(const ContactCase& c) {
   options.houpert_pressure_index =
       c.options.pressure_viscosity_index == PressureViscosityIndex::kHoupert;
   options.elliptic_integral_hertz = c.options.hertz_solution == HertzSolution::kExact;
+  options.inlet_shear_heating = c.options.inlet_shear_heating;
   options.quadrature_nodes = 64;
   return {
       {l.vogel_viscosity_prefactor, l.vogel_temperature_coefficient, l.vogel_reference_temperature,
@@ -118,6 +119,20 @@ TEST(HardContacts, VanishingLoad) {
     const double slide = s.sliding_speed;
     EXPECT_NEAR(s.contact_temperature - c.inlet_temperature(),
                 eta * slide * slide / (8 * c.lubricant.thermal_conductivity), 1e-6);
+  }
+}
+
+TEST(HardContacts, InletShearHeatingThinsFilmsFromColdToHot) {
+  for (const double sump : {253.15, 313.15, 363.15}) {
+    for (const double load : {50.0, 2000.0}) {
+      SCOPED_TRACE(std::to_string(sump) + " K, " + std::to_string(load) + " N");
+      ContactCase c;
+      c.sump_temperature = sump;
+      c.conditions.load = load;
+      const double without = c.solve().central_film_thickness;
+      c.options.inlet_shear_heating = true;
+      EXPECT_LT(expect_yardstick(c).central_film_thickness, without);
+    }
   }
 }
 

@@ -91,6 +91,7 @@ TEST(ToCore, EveryModelOptionIsConverted) {
   EXPECT_TRUE(with_flag("subtract_contact_point_motion").subtract_contact_point_motion);
   EXPECT_TRUE(with_flag("load_dependent_mesh_data").load_dependent_mesh_data);
   EXPECT_TRUE(with_flag("tabulated_friction_arms").tabulated_friction_arms);
+  EXPECT_TRUE(with_flag("inlet_shear_heating").inlet_shear_heating);
   EXPECT_EQ(with_flag("exact_hertz").hertz_solution, HertzSolution::kExact);
   EXPECT_EQ(with_flag("hertz_from_total_load").hertz_load, HertzLoad::kTotalLoad);
   EXPECT_TRUE(with_flag("eq17_atan").as_published.eq17_atan);

@@ -109,6 +109,35 @@ TEST(CentralFilm, ScalesFromUnitLoadToAnyLoad) {
   }
 }
 
+double inlet_heating(double loading, double slide_roll_ratio, double pressure_over_modulus) {
+  const double speed2 = 9;  // [m2/s2]
+  return laws::inlet_heating_factor(std::log(loading / speed2), std::log(speed2),
+                                    std::log(speed2 * slide_roll_ratio * slide_roll_ratio),
+                                    pressure_over_modulus, 1.0);
+}
+
+TEST(InletHeating, IsTheRegressionOfGuptaInTheSlideRollRatio) {
+  for (const double loading : {0.01, 1.0, 20.0}) {
+    for (const double slide : {0.0, 0.1, 2.0}) {
+      const double expected =
+          (1 - 13.2 * 0.004 * std::pow(loading, 0.42)) /
+          (1 + 0.213 * (1 + 2.23 * std::pow(slide, 0.83)) * std::pow(loading, 0.64));
+      EXPECT_NEAR(inlet_heating(loading, slide, 0.004) / expected, 1, 1e-14);
+    }
+  }
+}
+
+TEST(InletHeating, ThinsTheFilmAndNeverTakesItAll) {
+  EXPECT_NEAR(inlet_heating(1e-30, 1, 0.006), 1, 1e-12);
+  double before = 1;
+  for (double loading = 1e-3; loading < 1e6; loading *= 2) {
+    const double factor = inlet_heating(loading, 0.5, 0.006);
+    EXPECT_GT(factor, 0);
+    EXPECT_LT(factor, before);
+    before = factor;
+  }
+}
+
 TEST(EffectiveRadiusAlongAnAngle, SatisfiesItsIdentities) {
   const double rx = 0.02, ry = 1.1;
   for (double theta = -4; theta < 4; theta += 0.01) {

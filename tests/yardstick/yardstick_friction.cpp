@@ -112,6 +112,11 @@ HertzShape ExactHertz(double ratio) {
   return {ellipticity, std::comp_ellint_2(modulus(ellipticity))};
 }
 
+// (1 - nu^2)/E of eq 13.
+double PlaneCompliance(const Solid& solid) {
+  return (1.0 - solid.poisson_ratio * solid.poisson_ratio) / solid.youngs_modulus;
+}
+
 // Eq 36 written with the velocity components: half length of the ellipse along the motion.
 double ActiveLength(double semi_x, double semi_y, double velocity_x, double velocity_y) {
   return semi_x * semi_y * std::hypot(velocity_x, velocity_y) /
@@ -125,16 +130,18 @@ double AsperityIntegral(double order, double film_parameter) {
          ScaledAsperityIntegral(order, film_parameter);
 }
 
-ContactFriction::ContactFriction(const Lubricant& lubricant, const Solid& solid,
-                                 const Surface& surface, double sump_temperature,
-                                 double inlet_temperature_rise, const FrictionOptions& options)
+ContactFriction::ContactFriction(const Lubricant& lubricant, const Solid& pinion_solid,
+                                 const Solid& gear_solid, const Surface& surface,
+                                 double sump_temperature, double inlet_temperature_rise,
+                                 const FrictionOptions& options)
     : lubricant_(lubricant),
-      solid_(solid),
+      pinion_solid_(pinion_solid),
+      gear_solid_(gear_solid),
       surface_(surface),
       options_(options),
       rule_(MakeGaussLegendreRule(options.quadrature_nodes)),
       inlet_temperature_(sump_temperature + inlet_temperature_rise),
-      reduced_modulus_(solid.youngs_modulus / (1.0 - solid.poisson_ratio * solid.poisson_ratio)),
+      reduced_modulus_(2.0 / (PlaneCompliance(pinion_solid) + PlaneCompliance(gear_solid))),
       inlet_viscosity_(AmbientViscosity(inlet_temperature_)) {
   const double log_viscosity =
       std::log(AmbientViscosity(lubricant.pressure_viscosity_temperature)) + kRoelandsLogarithm;
@@ -293,12 +300,27 @@ void ContactFriction::ShareLoad(const ContactInput& input, ContactResult* result
   const double speed_parameter =
       inlet_viscosity_ * result->entrainment_speed / (reduced_modulus_ * radius);  // eq 13
   const double load_parameter = input.load / (reduced_modulus_ * radius * radius);
-  const double full_load_film =
-      4.31 * radius * std::pow(speed_parameter, 0.68) *
-      std::pow(inlet_alpha_ * reduced_modulus_, 0.49) * std::pow(load_parameter, -0.073) *
-      -std::expm1(-1.23 * std::pow(side_radius / radius, 2.0 / 3.0));  // eq 12
+  double full_load_film = 4.31 * radius * std::pow(speed_parameter, 0.68) *
+                          std::pow(inlet_alpha_ * reduced_modulus_, 0.49) *
+                          std::pow(load_parameter, -0.073) *
+                          -std::expm1(-1.23 * std::pow(side_radius / radius, 2.0 / 3.0));  // eq 12
   SetEllipse(input, input.load, result);
   const double full_load_area = result->film_area;
+  if (options_.inlet_shear_heating) {
+    // Viscosity falls by A_1/(T - T_0)^2 per kelvin.
+    const double above = inlet_temperature_ - lubricant_.vogel_reference_temperature;
+    const double loading = lubricant_.vogel_temperature_parameter / (above * above) *
+                           inlet_viscosity_ * result->entrainment_speed *
+                           result->entrainment_speed / lubricant_.thermal_conductivity;
+    const double slide_roll_ratio = std::hypot(input.pinion_velocity_x - input.gear_velocity_x,
+                                               input.pinion_velocity_y - input.gear_velocity_y) /
+                                    result->entrainment_speed;
+    const double numerator =
+        1.0 - 13.2 * result->maximum_pressure / reduced_modulus_ * std::pow(loading, 0.42);
+    full_load_film *=
+        std::max(numerator, 0.5) /
+        (1.0 + 0.213 * (1.0 + 2.23 * std::pow(slide_roll_ratio, 0.83)) * std::pow(loading, 0.64));
+  }
 
   const double asperity_number =
       surface_.asperity_density * surface_.asperity_radius * surface_.roughness;
@@ -334,19 +356,21 @@ void ContactFriction::SetThermalNetwork(const ContactInput& input, ContactResult
   const bool major_along_x = input.radius_x > input.radius_y;
   const double semi_x = major_along_x ? result->semi_major_axis : result->semi_minor_axis;
   const double semi_y = major_along_x ? result->semi_minor_axis : result->semi_major_axis;
-  const double diffusivity = solid_.thermal_conductivity / (solid_.density * solid_.specific_heat);
-  const auto resistance = [&](double length, double speed) {  // eq 35
-    return 1.06 / (result->film_area * solid_.thermal_conductivity) *
+  const auto resistance = [&](const Solid& solid, double length, double speed) {  // eq 35
+    const double diffusivity = solid.thermal_conductivity / (solid.density * solid.specific_heat);
+    return 1.06 / (result->film_area * solid.thermal_conductivity) *
            std::sqrt(diffusivity * length / speed);
   };
   result->pinion_active_length =
       ActiveLength(semi_x, semi_y, input.pinion_velocity_x, input.pinion_velocity_y);
   result->gear_active_length =
       ActiveLength(semi_x, semi_y, input.gear_velocity_x, input.gear_velocity_y);
-  result->pinion_thermal_resistance = resistance(
-      result->pinion_active_length, std::hypot(input.pinion_velocity_x, input.pinion_velocity_y));
-  result->gear_thermal_resistance = resistance(
-      result->gear_active_length, std::hypot(input.gear_velocity_x, input.gear_velocity_y));
+  result->pinion_thermal_resistance =
+      resistance(pinion_solid_, result->pinion_active_length,
+                 std::hypot(input.pinion_velocity_x, input.pinion_velocity_y));
+  result->gear_thermal_resistance =
+      resistance(gear_solid_, result->gear_active_length,
+                 std::hypot(input.gear_velocity_x, input.gear_velocity_y));
   result->film_thermal_resistance =
       result->central_film_thickness / (2.0 * lubricant_.thermal_conductivity * result->film_area);
   result->heat_partition = (result->gear_thermal_resistance + result->film_thermal_resistance) /

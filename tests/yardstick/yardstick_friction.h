@@ -55,6 +55,9 @@ struct FrictionOptions {
   bool newtonian = false;               ///< F = 1 in eq 23
   bool houpert_pressure_index = false;  ///< Z from eq 32; alpha* is then the slope at zero pressure
   bool elliptic_integral_hertz = false;  ///< exact Hertz instead of eqs 21-22
+  /// Eq 12 times the film reduction by shear heating of the inlet: Gupta and others, Tribol. Trans.
+  /// 35 (1992) 269-274, its numerator at least 1/2.
+  bool inlet_shear_heating = false;
   /// Gauss-Legendre nodes on every piece of the mean-stress integral.
   int quadrature_nodes = 16;
 };
@@ -106,13 +109,19 @@ struct ContactResult {
 /// F_n(l) = (2 pi)^(-1/2) int_l^inf (s - l)^n exp(-s^2/2) ds by direct quadrature; n > -1, l >= 0.
 double AsperityIntegral(double order, double film_parameter);
 
-/// Friction of a flank contact for one lubricant, material, surface and sump temperature.
+/// Friction of a flank contact for one lubricant, pair of materials, surface and sump temperature.
 class ContactFriction {
  public:
   /// `inlet_temperature_rise` is eq 14. Throws std::invalid_argument if eq 33 has no solution Z.
+  ContactFriction(const Lubricant& lubricant, const Solid& pinion_solid, const Solid& gear_solid,
+                  const Surface& surface, double sump_temperature, double inlet_temperature_rise,
+                  const FrictionOptions& options = {});
+  /// The same with both flanks of one material.
   ContactFriction(const Lubricant& lubricant, const Solid& solid, const Surface& surface,
                   double sump_temperature, double inlet_temperature_rise,
-                  const FrictionOptions& options = {});
+                  const FrictionOptions& options = {})
+      : ContactFriction(lubricant, solid, solid, surface, sump_temperature, inlet_temperature_rise,
+                        options) {}
 
   /// A load of zero or less gives a result of zeros at inlet temperature.
   ContactResult Evaluate(const ContactInput& input) const;
@@ -139,7 +148,7 @@ class ContactFriction {
   void SolveTemperature(ContactResult* result) const;
 
   Lubricant lubricant_;
-  Solid solid_;
+  Solid pinion_solid_, gear_solid_;
   Surface surface_;
   FrictionOptions options_;
   GaussLegendreRule rule_;

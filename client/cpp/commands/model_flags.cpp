@@ -31,6 +31,10 @@ const std::map<std::string, std::string>& switch_descriptions() {
       {"tabulated_friction_arms",
        "Take the lever arms of friction from the tables of the gear set, not from the actual "
        "sliding."},
+      {"inlet_shear_heating",
+       "Thin the film by the shear heating of the inlet (Gupta and others 1992), which eq 12 "
+       "leaves "
+       "out."},
       {"exact_hertz", "Use elliptic integrals instead of the fits of eqs 21 and 22."},
       {"hertz_from_total_load",
        "Compute the contact ellipse from the total load instead of the load on the film."},
