@@ -34,6 +34,7 @@
 #include "server/storage/store.h"
 #include "server/storage/token_table.h"
 #include "server/transport/grpc/grpc_server.h"
+#include "server/transport/http/description_pages.h"
 #include "server/transport/http/http_server.h"
 #include "server/transport/http/rest_handler.h"
 
@@ -169,8 +170,8 @@ struct Rest {
 };
 
 /// The page /healthz: 503 while gRPC's health check answers NOT_SERVING.
-std::function<HttpResponse()> health_page(const GrpcServer& server) {
-  return [&server] {
+std::function<HttpResponse(const HttpRequest&)> health_page(const GrpcServer& server) {
+  return [&server](const HttpRequest&) {
     HttpResponse out;
     out.headers["Content-Type"] = "text/plain; charset=utf-8";
     out.headers["Cache-Control"] = "no-store";
@@ -183,8 +184,8 @@ std::function<HttpResponse()> health_page(const GrpcServer& server) {
 }
 
 /// The page /metrics.
-std::function<HttpResponse()> metrics_page(SimulationJobs& jobs) {
-  return [&jobs] {
+std::function<HttpResponse(const HttpRequest&)> metrics_page(SimulationJobs& jobs) {
+  return [&jobs](const HttpRequest&) {
     HttpResponse out;
     out.headers["Content-Type"] = "text/plain; version=0.0.4; charset=utf-8";
     out.body = jobs.metrics().text(jobs.occupancy());
@@ -205,7 +206,7 @@ std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& 
                                       SimulationJobs& jobs, const GrpcServer& server) {
   if (settings.http_listen.empty()) return nullptr;
   jobs.metrics().set_build(TRIBODYN_VERSION, kModelVersion, platform());
-  std::map<std::string, RestHandler::Page> pages;
+  std::map<std::string, RestHandler::Page> pages = description_pages(dispatcher.methods());
   pages["/metrics"] = {metrics_page(jobs)};
   pages["/healthz"] = {health_page(server), true};
   auto out =

@@ -41,8 +41,9 @@ class HttpServerTest : public testing::Test {
     Served(Application& app, const HttpLimits& limits)
         : dispatcher(app),
           handler(dispatcher,
-                  {{"/hello", {[] { return page("hello"); }, true}},
-                   {"/long", {[] { return page(std::string(kLongPage, 'x')); }, true}}}),
+                  {{"/hello", {[](const HttpRequest&) { return page("hello"); }, true}},
+                   {"/long",
+                    {[](const HttpRequest&) { return page(std::string(kLongPage, 'x')); }, true}}}),
           server(handler, {"127.0.0.1", 0, ""}, limits) {}
     int port() const { return server.address().port; }
 

@@ -31,7 +31,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-HttpResponse hello() {
+HttpResponse hello(const HttpRequest&) {
   HttpResponse out;
   out.headers["Content-Type"] = "text/plain";
   out.body = "hello";

@@ -85,6 +85,8 @@ std::string content_type(Form form) {
   return std::string(type) + (is_text ? "; charset=utf-8" : "");
 }
 
+std::string_view form_word(Form form) { return words_of(form).word; }
+
 std::optional<std::string_view> query_value(std::string_view target, std::string_view name) {
   const std::size_t question = target.find('?');
   std::string_view query = question == std::string_view::npos ? "" : target.substr(question + 1);

@@ -29,6 +29,8 @@ std::optional<Form> requested_form(const HttpRequest& request, const std::vector
 
 /// Returns the value of the header Content-Type for a form.
 std::string content_type(Form form);
+/// Returns the word of the query parameter that chooses a form, e.g. "csv".
+std::string_view form_word(Form form);
 
 /// Returns the first value of a query parameter without decoding it, or nullopt.
 std::optional<std::string_view> query_value(std::string_view target, std::string_view name);

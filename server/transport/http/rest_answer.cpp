@@ -53,7 +53,8 @@ bool lists_tag(std::string_view list, std::string_view tag) {
   return false;
 }
 
-/// True if the header Accept-Encoding allows gzip.
+}  // namespace
+
 bool accepts_gzip(std::string_view header) {
   while (!header.empty()) {
     const std::size_t end = std::min(header.find(','), header.size());
@@ -68,8 +69,6 @@ bool accepts_gzip(std::string_view header) {
   }
   return false;
 }
-
-}  // namespace
 
 std::string json_of(const google::protobuf::Message& message, bool with_zeros) {
   google::protobuf::util::JsonPrintOptions options;
@@ -184,7 +183,8 @@ void set_etag(const std::string& tag, const HttpRequest& request, HttpResponse& 
 
 void compress(std::string_view accept_encoding, HttpResponse& response) {
   response.headers["Vary"] = "Accept, Accept-Encoding";
-  if (response.body.size() < kLeastCompressed || !accepts_gzip(accept_encoding)) {
+  const bool is_compressed = response.headers.contains("Content-Encoding");
+  if (is_compressed || response.body.size() < kLeastCompressed || !accepts_gzip(accept_encoding)) {
     return;
   }
   constexpr int kGzipWindow = 15 + 16;  // 32 kB, with gzip's header

@@ -36,8 +36,11 @@ HttpResponse message_response(const google::protobuf::Message& message, const Ht
 /// this tag already.
 void set_etag(const std::string& tag, const HttpRequest& request, HttpResponse& response);
 
-/// Compresses the body if the header Accept-Encoding allows gzip and the body is long enough to
-/// gain.
+/// True if the header Accept-Encoding allows gzip.
+bool accepts_gzip(std::string_view header);
+
+/// Compresses the body, unless it is compressed already, if the header Accept-Encoding allows gzip
+/// and the body is long enough to gain.
 void compress(std::string_view accept_encoding, HttpResponse& response);
 
 }  // namespace tribodyn::server

@@ -16,6 +16,7 @@
 #include "server/transport/http/curve_table.h"
 #include "server/transport/http/history_format.h"
 #include "server/transport/http/media_types.h"
+#include "server/transport/http/method_forms.h"
 #include "server/transport/http/rest_answer.h"
 #include "server/transport/http/rest_call.h"
 #include "server/transport/http/rest_stream.h"
@@ -159,20 +160,6 @@ class RestUnary final : public RestCall<UnaryCall> {
   const std::optional<TableRequest> table_;
 };
 
-/// The forms in which a method answers, the usual one first.
-std::vector<Form> forms_of(const Method& method) {
-  if (method.descriptor->input_type() == v1::GetSimulationRequest::descriptor()) {
-    return {Form::kMessage, Form::kColumns, Form::kCsv, Form::kNumpy};
-  }
-  if (method.answer) return {Form::kMessage};
-  // Events have positions that a client resumes after; other messages are parts of one whole.
-  if (resume_fields(*method.descriptor)) return {Form::kEvents, Form::kLines};
-  if (method.descriptor->output_type() == v1::ReadHistoryResponse::descriptor()) {
-    return {Form::kColumns, Form::kCsv, Form::kNumpy, Form::kBinary, Form::kLines};
-  }
-  return {Form::kLines};
-}
-
 std::unique_ptr<StreamFormat> stream_format(Form form, const Method& method) {
   if (form == Form::kEvents) return event_stream_format(*method.descriptor);
   if (form == Form::kLines) return json_lines_format();
@@ -240,7 +227,7 @@ void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<
           dispatcher_.authorizer().refuse_overview(credentials_of(request), system_time());
       if (refused) return answer(error_response(*refused));
     }
-    return answer(page->second.answer());
+    return answer(page->second.answer(request));
   }
   const std::string verb = request.verb == "HEAD" ? "GET" : request.verb;
   auto route = routes_.find(verb, path);

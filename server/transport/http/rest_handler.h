@@ -29,8 +29,9 @@ class RestHandler {
  public:
   /// A page of the server's own, by its path: GET and HEAD.
   struct Page {
-    std::function<HttpResponse()> answer;  ///< called on the thread of handle()
-    bool is_public = false;                ///< else only for those who may read about all projects
+    /// Called on the thread of handle().
+    std::function<HttpResponse(const HttpRequest&)> answer;
+    bool is_public = false;  ///< else only for those who may read about all projects
   };
 
   /// `dispatcher` must outlive the object. Throws std::logic_error as HttpRoutes does.
