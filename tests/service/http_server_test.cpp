@@ -4,7 +4,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
@@ -14,6 +16,7 @@
 
 #include "tests/service/http_client.h"
 #include "tests/service/support.h"
+#include "tests/support/run_length.h"
 
 namespace tribodyn::server {
 namespace {
@@ -145,6 +148,127 @@ TEST_F(HttpServerTest, SlowClientsAreClosedAtTheLimitOfTheirState) {
     std::this_thread::sleep_for(milliseconds(10));
   }
   EXPECT_LT(steady_clock::now() - begin, std::chrono::seconds(8)) << "ten seconds in all";
+}
+
+TEST_F(HttpServerTest, ABodyByTheByteDoesNotLengthenItsLimit) {
+  HttpLimits limits;
+  limits.body_time = milliseconds(300);
+  const auto served = serve(limits);
+  HttpConnection trickle(served->port());
+  trickle.send(std::string("POST /v1/simulations HTTP/1.1\r\n") + kHost +
+               "Content-Type: application/json\r\nContent-Length: 1000\r\n\r\n");
+  const auto begin = steady_clock::now();
+  for (int i = 0; i < 1000 && trickle.send(" "); ++i) std::this_thread::sleep_for(milliseconds(10));
+  EXPECT_LT(steady_clock::now() - begin, std::chrono::seconds(8)) << "ten seconds in all";
+  EXPECT_EQ(trickle.read_all(), "");
+}
+
+TEST_F(HttpServerTest, AnAnswerReadBitByBitEndsAtTheWriteLimit) {
+  HttpLimits limits;
+  limits.write_time = milliseconds(500);
+  const auto served = serve(limits);
+  HttpConnection trickle(served->port());
+  trickle.send(get("/long"));
+  std::size_t bytes = 0;
+  const auto begin = steady_clock::now();
+  while (!trickle.is_closed() && steady_clock::now() - begin < std::chrono::seconds(60)) {
+    bytes += trickle.read_some(milliseconds(10)).size();
+    std::this_thread::sleep_for(milliseconds(20));
+  }
+  EXPECT_TRUE(trickle.is_closed());
+  EXPECT_LT(bytes, kLongPage / 2) << "what the system held, and what half a second takes";
+}
+
+/// Idle connections of one address. Allows the process as many open files as the system does.
+class IdleConnections {
+ public:
+  IdleConnections() {
+    rlimit files{};
+    getrlimit(RLIMIT_NOFILE, &files);
+    files.rlim_cur = files.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &files);
+  }
+  ~IdleConnections() { clear(); }
+  IdleConnections(const IdleConnections&) = delete;
+  IdleConnections& operator=(const IdleConnections&) = delete;
+
+  /// Connects from an address such as 127.0.0.2.
+  void add(int port, int last_number) {
+    const int descriptor = socket(AF_INET, SOCK_STREAM, 0);
+    ASSERT_GE(descriptor, 0) << "too few files may be open";
+    sockaddr_in name{};
+    name.sin_family = AF_INET;
+    name.sin_addr.s_addr = htonl(INADDR_LOOPBACK + static_cast<unsigned>(last_number) - 1);
+    ASSERT_EQ(bind(descriptor, reinterpret_cast<const sockaddr*>(&name), sizeof name), 0);
+    name.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    name.sin_port = htons(static_cast<std::uint16_t>(port));
+    // The system may refuse as well, while the server closes others.
+    if (connect(descriptor, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0) {
+      descriptors_.push_back(descriptor);
+    } else {
+      close(descriptor);
+    }
+  }
+  /// Number of those that the server has not closed.
+  int open() const {
+    int out = 0;
+    for (const int each : descriptors_) {
+      char byte = 0;
+      const ssize_t count = recv(each, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
+      if (count < 0 && errno == EAGAIN) ++out;
+    }
+    return out;
+  }
+  void clear() {
+    for (const int each : descriptors_) close(each);
+    descriptors_.clear();
+  }
+
+ private:
+  std::vector<int> descriptors_;
+};
+
+TEST_F(HttpServerTest, ThousandsOfIdleConnectionsAreRefusedBeyondTheLimitAndOthersUnharmed) {
+  const int attempts = full_run() ? 10'000 : 3'000;
+  HttpLimits limits;
+  limits.head_time = std::chrono::minutes(10);  // longer than the test
+  const auto served = serve(limits);
+  HttpConnection active(served->port());
+  steady_clock::duration longest{};
+  const auto answers = [&] {
+    const auto begin = steady_clock::now();
+    active.send(get("/v1/lubricants/paper-fluid-1"));
+    EXPECT_THAT(active.read_until("\r\n\r\n"), StartsWith("HTTP/1.1 200"));
+    longest = std::max(longest, steady_clock::now() - begin);
+  };
+  IdleConnections idle;
+  for (int i = 0; i < attempts; ++i) {
+    idle.add(served->port(), i % 2 == 0 ? 2 : 3);  // two addresses, each with its own limit
+    if (i % 100 == 0) answers();
+  }
+  // All that the limit leaves room for, less the active one.
+  EXPECT_TRUE(eventually([&] { return idle.open() == limits.connections - 1; })) << idle.open();
+  for (int i = 0; i < 100; ++i) answers();
+  EXPECT_LT(longest, std::chrono::seconds(kShortRun ? 10 : 2));
+  idle.clear();
+  EXPECT_TRUE(eventually([&] {
+    HttpConnection another(served->port());
+    another.send(get("/hello"));
+    return another.read_until("hello", milliseconds(2000)).starts_with("HTTP/1.1 200");
+  })) << "room again";
+}
+
+TEST_F(HttpServerTest, OneAddressCannotTakeAllConnections) {
+  HttpLimits limits;
+  limits.connections = 300;
+  limits.connections_of_a_peer = 200;
+  const auto served = serve(limits);
+  IdleConnections greedy;
+  for (int i = 0; i < 400; ++i) greedy.add(served->port(), 2);
+  EXPECT_TRUE(eventually([&] { return greedy.open() == 200; })) << greedy.open();
+  IdleConnections others;
+  for (int i = 0; i < 100; ++i) others.add(served->port(), 3);
+  EXPECT_TRUE(eventually([&] { return others.open() == 100; })) << others.open();
 }
 
 TEST_F(HttpServerTest, ConnectionsBeyondTheLimitAreClosedAndTheOthersServed) {
