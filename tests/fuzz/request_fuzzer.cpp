@@ -6,13 +6,11 @@
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <functional>
 #include <iterator>
 #include <map>
@@ -24,7 +22,7 @@
 
 #include "google/rpc/code.pb.h"
 #include "server/application/simulations.h"
-#include "server/storage/seeds.h"
+#include "tests/fuzz/fuzzed_server.h"
 #include "tests/service/resource_calls.h"
 #include "tests/support/hostile_message.h"
 
@@ -39,53 +37,13 @@ constexpr std::size_t kMostChanges = 4;            // changes of one mutation
 constexpr std::size_t kLargestRefusal = 8 * 1024;  // [bytes], limit of headers in gRPC clients
 constexpr std::size_t kLargestAnswer = 16 * 1024 * 1024;  // [bytes], limit of GrpcServer
 
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-
-/// The application over a database with the seeds. Nothing runs: simulations stay queued.
-class Server {
- public:
-  Server()
-      : folder_(folder()),
-        store_(folder_ / "tribodyn.db"),
-        jobs_(store_, {}),
-        application_{store_, jobs_} {
-    static const std::vector<NewResource> kSeeds = seed_resources();
-    store_.add_resources(kSeeds, system_time());
-  }
-  ~Server() {
-    jobs_.stop();
-    std::filesystem::remove_all(folder_);
-  }
-  Server(const Server&) = delete;
-  Server& operator=(const Server&) = delete;
-
-  Application& application() { return application_; }
-
- private:
-  static std::filesystem::path folder() {
-    const std::filesystem::path memory = "/dev/shm";
-    const auto parent =
-        std::filesystem::exists(memory) ? memory : std::filesystem::temp_directory_path();
-    std::string name = (parent / "request_fuzzer.XXXXXX").string();
-    require(mkdtemp(name.data()) != nullptr);
-    return name;
-  }
-
-  const std::filesystem::path folder_;
-  Store store_;
-  SimulationJobs jobs_;
-  Application application_;
-};
-
 /// Returns the server in its initial state, so that an input does not depend on writes of earlier
 /// ones.
-std::unique_ptr<Server>& server() {
-  static std::unique_ptr<Server> kServer;
+std::unique_ptr<FuzzedServer>& server() {
+  static std::unique_ptr<FuzzedServer> kServer;
   if (!kServer) {
     spdlog::set_level(spdlog::level::off);
-    kServer = std::make_unique<Server>();
+    kServer = std::make_unique<FuzzedServer>();
   }
   return kServer;
 }
