@@ -29,6 +29,12 @@ std::optional<std::string_view> secret_of(std::string_view authorization) {
 
 std::string token_hash(std::string_view secret) { return sha256(secret); }
 
+std::optional<std::string> token_hash_of_bearer(std::string_view authorization) {
+  const auto secret = secret_of(authorization);
+  if (!secret) return std::nullopt;
+  return token_hash(*secret);
+}
+
 std::string certificate_hash(std::string_view name) {
   return sha256(kOfCertificate + std::string(name));
 }
@@ -66,11 +72,13 @@ Outcome<GrantPointer> Authorizer::authenticate(const Credentials& credentials,
   if (credentials.is_owner) return owner_grant();
   std::string hash;
   if (!credentials.authorization.empty()) {
-    const auto secret = secret_of(credentials.authorization);
-    if (!secret) return unauthenticated("the header authorization is not \"Bearer TOKEN\"");
-    hash = token_hash(*secret);
+    const auto shown = token_hash_of_bearer(credentials.authorization);
+    if (!shown) return unauthenticated("the header authorization is not \"Bearer TOKEN\"");
+    hash = *shown;
   } else if (!credentials.certificate.empty()) {
     hash = certificate_hash(credentials.certificate);
+  } else if (!credentials.token_hash.empty()) {
+    hash = credentials.token_hash;
   } else {
     return unauthenticated("the call has no token");
   }

@@ -20,10 +20,14 @@ struct Credentials {
   bool is_owner = false;  ///< the system says so: a Unix socket that only the owner reaches
   std::string authorization = {};  ///< "Bearer SECRET", as the client sent it; may be empty
   std::string certificate = {};    ///< common name of a client's certificate that TLS verified
+  std::string token_hash = {};     ///< of a session that the transport verified
 };
 
 /// Returns what the database keeps of the secret of a token.
 std::string token_hash(std::string_view secret);
+
+/// Returns token_hash() of the secret in "Bearer SECRET"; nullopt for another form.
+std::optional<std::string> token_hash_of_bearer(std::string_view authorization);
 
 /// Returns what the database keeps in place of a secret for those whose certificates have the name.
 std::string certificate_hash(std::string_view name);

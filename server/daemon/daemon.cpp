@@ -162,8 +162,9 @@ struct Rest {
   RestHandler handler;
   std::deque<HttpServer> servers;
   Rest(CallDispatcher& dispatcher, std::map<std::string, RestHandler::Page> pages,
-       const std::vector<ListenAddress>& addresses, const TlsFiles& tls)
-      : handler(dispatcher, std::move(pages)) {
+       const RestDashboard& dashboard, const std::vector<ListenAddress>& addresses,
+       const TlsFiles& tls)
+      : handler(dispatcher, std::move(pages), {}, dashboard) {
     for (const ListenAddress& each : addresses)
       servers.emplace_back(handler, each, HttpLimits(), tls);
   }
@@ -201,20 +202,38 @@ std::vector<ListenAddress> http_addresses(const Settings& settings) {
   return out;
 }
 
+/// Reads the files of the dashboard. Returns null, and logs why, if there are none.
+std::shared_ptr<const StaticFiles> dashboard_files(const Settings& settings) {
+  const std::filesystem::path folder = settings.dashboard.empty()
+                                           ? default_dashboard_folder()
+                                           : std::filesystem::path(settings.dashboard);
+  try {
+    if (!folder.empty()) return std::make_shared<StaticFiles>(folder);
+    spdlog::info("no dashboard: it is not built (deploy/build-dashboard)");
+  } catch (const std::exception& failure) {
+    spdlog::warn("no dashboard: {}", failure.what());
+  }
+  return nullptr;
+}
+
 /// Starts the REST interface. Returns null if no address is set.
 std::unique_ptr<Rest> listen_for_http(const Settings& settings, CallDispatcher& dispatcher,
-                                      SimulationJobs& jobs, const GrpcServer& server) {
+                                      SimulationJobs& jobs, const GrpcServer& server,
+                                      const std::string& session_key) {
   if (settings.http_listen.empty()) return nullptr;
   jobs.metrics().set_build(TRIBODYN_VERSION, kModelVersion, platform());
   std::map<std::string, RestHandler::Page> pages = description_pages(dispatcher.methods());
   pages["/metrics"] = {metrics_page(jobs)};
   pages["/healthz"] = {health_page(server), true};
-  auto out =
-      std::make_unique<Rest>(dispatcher, std::move(pages), http_addresses(settings), settings.tls);
+  const RestDashboard dashboard{std::make_shared<SessionCookies>(session_key),
+                                dashboard_files(settings)};
+  auto out = std::make_unique<Rest>(dispatcher, std::move(pages), dashboard,
+                                    http_addresses(settings), settings.tls);
   for (const HttpServer& each : out->servers) {
     spdlog::info("REST at {}://{}", each.is_encrypted() ? "https" : "http",
                  to_text(each.address()));
   }
+  if (dashboard.files) spdlog::info("the addresses of REST also serve the dashboard");
   return out;
 }
 
@@ -253,7 +272,8 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
                                           to_milliseconds(settings.stream_limit_seconds),
                                           to_milliseconds(settings.unread_limit_seconds)});
   GrpcServer server(dispatcher, addresses, settings.tls);
-  const std::unique_ptr<Rest> rest = listen_for_http(settings, dispatcher, jobs, server);
+  const std::unique_ptr<Rest> rest =
+      listen_for_http(settings, dispatcher, jobs, server, application.page_token_key);
   const std::string wrong = jobs.start();
   if (!wrong.empty()) return complain(kExitWrongResults, wrong);
   server.set_serving(true);

@@ -220,6 +220,10 @@ void add_flags(CLI::App& app, Settings& settings) {
       "Addresses, as those of --listen, of the REST interface, of /metrics for Prometheus and of "
       "/healthz; none by default. Addresses beyond loopback need TLS. Recommended: "
       "127.0.0.1:50652");
+  app.add_option("--dashboard", settings.dashboard,
+                 "Folder with the files of the dashboard, which the address of --http-listen "
+                 "serves. Default: the one that deploy/build-dashboard made, or that of the "
+                 "installation");
   app.add_option("--log-level", settings.log_level, "Recommended: info")
       ->check(CLI::IsMember({"debug", "info", "warn", "error", "off"}))
       ->capture_default_str();

@@ -43,6 +43,7 @@ struct Settings {
   std::vector<std::string> projects;  ///< beside `default`
   std::string port_file;
   std::string http_listen;  ///< addresses like listen; empty: no REST interface and no metrics
+  std::string dashboard;    ///< folder; empty: default_dashboard_folder()
   std::string log_level = "info";
   double call_limit_seconds = 30;
   double stream_limit_seconds = 3600;

@@ -18,6 +18,8 @@ struct HttpRequest {
   bool is_owner = false;  ///< it came over a Unix socket that only the owner of the server reaches
   bool is_encrypted = false;     ///< it came by TLS
   std::string certificate = {};  ///< common name of the client's, which TLS has verified; or ""
+  /// Hash of the token that the request's session stands for; empty: it has no valid session.
+  std::string session_token_hash = {};
 
   /// Returns the value of a header, named in lower case, or "".
   std::string_view header(const std::string& name) const {

@@ -22,7 +22,8 @@ namespace tribodyn::server {
 inline Credentials credentials_of(const HttpRequest& request) {
   return {.is_owner = request.is_owner,
           .authorization = std::string(request.header("authorization")),
-          .certificate = request.certificate};
+          .certificate = request.certificate,
+          .token_hash = request.session_token_hash};
 }
 
 /// The request of a call over HTTP: `Call` is UnaryCall or StreamCall.

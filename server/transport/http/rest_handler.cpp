@@ -185,10 +185,11 @@ const std::map<std::string, std::string>& security_headers() {
 }
 
 RestHandler::RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages,
-                         const RestLimits& limits)
+                         const RestLimits& limits, const RestDashboard& dashboard)
     : dispatcher_(dispatcher),
       routes_(dispatcher.methods()),
       pages_(std::move(pages)),
+      dashboard_(dashboard),
       streams_(std::make_shared<LiveStreams>(limits.streams, limits.streams_of_peer)) {}
 
 std::size_t RestHandler::maximum_body_bytes(const HttpRequest& head) const {
@@ -199,9 +200,12 @@ std::size_t RestHandler::maximum_body_bytes(const HttpRequest& head) const {
 }
 
 std::optional<HttpResponse> RestHandler::refuse_head(const HttpRequest& head) const {
-  const auto grant = dispatcher_.authorizer().authenticate(credentials_of(head), system_time());
-  if (grant.ok()) return std::nullopt;
-  HttpResponse out = error_response(grant.error());
+  HttpRequest request = head;
+  std::optional<HttpResponse> refused;
+  if (dashboard_.sessions) refused = dashboard_.sessions->admit(request, system_time());
+  const auto grant = dispatcher_.authorizer().authenticate(credentials_of(request), system_time());
+  if (!refused && grant.ok()) return std::nullopt;
+  HttpResponse out = refused ? *std::move(refused) : error_response(grant.error());
   out.headers.insert(security_headers().begin(), security_headers().end());
   return out;
 }
@@ -221,6 +225,14 @@ void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<
   }
   if (auto foreign = foreign_origin(request)) return answer(*std::move(foreign));
   const std::string path(path_of(request));
+  if (dashboard_.sessions) {
+    if (auto refused = dashboard_.sessions->admit(request, system_time())) {
+      return answer(*std::move(refused));
+    }
+    if (path == SessionCookies::kPath) {
+      return answer(dashboard_.sessions->answer(dispatcher_.authorizer(), request, system_time()));
+    }
+  }
   if (const auto page = pages_.find(path); page != pages_.end() && is_reading(request)) {
     if (!page->second.is_public) {
       const auto refused =
@@ -228,6 +240,9 @@ void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<
       if (refused) return answer(error_response(*refused));
     }
     return answer(page->second.answer(request));
+  }
+  if (dashboard_.files) {
+    if (auto file = dashboard_.files->answer(request, path)) return answer(*std::move(file));
   }
   const std::string verb = request.verb == "HEAD" ? "GET" : request.verb;
   auto route = routes_.find(verb, path);

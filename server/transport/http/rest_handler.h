@@ -11,6 +11,8 @@
 #include "server/application/call_dispatcher.h"
 #include "server/transport/http/http_message.h"
 #include "server/transport/http/http_routes.h"
+#include "server/transport/http/session_cookie.h"
+#include "server/transport/http/static_files.h"
 #include "server/transport/live_streams.h"
 
 namespace tribodyn::server {
@@ -19,6 +21,12 @@ namespace tribodyn::server {
 struct RestLimits {
   std::size_t streams = 1500;  ///< open at a time; other calls have the other connections
   std::size_t streams_of_peer = 1200;
+};
+
+/// What a RestHandler serves to browsers beside the methods; null: nothing of it.
+struct RestDashboard {
+  std::shared_ptr<const SessionCookies> sessions = nullptr;
+  std::shared_ptr<const StaticFiles> files = nullptr;
 };
 
 /// Serves the methods of the contract as REST: requests in, responses out, whatever carries them.
@@ -36,7 +44,7 @@ class RestHandler {
 
   /// `dispatcher` must outlive the object. Throws std::logic_error as HttpRoutes does.
   explicit RestHandler(CallDispatcher& dispatcher, std::map<std::string, Page> pages = {},
-                       const RestLimits& limits = {});
+                       const RestLimits& limits = {}, const RestDashboard& dashboard = {});
 
   /// Called once, on any thread.
   using Reply = std::function<void(HttpResponse)>;
@@ -66,6 +74,7 @@ class RestHandler {
   CallDispatcher& dispatcher_;
   const HttpRoutes routes_;
   const std::map<std::string, Page> pages_;
+  const RestDashboard dashboard_;
   const std::shared_ptr<LiveStreams> streams_;
 };
 

@@ -1,0 +1,129 @@
+import { place } from '../router';
+import { Store } from '../store';
+
+/** What the server says of a field that it refuses. */
+export interface Violation {
+  field: string; // path in the request, e.g. "lubricant.relaxation_time_seconds"
+  description: string;
+}
+
+/** A refusal of the server (AIP-193), or a server that does not answer (status 0). */
+export class ApiError extends Error {
+  constructor(
+    readonly status: number,
+    readonly reason: string,
+    message: string,
+    readonly violations: Violation[] = [],
+    readonly retryAfterSeconds = 0,
+  ) {
+    super(message);
+  }
+}
+
+export interface Session {
+  principal: string;
+  scope: 'read' | 'write' | 'admin';
+  projects: string[]; // empty: all
+  csrf_token: string;
+}
+
+/** undefined: not asked yet; null: signed out. */
+export const session = new Store<Session | null | undefined>(undefined);
+/** Time of the last answer if the server does not answer any more, else null. */
+export const awaySince = new Store<Date | null>(null);
+
+let lastAnswer = new Date();
+
+async function errorOf(response: Response): Promise<ApiError> {
+  let body: any;
+  try {
+    body = (await response.json()).error;
+  } catch {
+    return new ApiError(response.status, '', `the server answered ${response.status}`);
+  }
+  const details: any[] = body.details ?? [];
+  const info = details.find((each) => each['@type'].endsWith('ErrorInfo'));
+  const violations = details.flatMap((each) => each.field_violations ?? []);
+  const retry = Number(response.headers.get('Retry-After') ?? 0);
+  return new ApiError(response.status, info?.reason ?? '', body.message, violations, retry);
+}
+
+async function send(path: string, init: RequestInit): Promise<Response> {
+  let response: Response;
+  try {
+    response = await fetch(path, { credentials: 'same-origin', ...init });
+  } catch (failure) {
+    if ((failure as Error).name === 'AbortError') throw failure;
+    if (awaySince.value === null) {
+      awaySince.set(lastAnswer);
+      void waitForServer();
+    }
+    throw new ApiError(0, 'SERVER_AWAY', 'the server does not answer');
+  }
+  lastAnswer = new Date();
+  if (response.ok) return response;
+  const error = await errorOf(response);
+  if (error.status === 401 && path !== '/session') session.set(null);
+  throw error;
+}
+
+async function waitForServer(): Promise<void> {
+  while (awaySince.value !== null) {
+    await new Promise((done) => setTimeout(done, 1000));
+    try {
+      if ((await fetch('/healthz')).ok) awaySince.set(null);
+    } catch {
+      // The next round asks again.
+    }
+  }
+}
+
+/** Reads the session of this browser's cookie. */
+export async function readSession(): Promise<void> {
+  try {
+    session.set(await (await send('/session', {})).json());
+  } catch (error) {
+    if ((error as ApiError).status === 401) session.set(null);
+    else throw error;
+  }
+}
+
+/** Exchanges a token for a cookie that scripts cannot read. */
+export async function signIn(token: string): Promise<void> {
+  const headers = { Authorization: `Bearer ${token}` };
+  session.set(await (await send('/session', { method: 'POST', headers })).json());
+}
+
+export async function signOut(): Promise<void> {
+  await send('/session', { method: 'DELETE', headers: { 'Tribodyn-Csrf': session.value?.csrf_token ?? '' } });
+  window.location.assign('/');
+}
+
+/** The address of a resource or method of the present project: "lubricants/a" or "simulations". */
+export function url(path: string, query: Record<string, string | number | string[] | undefined> = {}): string {
+  const words: string[] = [];
+  for (const [name, value] of Object.entries(query)) {
+    for (const each of Array.isArray(value) ? value : [value]) {
+      if (each !== undefined && each !== '') words.push(`${name}=${encodeURIComponent(each)}`);
+    }
+  }
+  const project = path.startsWith('projects/') || path === 'schema' || place.value.project === 'default'
+    ? '' : `projects/${place.value.project}/`;
+  return `/v1/${project}${path}${words.length > 0 ? `?${words.join('&')}` : ''}`;
+}
+
+export async function get<T>(address: string, signal?: AbortSignal): Promise<T> {
+  return (await send(address, { signal: signal ?? null })).json();
+}
+
+export async function getBytes(address: string, signal?: AbortSignal): Promise<ArrayBuffer> {
+  return (await send(address, { signal: signal ?? null })).arrayBuffer();
+}
+
+/** Calls a method that changes something. */
+export async function change<T>(method: 'POST' | 'PATCH' | 'DELETE', address: string, body?: unknown): Promise<T> {
+  const headers: Record<string, string> = { 'Tribodyn-Csrf': session.value?.csrf_token ?? '' };
+  if (body !== undefined) headers['Content-Type'] = 'application/json';
+  const init = { method, headers, body: body === undefined ? null : JSON.stringify(body) };
+  return (await send(address, init)).json();
+}

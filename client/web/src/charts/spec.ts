@@ -1,0 +1,107 @@
+/** What a plot shows, whatever paints it. Values are in the shown unit. */
+export interface Line {
+  label: string; // of the fluid and variant; "" repeats that of the line before
+  series: number; // index of the fluid: color and marker
+  variant: number; // dash
+  x: number[];
+  y: (number | null)[]; // null breaks the line
+  hollow: boolean[]; // flanks separate here
+  error?: (number | null)[]; // estimated, absolute
+}
+
+export interface Spec {
+  title: string;
+  xLabel: string;
+  yLabel: string;
+  lines: Line[];
+  parted: [number, number][]; // speeds at which flanks separate
+  caution: [number, number][]; // speeds at which a law leaves its validated range
+  outside: [number, number][]; // speeds at which fluids must not be ranked
+  levels: { value: number; label: string }[];
+  fromZero: boolean;
+  hasMarkers?: boolean; // default: true
+  xRange?: [number, number]; // default: all
+}
+
+export type Marker = 'circle' | 'square' | 'triangle' | 'diamond' | 'inverted';
+export const MARKERS: Marker[] = ['circle', 'square', 'triangle', 'diamond', 'inverted'];
+export const DASHES: number[][] = [[], [6, 4], [2, 3], [9, 3, 2, 3]];
+
+/** Colors of the light theme, in which figures are exported. */
+export const LIGHT = {
+  background: '#ffffff', text: '#1b1f23', muted: '#57606a', axis: '#69717a', grid: '#e4e6e8', parted: '#eceef0',
+  caution: '#8a5a00', outside: '#b3261e',
+  series: ['#0072b2', '#d55e00', '#009e73', '#b5508a', '#1b1f23'],
+  other: '#9aa1a8',
+};
+export type Colors = typeof LIGHT;
+export const DARK: Colors = {
+  background: '#14181c', text: '#e8eaed', muted: '#a9b1b9', axis: '#8b949d', grid: '#2b3239', parted: '#20262c',
+  caution: '#e0a93b', outside: '#ff8a80',
+  series: ['#4ba3dd', '#f0803c', '#2fbf94', '#dd95c0', '#e8eaed'],
+  other: '#6b747d',
+};
+
+/** Five fluids have a color and a marker each; further ones are thin and gray. */
+export const colorOf = (series: number, colors: Colors): string => colors.series[series] ?? colors.other;
+export const hasMarker = (series: number): boolean => series < MARKERS.length;
+
+/** The corners of a marker around (0, 0), or null for a circle. */
+export function corners(marker: Marker, r: number): [number, number][] | null {
+  switch (marker) {
+    case 'circle':
+      return null;
+    case 'square':
+      return [[-r, -r], [r, -r], [r, r], [-r, r]].map(([x, y]) => [x! * 0.9, y! * 0.9]);
+    case 'triangle':
+      return [[0, -1.2 * r], [1.1 * r, 0.9 * r], [-1.1 * r, 0.9 * r]];
+    case 'diamond':
+      return [[0, -1.3 * r], [1.3 * r, 0], [0, 1.3 * r], [-1.3 * r, 0]];
+    case 'inverted':
+      return [[0, 1.2 * r], [1.1 * r, -0.9 * r], [-1.1 * r, -0.9 * r]];
+  }
+}
+
+/** The range of the vertical axis: all values and levels, with room above and below. */
+export function rangeOf(spec: Spec, from = -Infinity, to = Infinity): [number, number] {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const line of spec.lines) {
+    line.y.forEach((y, i) => {
+      if (y === null || line.x[i]! < from || line.x[i]! > to) return;
+      low = Math.min(low, y);
+      high = Math.max(high, y);
+    });
+  }
+  if (low > high) return [0, 1];
+  for (const level of spec.levels) {
+    // A level far away would flatten the lines.
+    if (level.value > low - 2 * (high - low) && level.value < high + 2 * (high - low)) {
+      low = Math.min(low, level.value);
+      high = Math.max(high, level.value);
+    }
+  }
+  if (spec.fromZero && low >= 0) low = 0;
+  const room = 0.07 * (high - low || Math.abs(high) || 1);
+  return [spec.fromZero && low === 0 ? 0 : low - room, high + room];
+}
+
+/** Moves labels apart: returns their positions, in the order given, at least `pitch` apart. */
+export function spread(wanted: number[], pitch: number, low: number, high: number): number[] {
+  const order = wanted.map((_, i) => i).sort((a, b) => wanted[a]! - wanted[b]!);
+  const out = [...wanted];
+  let previous = low - pitch;
+  for (const i of order) previous = out[i] = Math.max(out[i]!, previous + pitch);
+  let next = high + pitch;
+  for (const i of [...order].reverse()) next = out[i] = Math.min(out[i]!, next - pitch);
+  return out;
+}
+
+/** The last point of a line that has a value. */
+export function lastOf(line: Line): { x: number; y: number } | null {
+  for (let i = line.y.length - 1; i >= 0; --i) {
+    const y = line.y[i];
+    if (y !== null && y !== undefined) return { x: line.x[i]!, y };
+  }
+  return null;
+}

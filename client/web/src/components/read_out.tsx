@@ -1,0 +1,91 @@
+import { fluidsOf, shortTitle, variantOf, type Curve } from '../curve';
+import { idOf, revisionIdOf, rounded, shown } from '../format';
+import { QUANTITIES, type Quantity } from '../quantities';
+import { Swatch } from './swatch';
+
+interface ReadOutProps {
+  curves: Curve[];
+  titles: Map<string, string>;
+  speed: number | null;
+  onSpeed: (speed: number) => void;
+  onOpen: (curve: Curve, speed: number) => void;
+}
+
+/** A value of the service with its rounded text; tests compare the attributes with the answer. */
+function Num({ curve, row, quantity, column }: { curve: Curve; row: number; quantity: Quantity; column: string }) {
+  const value = curve.columns[column]![row] ?? null;
+  const relative = curve.columns['estimated_relative_error']![row];
+  const error = value === null || relative == null ? undefined : Math.abs(value * relative * quantity.unit.factor);
+  return (
+    <span data-value={value ?? ''} data-column={column} data-simulation={curve.simulation.name} data-row={row}>
+      {value === null ? '–' : rounded(shown(value, quantity.unit), error)}
+    </span>
+  );
+}
+
+/** Every number of the plots at one speed. */
+export function ReadOut({ curves, titles, speed, onSpeed, onOpen }: ReadOutProps) {
+  const speeds = [...new Set(curves.flatMap((curve) => curve.columns['speed_kilometres_per_hour'] as number[]))].sort((a, b) => a - b);
+  const at = speed !== null && speeds.includes(speed) ? speed : speeds[Math.floor(speeds.length / 2)]!;
+  const index = speeds.indexOf(at);
+  const fluids = fluidsOf(curves);
+  const simulations = curves.map((curve) => curve.simulation);
+  const columns = QUANTITIES.flatMap((quantity) => quantity.columns.map((column, k) => ({ quantity, column, k })));
+  const errors = curves.map((curve) => {
+    const row = curve.columns['speed_kilometres_per_hour']!.indexOf(at);
+    return curve.columns['estimated_relative_error']![row];
+  });
+  return (
+    <section class="read-out" aria-labelledby="read-out-title">
+      <div class="heading">
+        <h2 id="read-out-title">At {at} km/h</h2>
+        <input type="range" min={0} max={speeds.length - 1} value={index} aria-label="Speed" aria-valuetext={`${at} kilometres per hour`}
+          onInput={(event) => onSpeed(speeds[event.currentTarget.valueAsNumber]!)} />
+      </div>
+      <div class="scroll" tabIndex={0} role="region" aria-label="All numbers at this speed">
+        <table>
+          <thead>
+            <tr>
+              <th>Fluid</th>
+              {columns.map(({ quantity, column, k }) => (
+                <th key={column} class="number">
+                  {quantity.columns.length > 1 ? `DTE ${k === 0 ? 'least' : 'greatest'}` : quantity.label}
+                  {quantity.unit.symbol && <small>{quantity.unit.symbol}</small>}
+                </th>
+              ))}
+              <th><span class="hidden">Details</span></th>
+            </tr>
+          </thead>
+          <tbody>
+            {curves.map((curve) => {
+              const revision = curve.simulation.lubricant_revision ?? '';
+              const row = curve.columns['speed_kilometres_per_hour']!.indexOf(at);
+              const variant = variantOf(curve.simulation, simulations);
+              return (
+                <tr key={curve.simulation.name}>
+                  <th scope="row">
+                    <Swatch series={fluids.indexOf(revision)} />
+                    {shortTitle(titles.get(idOf(revision)) ?? revisionIdOf(revision))}{variant && `, ${variant}`}
+                  </th>
+                  {columns.map(({ quantity, column }) => (
+                    <td key={column} class="number">{row < 0 ? '–' : <Num curve={curve} row={row} quantity={quantity} column={column} />}</td>
+                  ))}
+                  <td class="number"><button onClick={() => onOpen(curve, at)} title="Time histories at this speed">Open<span class="hidden"> the point</span></button></td>
+                </tr>
+              );
+            })}
+          </tbody>
+        </table>
+      </div>
+      <p class="muted small">{errorText(errors)}</p>
+    </section>
+  );
+}
+
+function errorText(errors: (number | null | undefined)[]): string {
+  const known = errors.filter((each): each is number => each !== null && each !== undefined);
+  if (known.length === 0) return 'The solver error is not estimated.';
+  const most = Math.max(...known);
+  const text = most < 1e-4 ? most.toExponential(0).replace('e-', ' × 10⁻').replace(/\d+$/, (digits) => [...digits].map((each) => '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(each)]).join('')) : `${Number((100 * most).toPrecision(1))} %`;
+  return most < 1e-4 ? `Solver error: at most ${text} of each value, thinner than the lines.` : `Solver error: at most ${text} of each value.`;
+}

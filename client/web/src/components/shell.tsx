@@ -1,0 +1,104 @@
+import type { ComponentType } from 'preact';
+import { useEffect, useState } from 'preact/hooks';
+import { awaySince, readSession, session, signOut } from '../api/client';
+import { theme, type Theme } from '../charts/theme';
+import { address, follow, go, place } from '../router';
+import { useStore } from '../store';
+import { Home } from '../views/home';
+import { Missing } from './missing';
+import { Notice } from './notice';
+import { SignIn } from './sign_in';
+
+const LINKS: [string, string][] = [['/', 'Home'], ['/curves', 'Curves'], ['/fluids', 'Fluids'], ['/jobs', 'Jobs']];
+
+/** Views by the first word of the path; each but the first has its own chunk. */
+const VIEWS: Record<string, () => Promise<ComponentType>> = {
+  curves: async () => (await import('../views/curves')).Curves,
+  fluids: async () => (await import('../views/fluids')).Fluids,
+  jobs: async () => (await import('../views/jobs')).Jobs,
+  point: async () => (await import('../views/point')).Point,
+};
+
+function useView(path: string): ComponentType | 'loading' | 'missing' {
+  const word = path.split('/')[1] ?? '';
+  const [views, setViews] = useState<Record<string, ComponentType>>({ '': Home });
+  useEffect(() => {
+    const load = VIEWS[word];
+    if (!load || views[word]) return;
+    void load().then((view) => setViews((all) => ({ ...all, [word]: view })));
+  }, [word]);
+  return views[word] ?? (VIEWS[word] ? 'loading' : 'missing');
+}
+
+function Account() {
+  const who = useStore(session);
+  const chosen = useStore(theme);
+  const projects = who?.projects ?? [];
+  const project = useStore(place).project;
+  const next: Record<Theme, Theme> = { system: 'light', light: 'dark', dark: 'system' };
+  return (
+    <div class="account">
+      {projects.length > 1 && (
+        <select aria-label="Project" value={project} onChange={(event) => {
+          const chosenProject = event.currentTarget.value;
+          go(chosenProject === 'default' ? '/' : `/p/${chosenProject}/`);
+        }}>
+          {projects.map((each) => <option key={each}>{each}</option>)}
+        </select>
+      )}
+      <button class="quiet" onClick={() => theme.set(next[chosen])} title="Colors: system, light, dark">
+        {{ system: 'Auto', light: 'Light', dark: 'Dark' }[chosen]}
+      </button>
+      {who && <button class="quiet" onClick={() => void signOut()} title={`Signed in as ${who.principal}`}>Sign out</button>}
+    </div>
+  );
+}
+
+/** The bar, the view of the address, and what may lie over it. */
+export function Shell() {
+  const { path, project } = useStore(place);
+  const who = useStore(session);
+  const away = useStore(awaySince);
+  const View = useView(path);
+  // A session that ends leaves the page as it is: the dialog lies over it.
+  const [hasBegun, setBegun] = useState(false);
+  if (who && !hasBegun) setBegun(true);
+  useEffect(() => {
+    readSession().catch(() => awaySince.subscribe(() => {
+      if (awaySince.value === null && session.value === undefined) void readSession();
+    }));
+  }, []);
+  useEffect(() => {
+    if (who && who.projects.length > 0 && !who.projects.includes(project)) {
+      const first = who.projects[0]!;
+      go(first === 'default' ? '/' : `/p/${first}/`, 'replace');
+    }
+  }, [who, project]);
+  const current = (link: string) => (link === '/' ? path === '/' : path.startsWith(link));
+  return (
+    <div onClick={follow}>
+      <a class="skip" href="#content">Skip to the content</a>
+      <header class="bar">
+        <a class="brand" href={address('/')}>Tribodyn</a>
+        <nav aria-label="Views">
+          {LINKS.map(([link, word]) => (
+            <a key={link} href={address(link)} aria-current={current(link) ? 'page' : undefined}>{word}</a>
+          ))}
+        </nav>
+        <Account />
+      </header>
+      {away && (
+        <Notice kind="caution">
+          Not connected since {away.toLocaleTimeString()}. The page shows what was loaded, and connects again by itself.
+        </Notice>
+      )}
+      <main id="content" tabIndex={-1} key={project}>
+        {who === undefined ? <p class="muted">Loading …</p>
+          : View === 'missing' ? <Missing />
+          : View === 'loading' ? <p class="muted">Loading …</p>
+          : hasBegun ? <View /> : null}
+      </main>
+      {who === null && <SignIn />}
+    </div>
+  );
+}

@@ -1,0 +1,195 @@
+import { get, url } from './api/client';
+import type { BranchEnd, RangeWarning, Simulation } from './api/types';
+import { idOf, revisionIdOf } from './format';
+import { CURVE_COLUMNS, warningOf, type Quantity } from './quantities';
+import { shown } from './format';
+import type { Line, Spec } from './charts/spec';
+
+/** A curve as the service answers it. */
+export interface Curve {
+  simulation: Simulation;
+  columns: Record<string, (number | null)[]>; // a row for each speed
+  warnings: RangeWarning[][];
+  branchEnds: (BranchEnd | undefined)[];
+  refusals: { speed: number; message: string }[];
+}
+
+/** Fields of a simulation that say what was asked and how it went, without its numbers. */
+export const INPUT_FIELDS =
+  'name,display_name,lubricant,gear_set,surface,vehicle,sump_temperature_celsius,inlet_temperature_rise_kelvin,model_options,' +
+  'solver_options,operating_point,inefficiency_curve,labels,state,progress_fraction,create_time,start_time,end_time,error,' +
+  'lubricant_revision,gear_set_revision,surface_revision,vehicle_revision,input_hash,cache_hit,pinned';
+
+const POINT_FIELDS =
+  'result.points.speed_kilometres_per_hour,result.points.branch_end,result.points.refusal_reason,' +
+  'result.points.refusal_message,result.points.result.warnings,result.model_version,result.platform,' +
+  'result.input_warnings,result.direction';
+
+export async function readSimulation(name: string, fields = INPUT_FIELDS): Promise<Simulation> {
+  return get<Simulation>(url(name, { read_mask: fields }));
+}
+
+export async function readCurve(name: string): Promise<Curve> {
+  const [simulation, table] = await Promise.all([
+    readSimulation(name, `${INPUT_FIELDS},${POINT_FIELDS}`),
+    get<{ columns: Record<string, (number | null)[]> }>(url(name, { alt: 'columns', columns: CURVE_COLUMNS.join(',') })),
+  ]);
+  const points = simulation.result?.points ?? [];
+  return {
+    simulation,
+    columns: table.columns,
+    warnings: points.map((point) => point.result?.warnings ?? []),
+    branchEnds: points.map((point) => point.branch_end),
+    refusals: points.flatMap((point) =>
+      point.refusal_reason ? [{ speed: point.speed_kilometres_per_hour!, message: point.refusal_message ?? '' }] : []),
+  };
+}
+
+/** The name of a fluid before its remark: "Lubricant 1" of "Lubricant 1: ester-olefin copolymer". */
+export const shortTitle = (title: string): string => title.split(': ')[0]!;
+
+const modelWords = (simulation: Simulation): string =>
+  Object.entries(simulation.model_options ?? {})
+    .filter(([, value]) => value === true)
+    .map(([name]) => name.replaceAll('_', ' '))
+    .join(', ');
+
+/** What differs between curves of one fluid: sump, gear set, model. */
+export function variantOf(simulation: Simulation, all: Simulation[]): string {
+  const differs = (key: (each: Simulation) => string) => new Set(all.map(key)).size > 1;
+  const sump = (each: Simulation) => `${each.sump_temperature_celsius ?? 40} °C`;
+  const gears = (each: Simulation) => idOf(each.gear_set_revision);
+  const model = (each: Simulation) => modelWords(each) || 'full model';
+  return [sump, gears, model].filter(differs).map((key) => key(simulation)).join(', ');
+}
+
+/** Speeds with a property, as bands that reach half-way to the neighbours. */
+export function bandsOf(curves: Curve[], has: (curve: Curve, row: number) => boolean): [number, number][] {
+  const bands: [number, number][] = [];
+  for (const curve of curves) {
+    const speeds = curve.columns['speed_kilometres_per_hour'] as number[];
+    speeds.forEach((speed, row) => {
+      if (!has(curve, row)) return;
+      const before = row > 0 ? (speed + speeds[row - 1]!) / 2 : speed;
+      const after = row + 1 < speeds.length ? (speed + speeds[row + 1]!) / 2 : speed;
+      bands.push([before, after]);
+    });
+  }
+  bands.sort((a, b) => a[0] - b[0]);
+  const merged: [number, number][] = [];
+  for (const band of bands) {
+    const last = merged.at(-1);
+    if (last && band[0] <= last[1] + 1e-9) last[1] = Math.max(last[1], band[1]);
+    else merged.push([...band]);
+  }
+  return merged;
+}
+
+function lineOf(curve: Curve, quantity: Quantity, column: string, label: string, series: number, variant: number): Line {
+  const speeds = curve.columns['speed_kilometres_per_hour'] as number[];
+  const line: Line = { label, series, variant, x: [], y: [], hollow: [], error: [] };
+  const isDown = curve.simulation.result?.direction === 'SWEEP_DIRECTION_DOWN';
+  speeds.forEach((speed, row) => {
+    const end = curve.branchEnds[row];
+    const gap = () => {
+      line.x.push(end!.followed_to_kilometres_per_hour!);
+      line.y.push(null);
+      line.hollow.push(false);
+      line.error!.push(null);
+    };
+    if (end && !isDown) gap();
+    const value = curve.columns[column]![row] ?? null;
+    const relative = curve.columns['estimated_relative_error']![row];
+    line.x.push(speed);
+    line.y.push(value === null ? null : shown(value, quantity.unit));
+    line.hollow.push(curve.columns['contact_loss']![row] === 1);
+    // Only lengths on the screen are made of this product.
+    line.error!.push(value === null || relative == null ? null : Math.abs(value * relative * quantity.unit.factor));
+    if (end && isDown) gap();
+  });
+  return line;
+}
+
+/** The fluids of curves in the order of their first curve; a fluid keeps its color. */
+export function fluidsOf(curves: { simulation: Simulation }[]): string[] {
+  return [...new Set(curves.map((curve) => curve.simulation.lubricant_revision ?? ''))];
+}
+
+export function specOf(curves: Curve[], quantity: Quantity, titles: Map<string, string>, halfBacklash?: number): Spec {
+  const simulations = curves.map((curve) => curve.simulation);
+  const fluids = fluidsOf(curves);
+  const variants = [...new Set(simulations.map((each) => variantOf(each, simulations)))];
+  const lines = curves.flatMap((curve) => {
+    const revision = curve.simulation.lubricant_revision ?? '';
+    const variant = variantOf(curve.simulation, simulations);
+    const title = shortTitle(titles.get(idOf(revision)) || revisionIdOf(revision));
+    const label = variant === '' ? title : `${title}, ${variant}`;
+    return quantity.columns.map((column, k) =>
+      lineOf(curve, quantity, column, k === 0 ? label : '', fluids.indexOf(revision), variants.indexOf(variant)));
+  });
+  const levels = quantity.level ? [quantity.level] : [];
+  if (quantity.id === 'dte' && halfBacklash !== undefined) {
+    const value = shown(halfBacklash, quantity.unit);
+    levels.push({ value, label: 'half backlash' }, { value: -value, label: 'half backlash, coast side' });
+  }
+  const has = (level: string) => (curve: Curve, row: number) =>
+    curve.warnings[row]!.some((warning) => warningOf(warning.code ?? '').level === level);
+  return {
+    title: quantity.title,
+    xLabel: 'Vehicle speed, km/h',
+    yLabel: quantity.unit.symbol,
+    lines,
+    parted: bandsOf(curves, (curve, row) => curve.columns['contact_loss']![row] === 1),
+    caution: bandsOf(curves, has('caution')),
+    outside: bandsOf(curves, has('outside')),
+    levels,
+    fromZero: quantity.fromZero ?? false,
+  };
+}
+
+/** "20 to 70, 80 km/h": runs of neighbours among all speeds. */
+function speedsText(curves: Curve[], has: (curve: Curve, row: number) => boolean): string {
+  const all = new Set<number>();
+  const affected = new Set<number>();
+  for (const curve of curves) {
+    (curve.columns['speed_kilometres_per_hour'] as number[]).forEach((speed, row) => {
+      all.add(speed);
+      if (has(curve, row)) affected.add(speed);
+    });
+  }
+  if (affected.size === all.size) return 'all speeds';
+  const runs: number[][] = [];
+  let isOpen = false;
+  for (const speed of [...all].sort((a, b) => a - b)) {
+    if (affected.has(speed)) {
+      if (isOpen) runs.at(-1)!.push(speed);
+      else runs.push([speed]);
+    }
+    isOpen = affected.has(speed);
+  }
+  return `${runs.map((run) => (run.length === 1 ? `${run[0]}` : `${run[0]} to ${run.at(-1)}`)).join(', ')} km/h`;
+}
+
+export interface Remark {
+  code: string;
+  words: string;
+  level: 'caution' | 'outside' | 'note';
+  speeds: string;
+  message: string; // of the first speed
+}
+
+/** Warnings of all points, each once, with the speeds that it holds for. */
+export function remarksOf(curves: Curve[]): Remark[] {
+  const messages = new Map<string, string>();
+  for (const curve of curves) {
+    for (const warning of curve.warnings.flat()) {
+      if (!messages.has(warning.code!)) messages.set(warning.code!, warning.message ?? '');
+    }
+  }
+  return [...messages].map(([code, message]) => ({
+    code,
+    message,
+    ...warningOf(code),
+    speeds: speedsText(curves, (curve, row) => curve.warnings[row]!.some((each) => each.code === code)),
+  }));
+}

@@ -1,0 +1,79 @@
+import type { Constraint, Lubricant, LubricantMeasurements } from './api/types';
+import { plain, scaled, type Unit } from './format';
+
+/** A number of a lubricant that the form shows; the range comes from the schema. */
+export interface Field {
+  path: string; // within Lubricant, as violations name it
+  message: 'Lubricant' | 'LubricantMeasurements';
+  field: string;
+  label: string;
+  unit?: Unit; // in which people write it; else the schema's
+}
+
+const measured = (field: string, label: string): Field =>
+  ({ path: `measurements.${field}`, message: 'LubricantMeasurements', field, label });
+const parameter = (field: string, label: string, unit?: Unit): Field =>
+  ({ path: field, message: 'Lubricant', field, label, ...(unit ? { unit } : {}) });
+
+export const DATA_SHEET: Field[] = [
+  measured('kinematic_viscosity_40_celsius_square_millimetres_per_second', 'Viscosity at 40 °C'),
+  measured('kinematic_viscosity_100_celsius_square_millimetres_per_second', 'Viscosity at 100 °C'),
+  measured('density_15_celsius_kilograms_per_cubic_metre', 'Density at 15 °C'),
+  measured('sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second', 'The same after shear'),
+];
+
+export const PARAMETERS: Field[] = [
+  parameter('pressure_viscosity_coefficient_per_pascal', 'Pressure-viscosity coefficient α*', scaled('1/GPa', 1e9)),
+  parameter('pressure_viscosity_temperature_kelvin', 'Temperature of α*'),
+  parameter('vogel_viscosity_prefactor_pascal_seconds', 'Vogel prefactor', scaled('mPa s', 1e3)),
+  parameter('vogel_temperature_coefficient_kelvin', 'Vogel coefficient A₁'),
+  parameter('vogel_reference_temperature_kelvin', 'Vogel reference temperature'),
+  parameter('relaxation_time_seconds', 'Relaxation time', scaled('µs', 1e6)),
+  parameter('havriliak_negami_alpha', 'Havriliak-Negami α'),
+  parameter('havriliak_negami_beta', 'Havriliak-Negami β'),
+  parameter('rheology_reference_temperature_kelvin', 'Reference temperature of rheology'),
+  parameter('limiting_shear_stress_at_zero_pressure_pascals', 'Limiting shear stress at zero pressure', scaled('MPa', 1e-6)),
+  parameter('limiting_shear_stress_coefficient', 'Limiting shear stress coefficient'),
+  parameter('thermal_conductivity_watts_per_metre_kelvin', 'Thermal conductivity'),
+  parameter('density_at_zero_kelvin_kilograms_per_cubic_metre', 'Density at 0 K'),
+  parameter('density_slope_kilograms_per_cubic_metre_kelvin', 'Slope of the density'),
+];
+
+export const BASE_OILS: [string, string][] = [
+  ['BASE_OIL_CLASS_UNSPECIFIED', 'not stated'],
+  ['BASE_OIL_CLASS_GROUP_I', 'Group I'],
+  ['BASE_OIL_CLASS_GROUP_II', 'Group II'],
+  ['BASE_OIL_CLASS_GROUP_III', 'Group III'],
+  ['BASE_OIL_CLASS_POLYALPHAOLEFIN', 'Polyalphaolefin (group IV)'],
+  ['BASE_OIL_CLASS_ESTER', 'Ester (group V)'],
+  ['BASE_OIL_CLASS_POLYALKYLENE_GLYCOL', 'Polyalkylene glycol (group V)'],
+  ['BASE_OIL_CLASS_NAPHTHENIC', 'Naphthenic (group V)'],
+];
+
+export function valueOf(lubricant: Lubricant, field: Field): number | undefined {
+  const holder: Lubricant | LubricantMeasurements | undefined = field.message === 'Lubricant' ? lubricant : lubricant.measurements;
+  const value = (holder as Record<string, unknown> | undefined)?.[field.field];
+  // In measurements 0 stands for "not stated".
+  return typeof value === 'number' && !(field.message === 'LubricantMeasurements' && value === 0) ? value : undefined;
+}
+
+export const constraintOf = (field: Field, constraints: Constraint[] | undefined): Constraint | undefined =>
+  constraints?.find((each) => each.message === field.message && each.field === field.field);
+
+const UNITS: Record<string, string> = { 'mm2/s': 'mm²/s', 'kg/m3': 'kg/m³', 'kg/(m3 K)': 'kg/(m³ K)' };
+export const unitOf = (field: Field, constraint: Constraint | undefined): Unit =>
+  field.unit ?? plain(UNITS[constraint?.unit ?? ''] ?? constraint?.unit ?? '');
+
+/** A number as people write it, with all digits that it has in this unit. */
+export const written = (value: number | undefined, unit: Unit): string =>
+  value === undefined ? '' : String(Number((value * unit.factor).toPrecision(12)));
+
+/** The number that a text states; NaN if it states none. */
+export const readNumber = (text: string, unit: Unit): number =>
+  Number((Number(text.trim().replace(',', '.')) / unit.factor).toPrecision(15));
+
+export function rangeText(constraint: Constraint | undefined, unit: Unit): string {
+  if (!constraint) return '';
+  const grouped = (value: number) => written(value, unit).replace(/^(-?)(\d{2,3})(\d{3})$/, '$1$2\u202f$3');
+  return `${grouped(constraint.minimum!)} to ${grouped(constraint.maximum!)}`;
+}

@@ -1,0 +1,46 @@
+import { useEffect, useState } from 'preact/hooks';
+import { get, session, url } from './api/client';
+import type { GearSet, ListGearSetsResponse, ListLubricantsResponse, Lubricant, Schema } from './api/types';
+import { idOf } from './format';
+import { useStore } from './store';
+
+export interface Loaded<T> {
+  value?: T;
+  error?: unknown;
+  reload: () => void;
+}
+
+/** Loads something when the view appears, when `key` changes and after the reader has signed in. */
+export function useLoaded<T>(load: (signal: AbortSignal) => Promise<T>, key: string): Loaded<T> {
+  const [state, setState] = useState<{ key?: string; value?: T; error?: unknown }>({});
+  const [round, setRound] = useState(0);
+  const who = useStore(session);
+  useEffect(() => {
+    if (!who) return;
+    const controller = new AbortController();
+    load(controller.signal).then(
+      (value) => setState({ key, value }),
+      (error) => { if (!controller.signal.aborted) setState((old) => ({ ...old, key, error })); },
+    );
+    return () => controller.abort();
+  }, [key, round, who]);
+  return { ...(state.key === key ? state : { value: state.value }), reload: () => setRound((count) => count + 1) } as Loaded<T>;
+}
+
+const LUBRICANT_FIELDS = 'name,display_name,characterisation,revision,base_oil_class';
+
+export const useLubricants = (): Loaded<Lubricant[]> =>
+  useLoaded(async (signal) =>
+    (await get<ListLubricantsResponse>(url('lubricants', { page_size: 1000, read_mask: LUBRICANT_FIELDS }), signal)).lubricants ?? [],
+  'lubricants');
+
+export const useGearSets = (): Loaded<GearSet[]> =>
+  useLoaded(async (signal) =>
+    (await get<ListGearSetsResponse>(url('gearSets', { page_size: 1000, read_mask: 'name,display_name,dynamics.half_backlash_metres' }), signal)).gear_sets ?? [],
+  'gearSets');
+
+export const useSchema = (): Loaded<Schema> => useLoaded((signal) => get<Schema>(url('schema'), signal), 'schema');
+
+/** The names for people of resources, by id. */
+export const titlesOf = (resources: { name?: string; display_name?: string }[] | undefined): Map<string, string> =>
+  new Map((resources ?? []).map((each) => [idOf(each.name), each.display_name || idOf(each.name)]));

@@ -1,0 +1,297 @@
+import { useEffect, useRef, useState } from 'preact/hooks';
+import { ApiError, change, get, session, url, type Violation } from '../api/client';
+import type { Lubricant } from '../api/types';
+import { Missing } from '../components/missing';
+import { Failure, Notice } from '../components/notice';
+import { ago, idOf, rounded, shown } from '../format';
+import { BASE_OILS, constraintOf, DATA_SHEET, PARAMETERS, rangeText, readNumber, unitOf, valueOf, written, type Field } from '../lubricant_fields';
+import { useLoaded, useLubricants, useSchema } from '../resources';
+import { address, go, place } from '../router';
+import { useStore } from '../store';
+
+const PROVENANCE: Record<string, string> = {
+  PROVENANCE_PUBLISHED: 'published', PROVENANCE_DERIVED: 'derived', PROVENANCE_LITERATURE: 'literature',
+  PROVENANCE_MEASURED: 'measured', PROVENANCE_FITTED: 'fitted', PROVENANCE_ASSUMED: 'assumed',
+  PROVENANCE_CALIBRATED: 'calibrated', PROVENANCE_USER: 'entered',
+};
+
+export function Fluids() {
+  const { path } = useStore(place);
+  const [, , id, action] = path.split('/');
+  if (!id) return <FluidList />;
+  if (id === 'new') return <FluidForm key="new" />;
+  return action === 'edit' ? <EditFluid key={id} id={id} /> : <FluidPage key={id} id={id} />;
+}
+
+function FluidList() {
+  const { value, error, reload } = useLubricants();
+  const [chosen, setChosen] = useState<string[]>([]);
+  const toggle = (id: string) => setChosen((old) => (old.includes(id) ? old.filter((each) => each !== id) : [...old, id]));
+  return (
+    <>
+      <div class="heading">
+        <h1>Fluids</h1>
+        <div class="actions">
+          {chosen.length > 0 && <a class="button primary" href={address('/curves', { f: chosen.join(',') })}>Curve of {chosen.length}</a>}
+          <a class="button" href={address('/fluids/new')}>Enter an oil</a>
+        </div>
+      </div>
+      {error !== undefined && <Failure error={error} onRetry={reload} />}
+      <div class="scroll" tabIndex={0} role="region" aria-label="Fluids">
+        <table>
+          <thead>
+            <tr>
+              <th><span class="hidden">Choose</span></th><th>Name</th><th>Grade</th>
+              <th class="number">KV40 <small>mm²/s</small></th><th class="number">KV100 <small>mm²/s</small></th>
+              <th class="number">VI</th><th class="number">Density, 15 °C <small>kg/m³</small></th><th class="number">Revision</th>
+            </tr>
+          </thead>
+          <tbody>
+            {(value ?? []).map((each) => {
+              const id = idOf(each.name);
+              const [title, note] = (each.display_name || id).split(': ');
+              const figures = each.characterisation ?? {};
+              return (
+                <tr key={id}>
+                  <td><input type="checkbox" aria-label={`Choose ${title}`} checked={chosen.includes(id)} onChange={() => toggle(id)} /></td>
+                  <td><a href={address(`/fluids/${id}`)}>{title}</a><small>{note ?? ''}</small></td>
+                  <td>{figures.sae_j306_grade || <span class="muted">–</span>}</td>
+                  <td class="number">{rounded(figures.kinematic_viscosity_40_celsius_square_millimetres_per_second)}</td>
+                  <td class="number">{rounded(figures.kinematic_viscosity_100_celsius_square_millimetres_per_second)}</td>
+                  <td class="number">{rounded(figures.viscosity_index)}</td>
+                  <td class="number">{rounded(figures.density_15_celsius_kilograms_per_cubic_metre)}</td>
+                  <td class="number">{each.revision}</td>
+                </tr>
+              );
+            })}
+          </tbody>
+        </table>
+      </div>
+    </>
+  );
+}
+
+const useLubricant = (id: string) => useLoaded((signal) => get<Lubricant>(url(`lubricants/${id}`), signal), `lubricant ${id}`);
+
+function FluidPage({ id }: { id: string }) {
+  const { value: lubricant, error, reload } = useLubricant(id);
+  const schema = useSchema();
+  if (error !== undefined && (error as ApiError).status === 404) return <Missing />;
+  if (error !== undefined) return <Failure error={error} onRetry={reload} />;
+  if (!lubricant) return <p class="muted">Loading …</p>;
+  const figures = lubricant.characterisation ?? {};
+  const origin = new Map((lubricant.provenance ?? []).map((each) => [each.field, each]));
+  const row = (field: Field) => {
+    const value = valueOf(lubricant, field);
+    if (value === undefined) return null;
+    const unit = unitOf(field, constraintOf(field, schema.value?.constraints));
+    const source = origin.get(field.field);
+    const spread = source?.standard_uncertainty ? source.standard_uncertainty * unit.factor : undefined;
+    return (
+      <tr key={field.path}>
+        <th scope="row">{field.label}</th>
+        <td class="number" data-exact={value}>{written(value, unit).length > 8 ? rounded(shown(value, unit), spread) : written(value, unit)}{spread !== undefined && ` ± ${rounded(spread, spread)}`}</td>
+        <td>{unit.symbol}</td>
+        <td>{source ? PROVENANCE[source.provenance ?? ''] ?? '' : ''}</td>
+        <td class="muted">{source?.source}</td>
+      </tr>
+    );
+  };
+  const [title, note] = (lubricant.display_name || id).split(': ');
+  const plainId = idOf(lubricant.name);
+  return (
+    <>
+      <div class="heading">
+        <div><h1>{title} <span class="count">{note}</span></h1><p class="muted">{plainId}, revision {lubricant.revision}, {ago(lubricant.revision_create_time)}</p></div>
+        <div class="actions">
+          <a class="button primary" href={address('/curves', { f: id })}>Run a curve</a>
+          {session.value?.scope !== 'read' && <a class="button" href={address(`/fluids/${plainId}/edit`)}>Edit</a>}
+        </div>
+      </div>
+      {lubricant.description && <p>{lubricant.description}</p>}
+      <ul class="figures">
+        <li><span>KV40</span><strong>{rounded(figures.kinematic_viscosity_40_celsius_square_millimetres_per_second)}</strong> mm²/s</li>
+        <li><span>KV100</span><strong>{rounded(figures.kinematic_viscosity_100_celsius_square_millimetres_per_second)}</strong> mm²/s</li>
+        <li><span>Viscosity index</span><strong>{rounded(figures.viscosity_index)}</strong></li>
+        <li><span>Density, 15 °C</span><strong>{rounded(figures.density_15_celsius_kilograms_per_cubic_metre)}</strong> kg/m³</li>
+        <li><span>SAE J306</span><strong>{figures.sae_j306_grade || '–'}</strong></li>
+      </ul>
+      {figures.sae_j306_grade_note && <p class="muted small">{figures.sae_j306_grade_note}</p>}
+      {(figures.warnings ?? []).length > 0 && (
+        <Notice kind="caution"><ul>{figures.warnings!.map((each) => <li key={each.field + each.code!}>{each.sentence}</li>)}</ul></Notice>
+      )}
+      <div class="scroll" tabIndex={0} role="region" aria-label="Parameters">
+        <table class="parameters">
+          <thead><tr><th>Quantity</th><th class="number">Value</th><th>Unit</th><th>Origin</th><th>Source</th></tr></thead>
+          <tbody>{[...DATA_SHEET, ...PARAMETERS].map(row)}</tbody>
+        </table>
+      </div>
+    </>
+  );
+}
+
+function EditFluid({ id }: { id: string }) {
+  const { value, error, reload } = useLubricant(id);
+  if (error !== undefined) return (error as ApiError).status === 404 ? <Missing /> : <Failure error={error} onRetry={reload} />;
+  return value ? <FluidForm lubricant={value} /> : <p class="muted">Loading …</p>;
+}
+
+/** Text of a file as base64, as JSON carries bytes. */
+const base64 = (text: string): string =>
+  btoa(Array.from(new TextEncoder().encode(text), (byte) => String.fromCharCode(byte)).join(''));
+
+/** Enters an oil, from its data sheet or from a table of viscosities, or changes one. */
+function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
+  const schema = useSchema();
+  const constraints = schema.value?.constraints;
+  const [id, setId] = useState('');
+  const [name, setName] = useState(lubricant?.display_name ?? '');
+  const [base, setBase] = useState<string>(lubricant?.base_oil_class ?? 'BASE_OIL_CLASS_POLYALPHAOLEFIN');
+  const [texts, setTexts] = useState<Record<string, string>>({});
+  const [table, setTable] = useState<{ name: string; text: string } | null>(null);
+  const [problem, setProblem] = useState<unknown>(null);
+  const [isOver, setOver] = useState(false);
+  const form = useRef<HTMLFormElement>(null);
+
+  const violations = problem instanceof ApiError ? problem.violations : [];
+  const violationOf = (path: string): Violation | undefined =>
+    violations.find((each) => each.field === path || each.field.endsWith(`lubricant.${path}`) || each.field === `lubricant.${path}`);
+  const rows = violations.filter((each) => each.field.startsWith('viscosity_table_csv'));
+  const textOf = (field: Field) =>
+    texts[field.path] ?? (lubricant ? written(valueOf(lubricant, field), unitOf(field, constraintOf(field, constraints))) : '');
+
+  useEffect(() => form.current?.querySelector<HTMLElement>('[aria-invalid="true"]')?.focus(), [problem]);
+
+  const submit = async (event: SubmitEvent) => {
+    event.preventDefault();
+    const body: Record<string, unknown> = { display_name: name, base_oil_class: base };
+    const measurements: Record<string, number> = {};
+    const changed = ['display_name', 'base_oil_class'];
+    const wrong: Violation[] = [];
+    for (const field of [...DATA_SHEET, ...PARAMETERS]) {
+      const text = texts[field.path];
+      if (text === undefined) continue;
+      const unit = unitOf(field, constraintOf(field, constraints));
+      const value = readNumber(text, unit);
+      if (text.trim() !== '' && Number.isNaN(value)) {
+        wrong.push({ field: `lubricant.${field.path}`, description: `"${text}" is not a number` });
+        continue;
+      }
+      changed.push(field.path);
+      if (text.trim() === '') continue;
+      if (field.message === 'Lubricant') body[field.field] = value;
+      else measurements[field.field] = value;
+    }
+    if (Object.keys(measurements).length > 0) body['measurements'] = measurements;
+    if (wrong.length > 0) return setProblem(new ApiError(400, '', wrong[0]!.description, wrong));
+    try {
+      const saved = lubricant
+        ? await change<Lubricant>('PATCH', url(idPath(lubricant), { update_mask: changed.join(',') }), { ...body, etag: lubricant.etag })
+        : table
+          ? await change<Lubricant>('POST', `${url('lubricants')}:import`, { lubricant: body, lubricant_id: id, viscosity_table_csv: base64(table.text) })
+          : await change<Lubricant>('POST', url('lubricants', { lubricant_id: id }), body);
+      go(address(`/fluids/${idOf(saved.name)}`));
+    } catch (refusal) {
+      setProblem(refusal);
+    }
+  };
+
+  const take = async (file: File | undefined) => {
+    setOver(false);
+    if (file) setTable({ name: file.name, text: await file.text() });
+  };
+  const input = (field: Field) => {
+    const constraint = constraintOf(field, constraints);
+    const unit = unitOf(field, constraint);
+    const violation = violationOf(field.path);
+    const note = `note-${field.path}`;
+    return (
+      <label key={field.path}>
+        {field.label}{unit.symbol && `, ${unit.symbol}`}
+        <input value={textOf(field)} inputMode="decimal" aria-invalid={violation !== undefined} aria-describedby={note}
+          onInput={(event) => { const text = event.currentTarget.value; setTexts((old) => ({ ...old, [field.path]: text })); }} />
+        <span id={note} class={violation ? 'problem' : 'small'}>{violation?.description ?? rangeText(constraint, unit)}</span>
+      </label>
+    );
+  };
+  const idViolation = violationOf('lubricant_id') ?? violations.find((each) => each.field === 'lubricant_id' || each.field === 'lubricant.name');
+  const shownElsewhere = violations.length > 0 &&
+    violations.every((each) => [...DATA_SHEET, ...PARAMETERS].some((field) => violationOf(field.path) === each) || rows.includes(each) || each === idViolation);
+  return (
+    <form ref={form} class="fluid-form" onSubmit={(event) => void submit(event)} noValidate>
+      <h1>{lubricant ? `Edit ${lubricant.display_name || idOf(lubricant.name)}` : 'Enter an oil'}</h1>
+      {problem !== null && !shownElsewhere && <Failure error={problem} />}
+      <fieldset class="grid">
+        <legend>Name</legend>
+        {!lubricant && (
+          <label>
+            Id
+            <input value={id} placeholder="my-oil" spellcheck={false} aria-invalid={idViolation !== undefined} aria-describedby="note-id"
+              onInput={(event) => setId(event.currentTarget.value)} />
+            <span id="note-id" class={idViolation ? 'problem' : 'small'}>{idViolation?.description ?? 'lower-case letters, digits and -'}</span>
+          </label>
+        )}
+        <label>Name for people<input value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
+        <label>
+          Base oil
+          <select value={base} onChange={(event) => setBase(event.currentTarget.value)}>
+            {BASE_OILS.map(([value, words]) => <option key={value} value={value}>{words}</option>)}
+          </select>
+        </label>
+      </fieldset>
+      <fieldset class="grid">
+        <legend>Data sheet</legend>
+        {DATA_SHEET.map(input)}
+      </fieldset>
+      {!lubricant && (
+        <fieldset>
+          <legend>Or a table of viscosities</legend>
+          <label class={`drop ${isOver ? 'over' : ''}`}
+            onDragOver={(event) => { event.preventDefault(); setOver(true); }} onDragLeave={() => setOver(false)}
+            onDrop={(event) => { event.preventDefault(); void take(event.dataTransfer?.files[0]); }}>
+            <input type="file" accept=".csv,.txt,text/csv" onChange={(event) => void take(event.currentTarget.files?.[0])} />
+            <span>{table ? table.name : 'Drop a CSV here, or choose one: T (C), KV (mm2/s), …'}</span>
+          </label>
+          {table && <TablePreview text={table.text} rows={rows} onRemove={() => setTable(null)} />}
+        </fieldset>
+      )}
+      <details open={(lubricant !== undefined && !lubricant.measurements) || PARAMETERS.some((field) => violationOf(field.path))}>
+        <summary>Parameters of the model{lubricant ? '' : ': what stays empty is estimated, and the result says so'}</summary>
+        <fieldset class="grid">{PARAMETERS.map(input)}</fieldset>
+      </details>
+      <div class="actions">
+        <button class="primary">{lubricant ? 'Save a new revision' : 'Save'}</button>
+        <a class="button" href={address(lubricant ? `/fluids/${idOf(lubricant.name)}` : '/fluids')}>Leave</a>
+      </div>
+    </form>
+  );
+}
+
+const idPath = (lubricant: Lubricant): string => `lubricants/${idOf(lubricant.name)}`;
+
+const SHOWN_ROWS = 50;
+
+/** The dropped table with what the server says of its rows. */
+function TablePreview({ text, rows, onRemove }: { text: string; rows: Violation[]; onRemove: () => void }) {
+  const lines = text.split(/\r?\n/).filter((line, i, all) => line !== '' || i < all.length - 1);
+  const problems = new Map<number, string[]>();
+  for (const each of rows) {
+    const row = Number(/row (\d+)/.exec(each.field)?.[1] ?? 1);
+    const column = /column (\S+)/.exec(each.field)?.[1];
+    problems.set(row, [...(problems.get(row) ?? []), (column ? `${column}: ` : '') + each.description]);
+  }
+  return (
+    <div>
+      <ol class="table-preview" aria-label="Rows of the table">
+        {lines.slice(0, SHOWN_ROWS).map((line, i) => (
+          <li key={i} class={problems.has(i + 1) ? 'wrong' : ''}>
+            <code>{line}</code>
+            {problems.get(i + 1)?.map((each) => <span key={each} class="problem" role="alert">{each}</span>)}
+          </li>
+        ))}
+      </ol>
+      {lines.length > SHOWN_ROWS && <p class="small">and {lines.length - SHOWN_ROWS} more rows</p>}
+      <button type="button" onClick={onRemove}>Take the table away</button>
+    </div>
+  );
+}

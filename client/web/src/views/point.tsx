@@ -1,0 +1,211 @@
+import { useEffect, useMemo, useState } from 'preact/hooks';
+import { ApiError, get, session, url } from '../api/client';
+import { watch } from '../api/events';
+import type { GearSet, PointResult, Simulation } from '../api/types';
+import { CurveChart } from '../charts/curve_chart';
+import type { Line, Spec } from '../charts/spec';
+import { JobState } from '../components/job_state';
+import { Missing } from '../components/missing';
+import { Failure, Notice } from '../components/notice';
+import { Swatch } from '../components/swatch';
+import { INPUT_FIELDS, readSimulation, shortTitle } from '../curve';
+import { MESH_CYCLES, PHASE } from '../histories';
+import { celsius, idOf, plain, revisionIdOf, rounded, scaled, shown, type Unit } from '../format';
+import { warningOf } from '../quantities';
+import { titlesOf, useLoaded, useLubricants } from '../resources';
+import { address, place, set } from '../router';
+import { useStore } from '../store';
+
+/** A history as REST answers it; with rows_per_pair > 0 rows are minimum and maximum in turn. */
+interface History {
+  start_row: number;
+  total_rows: number;
+  rows_per_pair: number;
+  columns: Record<string, (number | null)[]>;
+}
+
+interface Panel {
+  title: string;
+  unit: Unit;
+  lines: { label: string; column: string }[];
+  emptyIsZero?: boolean; // of a flank without load
+  hasBacklash?: boolean;
+}
+
+const flanks = (column: string) => [0, 1, 2].map((k) => ({ label: `flank ${k + 1}`, column: `${column}_flank_${k}` }));
+
+const PANELS: Panel[] = [
+  { title: 'Dynamic transmission error', unit: scaled('µm', 1e6), lines: [{ label: '', column: 'dynamic_transmission_error_metres' }], hasBacklash: true },
+  { title: 'Mesh force', unit: plain('N'), lines: [{ label: '', column: 'mesh_force_newtons' }] },
+  { title: 'Load of each flank', unit: plain('N'), lines: flanks('flank_load_newtons') },
+  { title: 'Film ratio', unit: plain(''), lines: flanks('flank_film_ratio'), emptyIsZero: true },
+  { title: 'Contact temperature', unit: celsius, lines: flanks('flank_contact_temperature_kelvin'), emptyIsZero: true },
+  { title: 'Friction torque on the pinion', unit: plain('N m'), lines: [{ label: '', column: 'pinion_friction_torque_newton_metres' }] },
+];
+
+const ZOOM_DELAY_MILLISECONDS = 120;
+
+const FIGURES: { label: string; unit: Unit; value: (result: PointResult) => number | undefined }[] = [
+  { label: 'Mesh inefficiency', unit: plain('%'), value: (result) => result.inefficiency_energy_mean_percent },
+  { label: 'Mesh loss', unit: plain('W'), value: (result) => result.mesh_loss_power_watts },
+  { label: 'of it viscous', unit: plain('W'), value: (result) => result.viscous_loss_power_watts },
+  { label: 'of it boundary', unit: plain('W'), value: (result) => result.boundary_loss_power_watts },
+  { label: 'Least film ratio', unit: plain(''), value: (result) => result.film_ratio?.minimum },
+  { label: 'Hottest contact', unit: celsius, value: (result) => result.contact_temperature_kelvin?.maximum },
+  { label: 'Greatest pressure', unit: scaled('GPa', 1e-9), value: (result) => result.maximum_pressure_pascals?.maximum },
+  { label: 'Pinion torque', unit: plain('N m'), value: (result) => result.pinion_torque_newton_metres },
+];
+
+const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
+
+/** Time histories of one operating point over the mesh cycle. */
+export function Point() {
+  const { path } = useStore(place);
+  const id = path.split('/')[2];
+  return id ? <PointPage key={id} name={`simulations/${id}`} /> : <Missing />;
+}
+
+function PointPage({ name }: { name: string }) {
+  const { value: job, error, reload } = useLoaded(() => readSimulation(name, `${INPUT_FIELDS},result.points,result.history_columns,result.history_rows,result.model_version`), name);
+  const titles = titlesOf(useLubricants().value);
+  const isOpen = job !== undefined && !ENDED.includes(job.state!);
+  useEffect(() => {
+    if (!isOpen) return;
+    const stream = watch({ names: [name] }, (event) => event.kind === 'STATE_CHANGE' && reload(), reload);
+    return () => stream.close();
+  }, [name, isOpen]);
+  if (error !== undefined) return (error as ApiError).status === 404 ? <Missing /> : <Failure error={error} onRetry={reload} />;
+  if (!job) return <p class="muted">Loading …</p>;
+  const result = job.result?.points?.[0]?.result;
+  const title = titles.get(idOf(job.lubricant)) ?? idOf(job.lubricant);
+  const speed = result?.vehicle_speed_kilometres_per_hour ?? job.operating_point?.cruise?.speed_kilometres_per_hour;
+  return (
+    <>
+      <div class="heading">
+        <div>
+          <h1>{shortTitle(title)}{speed !== undefined && ` at ${Number(speed.toPrecision(6))} km/h`}</h1>
+          <p class="muted">{revisionIdOf(job.gear_set_revision)}, sump {job.sump_temperature_celsius ?? 40} °C{result?.contact_loss ? '; the flanks separate' : result ? '; the flanks stay in contact' : ''}</p>
+        </div>
+        <a class="button" href={address(`/jobs/${idOf(name)}`)}>Job {idOf(name)}</a>
+      </div>
+      {isOpen && <p><JobState simulation={job} /></p>}
+      {job.state === 'FAILED' && <Notice kind="error">{job.error?.message}</Notice>}
+      {job.state === 'CANCELLED' && <Notice kind="caution">The job was cancelled.</Notice>}
+      {result && <Figures result={result} />}
+      {result && (job.result?.history_columns?.length ?? 0) > 0 && <Histories job={job} result={result} />}
+      {result && (job.result?.history_columns?.length ?? 0) === 0 && <p class="muted">This job kept no time histories. Open a point from a curve to see them.</p>}
+    </>
+  );
+}
+
+function Figures({ result }: { result: PointResult }) {
+  const relative = result.estimated_relative_error;
+  return (
+    <>
+      <ul class="figures">
+        {FIGURES.map(({ label, unit, value }) => {
+          const number = value(result);
+          const error = number === undefined || relative === undefined ? undefined : Math.abs(number * unit.factor * relative);
+          return <li key={label}><span>{label}</span><strong>{number === undefined ? '–' : rounded(shown(number, unit), error)}</strong> {unit.symbol}</li>;
+        })}
+      </ul>
+      {(result.warnings ?? []).map((each) => (
+        <Notice key={each.code} kind="caution">{warningOf(each.code ?? '').words}: {each.message}</Notice>
+      ))}
+    </>
+  );
+}
+
+/** Rows of a history between two mesh phases, refetched when the reader zooms. */
+function useHistory(name: string, rows: number, zoom: [number, number] | null): { history?: History; error: unknown } {
+  const who = useStore(session);
+  const [history, setHistory] = useState<History | undefined>();
+  const [error, setError] = useState<unknown>(null);
+  useEffect(() => {
+    if (!who) return;
+    const controller = new AbortController();
+    const perCycle = rows / MESH_CYCLES;
+    const start = zoom ? Math.max(0, Math.floor(zoom[0] * perCycle) - 1) : 0;
+    const count = zoom ? Math.min(rows - start, Math.ceil((zoom[1] - zoom[0]) * perCycle) + 3) : rows;
+    const points = Math.max(400, 2 * Math.min(900, window.innerWidth));
+    const timer = setTimeout(() => {
+      get<History>(url(`${name}:readHistory`, { alt: 'columns', start_row: start, row_count: count, max_points: points }), controller.signal)
+        .then(setHistory, (problem) => { if (!controller.signal.aborted) setError(problem); });
+    }, history ? ZOOM_DELAY_MILLISECONDS : 0);
+    return () => {
+      clearTimeout(timer);
+      controller.abort();
+    };
+  }, [name, rows, zoom?.[0], zoom?.[1], who]);
+  return { history, error };
+}
+
+function lineOf(history: History, panel: Panel, label: string, column: string, series: number): Line {
+  const line: Line = { label, series, variant: 0, x: [], y: [], hollow: [] };
+  const phases = history.columns[PHASE] as number[];
+  (history.columns[column] ?? []).forEach((value, row) => {
+    // From one mesh cycle to the next each flank takes the place of its neighbour.
+    if (label !== '' && row > 0 && Math.floor(phases[row]!) > Math.floor(phases[row - 1]!)) {
+      line.x.push((phases[row - 1]! + phases[row]!) / 2);
+      line.y.push(null);
+    }
+    line.x.push(phases[row]!);
+    // A flank without load has no film and no temperature: the service writes 0.
+    line.y.push(value === null || (panel.emptyIsZero && value === 0) ? null : shown(value, panel.unit));
+  });
+  return line;
+}
+
+function Histories({ job, result }: { job: Simulation; result: PointResult }) {
+  const { query } = useStore(place);
+  const zoom = useMemo<[number, number] | null>(() => {
+    const [from, to] = (query.get('t') ?? '').split('-').map(Number);
+    return from !== undefined && to !== undefined && to > from ? [from, to] : null;
+  }, [query.get('t')]);
+  const { history, error } = useHistory(job.name!, Number(job.result!.history_rows), zoom);
+  const gearSet = useLoaded((signal) => get<GearSet>(url(job.gear_set_revision!, { read_mask: 'dynamics.half_backlash_metres' }), signal), job.gear_set_revision!);
+  const halfBacklash = gearSet.value?.dynamics?.half_backlash_metres;
+  const specs = useMemo(() => {
+    if (!history) return [];
+    const period = result.period_in_mesh_cycles || MESH_CYCLES;
+    const parted: [number, number][] = [];
+    for (let cycle = 0; cycle < MESH_CYCLES; cycle += period) {
+      for (const each of result.contact_losses ?? []) parted.push([each.start_mesh_phase! + cycle, each.end_mesh_phase! + cycle]);
+    }
+    return PANELS.map((panel): Spec => ({
+      title: panel.title, xLabel: 'Mesh cycles', yLabel: panel.unit.symbol,
+      lines: panel.lines.map(({ label, column }, k) => lineOf(history, panel, label, column, k)),
+      parted: parted.filter(([from]) => from < MESH_CYCLES),
+      caution: [], outside: [], fromZero: false, hasMarkers: false,
+      xRange: zoom ?? [0, MESH_CYCLES],
+      levels: panel.hasBacklash && halfBacklash !== undefined ? [{ value: shown(halfBacklash, panel.unit), label: 'half backlash' }] : [],
+    }));
+  }, [history, zoom, halfBacklash]);
+  const onZoom = (range: [number, number] | null) =>
+    set({ t: range ? range.map((each) => Math.min(MESH_CYCLES, Math.max(0, each)).toFixed(4)).join('-') : undefined });
+  if (error !== null) return <Failure error={error} />;
+  if (!history) return <p class="muted">Loading the histories …</p>;
+  return (
+    <section aria-label="Time histories">
+      <div class="heading">
+        <p class="muted small">
+          Over {MESH_CYCLES} mesh cycles{result.contact_loss && '; gray: the flanks are apart'}.
+          Drag to zoom, double-click to go back. {history.rows_per_pair > 0 ? `Least and greatest of ${history.rows_per_pair} rows.` : 'Every row.'}
+        </p>
+        <ul class="key">
+          {[0, 1, 2].map((k) => <li key={k}><Swatch series={k} /> flank {k + 1}</li>)}
+        </ul>
+        {zoom && <button onClick={() => onZoom(null)}>Show both cycles</button>}
+      </div>
+      <div class="histories" data-rows-per-pair={history.rows_per_pair}>
+        {specs.map((spec) => (
+          <figure key={spec.title} class="figure">
+            <figcaption>{spec.title}{spec.yLabel && `, ${spec.yLabel}`}</figcaption>
+            <CurveChart spec={spec} height={190} sync="histories" onZoom={onZoom} />
+          </figure>
+        ))}
+      </div>
+      <p class="axis-title">Mesh cycles</p>
+    </section>
+  );
+}

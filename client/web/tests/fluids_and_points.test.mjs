@@ -1,0 +1,148 @@
+// Fluids, jobs and points: what is entered, what is refused, what is followed.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { launch, newPage, Server, signIn } from './harness.mjs';
+
+let browser;
+let server;
+let page;
+before(async () => {
+  browser = await launch();
+  server = await new Server('--projects', 'axles').start();
+  page = await newPage(browser, server);
+  await page.goto(server.address);
+  await signIn(page, server.token);
+});
+after(async () => {
+  await browser?.close();
+  await server?.remove();
+});
+
+test('an oil is entered from its data sheet by the keyboard alone', async () => {
+  await page.goto(`${server.address}/fluids`);
+  await page.getByRole('link', { name: 'Enter an oil' }).press('Enter');
+  await page.getByLabel('Id').focus();
+  const { keyboard } = page;
+  for (const word of ['my-oil', 'My oil', '', '103', '15.1', '868']) {
+    if (word !== '') await keyboard.type(word);
+    await keyboard.press('Tab');
+  }
+  await keyboard.press('Enter');
+  await page.waitForURL(/\/fluids\/my-oil$/);
+  await page.getByText('KV100').waitFor();
+  const oil = await server.call('GET', '/v1/lubricants/my-oil');
+  assert.equal(oil.measurements.kinematic_viscosity_40_celsius_square_millimetres_per_second, 103);
+  assert.equal(oil.base_oil_class, 'BASE_OIL_CLASS_POLYALPHAOLEFIN');
+});
+
+test('a mistake is named at its field, with the unit and range of the schema', async () => {
+  await page.goto(`${server.address}/fluids/my-oil/edit`);
+  const field = page.getByLabel(/Pressure-viscosity coefficient/);
+  await page.getByText('Parameters of the model').click();
+  await page.getByText('0.1 to 1000').waitFor();
+  const before = await server.call('GET', '/v1/lubricants/my-oil');
+  assert.equal(Number(await field.inputValue()).toPrecision(6), (1e9 * before.pressure_viscosity_coefficient_per_pascal).toPrecision(6));
+  await field.fill('20000');
+  await page.getByRole('button', { name: /Save/ }).click();
+  await page.locator('.problem', { hasText: 'pressure_viscosity_coefficient_per_pascal = 2e-05' }).waitFor();
+  assert.equal(await field.getAttribute('aria-invalid'), 'true');
+  assert.ok(await field.evaluate((element) => element === document.activeElement), 'the field has the focus');
+  await field.fill('abc');
+  await page.getByRole('button', { name: /Save/ }).click();
+  await page.locator('.problem', { hasText: '"abc" is not a number' }).waitFor();
+  await field.fill('20');
+  await page.getByRole('button', { name: /Save/ }).click();
+  await page.waitForURL(/\/fluids\/my-oil$/);
+  const saved = await server.call('GET', '/v1/lubricants/my-oil');
+  assert.equal(saved.pressure_viscosity_coefficient_per_pascal, 2e-8);
+  assert.equal(saved.revision, before.revision + 1);
+  assert.equal(saved.measurements.kinematic_viscosity_40_celsius_square_millimetres_per_second, 103, 'other fields stay');
+});
+
+test('a dropped table shows what is wrong at its row', async () => {
+  await page.goto(`${server.address}/fluids/new`);
+  await page.getByLabel('Id').fill('dropped');
+  const drop = async (text) => {
+    const data = await page.evaluateHandle((csv) => {
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([csv], 'oil.csv', { type: 'text/csv' }));
+      return transfer;
+    }, text);
+    await page.locator('.drop').dispatchEvent('drop', { dataTransfer: data });
+    await page.getByText('oil.csv').waitFor();
+  };
+  await drop('T (C),KV (mm2/s)\n40,103\n70,abc\n100,15.1\n');
+  await page.getByRole('button', { name: 'Save' }).click();
+  await page.locator('.table-preview li').nth(2).getByText(/"abc"; allowed: a finite number/).waitFor();
+  assert.equal(await page.locator('.table-preview .wrong').count(), 1);
+  await drop('T (C),KV (mm2/s)\n40,103\n70,34.5\n100,15.1\n');
+  await page.getByRole('button', { name: 'Save' }).click();
+  await page.waitForURL(/\/fluids\/dropped$/);
+  assert.equal((await server.call('GET', '/v1/lubricants/dropped')).measurements.viscosities.length, 3);
+});
+
+test('a running job is followed and cancelled in the list', async () => {
+  await page.goto(`${server.address}/jobs`);
+  await page.getByText('No job is in this list').waitFor();
+  const job = await server.call('POST', '/v1/simulations', {
+    lubricant: 'lubricants/my-oil',
+    solver_options: { method: 'STEADY_STATE_METHOD_MARCH' },
+    inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 120, speed_step_kilometres_per_hour: 1 },
+  });
+  await page.locator('.state.running').waitFor();
+  await page.getByRole('button', { name: 'Cancel job 1' }).click();
+  await page.locator('.state.cancelled').waitFor();
+  assert.equal((await server.call('GET', `/v1/${job.name}`)).state, 'CANCELLED');
+});
+
+test('a failed job says why', async () => {
+  const job = await server.call('POST', '/v1/simulations', {
+    lubricant: 'lubricants/my-oil', deadline_seconds: 0.01,
+    solver_options: { method: 'STEADY_STATE_METHOD_MARCH' },
+    inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 120, speed_step_kilometres_per_hour: 1 },
+  });
+  await page.goto(`${server.address}/jobs/${job.name.split('/')[1]}`);
+  await page.locator('.notice.error', { hasText: 'DEADLINE_EXCEEDED' }).waitFor();
+});
+
+test('a speed of a curve opens its histories, and a zoom fetches their rows', async () => {
+  const curve = await server.call('POST', '/v1/simulations', {
+    lubricant: 'lubricants/paper-fluid-1',
+    inefficiency_curve: { first_speed_kilometres_per_hour: 60, last_speed_kilometres_per_hour: 90, speed_step_kilometres_per_hour: 5 },
+  });
+  await page.goto(`${server.address}/curves?r=${curve.name.split('/')[1]}`);
+  await page.getByRole('heading', { name: 'At 75 km/h' }).waitFor();
+  await page.getByRole('button', { name: 'Open the point' }).click();
+  await page.waitForURL(/\/point\/\d+$/);
+  await page.getByText('the flanks separate').waitFor();
+  const histories = page.locator('.histories');
+  await histories.locator('canvas').first().waitFor();
+  assert.ok(Number(await histories.getAttribute('data-rows-per-pair')) > 0, 'all rows are an envelope');
+  const box = await page.locator('.u-over').first().boundingBox();
+  await page.mouse.move(box.x + 0.2 * box.width, box.y + 50);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.35 * box.width, box.y + 50, { steps: 4 });
+  const [request] = await Promise.all([page.waitForRequest(/readHistory/), page.mouse.up()]);
+  const query = new URL(request.url()).searchParams;
+  assert.ok(Number(query.get('start_row')) > 300 && Number(query.get('row_count')) < 500, request.url());
+  await page.locator('.histories[data-rows-per-pair="0"]').waitFor();
+  assert.match(new URL(page.url()).search, /t=0\.\d+-0\.\d+/);
+  await page.reload();
+  await page.locator('.histories[data-rows-per-pair="0"]').waitFor();
+  await page.getByRole('button', { name: 'Show both cycles' }).click();
+  await page.waitForFunction(() => Number(document.querySelector('.histories')?.dataset.rowsPerPair) > 0);
+});
+
+test('what another project has is not found, in the words of what does not exist', async () => {
+  const token = await server.newToken('bert', '--projects', 'axles');
+  const other = await newPage(browser, server);
+  await other.goto(`${server.address}/jobs/1`);
+  await signIn(other, token);
+  await other.waitForURL(/\/p\/axles\//);
+  await other.getByRole('link', { name: 'Lubricant 1' }).waitFor();
+  assert.equal(await other.getByText('My oil').count(), 0);
+  await other.goto(`${server.address}/p/axles/fluids/my-oil`);
+  await other.getByRole('heading', { name: 'Nothing is here' }).waitFor();
+  await other.context().close();
+  assert.deepEqual(page.complaints, []);
+});

@@ -1,0 +1,113 @@
+// A real server and Debian's Chromium for the tests of the dashboard.
+import { spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { chromium } from 'playwright-core';
+
+export const TRIBODYND = process.env.TRIBODYND;
+export const TRIBODYN = process.env.TRIBODYN;
+
+const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+
+/** Runs a program and returns what it printed; throws if it fails. */
+export async function output(program, args, options = {}) {
+  const child = spawn(program, args, { stdio: ['ignore', 'pipe', 'pipe'], ...options });
+  let out = '';
+  let err = '';
+  child.stdout.on('data', (text) => (out += text));
+  child.stderr.on('data', (text) => (err += text));
+  const code = await new Promise((done) => child.on('close', done));
+  if (code !== 0) throw new Error(`${program} ${args.join(' ')} ended with ${code}: ${err}`);
+  return out;
+}
+
+/** A server with a database of its own in a folder of its own. */
+export class Server {
+  constructor(...flags) {
+    this.folder = mkdtempSync(path.join(tmpdir(), 'tribodyn-web-'));
+    this.database = path.join(this.folder, 'test.sqlite');
+    this.flags = flags;
+    this.port = 0;
+  }
+
+  /** Starts it on a free port, after a stop on the same one. */
+  async start() {
+    const args = ['--database', this.database, '--listen', `unix:${this.folder}/socket`, '--http-listen',
+      `127.0.0.1:${this.port}`, '--threads', '1', ...this.flags];
+    this.log = '';
+    this.process = spawn(TRIBODYND, args, { stdio: ['ignore', 'pipe', 'pipe'] });
+    for (const stream of [this.process.stdout, this.process.stderr]) stream.on('data', (text) => (this.log += text));
+    this.ended = new Promise((done) => this.process.on('close', done));
+    for (let i = 0; i < 300; ++i) {
+      this.port = Number(/REST at http:\/\/127\.0\.0\.1:(\d+)/.exec(this.log)?.[1] ?? this.port);
+      try {
+        if (this.port !== 0 && (await fetch(`${this.address}/healthz`)).ok) return this;
+      } catch {
+        // It does not listen yet.
+      }
+      await pause(100);
+    }
+    throw new Error(`the server did not start:\n${this.log}`);
+  }
+
+  get address() { return `http://127.0.0.1:${this.port}`; }
+  get token() { return readFileSync(`${this.database}.token`, 'utf8').trim(); }
+
+  async stop(signal = 'SIGTERM') {
+    this.process.kill(signal);
+    await this.ended;
+  }
+  async remove() {
+    if (this.process.exitCode === null && this.process.signalCode === null) await this.stop('SIGKILL');
+    rmSync(this.folder, { recursive: true });
+  }
+
+  /** Calls a method as a script would. */
+  async call(method, target, body) {
+    const response = await fetch(this.address + target, {
+      method,
+      headers: { Authorization: `Bearer ${this.token}`, ...(body ? { 'Content-Type': 'application/json' } : {}) },
+      body: body ? JSON.stringify(body) : undefined,
+    });
+    if (!response.ok) throw new Error(`${method} ${target}: ${response.status} ${await response.text()}`);
+    return response.json();
+  }
+
+  /** Prints a new token for somebody. */
+  async newToken(name, ...flags) {
+    return (await output(TRIBODYND, ['tokens', 'create', name, '--database', this.database, ...flags])).trim();
+  }
+}
+
+export async function launch() {
+  const executablePath = ['/usr/bin/chromium', '/usr/bin/google-chrome'].find(existsSync);
+  if (!executablePath) throw new Error('Chromium is not installed: deploy/setup test');
+  return chromium.launch({ executablePath, args: process.getuid() === 0 ? ['--no-sandbox'] : [] });
+}
+
+/**
+ * A browser without cookies that has a page. Requests that leave the server, errors of scripts and
+ * violations of the content security policy are recorded in `complaints`.
+ */
+export async function newPage(browser, server, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, locale: 'en-GB', ...options });
+  const page = await context.newPage();
+  page.setDefaultTimeout(10_000);
+  page.complaints = [];
+  page.on('pageerror', (error) => page.complaints.push(`error: ${error.message}`));
+  page.on('console', (message) => {
+    if (/Content Security Policy|Trusted/i.test(message.text())) page.complaints.push(message.text());
+  });
+  page.on('request', (request) => {
+    const to = new URL(request.url());
+    if (!['blob:', 'data:'].includes(to.protocol) && to.origin !== server.address) page.complaints.push(`request to ${to}`);
+  });
+  return page;
+}
+
+export async function signIn(page, token) {
+  await page.getByLabel('Token').fill(token);
+  await page.getByRole('button', { name: 'Sign in' }).click();
+  await page.getByRole('dialog').waitFor({ state: 'detached' });
+}

@@ -1,0 +1,109 @@
+// Every view in both themes and at two widths: axe finds nothing serious, nothing is cut off, and a
+// screenshot of each is left in build/web/screenshots.
+import assert from 'node:assert/strict';
+import { mkdirSync, readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { after, before, test } from 'node:test';
+import { launch, newPage, Server, signIn } from './harness.mjs';
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+const FOLDER = 'screenshots';
+
+let browser;
+let server;
+before(async () => {
+  mkdirSync(FOLDER, { recursive: true });
+  browser = await launch();
+  server = await new Server().start();
+  const create = (body) => server.call('POST', '/v1/simulations', body);
+  for (const fluid of [1, 2, 3]) {
+    await create({
+      lubricant: `lubricants/paper-fluid-${fluid}`,
+      inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 140, speed_step_kilometres_per_hour: 5 },
+    });
+  }
+  await create({
+    lubricant: 'lubricants/paper-fluid-1',
+    operating_point: {
+      cruise: { speed_kilometres_per_hour: 75 },
+      history: {
+        columns: ['mesh_phase_cycles', 'dynamic_transmission_error_metres', 'mesh_force_newtons', 'pinion_friction_torque_newton_metres', 'flank_load_newtons', 'flank_film_ratio', 'flank_contact_temperature_kelvin'],
+        mesh_cycles: 2, samples_per_mesh_cycle: 1024,
+      },
+    },
+  });
+  await create({
+    lubricant: 'lubricants/paper-fluid-2', sump_temperature_celsius: 90, deadline_seconds: 0.01,
+    solver_options: { method: 'STEADY_STATE_METHOD_MARCH' },
+    inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 60, speed_step_kilometres_per_hour: 1 },
+  });
+  for (let i = 0; i < 100; ++i) {
+    const { simulations } = await server.call('GET', '/v1/simulations?read_mask=state');
+    if (simulations.every((each) => each.state === 'SUCCEEDED' || each.state === 'FAILED')) break;
+    await new Promise((done) => setTimeout(done, 100));
+  }
+});
+after(async () => {
+  await browser?.close();
+  await server?.remove();
+});
+
+/** Name, address, and what is there once the view is complete. */
+const VIEWS = [
+  ['home', '/', '.runs li'],
+  ['curves', '/curves?r=1,2,3', '.multiple canvas'],
+  ['curves-dte', '/curves?r=1,2,3&y=dte', '.multiple canvas'],
+  ['curves-form', '/curves?f=paper-fluid-1', '.empty'],
+  ['fluids', '/fluids', 'tbody tr'],
+  ['fluid', '/fluids/paper-fluid-1', '.parameters tbody tr'],
+  ['fluid-new', '/fluids/new', '.drop'],
+  ['fluid-edit', '/fluids/paper-fluid-1/edit', '.fluid-form'],
+  ['jobs', '/jobs', 'tbody tr'],
+  ['job', '/jobs/5', '.facts'],
+  ['point', '/point/4', '.histories canvas'],
+  ['missing', '/fluids/no-such-oil', '.empty'],
+];
+
+for (const colorScheme of ['light', 'dark']) {
+  for (const width of [1280, 390]) {
+    test(`every view is readable in the ${colorScheme} theme at ${width} pixels`, async () => {
+      const page = await newPage(browser, server, { viewport: { width, height: 900 }, colorScheme });
+      await page.goto(server.address);
+      await page.screenshot({ path: `${FOLDER}/sign-in-${colorScheme}-${width}.png` });
+      await signIn(page, server.token);
+      const problems = [];
+      for (const [name, path, mark] of VIEWS) {
+        await page.goto(server.address + path);
+        await page.locator(mark).first().waitFor();
+        await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+        await page.screenshot({ path: `${FOLDER}/${name}-${colorScheme}-${width}.png`, fullPage: true });
+        const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+        if (overflow > 0) problems.push(`${name}: ${overflow} pixels wider than the window`);
+        if (colorScheme === 'dark' && width === 390) continue; // its colors and its layout are looked at above
+        await page.evaluate(AXE);
+        const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ['violations'] }));
+        for (const each of violations) {
+          if (!['serious', 'critical'].includes(each.impact)) continue;
+          problems.push(`${name}: ${each.id}: ${each.help}: ${each.nodes.slice(0, 2).map((node) => node.html.slice(0, 160)).join(' | ')}`);
+        }
+      }
+      assert.deepEqual(problems, []);
+      assert.deepEqual(page.complaints, []);
+      await page.context().close();
+    });
+  }
+}
+
+test('the first view takes less than 200 kB of the network', async () => {
+  const page = await newPage(browser, server);
+  let bytes = 0;
+  const session = await page.context().newCDPSession(page);
+  await session.send('Network.enable');
+  session.on('Network.loadingFinished', (event) => (bytes += event.encodedDataLength));
+  await page.goto(server.address + '/curves?r=1,2,3');
+  await signIn(page, server.token);
+  await page.locator('.multiple canvas').first().waitFor();
+  assert.ok(bytes > 10_000 && bytes < 200_000, `${bytes} bytes`);
+  console.log(`# the curves with their data: ${(bytes / 1000).toFixed(0)} kB`);
+  await page.context().close();
+});

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/application/authorizer.h"
+#include "server/transport/http/http_message.h"
+
+namespace tribodyn::server {
+
+/// Sessions of browsers. A page sends a token once, and the server answers with a cookie that no
+/// script can read and no other site can send. The cookie holds the hash of the token and the end
+/// of the session under a seal: the server keeps nothing, sessions outlive its restarts, and they
+/// end with their token. A request that changes something also needs the header `Tribodyn-Csrf`,
+/// which only a page of the same origin can read: the cookie goes to every port of the host. Safe
+/// for concurrent access.
+class SessionCookies {
+ public:
+  /// `key` seals the cookies; the holder of another key accepts none of them.
+  explicit SessionCookies(const std::string& key,
+                          std::chrono::seconds lifetime = std::chrono::hours(12));
+
+  /// The path of the session: POST with a token begins it, GET describes it, DELETE ends it.
+  static constexpr std::string_view kPath = "/session";
+
+  /// Answers a request for kPath. The description: {"principal", "scope", "projects",
+  /// "csrf_token"}.
+  HttpResponse answer(const Authorizer& authorizer, const HttpRequest& request,
+                      Microseconds now) const;
+
+  /// Sets `request.session_token_hash` if the request shows who makes it by a valid cookie alone.
+  /// Returns the refusal of a request that another page may have made the browser send, else
+  /// nullopt.
+  std::optional<HttpResponse> admit(HttpRequest& request, Microseconds now) const;
+
+ private:
+  std::string issue(const std::string& token_hash, Microseconds now) const;
+  /// Returns the hash of the token that a cookie stands for; nullopt if it is forged or expired.
+  std::optional<std::string> token_hash_of(const std::string& cookie, Microseconds now) const;
+  /// Returns the valid cookie of a request, or "".
+  std::string cookie_of(const HttpRequest& request, Microseconds now) const;
+  std::string csrf_token(const std::string& cookie) const;
+  HttpResponse description(const Grant& grant, const std::string& cookie) const;
+
+  const std::string key_;
+  const Microseconds lifetime_;
+};
+
+}  // namespace tribodyn::server

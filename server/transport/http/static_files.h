@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "server/transport/http/http_message.h"
+
+namespace tribodyn::server {
+
+/// The files of the dashboard, read once. Safe for concurrent access.
+class StaticFiles {
+ public:
+  /// Reads all files of a folder and of those in it; `NAME.gz` is the compressed form of NAME.
+  /// Throws std::runtime_error if the folder has no index.html, or if its files take more than
+  /// 32 MiB.
+  explicit StaticFiles(const std::filesystem::path& folder);
+
+  /// Returns the answer to GET or HEAD of a path, or nullopt. Paths of views are no files: they are
+  /// answered with index.html if the client accepts HTML and the path is not below /v1/.
+  std::optional<HttpResponse> answer(const HttpRequest& request, const std::string& path) const;
+
+ private:
+  struct File {
+    std::string type;  ///< media type
+    std::string body;
+    std::string compressed;  ///< by gzip; empty: the file has no such form
+    std::string tag;         ///< hash of the body
+  };
+  std::map<std::string, File> files_;  ///< by path, e.g. "/assets/index-1a2b.js"
+};
+
+/// Returns the folder of the dashboard beside this program: that of the build, or that of an
+/// installation. Empty if there is none.
+std::filesystem::path default_dashboard_folder();
+
+}  // namespace tribodyn::server
