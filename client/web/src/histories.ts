@@ -5,4 +5,4 @@ export const HISTORY_COLUMNS = [
   'flank_load_newtons', 'flank_film_ratio', 'flank_contact_temperature_kelvin',
 ];
 export const MESH_CYCLES = 2;
-export const SAMPLES_PER_MESH_CYCLE = 1024;
+export const SAMPLES_PER_MESH_CYCLE = 960; // many divisors: buckets of envelopes end with the mesh cycle

@@ -133,18 +133,18 @@ test('a revoked token leads back to the log-in, and what was entered stays', asy
 });
 
 test('a reload amid a job goes on with its progress', async () => {
-  const job = await server.call('POST', '/v1/simulations', slowJob(14));
+  const job = await server.call('POST', '/v1/simulations', slowJob(24));
   const page = await signedIn(`/curves?r=${job.name.split('/')[1]}`);
   await page.locator('.progress-row').waitFor();
   await page.reload();
   await page.locator('.progress-row').waitFor();
-  await page.locator('.read-out').waitFor({ timeout: 20_000 });
+  await page.locator('.read-out').waitFor({ timeout: 40_000 });
   assert.equal(await page.locator('.progress-row').count(), 0);
   await page.context().close();
 });
 
 test('a server that is killed and restarted amid a job is noticed and found again', async () => {
-  const job = await server.call('POST', '/v1/simulations', slowJob(16, 2));
+  const job = await server.call('POST', '/v1/simulations', slowJob(24, 2));
   const page = await signedIn(`/curves?r=${job.name.split('/')[1]}`);
   await page.locator('.progress-row').waitFor();
   await server.stop('SIGKILL');
@@ -152,7 +152,7 @@ test('a server that is killed and restarted amid a job is noticed and found agai
   await page.getByText('Not connected since').waitFor();
   await server.start();
   await page.getByText('Not connected since').waitFor({ state: 'detached' });
-  await page.locator('.read-out').waitFor({ timeout: 20_000 });
+  await page.locator('.read-out').waitFor({ timeout: 40_000 });
   assert.equal(await page.getByRole('dialog').count(), 0, 'the session outlives the server');
   await page.context().close();
 });
@@ -165,4 +165,15 @@ test('a refused request names the field', async () => {
   await page.locator('.panel .problem', { hasText: 'allowed: -70 to 200' }).waitFor();
   assert.equal(await page.getByLabel('Sump, °C').getAttribute('aria-invalid'), 'true');
   await page.context().close();
+});
+
+test('a server without the files of the dashboard says so in one line and serves everything else', async () => {
+  const bare = await new Server('--dashboard', '/no/such/folder').start();
+  try {
+    assert.equal(bare.log.match(/no dashboard: .*no\/such\/folder/g)?.length, 1, bare.log);
+    assert.equal((await fetch(bare.address, { headers: { Accept: 'text/html' } })).status, 404);
+    assert.equal((await bare.call('GET', '/v1/lubricants')).total_size, 3);
+  } finally {
+    await bare.remove();
+  }
 });

@@ -28,7 +28,7 @@ before(async () => {
       cruise: { speed_kilometres_per_hour: 75 },
       history: {
         columns: ['mesh_phase_cycles', 'dynamic_transmission_error_metres', 'mesh_force_newtons', 'pinion_friction_torque_newton_metres', 'flank_load_newtons', 'flank_film_ratio', 'flank_contact_temperature_kelvin'],
-        mesh_cycles: 2, samples_per_mesh_cycle: 1024,
+        mesh_cycles: 2, samples_per_mesh_cycle: 960,
       },
     },
   });

@@ -182,7 +182,7 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
   useEffect(() => {
     const width = box.current!.clientWidth;
     const longest = Math.max(0, ...spec.lines.map((line) => line.label.length));
-    const hasLabels = !isSmall && longest > 0 && width > (longest < 10 ? 420 : 620);
+    const hasLabels = !isSmall && spec.hasMarkers !== false && longest > 0 && width > (longest < 10 ? 420 : 620);
     const axis = {
       stroke: colors.muted,
       font: `${isSmall ? 10.5 : 12}px ${FONT}`,

@@ -19,7 +19,7 @@ export interface Spec {
   outside: [number, number][]; // speeds at which fluids must not be ranked
   levels: { value: number; label: string }[];
   fromZero: boolean;
-  hasMarkers?: boolean; // default: true
+  hasMarkers?: boolean; // and labels at the lines; default: true
   xRange?: [number, number]; // default: all
 }
 

@@ -160,8 +160,8 @@ function JobPage({ name }: { name: string }) {
       <dl class="facts">
         <dt>State</dt>
         <dd><JobState simulation={progress && isOpen ? { ...job, progress_fraction: progress.fraction } : job} /> {isOpen && progress?.stage}</dd>
-        <dt>Created</dt><dd><time dateTime={job.create_time}>{job.create_time}</time></dd>
-        {job.end_time && <><dt>Took</dt><dd>{job.cache_hit ? 'nothing: equal inputs had a result' : duration(job.start_time, job.end_time)}</dd></>}
+        <dt>Created</dt><dd><time dateTime={job.create_time}>{new Date(job.create_time!).toLocaleString()}</time></dd>
+        {job.end_time && job.start_time && <><dt>Took</dt><dd>{job.cache_hit ? 'nothing: equal inputs had a result' : duration(job.start_time, job.end_time)}</dd></>}
         <dt>Lubricant</dt><dd><a href={address(`/fluids/${revisionIdOf(job.lubricant_revision)}`)}>{revisionIdOf(job.lubricant_revision)}</a></dd>
         <dt>Gear set</dt><dd>{revisionIdOf(job.gear_set_revision)}</dd>
         <dt>Surface</dt><dd>{revisionIdOf(job.surface_revision)}</dd>
