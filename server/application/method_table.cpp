@@ -10,6 +10,7 @@
 #include "server/application/imports.h"
 #include "server/application/points.h"
 #include "server/application/resource_writes.h"
+#include "server/application/rigs.h"
 #include "server/application/schemas.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
@@ -160,6 +161,7 @@ std::vector<Method> rows() {
                                                                      evaluate_contact),
       unary<v1::EvaluatePointsRequest, v1::EvaluatePointsResponse>(Scope::kRead, kCompute,
                                                                    evaluate_points),
+      unary<v1::EvaluateRigRequest, v1::EvaluateRigResponse>(Scope::kRead, kCompute, evaluate_rig),
 
       unary(Scope::kWrite, kWrite, create_simulation),
       unary(Scope::kRead, kRead, get_simulation),

@@ -136,7 +136,7 @@ void check_repeated(const Message& message, const Reflection& reflection, const 
   const FieldDescriptor& field = check.field;
   const std::string& path = check.path;
   Violations& violations = check.violations;
-  const int count = std::min(reflection.FieldSize(message, &field), kMaximumCurvePoints);
+  const int count = reflection.FieldSize(message, &field);
   Violations found;
   for (int i = 0; i < count; ++i) {
     check_element(message, reflection, i,

@@ -11,7 +11,7 @@ err_has 'cannot connect to the server at 127.0.0.1:9'
 expect 3 --server "unix:$folder/none" lubricants list
 expect 0 --help
 out_has 'Exit codes'
-for command in point curve history contact diff validate schema completion help "lubricants list" \
+for command in point curve history contact traction film stribeck diff validate schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun"; do
   # shellcheck disable=SC2086  # the words of a command
@@ -106,9 +106,10 @@ echo "--- lubricants"
 expect 0 lubricants list
 out_has '^paper-fluid-1 .*ester-olefin'
 out_has '^paper-fluid-3 '
+out_has '^shell-t9 '
 expect 0 lubricants list --output csv
 out_is_csv
-out_lines 4
+out_lines 5
 out_has 'pressure_viscosity_coefficient_per_pascal'
 expect 0 lubricants list --output json
 out_is_json
@@ -130,6 +131,26 @@ out_lines 2
 expect 0 contact --output json
 out_is_json
 out_has '"central_film_thickness_metres": [0-9.]+e-0?[67]'
+
+echo "--- rigs"
+expect 0 traction paper-fluid-1 paper-fluid-2 --radius 12.7mm --load 38,154 --isothermal
+out_has '^paper-fluid-1@1 +thermal +38 +2 +0 +40 +0 '
+out_has '^paper-fluid-2@1 +isothermal +154 +2 +50 +40 +0\.0[0-9]+ '
+expect 0 film paper-fluid-1 --speed 0.1,1 --output csv
+out_is_csv
+out_lines 3
+out_has '^lubricant,model,load_newtons,entrainment_speed_metres_per_second'
+printf 'entrainment_speed_metres_per_second,traction_coefficient,load_newtons\n0.01,0.1,20\n1,0.04,20\n' >"$folder/rig.csv"
+expect 0 stribeck paper-fluid-1 --measured "$folder/rig.csv" --load 20 --plot "$folder/stribeck.svg"
+out_has 'paper-fluid-1@1: RMS residual [0-9.]+ % of 2 measured points'
+[ -s "$folder/stribeck.svg" ] || fail "stribeck draws nothing"
+expect 0 stribeck paper-fluid-1 --measured "$folder/rig.csv" --output json
+out_is_json
+sed -i 's/0.04/0,04x/' "$folder/rig.csv"
+expect 2 stribeck paper-fluid-1 --measured "$folder/rig.csv"
+expect 1 traction paper-fluid-11
+expect 1 traction paper-fluid-1 --slide-roll-ratio 300
+expect 2 traction
 
 echo "--- point"
 expect 0 point --lubricant paper-fluid-1 --speed-kilometres-per-hour 72.5 --progress lines

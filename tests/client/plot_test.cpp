@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -11,10 +12,12 @@
 #include <utility>
 #include <vector>
 
+#include "client/cpp/failure.h"
 #include "client/cpp/plot/curve_plot.h"
 #include "client/cpp/plot/history_plot.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/plot/svg.h"
+#include "client/cpp/report/rig_rows.h"
 #include "tests/client/sample_simulations.h"
 
 namespace tribodyn::client {
@@ -79,6 +82,82 @@ TEST(Ticks, CoverTheRangeWithRoundNumbers) {
     EXPECT_LE(ticks.front(), low);
     EXPECT_GE(ticks.back(), high);
   }
+}
+
+TEST(Ticks, OfLogarithmicAxesAreOneTwoAndFiveTimesPowersOfTen) {
+  EXPECT_EQ(logarithmic_tick_labels(logarithmic_ticks(std::log10(0.03), std::log10(3))),
+            (std::vector<std::string>{"0.02", "0.05", "0.1", "0.2", "0.5", "1", "2", "5"}));
+  EXPECT_EQ(logarithmic_tick_labels(logarithmic_ticks(-3, 2)),
+            (std::vector<std::string>{"0.001", "0.01", "0.1", "1", "10", "100"}));
+  EXPECT_EQ(logarithmic_tick_labels(logarithmic_ticks(0, 0)), (std::vector<std::string>{"1", "2"}));
+}
+
+RigRow rig_row(double speed, double traction, bool is_isothermal) {
+  RigRow row;
+  row.fluid = "lubricants/x@1";
+  row.is_isothermal = is_isothermal;
+  row.condition.set_load_newtons(20);
+  row.condition.set_entrainment_speed_metres_per_second(speed);
+  row.condition.set_supply_temperature_celsius(40);
+  for (const std::string& column : rig_columns()) row.figures[column] = traction;
+  return row;
+}
+
+constexpr RigView kStribeck{"stribeck",
+                            "Stribeck",
+                            "entrainment_speed_metres_per_second",
+                            "traction_coefficient",
+                            "Speed",
+                            "Friction",
+                            1,
+                            true};
+
+TEST(RigPlot, DrawsLinesDashedWhereIsothermalAndMeasuredPointsHollow) {
+  std::vector<RigRow> rows{rig_row(0.01, 0.1, false), rig_row(1, 0.05, false),
+                           rig_row(0.01, 0.12, true), rig_row(1, 0.06, true)};
+  rows.push_back(rig_row(0.1, 0.08, false));
+  rows.back().measured = 0.07;
+  const std::string svg = rig_plot(rows, kStribeck, "model-x");
+  EXPECT_TRUE(is_well_formed(svg));
+  EXPECT_NE(svg.find("x, 20 N, 0 %, 40 C"), std::string::npos);
+  EXPECT_NE(svg.find("isothermal"), std::string::npos);
+  EXPECT_NE(svg.find("model-x"), std::string::npos);
+  EXPECT_NE(svg.find("<circle"), std::string::npos);
+}
+
+TEST(RigText, StatesResidualsOfMeasuredPointsAndRefusals) {
+  std::vector<RigRow> rows{rig_row(0.01, 0.11, false), rig_row(1, 0.05, false)};
+  rows[0].measured = 0.1;
+  rows[1].figures.clear();
+  rows[1].refusal = "too cold";
+  const std::string table = rig_text(rows, kStribeck, OutputFormat::kTable);
+  EXPECT_NE(table.find("x@1: RMS residual 10 % of 1 measured points"), std::string::npos) << table;
+  EXPECT_NE(table.find("refused: too cold"), std::string::npos);
+}
+
+TEST(MeasuredPoints, AreReadByTheNamesOfTheirColumns) {
+  v1::RigCondition usual;
+  usual.set_load_newtons(35);
+  const auto points = read_measured(
+      "traction_coefficient;entrainment_speed_metres_per_second;note\n0.1;0.02;a\n0.05;1;b\n",
+      "m.csv", kStribeck, usual);
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].value, 0.1);
+  EXPECT_EQ(points[0].condition.load_newtons(), 35);
+  EXPECT_EQ(points[1].condition.entrainment_speed_metres_per_second(), 1);
+  const auto complaint = [&usual](const char* text) -> std::string {
+    try {
+      read_measured(text, "m.csv", kStribeck, usual);
+    } catch (const Failure& failure) {
+      return failure.what();
+    }
+    return "";
+  };
+  EXPECT_NE(complaint("traction_coefficient\n0.1\n").find("m.csv, line 1: no column entrainment"),
+            std::string::npos);
+  EXPECT_NE(complaint("traction_coefficient,entrainment_speed_metres_per_second\n0.1,x\n")
+                .find("line 2: entrainment_speed_metres_per_second = \"x\" is not a number"),
+            std::string::npos);
 }
 
 TEST(CurvePlot, ShowsEveryFluidTheBandsAndTheCaption) {

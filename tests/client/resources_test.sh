@@ -296,7 +296,7 @@ expect 0 lubricants create cold --kv40 103 --kv100 15.1 --density15 868 --brookf
   --kv100-sheared 14.2 --base-oil-class pao --density 100=815 --viscosity 20=283mm2/s \
   --thermal-conductivity 0.14W/mK --provenance 'thermal-conductivity=measured:Laboratory X' \
   --uncertainty thermal-conductivity=0.01W/mK --label 'project=axle, rear'
-for oil in paper-fluid-1 paper-fluid-2 paper-fluid-3 excel cold my-oil; do
+for oil in paper-fluid-1 paper-fluid-2 paper-fluid-3 shell-t9 excel cold my-oil; do
   expect 0 lubricants export "$oil" --output csv --file there.csv
   err_is_empty
   sed "2s,^lubricants/$oil,lubricants/back-$oil," there.csv >back.csv

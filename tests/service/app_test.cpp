@@ -132,7 +132,7 @@ TEST_F(AppTest, ListsArePaged) {
   ASSERT_FALSE(first.next_page_token().empty());
   request.set_page_token(first.next_page_token());
   const auto second = list_lubricants(app_, request).message();
-  ASSERT_EQ(second.lubricants_size(), 1);
+  ASSERT_EQ(second.lubricants_size(), 2);
   EXPECT_EQ(second.lubricants(0).name(), "lubricants/paper-fluid-3");
   EXPECT_TRUE(second.next_page_token().empty());
   request.set_page_token("nonsense");

@@ -17,6 +17,7 @@
 #include "server/resources/imports/import_surface.h"
 #include "server/simulation/contact_inputs.h"
 #include "server/simulation/point_evaluation.h"
+#include "server/simulation/rig_evaluation.h"
 #include "server/simulation/simulation_inputs.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/schemas.pb.h"
@@ -59,6 +60,25 @@ v1::EvaluatePointsRequest one_point() {
   return out;
 }
 
+v1::EvaluateRigRequest one_rig() {
+  v1::EvaluateRigRequest out;
+  out.set_lubricant("lubricants/paper-fluid-1");
+  out.set_surface("surfaces/run-in");
+  out.set_radius_x_metres(0.0127);
+  v1::RigCondition& condition = *out.add_conditions();
+  condition.set_load_newtons(38);
+  condition.set_entrainment_speed_metres_per_second(2);
+  condition.set_slide_roll_ratio_percent(10);
+  condition.set_supply_temperature_celsius(40);
+  v1::RigBody& ball = *out.mutable_body_1();
+  ball.set_youngs_modulus_pascals(210e9);
+  ball.set_poissons_ratio(0.3);
+  ball.set_thermal_conductivity_watts_per_metre_kelvin(46);
+  ball.set_density_kilograms_per_cubic_metre(7850);
+  ball.set_specific_heat_capacity_joules_per_kilogram_kelvin(470);
+  return out;
+}
+
 /// A request with the message of a row inside it, and the check that applies.
 struct Subject {
   v1::Simulation simulation = point_simulation();
@@ -69,6 +89,7 @@ struct Subject {
   v1::Vehicle vehicle = seed<v1::Vehicle>("vehicles/passenger-car");
   v1::GearSet gear_set = seed<v1::GearSet>("gearSets/reference-axle");
   v1::EvaluatePointsRequest points = one_point();
+  v1::EvaluateRigRequest rig = one_rig();
   std::unique_ptr<Message> batch;
   Message* message = nullptr;
   std::string path;
@@ -99,6 +120,12 @@ struct Subject {
       use(&points, "");
     } else if (name == "PointCondition") {
       use(points.mutable_conditions(0), "conditions[0].");
+    } else if (name == "EvaluateRigRequest") {
+      use(&rig, "");
+    } else if (name == "RigBody") {
+      use(rig.mutable_body_1(), "body_1.");
+    } else if (name == "RigCondition") {
+      use(rig.mutable_conditions(0), "conditions[0].");
     } else if (name == "Simulation") {
       use(&simulation, "simulation.");
     } else if (name == "Cruise") {
@@ -155,6 +182,10 @@ struct Subject {
     if (path.starts_with("simulation.")) return server::check(simulation);
     if (path == "lubricant_parameters." || message == &contact) return server::check(contact);
     Violations violations;
+    if (message == &rig || message == &rig.body_1() || message == &rig.conditions(0)) {
+      read_rig(rig, seed_lookup(), violations);
+      return violations;
+    }
     if (message == &points || path == "conditions[0].") {
       read_points(points, seed_lookup(), violations);
       return violations;

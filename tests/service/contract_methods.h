@@ -9,6 +9,7 @@
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/points.pb.h"
+#include "tribodyn/v1/rigs.pb.h"
 #include "tribodyn/v1/schemas.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
 #include "tribodyn/v1/surfaces.pb.h"
@@ -23,7 +24,8 @@ inline std::vector<const google::protobuf::MethodDescriptor*> all_methods() {
                            v1::Surface::descriptor()->file(), v1::Vehicle::descriptor()->file(),
                            v1::Simulation::descriptor()->file(), v1::Schema::descriptor()->file(),
                            v1::EvaluateContactRequest::descriptor()->file(),
-                           v1::EvaluatePointsRequest::descriptor()->file()}) {
+                           v1::EvaluatePointsRequest::descriptor()->file(),
+                           v1::EvaluateRigRequest::descriptor()->file()}) {
     for (int i = 0; i < file->service_count(); ++i) {
       for (int k = 0; k < file->service(i)->method_count(); ++k) {
         out.push_back(file->service(i)->method(k));

@@ -68,7 +68,7 @@ TEST_F(GrpcTest, ResourcesAreServed) {
     v1::ListLubricantsResponse response;
     ASSERT_TRUE(
         v1::LubricantService::NewStub(channel_)->ListLubricants(&context, {}, &response).ok());
-    EXPECT_EQ(response.lubricants_size(), 3);
+    EXPECT_EQ(response.lubricants_size(), 4);
   }
   {
     grpc::ClientContext context;

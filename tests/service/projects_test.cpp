@@ -228,11 +228,12 @@ TEST_F(ProjectsTest, WithinARequestRelativeNamesMeanItsProject) {
 TEST_F(ProjectsTest, AListHoldsItsProjectOnly) {
   ASSERT_TRUE(create("projects/acme", fluid("lubricants/oil")).ok());
   EXPECT_THAT(lubricants(""), ElementsAre("lubricants/paper-fluid-1", "lubricants/paper-fluid-2",
-                                          "lubricants/paper-fluid-3"));
-  EXPECT_THAT(lubricants("projects/acme", "", 1),
-              ElementsAre("projects/acme/lubricants/oil", "projects/acme/lubricants/paper-fluid-1",
-                          "projects/acme/lubricants/paper-fluid-2",
-                          "projects/acme/lubricants/paper-fluid-3"));
+                                          "lubricants/paper-fluid-3", "lubricants/shell-t9"));
+  EXPECT_THAT(
+      lubricants("projects/acme", "", 1),
+      ElementsAre("projects/acme/lubricants/oil", "projects/acme/lubricants/paper-fluid-1",
+                  "projects/acme/lubricants/paper-fluid-2",
+                  "projects/acme/lubricants/paper-fluid-3", "projects/acme/lubricants/shell-t9"));
   for (const char* filter :
        {"name = oil", "name = lubricants/oil", "name = projects/acme/lubricants/oil", "name:oil",
         "name > lubricants/a AND name < lubricants/p"}) {
@@ -241,7 +242,7 @@ TEST_F(ProjectsTest, AListHoldsItsProjectOnly) {
     EXPECT_THAT(lubricants("projects/other-plant", filter), IsEmpty()) << filter;
   }
   EXPECT_THAT(lubricants("projects/acme", "name:acme"), IsEmpty()) << "is the project's id";
-  EXPECT_EQ(lubricants("projects/acme", "kv100 > 1").size(), 4U) << "computed fields";
+  EXPECT_EQ(lubricants("projects/acme", "kv100 > 1").size(), 5U) << "computed fields";
 }
 
 TEST_F(ProjectsTest, APageTokenIsWorthNothingUnderAnotherKeyOrChanged) {

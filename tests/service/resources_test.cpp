@@ -180,7 +180,7 @@ TEST_F(ResourcesTest, ALubricantWithTooFewDataIsRefused) {
         "did you mean \"lubricants/paper-fluid-1\""}) {
     EXPECT_THAT(said, HasSubstr(part));
   }
-  EXPECT_THAT(ids(""), ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3"));
+  EXPECT_THAT(ids(""), ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3", "shell-t9"));
 }
 
 TEST_F(ResourcesTest, ValidateOnlyAnswersInFullAndWritesNothing) {
@@ -351,9 +351,9 @@ TEST_F(ResourcesTest, ADeletedResourceIsHiddenAndCanBeUndeleted) {
   EXPECT_TRUE(deleted.message().has_delete_time());
   EXPECT_TRUE(remove("lubricants/x").ok()) << "twice is once";
   EXPECT_TRUE(get("lubricants/x").message().has_delete_time());
-  EXPECT_THAT(ids(""), ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3"));
+  EXPECT_THAT(ids(""), ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3", "shell-t9"));
   EXPECT_THAT(ids("", "", 2, true),
-              ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3", "x"));
+              ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3", "shell-t9", "x"));
   EXPECT_EQ(create(three_numbers(), "x").error().code(), google::rpc::ALREADY_EXISTS);
   v1::Lubricant change;
   change.set_name("lubricants/x");
@@ -367,7 +367,8 @@ TEST_F(ResourcesTest, ADeletedResourceIsHiddenAndCanBeUndeleted) {
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().code(), google::rpc::ALREADY_EXISTS) << "AIP-164";
   EXPECT_EQ(again.error().message(), "lubricants/x is not deleted");
-  EXPECT_THAT(ids(""), ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3", "x"));
+  EXPECT_THAT(ids(""),
+              ElementsAre("paper-fluid-1", "paper-fluid-2", "paper-fluid-3", "shell-t9", "x"));
   EXPECT_FALSE(get("lubricants/x").message().has_delete_time());
 }
 
@@ -434,8 +435,8 @@ class ListTest : public ResourcesTest {
       if (i == 5) lubricant.add_labels()->set_key("urgent");
       ASSERT_TRUE(create(lubricant, "o" + std::to_string(i)).ok());
     }
-    for (const char* name :
-         {"lubricants/paper-fluid-1", "lubricants/paper-fluid-2", "lubricants/paper-fluid-3"})
+    for (const char* name : {"lubricants/paper-fluid-1", "lubricants/paper-fluid-2",
+                             "lubricants/paper-fluid-3", "lubricants/shell-t9"})
       remove(name);
   }
 };

@@ -480,6 +480,12 @@ TEST_F(RestAndGrpc, EveryMethodGivesTheSameAnswers) {
   check("EvaluatePoints",
         "lubricant: 'lubricants/none' conditions { speed_kilometres_per_hour: 1 }",
         google::rpc::INVALID_ARGUMENT);
+  check("EvaluateRig",
+        R"(lubricant: "lubricants/paper-fluid-1" surface: "surfaces/run-in" radius_x_metres: 0.0127
+      conditions { load_newtons: 38 entrainment_speed_metres_per_second: 2
+                   slide_roll_ratio_percent: 10 supply_temperature_celsius: 40 })");
+  check("EvaluateRig", "lubricant: 'lubricants/none' radius_x_metres: 1",
+        google::rpc::INVALID_ARGUMENT);
   check_simulations();
   for (const auto* each : all_methods()) {
     EXPECT_TRUE(answered_.contains(each->name()))

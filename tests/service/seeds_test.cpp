@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/gear/gear_set.h"
 #include "server/contract/check_message.h"
 #include "server/mapping/to_core.h"
@@ -196,6 +198,23 @@ TEST(Seeds, LubricantsHaveThePublishedViscosities) {
         v1::PROVENANCE_PUBLISHED)
         << "70 C is printed below eq 24";
     expect_shared_fluid_values(fluid);
+  }
+}
+
+TEST(Seeds, ShellT9HasItsAssumedViscosityAndItsLimitingStress) {
+  const auto fluid = seed<v1::Lubricant>("lubricants/shell-t9");
+  const auto viscosity = [&fluid](double celsius) {
+    return fluid.vogel_viscosity_prefactor_pascal_seconds() *
+           std::exp(fluid.vogel_temperature_coefficient_kelvin() /
+                    (celsius + 273.15 - fluid.vogel_reference_temperature_kelvin()));
+  };
+  EXPECT_NEAR(viscosity(25), 13.7e-3, 0.05e-3);
+  EXPECT_NEAR(viscosity(40), 7.9e-3, 0.05e-3);
+  EXPECT_EQ(fluid.limiting_shear_stress_coefficient(), 0.083);
+  for (const char* field :
+       {"vogel_viscosity_prefactor_pascal_seconds", "vogel_temperature_coefficient_kelvin",
+        "vogel_reference_temperature_kelvin", "pressure_viscosity_coefficient_per_pascal"}) {
+    EXPECT_EQ(find_provenance(fluid.provenance(), field)->provenance(), v1::PROVENANCE_ASSUMED);
   }
 }
 

@@ -360,11 +360,11 @@ TEST_F(StoreTest, RefusesAReadOnlyFile) {
 TEST_F(StoreTest, EverySeedParsesAndHasItsOwnName) {
   std::set<std::string> names;
   for (const NewResource& seed : seed_resources()) names.insert(seed.name);
-  EXPECT_EQ(names,
-            (std::set<std::string>{
-                "lubricants/paper-fluid-1", "lubricants/paper-fluid-2", "lubricants/paper-fluid-3",
-                "gearSets/reference-axle", "gearSets/reference-axle-loaded-error",
-                "gearSets/reference-axle-conformal", "surfaces/run-in", "vehicles/passenger-car"}));
+  EXPECT_EQ(names, (std::set<std::string>{
+                       "lubricants/paper-fluid-1", "lubricants/paper-fluid-2",
+                       "lubricants/paper-fluid-3", "lubricants/shell-t9", "gearSets/reference-axle",
+                       "gearSets/reference-axle-loaded-error", "gearSets/reference-axle-conformal",
+                       "surfaces/run-in", "vehicles/passenger-car"}));
 }
 
 TEST(SimulationQueries, EveryPropertyOfSimulationsFiltersAList) {

@@ -66,6 +66,9 @@ std::vector<Command> all_commands() {
   commands.push_back(point_command());
   commands.push_back(history_command());
   commands.push_back(contact_command());
+  commands.push_back(traction_command());
+  commands.push_back(film_command());
+  commands.push_back(stribeck_command());
   for (const ResourceKind& kind : resource_kinds()) {
     for (Command& command : resource_commands(kind)) commands.push_back(std::move(command));
   }

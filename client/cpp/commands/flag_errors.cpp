@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <optional>
+#include <set>
 
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
@@ -90,6 +91,7 @@ ServiceError with_flag_names(const ServiceError& error, const TypedFlags& typed)
   if (error.kind() != ServiceError::Kind::kRefused) return error;
   std::string text = error.what();
   std::vector<FieldViolation> violations = error.violations();
+  std::set<std::string> shown;  // one flag may set many elements
   for (FieldViolation& violation : violations) {
     const FlagValue value = flag_value_of(violation.field, typed);
     if (value.flag == nullptr) continue;
@@ -98,7 +100,7 @@ ServiceError with_flag_names(const ServiceError& error, const TypedFlags& typed)
                                     "\n  " + violation.description}) {
       const std::size_t at = text.find(line);
       if (at == std::string::npos) continue;
-      text.replace(at, line.size(), "\n  " + described);
+      text.replace(at, line.size(), shown.insert(described).second ? "\n  " + described : "");
       break;
     }
     violation.field = value.flag->name;

@@ -117,6 +117,7 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   services_->vehicles = v1::VehicleService::NewStub(services_->channel);
   services_->simulations = v1::SimulationService::NewStub(services_->channel);
   services_->contacts = v1::ContactService::NewStub(services_->channel);
+  services_->rigs = v1::RigService::NewStub(services_->channel);
   services_->schemas = v1::SchemaService::NewStub(services_->channel);
 }
 
@@ -137,6 +138,10 @@ v1::Schema Connection::schema(const std::string& message) {
 v1::EvaluateContactResponse Connection::evaluate_contact(
     const v1::EvaluateContactRequest& request) {
   return services_->call(*services_->contacts, &v1::ContactService::Stub::EvaluateContact, request);
+}
+
+v1::EvaluateRigResponse Connection::evaluate_rig(const v1::EvaluateRigRequest& request) {
+  return services_->call(*services_->rigs, &v1::RigService::Stub::EvaluateRig, request);
 }
 
 }  // namespace tribodyn::client

@@ -15,6 +15,7 @@
 #include "tribodyn/v1/contacts.grpc.pb.h"
 #include "tribodyn/v1/gear_sets.grpc.pb.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
+#include "tribodyn/v1/rigs.grpc.pb.h"
 #include "tribodyn/v1/schemas.grpc.pb.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
 #include "tribodyn/v1/surfaces.grpc.pb.h"
@@ -37,6 +38,7 @@ struct Connection::Services {
   std::unique_ptr<v1::VehicleService::Stub> vehicles;
   std::unique_ptr<v1::SimulationService::Stub> simulations;
   std::unique_ptr<v1::ContactService::Stub> contacts;
+  std::unique_ptr<v1::RigService::Stub> rigs;
   std::unique_ptr<v1::SchemaService::Stub> schemas;
 
   /// Adds what every call carries.

@@ -45,8 +45,9 @@ struct Scale {
 void draw_grid(const Panel& panel, const Scale& scale, const std::vector<double>& x_ticks,
                const std::vector<double>& y_ticks, Svg& svg) {
   const double bottom = panel.corner.y + panel.height;
-  const auto x_labels = tick_labels(x_ticks);
-  const auto y_labels = tick_labels(y_ticks);
+  const auto labels = panel.is_logarithmic ? logarithmic_tick_labels : tick_labels;
+  const auto x_labels = labels(x_ticks);
+  const auto y_labels = labels(y_ticks);
   for (std::size_t i = 0; i < y_ticks.size(); ++i) {
     const double y = scale.at_y(y_ticks[i]);
     svg.line({panel.corner.x, y}, {panel.corner.x + panel.width, y}, {kGridColour, 1, ""});
@@ -71,8 +72,9 @@ void draw_axis(const Panel& panel, const Scale& scale, Svg& svg) {
   const double x = panel.corner.x;
   const double top = panel.corner.y;
   const double bottom = top + panel.height;
-  const bool cut_below = scale.y.low > 0 && !panel.has_arbitrary_zero;
-  const bool cut_above = scale.y.high < 0 && !panel.has_arbitrary_zero;
+  const bool has_no_zero = panel.has_arbitrary_zero || panel.is_logarithmic;
+  const bool cut_below = scale.y.low > 0 && !has_no_zero;
+  const bool cut_above = scale.y.high < 0 && !has_no_zero;
   std::vector<Point> axis = {{x, bottom}};
   const auto add_break = [&](double start) {  // upwards from `start`
     axis.push_back({x, start});
@@ -286,9 +288,12 @@ void draw_panel(const Panel& panel, Svg& svg) {
   if (scale.x.empty()) scale.x = {0, 1};
   if (scale.y.empty()) scale.y = {0, 1};
   if (scale.x.low == scale.x.high) scale.x = {scale.x.low - 1, scale.x.high + 1};
-  const auto x_ticks = nice_ticks(scale.x.low, scale.x.high, static_cast<int>(panel.width / 60));
-  const auto y_ticks =
-      nice_ticks(scale.y.low, scale.y.high, std::max(4, static_cast<int>(panel.height / 45)));
+  const auto ticks = [&panel](const Range& range, int count) {
+    return panel.is_logarithmic ? logarithmic_ticks(range.low, range.high)
+                                : nice_ticks(range.low, range.high, count);
+  };
+  const auto x_ticks = ticks(scale.x, static_cast<int>(panel.width / 60));
+  const auto y_ticks = ticks(scale.y, std::max(4, static_cast<int>(panel.height / 45)));
   scale.y = {y_ticks.front(), y_ticks.back()};
 
   const double bottom = panel.corner.y + panel.height;

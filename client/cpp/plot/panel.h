@@ -55,6 +55,8 @@ struct Panel {
   /// Set where the zero of the axis has no meaning, e.g. for degrees Celsius. Otherwise an axis
   /// that omits zero has a break mark.
   bool has_arbitrary_zero = false;
+  /// Both axes: x and y of the series are then common logarithms, and labels show the powers.
+  bool is_logarithmic = false;
   std::vector<std::pair<double, double>> bands;    ///< shaded
   std::vector<std::pair<double, double>> hatched;  ///< hatched from foot to head
   std::vector<Strip> strips;                       ///< drawn one above another
@@ -74,5 +76,12 @@ std::vector<double> nice_ticks(double low, double high, int count);
 
 /// Returns the ticks with as few decimals as keep them distinct.
 std::vector<std::string> tick_labels(const std::vector<double>& ticks);
+
+/// Returns the common logarithms of 1, 2 and 5 times powers of ten that cover [low, high], which
+/// are logarithms too, and of a wide range those of the powers alone.
+std::vector<double> logarithmic_ticks(double low, double high);
+
+/// Returns the numbers of which the ticks are the logarithms.
+std::vector<std::string> logarithmic_tick_labels(const std::vector<double>& ticks);
 
 }  // namespace tribodyn::client

@@ -42,4 +42,29 @@ std::vector<std::string> tick_labels(const std::vector<double>& ticks) {
   return labels;
 }
 
+std::vector<double> logarithmic_ticks(double low, double high) {
+  high = std::max(high, low + 1e-9);
+  const bool is_wide = high - low > 4;
+  std::vector<double> ticks;
+  for (int power = static_cast<int>(std::floor(low)); ticks.empty() || ticks.back() < high;
+       ++power) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      const double tick = power + std::log10(factor);
+      if ((is_wide && factor != 1) || (!ticks.empty() && ticks.back() >= high)) continue;
+      if (!ticks.empty() && tick <= low) ticks.pop_back();  // the last one below is enough
+      ticks.push_back(tick);
+    }
+  }
+  return ticks;
+}
+
+std::vector<std::string> logarithmic_tick_labels(const std::vector<double>& ticks) {
+  std::vector<std::string> labels;
+  for (const double tick : ticks) {
+    const int power = static_cast<int>(std::floor(tick + 1e-9));
+    labels.push_back(fixed(std::pow(10, tick), std::max(0, -power)));
+  }
+  return labels;
+}
+
 }  // namespace tribodyn::client

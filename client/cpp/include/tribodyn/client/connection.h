@@ -14,6 +14,7 @@
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/purge_report.pb.h"
+#include "tribodyn/v1/rigs.pb.h"
 #include "tribodyn/v1/schemas.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
 #include "tribodyn/v1/surfaces.pb.h"
@@ -229,6 +230,8 @@ class Connection {
                       const std::function<void(const HistoryRows&)>& on_rows);
 
   v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request);
+
+  v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request);
 
  private:
   struct Services;

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/cpp/text/output.h"
+#include "tribodyn/v1/rigs.pb.h"
+
+namespace tribodyn::client {
+
+/// What one rig command shows: its name, and the figure against what the machine sweeps.
+struct RigView {
+  const char* command;  ///< "traction"
+  const char* title;
+  const char* x;  ///< field of RigCondition
+  const char* y;  ///< column of EvaluateRigResponse
+  const char* x_title;
+  const char* y_title;
+  double y_factor;      ///< from the column's unit to that of y_title
+  bool is_logarithmic;  ///< both axes
+};
+
+/// One condition with its figures.
+struct RigRow {
+  std::string fluid;  ///< revision, e.g. "lubricants/paper-fluid-1@1"
+  bool is_isothermal = false;
+  v1::RigCondition condition;
+  std::map<std::string, double> figures;  ///< by column; empty for a refused row
+  std::string refusal;                    ///< why not; empty: none
+  std::optional<double> measured;         ///< of the view's y, in the unit of its column
+};
+
+/// Returns the columns of figures of an answer, in the order of its fields.
+const std::vector<std::string>& rig_columns();
+
+/// Returns the rows of an answer; `measured` is empty or holds a value for each condition.
+std::vector<RigRow> rig_rows(const v1::EvaluateRigRequest& request,
+                             const v1::EvaluateRigResponse& answer,
+                             const std::vector<std::optional<double>>& measured);
+
+/// Returns (computed - measured)/measured in percent; nullopt without either.
+std::optional<double> residual_percent(const RigRow& row, const RigView& view);
+
+/// Returns the rows in one of the forms of --output. JSON is an object whose "rows" are objects
+/// with the headers of CSV. Below a table stands the RMS residual of each fluid, if anything was
+/// measured.
+std::string rig_text(const std::vector<RigRow>& rows, const RigView& view, OutputFormat format);
+
+/// Returns the condition and measured value of each line of a CSV: columns of the view's x and y,
+/// by the names of their fields; others of RigCondition are optional and otherwise those of
+/// `usual`. Throws Failure, naming `path`, line and column, if the text is not such a table.
+struct MeasuredPoint {
+  v1::RigCondition condition;
+  double value;
+};
+std::vector<MeasuredPoint> read_measured(const std::string& text, const std::string& path,
+                                         const RigView& view, const v1::RigCondition& usual);
+
+/// Draws a line for each fluid, load, temperature, and speed or slide-roll ratio that is not swept;
+/// isothermal lines are dashed, measured points hollow.
+std::string rig_plot(const std::vector<RigRow>& rows, const RigView& view,
+                     const std::string& model_version);
+
+}  // namespace tribodyn::client

@@ -1,0 +1,162 @@
+#include "server/simulation/rig_evaluation.h"
+
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "core/refusal.h"
+#include "core/version.h"
+#include "server/contract/check_message.h"
+#include "server/mapping/to_core.h"
+#include "server/resources/lubricant_parameters.h"
+#include "server/simulation/study_checks.h"
+#include "tribodyn/v1/surfaces.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::RepeatedField;
+
+constexpr Solid kRigSteel{.youngs_modulus = 210e9,
+                          .poissons_ratio = 0.3,
+                          .thermal_conductivity = 46,
+                          .density = 7850,
+                          .specific_heat_capacity = 470};
+
+Solid solid(bool is_set, const v1::RigBody& body) {
+  if (!is_set) return kRigSteel;
+  return {.youngs_modulus = body.youngs_modulus_pascals(),
+          .poissons_ratio = body.poissons_ratio(),
+          .thermal_conductivity = body.thermal_conductivity_watts_per_metre_kelvin(),
+          .density = body.density_kilograms_per_cubic_metre(),
+          .specific_heat_capacity = body.specific_heat_capacity_joules_per_kilogram_kelvin()};
+}
+
+/// sigma_G of the specimens in place of that of the surface; eta_G beta_G sigma_G stays.
+Roughness with_height(Roughness surface, double height) {
+  if (height == 0) return surface;
+  surface.asperity_density *= surface.composite_rms_height / height;
+  surface.composite_rms_height = height;
+  return surface;
+}
+
+/// One column of the answer and the figure that it holds.
+struct RigColumn {
+  RepeatedField<double>* (v1::EvaluateRigResponse::*column)();
+  double RigPoint::*figure;
+};
+constexpr RigColumn kRigColumns[] = {
+    {&v1::EvaluateRigResponse::mutable_traction_coefficient, &RigPoint::traction_coefficient},
+    {&v1::EvaluateRigResponse::mutable_central_film_thickness_metres,
+     &RigPoint::central_film_thickness},
+    {&v1::EvaluateRigResponse::mutable_minimum_film_thickness_metres,
+     &RigPoint::minimum_film_thickness},
+    {&v1::EvaluateRigResponse::mutable_film_ratio, &RigPoint::film_ratio},
+    {&v1::EvaluateRigResponse::mutable_mean_pressure_pascals, &RigPoint::mean_pressure},
+    {&v1::EvaluateRigResponse::mutable_maximum_pressure_pascals, &RigPoint::maximum_pressure},
+    {&v1::EvaluateRigResponse::mutable_contact_temperature_kelvin, &RigPoint::contact_temperature},
+    {&v1::EvaluateRigResponse::mutable_flash_temperature_rise_kelvin,
+     &RigPoint::flash_temperature_rise},
+    {&v1::EvaluateRigResponse::mutable_boundary_friction_share, &RigPoint::boundary_friction_share},
+    {&v1::EvaluateRigResponse::mutable_limiting_stress_area_share,
+     &RigPoint::limiting_stress_area_share},
+};
+
+}  // namespace
+
+std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
+                                      const ResourceLookup& lookup, Violations& violations) {
+  const std::size_t before = violations.size();
+  check_message(request, "", violations);
+  check_model_options(request.model_options(), "model_options", violations);
+  if (request.conditions().empty()) {
+    violations.push_back({"conditions", "not set; allowed: at least one"});
+  }
+  RigEvaluation out{};  // zeros: smooth specimens
+  RigScene& scene = out.scene;
+  auto lubricant = find_resource<v1::Lubricant>(lookup, request.lubricant(), kLubricants,
+                                                "lubricant", violations);
+  if (!request.surface().empty()) {
+    const auto surface =
+        find_resource<v1::Surface>(lookup, request.surface(), kSurfaces, "surface", violations);
+    if (surface) {
+      scene.roughness =
+          with_height(roughness(*surface->resource), request.composite_rms_height_metres());
+      scene.boundary = boundary_friction(*surface->resource);
+      out.surface_revision = surface->revision_name;
+    }
+  } else if (request.composite_rms_height_metres() != 0) {
+    violations.push_back({"composite_rms_height_metres",
+                          "set without a surface; allowed: 0, which means smooth specimens, or a "
+                          "surface whose height it replaces"});
+  }
+  if (!lubricant || violations.size() > before) return std::nullopt;
+  out.lubricant = lubricant->resource;
+  out.lubricant_revision = lubricant->revision_name;
+  scene.lubricant = to_core(*lubricant->resource);
+  scene.solids = {solid(request.has_body_1(), request.body_1()),
+                  solid(request.has_body_2(), request.body_2())};
+  const double radius_y = request.radius_y_metres();
+  scene.radii = {request.radius_x_metres(), radius_y == 0 ? request.radius_x_metres() : radius_y};
+  scene.options = to_core(request.model_options());
+  scene.options.hertz_solution = HertzSolution::kExact;
+  return out;
+}
+
+v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
+                                     const RigEvaluation& evaluation,
+                                     const std::function<bool()>& is_over) {
+  v1::EvaluateRigResponse out;
+  const int rows = request.conditions_size();
+  for (const RigColumn& each : kRigColumns) {
+    (out.*each.column)()->Resize(rows, std::numeric_limits<double>::quiet_NaN());
+  }
+  out.mutable_refusal_numbers()->Resize(rows, 0);
+  std::map<std::pair<std::string, std::string>, int> refusal_numbers;  // from 1
+  std::map<double, Rig> rigs;                                          // by supply temperature
+  const auto refuse = [&](int row, const std::string& reason, const std::string& message) {
+    const auto [at, is_new] =
+        refusal_numbers.emplace(std::pair(reason, message), out.refusals_size() + 1);
+    if (is_new) {
+      v1::PointRefusal& refusal = *out.add_refusals();
+      refusal.set_reason(reason);
+      refusal.set_message(message);
+    }
+    out.set_refusal_numbers(row, at->second);
+  };
+  for (int i = 0; i < rows; ++i) {
+    if (is_over()) throw Cancelled();
+    const v1::RigCondition& condition = request.conditions(i);
+    const double celsius = condition.supply_temperature_celsius();
+    try {
+      auto rig = rigs.find(celsius);
+      if (rig == rigs.end()) {
+        Violations at_inlet;
+        check_fluid_at_inlet(*evaluation.lubricant, celsius, 0, "lubricant", at_inlet);
+        if (!at_inlet.empty()) {
+          refuse(i, "INVALID_AT_INLET", at_inlet.front().description);
+          continue;
+        }
+        rig = rigs.emplace(celsius, Rig(evaluation.scene, celsius + kZeroCelsius)).first;
+      }
+      const RigPoint point =
+          rig->second.at({condition.load_newtons(), condition.entrainment_speed_metres_per_second(),
+                          0.01 * condition.slide_roll_ratio_percent()});
+      for (const RigColumn& each : kRigColumns) {
+        (out.*each.column)()->Set(i, point.*each.figure);
+      }
+    } catch (const Refusal& refusal) {
+      refuse(i, refusal.reason(), refusal.what());
+    }
+  }
+  out.set_lubricant_revision(evaluation.lubricant_revision);
+  out.set_surface_revision(evaluation.surface_revision);
+  out.set_model_version(kModelVersion);
+  for (v1::RangeWarning& each : fluid_warnings(*evaluation.lubricant)) {
+    *out.add_input_warnings() = std::move(each);
+  }
+  return out;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,149 @@
+// EvaluateRig: columns of figures of a ball on a disc, without anything stored.
+#include "server/application/rigs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/refusal.h"
+#include "server/mapping/to_core.h"
+#include "server/simulation/rig_evaluation.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::HasSubstr;
+
+v1::RigCondition& add_rig_condition(v1::EvaluateRigRequest& request, double load, double percent,
+                                    double celsius = 40) {
+  v1::RigCondition& out = *request.add_conditions();
+  out.set_load_newtons(load);
+  out.set_entrainment_speed_metres_per_second(2);
+  out.set_slide_roll_ratio_percent(percent);
+  out.set_supply_temperature_celsius(celsius);
+  return out;
+}
+
+v1::EvaluateRigRequest rig_request() {
+  v1::EvaluateRigRequest out;
+  out.set_lubricant("lubricants/paper-fluid-1");
+  out.set_radius_x_metres(0.0127);
+  for (const double percent : {-10.0, 0.0, 10.0, 50.0}) add_rig_condition(out, 38, percent);
+  return out;
+}
+
+v1::EvaluateRigResponse run_rig(const v1::EvaluateRigRequest& request) {
+  Violations violations;
+  const auto evaluation = read_rig(request, seed_lookup(), violations);
+  if (!evaluation) throw std::runtime_error(violations.front().description);
+  return evaluate_rig(request, *evaluation, [] { return false; });
+}
+
+std::string rig_violations(const v1::EvaluateRigRequest& request) {
+  Violations violations;
+  read_rig(request, seed_lookup(), violations);
+  std::string out;
+  for (const Violation& each : violations) out += each.field + ": " + each.description + "\n";
+  return out;
+}
+
+TEST(EvaluateRig, RowsAreThoseOfTheCore) {
+  v1::EvaluateRigRequest request = rig_request();
+  request.set_surface("surfaces/run-in");
+  request.set_composite_rms_height_metres(2e-8);
+  request.set_radius_y_metres(0.05);
+  v1::RigBody& glass = *request.mutable_body_2();
+  glass.set_youngs_modulus_pascals(75e9);
+  glass.set_poissons_ratio(0.22);
+  glass.set_thermal_conductivity_watts_per_metre_kelvin(1.1);
+  glass.set_density_kilograms_per_cubic_metre(2500);
+  glass.set_specific_heat_capacity_joules_per_kilogram_kelvin(840);
+  add_rig_condition(request, 20, 5, 80);
+  const v1::EvaluateRigResponse out = run_rig(request);
+  RigScene scene{to_core(seed<v1::Lubricant>("lubricants/paper-fluid-1")),
+                 {{210e9, 0.3, 46, 7850, 470}, {75e9, 0.22, 1.1, 2500, 840}},
+                 {0.0127, 0.05},
+                 {2.5e9 * 4e-7 / 2e-8, 4e-5, 2e-8},
+                 {2e6, 0.17},
+                 {}};
+  scene.options.hertz_solution = HertzSolution::kExact;
+  ASSERT_EQ(out.traction_coefficient_size(), 5);
+  for (int i = 0; i < 5; ++i) {
+    const v1::RigCondition& at = request.conditions(i);
+    const RigPoint point = Rig(scene, at.supply_temperature_celsius() + kZeroCelsius)
+                               .at({at.load_newtons(), 2, 0.01 * at.slide_roll_ratio_percent()});
+    EXPECT_EQ(out.refusal_numbers(i), 0);
+    EXPECT_EQ(out.traction_coefficient(i), point.traction_coefficient);
+    EXPECT_EQ(out.central_film_thickness_metres(i), point.central_film_thickness);
+    EXPECT_EQ(out.minimum_film_thickness_metres(i), point.minimum_film_thickness);
+    EXPECT_EQ(out.film_ratio(i), point.film_ratio);
+    EXPECT_EQ(out.mean_pressure_pascals(i), point.mean_pressure);
+    EXPECT_EQ(out.contact_temperature_kelvin(i), point.contact_temperature);
+    EXPECT_EQ(out.boundary_friction_share(i), point.boundary_friction_share);
+    EXPECT_EQ(out.limiting_stress_area_share(i), point.limiting_stress_area_share);
+  }
+  EXPECT_EQ(out.lubricant_revision(), "lubricants/paper-fluid-1@1");
+  EXPECT_EQ(out.surface_revision(), "surfaces/run-in@1");
+  EXPECT_FALSE(out.model_version().empty());
+}
+
+TEST(EvaluateRig, SpecimensWithoutSurfaceAreSmooth) {
+  const v1::EvaluateRigResponse out = run_rig(rig_request());
+  EXPECT_TRUE(std::isnan(out.film_ratio(2)));
+  EXPECT_EQ(out.boundary_friction_share(2), 0);
+  EXPECT_EQ(out.traction_coefficient(1), 0);
+  EXPECT_LT(out.traction_coefficient(0), 0);
+  EXPECT_EQ(out.surface_revision(), "");
+}
+
+TEST(EvaluateRig, ARefusedConditionIsARefusedRowBesideOthers) {
+  v1::EvaluateRigRequest request = rig_request();
+  v1::Lubricant thick = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  Violations violations;
+  auto evaluation = read_rig(request, seed_lookup(), violations);
+  thick.set_vogel_reference_temperature_kelvin(230);
+  evaluation->lubricant = std::make_shared<v1::Lubricant>(thick);
+  evaluation->scene.lubricant = to_core(thick);
+  add_rig_condition(request, 38, 10, -50);  // below 230 K
+  add_rig_condition(request, 38, 20, -50);
+  const v1::EvaluateRigResponse out = evaluate_rig(request, *evaluation, [] { return false; });
+  EXPECT_EQ(out.refusal_numbers(2), 0);
+  EXPECT_TRUE(std::isfinite(out.traction_coefficient(2)));
+  EXPECT_EQ(out.refusal_numbers(4), 1);
+  EXPECT_EQ(out.refusal_numbers(5), 1);
+  EXPECT_TRUE(std::isnan(out.traction_coefficient(5)));
+  ASSERT_EQ(out.refusals_size(), 1);
+  EXPECT_EQ(out.refusals(0).reason(), "INVALID_AT_INLET");
+}
+
+TEST(EvaluateRig, NamesAllThatIsWrong) {
+  v1::EvaluateRigRequest request;
+  request.set_lubricant("lubricants/paper-fluid-11");
+  request.set_composite_rms_height_metres(1e-8);
+  const std::string wrong = rig_violations(request);
+  EXPECT_THAT(wrong,
+              HasSubstr("radius_x_metres: radius_x_metres = 0 m; allowed: 1e-05 to 10000 m"));
+  EXPECT_THAT(wrong, HasSubstr("conditions: not set; allowed: at least one"));
+  EXPECT_THAT(wrong, HasSubstr("did you mean \"lubricants/paper-fluid-1\"?"));
+  EXPECT_THAT(wrong, HasSubstr("composite_rms_height_metres: set without a surface"));
+}
+
+TEST(EvaluateRig, ChecksTheLastOfManyConditions) {
+  v1::EvaluateRigRequest request = rig_request();
+  while (request.conditions_size() < 5000) add_rig_condition(request, 38, 1);
+  request.mutable_conditions(4999)->set_load_newtons(-1);
+  EXPECT_THAT(rig_violations(request), HasSubstr("conditions[4999].load_newtons"));
+}
+
+TEST(EvaluateRig, StopsWhenItsCallIsOver) {
+  const v1::EvaluateRigRequest request = rig_request();
+  Violations violations;
+  const auto evaluation = read_rig(request, seed_lookup(), violations);
+  EXPECT_THROW(evaluate_rig(request, *evaluation, [] { return true; }), Cancelled);
+}
+
+}  // namespace
+}  // namespace tribodyn::server
