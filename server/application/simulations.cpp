@@ -347,7 +347,7 @@ Outcome<v1::ListSimulationsResponse> list_simulations(Application& application,
   if (!violations.empty()) return invalid(violations);
   v1::ListSimulationsResponse response;
   // Before the page: an event between the two is in both rather than in none.
-  response.set_event_number(application.store.event_range(call.limits).latest);
+  response.set_event_number(application.store.event_range(call.project, call.limits).latest);
   const Page<StoredSimulation> page = application.store.simulations(query, call.limits);
   if (query.counts_all) total = page.total;
   response.set_total_size(clamped_total(total));

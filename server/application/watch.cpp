@@ -248,8 +248,8 @@ bool has_events_after(Store& store, const StoredSimulation& simulation, std::int
 
 /// Why a watch cannot resume after an event; nullopt if it can.
 std::optional<google::rpc::Status> unresumable(Store& store, std::int64_t after,
-                                               const CallLimits& limits) {
-  const EventRange range = store.event_range(limits);
+                                               const CallContext& call) {
+  const EventRange range = store.event_range(call.project, call.limits);
   if (after < 0 || after > range.latest) {
     return invalid({{"after_event_number", fmt::format("after_event_number = {}; allowed: 0 to {}",
                                                        after, range.latest)}});
@@ -358,7 +358,7 @@ StreamOutcome<v1::SimulationEvent> watch_simulations(Application& application,
   if ((request.names_size() > 0) == !request.filter().empty()) {
     return invalid({{"names", "state either names or a filter"}});
   }
-  if (auto refused = unresumable(application.store, request.after_event_number(), call.limits)) {
+  if (auto refused = unresumable(application.store, request.after_event_number(), call)) {
     return *std::move(refused);
   }
   return request.names_size() > 0 ? watch_named(application, request, call)

@@ -86,19 +86,29 @@ void check_rows(Connection& db, Problems& problems) {
            "FROM events a JOIN events b ON b.simulation = a.simulation "
            "AND b.sequence = a.sequence + 1 WHERE a.state > 2 OR b.attempt < a.attempt OR "
            "(b.attempt = a.attempt AND b.state <= a.state)",
-           "SELECT 'event ' || number || ': its simulation does not exist' FROM events "
+           "SELECT 'event ' || number || ' of ' || project || ': its simulation does not exist' "
+           "FROM "
+           "events "
            "WHERE state <> 0 AND simulation NOT IN (SELECT id FROM simulations)",
-           "SELECT 'event ' || number || ': its simulation was not deleted' FROM events "
+           "SELECT 'event ' || number || ' of ' || project || ': its simulation was not deleted' "
+           "FROM "
+           "events "
            "WHERE state = 0 AND simulation IN (SELECT id FROM simulations)",
-           "SELECT 'event ' || number || ': its project does not exist or has given no such "
-           "number' "
-           "FROM events e WHERE state = 0 AND NOT EXISTS (SELECT 1 FROM projects p "
-           "WHERE p.name = e.project AND e.simulation_number BETWEEN 1 AND p.last_number)",
-           "SELECT 'event ' || b.number || ': it has a smaller number than the one before it' "
+           "SELECT 'event ' || number || ' of ' || project || ': its project does not exist or has "
+           "given no such number' FROM events e WHERE NOT EXISTS (SELECT 1 FROM projects p "
+           "WHERE p.name = e.project AND e.number <= p.last_event AND "
+           "coalesce(e.simulation_number, 1) BETWEEN 1 AND p.last_number)",
+           "SELECT 'event ' || e.number || ' of ' || e.project || ': its simulation belongs to "
+           "another project' FROM events e JOIN simulations s ON s.id = e.simulation "
+           "WHERE s.project <> e.project",
+           "SELECT 'event ' || b.number || ' of ' || b.project || ': it has a smaller number than "
+           "the "
+           "one before it' "
            "FROM events a JOIN events b ON b.simulation = a.simulation "
            "AND b.sequence = a.sequence + 1 WHERE b.number <= a.number",
-           "SELECT 'the number of deleted simulations is wrong' FROM event_log WHERE deletions <> "
-           "(SELECT count(*) FROM events WHERE state = 0)",
+           "SELECT 'the number of deleted simulations of ' || name || ' is wrong' FROM projects p "
+           "WHERE deletions <> (SELECT count(*) FROM events e WHERE e.state = 0 AND "
+           "e.project = p.name)",
            "SELECT 'result ' || id || ': its content differs from its checksum' FROM results "
            "WHERE checksum <> checksum(body)",
            "SELECT (SELECT name FROM simulation_names n WHERE n.simulation = s.id) || "

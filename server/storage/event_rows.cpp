@@ -13,10 +13,10 @@ namespace {
 /// Deletions are forgotten so many at a time.
 constexpr int kForgottenAtOnce = 1000;
 
-/// Project and number of a removed simulation stand in its deletion, of others in their row.
+/// The number of a removed simulation stands in its deletion, of others in their row.
 constexpr char kEventColumns[] =
     "SELECT e.number, e.simulation, e.sequence, e.time, e.state, e.attempt, e.reason, "
-    "coalesce(e.project, s.project), coalesce(e.simulation_number, s.number) "
+    "e.project, coalesce(e.simulation_number, s.number) "
     "FROM events e LEFT JOIN simulations s ON s.id = e.simulation ";
 
 StoredEvent stored_event(const SQLite::Statement& query) {
@@ -31,12 +31,31 @@ StoredEvent stored_event(const SQLite::Statement& query) {
           .simulation_number = query.getColumn(8).getInt64()};
 }
 
-void forget_oldest_deletions(Connection& db) {
-  db.exec(
-      "UPDATE event_log SET deletions = deletions - " + std::to_string(kForgottenAtOnce) +
-      ", forgotten = (SELECT number FROM events WHERE state = 0 ORDER BY number LIMIT 1 OFFSET " +
-      std::to_string(kForgottenAtOnce - 1) + ")");
-  db.exec("DELETE FROM events WHERE state = 0 AND number <= (SELECT forgotten FROM event_log)");
+void forget_oldest_deletions(Connection& db, const std::string& project) {
+  const std::string count = std::to_string(kForgottenAtOnce);
+  Prepared note(db, "UPDATE projects SET deletions = deletions - " + count +
+                        ", forgotten_event = (SELECT number FROM events WHERE project = ?1 AND "
+                        "state = 0 ORDER BY number LIMIT 1 OFFSET " +
+                        count + " - 1) WHERE name = ?1");
+  note.bind(1, project);
+  note.exec();
+  Prepared forget(db,
+                  "DELETE FROM events WHERE project = ?1 AND state = 0 AND number <= "
+                  "(SELECT forgotten_event FROM projects WHERE name = ?1)");
+  forget.bind(1, project);
+  forget.exec();
+}
+
+/// Sets project and number of an event of a simulation: the next number of its project.
+void take_event_number(Connection& db, StoredEvent& event) {
+  Prepared next(db,
+                "UPDATE projects SET last_event = last_event + 1 WHERE name = "
+                "(SELECT project FROM simulations WHERE id = ?) RETURNING name, last_event");
+  next.bind(1, event.simulation);
+  if (!next.executeStep()) return;  // without its simulation a trigger refuses the event
+  event.project = next.getColumn(0).getString();
+  event.number = next.getColumn(1).getInt64();
+  next.executeStep();  // to its end: only then is it done
 }
 
 /// "[1,2,3]", for json_each().
@@ -56,21 +75,20 @@ void read_events(SQLite::Statement& query, EventPage& page) {
 }  // namespace
 
 void insert_event(Connection& db, StoredEvent& event) {
+  take_event_number(db, event);
   Prepared insert(db,
                   "INSERT INTO events (simulation, sequence, time, state, attempt, reason, "
-                  "project, simulation_number) VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+                  "project, number, simulation_number) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, event.simulation);
   insert.bind(2, event.sequence);
   insert.bind(3, event.time);
   insert.bind(4, static_cast<int>(event.state));
   insert.bind(5, event.attempt);
   insert.bind(6, event.reason);
-  if (event.state == StoredState::kDeleted) {
-    insert.bind(7, event.project);
-    insert.bind(8, event.simulation_number);
-  }
+  insert.bind(7, event.project);
+  insert.bind(8, event.number);
+  if (event.state == StoredState::kDeleted) insert.bind(9, event.simulation_number);
   insert.exec();
-  event.number = db.getLastInsertRowid();
 }
 
 void insert_deletion(Connection& db, std::int64_t simulation) {
@@ -88,11 +106,15 @@ void insert_deletion(Connection& db, std::int64_t simulation) {
   Prepared remove(db, "DELETE FROM events WHERE simulation = ? AND state <> 0");
   remove.bind(1, simulation);
   remove.exec();
-  Prepared count(db, "UPDATE event_log SET deletions = deletions + 1 RETURNING deletions");
+  Prepared count(
+      db, "UPDATE projects SET deletions = deletions + 1 WHERE name = ? RETURNING deletions");
+  count.bind(1, deletion.project);
   count.executeStep();
   const int deletions = count.getColumn(0).getInt();
   count.executeStep();
-  if (deletions >= kKeptDeletions + kForgottenAtOnce) forget_oldest_deletions(db);
+  if (deletions >= kKeptDeletions + kForgottenAtOnce) {
+    forget_oldest_deletions(db, deletion.project);
+  }
 }
 
 std::optional<StoredEvent> query_next_event(Connection& db, std::int64_t simulation,
@@ -129,18 +151,18 @@ EventPage query_events(Connection& db, const EventQuery& query) {
     if (!page.events.empty()) page.through = page.events.back().number;
     return page;
   }
-  const std::int64_t latest = query_event_range(db).latest;
+  const std::int64_t latest = query_event_range(db, query.project).latest;
   page.through = std::min(latest, query.after + kEventWindow);
   const Condition condition = condition_of(db, query.project, query.restrictions);
   SQLite::Statement events(db, std::string(kEventColumns) +
-                                   "WHERE e.number > ? AND e.number <= ? AND "
-                                   "(e.state = 0 AND e.project = ? OR EXISTS "
+                                   "WHERE e.project = ? AND e.number > ? AND e.number <= ? AND "
+                                   "(e.state = 0 OR EXISTS "
                                    "(SELECT 1 FROM simulations WHERE id = e.simulation AND " +
                                    condition.sql + ")) ORDER BY e.number LIMIT ?");
   int index = 0;
+  events.bind(++index, query.project);
   events.bind(++index, query.after);
   events.bind(++index, page.through);
-  events.bind(++index, query.project);
   for (const PropertyValue& value : condition.values) bind_value(events, ++index, value);
   events.bind(++index, kEventPage);
   const std::int64_t window_end = page.through;
@@ -149,10 +171,10 @@ EventPage query_events(Connection& db, const EventQuery& query) {
   return page;
 }
 
-EventRange query_event_range(Connection& db) {
-  Prepared query(db,
-                 "SELECT (SELECT coalesce(max(number), 0) FROM events), forgotten FROM event_log");
-  query.executeStep();
+EventRange query_event_range(Connection& db, const std::string& project) {
+  Prepared query(db, "SELECT last_event, forgotten_event FROM projects WHERE name = ?");
+  query.bind(1, project);
+  if (!query.executeStep()) return {};
   return {query.getColumn(0).getInt64(), query.getColumn(1).getInt64()};
 }
 

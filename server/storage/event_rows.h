@@ -12,14 +12,14 @@ namespace tribodyn::server {
 // Rows of events on an open connection, inside the caller's transaction. All throw
 // SQLite::Exception.
 
-/// Adds an event of `event.simulation` and sets its number. Writes project and number of the
-/// simulation only with a deletion.
+/// Adds an event of `event.simulation` and sets its project and its number. Writes the number of
+/// the simulation only with a deletion.
 void insert_event(Connection& db, StoredEvent& event);
 
 /// Replaces the events of a simulation by one that tells of its deletion. Forgets the oldest
-/// deletions beyond kKeptDeletions.
+/// deletions of the project beyond kKeptDeletions.
 void insert_deletion(Connection& db, std::int64_t simulation);
-inline constexpr int kKeptDeletions = 100'000;  ///< some 60 bytes each
+inline constexpr int kKeptDeletions = 100'000;  ///< of a project; some 60 bytes each
 
 /// Returns the event of a simulation after sequence number `after_sequence`; nullopt if there is
 /// none.
@@ -37,6 +37,6 @@ EventPage query_events(Connection& db, const EventQuery& query);
 inline constexpr int kEventPage = 100;
 inline constexpr int kEventWindow = 5000;
 
-EventRange query_event_range(Connection& db);
+EventRange query_event_range(Connection& db, const std::string& project);
 
 }  // namespace tribodyn::server

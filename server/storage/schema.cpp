@@ -144,6 +144,7 @@ void bring_from(Connection& database, int from, int to, Microseconds now) {
     database.exec(kSchema9);
     start_token_log(database);
   }
+  if (passes(10)) database.exec(kSchema10);
   database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.exec("PRAGMA user_version = " + std::to_string(to));
 }

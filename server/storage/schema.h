@@ -8,10 +8,13 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 9. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 10. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
-///   projects     one row per project; last_number is that of its latest simulation, removed or not
+///   projects     one row per project; last_number is that of its latest simulation, removed or
+///                not, and last_event that of its latest event. deletions: how many events of state
+///                0 it has; forgotten_event: the largest number of those that were forgotten since
+///                (kKeptDeletions)
 ///   resources    lubricants, gear sets, surfaces, vehicles: one row a name, with the revision that
 ///                is the present one; delete_time is set while it is deleted (nothing is lost).
 ///                name and collection are full ones, "projects/acme/lubricants/my-oil": the project
@@ -37,13 +40,10 @@ namespace tribodyn::server {
 ///                their events and with a result and a ledger that no other one has
 ///   simulation_labels  what lists are filtered by beside columns of simulations, of its request
 ///   events       every change of state of a job, written with it. number: among those of all jobs
-///   of
-///                all projects, in the order of their commits, never given twice; sequence: among
-///                those of the job, 1, 2, ... without gaps. When a job is removed one event of
-///                state 0 takes the place of its events, and tells watchers: it has the project and
-///                the number of the job, whose row is gone
-///   event_log    one row: how many events of state 0 there are, and the largest number of those
-///                that were forgotten since (kKeptDeletions)
+///                of the project, in the order of their commits, never given twice: it says nothing
+///                of other projects; sequence: among those of the job, 1, 2, ... without gaps. When
+///                a job is removed one event of state 0 takes the place of its events, and tells
+///                watchers: it has the number of the job, whose row is gone
 ///   ledgers      assumptions of results, each distinct list once: a SimulationResult with nothing
 ///                else. They belong to the job, as they name its resources
 ///   results      one SimulationResult without assumptions for equal inputs (input_hash), model
@@ -57,14 +57,15 @@ namespace tribodyn::server {
 ///                largest values of runs of its rows (pyramid.h), written once with it. checksum:
 ///                of data
 ///   tokens       one row for each bearer token: SHA-256 of its secret, the name of its principal,
-///                Scope, projects joined by commas (empty: all), and until when it is accepted. A
-///                token is never removed, and a revoked one never changes
+///                Scope, projects joined by commas (empty: all), until when it is accepted, and its
+///                quotas where they are not the server's. A token is never removed, and a revoked
+///                one never changes
 ///   token_log    one row: the number of changes of tokens, the number of those that the server has
 ///                applied, and the key of page tokens
 ///
 /// The text of a schema that a release has written never changes: the tables of a database are
 /// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 9;
+inline constexpr int kSchemaVersion = 10;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

@@ -384,4 +384,59 @@ CREATE TABLE token_log (
 ) STRICT;
 )sql";
 
+// The events of a project count from 1 in new projects. Those of older ones keep their numbers, and
+// the next one follows the last number of all projects, so that clients resume without a gap.
+inline constexpr char kSchema10[] = R"sql(
+ALTER TABLE projects ADD COLUMN last_event INTEGER NOT NULL DEFAULT 0 CHECK (last_event >= 0);
+ALTER TABLE projects ADD COLUMN deletions INTEGER NOT NULL DEFAULT 0 CHECK (deletions >= 0);
+ALTER TABLE projects ADD COLUMN forgotten_event INTEGER NOT NULL DEFAULT 0
+  CHECK (forgotten_event BETWEEN 0 AND last_event);
+UPDATE projects SET
+  last_event = coalesce((SELECT seq FROM sqlite_sequence WHERE name = 'events'), 0),
+  deletions = (SELECT count(*) FROM events e WHERE e.state = 0 AND e.project = projects.name);
+UPDATE projects SET forgotten_event = (SELECT forgotten FROM event_log);
+DROP TABLE event_log;
+
+ALTER TABLE events RENAME TO events_of_schema_9;
+
+CREATE TABLE events (
+  project TEXT NOT NULL,
+  number INTEGER NOT NULL CHECK (number >= 1),
+  simulation INTEGER NOT NULL,
+  sequence INTEGER NOT NULL CHECK (sequence >= 1),
+  time INTEGER NOT NULL,
+  state INTEGER NOT NULL CHECK (state BETWEEN 0 AND 5),
+  attempt INTEGER NOT NULL CHECK (attempt >= 1),
+  reason TEXT NOT NULL,
+  simulation_number INTEGER,
+  PRIMARY KEY (project, number),
+  UNIQUE (simulation, sequence),
+  CHECK ((state = 0) = (simulation_number IS NOT NULL))
+) STRICT, WITHOUT ROWID;
+
+INSERT INTO events
+SELECT coalesce(e.project, s.project), e.number, e.simulation, e.sequence, e.time, e.state,
+       e.attempt, e.reason, e.simulation_number
+FROM events_of_schema_9 e LEFT JOIN simulations s ON s.id = e.simulation;
+DROP TABLE events_of_schema_9;
+
+CREATE TRIGGER events_follow_one_another BEFORE INSERT ON events
+WHEN NEW.sequence <> 1 + (SELECT coalesce(max(sequence), 0) FROM events
+                          WHERE simulation = NEW.simulation)
+BEGIN SELECT RAISE(ABORT, 'an event follows the last one'); END;
+CREATE TRIGGER events_never_change BEFORE UPDATE ON events
+BEGIN SELECT RAISE(ABORT, 'an event never changes'); END;
+CREATE TRIGGER events_have_a_simulation BEFORE INSERT ON events
+WHEN NOT EXISTS (SELECT 1 FROM simulations WHERE id = NEW.simulation AND project = NEW.project)
+BEGIN SELECT RAISE(ABORT, 'an event belongs to a simulation of its project'); END;
+
+CREATE INDEX deletions ON events (project, number) WHERE state = 0;
+CREATE UNIQUE INDEX deleted_simulations ON events (project, simulation_number) WHERE state = 0;
+
+CREATE INDEX results_by_project ON results (project, stored_bytes);
+ALTER TABLE tokens ADD COLUMN calls_per_second REAL CHECK (calls_per_second > 0);
+ALTER TABLE tokens ADD COLUMN streams INTEGER CHECK (streams > 0);
+ALTER TABLE tokens ADD COLUMN processor_hours REAL CHECK (processor_hours > 0);
+)sql";
+
 }  // namespace tribodyn::server

@@ -457,7 +457,9 @@ EventPage Store::events(const EventQuery& query, const CallLimits& limits) {
   return read(limits, [&](Connection& db) { return query_events(db, query); });
 }
 
-EventRange Store::event_range(const CallLimits& limits) { return read(limits, query_event_range); }
+EventRange Store::event_range(const std::string& project, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_event_range(db, project); });
+}
 
 template <class Change>
 std::optional<StoredEvent> Store::change_simulation(const CallLimits& limits,

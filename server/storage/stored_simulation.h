@@ -99,7 +99,7 @@ struct SimulationQuery {
 
 /// A stored change of state, or the deletion of a simulation.
 struct StoredEvent {
-  std::int64_t number = 0;      ///< among the events of all projects; grows with each commit
+  std::int64_t number = 0;      ///< among the events of its project; grows with each commit
   std::int64_t simulation = 0;  ///< row, over all projects
   std::int64_t sequence = 0;    ///< number among the events of the simulation
   Microseconds time = 0;
@@ -146,7 +146,7 @@ struct EventPage {
   bool more = false;  ///< there may be further ones already
 };
 
-/// The numbers of the events, of all projects, that the database keeps.
+/// The numbers of the events of a project that the database keeps.
 struct EventRange {
   std::int64_t latest = 0;
   /// Deletions up to this number have been forgotten: whoever knows nothing later may have missed

@@ -148,15 +148,15 @@ class EventStreamTest : public testing::Test {
             .getString();
     db.exec("DROP TRIGGER events_have_a_simulation");
     db.exec(
-        "INSERT INTO events (simulation, sequence, time, state, attempt, reason, project, "
+        "INSERT INTO events (simulation, sequence, time, state, attempt, reason, project, number, "
         "simulation_number) "
         "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " +
         std::to_string(count) +
-        ") SELECT 1000000 + i, 1, 0, 0, 1, '', 'default', 1000000 + i FROM n");
+        ") SELECT 1000000 + i, 1, 0, 0, 1, '', 'default', i, 1000000 + i FROM n");
     db.exec(trigger);
-    db.exec("UPDATE projects SET last_number = 2000000");
+    db.exec("UPDATE projects SET last_number = 2000000, last_event = " + std::to_string(count));
   }
-  std::int64_t latest() { return bench_.store().event_range().latest; }
+  std::int64_t latest() { return bench_.store().event_range("default").latest; }
   static std::string with_id(const std::string& id) { return "Last-Event-ID: " + id + "\r\n"; }
 
   static constexpr char kAll[] = "/v1/simulations:watch?filter=lubricant=%22paper-fluid-1%22";
@@ -315,7 +315,7 @@ TEST_F(EventStreamTest, AClientThatReadsNothingIsCutOffAndTheOthersAreServed) {
 TEST_F(EventStreamTest, AClientWhoseEventsAreForgottenIsToldBeforeTheStream) {
   add_deletions(kKeptDeletions + 999);
   SQLite::Database(bench_.database(), SQLite::OPEN_READWRITE)
-      .exec("UPDATE event_log SET deletions = " + std::to_string(kKeptDeletions + 999));
+      .exec("UPDATE projects SET deletions = " + std::to_string(kKeptDeletions + 999));
   finished();
   bench_.store().remove_simulation(1);
   const auto served = serve();

@@ -131,7 +131,7 @@ TEST_P(OldSchema, IsMigratedAndLosesNothing) {
               store.simulation(id)->state);
   }
   EXPECT_EQ(
-      store.event_range().latest,
+      store.event_range("default").latest,
       static_cast<std::int64_t>(store.events({.simulations = {1, 2, 3, 4, 5, 6, 7}}).events.size()))
       << "events have numbers";
   EXPECT_THAT(store.requeue_unfinished(9), SizeIs(2));
@@ -306,7 +306,7 @@ TEST_F(MaintenanceTest, ServerCheckAndRestoreRefuseTheSameDatabases) {
       {"CREATE TRIGGER planted AFTER INSERT ON simulations BEGIN DELETE FROM results; END",
        "its trigger planted is not of this program"},
       {"DROP INDEX one_result_per_input", "its index one_result_per_input is missing"},
-      {"DROP TABLE event_log", "its table event_log is missing"},
+      {"DROP TABLE token_log", "its table token_log is missing"},
       {"DROP VIEW revision_names; CREATE VIEW revision_names AS SELECT 1", "view revision_names"},
   };
   make();
@@ -372,10 +372,15 @@ TEST_F(MaintenanceTest, CheckFindsEveryKindOfProblem) {
       {"UPDATE events SET state = 0, project = 'default', simulation_number = 1 "
        "WHERE sequence = 3",
        "its simulation was not deleted"},
+      {"UPDATE events SET project = 'acme' WHERE sequence = 1",
+       "its simulation belongs to another project"},
+      {"UPDATE events SET number = 99 WHERE sequence = 3",
+       "its project does not exist or has given no such number"},
       {"UPDATE events SET state = 0, project = 'default', simulation_number = 99 "
        "WHERE sequence = 3",
        "its project does not exist or has given no such number"},
-      {"UPDATE event_log SET deletions = 1", "the number of deleted simulations is wrong"},
+      {"UPDATE projects SET deletions = 1",
+       "the number of deleted simulations of default is wrong"},
       {"UPDATE results SET body = x'0a00'", "result 1: its content differs from its checksum"},
       {"UPDATE results SET checksum = checksum + 1", "result 1: its content differs from"},
       {"UPDATE ledgers SET body = x'0a00'", "ledger 1: its content differs from its checksum"},

@@ -247,12 +247,14 @@ TEST_F(StoreTest, TheSchemaRefusesInvalidRows) {
         "UPDATE simulations SET state = 2 WHERE id = 1",
         "UPDATE simulations SET state = 3, sequence = 2, end_time = 1 WHERE id = 1",
         "UPDATE events SET time = 7",
-        "INSERT INTO events (simulation, sequence, time, state, attempt, reason) "
-        "VALUES (1, 3, 1, 2, 1, '')",
-        "INSERT INTO events (simulation, sequence, time, state, attempt, reason) "
-        "VALUES (77, 1, 1, 1, 1, '')",
-        "INSERT INTO events (simulation, sequence, time, state, attempt, reason) "
-        "VALUES (1, 2, 1, 0, 1, '')"}) {
+        "INSERT INTO events (project, number, simulation, sequence, time, state, attempt, reason) "
+        "VALUES ('default', 9, 1, 3, 1, 2, 1, '')",
+        "INSERT INTO events (project, number, simulation, sequence, time, state, attempt, reason) "
+        "VALUES ('default', 9, 77, 1, 1, 1, 1, '')",
+        "INSERT INTO events (project, number, simulation, sequence, time, state, attempt, reason) "
+        "VALUES ('default', 9, 1, 2, 1, 0, 1, '')",
+        "INSERT INTO events (project, number, simulation, sequence, time, state, attempt, reason) "
+        "VALUES ('acme', 9, 1, 2, 1, 2, 1, '')"}) {
     EXPECT_THROW(raw.exec(invalid), SQLite::Exception) << invalid;
   }
   EXPECT_THROW(raw.exec("UPDATE simulations SET state = 9 WHERE id = " + std::to_string(id)),

@@ -118,7 +118,7 @@ class WatchTest : public testing::Test {
   void remove(const std::string& name) {
     EXPECT_EQ(bench_.store().remove_simulation(stored(name)->id), Store::Removal::kDone);
   }
-  std::int64_t latest() { return bench_.store().event_range().latest; }
+  std::int64_t latest() { return bench_.store().event_range("default").latest; }
   /// Changes the database past the trigger that an event belongs to a simulation.
   void add_events(const std::string& sql) {
     SQLite::Database db(bench_.database(), SQLite::OPEN_READWRITE);
@@ -247,10 +247,40 @@ TEST_F(WatchTest, NumbersAreNeverGivenTwice) {
   EXPECT_GT(read(of({next})).front().event_number(), before + 1);
 }
 
+TEST_F(WatchTest, NumbersSayNothingOfOtherProjects) {
+  bench_.store().add_project("acme", seed_resources(), 1);
+  const auto latest_in = [&](const std::string& project) {
+    return bench_.store().event_range(project).latest;
+  };
+  const std::string first = finished();
+  EXPECT_EQ(latest(), 3);
+  EXPECT_EQ(latest_in("acme"), 0);
+  for (int i = 0; i < 3; ++i) remove(finished_in("acme"));
+  EXPECT_EQ(latest(), 3) << "neither simulations nor deletions of acme count";
+  EXPECT_EQ(latest_in("acme"), 12);
+  const auto resumed = open(that_satisfy("lubricant = paper-fluid-1", latest())).message();
+  const std::string second = finished();
+  const Events events = read(*resumed);
+  EXPECT_THAT(names_of(events), ElementsAre(second, second)) << "resumed without a gap";
+  EXPECT_EQ(events.front().event_number(), 4);
+  EXPECT_EQ(events.back().event_number(), 5);
+  Application app = bench_.application();
+  EXPECT_EQ(list_simulations(app, {}, {}).message().event_number(), 5);
+  EXPECT_THAT(check_database(bench_.database()), IsEmpty());
+}
+
+TEST_F(WatchTest, AProjectForgetsOnlyItsOwnDeletions) {
+  bench_.store().add_project("acme", seed_resources(), 1);
+  const std::string name = finished();
+  SQLite::Database(bench_.database(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE projects SET last_event = 9, forgotten_event = 9 WHERE name = 'acme'");
+  EXPECT_THAT(read(of({name}, 1)), SizeIs(2)) << "nothing of this project is missing";
+}
+
 TEST_F(WatchTest, AClientThatResumesBeforeForgottenDeletionsIsRefused) {
   const std::string name = finished();
   SQLite::Database(bench_.database(), SQLite::OPEN_READWRITE)
-      .exec("UPDATE event_log SET forgotten = 2");
+      .exec("UPDATE projects SET forgotten_event = 2");
   const auto refused = open(of({name}, 1)).error();
   EXPECT_EQ(refused.code(), google::rpc::OUT_OF_RANGE);
   EXPECT_EQ(reason(refused), "EVENTS_FORGOTTEN");
@@ -261,17 +291,18 @@ TEST_F(WatchTest, AClientThatResumesBeforeForgottenDeletionsIsRefused) {
 TEST_F(WatchTest, TheOldestDeletionsAreForgotten) {
   const std::string kept = finished(), removed = finished();
   add_events(
-      "INSERT INTO events (simulation, sequence, time, state, attempt, reason, project, "
+      "INSERT INTO events (simulation, sequence, time, state, attempt, reason, project, number, "
       "simulation_number) "
       "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " +
       std::to_string(kKeptDeletions + 999) +
-      ") SELECT 1000000 + i, 1, 0, 0, 1, '', 'default', 1000000 + i FROM n");
+      ") SELECT 1000000 + i, 1, 0, 0, 1, '', 'default', 1000 + i, 1000000 + i FROM n");
   SQLite::Database db(bench_.database(), SQLite::OPEN_READWRITE);
-  db.exec("UPDATE projects SET last_number = 2000000");
-  db.exec("UPDATE event_log SET deletions = " + std::to_string(kKeptDeletions + 999));
+  db.exec("UPDATE projects SET last_number = 2000000, last_event = 1000 + " +
+          std::to_string(kKeptDeletions + 999) +
+          ", deletions = " + std::to_string(kKeptDeletions + 999));
   const std::int64_t first = latest() - (kKeptDeletions + 999) + 1;
   remove(removed);
-  EXPECT_EQ(bench_.store().event_range().forgotten, first + 999);
+  EXPECT_EQ(bench_.store().event_range("default").forgotten, first + 999);
   EXPECT_THAT(check_database(bench_.database()), IsEmpty());
   EXPECT_THAT(read(of({kept})), SizeIs(3)) << "events of what is there stay";
 }
@@ -279,9 +310,12 @@ TEST_F(WatchTest, TheOldestDeletionsAreForgotten) {
 TEST_F(WatchTest, AStreamComesForwardWhereNothingMatches) {
   const std::string name = finished("axle");
   add_events(
-      "INSERT INTO events (simulation, sequence, time, state, attempt, reason) "
+      "INSERT INTO events (simulation, sequence, time, state, attempt, reason, project, number) "
       "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " +
-      std::to_string(2 * kEventWindow) + ") SELECT 1000000 + i, 1, 0, 1, 1, '' FROM n");
+      std::to_string(2 * kEventWindow) +
+      ") SELECT 1000000 + i, 1, 0, 1, 1, '', 'default', 3 + i FROM n");
+  SQLite::Database(bench_.database(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE projects SET last_event = 3 + " + std::to_string(2 * kEventWindow));
   const std::string later = finished("axle");
   const auto source = open(that_satisfy("labels.part = axle", 3)).message();
   v1::SimulationEvent event;
