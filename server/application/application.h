@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -21,6 +22,8 @@ struct Application {
   AuditLog audit = AuditLog({});
   /// Of the page tokens of lists; the database keeps it.
   std::string page_token_key = std::string(32, '\0');
+  /// Most bytes of results that a project may have; 0: no limit.
+  std::int64_t project_bytes = 0;
   /// Number of histories that are being read. Shared, because a reader may outlive the object.
   std::shared_ptr<std::atomic<int>> open_histories = std::make_shared<std::atomic<int>>(0);
   /// Watches with a filter that are open; shared for the same reason.

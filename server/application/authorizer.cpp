@@ -56,6 +56,10 @@ void Authorizer::set_tokens(const std::vector<StoredToken>& tokens, Microseconds
       grant->scope = token.scope;
       grant->projects = {token.projects.begin(), token.projects.end()};
       grant->expire_time = token.expire_time;
+      grant->quota = {token.calls_per_second.value_or(quota_.calls_per_second),
+                      token.streams.value_or(quota_.streams),
+                      token.processor_hours.value_or(quota_.processor_hours)};
+      if (token.name == kOwner) grant->quota = {};
       next.emplace(token.hash, std::move(grant));
     }
     for (const auto& [hash, grant] : grants_) {

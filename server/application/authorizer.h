@@ -35,6 +35,9 @@ std::string certificate_hash(std::string_view name);
 /// Decides who calls. Keeps all grants in memory and reads no row. Safe for concurrent access.
 class Authorizer {
  public:
+  /// `quota` is that of tokens without one of their own.
+  explicit Authorizer(const Quota& quota = {}) : quota_(quota) {}
+
   /// Replaces all tokens. Grants of tokens that are no longer valid end at once; the observers are
   /// told.
   void set_tokens(const std::vector<StoredToken>& tokens, Microseconds now);
@@ -53,6 +56,7 @@ class Authorizer {
  private:
   using Grants = std::map<std::string, std::shared_ptr<Grant>, std::less<>>;  ///< by hash
 
+  const Quota quota_;
   mutable std::mutex mutex_;
   Grants grants_;  // guarded by mutex_
   Observers observers_;

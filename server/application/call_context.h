@@ -18,4 +18,10 @@ struct CallContext {
   CallLimits limits = {};  ///< deadline of the call, and whether the client cancelled
 };
 
+/// Returns whose share of threads and processors pays for a call. The owner's programs are told
+/// apart by the names that they give themselves.
+inline const std::string& payer(const CallContext& call) {
+  return call.grant->principal == kOwner ? call.client : call.grant->principal;
+}
+
 }  // namespace tribodyn::server

@@ -19,8 +19,9 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr int kBusySeconds = 2;       // [s]; most batches take less
-constexpr double kSlowSeconds = 1.0;  // [s]; slower calls are logged
+constexpr int kBusySeconds = 2;            // [s]; most batches take less
+constexpr double kStreamRetrySeconds = 5;  // for a place among the caller's streams
+constexpr double kSlowSeconds = 1.0;       // [s]; slower calls are logged
 
 /// Parses the request and frees its bytes. Returns nullopt, or INVALID_ARGUMENT: before parsing, if
 /// the request is longer than its method allows or has more elements than any acceptable request
@@ -90,8 +91,14 @@ std::string text_of(Scope scope) {
 /// The messages of a source until a grant ends.
 class GrantedSource final : public AnyMessageSource {
  public:
-  GrantedSource(ReplySource source, GrantPointer grant, std::shared_ptr<Authorizer> authorizer)
-      : source_(std::move(source)), grant_(std::move(grant)), authorizer_(std::move(authorizer)) {}
+  GrantedSource(ReplySource source, GrantPointer grant, std::shared_ptr<Authorizer> authorizer,
+                std::shared_ptr<void> place)
+      : place_(std::move(place)),
+        source_(std::move(source)),
+        grant_(std::move(grant)),
+        authorizer_(std::move(authorizer)) {}
+
+  void set_order(Order order) override { source_->set_order(order); }
 
   Step next_message(google::protobuf::Message& out) override {
     has_ended_ = !grant_->is_valid(system_time());
@@ -107,6 +114,7 @@ class GrantedSource final : public AnyMessageSource {
   }
 
  private:
+  const std::shared_ptr<void> place_;  // among the streams of the principal
   const ReplySource source_;
   const GrantPointer grant_;
   const std::shared_ptr<Authorizer> authorizer_;
@@ -136,11 +144,32 @@ std::optional<google::rpc::Status> CallDispatcher::authorize(IncomingCall& call)
     return grant.error();
   }
   call.context.grant = std::move(grant.message());
-  if (call.context.grant->scope < call.method.scope) {
+  const Grant& caller = *call.context.grant;
+  if (const double rate = caller.quota.calls_per_second; rate > 0) {
+    const double wait = caller.allowance.take_call(rate, std::chrono::steady_clock::now());
+    if (wait > 0) {
+      return over_quota(caller.principal, "calls-per-second",
+                        fmt::format("{:.3g} calls a second", rate), wait);
+    }
+  }
+  if (caller.scope < call.method.scope) {
     auto refused = scope_too_small(text_of(call.method.scope));
     application_.audit.record(call.context, call.method.descriptor->name(), refused, "");
     return refused;
   }
+  return std::nullopt;
+}
+
+std::optional<google::rpc::Status> CallDispatcher::take_stream(const CallContext& call,
+                                                               std::shared_ptr<void>& place) {
+  const GrantPointer& caller = call.grant;
+  const int most = caller->quota.streams;
+  if (most == 0) return std::nullopt;
+  if (!caller->allowance.open_stream(most)) {
+    return over_quota(caller->principal, "streams", fmt::format("{} open streams", most),
+                      kStreamRetrySeconds);
+  }
+  place = std::shared_ptr<void>(nullptr, [caller](void*) { caller->allowance.close_stream(); });
   return std::nullopt;
 }
 
@@ -180,7 +209,7 @@ void CallDispatcher::run(const IncomingCall& call, std::function<void()> task,
   const CallLane lane = bytes > kUsualRequestBytes ? CallLane::kHeavy : call.method.lane;
   const bool is_short = lane == CallLane::kRead && lanes_.is_empty(lane);
   if (is_short && call.may_run_on_calling_thread() && run_here(task)) return;
-  if (lanes_.run(lane, bytes, task)) return;
+  if (lanes_.run(lane, bytes, task, payer(call.context))) return;
   refuse(lane_full(lane));
 }
 
@@ -208,14 +237,18 @@ void CallDispatcher::open(StreamCall& call) {
     call.opened(std::move(outcome));
   };
   if (auto refused = authorize(call)) return finish(*std::move(refused));
+  std::shared_ptr<void> place;
+  if (auto refused = take_stream(call.context, place)) return finish(*std::move(refused));
   run(
       call,
-      [this, &call, finish] {
+      [this, &call, finish, kept = std::move(place)]() mutable {
         Outcome<ReplySource> outcome = outcome_of(call, call.method.open);
         if (outcome.ok()) {
-          outcome.message() = std::make_shared<GrantedSource>(
-              std::move(outcome.message()), call.context.grant, application_.authorizer);
+          outcome.message() =
+              std::make_shared<GrantedSource>(std::move(outcome.message()), call.context.grant,
+                                              application_.authorizer, std::move(kept));
         }
+        kept = nullptr;  // its place is free before the answer
         finish(std::move(outcome));
       },
       [&](const google::rpc::Status& refusal) { finish(refusal); });

@@ -99,6 +99,10 @@ class CallDispatcher {
   void run(const IncomingCall& call, std::function<void()> task,
            const std::function<void(const google::rpc::Status&)>& refuse);
   std::optional<google::rpc::Status> authorize(IncomingCall& call) const;
+  /// Takes a place among the open streams of the caller, which the last copy of `place` frees.
+  /// Returns the error of a caller who has none left; else nullopt.
+  static std::optional<google::rpc::Status> take_stream(const CallContext& call,
+                                                        std::shared_ptr<void>& place);
   /// Runs a short task on the calling thread, without the two changes of threads of a lane. Returns
   /// false if another task runs so: only one may, so that a slow disk blocks at most one thread of
   /// a transport.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <string>
 
 #include "server/application/workers.h"
 
@@ -28,16 +29,17 @@ class CallLanes {
   /// take about 30 times as much memory.
   static constexpr std::size_t kHeavyBytes = 128 << 20;
 
-  /// Queues `task` for a thread of the lane. Returns false, and does not change `task`, if the lane
-  /// is full. The lane of streams is never full.
-  bool run(CallLane lane, std::size_t bytes, std::function<void()>& task) {
-    return workers_[static_cast<std::size_t>(lane)].run(bytes, task);
+  /// Queues `task` for a thread of the lane, in which principals take turns. Returns false, and
+  /// does not change `task`, if the lane is full. The lane of streams is never full.
+  bool run(CallLane lane, std::size_t bytes, std::function<void()>& task,
+           const std::string& principal = {}) {
+    return workers_[static_cast<std::size_t>(lane)].run(bytes, task, principal);
   }
   /// Returns true if no task of the lane waits.
   bool is_empty(CallLane lane) { return workers_[static_cast<std::size_t>(lane)].is_empty(); }
 
  private:
-  static constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max();
+  static constexpr std::size_t kUnlimited = std::numeric_limits<std::size_t>::max() / 2;
 
   // In the order of CallLane: threads, waiting tasks, bytes. More threads would only wait for the
   // processors; eight writers share their commits.

@@ -188,6 +188,18 @@ google::rpc::Status exhausted(v1::ErrorReason reason, const std::string& message
   return status;
 }
 
+google::rpc::Status over_quota(const std::string& taker, const std::string& quota,
+                               const std::string& limit, double retry_seconds) {
+  google::rpc::Status status = error(
+      google::rpc::RESOURCE_EXHAUSTED, v1::ERROR_REASON_QUOTA_EXCEEDED,
+      fmt::format("the quota of {} is {}; try again in {:.3g} s", taker, limit, retry_seconds),
+      {{"quota", quota},
+       {"limit", limit},
+       {"retry_seconds", fmt::format("{:.3g}", retry_seconds)}});
+  add_retry(retry_seconds, status);
+  return status;
+}
+
 google::rpc::Status deadline_exceeded() {
   return error(google::rpc::DEADLINE_EXCEEDED, v1::ERROR_REASON_DEADLINE_EXCEEDED,
                "the deadline passed before the request was applied; nothing has changed");

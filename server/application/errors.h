@@ -73,6 +73,12 @@ google::rpc::Status store_failed(const StoreError& failure);
 google::rpc::Status exhausted(v1::ErrorReason reason, const std::string& message,
                               double retry_seconds);
 
+/// RESOURCE_EXHAUSTED with RetryInfo: `taker` ("anna", "project axles") has taken all that its
+/// quota allows. `quota` is the setting without its dashes, e.g. "calls-per-second"; `limit` its
+/// value and unit.
+google::rpc::Status over_quota(const std::string& taker, const std::string& quota,
+                               const std::string& limit, double retry_seconds);
+
 /// DEADLINE_EXCEEDED: the client's deadline or the server's limit passed. Requires that nothing was
 /// committed.
 google::rpc::Status deadline_exceeded();

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "server/application/quota.h"
 #include "server/storage/stored_token.h"
 
 namespace tribodyn::server {
@@ -19,6 +20,8 @@ struct Grant {
   Scope scope = Scope::kAdmin;
   std::set<std::string> projects = {};  ///< empty: all
   std::optional<Microseconds> expire_time = {};
+  Quota quota = {};  ///< the owner has none
+  mutable Allowance allowance;
   mutable std::atomic<bool> is_revoked = false;
 
   bool is_valid(Microseconds now) const {

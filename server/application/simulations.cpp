@@ -57,12 +57,6 @@ std::optional<Microseconds> deadline_time(const v1::Simulation& requested, Micro
   return now + static_cast<Microseconds>(1e6 * requested.deadline_seconds());
 }
 
-/// Returns whose share of the processors pays for a simulation. The owner's programs are told apart
-/// by the names that they give themselves.
-std::string payer(const CallContext& call) {
-  return call.grant->principal == kOwner ? call.client : call.grant->principal;
-}
-
 NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
                              const SimulationInputs& inputs, const std::string& request_hash,
                              const CallContext& call) {
@@ -81,6 +75,7 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
           .deadline_time = deadline_time(inputs.requested, system_time()),
           .client = call.client,
           .principal = payer(call),
+          .principal_seconds = 3600 * call.grant->quota.processor_hours,
           .scheduling_class = request.scheduling_class(),
           .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
           .labels = std::move(labels),
@@ -230,8 +225,16 @@ void log_submission(const CallContext& call, const NewSimulation& simulation,
       simulation.key.input_hash, simulation.cost_seconds, call.request_id);
 }
 
-google::rpc::Status no_place(Application& application, double retry_seconds) {
+google::rpc::Status no_place(Application& application, const SimulationJobs::Submitted& refused,
+                             const CallContext& call) {
+  const double retry_seconds = refused.retry_seconds;
   if (application.jobs.is_stopping()) return shutting_down();
+  if (refused.is_over_quota) {
+    return over_quota(call.grant->principal, "processor-hours",
+                      fmt::format("{:.3g} processor hours of simulations that wait and run",
+                                  call.grant->quota.processor_hours),
+                      retry_seconds);
+  }
   return exhausted(
       v1::ERROR_REASON_TOO_MANY_WAITING,
       fmt::format("the queue has no place for this simulation: at most {} simulations and {:.3g} "
@@ -240,6 +243,19 @@ google::rpc::Status no_place(Application& application, double retry_seconds) {
                   application.jobs.limits().jobs, application.jobs.limits().cost_seconds / 3600,
                   retry_seconds),
       retry_seconds);
+}
+
+/// Returns the error of a project whose results take all the bytes that it may have; else nullopt.
+std::optional<google::rpc::Status> project_full(Application& application, const CallContext& call) {
+  constexpr double kRetryAfterDeletion = 60;  // [s]; somebody has to delete simulations first
+  const std::int64_t most = application.project_bytes;
+  if (most <= 0 || application.store.result_bytes(call.project, call.limits) < most) {
+    return std::nullopt;
+  }
+  return over_quota("project " + call.project, "project-megabytes",
+                    fmt::format("{:.3g} MB of results; delete simulations that nobody needs",
+                                1e-6 * static_cast<double>(most)),
+                    kRetryAfterDeletion);
 }
 
 }  // namespace
@@ -268,10 +284,12 @@ Outcome<v1::Simulation> create_simulation(Application& application,
   }
   const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), call);
   if (request.validate_only()) return preview(*inputs, simulation);
-  const auto [added, retry_seconds] = application.jobs.submit(
+  if (auto full = project_full(application, call)) return *std::move(full);
+  const SimulationJobs::Submitted submitted = application.jobs.submit(
       simulation, std::make_shared<const SimulationInputs>(std::move(*inputs)), call.limits);
+  const AddOutcome& added = submitted.added;
   log_submission(call, simulation, added);
-  if (added.kind == AddOutcome::Kind::kNoPlace) return no_place(application, retry_seconds);
+  if (added.kind == AddOutcome::Kind::kNoPlace) return no_place(application, submitted, call);
   if (added.kind == AddOutcome::Kind::kRequestIdTaken) {
     return request_id_taken(added.stored, request, text);
   }

@@ -3,6 +3,11 @@
 #include <utility>
 
 namespace tribodyn::server {
+namespace {
+
+constexpr std::size_t kShareOfOthers = 8;
+
+}  // namespace
 
 Workers::Workers(int threads, std::size_t waiting, std::size_t bytes)
     : most_waiting_(waiting), most_bytes_(bytes) {
@@ -18,12 +23,19 @@ Workers::~Workers() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-bool Workers::run(std::size_t bytes, std::function<void()>& task) {
+bool Workers::run(std::size_t bytes, std::function<void()>& task, const std::string& principal) {
   {
     const std::lock_guard lock(mutex_);
-    if (tasks_.size() >= most_waiting_ || bytes > most_bytes_ - bytes_) return false;
+    const auto found = tasks_.find(principal);
+    const std::size_t own = found == tasks_.end() ? 0 : found->second.size();
+    const bool has_place = waiting_ < most_waiting_ ||
+                           (waiting_ < 2 * most_waiting_ && own < most_waiting_ / kShareOfOthers);
+    if (!has_place || bytes > most_bytes_ - bytes_) return false;
     bytes_ += bytes;
-    tasks_.push_back({bytes, std::move(task)});
+    ++waiting_;
+    std::deque<Task>& tasks = tasks_[principal];
+    if (tasks.empty()) turns_.push_back(principal);
+    tasks.push_back({bytes, std::move(task)});
   }
   changed_.notify_one();
   return true;
@@ -31,16 +43,30 @@ bool Workers::run(std::size_t bytes, std::function<void()>& task) {
 
 bool Workers::is_empty() {
   const std::lock_guard lock(mutex_);
-  return tasks_.empty();
+  return waiting_ == 0;
+}
+
+Workers::Task Workers::next() {
+  std::string principal = std::move(turns_.front());
+  turns_.pop_front();
+  const auto found = tasks_.find(principal);
+  Task out = std::move(found->second.front());
+  found->second.pop_front();
+  --waiting_;
+  if (found->second.empty()) {
+    tasks_.erase(found);
+  } else {
+    turns_.push_back(std::move(principal));
+  }
+  return out;
 }
 
 void Workers::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [this] { return stopping_ || !tasks_.empty(); });
-    if (tasks_.empty()) return;
-    const Task task = std::move(tasks_.front());
-    tasks_.pop_front();
+    changed_.wait(lock, [this] { return stopping_ || waiting_ > 0; });
+    if (waiting_ == 0) return;
+    const Task task = next();
     lock.unlock();
     task.run();
     lock.lock();

@@ -262,6 +262,10 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
   SimulationJobs jobs(store, options);
   Application application{
       .store = store, .jobs = jobs, .audit = AuditLog(settings.database + ".audit")};
+  application.project_bytes = static_cast<std::int64_t>(1e6 * settings.project_megabytes);
+  application.authorizer = std::make_shared<Authorizer>(Quota{settings.principal_calls_per_second,
+                                                              settings.principal_streams,
+                                                              settings.principal_processor_hours});
   TokenTable tokens(settings.database);
   provide_owner_token(tokens, settings.database, system_time());
   application.page_token_key = tokens.page_token_key();

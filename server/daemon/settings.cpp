@@ -87,6 +87,19 @@ void add_token_commands(CLI::App& app, Settings& settings) {
       "--certificate", token.of_certificate,
       "For the client whose TLS certificate has the common name NAME; prints no token");
   add_expiry(create);
+  create
+      ->add_option("--calls-per-second", token.calls_per_second,
+                   "Quota of calls, in place of the server's --principal-calls-per-second")
+      ->check(between(0.001, 1e6));
+  create
+      ->add_option("--streams", token.streams,
+                   "Quota of open streams, in place of the server's --principal-streams")
+      ->check(CLI::Range(1, 1'000'000));
+  create
+      ->add_option("--processor-hours", token.processor_hours,
+                   "Quota of waiting and running simulations, in place of the server's "
+                   "--principal-processor-hours")
+      ->check(between(0.0001, 1e6));
   add("list", "Print all tokens, also expired and revoked ones, without their secrets");
   add_name(add("revoke", "Refuse every token of NAME from now on, and end its streams"));
   CLI::App* rotate = add(
@@ -200,6 +213,27 @@ void add_flags(CLI::App& app, Settings& settings) {
   app.add_option("--waiting-processor-hours", settings.waiting_processor_hours,
                  "Capacity of the queue by estimated cost, in processor hours. Recommended: 100")
       ->check(between(0.001, 1e6))
+      ->capture_default_str();
+  app.add_option(
+         "--principal-calls-per-second", settings.principal_calls_per_second,
+         "Calls a second that one token may make on average; those of five seconds may come "
+         "at once. Further ones are refused with a retry delay. 0: no limit. The owner has "
+         "none of these quotas. Recommended: 200")
+      ->check(between(0, 1e6))
+      ->capture_default_str();
+  app.add_option("--principal-streams", settings.principal_streams,
+                 "Streams that one token may have open. 0: no limit. Recommended: 200")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--principal-processor-hours", settings.principal_processor_hours,
+                 "Estimated processor hours of waiting and running simulations of one token. 0: "
+                 "three quarters of --waiting-processor-hours may wait. Recommended: 0")
+      ->check(between(0, 1e6))
+      ->capture_default_str();
+  app.add_option("--project-megabytes", settings.project_megabytes,
+                 "Results of a project; beyond it a project accepts no further simulations until "
+                 "some are deleted. 0: no limit. Recommended: 0")
+      ->check(between(0, 1e9))
       ->capture_default_str();
   app.add_option("--keep-days", settings.keep_days,
                  "Ended simulations are removed after this time, unless they are pinned; 0: never. "

@@ -22,10 +22,13 @@ struct TokenSettings {
   std::string action;  ///< "create", "list", "revoke", "rotate"
   std::string name;    ///< of the principal
   Scope scope = Scope::kWrite;
-  std::vector<std::string> projects;  ///< empty: all
-  double expire_days = 90;            ///< 0: never
-  bool of_certificate = false;        ///< for those whose certificates have the name; no secret
-  double overlap_hours = 0;           ///< that the replaced token stays valid
+  std::vector<std::string> projects;       ///< empty: all
+  double expire_days = 90;                 ///< 0: never
+  std::optional<double> calls_per_second;  ///< its quotas; without one: the server's
+  std::optional<int> streams;
+  std::optional<double> processor_hours;
+  bool of_certificate = false;  ///< for those whose certificates have the name; no secret
+  double overlap_hours = 0;     ///< that the replaced token stays valid
 };
 
 /// Settings of the server. A value comes from its flag, or else from the environment
@@ -54,6 +57,11 @@ struct Settings {
   double disk_budget_megabytes = 0;  ///< for simulations that may be removed; 0: no limit
   double waiting_processor_hours = 100;
   int waiting_simulations = 20'000;
+  // Quotas of each principal but the owner, and of each project; 0: no limit.
+  double principal_calls_per_second = 200;
+  int principal_streams = 200;
+  double principal_processor_hours = 0;
+  double project_megabytes = 0;
 };
 
 /// Reads settings. Returns nullopt if the process must end with `exit_code`: help or an error was

@@ -73,13 +73,22 @@ std::string state_text(const StoredToken& token, Microseconds now) {
   return token.expire_time ? "until " + date(*token.expire_time) : "valid";
 }
 
+/// The quotas that a token has of its own.
+std::string quota_text(const StoredToken& token) {
+  std::string out;
+  if (token.calls_per_second) out += fmt::format(", {:g} calls/s", *token.calls_per_second);
+  if (token.streams) out += fmt::format(", {} streams", *token.streams);
+  if (token.processor_hours) out += fmt::format(", {:g} processor hours", *token.processor_hours);
+  return out;
+}
+
 void list_tokens(TokenTable& tokens, Microseconds now) {
   fmt::print("{:<24} {:<6} {:<24} {:<17} {}\n", "NAME", "SCOPE", "PROJECTS", "CREATED (UTC)",
              "STATE");
   for (const StoredToken& each : tokens.all()) {
     fmt::print("{:<24} {:<6} {:<24} {:<17} {}\n", each.name, scope_text(each.scope),
                each.projects.empty() ? "all" : fmt::format("{}", fmt::join(each.projects, ",")),
-               date(each.create_time), state_text(each, now));
+               date(each.create_time), state_text(each, now) + quota_text(each));
   }
 }
 
@@ -89,7 +98,10 @@ StoredToken token_of(const TokenSettings& settings, const std::string& secret, M
       .hash = settings.of_certificate ? certificate_hash(settings.name) : token_hash(secret),
       .scope = settings.scope,
       .projects = settings.projects,
-      .create_time = now};
+      .create_time = now,
+      .calls_per_second = settings.calls_per_second,
+      .streams = settings.streams,
+      .processor_hours = settings.processor_hours};
   if (settings.expire_days > 0) {
     out.expire_time =
         now + static_cast<Microseconds>(24 * kMicrosecondsPerHour * settings.expire_days);
@@ -141,6 +153,9 @@ int change_tokens(const Settings& settings) {
     StoredToken next = token_of(asked, secret, now);
     next.scope = present->scope;
     next.projects = present->projects;
+    next.calls_per_second = present->calls_per_second;
+    next.streams = present->streams;
+    next.processor_hours = present->processor_hours;
     if (asked.name == kOwner) {
       next.expire_time = {};
       write_owner_token(settings.database, secret);

@@ -145,7 +145,9 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
   Admission admission;
   {
     const std::lock_guard lock(mutex_);
-    if (!stopping_) admission = policy_.reserve(job, options_.steady());
+    if (!stopping_) {
+      admission = policy_.reserve(job, options_.steady(), simulation.principal_seconds);
+    }
   }
   const auto release = [&] {
     const std::lock_guard lock(mutex_);
@@ -163,7 +165,7 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
   metrics_.count(submission_of(added.kind));
   if (added.kind != AddOutcome::Kind::kQueued) {
     release();
-    return {added, admission.retry_seconds};
+    return {added, admission.retry_seconds, admission.is_over_quota};
   }
   if (simulation.deadline_time) timekeeper_.set_deadline(added.id, *simulation.deadline_time);
   job.id = added.id;

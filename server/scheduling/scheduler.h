@@ -81,6 +81,7 @@ class Scheduler {
   struct Admitted {
     AddOutcome added;
     double retry_seconds = 0;
+    bool is_over_quota = false;  ///< the quota of the principal has no room
   };
   Admitted admit(const NewSimulation& simulation, std::shared_ptr<const SimulationInputs> inputs,
                  const CallLimits& limits = {});

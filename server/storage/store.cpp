@@ -457,6 +457,15 @@ EventPage Store::events(const EventQuery& query, const CallLimits& limits) {
   return read(limits, [&](Connection& db) { return query_events(db, query); });
 }
 
+std::int64_t Store::result_bytes(const std::string& project, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) {
+    Prepared sum(db, "SELECT coalesce(sum(stored_bytes), 0) FROM results WHERE project = ?");
+    sum.bind(1, project);
+    sum.executeStep();
+    return sum.getColumn(0).getInt64();
+  });
+}
+
 EventRange Store::event_range(const std::string& project, const CallLimits& limits) {
   return read(limits, [&](Connection& db) { return query_event_range(db, project); });
 }

@@ -151,6 +151,8 @@ class Store {
   std::optional<StoredEvent> deletion(const std::string& project, std::int64_t simulation_number,
                                       const CallLimits& limits = {});
   EventPage events(const EventQuery& query, const CallLimits& limits = {});
+  /// Returns the bytes of all results of a project, with their histories.
+  std::int64_t result_bytes(const std::string& project, const CallLimits& limits = {});
   EventRange event_range(const std::string& project, const CallLimits& limits = {});
   /// Tells the observer of every later commit, for as long as it lives.
   void observe(const std::weak_ptr<Observer>& observer) { observers_.add(observer); }

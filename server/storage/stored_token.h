@@ -24,6 +24,10 @@ struct StoredToken {
   Microseconds create_time = 0;
   std::optional<Microseconds> expire_time = {};  ///< from then on it is refused
   std::optional<Microseconds> revoke_time = {};  ///< set once it is revoked or replaced
+  // Quotas of its own, in place of the server's.
+  std::optional<double> calls_per_second = {};
+  std::optional<int> streams = {};
+  std::optional<double> processor_hours = {};
 
   bool is_valid(Microseconds now) const {
     return !revoke_time && (!expire_time || now < *expire_time);

@@ -42,14 +42,18 @@ std::optional<Microseconds> time_in(const SQLite::Column& column) {
 
 void insert_token(Connection& db, const StoredToken& token) {
   Prepared insert(db,
-                  "INSERT INTO tokens (hash, name, scope, projects, create_time, expire_time) "
-                  "VALUES (?, ?, ?, ?, ?, ?)");
+                  "INSERT INTO tokens (hash, name, scope, projects, create_time, expire_time, "
+                  "calls_per_second, streams, processor_hours) "
+                  "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, token.hash);
   insert.bind(2, token.name);
   insert.bind(3, static_cast<int>(token.scope));
   insert.bind(4, joined(token.projects));
   insert.bind(5, token.create_time);
   if (token.expire_time) insert.bind(6, *token.expire_time);
+  if (token.calls_per_second) insert.bind(7, *token.calls_per_second);
+  if (token.streams) insert.bind(8, *token.streams);
+  if (token.processor_hours) insert.bind(9, *token.processor_hours);
   insert.exec();
 }
 
@@ -89,9 +93,10 @@ TokenTable::TokenTable(const std::filesystem::path& database)
 
 std::vector<StoredToken> TokenTable::all() {
   return translated([this] {
-    Prepared query(connection_,
-                   "SELECT name, hash, scope, projects, create_time, expire_time, revoke_time "
-                   "FROM tokens ORDER BY name, create_time, hash");
+    Prepared query(
+        connection_,
+        "SELECT name, hash, scope, projects, create_time, expire_time, revoke_time, "
+        "calls_per_second, streams, processor_hours FROM tokens ORDER BY name, create_time, hash");
     std::vector<StoredToken> out;
     while (query.executeStep()) {
       out.push_back({.name = query.getColumn(0).getString(),
@@ -101,6 +106,14 @@ std::vector<StoredToken> TokenTable::all() {
                      .create_time = query.getColumn(4).getInt64(),
                      .expire_time = time_in(query.getColumn(5)),
                      .revoke_time = time_in(query.getColumn(6))});
+      const auto number = [&query](int index) -> std::optional<double> {
+        const SQLite::Column column = query.getColumn(index);
+        if (column.isNull()) return std::nullopt;
+        return column.getDouble();
+      };
+      out.back().calls_per_second = number(7);
+      if (const auto streams = number(8)) out.back().streams = static_cast<int>(*streams);
+      out.back().processor_hours = number(9);
     }
     return out;
   });

@@ -1,0 +1,34 @@
+#include "server/application/quota.h"
+
+#include <algorithm>
+
+namespace tribodyn::server {
+
+double Allowance::take_call(double calls_per_second, Time now) {
+  const double most = std::max(1.0, kBurstSeconds * calls_per_second);
+  const std::lock_guard lock(mutex_);
+  if (!has_begun_) calls_ = most;
+  if (has_begun_ && now > filled_) {
+    const double seconds = std::chrono::duration<double>(now - filled_).count();
+    calls_ = std::min(most, calls_ + seconds * calls_per_second);
+  }
+  if (!has_begun_ || now > filled_) filled_ = now;
+  has_begun_ = true;
+  if (calls_ < 1) return (1 - calls_) / calls_per_second;
+  calls_ -= 1;
+  return 0;
+}
+
+bool Allowance::open_stream(int most) {
+  const std::lock_guard lock(mutex_);
+  if (streams_ >= most) return false;
+  ++streams_;
+  return true;
+}
+
+void Allowance::close_stream() {
+  const std::lock_guard lock(mutex_);
+  --streams_;
+}
+
+}  // namespace tribodyn::server

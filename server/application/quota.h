@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <mutex>
+
+namespace tribodyn::server {
+
+/// What one principal may take. 0: no limit but the server's own.
+struct Quota {
+  double calls_per_second = 0;  ///< on average; kBurstSeconds of calls may come at once
+  int streams = 0;              ///< open at a time
+  double processor_hours = 0;   ///< estimated, of its simulations that wait and run
+};
+
+/// What one principal has taken of its quota: a token bucket of calls, and open streams. Safe for
+/// concurrent access.
+class Allowance {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+  /// The bucket holds the calls of so many seconds, and one at least.
+  static constexpr double kBurstSeconds = 5;
+
+  /// Takes a call. Returns 0, or takes none and returns the time until one is there [s].
+  double take_call(double calls_per_second, Time now);
+
+  /// Takes a stream. Returns false, and takes none, if `most` are open.
+  bool open_stream(int most);
+  void close_stream();
+
+ private:
+  std::mutex mutex_;
+  bool has_begun_ = false;  // guarded by mutex_, as all below
+  double calls_ = 0;
+  Time filled_;
+  int streams_ = 0;
+};
+
+}  // namespace tribodyn::server

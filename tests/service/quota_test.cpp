@@ -1,0 +1,256 @@
+// Quotas of principals and projects, and turns between principals.
+#include "server/application/quota.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "google/rpc/code.pb.h"
+#include "google/rpc/error_details.pb.h"
+#include "server/application/call_dispatcher.h"
+#include "server/application/workers.h"
+#include "tests/service/support.h"
+#include "tribodyn/v1/schemas.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+using google::protobuf::Message;
+using std::chrono::milliseconds;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A call with a token, without a transport.
+class QuotaCall : public UnaryCall, public StreamCall {
+ public:
+  QuotaCall(const Method& row, const Message& request, const std::string& secret)
+      : UnaryCall(row), StreamCall(row), bytes_(request.SerializeAsString()) {
+    UnaryCall::credentials.authorization = "Bearer " + secret;
+    StreamCall::credentials = UnaryCall::credentials;
+  }
+
+  google::rpc::Status answer(CallDispatcher& dispatcher) {
+    if (UnaryCall::method.open) {
+      dispatcher.open(*this);
+    } else {
+      dispatcher.answer(*this);
+    }
+    return answer_.get_future().get();
+  }
+
+  std::size_t request_size() const override { return bytes_.size(); }
+  std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() override {
+    return std::make_unique<google::protobuf::io::ArrayInputStream>(
+        bytes_.data(), static_cast<int>(bytes_.size()));
+  }
+  void drop_request() override { bytes_.clear(); }
+  void answered(Outcome<Reply> outcome) override {
+    answer_.set_value(outcome.ok() ? google::rpc::Status() : outcome.error());
+  }
+  void opened(Outcome<ReplySource> outcome) override {
+    if (outcome.ok()) source = outcome.message();
+    answer_.set_value(outcome.ok() ? google::rpc::Status() : outcome.error());
+  }
+
+  ReplySource source;  ///< open until it is destroyed
+
+ private:
+  std::string bytes_;
+  std::promise<google::rpc::Status> answer_;
+};
+
+/// The quota that a refusal names; "" if it is no refusal by a quota, or has no retry delay.
+std::string quota_of(const google::rpc::Status& status) {
+  google::rpc::ErrorInfo info;
+  google::rpc::RetryInfo retry;
+  bool has_delay = false;
+  std::string out;
+  for (const auto& detail : status.details()) {
+    has_delay = has_delay || detail.UnpackTo(&retry);
+    if (detail.UnpackTo(&info) && info.reason() == "QUOTA_EXCEEDED") {
+      out = info.metadata().at("quota");
+    }
+  }
+  const bool is_whole = status.code() == google::rpc::RESOURCE_EXHAUSTED && has_delay;
+  return is_whole ? out : "";
+}
+
+TEST(Allowance, LetsCallsOfFiveSecondsComeAtOnceAndThenAsManyASecondAsStated) {
+  Allowance allowance;
+  Allowance::Time now{};
+  for (int i = 0; i < 50; ++i) ASSERT_EQ(allowance.take_call(10, now), 0) << i;
+  EXPECT_NEAR(allowance.take_call(10, now), 0.1, 1e-9);
+  now += milliseconds(99);
+  EXPECT_NEAR(allowance.take_call(10, now), 0.001, 1e-9) << "refused calls take nothing";
+  now += milliseconds(902);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(allowance.take_call(10, now), 0) << i;
+  EXPECT_GT(allowance.take_call(10, now), 0);
+  now += std::chrono::hours(1);
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(allowance.take_call(10, now), 0) << i;
+  EXPECT_GT(allowance.take_call(10, now), 0) << "no more than the bucket holds";
+}
+
+TEST(Allowance, OfLessThanACallASecondHasOneCall) {
+  Allowance allowance;
+  EXPECT_EQ(allowance.take_call(0.1, {}), 0);
+  EXPECT_NEAR(allowance.take_call(0.1, {}), 10, 1e-9);
+}
+
+class QuotaTest : public testing::Test {
+ protected:
+  QuotaTest() {
+    app_.authorizer = std::make_shared<Authorizer>(Quota{.calls_per_second = 1000, .streams = 2});
+    StoredToken slow{.name = "slow", .hash = token_hash("slow"), .scope = Scope::kWrite};
+    slow.calls_per_second = 0.2;
+    slow.processor_hours = 1e-5;
+    app_.authorizer->set_tokens(
+        {slow,
+         {.name = "usual", .hash = token_hash("usual"), .scope = Scope::kWrite},
+         {.name = kOwner, .hash = token_hash("owner"), .scope = Scope::kAdmin}},
+        0);
+  }
+  const Method& row(const Message& request) const {
+    for (const Method& each : dispatcher_.methods()) {
+      if (each.descriptor->input_type() == request.GetDescriptor()) return each;
+    }
+    throw std::logic_error("no such method");
+  }
+  google::rpc::Status answer(const Message& request, const std::string& secret) {
+    return QuotaCall(row(request), request, secret).answer(dispatcher_);
+  }
+  static v1::GetSchemaRequest small() { return {}; }
+  static v1::CreateSimulationRequest create(const v1::Simulation& simulation) {
+    v1::CreateSimulationRequest out;
+    *out.mutable_simulation() = simulation;
+    out.set_force(true);
+    return out;
+  }
+
+  std::shared_ptr<std::atomic<bool>> release_ = std::make_shared<std::atomic<bool>>(false);
+  Bench bench_{patient_studies(release_)};
+  Application app_ = bench_.application();
+  CallDispatcher dispatcher_{app_};
+};
+
+TEST_F(QuotaTest, CallsBeyondTheRateAreRefusedWithTheRateAndADelayAndOthersAreNot) {
+  EXPECT_NE(answer(small(), "slow").code(), google::rpc::RESOURCE_EXHAUSTED);
+  const google::rpc::Status refused = answer(small(), "slow");
+  EXPECT_EQ(quota_of(refused), "calls-per-second");
+  EXPECT_THAT(refused.message(),
+              AllOf(HasSubstr("the quota of slow is 0.2 calls a second"), HasSubstr("try again")));
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_NE(answer(small(), "usual").code(), google::rpc::RESOURCE_EXHAUSTED);
+    EXPECT_NE(answer(small(), "owner").code(), google::rpc::RESOURCE_EXHAUSTED);
+  }
+}
+
+TEST_F(QuotaTest, StreamsBeyondTheQuotaAreRefusedUntilOneEnds) {
+  v1::WatchSimulationsRequest request;
+  request.set_filter("lubricant = paper-fluid-1");
+  const Method& method = row(request);
+  QuotaCall first(method, request, "usual"), second(method, request, "usual");
+  QuotaCall third(method, request, "usual"), fourth(method, request, "usual");
+  QuotaCall owners[] = {
+      {method, request, "owner"}, {method, request, "owner"}, {method, request, "owner"}};
+  EXPECT_EQ(first.answer(dispatcher_).code(), google::rpc::OK);
+  EXPECT_EQ(second.answer(dispatcher_).code(), google::rpc::OK);
+  const google::rpc::Status refused = third.answer(dispatcher_);
+  EXPECT_EQ(quota_of(refused), "streams");
+  EXPECT_THAT(refused.message(), HasSubstr("the quota of usual is 2 open streams"));
+  for (QuotaCall& each : owners) EXPECT_EQ(each.answer(dispatcher_).code(), google::rpc::OK);
+  first.source = nullptr;
+  EXPECT_EQ(fourth.answer(dispatcher_).code(), google::rpc::OK);
+}
+
+TEST_F(QuotaTest, AStreamThatIsRefusedForItsRequestTakesNoPlace) {
+  v1::WatchSimulationsRequest request;
+  request.set_filter("no such thing");
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(answer(request, "usual").code(), google::rpc::INVALID_ARGUMENT);
+  }
+}
+
+TEST_F(QuotaTest, SimulationsBeyondTheProcessorHoursAreRefusedWhileOthersWaitAndRun) {
+  const google::rpc::Status refused = answer(create(long_simulation()), "slow");
+  EXPECT_EQ(quota_of(refused), "processor-hours");
+  EXPECT_THAT(refused.message(), HasSubstr("processor hours of simulations that wait and run"));
+  EXPECT_EQ(answer(create(long_simulation()), "usual").code(), google::rpc::OK);
+  *release_ = true;
+}
+
+TEST_F(QuotaTest, AProjectWithTooManyBytesOfResultsAcceptsNoSimulation) {
+  *release_ = true;
+  app_.project_bytes = 1;
+  EXPECT_EQ(answer(create(point_simulation()), "usual").code(), google::rpc::OK);
+  ASSERT_TRUE(bench_.reaches("simulations/1", v1::Simulation::SUCCEEDED));
+  const google::rpc::Status refused = answer(create(point_simulation()), "usual");
+  EXPECT_EQ(quota_of(refused), "project-megabytes");
+  EXPECT_THAT(refused.message(), HasSubstr("the quota of project default is"));
+  ASSERT_EQ(bench_.store().remove_simulation(1), Store::Removal::kDone);
+  EXPECT_EQ(answer(create(point_simulation()), "usual").code(), google::rpc::OK);
+}
+
+/// What principals queue while the only thread is held, in the order in which it runs.
+class Turn {
+ public:
+  explicit Turn(std::size_t waiting) : workers_(1, waiting, 1000) {
+    std::function<void()> hold = [this] {
+      begun_.set_value();
+      released_.get_future().wait();
+    };
+    workers_.run(0, hold, "holder");
+    begun_.get_future().wait();
+  }
+  bool queue(const std::string& principal) {
+    std::function<void()> task = [this, principal] {
+      order_ += principal;
+      if (--left_ == 0) ended_.set_value();
+    };
+    const bool is_queued = workers_.run(0, task, principal);
+    left_ += is_queued ? 1 : 0;
+    return is_queued;
+  }
+  std::string order() {
+    released_.set_value();
+    ended_.get_future().wait();
+    return order_;
+  }
+
+ private:
+  std::promise<void> begun_, released_, ended_;
+  int left_ = 0;  // changed by the test before the thread is released, by the thread afterwards
+  std::string order_;
+  Workers workers_;
+};
+
+TEST(Turns, OfPrincipalsKeepACallFromWaitingForMoreThanOneOfEachOther) {
+  Turn turn(64);
+  for (int i = 0; i < 60; ++i) EXPECT_TRUE(turn.queue("a"));
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(turn.queue("b"));
+  EXPECT_TRUE(turn.queue("c"));
+  EXPECT_EQ(turn.order().substr(0, 7), "abcabaa") << "each principal in turn";
+}
+
+TEST(Turns, APrincipalThatFillsTheQueueLeavesPlacesForOthers) {
+  Turn turn(64);
+  int flooded = 0;
+  while (turn.queue("a")) ++flooded;
+  EXPECT_EQ(flooded, 64);
+  for (int i = 0; i < 8; ++i) EXPECT_TRUE(turn.queue("b")) << i;
+  EXPECT_FALSE(turn.queue("b"));
+  EXPECT_FALSE(turn.queue("a"));
+  EXPECT_TRUE(turn.queue("c"));
+  EXPECT_EQ(turn.order().substr(0, 6), "abcaba");
+}
+
+}  // namespace
+}  // namespace tribodyn::server
