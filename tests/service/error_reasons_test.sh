@@ -9,8 +9,8 @@ sources=$(find core server -name '*.cpp' -o -name '*.h')
 given=$({
   # shellcheck disable=SC2086
   cat $sources | tr '\n' ' ' |
-    grep -oE '(Refusal[({]|mark_failed\(id, options_.clock\(\),|mark_lost\(lease.id, lease.attempt, options_.clock\(\),|lose_attempt\(db, id, attempt, now,|back\(|fail\(lease,|set_refusal\(|reason = ) *"[A-Z0-9_]+"' |
-    grep -oE '"[A-Z0-9_]+"' | tr -d '"'
+    grep -oE '(Refusal[({]|mark_failed\(id, options_.clock\(\),|mark_lost\(lease.id, lease.attempt, options_.clock\(\),|lose_attempt\(db, id, attempt, now,|back\(|fail\(lease,|set_refusal\(|reason = ) *"[A-Z][A-Z0-9_]*"' |
+    grep -oE '"[A-Z][A-Z0-9_]*"' | tr -d '"'
   sed -n '/^const char\* contact_status_name/,/^}/p' core/contact/flank_contact.cpp |
     grep -oE '"[A-Z0-9_]+"' | tr -d '"' | grep -vxE 'OK|NO_LOAD|UNKNOWN'
   # shellcheck disable=SC2086
