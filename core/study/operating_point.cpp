@@ -240,6 +240,25 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactB
   return quasi_static_result(system, grids, target, options, *answer);
 }
 
+/// Why a point whose sensitivities were asked for has none.
+std::string why_no_sensitivities(const Scene& scene, const PointResult& result) {
+  if (result.contact_loss) {
+    return "the flanks part: figures of responses with impacts are not differentiated";
+  }
+  if (scene.options.load_dependent_mesh_data) {
+    return "figures are not differentiated with mesh data that depend on the torque";
+  }
+  if (result.model != PointModel::kFull) {
+    return "figures of the quasi-static model are not differentiated; the full model is";
+  }
+  if (result.method == SteadyStateMethod::kMarch) {
+    return "figures of a marched response are not differentiated; those found by shooting are";
+  }
+  return "the point is at a fold of its branch, or a contact neither slides nor entrains: there "
+         "the "
+         "figures have no derivatives";
+}
+
 }  // namespace
 
 PointResult solve_operating_point(const Scene& scene, const OperatingCondition& condition,
@@ -347,11 +366,7 @@ PointResult solve_prepared_point(PreparedScene& prepared, const OperatingConditi
     result.warnings.push_back(*std::move(unused));
   }
   if (options.sensitivities && !result.sensitivities) {
-    result.warnings.push_back(
-        {"NO_SENSITIVITIES",
-         "the figures are not differentiated: that needs a response found by shooting whose flanks "
-         "stay together, away from a fold, contacts that slide and entrain, and mesh data that do "
-         "not depend on the torque"});
+    result.warnings.push_back({"NO_SENSITIVITIES", why_no_sensitivities(scene, result)});
   }
   return result;
 }

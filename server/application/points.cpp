@@ -2,6 +2,7 @@
 
 #include "core/refusal.h"
 #include "server/application/errors.h"
+#include "server/simulation/point_comparison.h"
 #include "server/simulation/point_evaluation.h"
 #include "server/storage/resource_lookup.h"
 
@@ -17,6 +18,21 @@ Outcome<v1::EvaluatePointsResponse> evaluate_points(Application& application,
   try {
     return evaluate_points(*evaluation, *application.gear_sets,
                            [&call] { return call.limits.are_over(); });
+  } catch (const Cancelled&) {
+    return call_over(call.limits);
+  }
+}
+
+Outcome<v1::ComparePointsResponse> compare_points(Application& application,
+                                                  const v1::ComparePointsRequest& request,
+                                                  const CallContext& call) {
+  Violations violations;
+  const auto comparison = read_comparison(
+      request, resource_lookup(application.store, call.project, call.limits), violations);
+  if (!comparison) return invalid(violations);
+  try {
+    return compare_points(*comparison, *application.gear_sets,
+                          [&call] { return call.limits.are_over(); });
   } catch (const Cancelled&) {
     return call_over(call.limits);
   }

@@ -12,4 +12,10 @@ Outcome<v1::EvaluatePointsResponse> evaluate_points(Application& application,
                                                     const v1::EvaluatePointsRequest& request,
                                                     const CallContext& call = {});
 
+/// Computes the points of the lubricants with the uncertainty of their inputs and returns their
+/// differences. Stores nothing.
+Outcome<v1::ComparePointsResponse> compare_points(Application& application,
+                                                  const v1::ComparePointsRequest& request,
+                                                  const CallContext& call = {});
+
 }  // namespace tribodyn::server

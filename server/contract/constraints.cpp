@@ -211,6 +211,17 @@ constexpr Constraint kConstraints[] = {
      "beyond it the surfaces move against each other"},
     {"RigCondition", "supply_temperature_celsius", "C", -70, 200, "eq 14, T_in", ""},
 
+    {"ComparePointsRequest", "tolerance", "", 1e-8, 1e-2, "eq 30",
+     "what shooting can estimate and keep", Zero::kUnset},
+    {"ComparePointsRequest", "condition_weights", "", 1e-9, 1e9, "mean over conditions", ""},
+    {"ComparePointsRequest", "sump_temperature_uncertainty_kelvin", "K", 0, 100, "eq 14",
+     "standard uncertainty"},
+    {"ComparePointsRequest", "inlet_temperature_rise_uncertainty_kelvin", "K", 0, 100, "eq 14",
+     "standard uncertainty"},
+    {"ComparePointsRequest", "estimate_correlation", "", 0, 1, "correlation of estimates", ""},
+    {"ComparePointsRequest", "draws", "", 19, 1999, "work limit",
+     "39 draws or more hold a 95 % interval", Zero::kUnset},
+
     {"BatchCreateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
      "requests of one transaction"},
     {"BatchUpdateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",

@@ -89,6 +89,49 @@ void set_losses(v1::PointResult* out, const PointResult& result) {
   out->set_boundary_to_viscous_friction_ratio(result.boundary_to_viscous_friction_ratio);
 }
 
+const char* name_of(OrbitFigure figure) {
+  switch (figure) {
+    case OrbitFigure::kInefficiencyRms:
+      return "inefficiency_rms_percent";
+    case OrbitFigure::kInefficiencyEnergyMean:
+      return "inefficiency_energy_mean_percent";
+    case OrbitFigure::kMeshLossPower:
+      return "mesh_loss_power_watts";
+    case OrbitFigure::kMeshLossTorque:
+      return "mesh_loss_torque_newton_metres";
+    case OrbitFigure::kPinionFrictionTorque:
+      return "pinion_friction_torque_newton_metres.mean";
+    case OrbitFigure::kFilmRatio:
+      return "film_ratio.mean";
+    case OrbitFigure::kContactTemperature:
+      return "contact_temperature_kelvin.mean";
+    case OrbitFigure::kTransmissionErrorMinimum:
+      return "dynamic_transmission_error_metres.minimum";
+    case OrbitFigure::kTransmissionErrorMaximum:
+      return "dynamic_transmission_error_metres.maximum";
+  }
+  return "";
+}
+
+void set(v1::PointSensitivities* out, const PointSensitivities& sensitivities) {
+  for (int f = 0; f < kOrbitFigures; ++f) {
+    out->add_figures(name_of(static_cast<OrbitFigure>(f)));
+    out->add_values(sensitivities.figure[static_cast<std::size_t>(f)]);
+  }
+  for (const ParameterSensitivity& parameter : sensitivities.parameters) {
+    v1::ParameterSensitivity& added = *out->add_parameters();
+    added.set_parameter(parameter.parameter);
+    added.set_unit(parameter.unit);
+    added.set_value(parameter.value);
+    for (int f = 0; f < kOrbitFigures; ++f) {
+      added.add_derivatives(parameter.derivative[static_cast<std::size_t>(f)]);
+      const double elasticity = sensitivities.elasticity(parameter, static_cast<OrbitFigure>(f));
+      added.add_elasticities(std::isfinite(elasticity) ? elasticity : 0);
+    }
+  }
+  out->set_one_sided(sensitivities.one_sided);
+}
+
 void set_solver(v1::PointResult* out, const PointResult& result) {
   out->set_model(to_message(result.model));
   if (result.model != PointModel::kQuasiStatic) {
@@ -197,6 +240,7 @@ v1::PointResult to_message(const PointResult& result, int maximum_contact_losses
   out.set_limiting_stress_time_share(result.limiting_stress_time_share);
   out.set_limiting_stress_area_share(result.limiting_stress_area_share);
   set_solver(&out, result);
+  if (result.sensitivities) set(out.mutable_sensitivities(), *result.sensitivities);
   return out;
 }
 

@@ -12,6 +12,7 @@
 #include "core/refusal.h"
 #include "server/mapping/to_core.h"
 #include "server/resources/provenance.h"
+#include "server/resources/viscosity_fit.h"
 #include "server/support/lru_cache.h"
 
 namespace tribodyn::server {
@@ -431,6 +432,16 @@ v1::LubricantCharacterisation characterisation(const v1::Lubricant& lubricant) {
     warning->set_sentence(refusal.what());
   }
   return out;
+}
+
+std::optional<VogelFit> viscosity_fit(const v1::Lubricant& lubricant) {
+  try {
+    const FluidMeasurements fluid = entered(lubricant).fluid;
+    if (fluid.stated.vogel_viscosity_prefactor) return std::nullopt;
+    return characterise(fluid).viscosity_fit;
+  } catch (const Refusal&) {
+    return std::nullopt;
+  }
 }
 
 std::vector<v1::RangeWarning> fluid_warnings(const v1::Lubricant& lubricant) {

@@ -13,6 +13,7 @@ struct Work {
 };
 
 constexpr double kPreparationSeconds = 0.26e-3;  // [s] for each scene
+constexpr double kSensitivitySeconds = 4e-3;      // [s] for each point, at the usual tolerance
 constexpr double kUsualTolerance = 1e-3;
 constexpr Work kQuasiStaticPoint{340, 0.25e-6};  // at the usual tolerance
 constexpr double kQuasiStaticOrder = 0.4;        // exponent of their growth with 1 / tolerance
@@ -114,6 +115,9 @@ void add_study(const v1::Simulation& effective, v1::CostEstimate& out) {
   const v1::OperatingPointStudy& point = effective.operating_point();
   const double speed = speed_of(point);
   add_point(speed, point.model(), solver, out);
+  if (point.sensitivities()) {
+    out.set_processor_seconds(out.processor_seconds() + kSensitivitySeconds);
+  }
   if (point.probe_coexisting_response()) add_point(speed, point.model(), solver, out);
   if (point.has_history())
     add_history(point.history(), solver.method() == v1::STEADY_STATE_METHOD_MARCH, out);

@@ -99,7 +99,7 @@ constexpr InputFields kInputFields[] = {
      ""},
     {"OperatingPointStudy",
      "cruise drive_cycle_snapshot prescribed_torque model start "
-     "probe_coexisting_response history",
+     "probe_coexisting_response history sensitivities",
      ""},
     {"Cruise", "speed_kilometres_per_hour ascent_angle_degrees", ""},
     {"DriveCycleSnapshot",

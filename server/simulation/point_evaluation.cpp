@@ -163,16 +163,9 @@ class Rows {
     out_.mutable_model()->Resize(rows, v1::POINT_MODEL_UNSPECIFIED);
   }
 
-  /// Sets the figures of a row, or a refusal if one of them is not finite.
-  void set(int row, const PointFigures& figures) {
-    for (const double each :
-         {figures.pinion_torque, figures.wheel_torque, figures.inefficiency_rms.value_or(0),
-          figures.inefficiency_energy_mean.value_or(0), figures.mesh_loss_power,
-          figures.dte_minimum, figures.dte_maximum}) {
-      if (!std::isfinite(each)) {
-        return refuse(row, "RESULT_NOT_FINITE", "a figure of the point is not finite");
-      }
-    }
+  void set(int row, const EvaluatedPoint& point) {
+    if (!point.figures) return refuse(row, point.refusal_reason, point.refusal_message);
+    const PointFigures& figures = *point.figures;
     out_.set_pinion_torque_newton_metres(row, figures.pinion_torque);
     out_.set_wheel_torque_newton_metres(row, figures.wheel_torque);
     out_.set_inefficiency_rms_percent(row, figures.inefficiency_rms.value_or(kAbsent));
@@ -206,28 +199,41 @@ class Rows {
   std::map<std::pair<std::string, std::string>, int> numbers_;  // of refusals, from 1
 };
 
-/// Computes the points of one candidate at one group of conditions. `first_row` is the row of the
-/// candidate's first condition.
+bool is_finite(const PointFigures& figures) {
+  for (const double each :
+       {figures.pinion_torque, figures.wheel_torque, figures.inefficiency_rms.value_or(0),
+        figures.inefficiency_energy_mean.value_or(0), figures.mesh_loss_power, figures.dte_minimum,
+        figures.dte_maximum}) {
+    if (!std::isfinite(each)) return false;
+  }
+  return true;
+}
+
+/// Computes the points of a scene at one group of conditions.
 void compute_group(const Scene& scene, const PointEvaluation::Group& group,
                    const PointOptions& options, const std::shared_ptr<PreparedGearSet>& gear_set,
-                   int first_row, Rows& rows) {
-  const auto refuse_all = [&](const std::string& reason, const std::string& message) {
-    for (const auto& [position, condition] : group.conditions) {
-      rows.refuse(first_row + position, reason, message);
-    }
+                   std::vector<EvaluatedPoint>& out) {
+  const auto at = [&out](int position) -> EvaluatedPoint& {
+    return out[static_cast<std::size_t>(position)];
   };
   std::optional<PreparedScene> prepared;
   try {
     prepared.emplace(scene, gear_set);
   } catch (const Refusal& refusal) {
-    return refuse_all(refusal.reason(), refusal.what());
+    for (const auto& [position, condition] : group.conditions) {
+      at(position) = {std::nullopt, refusal.reason(), refusal.what()};
+    }
+    return;
   }
   for (const auto& [position, condition] : group.conditions) {
     if (!options.progress(0)) throw Cancelled();
     try {
-      rows.set(first_row + position, screen_point(*prepared, condition, options));
+      at(position).figures = screen_point(*prepared, condition, options);
+      if (!is_finite(*at(position).figures)) {
+        at(position) = {std::nullopt, "RESULT_NOT_FINITE", "a figure of the point is not finite"};
+      }
     } catch (const Refusal& refusal) {
-      rows.refuse(first_row + position, refusal.reason(), refusal.what());
+      at(position) = {std::nullopt, refusal.reason(), refusal.what()};
     }
   }
 }
@@ -267,6 +273,33 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
   return out;
 }
 
+std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluation,
+                                                const v1::Lubricant& lubricant, Scene& physical,
+                                                const TemperatureErrors& errors,
+                                                const PointOptions& options,
+                                                const std::shared_ptr<PreparedGearSet>& gear_set) {
+  std::vector<EvaluatedPoint> out(static_cast<std::size_t>(evaluation.conditions));
+  physical.lubricant = to_core(lubricant);
+  for (const PointEvaluation::Group& group : evaluation.groups) {
+    const double sump = group.sump_temperature_celsius + errors.sump_kelvin;
+    const double rise =
+        std::max(0.0, group.inlet_temperature_rise_kelvin + errors.inlet_rise_kelvin);
+    Violations inlet;
+    check_fluid_at_inlet(lubricant, sump, rise, "lubricant", inlet);
+    if (!inlet.empty()) {
+      for (const auto& [position, condition] : group.conditions) {
+        out[static_cast<std::size_t>(position)] = {std::nullopt, "INVALID_AT_INLET",
+                                                   inlet.front().description};
+      }
+      continue;
+    }
+    physical.sump_temperature = sump + kZeroCelsius;
+    physical.inlet_temperature_rise = rise;
+    compute_group(physical, group, options, gear_set, out);
+  }
+  return out;
+}
+
 v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,
                                            PreparedGearSets& gear_sets,
                                            const std::function<bool()>& is_over) {
@@ -288,23 +321,12 @@ v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,
       resource.GetReflection()->SetDouble(&resource, column.field,
                                           column.values[static_cast<std::size_t>(i)]);
     }
-    physical.lubricant = to_core(lubricant);
     physical.roughness = roughness(surface);
     physical.boundary = boundary_friction(surface);
-    const int first_row = i * evaluation.conditions;
-    for (const PointEvaluation::Group& group : evaluation.groups) {
-      Violations inlet;
-      check_fluid_at_inlet(lubricant, group.sump_temperature_celsius,
-                           group.inlet_temperature_rise_kelvin, "lubricant", inlet);
-      if (!inlet.empty()) {
-        for (const auto& [position, condition] : group.conditions) {
-          rows.refuse(first_row + position, "INVALID_AT_INLET", inlet.front().description);
-        }
-        continue;
-      }
-      physical.sump_temperature = group.sump_temperature_celsius + kZeroCelsius;
-      physical.inlet_temperature_rise = group.inlet_temperature_rise_kelvin;
-      compute_group(physical, group, options, gear_set, first_row, rows);
+    const std::vector<EvaluatedPoint> points =
+        evaluate_conditions(evaluation, lubricant, physical, {}, options, gear_set);
+    for (int k = 0; k < evaluation.conditions; ++k) {
+      rows.set(i * evaluation.conditions + k, points[static_cast<std::size_t>(k)]);
     }
   }
   // An exception that ends the study may leave the gear set half prepared: then it is not given

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -37,10 +39,32 @@ struct PointEvaluation {
   int conditions = 0;
 };
 
+/// The figures of one point, or why it has none.
+struct EvaluatedPoint {
+  std::optional<PointFigures> figures;
+  std::string refusal_reason;  ///< UPPER_SNAKE_CASE; empty if there are figures
+  std::string refusal_message;
+};
+
+/// Errors that are added to the temperatures of all conditions.
+struct TemperatureErrors {
+  double sump_kelvin = 0;
+  double inlet_rise_kelvin = 0;
+};
+
 /// Checks the request and finds its resources. Returns nullopt and adds all violations if the
 /// request is invalid.
 std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& request,
                                            const ResourceLookup& lookup, Violations& violations);
+
+/// Computes the points of a lubricant at all conditions of the evaluation by screen_point().
+/// `physical` is the scene, whose lubricant and temperatures are set here; `options.progress` must
+/// be set. Throws Cancelled as soon as it returns false.
+std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluation,
+                                                const v1::Lubricant& lubricant, Scene& physical,
+                                                const TemperatureErrors& errors,
+                                                const PointOptions& options,
+                                                const std::shared_ptr<PreparedGearSet>& gear_set);
 
 /// Computes all points by screen_point(). A point that the core refuses is a refused row. Throws
 /// Cancelled soon after `is_over` returns true.

@@ -59,6 +59,7 @@ void fill_model_and_start(StudyMessage* study) {
 
 void fill_operating_point(v1::OperatingPointStudy* study) {
   fill_model_and_start(study);
+  if (!study->sensitivities()) study->clear_sensitivities();  // false and unset: one request
   if (!study->has_history()) return;
   v1::HistoryRequest* history = study->mutable_history();
   if (history->mesh_cycles() == 0) history->set_mesh_cycles(kDefaultHistoryCycles);
@@ -262,6 +263,7 @@ Study study(const SimulationInputs& inputs) {
     const v1::OperatingPointStudy& message = inputs.effective.operating_point();
     PointStudy out{condition(message), point_options(solver, message.model(), message.start())};
     out.options.probe_coexisting_response = message.probe_coexisting_response();
+    out.options.sensitivities = message.sensitivities();
     if (message.has_history()) out.options.history = history_request(message.history());
     return out;
   }

@@ -11,7 +11,8 @@ err_has 'cannot connect to the server at 127.0.0.1:9'
 expect 3 --server "unix:$folder/none" lubricants list
 expect 0 --help
 out_has 'Exit codes'
-for command in point curve history contact traction film stribeck diff validate schema completion help "lubricants list" \
+for command in point curve compare sensitivities history contact traction film stribeck diff validate \
+  schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun"; do
   # shellcheck disable=SC2086  # the words of a command
@@ -182,6 +183,39 @@ expect 0 point --lubricant paper-fluid-1 --model quasi-static --pinion-torque-ne
 out_has 'pinion torque 60 N m at 200 rad/s'
 expect 0 point --lubricant paper-fluid-1 --model quasi-static --speed 50 --acceleration 0.5 --ascent -1
 out_has '50 km/h accelerating at 0.5 m/s2, ascent -1 degrees'
+
+echo "--- uncertainty, comparison, sensitivities"
+expect 0 lubricants create sheet-a --kv40 103 --kv100 15.1 --density15 868 --base-oil-class pao
+expect 0 lubricants create sheet-b --kv40 100 --kv100 14.9 --density15 866 --base-oil-class pao
+expect 0 point --lubricant sheet-a --speed 60
+out_has 'inefficiency, energy mean: [0-9.]+ % \+/- 0\.[0-9]+ \(inputs\) \+/- 0\.0[0-9]+ \(solver\)'
+out_has 'measure first: pressure viscosity$|measure first: pressure viscosity coefficient'
+expect 0 compare sheet-a sheet-b --speed 40,60
+out_has '^sheet-b@1 against sheet-a@1'
+out_has 'these two cannot be told apart'
+out_has 'Probability that sheet-b@1 loses less: [0-9]+ %'
+expect 0 compare paper-fluid-1 paper-fluid-2 --speed 60
+out_has 'Taken as exact'
+expect 0 compare sheet-a --speed 60 --output csv
+out_lines 2
+out_has ',inefficiency_energy_mean_percent_standard_uncertainty,'
+expect 0 compare sheet-a sheet-b --speed 60 --draws 19 --output json
+out_is_json
+out_has '"verdict": "CANNOT_BE_TOLD_APART"'
+expect 2 compare
+err_has 'give lubricants'
+expect 2 compare sheet-a --speed 40,60 --weights 1
+err_has '1 weights of 2 speeds'
+expect 1 compare sheet-a no-such-oil
+err_has 'lubricants/no-such-oil'
+expect 0 sensitivities paper-fluid-1 --speed 100
+out_has 'lubricant pressure viscosity coefficient .*\|#'
+expect 0 sensitivities paper-fluid-1 --speed 100 --output csv
+out_has '^parameter,unit,value,derivative.inefficiency_rms_percent,elasticity.inefficiency_rms_percent'
+expect 0 sensitivities paper-fluid-1 --speed 75
+out_has 'There are none: the flanks part'
+expect 0 point --lubricant paper-fluid-1 --speed 100 --sensitivities
+out_has '^Sensitivities'
 
 echo "--- curve"
 expect 0 curve --lubricant paper-fluid-1 --lubricant paper-fluid-2,paper-fluid-3 --first-speed 40 --last-speed 60 --speed-step 10 \

@@ -253,8 +253,9 @@ std::optional<ElasticityComparison> compare_elasticities(const DifferentiatedPla
 
 TEST(OrbitSensitivity, IsThatOfDifferencesAtSmoothPoints) {
   constexpr int kSteps = 48;
-  constexpr double kStep = 4e-4, kTolerance = 1e-5;
-  // In a full run 6 of the 200 points exceed the bound, at most 3.7 times (orbit_sensitivity.h).
+  // Larger steps pass kinks of the response at 6 of the 200 points of a full run: at 4e-4 their
+  // differences err by up to 4e-5, below 2e-4 they agree.
+  constexpr double kStep = 1e-4, kTolerance = 1e-5;
   const int count = full_run() ? 200 : kShortRun ? 1 : 10;
   std::mt19937_64 random(11);
   int compared = 0, tried = 0, left_out = 0;
@@ -361,20 +362,25 @@ TEST(PointSensitivities, ChangeNothingElseAndAreTheFullModels) {
   EXPECT_TRUE(slow.sensitivities.has_value());
 }
 
-TEST(PointSensitivities, AreAbsentWithAWarningWhereThePointIsMarchedOrLosesContact) {
-  const auto expect_none = [](const PointOptions& options, double kilometres_per_hour) {
+TEST(PointSensitivities, AreAbsentWithTheirCauseWhereThePointIsMarchedQuasiStaticOrLosesContact) {
+  const auto expect_none = [](const PointOptions& options, double kilometres_per_hour,
+                              const std::string& cause) {
     const PointResult r =
         solve_operating_point(reference_scene(), cruise(kilometres_per_hour), options);
     EXPECT_FALSE(r.sensitivities.has_value());
-    EXPECT_TRUE(std::any_of(r.warnings.begin(), r.warnings.end(),
-                            [](const RangeWarning& w) { return w.code == "NO_SENSITIVITIES"; }));
+    EXPECT_TRUE(std::any_of(r.warnings.begin(), r.warnings.end(), [&](const RangeWarning& w) {
+      return w.code == "NO_SENSITIVITIES" && w.sentence.find(cause) != std::string::npos;
+    })) << cause;
   };
   PointOptions options;
   options.sensitivities = true;
-  expect_none(options, 75);
+  expect_none(options, 75, "the flanks part");
+  options.model = PointModel::kQuasiStatic;
+  expect_none(options, 100, "quasi-static model");
+  options.model = PointModel::kFull;
   options.method = SteadyStateMethod::kMarch;
   options.tolerance = 1e-2;
-  expect_none(options, 100);
+  expect_none(options, 100, "marched");
 }
 
 }  // namespace

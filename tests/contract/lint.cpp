@@ -28,11 +28,13 @@ const std::set<std::string_view> kUnits = {"celsius", "degrees",   "hertz",   "h
                                            "kelvin",  "kilograms", "metre",   "metres", "newtons",
                                            "pascal",  "pascals",   "percent", "radian", "radians",
                                            "second",  "seconds",   "squared", "watt",   "watts"};
+/// Also numbers whose unit another field of the message states.
 const std::set<std::string_view> kPureNumbers = {
-    "alpha",    "beta",    "coefficient", "defect",    "error",      "fraction",
-    "index",    "mean",    "multiplier",  "partition", "phase",      "ratio",
-    "residual", "share",   "slope",       "solutions", "tolerance",  "cosine",
-    "sine",     "maximum", "minimum",     "values",    "uncertainty"};
+    "alpha",       "beta",      "coefficient",  "correlation", "cosine",    "defect",
+    "derivatives", "effect",    "elasticities", "error",       "fraction",  "index",
+    "maximum",     "mean",      "minimum",      "multiplier",  "partition", "phase",
+    "probability", "ratio",     "residual",     "share",       "sine",      "slope",
+    "solutions",   "tolerance", "uncertainty",  "value",       "values",    "weights"};
 /// Other spellings of units, and abbreviations.
 const std::regex kOtherSpellings(
     "(^|_)((kilo|milli|micro|nano|centi)?meters?|litres?|liters?|kelvins|centigrade|deg|rad|hz|kg|"

@@ -160,6 +160,16 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
       set("lubricant", "lubricants/paper-fluid-11");
       return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");
     }
+    if (method == "ComparePoints") {
+      message->GetReflection()->AddString(message.get(),
+                                          message->GetDescriptor()->FindFieldByName("lubricants"),
+                                          "lubricants/paper-fluid-11");
+      const auto* conditions = message->GetDescriptor()->FindFieldByName("conditions");
+      Message* condition = message->GetReflection()->AddMessage(message.get(), conditions);
+      condition->GetReflection()->SetDouble(
+          condition, condition->GetDescriptor()->FindFieldByName("speed_kilometres_per_hour"), 50);
+      return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");
+    }
     if (method == "CreateSimulation") {
       set_inner("simulation", "lubricant", "lubricants/paper-fluid-11");
       return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");

@@ -531,6 +531,8 @@ void fill(google::protobuf::Message& message, int elements) {
         fill(*reflection.AddMessage(&message, field), elements);
       }
       if (!field->is_repeated()) fill(*reflection.MutableMessage(&message, field), elements);
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && field->is_repeated()) {
+      for (int k = 0; k < elements; ++k) reflection.AddDouble(&message, field, 1.0 / 3);
     } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
       reflection.SetDouble(&message, field, 1.0 / 3);
     } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_INT32) {
@@ -550,7 +552,8 @@ void fill(google::protobuf::Message& message, int elements) {
 TEST(SimulationViews, TheLongestCurveFitsIntoAnAnswerInFull) {
   v1::CurvePoint point;
   v1::PointResult& most = *point.mutable_result();
-  fill(most, 3);  // flanks
+  fill(most, 3);               // flanks
+  most.clear_sensitivities();  // only of an operating point
   while (most.warnings_size() < 5) *most.add_warnings() = v1::RangeWarning(most.warnings(0));
   while (most.contact_losses_size() < 20) {
     *most.add_contact_losses() = v1::ContactLoss(most.contact_losses(0));

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "core/refusal.h"
+#include "server/mapping/from_core.h"
 #include "server/simulation/cost_estimate.h"
 #include "server/simulation/input_hash.h"
 #include "server/simulation/simulation_inputs.h"
@@ -257,6 +258,26 @@ TEST(IndependentPoints, StartFromTheRequestedState) {
     EXPECT_EQ(each.SerializeAsString(), result_of(single).points(0).SerializeAsString());
   }
   EXPECT_TRUE(curve.points(0).result().contact_loss()) << "the quiet branch ends at 71 km/h";
+}
+
+TEST(Sensitivities, ComeWithAPointIfAskedForAndCountAsAnotherInput) {
+  v1::Simulation request = point_simulation();
+  request.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(100);
+  const auto inputs = [&request] {
+    Violations violations;
+    return read_simulation(request, seed_lookup(), "", violations).value();
+  };
+  const std::string plain = input_hash(inputs());
+  const double seconds = estimate_cost(inputs().effective).processor_seconds();
+  request.mutable_operating_point()->set_sensitivities(false);
+  EXPECT_EQ(input_hash(inputs()), plain);
+  request.mutable_operating_point()->set_sensitivities(true);
+  EXPECT_NE(input_hash(inputs()), plain);
+  EXPECT_GT(estimate_cost(inputs().effective).processor_seconds(), seconds);
+  const PointStudy point = std::get<PointStudy>(study(inputs()));
+  const v1::CurvePoint result =
+      to_curve_point(solve_operating_point(scene(inputs()), point.condition, point.options));
+  EXPECT_EQ(result.result().sensitivities().parameters_size(), 28);
 }
 
 TEST(IndependentPoints, HaveAnotherInputHashThanAFollowedBranchAndCostLess) {

@@ -16,6 +16,7 @@
 #include "server/resources/gear_set_checks.h"
 #include "server/resources/imports/import_surface.h"
 #include "server/simulation/contact_inputs.h"
+#include "server/simulation/point_comparison.h"
 #include "server/simulation/point_evaluation.h"
 #include "server/simulation/rig_evaluation.h"
 #include "server/simulation/simulation_inputs.h"
@@ -90,6 +91,7 @@ struct Subject {
   v1::GearSet gear_set = seed<v1::GearSet>("gearSets/reference-axle");
   v1::EvaluatePointsRequest points = one_point();
   v1::EvaluateRigRequest rig = one_rig();
+  v1::ComparePointsRequest comparison;
   std::unique_ptr<Message> batch;
   Message* message = nullptr;
   std::string path;
@@ -118,6 +120,11 @@ struct Subject {
       use(&contact, "");
     } else if (name == "EvaluatePointsRequest") {
       use(&points, "");
+    } else if (name == "ComparePointsRequest") {
+      comparison.add_lubricants(points.lubricant());
+      *comparison.mutable_conditions() = points.conditions();
+      comparison.add_condition_weights(1);
+      use(&comparison, "");
     } else if (name == "PointCondition") {
       use(points.mutable_conditions(0), "conditions[0].");
     } else if (name == "EvaluateRigRequest") {
@@ -188,6 +195,10 @@ struct Subject {
     }
     if (message == &points || path == "conditions[0].") {
       read_points(points, seed_lookup(), violations);
+      return violations;
+    }
+    if (message == &comparison) {
+      read_comparison(comparison, seed_lookup(), violations);
       return violations;
     }
     if (message == &profiles) {

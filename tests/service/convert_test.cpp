@@ -258,6 +258,7 @@ TEST(FromCore, NoFieldOfAPointIsForgotten) {
   core.statistics = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
   core.power_balance = {1, 2, 3, 4, 5, 6, 7};
   core.section_state = {1, 2, 3, 4, 5, 6, 7};
+  core.sensitivities = PointSensitivities{{}, {{"lubricant.x", "K", 3, {}}}, true};
   const v1::PointResult result = to_message(core, 20);
   EXPECT_EQ(result.contact_losses_size(), 20);
   EXPECT_EQ(result.contact_losses_left_out(), 5);
@@ -277,6 +278,22 @@ TEST(FromCore, NoFieldOfAPointIsForgotten) {
     }
   };
   expect_all(result);
+}
+
+TEST(FromCore, SensitivitiesKeepTheOrderOfTheirFigures) {
+  PointResult core = full_result();
+  core.sensitivities = PointSensitivities{{2, 4, 0}, {{"lubricant.x", "K", 3, {6, 8, 5}}}, false};
+  const v1::PointSensitivities sensitivities = to_message(core, 20).sensitivities();
+  ASSERT_EQ(sensitivities.figures_size(), kOrbitFigures);
+  EXPECT_EQ(sensitivities.figures(1), "inefficiency_energy_mean_percent");
+  EXPECT_EQ(sensitivities.figures(8), "dynamic_transmission_error_metres.maximum");
+  EXPECT_EQ(sensitivities.values(1), 4);
+  const v1::ParameterSensitivity& parameter = sensitivities.parameters(0);
+  EXPECT_EQ(parameter.parameter(), "lubricant.x");
+  EXPECT_EQ(parameter.derivatives(1), 8);
+  EXPECT_EQ(parameter.elasticities(0), 9);
+  EXPECT_EQ(parameter.elasticities(1), 6);
+  EXPECT_EQ(parameter.elasticities(2), 0) << "of a figure that is 0";
 }
 
 TEST(FromCore, ACurveOfAThousandPointsFitsIntoOneMessage) {

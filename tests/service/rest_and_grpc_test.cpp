@@ -486,6 +486,12 @@ TEST_F(RestAndGrpc, EveryMethodGivesTheSameAnswers) {
                    slide_roll_ratio_percent: 10 supply_temperature_celsius: 40 })");
   check("EvaluateRig", "lubricant: 'lubricants/none' radius_x_metres: 1",
         google::rpc::INVALID_ARGUMENT);
+  check("ComparePoints",
+        R"(lubricants: "lubricants/paper-fluid-1" lubricants: "lubricants/paper-fluid-2"
+      conditions { speed_kilometres_per_hour: 110 } draws: 19)");
+  check("ComparePoints",
+        "lubricants: 'lubricants/none' conditions { speed_kilometres_per_hour: 1 }",
+        google::rpc::INVALID_ARGUMENT);
   check_simulations();
   for (const auto* each : all_methods()) {
     EXPECT_TRUE(answered_.contains(each->name()))

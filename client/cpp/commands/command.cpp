@@ -64,6 +64,8 @@ std::vector<Command> all_commands() {
   std::vector<Command> commands;
   commands.push_back(curve_command());
   commands.push_back(point_command());
+  commands.push_back(compare_command());
+  commands.push_back(sensitivities_command());
   commands.push_back(history_command());
   commands.push_back(contact_command());
   commands.push_back(traction_command());

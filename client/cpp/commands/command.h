@@ -68,6 +68,8 @@ Command contact_command();
 Command traction_command();
 Command film_command();
 Command stribeck_command();
+Command compare_command();
+Command sensitivities_command();
 Command diff_command();
 Command validate_command();
 Command schema_command();

@@ -116,6 +116,7 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   services_->surfaces = v1::SurfaceService::NewStub(services_->channel);
   services_->vehicles = v1::VehicleService::NewStub(services_->channel);
   services_->simulations = v1::SimulationService::NewStub(services_->channel);
+  services_->points = v1::PointService::NewStub(services_->channel);
   services_->contacts = v1::ContactService::NewStub(services_->channel);
   services_->rigs = v1::RigService::NewStub(services_->channel);
   services_->schemas = v1::SchemaService::NewStub(services_->channel);
@@ -142,6 +143,10 @@ v1::EvaluateContactResponse Connection::evaluate_contact(
 
 v1::EvaluateRigResponse Connection::evaluate_rig(const v1::EvaluateRigRequest& request) {
   return services_->call(*services_->rigs, &v1::RigService::Stub::EvaluateRig, request);
+}
+
+v1::ComparePointsResponse Connection::compare_points(const v1::ComparePointsRequest& request) {
+  return services_->call(*services_->points, &v1::PointService::Stub::ComparePoints, request);
 }
 
 }  // namespace tribodyn::client

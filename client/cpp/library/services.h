@@ -16,6 +16,7 @@
 #include "tribodyn/v1/gear_sets.grpc.pb.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
 #include "tribodyn/v1/rigs.grpc.pb.h"
+#include "tribodyn/v1/points.grpc.pb.h"
 #include "tribodyn/v1/schemas.grpc.pb.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
 #include "tribodyn/v1/surfaces.grpc.pb.h"
@@ -39,6 +40,7 @@ struct Connection::Services {
   std::unique_ptr<v1::SimulationService::Stub> simulations;
   std::unique_ptr<v1::ContactService::Stub> contacts;
   std::unique_ptr<v1::RigService::Stub> rigs;
+  std::unique_ptr<v1::PointService::Stub> points;
   std::unique_ptr<v1::SchemaService::Stub> schemas;
 
   /// Adds what every call carries.

@@ -108,6 +108,7 @@ void append_fields(const Message& message, std::string_view prefix, CsvRow& row)
   for (int i = 0; i < descriptor->field_count(); ++i) {
     const FieldDescriptor& field = *descriptor->field(i);
     const std::string name = std::string(prefix) + field.name();
+    if (field.message_type() == v1::PointSensitivities::descriptor()) continue;
     if (field.is_repeated()) {
       if (field.message_type() == v1::FlankLoss::descriptor()) {
         append_flanks(message, field, name, row);

@@ -13,6 +13,7 @@
 #include "tribodyn/v1/contacts.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
+#include "tribodyn/v1/points.pb.h"
 #include "tribodyn/v1/purge_report.pb.h"
 #include "tribodyn/v1/rigs.pb.h"
 #include "tribodyn/v1/schemas.pb.h"
@@ -232,6 +233,8 @@ class Connection {
   v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request);
 
   v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request);
+  /// Compares lubricants at conditions with the uncertainty of their inputs.
+  v1::ComparePointsResponse compare_points(const v1::ComparePointsRequest& request);
 
  private:
   struct Services;

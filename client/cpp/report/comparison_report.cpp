@@ -1,0 +1,315 @@
+#include "client/cpp/report/comparison_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "client/cpp/text/csv.h"
+#include "client/cpp/text/table.h"
+#include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
+
+namespace tribodyn::client {
+namespace {
+
+constexpr int kListedShares = 4;
+constexpr double kSmallestListedShare = 0.01;
+/// Largest relative difference of standard uncertainties by the linear model and by the draws with
+/// which the report calls the linear model enough.
+constexpr double kLinearEnough = 0.1;
+
+/// Returns the decimal places with which an error has two significant digits.
+int decimals_for(double error) {
+  if (!(error > 0) || !std::isfinite(error)) return 4;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
+}
+
+int error_decimals(const v1::UncertainFigure& figure) {
+  return decimals_for(std::max(figure.standard_uncertainty(), figure.solver_error()));
+}
+
+std::string value_text(const v1::UncertainFigure& figure) {
+  return fixed(figure.value(), error_decimals(figure));
+}
+
+std::string spread_text(const v1::UncertainFigure& figure) {
+  return fixed(figure.standard_uncertainty(), error_decimals(figure));
+}
+
+std::string interval_text(const v1::UncertainFigure& figure) {
+  const int decimals = error_decimals(figure);
+  return fixed(figure.interval_minimum(), decimals) + " to " +
+         fixed(figure.interval_maximum(), decimals);
+}
+
+/// Returns "pressure viscosity coefficient" for "lubricant.pressure_viscosity_coefficient_per_...".
+std::string input_text(const std::string& input) {
+  std::vector<std::string> labels;
+  for (const std::string& field : split(input, ' ')) {
+    labels.push_back(label_of_field(field.substr(field.rfind('.') + 1)));
+  }
+  if (labels.size() == 3) return "fitted viscosity law";
+  if (labels.size() == 2) return "density law";
+  return joined(labels, ", ");
+}
+
+std::string share_text(double share) {
+  const double percent = 100 * share;
+  if (percent > 99.5 && share < 1) return "> 99 %";
+  if (percent < 0.5 && share > 0) return "< 1 %";
+  return fixed(percent, 0) + " %";
+}
+
+template <class Shares>
+std::string shares_text(const Shares& shares) {
+  std::vector<std::string> parts;
+  for (const v1::InputShare& share : shares) {
+    if (static_cast<int>(parts.size()) == kListedShares) break;
+    if (share.variance_share() < kSmallestListedShare) break;
+    const std::string of = share.lubricant_revision();
+    parts.push_back(input_text(share.input()) + (of.empty() ? "" : " of " + resource_id(of)) + " " +
+                    share_text(share.variance_share()));
+  }
+  return joined(parts, ", ");
+}
+
+/// Returns what to measure; empty if no input has an uncertainty.
+template <class Shares>
+std::string advice_text(const Shares& shares) {
+  if (shares.empty() || !(shares[0].variance_share() > 0)) return "";
+  const std::string of = shares[0].lubricant_revision();
+  return "The inputs that make the variance: " + shares_text(shares) +
+         ". To know better, measure first: " + input_text(shares[0].input()) +
+         (of.empty() ? "" : " of " + resource_id(of)) + ".";
+}
+
+std::string linearity_text(const v1::UncertainFigure& figure, int draws) {
+  const double linear = figure.linear_standard_uncertainty(), drawn = figure.standard_uncertainty();
+  if (!(drawn > 0)) return "";
+  const bool is_enough = std::abs(linear - drawn) <= kLinearEnough * drawn;
+  return "The standard uncertainty comes from " + std::to_string(draws) +
+         " draws of all inputs. The linear model gives " + fixed(linear, decimals_for(linear)) +
+         (is_enough ? ": it is enough here." : ": it is not enough here; trust the draws.");
+}
+
+std::string verdict_text(v1::ComparedDifference::Verdict verdict) {
+  switch (verdict) {
+    case v1::ComparedDifference::LOWER:
+      return "lower";
+    case v1::ComparedDifference::HIGHER:
+      return "higher";
+    case v1::ComparedDifference::CANNOT_BE_TOLD_APART:
+      return "cannot be told apart";
+    default:
+      return "-";
+  }
+}
+
+std::string difference_sentence(const v1::ComparedDifference& difference, const std::string& name,
+                                const std::string& first, int conditions) {
+  const v1::UncertainFigure& figure = difference.difference_percent();
+  const std::string where =
+      conditions == 1 ? "" : "Mean of " + std::to_string(conditions) + " conditions: ";
+  const std::string numbers =
+      value_text(figure) + " percentage points (95 %: " + interval_text(figure) + ")";
+  const std::string probability = " Probability that " + name +
+                                  " loses less: " + share_text(difference.lower_probability()) +
+                                  ".";
+  switch (difference.verdict()) {
+    case v1::ComparedDifference::LOWER:
+      return where + name + " loses less than " + first + ": " + numbers + "." + probability;
+    case v1::ComparedDifference::HIGHER:
+      return where + name + " loses more than " + first + ": " + numbers + "." + probability;
+    case v1::ComparedDifference::CANNOT_BE_TOLD_APART:
+      return where + "these two cannot be told apart: " + name + " less " + first + " is " +
+             numbers + "." + probability;
+    default:
+      return where + "no difference of " + name + " and " + first +
+             ": one of them has no figure, or too many draws are refused.";
+  }
+}
+
+double sump_of(const v1::PointCondition& condition) {
+  return condition.has_sump_temperature_celsius() ? condition.sump_temperature_celsius() : 40;
+}
+
+std::string lubricant_id(const v1::ComparedLubricant& lubricant) {
+  return resource_id(lubricant.lubricant_revision());
+}
+
+std::string table_of(const v1::ComparePointsRequest& request, const v1::ComparedLubricant& first,
+                     const v1::ComparedLubricant* other) {
+  using Align = Table::Align;
+  std::vector<Table::Column> columns = {{"speed", "km/h", Align::kDecimal},
+                                        {"sump", "C", Align::kDecimal},
+                                        {lubricant_id(first), "%", Align::kDecimal},
+                                        {"+/- inputs", "%", Align::kDecimal},
+                                        {"+/- solver", "%", Align::kDecimal}};
+  if (other == nullptr) {
+    columns.push_back({"95 % interval", "%", Align::kRight});
+  } else {
+    columns.insert(columns.end(), {{lubricant_id(*other), "%", Align::kDecimal},
+                                   {"+/- inputs", "%", Align::kDecimal},
+                                   {"+/- solver", "%", Align::kDecimal},
+                                   {"difference", "%", Align::kDecimal},
+                                   {"95 % interval", "%", Align::kRight},
+                                   {"P(lower)", "", Align::kRight},
+                                   {"verdict", "", Align::kLeft}});
+  }
+  Table table(columns);
+  for (int k = 0; k < first.points_size(); ++k) {
+    const v1::PointCondition& condition = request.conditions(k);
+    std::vector<std::string> row = {significant(condition.speed_kilometres_per_hour()),
+                                    significant(sump_of(condition))};
+    std::string refusal;
+    const auto add = [&](const v1::ComparedPoint& point) {
+      const v1::UncertainFigure& figure = point.inefficiency_energy_mean_percent();
+      if (!point.refusal_reason().empty()) {
+        row.insert(row.end(), {"-", "-", "-"});
+        refusal = "no figure: " + point.refusal_message();
+      } else {
+        row.insert(row.end(), {value_text(figure), spread_text(figure),
+                               fixed(figure.solver_error(), decimals_for(figure.solver_error()))});
+      }
+    };
+    add(first.points(k));
+    if (other == nullptr) {
+      row.push_back(refusal.empty()
+                        ? interval_text(first.points(k).inefficiency_energy_mean_percent())
+                        : refusal);
+    } else {
+      add(other->points(k));
+      const v1::ComparedDifference& difference = other->differences(k);
+      const bool has_difference = difference.has_difference_percent();
+      const v1::UncertainFigure& figure = difference.difference_percent();
+      row.insert(row.end(), {has_difference ? value_text(figure) : "-",
+                             has_difference ? interval_text(figure) : "-",
+                             has_difference ? share_text(difference.lower_probability()) : "-",
+                             refusal.empty() ? verdict_text(difference.verdict()) : refusal});
+    }
+    table.add_row(row);
+  }
+  return table.text();
+}
+
+/// Adds the fields that count as exact.
+void add_exact_inputs(const v1::ComparePointsResponse& response, Sheet& sheet) {
+  const auto list = [](const auto& inputs) {
+    std::vector<std::string> labels;
+    for (const std::string& input : inputs) labels.push_back(input_text(input));
+    return joined(labels, ", ");
+  };
+  for (const v1::ComparedLubricant& lubricant : response.lubricants()) {
+    if (lubricant.inputs_without_uncertainty().empty()) continue;
+    sheet.remark("Taken as exact, because no uncertainty is stated, of " + lubricant_id(lubricant) +
+                 ": " + list(lubricant.inputs_without_uncertainty()) + ".");
+  }
+  if (!response.inputs_without_uncertainty().empty()) {
+    sheet.remark("Taken as exact, because no uncertainty is stated, of the scene: " +
+                 list(response.inputs_without_uncertainty()) + ".");
+  }
+}
+
+}  // namespace
+
+std::string with_errors(const v1::UncertainFigure& figure, const std::string& unit) {
+  return value_text(figure) + (unit.empty() ? "" : " " + unit) + " +/- " +
+         (figure.standard_uncertainty() > 0 ? spread_text(figure) : "0") + " (inputs) +/- " +
+         (figure.solver_error() > 0
+              ? fixed(figure.solver_error(), decimals_for(figure.solver_error()) - 1)
+              : "0") +
+         " (solver)";
+}
+
+std::string comparison_report(const v1::ComparePointsRequest& request,
+                              const v1::ComparePointsResponse& response) {
+  const v1::ComparedLubricant& first = response.lubricants(0);
+  const int conditions = first.points_size();
+  std::string out;
+  const auto title = [](const std::string& text) {
+    Sheet sheet;
+    sheet.heading(text);
+    return sheet.text();
+  };
+  Sheet sheet;
+  if (response.lubricants_size() == 1) {
+    out += title("Inefficiency, energy mean, of " + lubricant_id(first)) +
+           table_of(request, first, nullptr) + "\n";
+    sheet.heading("Uncertainty");
+    if (first.has_mean_inefficiency_percent()) {
+      const v1::UncertainFigure& mean = first.mean_inefficiency_percent();
+      if (conditions > 1) {
+        sheet.remark("Mean of " + std::to_string(conditions) +
+                     " conditions: " + with_errors(mean, "%") + ".");
+      }
+      sheet.remark(linearity_text(mean, response.draws()));
+      sheet.remark(advice_text(first.mean_shares()));
+    }
+  }
+  for (int i = 1; i < response.lubricants_size(); ++i) {
+    const v1::ComparedLubricant& other = response.lubricants(i);
+    out += title("Inefficiency, energy mean: " + lubricant_id(other) + " less " +
+                 lubricant_id(first)) +
+           table_of(request, first, &other) + "\n";
+    sheet.heading(lubricant_id(other) + " against " + lubricant_id(first));
+    const v1::ComparedDifference& mean = other.mean_difference();
+    sheet.remark(difference_sentence(mean, lubricant_id(other), lubricant_id(first), conditions));
+    if (mean.has_difference_percent()) {
+      sheet.remark(linearity_text(mean.difference_percent(), response.draws()));
+      sheet.remark(advice_text(mean.shares()));
+    }
+  }
+  sheet.heading("What is common, and what is not");
+  sheet.remark(
+      "Errors of the scene are common to all lubricants, measured values of two lubricants are "
+      "independent, and estimates of one class of base oil by one estimator are correlated by " +
+      significant(response.estimate_correlation()) +
+      " (assumed; --estimate-correlation sets it). Intervals of differences include the solver's "
+      "error.");
+  add_exact_inputs(response, sheet);
+  return out + sheet.text();
+}
+
+std::string comparison_csv(const v1::ComparePointsRequest& request,
+                           const v1::ComparePointsResponse& response) {
+  std::vector<CsvRow> rows;
+  for (const v1::ComparedLubricant& lubricant : response.lubricants()) {
+    for (int k = 0; k < lubricant.points_size(); ++k) {
+      CsvRow row;
+      row.emplace_back("lubricant", lubricant.lubricant_revision());
+      append_fields(request.conditions(k), "condition.", row);
+      v1::ComparedPoint point = lubricant.points(k);
+      point.clear_shares();
+      append_fields(point, "", row);
+      v1::ComparedDifference difference;
+      if (k < lubricant.differences_size()) difference = lubricant.differences(k);
+      difference.clear_shares();
+      append_fields(difference, "difference.", row);
+      rows.push_back(std::move(row));
+    }
+  }
+  return csv_text(rows);
+}
+
+std::string uncertainty_report(const v1::ComparePointsResponse& response) {
+  const v1::ComparedLubricant& lubricant = response.lubricants(0);
+  const v1::ComparedPoint& point = lubricant.points(0);
+  if (!point.refusal_reason().empty()) return "";
+  Sheet sheet;
+  sheet.heading("Uncertainty");
+  const auto line = [&sheet](const char* label, const v1::UncertainFigure& figure,
+                             const char* unit) {
+    sheet.remark(std::string(label) + ": " + with_errors(figure, unit) +
+                 (figure.standard_uncertainty() > 0 ? ", 95 %: " + interval_text(figure) : ""));
+  };
+  line("inefficiency, energy mean", point.inefficiency_energy_mean_percent(), "%");
+  line("inefficiency, RMS", point.inefficiency_rms_percent(), "%");
+  line("mesh loss", point.mesh_loss_power_watts(), "W");
+  line("pinion torque", point.pinion_torque_newton_metres(), "N m");
+  sheet.remark(linearity_text(point.inefficiency_energy_mean_percent(), response.draws()));
+  sheet.remark(advice_text(point.shares()));
+  add_exact_inputs(response, sheet);
+  return sheet.text();
+}
+
+}  // namespace tribodyn::client

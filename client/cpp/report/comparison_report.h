@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "tribodyn/v1/points.pb.h"
+
+namespace tribodyn::client {
+
+/// Returns lubricants side by side, condition by condition, with what the difference amounts to and
+/// which inputs decide it.
+std::string comparison_report(const v1::ComparePointsRequest& request,
+                              const v1::ComparePointsResponse& response);
+
+/// Returns a CSV line for every lubricant at every condition.
+std::string comparison_csv(const v1::ComparePointsRequest& request,
+                           const v1::ComparePointsResponse& response);
+
+/// Returns the figures of one lubricant at one condition with the uncertainty of its inputs.
+std::string uncertainty_report(const v1::ComparePointsResponse& response);
+
+/// Returns e.g. "1.18 % +/- 0.42 (inputs) +/- 0.0004 (solver)".
+std::string with_errors(const v1::UncertainFigure& figure, const std::string& unit);
+
+}  // namespace tribodyn::client

@@ -1,0 +1,544 @@
+#include "server/simulation/point_comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "core/numerics/square.h"
+#include "core/refusal.h"
+#include "core/uncertainty/normal_draws.h"
+#include "core/uncertainty/spread.h"
+#include "core/version.h"
+#include "server/contract/check_message.h"
+#include "server/mapping/to_core.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t kSeed = 1;  // any: equal requests give equal answers
+/// Largest share of refused draws with which the others still make an interval.
+constexpr double kMostRefused = 0.05;
+
+/// The figures of a point that a comparison speaks of.
+enum Figure { kEnergyMean, kRms, kLossPower, kPinionTorque, kFigures };
+struct ComparedFigures {
+  std::array<double, kFigures> value;
+  std::array<double, kFigures> solver_error;  // in the unit of the figure
+  bool contact_loss;
+};
+/// By condition, and last the weighted mean of all conditions; nullopt: no figures.
+using FiguresByCondition = std::vector<std::optional<ComparedFigures>>;
+
+/// A standard normal deviation as a sum of independent ones: an own part and a common part.
+struct Mixture {
+  int own, common;
+  double own_factor, common_factor;
+
+  double at(const NormalDraws& draws, int draw) const {
+    return own_factor * draws.at(draw, own) + common_factor * draws.at(draw, common);
+  }
+};
+
+/// A source of error of one fluid, and what it does to the figures.
+struct Source {
+  const InputError* error;
+  std::vector<Mixture> mixtures;  // one for each deviation
+  /// By deviation, condition and figure: half the difference between the deviations 1 and -1.
+  std::vector<std::vector<std::array<double, kFigures>>> effects;
+
+  double squared_effect(std::size_t condition, Figure figure) const {
+    double out = 0;
+    for (const auto& each : effects) out += square(each[condition][figure]);
+    return out;
+  }
+};
+
+/// Everything that is computed of one fluid.
+struct ComputedFluid {
+  std::string revision;
+  std::vector<EvaluatedPoint> points;  // with the stated inputs
+  FiguresByCondition stated;
+  std::vector<FiguresByCondition> drawn;
+  std::vector<Source> sources;
+};
+
+std::optional<ComparedFigures> figures_of(const EvaluatedPoint& point) {
+  if (!point.figures || !point.figures->inefficiency_energy_mean ||
+      !point.figures->inefficiency_rms) {
+    return std::nullopt;
+  }
+  const PointFigures& f = *point.figures;
+  ComparedFigures out{
+      {*f.inefficiency_energy_mean, *f.inefficiency_rms, f.mesh_loss_power, f.pinion_torque},
+      {},
+      f.contact_loss};
+  for (int i = 0; i < kFigures; ++i) {
+    out.solver_error[i] = f.estimated_relative_error.value_or(0) * std::abs(out.value[i]);
+  }
+  return out;
+}
+
+FiguresByCondition figures_by_condition(const std::vector<EvaluatedPoint>& points,
+                                        const std::vector<double>& weights) {
+  FiguresByCondition out;
+  std::optional<ComparedFigures> mean = ComparedFigures{};
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    out.push_back(figures_of(points[k]));
+    if (!out.back()) mean.reset();
+    if (!mean) continue;
+    mean->contact_loss = mean->contact_loss || out.back()->contact_loss;
+    for (int i = 0; i < kFigures; ++i) {
+      mean->value[i] += weights[k] * out.back()->value[i];
+      mean->solver_error[i] += weights[k] * out.back()->solver_error[i];
+    }
+  }
+  out.push_back(mean);
+  return out;
+}
+
+/// Numbers the independent deviations behind the errors: equal names mean one deviation.
+class Deviations {
+ public:
+  explicit Deviations(double estimate_correlation) : correlation_(estimate_correlation) {}
+
+  std::vector<Mixture> of(const InputError& error, const std::string& lubricant_revision) {
+    std::vector<Mixture> out;
+    for (int i = 0; i < error.deviations; ++i) {
+      const std::string name = fmt::format("{} {}", error.input, i);
+      switch (error.sharing) {
+        case InputError::Sharing::kScene: {
+          const int common = number("scene " + name);
+          out.push_back({common, common, 0, 1});
+          break;
+        }
+        case InputError::Sharing::kOwn: {
+          const int own = number(lubricant_revision + " " + name);
+          out.push_back({own, own, 1, 0});
+          break;
+        }
+        case InputError::Sharing::kEstimate:
+          out.push_back({number(lubricant_revision + " " + name),
+                         number("estimate " + error.estimator), std::sqrt(1 - correlation_),
+                         std::sqrt(correlation_)});
+          break;
+      }
+    }
+    return out;
+  }
+  int count() const { return static_cast<int>(numbers_.size()); }
+
+ private:
+  int number(const std::string& name) {
+    return numbers_.emplace(name, static_cast<int>(numbers_.size())).first->second;
+  }
+
+  double correlation_;
+  std::map<std::string, int> numbers_;
+};
+
+/// Correlation of the deviations of two sources.
+double correlation(const Mixture& a, const Mixture& b) {
+  double out = 0;
+  if (a.own == b.own) out += a.own_factor * b.own_factor;
+  if (a.common == b.common) out += a.common_factor * b.common_factor;
+  return out;
+}
+
+/// Computes the points of one fluid with inputs that err.
+class FluidPoints {
+ public:
+  FluidPoints(const PointComparison& comparison, const PointEvaluation& evaluation,
+              const std::shared_ptr<PreparedGearSet>& gear_set,
+              const std::function<bool()>& is_over)
+      : comparison_(comparison),
+        evaluation_(evaluation),
+        gear_set_(gear_set),
+        physical_(scene(evaluation.base)),
+        options_(std::get<PointStudy>(study(evaluation.base)).options) {
+    options_.progress = [&is_over](double) { return !is_over(); };
+    inputs_.lubricant = *evaluation.base.lubricant;
+    inputs_.lubricant.clear_measurements();
+    inputs_.lubricant.clear_provenance();
+    inputs_.surface = *evaluation.base.surface;
+    inputs_.vehicle = *evaluation.base.vehicle;
+  }
+
+  void compute(const NormalDraws& draws, ComputedFluid& out) {
+    out.points = evaluate();
+    out.stated = figures_by_condition(out.points, comparison_.weights);
+    deviations_.clear();
+    for (const Source& source : out.sources) deviations_.emplace_back(source.mixtures.size(), 0.0);
+    for (std::size_t s = 0; s < out.sources.size(); ++s) {
+      for (std::size_t i = 0; i < deviations_[s].size(); ++i) {
+        out.sources[s].effects.push_back(effects(out, deviations_[s][i]));
+      }
+    }
+    if (out.sources.empty()) return;
+    for (int n = 0; n < comparison_.draws; ++n) {
+      for (std::size_t s = 0; s < out.sources.size(); ++s) {
+        for (std::size_t i = 0; i < deviations_[s].size(); ++i) {
+          deviations_[s][i] = out.sources[s].mixtures[i].at(draws, n);
+        }
+      }
+      out.drawn.push_back(figures_at(out.sources));
+    }
+  }
+
+ private:
+  std::vector<EvaluatedPoint> evaluate() {
+    physical_.roughness = roughness(inputs_.surface);
+    physical_.boundary = boundary_friction(inputs_.surface);
+    physical_.vehicle = to_core(inputs_.vehicle);
+    return evaluate_conditions(
+        evaluation_, inputs_.lubricant, physical_,
+        {inputs_.sump_temperature_rise_kelvin, inputs_.inlet_temperature_rise_kelvin}, options_,
+        gear_set_);
+  }
+  FiguresByCondition figures_at(const std::vector<Source>& sources) {
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      sources[s].error->apply(deviations_[s], inputs_);
+    }
+    return figures_by_condition(evaluate(), comparison_.weights);
+  }
+  /// Of one deviation; where the model refuses one side, of the other side alone.
+  std::vector<std::array<double, kFigures>> effects(const ComputedFluid& fluid, double& deviation) {
+    deviation = 1;
+    const FiguresByCondition plus = figures_at(fluid.sources);
+    deviation = -1;
+    const FiguresByCondition minus = figures_at(fluid.sources);
+    deviation = 0;
+    std::vector<std::array<double, kFigures>> out(plus.size());
+    for (std::size_t k = 0; k < plus.size(); ++k) {
+      const auto& high = plus[k] ? plus[k] : fluid.stated[k];
+      const auto& low = minus[k] ? minus[k] : fluid.stated[k];
+      if (!high || !low) continue;
+      const double sides = plus[k] && minus[k] ? 2 : 1;
+      for (int i = 0; i < kFigures; ++i) out[k][i] = (high->value[i] - low->value[i]) / sides;
+    }
+    return out;
+  }
+
+  const PointComparison& comparison_;
+  const PointEvaluation& evaluation_;
+  std::shared_ptr<PreparedGearSet> gear_set_;
+  Scene physical_;
+  PointOptions options_;
+  UncertainInputs inputs_;
+  std::vector<std::vector<double>> deviations_;  // by source
+};
+
+/// Sets standard uncertainty and interval from the draws that the model did not refuse.
+void set_spread(const std::vector<double>& drawn, int draws, double widening,
+                v1::UncertainFigure& out) {
+  const bool is_exact = draws == 0;
+  const bool is_enough =
+      static_cast<double>(drawn.size()) >= (1 - kMostRefused) * draws && drawn.size() >= 2;
+  const Spread spread = is_exact    ? Spread{0, out.value(), out.value()}
+                        : is_enough ? spread_of(drawn)
+                                    : Spread{kNoNumber, kNoNumber, kNoNumber};
+  out.set_standard_uncertainty(spread.standard_deviation);
+  out.set_interval_minimum(spread.low - widening);
+  out.set_interval_maximum(spread.high + widening);
+}
+
+v1::UncertainFigure figure_message(const ComputedFluid& fluid, std::size_t condition,
+                                   Figure figure) {
+  v1::UncertainFigure out;
+  const ComparedFigures& stated = *fluid.stated[condition];
+  out.set_value(stated.value[figure]);
+  out.set_solver_error(stated.solver_error[figure]);
+  double variance = 0;
+  for (const Source& source : fluid.sources) variance += source.squared_effect(condition, figure);
+  out.set_linear_standard_uncertainty(std::sqrt(variance));
+  std::vector<double> drawn;
+  for (const FiguresByCondition& draw : fluid.drawn) {
+    if (draw[condition]) drawn.push_back(draw[condition]->value[figure]);
+  }
+  set_spread(drawn, static_cast<int>(fluid.drawn.size()), 0, out);
+  return out;
+}
+
+/// Makes shares of the variances that `shares` holds, and sorts them.
+template <class Shares>
+void finish_shares(double variance, Shares& shares) {
+  for (v1::InputShare& each : shares) {
+    each.set_variance_share(variance > 0 ? each.variance_share() / variance : 0);
+  }
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const v1::InputShare& a, const v1::InputShare& b) {
+                     return a.variance_share() > b.variance_share();
+                   });
+}
+
+template <class Shares>
+void add_shares(const ComputedFluid& fluid, std::size_t condition, Shares& out) {
+  double variance = 0;
+  for (const Source& source : fluid.sources) {
+    const double part = source.squared_effect(condition, kEnergyMean);
+    variance += part;
+    v1::InputShare& share = *out.Add();
+    share.set_input(source.error->input);
+    share.set_variance_share(part);
+    share.set_effect(source.effects.size() == 1 ? source.effects[0][condition][kEnergyMean]
+                                                : std::sqrt(part));
+  }
+  finish_shares(variance, out);
+}
+
+/// The source of a fluid whose deviations are correlated with those of `source`; null if there is
+/// none.
+const Source* counterpart(const Source& source, const ComputedFluid& fluid) {
+  for (const Source& each : fluid.sources) {
+    if (each.error->input == source.error->input &&
+        correlation(each.mixtures[0], source.mixtures[0]) > 0) {
+      return &each;
+    }
+  }
+  return nullptr;
+}
+
+/// Adds the shares of `fluid` less `first`, and returns the variance of the linear model.
+double add_difference_shares(const ComputedFluid& fluid, const ComputedFluid& first,
+                             std::size_t condition, v1::ComparedDifference& out) {
+  double variance = 0;
+  const auto add = [&](const Source& source, const std::string& revision, double part,
+                       double effect) {
+    variance += part;
+    v1::InputShare& share = *out.add_shares();
+    share.set_input(source.error->input);
+    share.set_lubricant_revision(revision);
+    share.set_variance_share(part);
+    share.set_effect(effect);
+  };
+  for (const Source& source : fluid.sources) {
+    const Source* other = counterpart(source, first);
+    if (other == nullptr) {
+      const double part = source.squared_effect(condition, kEnergyMean);
+      add(source, fluid.revision, part, std::sqrt(part));
+      continue;
+    }
+    double part = 0;
+    for (std::size_t i = 0; i < source.effects.size(); ++i) {
+      const double a = source.effects[i][condition][kEnergyMean];
+      const double b = other->effects[i][condition][kEnergyMean];
+      part +=
+          square(a) + square(b) - 2 * correlation(source.mixtures[i], other->mixtures[i]) * a * b;
+    }
+    part = std::max(0.0, part);
+    add(source, "", part, std::sqrt(part));
+  }
+  for (const Source& source : first.sources) {
+    if (counterpart(source, fluid) != nullptr) continue;
+    const double part = source.squared_effect(condition, kEnergyMean);
+    add(source, first.revision, part, std::sqrt(part));
+  }
+  finish_shares(variance, *out.mutable_shares());
+  return variance;
+}
+
+v1::ComparedDifference difference(const ComputedFluid& fluid, const ComputedFluid& first,
+                                  std::size_t condition) {
+  v1::ComparedDifference out;
+  if (!fluid.stated[condition] || !first.stated[condition]) return out;
+  v1::UncertainFigure& figure = *out.mutable_difference_percent();
+  const ComparedFigures &a = *fluid.stated[condition], &b = *first.stated[condition];
+  figure.set_value(a.value[kEnergyMean] - b.value[kEnergyMean]);
+  figure.set_solver_error(a.solver_error[kEnergyMean] + b.solver_error[kEnergyMean]);
+  figure.set_linear_standard_uncertainty(
+      std::sqrt(add_difference_shares(fluid, first, condition, out)));
+  const std::size_t draws = std::max(fluid.drawn.size(), first.drawn.size());
+  std::vector<double> drawn;
+  for (std::size_t n = 0; n < draws; ++n) {
+    // Of a fluid without errors nothing is drawn: each draw is what is stated.
+    const auto& of_fluid =
+        fluid.drawn.empty() ? fluid.stated[condition] : fluid.drawn[n][condition];
+    const auto& of_first =
+        first.drawn.empty() ? first.stated[condition] : first.drawn[n][condition];
+    if (of_fluid && of_first) {
+      drawn.push_back(of_fluid->value[kEnergyMean] - of_first->value[kEnergyMean]);
+    }
+  }
+  set_spread(drawn, static_cast<int>(draws), figure.solver_error(), figure);
+  if (drawn.empty()) drawn.push_back(figure.value());
+  out.set_lower_probability(share_below_zero(drawn));
+  if (figure.interval_maximum() < 0) {
+    out.set_verdict(v1::ComparedDifference::LOWER);
+  } else if (figure.interval_minimum() > 0) {
+    out.set_verdict(v1::ComparedDifference::HIGHER);
+  } else if (std::isfinite(figure.interval_minimum())) {
+    out.set_verdict(v1::ComparedDifference::CANNOT_BE_TOLD_APART);
+  }
+  return out;
+}
+
+v1::ComparedPoint point_message(const ComputedFluid& fluid, std::size_t condition) {
+  v1::ComparedPoint out;
+  if (!fluid.stated[condition]) {
+    const EvaluatedPoint& point = fluid.points[condition];
+    out.set_refusal_reason(point.figures ? "NO_INPUT_POWER" : point.refusal_reason);
+    out.set_refusal_message(point.figures ? "no power comes in, so that there is no inefficiency"
+                                          : point.refusal_message);
+    return out;
+  }
+  *out.mutable_inefficiency_energy_mean_percent() = figure_message(fluid, condition, kEnergyMean);
+  *out.mutable_inefficiency_rms_percent() = figure_message(fluid, condition, kRms);
+  *out.mutable_mesh_loss_power_watts() = figure_message(fluid, condition, kLossPower);
+  *out.mutable_pinion_torque_newton_metres() = figure_message(fluid, condition, kPinionTorque);
+  out.set_contact_loss(fluid.stated[condition]->contact_loss);
+  for (const FiguresByCondition& draw : fluid.drawn) {
+    if (!draw[condition]) out.set_refused_draws(out.refused_draws() + 1);
+  }
+  add_shares(fluid, condition, *out.mutable_shares());
+  return out;
+}
+
+v1::ComparedLubricant lubricant_message(const ComputedFluid& fluid, const ComputedFluid& first,
+                                        const InputErrors& errors) {
+  v1::ComparedLubricant out;
+  out.set_lubricant_revision(fluid.revision);
+  const std::size_t conditions = fluid.points.size();
+  const bool is_first = &fluid == &first;
+  for (std::size_t k = 0; k < conditions; ++k) {
+    *out.add_points() = point_message(fluid, k);
+    if (!is_first) *out.add_differences() = difference(fluid, first, k);
+  }
+  if (fluid.stated[conditions]) {
+    *out.mutable_mean_inefficiency_percent() = figure_message(fluid, conditions, kEnergyMean);
+    add_shares(fluid, conditions, *out.mutable_mean_shares());
+  }
+  if (!is_first) *out.mutable_mean_difference() = difference(fluid, first, conditions);
+  for (const std::string& each : errors.without_uncertainty) {
+    out.add_inputs_without_uncertainty(each);
+  }
+  return out;
+}
+
+/// Returns the request for the points of one lubricant.
+v1::EvaluatePointsRequest points_of(const v1::ComparePointsRequest& request,
+                                    const std::string& lubricant) {
+  v1::EvaluatePointsRequest out;
+  out.set_lubricant(lubricant);
+  out.set_gear_set(request.gear_set());
+  out.set_surface(request.surface());
+  out.set_vehicle(request.vehicle());
+  if (request.has_model_options()) *out.mutable_model_options() = request.model_options();
+  out.set_tolerance(request.tolerance());
+  *out.mutable_conditions() = request.conditions();
+  return out;
+}
+
+void check_counts(const v1::ComparePointsRequest& request, int draws, Violations& violations) {
+  const int lubricants = request.lubricants_size(), conditions = request.conditions_size();
+  if (lubricants == 0 || lubricants > kMostComparedLubricants) {
+    violations.push_back({"lubricants", fmt::format("{} lubricants; allowed: 1 to {}", lubricants,
+                                                    kMostComparedLubricants)});
+  }
+  const int weights = request.condition_weights_size();
+  if (weights != 0 && weights != conditions) {
+    violations.push_back(
+        {"condition_weights",
+         fmt::format("{} weights of {} conditions; allowed: one for each condition, or none",
+                     weights, conditions)});
+  }
+  const long points = static_cast<long>(lubricants) * conditions * (draws + 1L);
+  if (points > kMaximumComparedPoints) {
+    violations.push_back(
+        {"conditions",
+         fmt::format("{} lubricants at {} conditions with {} draws are {} points; allowed: at "
+                     "most {} in one request; send several, or take fewer draws",
+                     lubricants, conditions, draws, points, kMaximumComparedPoints)});
+  }
+}
+
+}  // namespace
+
+std::optional<PointComparison> read_comparison(const v1::ComparePointsRequest& request,
+                                               const ResourceLookup& lookup,
+                                               Violations& violations) {
+  const std::size_t before = violations.size();
+  PointComparison out;
+  if (request.draws() != 0) out.draws = request.draws();
+  if (request.has_estimate_correlation()) {
+    out.estimate_correlation = request.estimate_correlation();
+  }
+  check_message(request, "", violations);
+  check_counts(request, out.draws, violations);
+  if (violations.size() > before) return std::nullopt;
+  for (int i = 0; i < request.lubricants_size(); ++i) {
+    Violations found;
+    auto evaluation = read_points(points_of(request, request.lubricants(i)), lookup, found);
+    for (Violation each : found) {
+      const bool is_about_lubricant = each.field.starts_with("lubricant");
+      if (is_about_lubricant) {
+        each.field = fmt::format("lubricants[{}]{}", i, each.field.substr(9));
+      }
+      if (i == 0 || is_about_lubricant) violations.push_back(std::move(each));
+    }
+    if (!evaluation) continue;
+    InputErrors errors = lubricant_errors(*evaluation->base.lubricant);
+    out.fluids.push_back({std::move(*evaluation), std::move(errors)});
+  }
+  if (violations.size() > before) return std::nullopt;
+  const SimulationInputs& base = out.fluids.front().evaluation.base;
+  out.scene_errors =
+      scene_errors(*base.surface, *base.vehicle, request.sump_temperature_uncertainty_kelvin(),
+                   request.inlet_temperature_rise_uncertainty_kelvin());
+  out.weights = {request.condition_weights().begin(), request.condition_weights().end()};
+  if (out.weights.empty()) {
+    out.weights.assign(static_cast<std::size_t>(request.conditions_size()), 1.0);
+  }
+  const double sum = std::accumulate(out.weights.begin(), out.weights.end(), 0.0);
+  for (double& weight : out.weights) weight /= sum;
+  return out;
+}
+
+v1::ComparePointsResponse compare_points(const PointComparison& comparison,
+                                         PreparedGearSets& gear_sets,
+                                         const std::function<bool()>& is_over) {
+  Deviations deviations(comparison.estimate_correlation);
+  std::vector<ComputedFluid> fluids(comparison.fluids.size());
+  for (std::size_t i = 0; i < fluids.size(); ++i) {
+    const PointComparison::Fluid& fluid = comparison.fluids[i];
+    fluids[i].revision = fluid.evaluation.base.effective.lubricant_revision();
+    for (const InputErrors* errors : {&fluid.errors, &comparison.scene_errors}) {
+      for (const InputError& error : errors->errors) {
+        fluids[i].sources.push_back({&error, deviations.of(error, fluids[i].revision), {}});
+      }
+    }
+  }
+  const NormalDraws draws(comparison.draws, deviations.count(), kSeed);
+  const SimulationInputs& base = comparison.fluids.front().evaluation.base;
+  const Scene physical = scene(base);
+  const std::shared_ptr<PreparedGearSet> gear_set = gear_sets.take(base.gear_set, physical);
+  for (std::size_t i = 0; i < fluids.size(); ++i) {
+    FluidPoints(comparison, comparison.fluids[i].evaluation, gear_set, is_over)
+        .compute(draws, fluids[i]);
+  }
+  gear_sets.give_back(base.gear_set, physical.options, gear_set);
+
+  v1::ComparePointsResponse out;
+  for (std::size_t i = 0; i < fluids.size(); ++i) {
+    *out.add_lubricants() =
+        lubricant_message(fluids[i], fluids.front(), comparison.fluids[i].errors);
+  }
+  out.set_draws(comparison.draws);
+  out.set_estimate_correlation(comparison.estimate_correlation);
+  for (const std::string& each : comparison.scene_errors.without_uncertainty) {
+    out.add_inputs_without_uncertainty(each);
+  }
+  out.set_gear_set_revision(base.effective.gear_set_revision());
+  out.set_surface_revision(base.effective.surface_revision());
+  out.set_vehicle_revision(base.effective.vehicle_revision());
+  out.set_model_version(kModelVersion);
+  return out;
+}
+
+}  // namespace tribodyn::server

@@ -1,0 +1,373 @@
+// ComparePoints: figures with the uncertainty of their inputs, and differences of lubricants.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/study/operating_point.h"
+#include "core/uncertainty/input_draw.h"
+#include "server/contract/resource_names.h"
+#include "server/mapping/to_core.h"
+#include "server/resources/lubricant_parameters.h"
+#include "server/simulation/point_comparison.h"
+#include "tests/service/support.h"
+#include "tests/support/run_length.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::HasSubstr;
+
+/// Resources of a test besides the seeds.
+class Fluids {
+ public:
+  void add(const std::string& name, v1::Lubricant lubricant) {
+    bodies_[name] = lubricant.SerializeAsString();
+  }
+  ResourceLookup lookup() const {
+    ResourceLookup out = seed_lookup();
+    out.find = [seeds = out.find,
+                bodies = bodies_](const RevisionName& name) -> std::optional<FoundResource> {
+      const auto found = bodies.find(name.name);
+      if (found == bodies.end()) return seeds(name);
+      return FoundResource{1, false, found->second};
+    };
+    return out;
+  }
+
+ private:
+  std::map<std::string, std::string> bodies_;
+};
+
+void set_uncertainty(v1::Lubricant& lubricant, const std::string& field, double uncertainty,
+                     bool is_estimate = false) {
+  for (v1::ParameterProvenance& entry : *lubricant.mutable_provenance()) {
+    if (entry.field() != field) continue;
+    entry.set_standard_uncertainty(uncertainty);
+    entry.set_provenance(is_estimate ? v1::PROVENANCE_ASSUMED : v1::PROVENANCE_MEASURED);
+    entry.set_computed(is_estimate);
+    return;
+  }
+  FAIL() << field;
+}
+
+constexpr char kAlpha[] = "pressure_viscosity_coefficient_per_pascal";
+
+/// Fluid 1 with a pressure-viscosity coefficient known to 5 % or so.
+v1::Lubricant fluid(double factor = 1, double relative_uncertainty = 0.05,
+                    bool is_estimate = false) {
+  auto out = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  const double value = factor * out.pressure_viscosity_coefficient_per_pascal();
+  out.set_pressure_viscosity_coefficient_per_pascal(value);
+  set_uncertainty(out, kAlpha, relative_uncertainty * value, is_estimate);
+  out.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
+  return out;
+}
+
+v1::ComparePointsRequest request_at(const std::vector<double>& speeds,
+                                    const std::vector<std::string>& lubricants) {
+  v1::ComparePointsRequest out;
+  for (const std::string& each : lubricants) out.add_lubricants(each);
+  for (const double speed : speeds) {
+    out.add_conditions()->set_speed_kilometres_per_hour(speed);
+  }
+  return out;
+}
+
+v1::ComparePointsResponse compare(const v1::ComparePointsRequest& request, const Fluids& fluids) {
+  Violations violations;
+  const auto comparison = read_comparison(request, fluids.lookup(), violations);
+  if (!comparison) throw std::runtime_error(violations.begin()->description);
+  PreparedGearSets gear_sets;
+  return compare_points(*comparison, gear_sets, [] { return false; });
+}
+
+std::string violations_of(const v1::ComparePointsRequest& request) {
+  Violations violations;
+  read_comparison(request, seed_lookup(), violations);
+  std::string out;
+  for (const Violation& each : violations) out += each.field + ": " + each.description + "\n";
+  return out;
+}
+
+TEST(ComparePoints, MovesAFigureByItsOnlyUncertainInputAsARecomputationDoes) {
+  Fluids fluids;
+  fluids.add("lubricants/a", fluid());
+  fluids.add("lubricants/plus", fluid(std::exp(std::sqrt(std::log1p(0.05 * 0.05))), 0.05));
+  const auto out = compare(request_at({50}, {"lubricants/a", "lubricants/plus"}), fluids);
+  const v1::ComparedPoint& a = out.lubricants(0).points(0);
+  const v1::UncertainFigure& figure = a.inefficiency_energy_mean_percent();
+  const double moved =
+      out.lubricants(1).points(0).inefficiency_energy_mean_percent().value() - figure.value();
+  ASSERT_EQ(a.shares_size(), 1);
+  EXPECT_EQ(a.shares(0).input(), "lubricant.pressure_viscosity_coefficient_per_pascal");
+  EXPECT_DOUBLE_EQ(a.shares(0).variance_share(), 1);
+  EXPECT_NEAR(a.shares(0).effect(), moved, 0.05 * std::abs(moved));
+  EXPECT_NEAR(figure.linear_standard_uncertainty(), std::abs(moved), 0.05 * std::abs(moved));
+  EXPECT_NEAR(figure.standard_uncertainty(), std::abs(moved), 0.05 * std::abs(moved));
+  EXPECT_NEAR(figure.interval_maximum() - figure.interval_minimum(), 2 * 1.96 * std::abs(moved),
+              0.2 * std::abs(moved));
+  EXPECT_LT(figure.solver_error(), 2e-3 * figure.value());
+}
+
+TEST(ComparePoints, FindsALubricantNeitherBetterNorWorseThanItself) {
+  Fluids fluids;
+  fluids.add("lubricants/a", fluid());
+  const auto out = compare(request_at({50}, {"lubricants/a", "lubricants/a"}), fluids);
+  const v1::ComparedDifference& difference = out.lubricants(1).mean_difference();
+  EXPECT_EQ(difference.verdict(), v1::ComparedDifference::CANNOT_BE_TOLD_APART);
+  EXPECT_EQ(difference.difference_percent().value(), 0);
+  EXPECT_EQ(difference.difference_percent().standard_uncertainty(), 0);
+  EXPECT_EQ(difference.lower_probability(), 0.5);
+}
+
+TEST(ComparePoints, SaysWhichLubricantLosesLessOnlyIfTheInputsBearIt) {
+  const auto verdict = [](double factor, double relative_uncertainty) {
+    Fluids fluids;
+    fluids.add("lubricants/a", fluid(1, relative_uncertainty));
+    fluids.add("lubricants/b", fluid(factor, relative_uncertainty));
+    const auto out = compare(request_at({50}, {"lubricants/a", "lubricants/b"}), fluids);
+    return out.lubricants(1).mean_difference();
+  };
+  EXPECT_EQ(verdict(0.8, 0.01).verdict(), v1::ComparedDifference::LOWER);
+  EXPECT_EQ(verdict(0.8, 0.01).lower_probability(), 1);
+  EXPECT_EQ(verdict(1.25, 0.01).verdict(), v1::ComparedDifference::HIGHER);
+  EXPECT_EQ(verdict(1.25, 0.01).lower_probability(), 0);
+  const v1::ComparedDifference open = verdict(0.95, 0.2);
+  EXPECT_EQ(open.verdict(), v1::ComparedDifference::CANNOT_BE_TOLD_APART);
+  EXPECT_GT(open.lower_probability(), 0.5);
+  EXPECT_LT(open.lower_probability(), 0.7);
+}
+
+TEST(ComparePoints, MeasuredValuesAreIndependentAndEstimatesShareTheirErrorAsStated) {
+  const auto deviation = [](bool is_estimate, std::optional<double> correlation) {
+    Fluids fluids;
+    fluids.add("lubricants/a", fluid(1, 0.05, is_estimate));
+    fluids.add("lubricants/b", fluid(1, 0.05, is_estimate));
+    auto request = request_at({50}, {"lubricants/a", "lubricants/b"});
+    if (correlation) request.set_estimate_correlation(*correlation);
+    const auto out = compare(request, fluids);
+    const v1::UncertainFigure& figure = out.lubricants(1).mean_difference().difference_percent();
+    EXPECT_NEAR(figure.linear_standard_uncertainty(), figure.standard_uncertainty(),
+                0.1 * figure.linear_standard_uncertainty() + 1e-12);
+    return figure.linear_standard_uncertainty();
+  };
+  const double independent = deviation(false, 1);
+  EXPECT_GT(independent, 0);
+  EXPECT_NEAR(deviation(true, 0), independent, 1e-9);
+  EXPECT_NEAR(deviation(true, std::nullopt), independent * std::sqrt(0.5), 1e-9);
+  EXPECT_NEAR(deviation(true, 1), 0, 1e-9);
+}
+
+TEST(ComparePoints, ErrorsOfTheSceneAreCommonToAllLubricants) {
+  Fluids fluids;
+  fluids.add("lubricants/a", fluid(1, 0));
+  fluids.add("lubricants/b", fluid(1.02, 0));
+  auto request = request_at({50}, {"lubricants/a", "lubricants/b"});
+  request.set_inlet_temperature_rise_uncertainty_kelvin(5);
+  const auto out = compare(request, fluids);
+  const auto& a = out.lubricants(0).points(0).inefficiency_energy_mean_percent();
+  const auto& difference = out.lubricants(1).differences(0);
+  EXPECT_GT(a.standard_uncertainty(), 0);
+  EXPECT_LT(difference.difference_percent().standard_uncertainty(), 0.1 * a.standard_uncertainty());
+  EXPECT_EQ(difference.shares(0).lubricant_revision(), "");
+  EXPECT_NE(difference.verdict(), v1::ComparedDifference::CANNOT_BE_TOLD_APART);
+}
+
+TEST(ComparePoints, TheMeanWeighsItsConditions) {
+  Fluids fluids;
+  fluids.add("lubricants/a", fluid());
+  auto request = request_at({40, 100}, {"lubricants/a"});
+  request.add_condition_weights(3);
+  request.add_condition_weights(1);
+  const auto out = compare(request, fluids);
+  const v1::ComparedLubricant& a = out.lubricants(0);
+  EXPECT_NEAR(a.mean_inefficiency_percent().value(),
+              0.75 * a.points(0).inefficiency_energy_mean_percent().value() +
+                  0.25 * a.points(1).inefficiency_energy_mean_percent().value(),
+              1e-12);
+}
+
+TEST(ComparePoints, NamesTheInputsThatCountAsExact) {
+  const auto out = compare(request_at({50}, {"lubricants/paper-fluid-1"}), {});
+  const v1::ComparedLubricant& a = out.lubricants(0);
+  EXPECT_THAT(a.inputs_without_uncertainty(),
+              testing::Contains("lubricant.relaxation_time_seconds"));
+  EXPECT_THAT(a.inputs_without_uncertainty(),
+              testing::Not(testing::Contains("lubricant.rheology_reference_temperature_kelvin")));
+  EXPECT_THAT(out.inputs_without_uncertainty(), testing::Contains("sump_temperature_celsius"));
+  const v1::UncertainFigure& figure = a.points(0).inefficiency_energy_mean_percent();
+  EXPECT_EQ(figure.standard_uncertainty(), 0);
+  EXPECT_EQ(figure.interval_minimum(), figure.value());
+  EXPECT_EQ(a.points(0).shares_size(), 0);
+}
+
+/// A fluid by its data sheet: kinematic viscosities and density, all else estimated.
+v1::Lubricant data_sheet(double kinematic_viscosity_40, double kinematic_viscosity_100) {
+  v1::Lubricant out;
+  out.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
+  auto& measured = *out.mutable_measurements();
+  measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(kinematic_viscosity_40);
+  measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(
+      kinematic_viscosity_100);
+  measured.set_density_15_celsius_kilograms_per_cubic_metre(868);
+  Violations violations;
+  complete_parameters(out, "", violations);
+  EXPECT_EQ(violations.size(), 0);
+  return out;
+}
+
+TEST(ComparePoints, OfADataSheetNamesThePressureViscosityCoefficientFirst) {
+  Fluids fluids;
+  fluids.add("lubricants/sheet", data_sheet(103, 15.1));
+  const auto out = compare(request_at({60}, {"lubricants/sheet"}), fluids);
+  const v1::ComparedPoint& point = out.lubricants(0).points(0);
+  EXPECT_EQ(point.shares(0).input(), "lubricant.pressure_viscosity_coefficient_per_pascal");
+  EXPECT_GT(point.shares(0).variance_share(), 0.8);
+  double sum = 0;
+  for (const v1::InputShare& share : point.shares()) sum += share.variance_share();
+  EXPECT_NEAR(sum, 1, 1e-12);
+  const v1::UncertainFigure& figure = point.inefficiency_energy_mean_percent();
+  EXPECT_GT(figure.standard_uncertainty(), 0.2 * figure.value());
+  EXPECT_LT(figure.standard_uncertainty(), 0.5 * figure.value());
+  EXPECT_EQ(out.lubricants(0).inputs_without_uncertainty_size(), 0);
+}
+
+TEST(ComparePoints, EqualRequestsHaveEqualAnswersWhicheverLubricantsComeWithThem) {
+  Fluids fluids;
+  fluids.add("lubricants/a", fluid());
+  fluids.add("lubricants/b", fluid(1.1));
+  const auto once = compare(request_at({66}, {"lubricants/a", "lubricants/b"}), fluids);
+  const auto again = compare(request_at({66}, {"lubricants/a", "lubricants/b"}), fluids);
+  EXPECT_EQ(once.SerializeAsString(), again.SerializeAsString());
+  const auto alone = compare(request_at({66}, {"lubricants/a"}), fluids);
+  EXPECT_EQ(alone.lubricants(0).SerializeAsString(), once.lubricants(0).SerializeAsString());
+}
+
+TEST(ComparePoints, RefusesWhatItCannotCompareAndNamesTheField) {
+  EXPECT_THAT(violations_of(request_at({50}, {})), HasSubstr("lubricants: 0 lubricants"));
+  EXPECT_THAT(violations_of(request_at({50}, {"lubricants/paper-fluid-1", "lubricants/no"})),
+              HasSubstr("lubricants[1]: "));
+  EXPECT_THAT(violations_of(request_at({}, {"lubricants/paper-fluid-1"})),
+              HasSubstr("conditions: "));
+  auto weighed = request_at({50, 60}, {"lubricants/paper-fluid-1"});
+  weighed.add_condition_weights(1);
+  EXPECT_THAT(violations_of(weighed), HasSubstr("condition_weights: 1 weights of 2 conditions"));
+  auto large = request_at(std::vector<double>(100, 50), {"lubricants/paper-fluid-1"});
+  EXPECT_THAT(violations_of(large), HasSubstr("20000 points; allowed: at most 10000"));
+  auto fast = request_at({5000}, {"lubricants/paper-fluid-1"});
+  EXPECT_THAT(violations_of(fast), HasSubstr("conditions[0].speed_kilometres_per_hour: "));
+}
+
+TEST(ComparePoints, StopsWhenItsCallIsOver) {
+  Violations violations;
+  Fluids fluids;
+  fluids.add("lubricants/a", fluid());
+  const auto comparison =
+      read_comparison(request_at({50}, {"lubricants/a"}), fluids.lookup(), violations);
+  PreparedGearSets gear_sets;
+  int calls = 0;
+  EXPECT_THROW(compare_points(*comparison, gear_sets, [&calls] { return ++calls > 3; }), Cancelled);
+  EXPECT_LT(calls, 20);
+}
+
+/// Inputs that err in the coverage test, with the largest of their relative uncertainties.
+struct ErringInput {
+  const char* field;
+  double largest_uncertainty;
+};
+constexpr ErringInput kErring[] = {{kAlpha, 0.25},
+                                   {"relaxation_time_seconds", 0.6},
+                                   {"havriliak_negami_beta", 0.3},
+                                   {"limiting_shear_stress_coefficient", 0.2},
+                                   {"thermal_conductivity_watts_per_metre_kelvin", 0.1},
+                                   {"vogel_viscosity_prefactor_pascal_seconds", 0.05}};
+
+/// A lubricant as it is, and as a laboratory measures it.
+struct MeasuredFluid {
+  v1::Lubricant truth, measured;
+};
+
+MeasuredFluid measured_fluid(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::normal_distribution<double> normal;
+  MeasuredFluid out;
+  out.truth = seed<v1::Lubricant>("lubricants/paper-fluid-1");
+  out.measured = out.truth;
+  for (const ErringInput& input : kErring) {
+    const auto* field = v1::Lubricant::descriptor()->FindFieldByName(input.field);
+    const auto* reflection = out.truth.GetReflection();
+    const double value =
+        reflection->GetDouble(out.truth, field) * std::exp(0.2 * (2 * uniform(random) - 1));
+    const double relative = input.largest_uncertainty * uniform(random);
+    reflection->SetDouble(&out.truth, field, value);
+    const double measured = drawn_value(value, relative * value, normal(random));
+    reflection->SetDouble(&out.measured, field, measured);
+    set_uncertainty(out.measured, input.field, relative * measured);
+  }
+  return out;
+}
+
+double true_inefficiency(const v1::Lubricant& lubricant, double kilometres_per_hour) {
+  Fluids fluids;
+  fluids.add("lubricants/truth", lubricant);
+  v1::Simulation simulation;
+  simulation.set_lubricant("lubricants/truth");
+  simulation.mutable_operating_point()->mutable_cruise()->set_speed_kilometres_per_hour(
+      kilometres_per_hour);
+  Violations violations;
+  const auto inputs = read_simulation(simulation, fluids.lookup(), "", violations);
+  const PointStudy point = std::get<PointStudy>(study(*inputs));
+  return solve_operating_point(scene(*inputs), point.condition, point.options)
+      .inefficiency_energy_mean.value();
+}
+
+/// True inputs are drawn, then measured with errors; the truth is computed as a simulation. In the
+/// full run 1000 cases each: a point, the mean of a curve, and a difference.
+TEST(ComparePoints, IntervalsHoldTheTruthInNinetyFiveOfHundredCases) {
+  const int cases = full_run() ? 1000 : kUnderSanitizer ? 3 : 60;
+  std::mt19937_64 random(19);
+  std::uniform_real_distribution<double> speed(25, 130);
+  int point = 0, mean = 0, difference = 0;
+  const auto holds = [](const v1::UncertainFigure& figure, double truth) {
+    return figure.interval_minimum() <= truth && truth <= figure.interval_maximum() ? 1 : 0;
+  };
+  for (int i = 0; i < cases; ++i) {
+    const MeasuredFluid a = measured_fluid(random), b = measured_fluid(random);
+    Fluids fluids;
+    fluids.add("lubricants/a", a.measured);
+    fluids.add("lubricants/b", b.measured);
+    const std::vector<double> speeds = {speed(random), speed(random), speed(random)};
+    const auto out = compare(request_at(speeds, {"lubricants/a", "lubricants/b"}), fluids);
+    double mean_a = 0, mean_b = 0;
+    std::vector<double> truth_a;
+    for (const double each : speeds) {
+      truth_a.push_back(true_inefficiency(a.truth, each));
+      mean_a += truth_a.back() / 3;
+      mean_b += true_inefficiency(b.truth, each) / 3;
+    }
+    const v1::ComparedLubricant& first = out.lubricants(0);
+    point += holds(first.points(0).inefficiency_energy_mean_percent(), truth_a[0]);
+    mean += holds(first.mean_inefficiency_percent(), mean_a);
+    difference += holds(out.lubricants(1).mean_difference().difference_percent(), mean_b - mean_a);
+  }
+  // A true coverage of 95 % gives less than these in one run of a thousand.
+  const double least = full_run() ? 0.93 : 0.85, most = full_run() ? 0.97 : 1;
+  for (const auto& [name, count] :
+       {std::pair("point", point), std::pair("mean", mean), std::pair("difference", difference)}) {
+    SCOPED_TRACE(name);
+    const double coverage = static_cast<double>(count) / cases;
+    RecordProperty(name, std::to_string(coverage));
+    if (kUnderSanitizer) continue;
+    EXPECT_GE(coverage, least);
+    EXPECT_LE(coverage, most);
+  }
+}
+
+}  // namespace
+}  // namespace tribodyn::server

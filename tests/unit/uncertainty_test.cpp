@@ -1,0 +1,136 @@
+// Draws of inputs, and what draws of a figure say of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/celsius.h"
+#include "core/uncertainty/input_draw.h"
+#include "core/uncertainty/normal_draws.h"
+#include "core/uncertainty/spread.h"
+
+namespace tribodyn {
+namespace {
+
+TEST(NormalQuantile, AgreesWithTables) {
+  EXPECT_NEAR(normal_quantile(0.975), 1.959963984540054, 1e-13);
+  EXPECT_NEAR(normal_quantile(0.5), 0, 1e-13);
+  EXPECT_NEAR(normal_quantile(0.001), -3.090232306167813, 1e-12);
+}
+
+TEST(NormalDraws, TakeEveryQuantileOnceInAnotherOrderForEachVariable) {
+  const NormalDraws draws(199, 3, 1);
+  std::vector<std::vector<double>> columns(3);
+  for (int v = 0; v < 3; ++v) {
+    for (int n = 0; n < 199; ++n) columns[static_cast<std::size_t>(v)].push_back(draws.at(n, v));
+  }
+  EXPECT_NE(columns[0], columns[1]);
+  for (auto& column : columns) {
+    std::sort(column.begin(), column.end());
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      EXPECT_EQ(column[i], normal_quantile((static_cast<double>(i) + 0.5) / 199));
+    }
+  }
+}
+
+TEST(NormalDraws, OfAVariableDoNotDependOnTheNumberOfTheOthers) {
+  const NormalDraws few(50, 1, 7), many(50, 9, 7);
+  for (int n = 0; n < 50; ++n) EXPECT_EQ(few.at(n, 0), many.at(n, 0));
+}
+
+TEST(NormalDraws, OfDifferentVariablesAreAlmostUncorrelated) {
+  constexpr int kVariables = 20, kDraws = 199;
+  const NormalDraws draws(kDraws, kVariables, 1);
+  double largest = 0;
+  for (int a = 0; a < kVariables; ++a) {
+    for (int b = 0; b < a; ++b) {
+      double product = 0;
+      for (int n = 0; n < kDraws; ++n) product += draws.at(n, a) * draws.at(n, b) / kDraws;
+      largest = std::max(largest, std::abs(product));
+    }
+  }
+  EXPECT_LT(largest, 4 / std::sqrt(kDraws));  // 190 pairs: four standard deviations
+}
+
+TEST(Spread, OfNormalDrawsIsThatOfTheNormalDistribution) {
+  const NormalDraws draws(199, 1, 1);
+  std::vector<double> figures;
+  for (int n = 0; n < 199; ++n) figures.push_back(10 + 2 * draws.at(n, 0));
+  const Spread spread = spread_of(figures);
+  EXPECT_NEAR(spread.standard_deviation, 2, 0.02);
+  EXPECT_NEAR(spread.low, 10 - 1.96 * 2, 0.01);
+  EXPECT_NEAR(spread.high, 10 + 1.96 * 2, 0.01);
+}
+
+TEST(Spread, OfEqualDrawsIsNothing) {
+  const Spread spread = spread_of({3, 3, 3});
+  EXPECT_EQ(spread.standard_deviation, 0);
+  EXPECT_EQ(spread.low, 3);
+  EXPECT_EQ(spread.high, 3);
+}
+
+TEST(Spread, SharesBelowZeroCountZerosHalf) {
+  const std::vector<double> draws = {-1, 0, 0, 2};
+  EXPECT_EQ(share_below_zero(draws), 0.5);
+}
+
+TEST(DrawnValue, IsLogNormalAboutAPositiveValueAndNormalAboutAnother) {
+  EXPECT_EQ(drawn_value(5, 1, 0), 5);
+  EXPECT_EQ(drawn_value(5, 0, 3), 5);
+  EXPECT_NEAR(drawn_value(5, 0.05, 1), 5.05, 1e-3);
+  EXPECT_NEAR(drawn_value(5, 4, 1) * drawn_value(5, 4, -1), 25, 1e-12);
+  EXPECT_GT(drawn_value(5, 1e300, -30), 0);
+  EXPECT_DOUBLE_EQ(drawn_value(-0.6, 0.1, 2), -0.4);
+}
+
+/// Kinematic viscosities of 103 and 15.1 mm2/s at about 870 and 830 kg/m3, 0.5 % each; T_0 within
+/// 15 K.
+VogelFit fit_of_two() {
+  const std::vector<ViscosityPoint> points = {{kFortyCelsius, 0.0877, 0.005},
+                                              {kHundredCelsius, 0.01245, 0.005}};
+  return fit_vogel_at(points, 170, 15);
+}
+
+double viscosity_of(const VogelDraw& draw, double temperature) {
+  return draw.viscosity_prefactor *
+         std::exp(draw.temperature_coefficient / (temperature - draw.reference_temperature));
+}
+
+TEST(DrawnVogel, IsTheFitWithoutDeviation) {
+  const VogelFit fit = fit_of_two();
+  const VogelDraw draw = drawn_vogel(fit, {0, 0, 0});
+  EXPECT_NEAR(draw.viscosity_prefactor, fit.viscosity_prefactor, 1e-10 * fit.viscosity_prefactor);
+  EXPECT_NEAR(draw.temperature_coefficient, fit.temperature_coefficient, 1e-8);
+  EXPECT_EQ(draw.reference_temperature, fit.reference_temperature);
+}
+
+TEST(DrawnVogel, KeepsMeasuredViscositiesWithinTheirUncertaintyHoweverFarT0Moves) {
+  const VogelFit fit = fit_of_two();
+  const NormalDraws draws(199, 3, 5);
+  std::vector<double> cold, measured, reference;
+  for (int n = 0; n < 199; ++n) {
+    const VogelDraw draw = drawn_vogel(fit, {draws.at(n, 0), draws.at(n, 1), draws.at(n, 2)});
+    measured.push_back(std::log(viscosity_of(draw, kFortyCelsius)));
+    cold.push_back(std::log(viscosity_of(draw, kZeroCelsius - 10)));
+    reference.push_back(draw.reference_temperature);
+  }
+  EXPECT_NEAR(spread_of(measured).standard_deviation, 0.005, 5e-4);
+  EXPECT_NEAR(spread_of(reference).standard_deviation, 15, 1.5);
+  const double linear = relative_viscosity_uncertainty(fit, kZeroCelsius - 10);
+  EXPECT_NEAR(spread_of(cold).standard_deviation, linear, 0.25 * linear);
+}
+
+TEST(DrawnDensity, TurnsAboutTheDensityThatWasMeasured) {
+  const DensityDraw law{1050, -0.64};
+  constexpr double kPivot = 288.15;
+  const DensityDraw turned = drawn_density(law, kPivot * 0.03, 0.03, kPivot, {2, 5});
+  EXPECT_NEAR(turned.density_at_zero_kelvin + kPivot * turned.slope,
+              law.density_at_zero_kelvin + kPivot * law.slope, 1e-6);
+  EXPECT_NEAR(turned.slope, -0.58, 1e-12);
+  const DensityDraw own = drawn_density(law, std::hypot(kPivot * 0.03, 26.0), 0.03, kPivot, {0, 1});
+  EXPECT_NEAR(own.density_at_zero_kelvin, 1076, 1e-9);
+}
+
+}  // namespace
+}  // namespace tribodyn
