@@ -218,6 +218,13 @@ expect 0 point --lubricant paper-fluid-1 --speed 100 --sensitivities
 out_has '^Sensitivities'
 
 echo "--- curve"
+expect 0 curve --lubricant sheet-a --speed 40,60 --plot "$folder/bands.svg"
+out_has 'inefficiency +inefficiency +inefficiency'
+out_has '\+/- 0\.[0-9]+ +\+/- 0\.0'
+out_has '^Uncertainty of the inputs'
+grep -q 'Bands: 95 % intervals' "$folder/bands.svg" || fail "the plot has no bands"
+expect 0 curve --lubricant sheet-a --speed 40,60 --no-uncertainty
+out_lacks '^Uncertainty of the inputs'
 expect 0 curve --lubricant paper-fluid-1 --lubricant paper-fluid-2,paper-fluid-3 --first-speed 40 --last-speed 60 --speed-step 10 \
   --model quasi-static --csv "$folder/curve.csv" --plot "$folder/curve.svg"
 out_has 'lubricants/paper-fluid-3: inefficiency curve from 40 to 60 km/h'

@@ -5,6 +5,7 @@
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/commands/show_results.h"
+#include "client/cpp/commands/uncertainty.h"
 #include "client/cpp/plot/curve_plot.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/report/curve_report.h"
@@ -23,6 +24,7 @@ struct CurveFlags {
   Scenario scenario;
   std::string csv_path;
   std::string plot_path;
+  bool leaves_out_uncertainty = false;
 };
 
 void add_curve_flags(FlagList& list, CurveFlags& flags) {
@@ -64,6 +66,11 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
               "Road slope, also in percent: 6%",
               [&](double value) { study.set_ascent_angle_degrees(value); });
   add_model_and_start_flags(list, study);
+  list.toggle(
+      "--no-uncertainty",
+      "Leave out the uncertainty of the inputs, which takes about three times as long as the "
+      "curve.",
+      [&] { flags.leaves_out_uncertainty = true; });
   list.group("Files");
   add_result_file_flag(list, "--csv", "FILE", "Also write every field of every point as CSV.",
                        flags.csv_path);
@@ -83,7 +90,13 @@ int run_curve(CurveFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
   const auto ended = run_scenario(flags.scenario, connection, options);
   if (ended.empty()) return kExitOk;
-  std::cout << shown_results(ended, connection, options, false, flags.scenario.shows_assumptions);
+  const bool shows_uncertainty =
+      !flags.leaves_out_uncertainty &&
+      (options.output_format == OutputFormat::kTable || !flags.plot_path.empty());
+  const CurveUncertainties uncertainties =
+      shows_uncertainty ? curve_uncertainties(ended, connection) : CurveUncertainties();
+  std::cout << shown_results(ended, connection, options, false, flags.scenario.shows_assumptions,
+                             uncertainties);
   std::vector<v1::Simulation> succeeded;
   for (const v1::Simulation& simulation : ended) {
     if (simulation.state() == v1::Simulation::SUCCEEDED) succeeded.push_back(simulation);
@@ -92,7 +105,8 @@ int run_curve(CurveFlags& flags, const CommonOptions& options) {
     write_file(flags.csv_path, points_csv(succeeded));
   }
   if (!flags.plot_path.empty() && !succeeded.empty()) {
-    write_file(flags.plot_path, curve_plot(succeeded, lubricant_titles(succeeded, connection)));
+    write_file(flags.plot_path,
+               curve_plot(succeeded, lubricant_titles(succeeded, connection), uncertainties));
   }
   return report_failures(ended);
 }

@@ -4,9 +4,8 @@
 #include "client/cpp/commands/operating_point.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/commands/show_results.h"
-#include "client/cpp/report/comparison_report.h"
+#include "client/cpp/commands/uncertainty.h"
 #include "client/cpp/report/sensitivity_report.h"
-#include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
 namespace {
@@ -16,42 +15,6 @@ struct PointFlags {
   Scenario scenario;
 };
 
-/// Whether the uncertainty of a simulation's inputs can be found by screened points: a cruise that
-/// starts as they do.
-bool can_be_screened(const v1::Simulation& simulation) {
-  const v1::OperatingPointStudy& point = simulation.operating_point();
-  const auto method = simulation.solver_options().method();
-  return simulation.state() == v1::Simulation::SUCCEEDED && point.has_cruise() &&
-         point.start() != v1::POINT_START_LARGE_VIBRATION &&
-         point.model() != v1::POINT_MODEL_QUASI_STATIC && method != v1::STEADY_STATE_METHOD_MARCH;
-}
-
-/// Returns the figures of the simulation with the uncertainty of its inputs, or why there are none.
-std::string uncertainty_of(const v1::Simulation& simulation, Connection& connection) {
-  v1::ComparePointsRequest request;
-  request.add_lubricants(simulation.lubricant_revision());
-  request.set_gear_set(simulation.gear_set_revision());
-  request.set_surface(simulation.surface_revision());
-  request.set_vehicle(simulation.vehicle_revision());
-  *request.mutable_model_options() = simulation.model_options();
-  request.set_tolerance(simulation.solver_options().tolerance());
-  v1::PointCondition& condition = *request.add_conditions();
-  const v1::Cruise& cruise = simulation.operating_point().cruise();
-  condition.set_speed_kilometres_per_hour(cruise.speed_kilometres_per_hour());
-  condition.set_ascent_angle_degrees(cruise.ascent_angle_degrees());
-  if (simulation.has_sump_temperature_celsius()) {
-    condition.set_sump_temperature_celsius(simulation.sump_temperature_celsius());
-  }
-  if (simulation.has_inlet_temperature_rise_kelvin()) {
-    condition.set_inlet_temperature_rise_kelvin(simulation.inlet_temperature_rise_kelvin());
-  }
-  try {
-    return uncertainty_report(connection.compare_points(request));
-  } catch (const ServiceError& error) {  // the result stands without it
-    return wrapped("The uncertainty of the inputs was not computed: " + printable(error.what()), 2);
-  }
-}
-
 int run_point(PointFlags& flags, const CommonOptions& options) {
   *flags.scenario.simulation.mutable_operating_point() = operating_point_study(flags.point);
   Connection connection = options.connect();
@@ -59,9 +22,8 @@ int run_point(PointFlags& flags, const CommonOptions& options) {
   std::cout << shown_results(ended, connection, options, true, flags.scenario.shows_assumptions);
   for (const v1::Simulation& simulation : ended) {
     if (options.output_format != OutputFormat::kTable) continue;
-    if (can_be_screened(simulation)) {
-      std::cout << "\n" << uncertainty_of(simulation, connection);
-    }
+    const std::string uncertainty = point_uncertainty(simulation, connection);
+    if (!uncertainty.empty()) std::cout << "\n" << uncertainty;
     if (simulation.state() == v1::Simulation::SUCCEEDED &&
         simulation.operating_point().sensitivities()) {
       std::cout << "\n" << sensitivity_report(simulation.result().points(0).result());

@@ -30,14 +30,16 @@ std::vector<v1::GearSet> gear_sets_of(const std::vector<v1::Simulation>& simulat
 }  // namespace
 
 std::string shown_results(const std::vector<v1::Simulation>& simulations, Connection& connection,
-                          const CommonOptions& options, bool alone, bool shows_assumptions) {
+                          const CommonOptions& options, bool alone, bool shows_assumptions,
+                          const CurveUncertainties& uncertainties) {
   TorqueLimits limits;
   if (options.output_format == OutputFormat::kTable) {
     for (const v1::GearSet& gear_set : gear_sets_of(simulations, connection)) {
       limits[gear_set.name()] = largest_torque(gear_set);
     }
   }
-  return results_text(simulations, options.output_format, alone, shows_assumptions, limits);
+  return results_text(simulations, options.output_format, alone, shows_assumptions, limits,
+                      uncertainties);
 }
 
 }  // namespace tribodyn::client

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "client/cpp/commands/command.h"
+#include "client/cpp/report/input_uncertainty.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::client {
@@ -11,6 +12,7 @@ namespace tribodyn::client {
 /// Returns results_text() of simulations that have ended. For tables it fetches the gear sets, to
 /// find torques far beyond their data.
 std::string shown_results(const std::vector<v1::Simulation>& simulations, Connection& connection,
-                          const CommonOptions& options, bool alone, bool shows_assumptions);
+                          const CommonOptions& options, bool alone, bool shows_assumptions,
+                          const CurveUncertainties& uncertainties = {});
 
 }  // namespace tribodyn::client

@@ -1,6 +1,7 @@
 #include "client/cpp/plot/curve_plot.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -57,8 +58,19 @@ FluidTitle title_of(const v1::Simulation& simulation,
   return fluid_title(simulation.lubricant(), found != titles.end() ? found->second : "");
 }
 
+/// Adds the 95 % intervals of an energy mean; none where the line breaks.
+void add_band(const CurveUncertainty& uncertainty, Series& mean) {
+  for (std::size_t i = 0; i < mean.x.size(); ++i) {
+    const auto* figure = std::isfinite(mean.y[i]) ? uncertainty.at(mean.x[i]) : nullptr;
+    const bool has_band = figure != nullptr && figure->standard_uncertainty() > 0;
+    mean.low.push_back(has_band ? figure->interval_minimum() : kNone);
+    mean.high.push_back(has_band ? figure->interval_maximum() : kNone);
+  }
+}
+
 Panel inefficiency_panel(const std::vector<v1::Simulation>& simulations,
-                         const std::map<std::string, std::string>& titles) {
+                         const std::map<std::string, std::string>& titles,
+                         const CurveUncertainties& uncertainties) {
   Panel panel;
   panel.corner = {kCurveLeft, 118};
   panel.width = 690;
@@ -82,6 +94,8 @@ Panel inefficiency_panel(const std::vector<v1::Simulation>& simulations,
                  ? result.inefficiency_energy_mean_percent()
                  : kNone;
     });
+    const auto uncertainty = uncertainties.find(simulations[i].name());
+    if (uncertainty != uncertainties.end()) add_band(uncertainty->second, mean);
     mean.width = 2.4;
     mean.marker = look.marker;
     const FluidTitle title = title_of(simulations[i], titles);
@@ -146,13 +160,28 @@ std::string caption(const std::vector<v1::Simulation>& simulations) {
   return text + "; model " + model_options_text(first.model_options()) + ".";
 }
 
-std::vector<std::string> texts_below(const std::vector<v1::Simulation>& simulations) {
+bool has_uncertainty(const CurveUncertainties& uncertainties) {
+  return std::any_of(uncertainties.begin(), uncertainties.end(), [](const auto& each) {
+    const auto& figures = each.second.figures;
+    return std::any_of(figures.begin(), figures.end(),
+                       [](const auto& figure) { return figure.second.standard_uncertainty() > 0; });
+  });
+}
+
+std::vector<std::string> texts_below(const std::vector<v1::Simulation>& simulations,
+                                     bool has_bands) {
   std::vector<std::string> texts = {
       caption(simulations),
       std::string("Loss at the tooth contact only; it excludes bearings, churning and seals.") +
           (has_branch_end(simulations)
                ? " A line breaks where its branch of steady states ends: the response jumps."
                : "")};
+  if (has_bands) {
+    texts.emplace_back(
+        "Bands: 95 % intervals of the energy mean by the stated uncertainties of the inputs; "
+        "errors "
+        "that fluids share make bands overlap more than differences do (tribodyn compare).");
+  }
   for (std::string& text : footer_texts(simulations)) texts.push_back(std::move(text));
   return texts;
 }
@@ -190,17 +219,19 @@ std::vector<std::pair<double, double>> contact_loss_bands(
 }
 
 std::string curve_plot(const std::vector<v1::Simulation>& simulations,
-                       const std::map<std::string, std::string>& titles) {
+                       const std::map<std::string, std::string>& titles,
+                       const CurveUncertainties& uncertainties) {
   const auto bands = contact_loss_bands(simulations);
   const Hatching hatching = hatching_of(simulations);
   const std::vector<std::string> below =
-      footer_lines(texts_below(simulations), kCurveWidth - kCurveLeft - kCurveRight);
+      footer_lines(texts_below(simulations, has_uncertainty(uncertainties)),
+                   kCurveWidth - kCurveLeft - kCurveRight);
   Svg svg(kCurveWidth, kFooterTop + kFooterPitch * static_cast<double>(below.size()));
   svg.text({kCurveLeft, 40}, "What each fluid costs in the gear mesh",
            {21, "start", "#111", true, 0});
   draw_key(!bands.empty(), !hatching.bands.empty() || !hatching.strips.empty(), svg);
   Panel panels[] = {
-      inefficiency_panel(simulations, titles),
+      inefficiency_panel(simulations, titles, uncertainties),
       small_panel(simulations, {kCurveLeft, 565}, "Mesh loss, W",
                   [](const v1::PointResult& result) { return result.mesh_loss_power_watts(); }),
       small_panel(simulations, {kCurveLeft + 390 + 75, 565},

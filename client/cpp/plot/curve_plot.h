@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/cpp/report/input_uncertainty.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::client {
@@ -12,9 +13,11 @@ namespace tribodyn::client {
 /// Draws inefficiency curves: for every fluid the inefficiency against speed (energy mean solid,
 /// RMS dashed), with speeds at which flanks separate shaded; below it mesh loss and contact
 /// temperature. `titles` maps lubricants to labels ("lubricants/my-oil" -> "my-oil ester-olefin");
-/// a lubricant that is not in it is labelled with its id.
+/// a lubricant that is not in it is labelled with its id. `uncertainties` are drawn as bands: 95 %
+/// intervals of the energy mean.
 std::string curve_plot(const std::vector<v1::Simulation>& simulations,
-                       const std::map<std::string, std::string>& titles);
+                       const std::map<std::string, std::string>& titles,
+                       const CurveUncertainties& uncertainties = {});
 
 /// Returns the ranges of speed [km/h] in which some simulation reports contact loss, ascending and
 /// without overlap. Each range reaches half way to the neighbouring speeds.

@@ -120,6 +120,26 @@ void draw_marker(Marker marker, Point at, bool hollow, const std::string& colour
   }
 }
 
+void draw_series_band(const Series& series, const Scale& scale, Svg& svg) {
+  constexpr double kOpacity = 0.13;
+  std::vector<Point> upper, lower;
+  const auto end_piece = [&] {
+    upper.insert(upper.end(), lower.rbegin(), lower.rend());
+    if (upper.size() > 2) svg.polygon(upper, series.colour, {series.colour, 0, ""}, kOpacity);
+    upper.clear();
+    lower.clear();
+  };
+  for (std::size_t i = 0; i < series.low.size() && i < series.high.size(); ++i) {
+    if (!std::isfinite(series.low[i]) || !std::isfinite(series.high[i])) {
+      end_piece();
+    } else {
+      upper.push_back({scale.at_x(series.x[i]), scale.at_y(series.high[i])});
+      lower.push_back({scale.at_x(series.x[i]), scale.at_y(series.low[i])});
+    }
+  }
+  end_piece();
+}
+
 void draw_series(const Series& series, const Scale& scale, Svg& svg) {
   std::vector<Point> piece;
   const std::size_t count = std::min(series.x.size(), series.y.size());
@@ -281,7 +301,9 @@ void draw_panel(const Panel& panel, Svg& svg) {
   Scale scale{{}, {}, panel};
   for (const Series& series : panel.series) {
     for (const double value : series.x) scale.x.include(value);
-    for (const double value : series.y) scale.y.include(value);
+    for (const auto* values : {&series.y, &series.low, &series.high}) {
+      for (const double value : *values) scale.y.include(value);
+    }
   }
   if (panel.line_at) scale.y.include(*panel.line_at);
   if (panel.starts_at_zero) scale.y.include(0);
@@ -306,6 +328,7 @@ void draw_panel(const Panel& panel, Svg& svg) {
     const double y = scale.at_y(*panel.line_at);
     svg.line({panel.corner.x, y}, {panel.corner.x + panel.width, y}, {kInkColour, 1, "2 3"});
   }
+  for (const Series& series : panel.series) draw_series_band(series, scale, svg);
   for (const Series& series : panel.series) draw_series(series, scale, svg);
   draw_labels(panel, scale, svg);
   draw_hatch_note(panel, scale, svg);

@@ -36,6 +36,8 @@ struct Series {
   std::string dashes;
   Marker marker = Marker::kNone;
   std::vector<bool> hollow;  ///< markers drawn open; may be empty
+  /// Edges of a translucent band about the line, as many as x; a NaN interrupts it. May be empty.
+  std::vector<double> low, high;
 };
 
 /// Ranges of x that a hatched strip marks at the foot of a panel, with a letter.

@@ -87,10 +87,11 @@ void Svg::polyline(const std::vector<Point>& points, const Stroke& stroke) {
            stroke_attributes(stroke) + " stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n";
 }
 
-void Svg::polygon(const std::vector<Point>& corners, const std::string& fill,
-                  const Stroke& stroke) {
-  body_ += "<polygon" + attribute("points", points_text(corners)) + attribute("fill", fill) +
-           stroke_attributes(stroke) + "/>\n";
+void Svg::polygon(const std::vector<Point>& corners, const std::string& fill, const Stroke& stroke,
+                  double opacity) {
+  body_ += "<polygon" + attribute("points", points_text(corners)) + attribute("fill", fill);
+  if (opacity < 1) body_ += attribute("fill-opacity", opacity);
+  body_ += stroke_attributes(stroke) + "/>\n";
 }
 
 void Svg::hatched_rectangle(Point corner, double width, double height, const std::string& colour) {

@@ -33,7 +33,8 @@ class Svg {
                  double opacity = 1);
   void line(Point from, Point to, const Stroke& stroke);
   void polyline(const std::vector<Point>& points, const Stroke& stroke);
-  void polygon(const std::vector<Point>& corners, const std::string& fill, const Stroke& stroke);
+  void polygon(const std::vector<Point>& corners, const std::string& fill, const Stroke& stroke,
+               double opacity = 1);
   void circle(Point centre, double radius, const std::string& fill, const Stroke& stroke);
   /// Draws a rectangle filled with thin oblique lines.
   void hatched_rectangle(Point corner, double width, double height, const std::string& colour);

@@ -312,4 +312,16 @@ std::string uncertainty_report(const v1::ComparePointsResponse& response) {
   return sheet.text();
 }
 
+std::string input_error_text(const v1::UncertainFigure& figure) {
+  return "+/- " + (figure.standard_uncertainty() > 0 ? spread_text(figure) : "0");
+}
+
+std::string curve_uncertainty_remark(const v1::ComparePointsResponse& response) {
+  const v1::ComparedLubricant& lubricant = response.lubricants(0);
+  const std::string exact = "No uncertainty of the lubricant's parameters is stated.";
+  if (lubricant.mean_shares().empty()) return exact;
+  return linearity_text(lubricant.mean_inefficiency_percent(), response.draws()) + " " +
+         advice_text(lubricant.mean_shares());
+}
+
 }  // namespace tribodyn::client

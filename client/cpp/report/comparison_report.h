@@ -18,6 +18,12 @@ std::string comparison_csv(const v1::ComparePointsRequest& request,
 /// Returns the figures of one lubricant at one condition with the uncertainty of its inputs.
 std::string uncertainty_report(const v1::ComparePointsResponse& response);
 
+/// Returns the standard uncertainty by the inputs, e.g. "+/- 0.42".
+std::string input_error_text(const v1::UncertainFigure& figure);
+
+/// Returns sentences on what makes the uncertainty of the first lubricant's mean over a curve.
+std::string curve_uncertainty_remark(const v1::ComparePointsResponse& response);
+
 /// Returns e.g. "1.18 % +/- 0.42 (inputs) +/- 0.0004 (solver)".
 std::string with_errors(const v1::UncertainFigure& figure, const std::string& unit);
 

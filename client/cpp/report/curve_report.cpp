@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "client/cpp/report/comparison_report.h"
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/report/precision.h"
 #include "client/cpp/report/warnings.h"
@@ -25,21 +26,26 @@ bool is_in_kilowatts(const v1::SimulationResult& result) {
                      });
 }
 
-Table curve_table(const v1::Simulation& simulation) {
+Table curve_table(const v1::Simulation& simulation, const CurveUncertainty* uncertainty) {
   const bool kilowatts = is_in_kilowatts(simulation.result());
   constexpr auto kDecimal = Table::Align::kDecimal;
-  Table table({{"speed", "km/h", kDecimal},
-               {"inefficiency", "energy mean %", kDecimal},
-               {"inefficiency", "solver error", kDecimal},
-               {"inefficiency", "RMS %", kDecimal},
-               {"mesh loss", kilowatts ? "kW" : "W", kDecimal},
-               {"pinion torque", "N m", kDecimal},
-               {"film", "mean um", kDecimal},
-               {"lambda", "min", kDecimal},
-               {"lambda", "mean", kDecimal},
-               {"T contact", "mean C", kDecimal},
-               {"T contact", "max C", kDecimal},
-               {"contact", "lost"}});
+  std::vector<Table::Column> columns = {{"speed", "km/h", kDecimal},
+                                        {"inefficiency", "energy mean %", kDecimal},
+                                        {"inefficiency", "solver error", kDecimal},
+                                        {"inefficiency", "RMS %", kDecimal},
+                                        {"mesh loss", kilowatts ? "kW" : "W", kDecimal},
+                                        {"pinion torque", "N m", kDecimal},
+                                        {"film", "mean um", kDecimal},
+                                        {"lambda", "min", kDecimal},
+                                        {"lambda", "mean", kDecimal},
+                                        {"T contact", "mean C", kDecimal},
+                                        {"T contact", "max C", kDecimal},
+                                        {"contact", "lost"}};
+  constexpr std::ptrdiff_t kUncertaintyColumn = 2;
+  if (uncertainty != nullptr) {
+    columns.insert(columns.begin() + kUncertaintyColumn, {"inefficiency", "inputs", kDecimal});
+  }
+  Table table(columns);
   for (const v1::CurvePoint& point : simulation.result().points()) {
     const std::string speed = significant(point.speed_kilometres_per_hour());
     if (!point.has_result()) {
@@ -49,23 +55,30 @@ Table curve_table(const v1::Simulation& simulation) {
     const v1::PointResult& at = point.result();
     const Precision precision(simulation, at);
     const double loss = at.mesh_loss_power_watts();
-    table.add_row(
-        {speed,
-         at.has_inefficiency_energy_mean_percent()
-             ? precision.estimated(at.inefficiency_energy_mean_percent(), 3)
-             : "-",
-         at.has_inefficiency_energy_mean_percent()
-             ? precision.error_of(at.inefficiency_energy_mean_percent())
-             : "-",
-         at.has_inefficiency_rms_percent() ? precision.estimated(at.inefficiency_rms_percent(), 3)
-                                           : "-",
-         kilowatts ? precision.estimated(1e-3 * loss, 4) : precision.estimated(loss, 1),
-         precision.estimated(at.pinion_torque_newton_metres(), 2),
-         precision.other(1e6 * at.central_film_thickness_metres().mean(), 3),
-         precision.other(at.film_ratio().minimum(), 2), precision.other(at.film_ratio().mean(), 2),
-         precision.other(at.contact_temperature_kelvin().mean() - kZeroCelsius, 1),
-         precision.other(at.contact_temperature_kelvin().maximum() - kZeroCelsius, 1),
-         at.contact_loss() ? "yes" : "no"});
+    std::vector<std::string> row = {
+        speed,
+        at.has_inefficiency_energy_mean_percent()
+            ? precision.estimated(at.inefficiency_energy_mean_percent(), 3)
+            : "-",
+        at.has_inefficiency_energy_mean_percent()
+            ? precision.error_of(at.inefficiency_energy_mean_percent())
+            : "-",
+        at.has_inefficiency_rms_percent() ? precision.estimated(at.inefficiency_rms_percent(), 3)
+                                          : "-",
+        kilowatts ? precision.estimated(1e-3 * loss, 4) : precision.estimated(loss, 1),
+        precision.estimated(at.pinion_torque_newton_metres(), 2),
+        precision.other(1e6 * at.central_film_thickness_metres().mean(), 3),
+        precision.other(at.film_ratio().minimum(), 2),
+        precision.other(at.film_ratio().mean(), 2),
+        precision.other(at.contact_temperature_kelvin().mean() - kZeroCelsius, 1),
+        precision.other(at.contact_temperature_kelvin().maximum() - kZeroCelsius, 1),
+        at.contact_loss() ? "yes" : "no"};
+    if (uncertainty != nullptr) {
+      const auto* figure = uncertainty->at(point.speed_kilometres_per_hour());
+      row.insert(row.begin() + kUncertaintyColumn,
+                 figure != nullptr ? input_error_text(*figure) : "-");
+    }
+    table.add_row(std::move(row));
   }
   return table;
 }
@@ -146,7 +159,8 @@ std::string direction_word(const v1::Simulation& simulation) {
 
 }  // namespace
 
-std::string curve_report(const v1::Simulation& simulation, bool shows_assumptions) {
+std::string curve_report(const v1::Simulation& simulation, bool shows_assumptions,
+                         const CurveUncertainty* uncertainty) {
   const v1::SimulationResult& result = simulation.result();
   const double seconds = run_seconds(simulation);
   Sheet head;
@@ -159,9 +173,13 @@ std::string curve_report(const v1::Simulation& simulation, bool shows_assumption
   add_warnings(simulation, notes);
   add_jumps(result, notes);
   add_solver_remarks(result, notes);
+  if (uncertainty != nullptr && !uncertainty->remark.empty()) {
+    notes.heading("Uncertainty of the inputs");
+    notes.remark(uncertainty->remark);
+  }
   add_provenance(result, shows_assumptions, notes);
   add_input_warnings(result.input_warnings(), notes);
-  return head.text() + "\n" + curve_table(simulation).text() + "\n" + notes.text();
+  return head.text() + "\n" + curve_table(simulation, uncertainty).text() + "\n" + notes.text();
 }
 
 std::string points_csv(const std::vector<v1::Simulation>& simulations) {

@@ -45,7 +45,8 @@ std::string torque_caution(const v1::Simulation& simulation, const TorqueLimits&
 }
 
 std::string results_text(const std::vector<v1::Simulation>& simulations, OutputFormat format,
-                         bool alone, bool shows_assumptions, const TorqueLimits& limits) {
+                         bool alone, bool shows_assumptions, const TorqueLimits& limits,
+                         const CurveUncertainties& uncertainties) {
   switch (format) {
     case OutputFormat::kJson: {
       if (alone && simulations.size() == 1) return json_text(simulations.front());
@@ -64,8 +65,11 @@ std::string results_text(const std::vector<v1::Simulation>& simulations, OutputF
     if (!text.empty()) text += "\n";
     const std::string sentence = torque_caution(simulation, limits);
     if (!sentence.empty()) text += caution(wrapped("! " + sentence, 0)) + "\n";
-    text += simulation.has_operating_point() ? point_report(simulation, shows_assumptions)
-                                             : curve_report(simulation, shows_assumptions);
+    const auto found = uncertainties.find(simulation.name());
+    text += simulation.has_operating_point()
+                ? point_report(simulation, shows_assumptions)
+                : curve_report(simulation, shows_assumptions,
+                               found == uncertainties.end() ? nullptr : &found->second);
   }
   return text;
 }
