@@ -16,7 +16,7 @@ constexpr double kSolverTolerance = 1e-6;
 /// Relative. Far above round-off and the error of the march, far below the effect of a wrong law.
 constexpr double kRelativeTolerance = 1e-4;
 
-struct Figure {
+struct GoldenFigure {
   const char* name;
   double expected;
   double (*value)(const v1::PointResult&);
@@ -25,7 +25,7 @@ struct Figure {
 /// Paper fluid 1 in the reference axle with the run-in surface at 72.5 km/h. At this speed, the
 /// first resonance, the teeth separate, so that dynamics, film, heat and friction all matter. The
 /// values are those of tribodyn-model-2 by the march, which is independent of shooting.
-constexpr Figure kFigures[] = {
+constexpr GoldenFigure kGoldenFigures[] = {
     {"pinion_torque_newton_metres", 33.15439064,
      [](const v1::PointResult& point) { return point.pinion_torque_newton_metres(); }},
     {"inefficiency_energy_mean_percent", 1.384566506,
@@ -70,7 +70,7 @@ std::string check_golden_result(const internal::v1::ComputeResult& result) {
       computed.points_size() != 1) {
     return "golden case: no result; " + result.defect();
   }
-  for (const Figure& figure : kFigures) {
+  for (const GoldenFigure& figure : kGoldenFigures) {
     const double value = figure.value(computed.points(0).result());
     if (std::abs(value - figure.expected) <= kRelativeTolerance * figure.expected) continue;
     return fmt::format("golden case: {} is {}; expected {}", figure.name, value, figure.expected);
