@@ -4,6 +4,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -59,6 +60,23 @@ std::string time_text() {
 
 }  // namespace
 
+AuditLog::~AuditLog() {
+  if (open_ >= 0) close(open_);
+}
+
+int AuditLog::current_file() const {
+  struct stat at_path {};
+  struct stat opened {};
+  const bool is_current = open_ >= 0 && lstat(file_.c_str(), &at_path) == 0 &&
+                          fstat(open_, &opened) == 0 && at_path.st_ino == opened.st_ino &&
+                          at_path.st_dev == opened.st_dev;
+  if (!is_current) {
+    if (open_ >= 0) close(open_);
+    open_ = open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  }
+  return open_;
+}
+
 void AuditLog::record(const CallContext& call, const std::string& method,
                       const google::rpc::Status& status, const std::string& names) const noexcept
     try {
@@ -68,12 +86,11 @@ void AuditLog::record(const CallContext& call, const std::string& method,
                   time_text(), call.grant->principal, log_word(call.project, kLongestName), method,
                   google::rpc::Code_Name(static_cast<google::rpc::Code>(status.code())),
                   names.empty() ? "-" : names, call.client, call.request_id);
-  const int file =
-      open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  const std::lock_guard lock(mutex_);
+  const int file = current_file();
   const bool is_written =
       file >= 0 && write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
   const std::string why = is_written ? "" : std::generic_category().message(errno);
-  if (file >= 0) close(file);
   if (!is_written)
     spdlog::error("event=audit_not_written file={} cause=\"{}\"", file_.string(), why);
 } catch (...) {  // no memory: the call goes on

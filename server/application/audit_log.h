@@ -3,6 +3,7 @@
 #include <google/protobuf/message.h>
 
 #include <filesystem>
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -18,13 +19,21 @@ class AuditLog {
  public:
   /// An empty path records nothing.
   explicit AuditLog(std::filesystem::path file) : file_(std::move(file)) {}
+  ~AuditLog();
+  AuditLog(const AuditLog&) = delete;
+  AuditLog& operator=(const AuditLog&) = delete;
 
   /// Appends a line before the client has its answer. Throws nothing: a failure is logged.
   void record(const CallContext& call, const std::string& method, const google::rpc::Status& status,
               const std::string& names) const noexcept;
 
  private:
+  /// Returns the descriptor of the file with this path, which may be a new file, or -1 with errno.
+  int current_file() const;
+
   const std::filesystem::path file_;
+  mutable std::mutex mutex_;
+  mutable int open_ = -1;  ///< descriptor; -1: none
 };
 
 /// Returns the names in a request or an answer, separated by commas: its own, those of its resource

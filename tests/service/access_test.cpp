@@ -11,6 +11,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -243,6 +244,12 @@ TEST_F(AccessTest, TheAuditSaysWhoDidWhatToWhichNameAndNothingElse) {
       EXPECT_THAT(text, Not(HasSubstr(unwanted)));
     }
   }
+  // As by a program that rotates logs.
+  std::filesystem::rename(folder_.file("tribodyn.db.audit"), folder_.file("tribodyn.db.audit.1"));
+  EXPECT_EQ(create_fluid(reader, "carls-oil"), StatusCode::PERMISSION_DENIED);
+  const std::string after = file_text("tribodyn.db.audit");
+  EXPECT_THAT(after, HasSubstr("principal=bert project=default method=CreateLubricant"));
+  EXPECT_EQ(std::count(after.begin(), after.end(), '\n'), 1) << after;
 }
 
 TEST_F(AccessTest, TheSocketIsClosedToOtherUsersWhateverItsMode) {

@@ -88,8 +88,10 @@ def _list(values: Any) -> list[Any]:
 
 def _fields(message: Message, prefix: str, row: dict[str, Any], present: bool) -> None:
     """Adds the fields of a message as cells, named as in the CSV of the command line. What is not
-    there is NaN, never 0."""
+    there is NaN, never 0. Sensitivities are left out: they are a table of their own."""
     for field in message.DESCRIPTOR.fields:
+        if field.message_type is results_pb2.PointSensitivities.DESCRIPTOR:
+            continue
         name = prefix + field.name
         value = getattr(message, field.name)
         if field.label == field.LABEL_REPEATED:
