@@ -9,7 +9,9 @@
 
 #include <cerrno>
 #include <ctime>
+#include <mutex>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "google/rpc/code.pb.h"
@@ -60,39 +62,58 @@ std::string time_text() {
 
 }  // namespace
 
-AuditLog::~AuditLog() {
-  if (open_ >= 0) close(open_);
-}
-
-int AuditLog::current_file() const {
-  struct stat at_path {};
-  struct stat opened {};
-  const bool is_current = open_ >= 0 && lstat(file_.c_str(), &at_path) == 0 &&
-                          fstat(open_, &opened) == 0 && at_path.st_ino == opened.st_ino &&
-                          at_path.st_dev == opened.st_dev;
-  if (!is_current) {
+/// The file, open for appending.
+class AuditLog::File {
+ public:
+  explicit File(std::filesystem::path path) : path_(std::move(path)) {}
+  ~File() {
     if (open_ >= 0) close(open_);
-    open_ = open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
   }
-  return open_;
-}
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  /// A failure is logged.
+  void append(const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    const int file = current();
+    if (file >= 0 && write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size())) {
+      return;
+    }
+    const std::string why = std::generic_category().message(errno);
+    spdlog::error("event=audit_not_written file={} cause=\"{}\"", path_.string(), why);
+  }
+
+ private:
+  /// Returns the descriptor of the file with this path, which may be a new file, or -1 with errno.
+  int current() {
+    struct stat at_path {};
+    struct stat opened {};
+    const bool is_current = open_ >= 0 && lstat(path_.c_str(), &at_path) == 0 &&
+                            fstat(open_, &opened) == 0 && at_path.st_ino == opened.st_ino &&
+                            at_path.st_dev == opened.st_dev;
+    if (is_current) return open_;
+    if (open_ >= 0) close(open_);
+    open_ = open(path_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    return open_;
+  }
+
+  const std::filesystem::path path_;
+  std::mutex mutex_;
+  int open_ = -1;  ///< descriptor; -1: none
+};
+
+AuditLog::AuditLog(const std::filesystem::path& file)
+    : file_(file.empty() ? nullptr : std::make_shared<File>(file)) {}
 
 void AuditLog::record(const CallContext& call, const std::string& method,
                       const google::rpc::Status& status, const std::string& names) const noexcept
     try {
-  if (file_.empty()) return;
-  const std::string line =
+  if (!file_) return;
+  file_->append(
       fmt::format("time={} principal={} project={} method={} code={} names={} client={} call={}\n",
                   time_text(), call.grant->principal, log_word(call.project, kLongestName), method,
                   google::rpc::Code_Name(static_cast<google::rpc::Code>(status.code())),
-                  names.empty() ? "-" : names, call.client, call.request_id);
-  const std::lock_guard lock(mutex_);
-  const int file = current_file();
-  const bool is_written =
-      file >= 0 && write(file, line.data(), line.size()) == static_cast<ssize_t>(line.size());
-  const std::string why = is_written ? "" : std::generic_category().message(errno);
-  if (!is_written)
-    spdlog::error("event=audit_not_written file={} cause=\"{}\"", file_.string(), why);
+                  names.empty() ? "-" : names, call.client, call.request_id));
 } catch (...) {  // no memory: the call goes on
   return;
 }

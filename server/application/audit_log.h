@@ -3,9 +3,8 @@
 #include <google/protobuf/message.h>
 
 #include <filesystem>
-#include <mutex>
+#include <memory>
 #include <string>
-#include <utility>
 
 #include "google/rpc/status.pb.h"
 #include "server/application/call_context.h"
@@ -18,22 +17,15 @@ namespace tribodyn::server {
 class AuditLog {
  public:
   /// An empty path records nothing.
-  explicit AuditLog(std::filesystem::path file) : file_(std::move(file)) {}
-  ~AuditLog();
-  AuditLog(const AuditLog&) = delete;
-  AuditLog& operator=(const AuditLog&) = delete;
+  explicit AuditLog(const std::filesystem::path& file);
 
   /// Appends a line before the client has its answer. Throws nothing: a failure is logged.
   void record(const CallContext& call, const std::string& method, const google::rpc::Status& status,
               const std::string& names) const noexcept;
 
  private:
-  /// Returns the descriptor of the file with this path, which may be a new file, or -1 with errno.
-  int current_file() const;
-
-  const std::filesystem::path file_;
-  mutable std::mutex mutex_;
-  mutable int open_ = -1;  ///< descriptor; -1: none
+  class File;
+  std::shared_ptr<File> file_;  ///< shared by copies
 };
 
 /// Returns the names in a request or an answer, separated by commas: its own, those of its resource
