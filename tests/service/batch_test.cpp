@@ -222,7 +222,7 @@ TEST_F(BatchTest, ValidateOnlyAnswersAsIfWrittenAndWritesNothing) {
 }
 
 TEST_F(BatchTest, AStoreErrorAtTheLastElementWritesNothing) {
-  SQLite::Database raw(bench_.database(), SQLite::OPEN_READWRITE);
+  SQLite::Database raw = bench_.open_database();
   raw.exec(
       "CREATE TRIGGER fail BEFORE INSERT ON properties WHEN NEW.name = 'lubricants/many-499' "
       "BEGIN SELECT RAISE(ABORT, 'the disk is gone'); END");

@@ -142,7 +142,7 @@ class EventStreamTest : public testing::Test {
   }
   /// Writes events of deleted simulations into the database.
   void add_deletions(int count) {
-    SQLite::Database db(bench_.database(), SQLite::OPEN_READWRITE);
+    SQLite::Database db = bench_.open_database();
     const std::string trigger =
         db.execAndGet("SELECT sql FROM sqlite_master WHERE name = 'events_have_a_simulation'")
             .getString();

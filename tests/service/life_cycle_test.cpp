@@ -236,7 +236,7 @@ TEST_F(LifeCycle, ARunThatDoesNotReproduceAResultFails) {
 
 /// Flips a bit of the first row of a table without the server's knowledge.
 void flip_a_bit(const Bench& bench, const std::string& table, const std::string& column) {
-  SQLite::Database raw(bench.database(), SQLite::OPEN_READWRITE);
+  SQLite::Database raw = bench.open_database();
   SQLite::Statement query(raw, "SELECT rowid, " + column + " FROM " + table + " LIMIT 1");
   ASSERT_TRUE(query.executeStep());
   const std::int64_t row = query.getColumn(0).getInt64();

@@ -287,7 +287,7 @@ TEST(Inputs, OfAStoredSimulationKeepTheirHash) {
   ASSERT_TRUE(bench.reaches(bench.create(point_simulation()), v1::Simulation::SUCCEEDED));
   bench.jobs().stop();
   EXPECT_THAT(check_database(bench.database(), hash_stored_inputs), IsEmpty());
-  SQLite::Database raw(bench.database(), SQLite::OPEN_READWRITE);
+  SQLite::Database raw = bench.open_database();
   raw.exec(
       "UPDATE simulations SET lubricant = "
       "(SELECT revision_id FROM revision_names WHERE name = 'lubricants/paper-fluid-3')");

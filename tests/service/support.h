@@ -1,5 +1,7 @@
 #pragma once
 
+#include <SQLiteCpp/SQLiteCpp.h>
+
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -95,6 +97,11 @@ class Bench {
 
   Store& store() { return *store_; }
   std::string database() const { return folder_.file("tribodyn.db"); }
+  /// Returns a connection of its own to the database. It waits at most 10 s for a lock, because
+  /// threads of the bench may still write.
+  SQLite::Database open_database() const {
+    return {database(), SQLite::OPEN_READWRITE, 10'000 /* milliseconds */};
+  }
   SimulationJobs& jobs() { return *jobs_; }
   Application application() { return {*store_, *jobs_}; }
 

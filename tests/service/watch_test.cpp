@@ -121,7 +121,7 @@ class WatchTest : public testing::Test {
   std::int64_t latest() { return bench_.store().event_range("default").latest; }
   /// Changes the database past the trigger that an event belongs to a simulation.
   void add_events(const std::string& sql) {
-    SQLite::Database db(bench_.database(), SQLite::OPEN_READWRITE);
+    SQLite::Database db = bench_.open_database();
     const std::string trigger =
         db.execAndGet("SELECT sql FROM sqlite_master WHERE name = 'events_have_a_simulation'")
             .getString();
@@ -296,7 +296,7 @@ TEST_F(WatchTest, TheOldestDeletionsAreForgotten) {
       "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " +
       std::to_string(kKeptDeletions + 999) +
       ") SELECT 1000000 + i, 1, 0, 0, 1, '', 'default', 1000 + i, 1000000 + i FROM n");
-  SQLite::Database db(bench_.database(), SQLite::OPEN_READWRITE);
+  SQLite::Database db = bench_.open_database();
   db.exec("UPDATE projects SET last_number = 2000000, last_event = 1000 + " +
           std::to_string(kKeptDeletions + 999) +
           ", deletions = " + std::to_string(kKeptDeletions + 999));
