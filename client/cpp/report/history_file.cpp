@@ -1,11 +1,6 @@
 #include "client/cpp/report/history_file.h"
 
-#include <sys/stat.h>
-
-#include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <utility>
 
 #include "client/cpp/failure.h"
@@ -15,7 +10,6 @@
 namespace tribodyn::client {
 namespace {
 
-constexpr std::size_t kIdentityLength = 12;
 constexpr std::size_t kNumpyAlignment = 64;
 
 /// Returns the header of version 1.0 of the format: magic, length of the dictionary, the dictionary
@@ -59,67 +53,21 @@ std::string numpy_rows(const HistoryRows& rows) {
   return out;
 }
 
-bool is_stream(const std::string& path) {
-  struct stat info;
-  return stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode);
-}
-
 }  // namespace
 
 HistoryFile::HistoryFile(std::string path, Format format, const std::string& identity,
                          std::vector<std::string> columns, std::int64_t rows)
-    : path_(std::move(path)), format_(format), columns_(std::move(columns)), target_(path_) {
-  const std::string begin = header(rows);
-  if (!is_stream(path_)) {
-    target_ = path_ + "." + identity.substr(0, kIdentityLength) + ".part";
-    rows_there_ = rows_of_part(begin);
-  }
-  file_.open(target_, std::ios::binary | (rows_there_ > 0 ? std::ios::app : std::ios::trunc));
-  if (rows_there_ == 0) file_ << begin;
-  check();
-}
+    : format_(format),
+      columns_(std::move(columns)),
+      file_(std::move(path), identity, header(rows),
+            format_ == Format::kCsv ? 0 : columns_.size() * sizeof(double)) {}
 
 std::string HistoryFile::header(std::int64_t rows) const {
   return format_ == Format::kCsv ? csv_line(columns_) : numpy_header(columns_, rows);
 }
 
-/// Removes an incomplete last row and returns the number of complete rows.
-std::int64_t HistoryFile::rows_of_part(const std::string& header) const {
-  std::ifstream part(target_, std::ios::binary);
-  std::string begin(header.size(), '\0');
-  if (!part.read(begin.data(), static_cast<std::streamsize>(begin.size())) || begin != header) {
-    return 0;
-  }
-  std::int64_t rows = 0;
-  std::uintmax_t end = header.size();
-  if (format_ == Format::kNumpy) {
-    const std::uintmax_t width = columns_.size() * sizeof(double);
-    rows = static_cast<std::int64_t>((std::filesystem::file_size(target_) - end) / width);
-    end += static_cast<std::uintmax_t>(rows) * width;
-  } else {
-    for (std::string line; std::getline(part, line) && !part.eof(); ++rows) end += line.size() + 1;
-  }
-  part.close();
-  std::filesystem::resize_file(target_, end);
-  return rows;
-}
-
 void HistoryFile::add(const HistoryRows& rows) {
-  file_ << (format_ == Format::kCsv ? csv_rows(rows) : numpy_rows(rows));
-  check();
-}
-
-void HistoryFile::finish() {
-  file_.close();
-  check();
-  if (target_ == path_) return;
-  if (std::rename(target_.c_str(), path_.c_str()) != 0) {
-    throw Failure(kExitFailed, "cannot write " + path_ + ": " + std::strerror(errno));
-  }
-}
-
-void HistoryFile::check() {
-  if (!file_) throw Failure(kExitFailed, "cannot write " + target_ + ": " + std::strerror(errno));
+  file_.add(format_ == Format::kCsv ? csv_rows(rows) : numpy_rows(rows));
 }
 
 void download_history(Connection& connection, const v1::Simulation& simulation,

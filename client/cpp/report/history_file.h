@@ -1,17 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <vector>
 
+#include "client/cpp/report/part_file.h"
 #include "tribodyn/client/connection.h"
 
 namespace tribodyn::client {
 
-/// A file that receives a history. The rows so far are in "<path>.<identity>.part", where a later
-/// download of the same history resumes; finish() renames that file to `path`. A pipe or a device
-/// is written directly.
+/// A file that receives a history, and resumes as a PartFile does.
 class HistoryFile {
  public:
   enum class Format {
@@ -24,23 +22,18 @@ class HistoryFile {
               std::vector<std::string> columns, std::int64_t rows);
 
   /// Returns the number of rows that an earlier download left in the file.
-  std::int64_t rows_there() const { return rows_there_; }
+  std::int64_t rows_there() const { return file_.rows_there(); }
   /// Appends rows.
   void add(const HistoryRows& rows);
   /// Renames the complete file to its final path.
-  void finish();
+  void finish() { file_.finish(); }
 
  private:
   std::string header(std::int64_t rows) const;
-  std::int64_t rows_of_part(const std::string& header) const;
-  void check();
 
-  const std::string path_;
   const Format format_;
   const std::vector<std::string> columns_;
-  std::string target_;  ///< path of the file that is written
-  std::int64_t rows_there_ = 0;
-  std::ofstream file_;
+  PartFile file_;
 };
 
 /// Downloads the whole history of a simulation that has succeeded.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "client/cpp/resources/json_input.h"
+#include "client/cpp/resources/row_cells.h"
 
 namespace tribodyn::client {
 
@@ -35,6 +36,11 @@ struct RowTable {
 /// Failure (kExitUsage) that lists every error with row and column.
 RowTable read_row_table(const std::string& text, const std::string& path, const ResourceKind& kind,
                         const RowBases& bases = {});
+
+/// Clears a viscosity law that the resource of a row has from its base if the row states
+/// viscosities: the server fits the law to them.
+void leave_law_to_viscosities(const RowCells& cells, const CsvLine& line,
+                              google::protobuf::Message& resource);
 
 /// Returns the table of these resources: values that were stated or measured, with their origin;
 /// cells of values that the server computed are empty. Sets `lost` to the data that a row cannot
