@@ -11,7 +11,7 @@ err_has 'cannot connect to the server at 127.0.0.1:9'
 expect 3 --server "unix:$folder/none" lubricants list
 expect 0 --help
 out_has 'Exit codes'
-for command in point curve compare sensitivities history contact traction film stribeck diff validate \
+for command in point curve compare screen sensitivities history contact traction film stribeck diff validate \
   schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun"; do
@@ -208,6 +208,45 @@ expect 2 compare sheet-a --speed 40,60 --weights 1
 err_has '1 weights of 2 speeds'
 expect 1 compare sheet-a no-such-oil
 err_has 'lubricants/no-such-oil'
+echo "--- screening"
+table=$folder/candidates.csv
+printf '%s\n' 'name;treat rate;pressure-viscosity (1/GPa);asperity friction coefficient' \
+  'good;0,5;15,5;0,09' 'bad;1;19;0,12' 'like the base;0;;' 'slip;2;16e-9;' >"$table"
+expect 0 screen "$table" --like paper-fluid-1 --speeds 20,60 --sumps 40,90 --weights 1,3
+out_has '^ *1  good +[0-9.]+ +[0-9.]+ +-[0-9.]+'
+out_has '^ *2  like the base +[0-9.]+ +[0-9.]+ +0\.00 '
+out_has 'slip: pressure-viscosity \(1/GPa\) = 1.6e-17 1/Pa; allowed'
+err_has 'cells have a decimal comma'
+expect 0 screen "$table" --like paper-fluid-1 --output csv
+out_lines 5
+out_has '^1,good,0\.5,15\.5,0\.09,[0-9.]+,'
+expect 0 screen "$table" --like paper-fluid-1 --output json
+out_is_json
+printf '%s\n' name,kv40,kv100 A,73.3,8.86 B,9,73 >"$table"
+expect 0 screen "$table" --like paper-fluid-1
+out_has '^ *1  A  '
+out_has 'B: A kinematic viscosity of 73 mm2/s at 100 C must be below'
+expect 2 screen "$table" --like paper-fluid-1 --weights 1,2 --csv "$folder/x" --jsonl "$folder/y"
+err_has '2 weights of 1 speeds'
+err_has 'give either --csv or --jsonl'
+expect 1 screen "$table" --like no-such-oil --speeds 900
+err_has '--speeds = 900 km/h'
+err_has '"lubricants/no-such-oil" does not exist'
+# The limit of the size of a file ends the first run in the middle.
+{
+  echo relaxation_time_seconds
+  seq 400 | sed 's/$/e-9/'
+} >"$table"
+expect 0 screen "$table" --like paper-fluid-1 --speeds 20,60 --csv "$folder/whole.csv"
+(ulimit -f 100 && "$client" screen "$table" --like paper-fluid-1 --speeds 20,60 --csv "$folder/resumed.csv") \
+  >"$folder/out" 2>"$folder/err" && fail 'a run without room for its file succeeded'
+[ ! -e "$folder/resumed.csv" ] || fail 'an incomplete file has its final name'
+expect 0 screen "$table" --like paper-fluid-1 --speeds 20,60 --csv "$folder/resumed.csv"
+err_has 'resumes after [1-9][0-9]* of 400 candidates'
+cmp "$folder/whole.csv" "$folder/resumed.csv" || fail 'a resumed file differs from an uninterrupted one'
+expect 0 screen "$table" --like paper-fluid-1 --speeds 20,60 --jsonl "$folder/points.jsonl"
+[ "$(wc -l <"$folder/points.jsonl")" -eq 800 ] || fail 'JSON lines are missing'
+
 expect 0 sensitivities paper-fluid-1 --speed 100
 out_has 'lubricant pressure viscosity coefficient .*\|#'
 expect 0 sensitivities paper-fluid-1 --speed 100 --output csv

@@ -69,6 +69,7 @@ Command traction_command();
 Command film_command();
 Command stribeck_command();
 Command compare_command();
+Command screen_command();
 Command sensitivities_command();
 Command diff_command();
 Command validate_command();

@@ -25,6 +25,31 @@ W/(m K) = W/mK = W/m/K, g/cm3 = kg/l. Temperatures are in C, K or F.
 Tables print the units of data sheets (mm2/s, mPa s, 1/GPa, MPa, C, um). CSV and JSON have every
 digit in the unit at the end of each name, mostly SI.
 )"},
+      {"screening", "tables of candidates that `tribodyn screen` reads",
+       R"text(Screening
+
+`tribodyn screen TABLE.csv --like LUBRICANT` evaluates variants of one lubricant, one a row, and
+ranks them by their mesh inefficiency. Nothing is stored on the server. The table is a CSV file as
+for import (`tribodyn help files`): commas, semicolons or tabs, decimal points or commas, units in
+the header, in the second row or in a cell. An empty cell leaves the value of the base.
+
+  name, candidate or id: the candidates' names; without such a column they have the numbers 1, 2, ...
+  Parameters of the lubricant and of the surface, by their names with or without their units:
+    pressure_viscosity_coefficient, relaxation_time, limiting_shear_stress, ...;
+    asperity_friction_coefficient, tribofilm_shear_strength, composite_rms_height, ...
+  Measurements of the lubricant: kv40, kv100, density15, "Brookfield -40 C", base_oil_class, ...:
+    the server computes the parameters from them as it does for an import with --like.
+  Any other column is carried along into the results: additive, treat rate, cost. If its name
+    resembles that of a parameter, --carry NAME says that it is none.
+
+  name,treat rate,pressure-viscosity (1/GPa),asperity_friction_coefficient
+  A1,0.5,19.8,0.11
+  A2,1.0,,0.09
+
+A candidate with a value outside its range, or that the model refuses, is listed with the reason; the
+others are ranked. --csv FILE and --jsonl FILE write every candidate at every condition. Until it is
+complete, the file is FILE.ID.part; after an interruption the same command goes on where it ended.
+)text"},
       {"files", "what import, export and validate read and write",
        R"text(Files
 

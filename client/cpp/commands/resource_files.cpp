@@ -35,17 +35,6 @@ struct ExportFlags {
   bool all = false;
 };
 
-/// Returns the resource from which rows of a table start: a copy of the lubricant of --like,
-/// without texts that describe only that lubricant.
-ResourcePointer base_of_rows(Connection& connection, const ResourceKind& kind,
-                             const std::string& like) {
-  ResourcePointer base = copy_of(connection, kind, like, {});
-  for (const char* field : {"display_name", "description", "external_sample_id", "lims_id"}) {
-    if (base->GetDescriptor()->FindFieldByName(field) != nullptr) set_text(*base, field, "");
-  }
-  return base;
-}
-
 /// Returns a function that looks up current resources of a kind by name. It makes one request and
 /// caches the result.
 std::function<ResourcePointer(const std::string&)> present_resources(Connection& connection,
@@ -248,6 +237,15 @@ int run_export(const ResourceKind& kind, const ExportFlags& flags, const CommonO
 }
 
 }  // namespace
+
+ResourcePointer base_of_rows(Connection& connection, const ResourceKind& kind,
+                             const std::string& like) {
+  ResourcePointer base = copy_of(connection, kind, like, {});
+  for (const char* field : {"display_name", "description", "external_sample_id", "lims_id"}) {
+    if (base->GetDescriptor()->FindFieldByName(field) != nullptr) set_text(*base, field, "");
+  }
+  return base;
+}
 
 Command import_command(const ResourceKind& kind) {
   const auto flags = std::make_shared<ImportFlags>();

@@ -49,6 +49,11 @@ void add_table(const ResourceKind& kind, const std::string& path, TableFiles& ta
 ResourcePointer copy_of(Connection& connection, const ResourceKind& kind, const std::string& name,
                         const TableFiles& tables);
 
+/// Returns the resource from which rows of a table start: a copy of the resource of --like, without
+/// texts that describe only that resource.
+ResourcePointer base_of_rows(Connection& connection, const ResourceKind& kind,
+                             const std::string& like);
+
 /// Creates a resource from `resource` and the tables, if there are any.
 ResourcePointer create_with_tables(Connection& connection, const ResourceKind& kind,
                                    const google::protobuf::Message& resource, const std::string& id,

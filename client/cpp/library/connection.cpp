@@ -145,6 +145,10 @@ v1::EvaluateRigResponse Connection::evaluate_rig(const v1::EvaluateRigRequest& r
   return services_->call(*services_->rigs, &v1::RigService::Stub::EvaluateRig, request);
 }
 
+v1::EvaluatePointsResponse Connection::evaluate_points(const v1::EvaluatePointsRequest& request) {
+  return services_->call(*services_->points, &v1::PointService::Stub::EvaluatePoints, request);
+}
+
 v1::ComparePointsResponse Connection::compare_points(const v1::ComparePointsRequest& request) {
   return services_->call(*services_->points, &v1::PointService::Stub::ComparePoints, request);
 }

@@ -437,6 +437,14 @@ std::optional<RowColumn> find_column(const ResourceKind& kind, const std::string
   return std::nullopt;
 }
 
+std::string nearest_column(const ResourceKind& kind, const std::string& header) {
+  std::vector<std::string> known;
+  for (const RowColumn& column : columns_of(kind)) {
+    for (const HeaderForm& form : forms_of(column)) known.push_back(form.word);
+  }
+  return nearest(split_header(header).word, known);
+}
+
 std::string set_cell(const RowColumn& column, const std::string& text, Message& resource) {
   const std::string quoted = "'" + printable(text.substr(0, 60)) + "' ";
   std::string wrong;

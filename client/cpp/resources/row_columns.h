@@ -45,7 +45,6 @@ std::vector<RowColumn> provenance_columns(const std::vector<ResourcePointer>& re
 
 /// Returns e.g. "kinematic_viscosity_40_celsius_square_millimetres_per_second", "labels.project" or
 /// "thermal_conductivity_watts_per_metre_kelvin.source".
-/// "thermal_conductivity_watts_per_metre_kelvin.source".
 std::string header_of(const RowColumn& column);
 
 /// Returns the column of a header: its full name or its data-sheet name (kv40), in upper or lower
@@ -54,6 +53,10 @@ std::string header_of(const RowColumn& column);
 /// none.
 std::optional<RowColumn> find_column(const ResourceKind& kind, const std::string& header,
                                      std::string& wrong);
+
+/// Returns the name of a column that is nearest to a header, without its unit; empty if none is
+/// near enough. The header itself if it is a name.
+std::string nearest_column(const ResourceKind& kind, const std::string& header);
 
 /// Writes a cell, which is not empty, into the resource. Returns an empty text, or the error in the
 /// cell.

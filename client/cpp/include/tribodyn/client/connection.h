@@ -233,6 +233,8 @@ class Connection {
   v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request);
 
   v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request);
+  /// Evaluates up to 2000 points of candidates and stores nothing.
+  v1::EvaluatePointsResponse evaluate_points(const v1::EvaluatePointsRequest& request);
   /// Compares lubricants at conditions with the uncertainty of their inputs.
   v1::ComparePointsResponse compare_points(const v1::ComparePointsRequest& request);
 

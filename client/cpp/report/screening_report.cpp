@@ -1,0 +1,317 @@
+#include "client/cpp/report/screening_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "client/cpp/text/csv.h"
+#include "client/cpp/text/table.h"
+#include "client/cpp/text/text.h"
+
+namespace tribodyn::client {
+namespace {
+
+/// Columns of the candidates' table that the ranking shows on a terminal.
+constexpr std::size_t kShownColumns = 5;
+/// Refusals and names of refused candidates that are listed.
+constexpr std::size_t kListedRefusals = 8;
+constexpr std::size_t kListedNames = 4;
+
+/// Returns the decimal places with which a figure has one digit more than its error.
+int places_for(double error) {
+  if (!(error > 0) || !std::isfinite(error)) return 4;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 9);
+}
+
+std::string condition_text(const v1::PointCondition& condition) {
+  return significant(condition.speed_kilometres_per_hour()) + " km/h and " +
+         significant(condition.sump_temperature_celsius()) + " C";
+}
+
+/// Sums the figures of the points of one fluid, which `point_of(k)` returns.
+template <class PointOf>
+CandidateFigures weighted_figures(const Screening& screening, const PointOf& point_of) {
+  CandidateFigures out;
+  for (std::size_t k = 0; k < screening.conditions(); ++k) {
+    const ScreenedPoint point = point_of(k);
+    const double energy_mean = point.figures[ScreenedPoint::kEnergyMean];
+    if (!point.refusal_reason.empty() || !std::isfinite(energy_mean)) {
+      out.refusal = point.refusal_message.empty()
+                        ? "no power comes in, so that there is no inefficiency"
+                        : point.refusal_message;
+      out.refusal +=
+          " (at " + condition_text(screening.request.conditions(static_cast<int>(k))) + ")";
+      return out;
+    }
+    const double weight = screening.weights[k];
+    const double error = point.figures[ScreenedPoint::kError];
+    out.inefficiency += weight * energy_mean;
+    out.solver_error += weight * std::abs(energy_mean) * (std::isfinite(error) ? error : 0);
+    out.loss_power += weight * point.figures[ScreenedPoint::kLossPower];
+    out.contact_loss = out.contact_loss || point.contact_loss;
+  }
+  return out;
+}
+
+/// Returns the difference from the base in percent of the base, NaN without one.
+double relative_difference(const CandidateFigures& figures, const CandidateFigures& base) {
+  if (!base.refusal.empty()) return std::nan("");
+  return 100 * (figures.inefficiency - base.inefficiency) / base.inefficiency;
+}
+
+std::string signed_text(double value, int decimals) {
+  return (value > 0 ? "+" : "") + fixed(value, decimals);
+}
+
+std::string distinct(std::vector<double> values, const std::string& unit) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  std::vector<std::string> out;
+  for (const double each : values) out.push_back(significant(each));
+  return joined(out, ", ") + " " + unit;
+}
+
+std::string conditions_text(const Screening& screening) {
+  std::vector<double> speeds, sumps;
+  for (const v1::PointCondition& each : screening.request.conditions()) {
+    speeds.push_back(each.speed_kilometres_per_hour());
+    sumps.push_back(each.sump_temperature_celsius());
+  }
+  return distinct(speeds, "km/h") + "; sump " + distinct(sumps, "C");
+}
+
+/// Returns the headers of the columns that differ between candidates, those of parameters first.
+std::vector<std::size_t> shown_columns(const CandidateTable& table) {
+  std::vector<std::size_t> out;
+  for (const bool carried : {false, true}) {
+    for (std::size_t i = 0; i < table.headers.size(); ++i) {
+      if (table.is_carried[i] != carried) continue;
+      const bool differs =
+          std::any_of(table.cells.begin(), table.cells.end(),
+                      [&](const auto& cells) { return cells[i] != table.cells.front()[i]; });
+      if (differs && out.size() < kShownColumns) out.push_back(i);
+    }
+  }
+  return out;
+}
+
+std::string shortened(const std::string& header) {
+  constexpr std::size_t kWidth = 18;
+  return header.size() <= kWidth ? header : header.substr(0, kWidth - 3) + "...";
+}
+
+void add_refusals(const Screening& screening, const std::vector<CandidateFigures>& ranking,
+                  Sheet& sheet) {
+  std::map<std::string, std::vector<std::string>> names_by_refusal;
+  std::vector<std::string> order;
+  std::size_t refused = 0;
+  for (const CandidateFigures& each : ranking) {
+    if (each.refusal.empty()) continue;
+    ++refused;
+    auto& names = names_by_refusal[each.refusal];
+    if (names.empty()) order.push_back(each.refusal);
+    names.push_back(screening.table.names[each.candidate]);
+  }
+  if (refused == 0) return;
+  sheet.heading(std::to_string(refused) + (refused == 1 ? " candidate" : " candidates") +
+                " without figures");
+  for (std::size_t i = 0; i < order.size() && i < kListedRefusals; ++i) {
+    std::vector<std::string> names = names_by_refusal[order[i]];
+    const std::size_t count = names.size();
+    if (count > kListedNames) names.resize(kListedNames);
+    sheet.remark(joined(names, ", ") +
+                 (count > kListedNames ? " and " + std::to_string(count - kListedNames) + " more"
+                                       : std::string()) +
+                 ": " + order[i]);
+  }
+  if (order.size() > kListedRefusals) {
+    sheet.remark("... and " + std::to_string(order.size() - kListedRefusals) +
+                 " other reasons; --output csv lists all.");
+  }
+}
+
+std::string ranking_table(const Screening& screening, const std::vector<CandidateFigures>& ranking,
+                          std::size_t top) {
+  using Align = Table::Align;
+  const CandidateTable& candidates = screening.table;
+  const CandidateFigures base = base_figures(screening);
+  std::vector<Table::Column> columns = {{"rank", "", Align::kRight},
+                                        {"candidate", "", Align::kLeft},
+                                        {"inefficiency", "%", Align::kDecimal},
+                                        {"+/- solver", "%", Align::kDecimal},
+                                        {"vs base", "%", Align::kDecimal},
+                                        {"mesh loss", "W", Align::kDecimal}};
+  const std::vector<std::size_t> shown = shown_columns(candidates);
+  for (const std::size_t each : shown) {
+    columns.push_back({shortened(candidates.headers[each]), "", Align::kDecimal});
+  }
+  const bool has_contact_loss =
+      base.contact_loss || std::any_of(ranking.begin(), ranking.end(),
+                                       [](const auto& each) { return each.contact_loss; });
+  if (has_contact_loss) columns.push_back({"flanks part", "", Align::kLeft});
+  Table table(columns);
+  const auto figures = [](const CandidateFigures& each) {
+    const int places = places_for(each.solver_error);
+    return std::vector<std::string>{fixed(each.inefficiency, places),
+                                    fixed(each.solver_error, places)};
+  };
+  const auto row = [&](const std::string& rank, const std::string& name,
+                       const CandidateFigures& each, const std::vector<std::string>* cells) {
+    std::vector<std::string> out = {rank, name};
+    for (const std::string& text : figures(each)) out.push_back(text);
+    out.push_back(cells == nullptr ? "" : signed_text(relative_difference(each, base), 2));
+    out.push_back(fixed(each.loss_power,
+                        places_for(each.loss_power * each.solver_error / each.inefficiency)));
+    for (const std::size_t k : shown) out.push_back(cells == nullptr ? "" : (*cells)[k]);
+    if (has_contact_loss) out.emplace_back(each.contact_loss ? "yes" : "no");
+    table.add_row(out);
+  };
+  if (base.refusal.empty()) {
+    row("", resource_id(screening.base.lubricant_revision()), base, nullptr);
+  }
+  for (std::size_t i = 0; i < ranking.size() && i < top; ++i) {
+    if (!ranking[i].refusal.empty()) break;
+    const std::size_t candidate = ranking[i].candidate;
+    row(std::to_string(i + 1), candidates.names[candidate], ranking[i],
+        &candidates.cells[candidate]);
+  }
+  return table.text();
+}
+
+std::string ranking_text(const Screening& screening, const std::vector<CandidateFigures>& ranking,
+                         std::size_t top) {
+  const std::size_t with_figures = static_cast<std::size_t>(std::count_if(
+      ranking.begin(), ranking.end(), [](const auto& each) { return each.refusal.empty(); }));
+  Sheet title;
+  title.heading("Mesh inefficiency, energy mean over " + std::to_string(screening.conditions()) +
+                (screening.conditions() == 1 ? " condition: " : " conditions: ") +
+                std::to_string(std::min(top, with_figures)) + " best of " +
+                std::to_string(screening.table.size()) + " candidates");
+  Sheet sheet;
+  add_refusals(screening, ranking, sheet);
+  sheet.heading("What was computed");
+  std::vector<std::string> varied, carried;
+  for (const CandidateParameter& each : screening.table.parameters) varied.push_back(each.path());
+  for (std::size_t i = 0; i < screening.table.headers.size(); ++i) {
+    if (screening.table.is_carried[i]) carried.push_back(screening.table.headers[i]);
+  }
+  sheet.remark("At " + conditions_text(screening) + ", each with " +
+               screening.base.lubricant_revision() + ", " + screening.base.surface_revision() +
+               ", " + screening.base.gear_set_revision() + " and " +
+               screening.base.vehicle_revision() + ", except for: " + joined(varied, ", ") + "." +
+               (carried.empty() ? "" : " Carried along: " + joined(carried, ", ") + "."));
+  sheet.remark("Model " + screening.base.model_version() +
+               ". \"vs base\" is the difference in percent of the base, the first line.");
+  const CandidateFigures base = base_figures(screening);
+  if (!base.refusal.empty()) sheet.remark("The base has no figures: " + base.refusal);
+  return title.text() + ranking_table(screening, ranking, top) + "\n" + sheet.text();
+}
+
+std::string ranking_csv(const Screening& screening, const std::vector<CandidateFigures>& ranking) {
+  const CandidateFigures base = base_figures(screening);
+  std::vector<std::string> header = {"rank", "candidate"};
+  header.insert(header.end(), screening.table.headers.begin(), screening.table.headers.end());
+  header.insert(header.end(), {"inefficiency_energy_mean_percent", "solver_error_percent",
+                               "difference_from_base_percent_of_base", "mesh_loss_power_watts",
+                               "contact_loss", "refusal"});
+  std::string out = csv_line(header);
+  for (std::size_t i = 0; i < ranking.size(); ++i) {
+    const CandidateFigures& each = ranking[i];
+    const bool has_figures = each.refusal.empty();
+    const auto number = [&](double value) { return has_figures ? shortest(value) : ""; };
+    std::vector<std::string> cells = {has_figures ? std::to_string(i + 1) : "",
+                                      screening.table.names[each.candidate]};
+    const std::vector<std::string>& typed = screening.table.cells[each.candidate];
+    cells.insert(cells.end(), typed.begin(), typed.end());
+    cells.insert(cells.end(),
+                 {number(each.inefficiency), number(each.solver_error),
+                  number(relative_difference(each, base)), number(each.loss_power),
+                  has_figures ? (each.contact_loss ? "true" : "false") : "", each.refusal});
+    out += csv_line(cells);
+  }
+  return out;
+}
+
+std::string ranking_json(const Screening& screening, const std::vector<CandidateFigures>& ranking) {
+  const CandidateFigures base = base_figures(screening);
+  const auto figures = [](const CandidateFigures& each) {
+    return "\"inefficiency_energy_mean_percent\": " + json_number(each.inefficiency) +
+           ", \"solver_error_percent\": " + json_number(each.solver_error) +
+           ", \"mesh_loss_power_watts\": " + json_number(each.loss_power) +
+           ", \"contact_loss\": " + (each.contact_loss ? "true" : "false");
+  };
+  const auto refusal = [](const CandidateFigures& each) {
+    return "\"refusal\": " + json_quoted(each.refusal);
+  };
+  std::string out = "{\n  \"model_version\": " + json_quoted(screening.base.model_version()) +
+                    ",\n  \"base\": {\"lubricant_revision\": " +
+                    json_quoted(screening.base.lubricant_revision()) + ", " +
+                    (base.refusal.empty() ? figures(base) : refusal(base)) +
+                    "},\n  \"candidates\": [";
+  for (std::size_t i = 0; i < ranking.size(); ++i) {
+    const CandidateFigures& each = ranking[i];
+    out += std::string(i == 0 ? "" : ",") +
+           "\n    {\"candidate\": " + json_quoted(screening.table.names[each.candidate]) +
+           ", \"columns\": {";
+    for (std::size_t k = 0; k < screening.table.headers.size(); ++k) {
+      out += (k == 0 ? "" : ", ") + json_quoted(screening.table.headers[k]) + ": " +
+             json_quoted(screening.table.cells[each.candidate][k]);
+    }
+    out += "}, ";
+    out += each.refusal.empty() ? "\"rank\": " + std::to_string(i + 1) + ", " + figures(each) +
+                                      ", \"difference_from_base_percent_of_base\": " +
+                                      json_number(relative_difference(each, base)) + "}"
+                                : refusal(each) + "}";
+  }
+  return out + "\n  ]\n}\n";
+}
+
+}  // namespace
+
+CandidateFigures candidate_figures(const Screening& screening, std::size_t candidate) {
+  CandidateFigures out;
+  if (screening.table.refusals[candidate].empty()) {
+    out = weighted_figures(screening, [&](std::size_t k) {
+      return screening.points[candidate * screening.conditions() + k];
+    });
+  } else {
+    out.refusal = screening.table.refusals[candidate];
+  }
+  out.candidate = candidate;
+  return out;
+}
+
+CandidateFigures base_figures(const Screening& screening) {
+  return weighted_figures(screening, [&](std::size_t k) {
+    return screened_point(screening.base, static_cast<int>(k));
+  });
+}
+
+std::vector<CandidateFigures> ranked(const Screening& screening) {
+  std::vector<CandidateFigures> out;
+  for (std::size_t i = 0; i < screening.table.size(); ++i) {
+    out.push_back(candidate_figures(screening, i));
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const CandidateFigures& a, const CandidateFigures& b) {
+                     if (a.refusal.empty() != b.refusal.empty()) return a.refusal.empty();
+                     return a.refusal.empty() && a.inefficiency < b.inefficiency;
+                   });
+  return out;
+}
+
+std::string screening_report(const Screening& screening,
+                             const std::vector<CandidateFigures>& ranking, std::size_t top,
+                             OutputFormat format) {
+  switch (format) {
+    case OutputFormat::kCsv:
+      return ranking_csv(screening, ranking);
+    case OutputFormat::kJson:
+      return ranking_json(screening, ranking);
+    case OutputFormat::kTable:
+      break;
+  }
+  return ranking_text(screening, ranking, top);
+}
+
+}  // namespace tribodyn::client

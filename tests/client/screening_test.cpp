@@ -1,0 +1,220 @@
+// Tests of tables of candidates, of their ranking and of the file of their points.
+#include "client/cpp/report/screening.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "client/cpp/failure.h"
+#include "client/cpp/report/screening_report.h"
+
+namespace tribodyn::client {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+CandidateBase base_of_tests() {
+  CandidateBase base;
+  base.lubricant.set_pressure_viscosity_coefficient_per_pascal(2e-8);
+  base.lubricant.set_relaxation_time_seconds(4e-7);
+  base.surface.set_asperity_friction_coefficient(0.09);
+  return base;
+}
+
+CandidateTable candidates(const std::string& text, const std::vector<std::string>& carried = {}) {
+  return read_candidates(text, "c.csv", base_of_tests(), carried);
+}
+
+std::string candidates_error(const std::string& text,
+                             const std::vector<std::string>& carried = {}) {
+  try {
+    candidates(text, carried);
+  } catch (const Failure& failure) {
+    EXPECT_EQ(failure.exit_code(), kExitUsage);
+    return failure.what();
+  }
+  return "";
+}
+
+TEST(Candidates, OverrideParametersOfLubricantAndSurfaceInTheirUnits) {
+  const CandidateTable table = candidates(
+      "candidate,Pressure-Viscosity (1/GPa),asperity friction coefficient,relaxation time,cost\n"
+      "a,18,0.08,500ns,12\n"
+      "b,,0.1,,9\n");
+  EXPECT_THAT(table.names, ElementsAre("a", "b"));
+  ASSERT_EQ(table.parameters.size(), 3U);
+  EXPECT_EQ(table.parameters[0].path(), "lubricant.pressure_viscosity_coefficient_per_pascal");
+  EXPECT_THAT(table.parameters[0].values, ElementsAre(DoubleNear(18e-9, 1e-20), 2e-8));
+  EXPECT_EQ(table.parameters[1].path(), "surface.asperity_friction_coefficient");
+  EXPECT_THAT(table.parameters[1].values, ElementsAre(0.08, 0.1));
+  EXPECT_THAT(table.parameters[2].values, ElementsAre(DoubleNear(5e-7, 1e-18), 4e-7));
+  EXPECT_THAT(table.is_carried, ElementsAre(false, false, false, true));
+  EXPECT_TRUE(table.lubricants.empty());
+}
+
+TEST(Candidates, WithoutNamesHaveTheNumbersOfTheirRows) {
+  EXPECT_THAT(candidates("relaxation_time_seconds\n1e-7\n2e-7\n").names, ElementsAre("1", "2"));
+  EXPECT_THAT(candidates_error("id,relaxation_time_seconds\na,1e-7\na,2e-7\n"),
+              HasSubstr("row 3: has the name of an earlier row: a"));
+}
+
+TEST(Candidates, MayHaveDecimalCommasAndARowOfUnits) {
+  const CandidateTable table =
+      candidates("name;pressure-viscosity;treat rate\n;1/GPa;\nA;18,5;0,5\nB;19,5;1\n");
+  EXPECT_THAT(table.parameters.at(0).values,
+              ElementsAre(DoubleNear(18.5e-9, 1e-20), DoubleNear(19.5e-9, 1e-20)));
+  EXPECT_THAT(table.note, HasSubstr("2 cells have a decimal comma"));
+  EXPECT_EQ(table.cells[0][1], "0.5");
+}
+
+TEST(Candidates, RefuseAMisspeltParameterUnlessItIsCarried) {
+  const std::string text = "relaxtion_time_seconds,pressure-viscosity (1/GPa)\n1e-7,20\n";
+  EXPECT_THAT(candidates_error(text), HasSubstr("is relaxation_time_seconds meant?"));
+  EXPECT_THAT(candidates(text, {"relaxtion_time_seconds"}).is_carried, ElementsAre(true, false));
+  EXPECT_THAT(candidates_error("relaxation_time_seconds\n1e-7\n", {"cost"}),
+              HasSubstr("--carry 'cost': the table has no such column"));
+}
+
+TEST(Candidates, ReportOneWrongCellOfEachColumn) {
+  const std::string error =
+      candidates_error("pressure-viscosity,relaxation time (s)\n17.1,1e-7\n17.2,x\n17.3,1e-7\n");
+  EXPECT_THAT(error, HasSubstr("row 2 column pressure-viscosity: '17.1' needs its unit"));
+  EXPECT_THAT(error, HasSubstr("(2 more cells of the column are wrong)"));
+  EXPECT_THAT(error, HasSubstr("row 3 column relaxation time (s): 'x'"));
+  EXPECT_THAT(candidates_error("relaxation time (kg)\n1\n"), HasSubstr("has the unit kg"));
+  EXPECT_THAT(candidates_error("name,cost\na,3\n"), HasSubstr("no column is a parameter"));
+  EXPECT_THAT(candidates_error("relaxation_time_seconds\n"), HasSubstr("has no rows"));
+  EXPECT_THAT(candidates_error(""), HasSubstr("the table is empty"));
+}
+
+TEST(Candidates, WithMeasurementsAreLubricantsForTheServer) {
+  const CandidateTable table = candidates(
+      "name,kv40,kv100,asperity_friction_coefficient\n"
+      "a,73.3,8.86,0.1\n");
+  ASSERT_EQ(table.lubricants.size(), 1U);
+  EXPECT_EQ(table.lubricants[0]
+                .measurements()
+                .kinematic_viscosity_100_celsius_square_millimetres_per_second(),
+            8.86);
+  ASSERT_EQ(table.parameters.size(), 1U);
+  EXPECT_EQ(table.parameters[0].path(), "surface.asperity_friction_coefficient");
+}
+
+TEST(Candidates, OutsideARangeAreRefusedWithTheLikelySlip) {
+  v1::Schema schema;
+  v1::Constraint& row = *schema.add_constraints();
+  row.set_message("Lubricant");
+  row.set_field("pressure_viscosity_coefficient_per_pascal");
+  row.set_unit("1/Pa");
+  row.set_minimum(1e-10);
+  row.set_maximum(1e-6);
+  CandidateTable table = candidates("pressure-viscosity (1/GPa)\n20e-9\n20\n");
+  check_candidate_ranges(schema, table);
+  EXPECT_THAT(table.refusals[0], HasSubstr("pressure-viscosity (1/GPa) = 2e-17 1/Pa; allowed: "
+                                           "1e-10 to 1e-06 1/Pa; 20e-9 looks like 1/Pa"));
+  EXPECT_EQ(table.refusals[1], "");
+}
+
+/// Three candidates at two conditions with weights 3/4 and 1/4; the last one is refused at the
+/// second condition.
+Screening sample_screening() {
+  Screening out;
+  out.table =
+      candidates("name,asperity_friction_coefficient,cost\na,0.1,\"1,5\"\nb,0.08,2\nc,0.2,3\n");
+  for (const double speed : {20.0, 60.0}) {
+    v1::PointCondition& condition = *out.request.add_conditions();
+    condition.set_speed_kilometres_per_hour(speed);
+    condition.set_sump_temperature_celsius(90);
+  }
+  out.weights = {0.75, 0.25};
+  out.base.set_lubricant_revision("lubricants/x@1");
+  out.base.set_model_version("model-1");
+  const auto add = [](double value, v1::EvaluatePointsResponse& answer) {
+    answer.add_refusal_numbers(0);
+    answer.add_pinion_torque_newton_metres(1);
+    answer.add_wheel_torque_newton_metres(3);
+    answer.add_inefficiency_rms_percent(value);
+    answer.add_inefficiency_energy_mean_percent(value);
+    answer.add_mesh_loss_power_watts(10 * value);
+    answer.add_dynamic_transmission_error_minimum_metres(-1e-6);
+    answer.add_dynamic_transmission_error_maximum_metres(1e-6);
+    answer.add_contact_loss(false);
+    answer.add_settled(true);
+    answer.add_period_in_mesh_cycles(1);
+    answer.add_estimated_relative_error(1e-3);
+    answer.add_model(v1::POINT_MODEL_FULL);
+  };
+  for (const double value : {2.0, 2.0}) add(value, out.base);
+  v1::EvaluatePointsResponse answer;
+  for (const double value : {2.2, 1.0 / 3, 1.0, 2.0, 0.1, 0.1}) add(value, answer);
+  answer.set_refusal_numbers(5, 1);
+  v1::PointRefusal& refusal = *answer.add_refusals();
+  refusal.set_reason("TOO_HOT");
+  refusal.set_message("the contact is too hot, \"far\"\ntoo hot");
+  for (int row = 0; row < 6; ++row) out.points.push_back(screened_point(answer, row));
+  return out;
+}
+
+TEST(Screening, RanksByTheWeightedMean) {
+  const Screening screening = sample_screening();
+  const std::vector<CandidateFigures> ranking = ranked(screening);
+  ASSERT_EQ(ranking.size(), 3U);
+  EXPECT_EQ(screening.table.names[ranking[0].candidate], "b");
+  EXPECT_DOUBLE_EQ(ranking[0].inefficiency, 0.75 * 1 + 0.25 * 2);
+  EXPECT_DOUBLE_EQ(ranking[0].solver_error, 1e-3 * 1.25);
+  EXPECT_EQ(screening.table.names[ranking[1].candidate], "a");
+  EXPECT_THAT(ranking[2].refusal, HasSubstr("(at 60 km/h and 90 C)"));
+  const std::string report = screening_report(screening, ranking, 1, OutputFormat::kTable);
+  EXPECT_THAT(report, HasSubstr("1 best of 3 candidates"));
+  EXPECT_THAT(report, HasSubstr("-37.50"));  // 1.25 after 2
+  EXPECT_THAT(report, HasSubstr("c: the contact is too hot"));
+  EXPECT_THAT(report, HasSubstr("Carried along: cost."));
+  const std::string csv = screening_report(screening, ranking, 1, OutputFormat::kCsv);
+  EXPECT_THAT(csv, HasSubstr("\n2,a,0.1,\"1,5\","));
+}
+
+TEST(Screening, ReadsBackTheRowsThatItWrote) {
+  const Screening written = sample_screening();
+  const std::string csv = screening_header(written) + screening_rows(written, 0, 3);
+  Screening read = written;
+  for (ScreenedPoint& point : read.points) point = {};
+  EXPECT_EQ(read_screening_rows(csv, read), 6U);
+  EXPECT_EQ(screening_rows(read, 0, 3), screening_rows(written, 0, 3));
+  EXPECT_EQ(read.points[1].figures, written.points[1].figures);
+  EXPECT_EQ(read.points[5].refusal_reason, "TOO_HOT");
+  const std::size_t fourth = csv.rfind("\nb,");
+  EXPECT_EQ(read_screening_rows(csv.substr(0, fourth + 1) + "b,0.1\n", read), 3U);
+}
+
+TEST(Screening, IsAnotherOneWithOtherCandidatesOrConditionsButNotWithOtherWeights) {
+  const Screening screening = sample_screening();
+  const std::string identity = screening_identity(screening);
+  EXPECT_EQ(identity.size(), 16U);
+  Screening other = screening;
+  other.weights = {0.5, 0.5};
+  EXPECT_EQ(screening_identity(other), identity);
+  other.request.mutable_conditions(0)->set_speed_kilometres_per_hour(21);
+  EXPECT_NE(screening_identity(other), identity);
+  other = screening;
+  other.table.parameters[0].values[1] *= 1 + 1e-15;
+  EXPECT_NE(screening_identity(other), identity);
+  other = screening;
+  other.base.set_model_version("model-2");
+  EXPECT_NE(screening_identity(other), identity);
+}
+
+TEST(Screening, WritesJsonLines) {
+  const std::string lines = screening_json_lines(sample_screening());
+  EXPECT_THAT(lines, HasSubstr("{\"candidate\": \"a\", \"asperity_friction_coefficient\": 0.1, "
+                               "\"cost\": \"1,5\", \"speed_kilometres_per_hour\": 20,"));
+  EXPECT_THAT(lines,
+              HasSubstr("\"refusal_message\": \"the contact is too hot, \\\"far\\\" too hot\""));
+  EXPECT_THAT(lines, Not(HasSubstr("NaN")));
+}
+
+}  // namespace
+}  // namespace tribodyn::client
