@@ -8,13 +8,6 @@
 
 namespace tribodyn {
 
-double drawn_value(double value, double standard_uncertainty, double deviation) {
-  if (!(standard_uncertainty > 0)) return value;
-  if (!(value > 0)) return value + standard_uncertainty * deviation;
-  const double relative = std::min(standard_uncertainty / value, 10.0);
-  return value * std::exp(std::sqrt(std::log1p(square(relative))) * deviation);
-}
-
 VogelDraw drawn_vogel(const VogelFit& fit, const std::array<double, 3>& deviations) {
   const double cold_temperature = std::max(kFortyCelsius, fit.reference_temperature + 40);
   const double warm_temperature = cold_temperature + 60;

@@ -5,28 +5,9 @@
 #include <utility>
 
 #include "core/numerics/bracketed_root.h"
+#include "core/uncertainty/split_mix.h"
 
 namespace tribodyn {
-namespace {
-
-/// SplitMix64: G. L. Steele, D. Lea and C. H. Flood, OOPSLA 2014, 453-472. The standard library's
-/// distributions and std::shuffle differ from platform to platform.
-class SplitMix {
- public:
-  explicit SplitMix(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-    return z ^ (z >> 31U);
-  }
-
- private:
-  std::uint64_t state_;
-};
-
-}  // namespace
-
 double normal_quantile(double probability) {
   // Beyond +-38 standard deviations the probability is no longer a double.
   const auto excess = [probability](double x) {

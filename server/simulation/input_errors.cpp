@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/celsius.h"
+#include "core/uncertainty/drawn_value.h"
 #include "core/uncertainty/input_draw.h"
 #include "server/contract/constraints.h"
 #include "server/resources/provenance.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/study/operating_point.h"
-#include "core/uncertainty/input_draw.h"
+#include "core/uncertainty/drawn_value.h"
 #include "server/contract/resource_names.h"
 #include "server/mapping/to_core.h"
 #include "server/resources/lubricant_parameters.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/celsius.h"
+#include "core/uncertainty/drawn_value.h"
 #include "core/uncertainty/input_draw.h"
 #include "core/uncertainty/normal_draws.h"
 #include "core/uncertainty/spread.h"

@@ -1,0 +1,47 @@
+#include "core/decisions/ranking.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace tribodyn {
+
+CandidateComparison compare_candidates(const UncertainCandidates& candidates, Eigen::Index one,
+                                       Eigen::Index other) {
+  CandidateComparison out{};
+  out.difference = candidates.values(one) - candidates.values(other);
+  out.higher_probability = 0.5;
+  if (one == other) return out;
+  out.standard_uncertainty = std::sqrt(
+      candidates.own_effects.row(one).squaredNorm() +
+      candidates.own_effects.row(other).squaredNorm() +
+      (candidates.shared_effects.row(one) - candidates.shared_effects.row(other)).squaredNorm());
+  out.solver_error = candidates.solver_errors(one) + candidates.solver_errors(other);
+  const double certain =
+      std::copysign(std::max(0.0, std::abs(out.difference) - out.solver_error), out.difference);
+  if (out.standard_uncertainty > 0) {
+    out.higher_probability =
+        0.5 * std::erfc(-certain / (out.standard_uncertainty * std::numbers::sqrt2));
+  } else if (certain != 0) {
+    out.higher_probability = certain > 0 ? 1 : 0;
+  }
+  return out;
+}
+
+std::vector<RankedCandidate> ranked_candidates(const UncertainCandidates& candidates,
+                                               double confidence) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(candidates.values.size()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return candidates.values(a) < candidates.values(b);
+  });
+  std::vector<RankedCandidate> out;
+  for (const Eigen::Index index : order) {
+    const CandidateComparison to_best = compare_candidates(candidates, index, order.front());
+    out.push_back({index, to_best, to_best.higher_probability < confidence});
+  }
+  return out;
+}
+
+}  // namespace tribodyn
