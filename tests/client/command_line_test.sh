@@ -11,7 +11,7 @@ err_has 'cannot connect to the server at 127.0.0.1:9'
 expect 3 --server "unix:$folder/none" lubricants list
 expect 0 --help
 out_has 'Exit codes'
-for command in point curve compare screen sensitivities history contact traction film stribeck diff validate \
+for command in point curve compare screen design sensitivities history contact traction film stribeck diff validate \
   schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun"; do
@@ -222,6 +222,25 @@ out_lines 5
 out_has '^1,good,0\.5,15\.5,0\.09,[0-9.]+,'
 expect 0 screen "$table" --like paper-fluid-1 --output json
 out_is_json
+expect 0 screen "$table" --like paper-fluid-1 --uncertainty pressure-viscosity=30% --pareto 'treat rate' \
+  --plot "$folder/screen.svg"
+out_has '^ *2  like the base .* tie, [0-9]+ %'
+out_has 'Errors of each candidate alone: pressure viscosity coefficient'
+out_has '^Pareto front: least inefficiency and least treat rate'
+grep -q '</svg>' "$folder/screen.svg" || fail 'no picture of the front'
+expect 2 screen "$table" --like paper-fluid-1 --pareto 'treat rat'
+err_has 'is treat rate meant'
+expect 0 design --range pressure-viscosity=14/GPa:18/GPa --range asperity-friction-coefficient=0.05:0.12 --count 16
+out_lines 17
+cp "$folder/out" "$table.design"
+expect 0 screen "$table.design" --like paper-fluid-1 --effects
+out_has '^pressure_viscosity_coefficient_per_pascal +1\.'
+out_has 'explains [0-9.]+ % of the variance'
+expect 0 design --uncertainties-of sheet-a --count 4 --method latin-hypercube
+out_has '^candidate,pressure_viscosity_coefficient_per_pascal,'
+expect 2 design --range pressure-viscosity=18/GPa:14/GPa --method grid --count 3
+err_has 'must have a LOW below its HIGH'
+err_has '--count does not apply to a grid'
 printf '%s\n' name,kv40,kv100 A,73.3,8.86 B,9,73 >"$table"
 expect 0 screen "$table" --like paper-fluid-1
 out_has '^ *1  A  '

@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "client/cpp/failure.h"
+#include "client/cpp/plot/screening_plot.h"
+#include "client/cpp/report/screening_decisions.h"
 #include "client/cpp/report/screening_report.h"
 
 namespace tribodyn::client {
@@ -168,12 +170,12 @@ TEST(Screening, RanksByTheWeightedMean) {
   EXPECT_DOUBLE_EQ(ranking[0].solver_error, 1e-3 * 1.25);
   EXPECT_EQ(screening.table.names[ranking[1].candidate], "a");
   EXPECT_THAT(ranking[2].refusal, HasSubstr("(at 60 km/h and 90 C)"));
-  const std::string report = screening_report(screening, ranking, 1, OutputFormat::kTable);
+  const std::string report = screening_report(screening, ranking, {}, 1, OutputFormat::kTable);
   EXPECT_THAT(report, HasSubstr("1 best of 3 candidates"));
   EXPECT_THAT(report, HasSubstr("-37.50"));  // 1.25 after 2
   EXPECT_THAT(report, HasSubstr("c: the contact is too hot"));
   EXPECT_THAT(report, HasSubstr("Carried along: cost."));
-  const std::string csv = screening_report(screening, ranking, 1, OutputFormat::kCsv);
+  const std::string csv = screening_report(screening, ranking, {}, 1, OutputFormat::kCsv);
   EXPECT_THAT(csv, HasSubstr("\n2,a,0.1,\"1,5\","));
 }
 
@@ -214,6 +216,133 @@ TEST(Screening, WritesJsonLines) {
   EXPECT_THAT(lines,
               HasSubstr("\"refusal_message\": \"the contact is too hot, \\\"far\\\" too hot\""));
   EXPECT_THAT(lines, Not(HasSubstr("NaN")));
+}
+
+TEST(Candidates, MayStateTheirUncertainties) {
+  const CandidateTable table = candidates(
+      "relaxation time (ns),relaxation_time_seconds.standard_uncertainty,"
+      "asperity_friction_coefficient.standard_uncertainty\n"
+      "400,20ns,0.01\n"
+      "500,,\n");
+  ASSERT_EQ(table.uncertainties.size(), 2U);
+  EXPECT_THAT(table.uncertainties[0].values, ElementsAre(DoubleNear(2e-8, 1e-20), 0));
+  EXPECT_THAT(table.uncertainties[1].values, ElementsAre(0.01, 0));
+  EXPECT_THAT(candidates_error("relaxation time (ns),relaxation_time_seconds.standard_uncertainty\n"
+                               "400,-1e-9\n"),
+              HasSubstr("is below 0"));
+}
+
+TEST(Screening, InputsThatDifferErrAloneAndThoseOfTheBaseTogether) {
+  Screening screening = sample_screening();
+  v1::Lubricant& lubricant = screening.bases.lubricant;
+  lubricant.set_relaxation_time_seconds(4e-7);
+  lubricant.set_vogel_temperature_coefficient_kelvin(900);
+  for (const char* field : {"relaxation_time_seconds", "vogel_temperature_coefficient_kelvin"}) {
+    v1::ParameterProvenance& entry = *lubricant.add_provenance();
+    entry.set_field(field);
+    entry.set_standard_uncertainty(1e-8);
+  }
+  const auto* friction =
+      v1::Surface::descriptor()->FindFieldByName("asperity_friction_coefficient");
+  const std::vector<UncertainInput> inputs = uncertain_inputs(screening, {{friction, 0.1, true}});
+  ASSERT_EQ(inputs.size(), 2U);  // the law of viscosity is left out
+  EXPECT_TRUE(inputs[0].is_shared);
+  EXPECT_THAT(inputs[0].uncertainties, ElementsAre(1e-8, 1e-8, 1e-8));
+  EXPECT_FALSE(inputs[1].is_shared);
+  EXPECT_THAT(
+      inputs[1].uncertainties,
+      ElementsAre(DoubleNear(0.01, 1e-15), DoubleNear(0.008, 1e-15), DoubleNear(0.02, 1e-15)));
+}
+
+TEST(Screening, NamesTies) {
+  const Screening screening = sample_screening();
+  const std::vector<CandidateFigures> ranking = ranked(screening);
+  const auto* friction =
+      v1::Surface::descriptor()->FindFieldByName("asperity_friction_coefficient");
+  const std::vector<UncertainInput> inputs = {{friction, false, {0.1, 0.1, 0.1}}};
+  const RankingConfidence tied = ranking_confidence(ranking, inputs, {{0.8}, {0.6}}, 0.95);
+  ASSERT_EQ(tied.of.size(), 2U);
+  EXPECT_TRUE(tied.of[1]->is_tied);
+  EXPECT_DOUBLE_EQ(tied.of[1]->standard_uncertainty, 0.6);
+  const std::string report = screening_report(screening, ranking, tied, 5, OutputFormat::kTable);
+  EXPECT_THAT(report, HasSubstr("1 of 1 others cannot be told apart from b at 95 %: a."));
+  EXPECT_THAT(report, HasSubstr("tie, "));
+  EXPECT_THAT(screening_report(screening, ranking, tied, 5, OutputFormat::kCsv),
+              HasSubstr(",is_tied_with_best,"));
+  const RankingConfidence sure = ranking_confidence(ranking, inputs, {{0.08}, {0.06}}, 0.95);
+  EXPECT_FALSE(sure.of[1]->is_tied);
+  EXPECT_THAT(screening_report(screening, ranking, sure, 5, OutputFormat::kTable),
+              HasSubstr("worse, > 99 %"));
+  // Without a figure of the best one nothing can be said.
+  EXPECT_FALSE(ranking_confidence(ranking, inputs, {{std::nan("")}, {0.6}}, 0.95).of[1]);
+  RankingConfidence none;
+  none.has_no_inputs = true;
+  EXPECT_THAT(screening_report(screening, ranking, none, 5, OutputFormat::kTable),
+              HasSubstr("no ties can be found"));
+}
+
+/// Twenty candidates whose inefficiency is 1 + friction / 0.1 + 0.5 if the additive is B, plus a
+/// little that alternates.
+Screening linear_screening() {
+  Screening out = sample_screening();
+  std::string text = "name,asperity_friction_coefficient,additive,cost,kind,long\n";
+  for (int i = 0; i < 20; ++i) {
+    text += "c" + std::to_string(i) + "," + std::to_string(0.05 + 0.005 * (i * 7 % 20)) + "," +
+            (i % 3 == 0 ? "B" : "A") + "," + std::to_string(20 - i) + ",x,text" +
+            std::to_string(i) + "\n";
+  }
+  out.table = candidates(text);
+  out.points.clear();
+  for (int i = 0; i < 20; ++i) {
+    ScreenedPoint point;
+    point.figures[ScreenedPoint::kEnergyMean] =
+        1 + out.table.parameters[0].values[static_cast<std::size_t>(i)] / 0.1 +
+        (i % 3 == 0 ? 0.5 : 0) + (i % 2 == 0 ? 1e-3 : -1e-3);
+    out.points.insert(out.points.end(), 2, point);
+  }
+  return out;
+}
+
+TEST(Screening, FindsTheMainEffectsOfNumbersAndWords) {
+  const Screening screening = linear_screening();
+  const auto effects = screening_effects(screening, ranked(screening));
+  ASSERT_TRUE(effects);
+  ASSERT_EQ(effects->effects.size(), 3U);
+  EXPECT_EQ(effects->effects[0].column, "asperity_friction_coefficient");
+  EXPECT_NEAR(effects->effects[0].effect, 0.95, 5e-3);  // over its range of 0.095
+  EXPECT_EQ(effects->effects[1].from, "A");
+  EXPECT_EQ(effects->effects[1].to, "B");
+  EXPECT_NEAR(effects->effects[1].effect, 0.5, 5e-3);
+  EXPECT_LT(effects->effects[2].low, 0);
+  EXPECT_GT(effects->effects[2].high, 0);
+  EXPECT_EQ(effects->degrees_of_freedom, 16);
+  const std::string report = effects_report(*effects);
+  EXPECT_THAT(report, HasSubstr("cannot be told from zero"));
+  EXPECT_THAT(report, HasSubstr("kind (the same for all), long (20 different texts)"));
+}
+
+TEST(Screening, FindsTheParetoFrontOfAColumn) {
+  const Screening screening = linear_screening();
+  const std::vector<CandidateFigures> ranking = ranked(screening);
+  const ScreeningFront front = screening_front(screening, ranking, "cost", false);
+  ASSERT_FALSE(front.front.empty());
+  EXPECT_EQ(front.front.front(), ranking.front().candidate);
+  EXPECT_EQ(front.front.back(), 19U);  // the cheapest
+  EXPECT_EQ(screening_front(screening, ranking, "cost", true).front.back(), 0U);
+  EXPECT_THAT(front_report(screening, ranking, front),
+              HasSubstr("least inefficiency and least cost"));
+  try {
+    screening_front(screening, ranking, "costs", false);
+    ADD_FAILURE();
+  } catch (const Failure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("is cost meant?"));
+  }
+  EXPECT_THROW(screening_front(screening, ranking, "additive", false), Failure);
+  const auto effects = screening_effects(screening, ranking);
+  const std::string picture = screening_plot(screening, ranking, &front, &*effects);
+  EXPECT_THAT(picture, HasSubstr("Pareto front"));
+  EXPECT_THAT(picture, HasSubstr("additive: A to B"));
+  EXPECT_THAT(screening_plot(screening, ranking, nullptr, &*effects), Not(HasSubstr("Pareto")));
 }
 
 }  // namespace

@@ -66,6 +66,7 @@ std::vector<Command> all_commands() {
   commands.push_back(point_command());
   commands.push_back(compare_command());
   commands.push_back(screen_command());
+  commands.push_back(design_command());
   commands.push_back(sensitivities_command());
   commands.push_back(history_command());
   commands.push_back(contact_command());

@@ -70,6 +70,7 @@ Command film_command();
 Command stribeck_command();
 Command compare_command();
 Command screen_command();
+Command design_command();
 Command sensitivities_command();
 Command diff_command();
 Command validate_command();

@@ -39,6 +39,7 @@ the header, in the second row or in a cell. An empty cell leaves the value of th
     asperity_friction_coefficient, tribofilm_shear_strength, composite_rms_height, ...
   Measurements of the lubricant: kv40, kv100, density15, "Brookfield -40 C", base_oil_class, ...:
     the server computes the parameters from them as it does for an import with --like.
+  FIELD.standard_uncertainty: of a parameter, each candidate's own.
   Any other column is carried along into the results: additive, treat rate, cost. If its name
     resembles that of a parameter, --carry NAME says that it is none.
 
@@ -46,9 +47,15 @@ the header, in the second row or in a cell. An empty cell leaves the value of th
   A1,0.5,19.8,0.11
   A2,1.0,,0.09
 
+`tribodyn design` makes such tables from ranges, or from the uncertainties of a lubricant.
+
 A candidate with a value outside its range, or that the model refuses, is listed with the reason; the
 others are ranked. --csv FILE and --jsonl FILE write every candidate at every condition. Until it is
 complete, the file is FILE.ID.part; after an interruption the same command goes on where it ended.
+
+Candidates that cannot be told apart from the best one at the --confidence are ties. Uncertainties of
+parameters in the table (--uncertainty, columns) are each candidate's own; those of all other
+parameters, stated there or by the base, are common to all candidates and nearly cancel.
 )text"},
       {"files", "what import, export and validate read and write",
        R"text(Files

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -8,17 +9,26 @@
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
+#include "client/cpp/plot/screening_plot.h"
 #include "client/cpp/report/part_file.h"
 #include "client/cpp/report/screening.h"
+#include "client/cpp/report/screening_decisions.h"
 #include "client/cpp/report/screening_report.h"
+#include "client/cpp/resources/edits.h"
 #include "client/cpp/resources/json_input.h"
 #include "client/cpp/resources/table_files.h"
+#include "client/cpp/service/candidate_errors.h"
 #include "client/cpp/service/interrupt.h"
 #include "client/cpp/service/point_batches.h"
 #include "client/cpp/text/text.h"
+#include "client/cpp/text/units.h"
 
 namespace tribodyn::client {
 namespace {
+
+/// Candidates that are compared with the best one, from the best on: at least and at most. It takes
+/// two points for each input and condition.
+constexpr int kLeastCompared = 30, kMostCompared = 200;
 
 struct ScreenFlags {
   std::string path;
@@ -28,8 +38,48 @@ struct ScreenFlags {
   v1::PointCondition common;
   std::vector<std::string> carried;
   int top = 20;
-  std::string csv_path, json_lines_path;
+  std::string csv_path, json_lines_path, plot_path;
+  std::vector<StatedUncertainty> uncertainties;
+  double confidence = 0.95;
+  bool leaves_out_uncertainty = false;
+  std::string pareto_column;
+  bool wants_most = false;
+  bool wants_effects = false;
 };
+
+/// Reads "PARAMETER=VALUE", e.g. "pressure-viscosity=0.5/GPa" or "relaxation-time=10%".
+void read_uncertainty_flag(const std::string& text, std::vector<StatedUncertainty>& out,
+                           Complaints& complaints) {
+  const std::string start = "--uncertainty: '" + printable(text) + "' ";
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos) {
+    complaints.push_back(start + "is not PARAMETER=VALUE");
+    return;
+  }
+  const std::string word = text.substr(0, equals);
+  std::string value = text.substr(equals + 1), wrong;
+  const google::protobuf::FieldDescriptor* field =
+      find_parameter(kind_of(*v1::Surface::descriptor()), word, wrong);
+  if (field == nullptr) {
+    field = find_parameter(kind_of(*v1::Lubricant::descriptor()), word, wrong);
+  }
+  if (field == nullptr) {
+    complaints.push_back(start + wrong);
+    return;
+  }
+  const bool is_relative = value.ends_with("%");
+  if (is_relative) value.pop_back();
+  const std::string unit = is_relative ? "" : unit_of_field(field->name());
+  const std::string trade = trade_unit_of_field(field->name());
+  // The uncertainty of a temperature is a difference.
+  const std::string bare = unit.empty() ? "" : trade == "C" ? "K" : trade;
+  const auto read = read_quantity(value, unit, bare, false, wrong);
+  if (!read || !(*read > 0)) {
+    complaints.push_back(start + (read ? "must be above 0" : wrong));
+    return;
+  }
+  out.push_back({field, is_relative ? *read / 100 : *read, is_relative});
+}
 
 void add_screen_flags(FlagList& list, ScreenFlags& flags) {
   v1::EvaluatePointsRequest& request = flags.request;
@@ -86,6 +136,35 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
               request.set_vehicle(resource_name("vehicles", name));
             })
       .collection = "vehicles";
+  list.group("Decisions");
+  Flag& uncertainty = list.raw("--uncertainty", "PARAMETER=VALUE",
+                               "Standard uncertainty of a parameter, e.g. "
+                               "pressure-viscosity=0.5/GPa or relaxation-time=10%; "
+                               "repeatable. Of a parameter in the table it is each candidate's "
+                               "own, of another one common to "
+                               "all, as are those that the base states.");
+  uncertainty.is_repeatable = true;
+  uncertainty.read = [&flags](const std::vector<std::string>& texts, Complaints& complaints) {
+    for (const std::string& text : texts) {
+      read_uncertainty_flag(text, flags.uncertainties, complaints);
+    }
+  };
+  list.number("--confidence", {"-", "0.5 to 0.9999", "0.95"},
+              "Probability from which on two candidates can be told apart; others are ties",
+              [&flags](double value) { flags.confidence = value; });
+  list.toggle("--no-uncertainty", "Leave out the uncertainty of the inputs.",
+              [&flags] { flags.leaves_out_uncertainty = true; });
+  list.text("--pareto", "COLUMN",
+            "Also print the Pareto front of least inefficiency and least COLUMN, a column of the "
+            "table, e.g. cost.",
+            [&flags](const std::string& column) { flags.pareto_column = column; });
+  list.toggle("--pareto-most", "In the Pareto front more of the column is better.",
+              [&flags] { flags.wants_most = true; });
+  list.toggle("--effects",
+              "Also print the main effects of all columns on the mean inefficiency, with their "
+              "intervals.",
+              [&flags] { flags.wants_effects = true; });
+  add_plot_flag(list, "Also draw what --pareto and --effects compute, as SVG.", flags.plot_path);
   list.group("Results");
   list.whole_number("--top", {"candidates", "1 to 1000000", "20"},
                     "Candidates that the table shows, the best first; --output csv and json have "
@@ -140,6 +219,16 @@ void check_screen_flags(const ScreenFlags& flags, Complaints& complaints) {
   if (!flags.csv_path.empty() && !flags.json_lines_path.empty()) {
     complaints.emplace_back("give either --csv or --jsonl");
   }
+  if (!(flags.confidence >= 0.5 && flags.confidence <= 0.9999)) {
+    complaints.push_back("--confidence = " + significant(flags.confidence) +
+                         "; allowed: 0.5 to 0.9999");
+  }
+  if (flags.wants_most && flags.pareto_column.empty()) {
+    complaints.emplace_back("--pareto-most applies to --pareto, which is missing");
+  }
+  if (!flags.plot_path.empty() && flags.pareto_column.empty() && !flags.wants_effects) {
+    complaints.emplace_back("--plot draws what --pareto COLUMN and --effects compute; give one");
+  }
 }
 
 /// Sets the conditions and their weights.
@@ -161,7 +250,7 @@ void set_conditions(ScreenFlags& flags, Screening& screening) {
 }
 
 /// Evaluates the base and reads the table. Everything that is wrong with the command shows here.
-Screening prepared_screening(ScreenFlags& flags, Connection& connection) {
+Screening prepared_screening(ScreenFlags& flags, const v1::Schema& schema, Connection& connection) {
   // A table that cannot be read needs no server.
   const std::string text = read_table_file(flags.path, kLargestFile);
   Screening out;
@@ -172,7 +261,7 @@ Screening prepared_screening(ScreenFlags& flags, Connection& connection) {
   out.request.set_surface(out.base.surface_revision());
   out.request.set_gear_set(out.base.gear_set_revision());
   out.request.set_vehicle(out.base.vehicle_revision());
-  CandidateBase base;
+  CandidateBase& base = out.bases;
   base.lubricant = connection.get<v1::Lubricant>(out.request.lubricant());
   base.surface = connection.get<v1::Surface>(out.request.surface());
   const ResourcePointer stated =
@@ -181,7 +270,7 @@ Screening prepared_screening(ScreenFlags& flags, Connection& connection) {
   out.table = read_candidates(text, flags.path, base, flags.carried);
   if (!out.table.note.empty()) std::cerr << "tribodyn: " << printable(out.table.note) << "\n";
   characterise_candidates(connection, base, out.table);
-  check_candidate_ranges(connection.schema(), out.table);
+  check_candidate_ranges(schema, out.table);
   ScreenedPoint none{};
   none.figures.fill(std::nan(""));
   out.points.assign(out.table.size() * out.conditions(), none);
@@ -311,17 +400,72 @@ class ScreeningRun {
   std::chrono::steady_clock::time_point start_;
 };
 
+/// Returns how sure the ranking is. Where all compared candidates are ties, more are compared.
+RankingConfidence confidence_of(const ScreenFlags& flags, const Screening& screening,
+                                const std::vector<CandidateFigures>& ranking,
+                                const v1::Schema& schema, Connection& connection) {
+  RankingConfidence out;
+  const std::vector<UncertainInput> inputs = uncertain_inputs(screening, flags.uncertainties);
+  out.has_no_inputs = inputs.empty();
+  std::vector<std::size_t> candidates;
+  for (const CandidateFigures& each : ranking) {
+    if (each.refusal.empty()) candidates.push_back(each.candidate);
+  }
+  if (inputs.empty() || candidates.empty()) return out;
+  for (const int most : {std::clamp(flags.top, kLeastCompared, kMostCompared), kMostCompared}) {
+    const std::size_t count = std::min(candidates.size(), static_cast<std::size_t>(most));
+    const std::vector<std::size_t> compared(
+        candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count));
+    out = ranking_confidence(ranking, inputs,
+                             input_effects(connection, screening, schema, inputs, compared),
+                             flags.confidence);
+    if (count == candidates.size() || !out.of.back() || !out.of.back()->is_tied) break;
+  }
+  return out;
+}
+
+/// Prints and draws the Pareto front and the main effects that were asked for.
+void show_decisions(const ScreenFlags& flags, const Screening& screening,
+                    const std::vector<CandidateFigures>& ranking, OutputFormat format) {
+  std::optional<ScreeningFront> front;
+  std::optional<ScreeningEffects> effects;
+  if (!flags.pareto_column.empty()) {
+    front = screening_front(screening, ranking, flags.pareto_column, flags.wants_most);
+  }
+  if (flags.wants_effects) {
+    effects = screening_effects(screening, ranking);
+    if (!effects) {
+      throw Failure(kExitUsage,
+                    "--effects: too few candidates for as many columns; give at least two more "
+                    "candidates with figures than columns that differ");
+    }
+  }
+  if (format == OutputFormat::kTable) {
+    if (front) std::cout << "\n" << front_report(screening, ranking, *front);
+    if (effects) std::cout << "\n" << effects_report(*effects);
+  }
+  if (flags.plot_path.empty()) return;
+  write_file(flags.plot_path, screening_plot(screening, ranking, front ? &*front : nullptr,
+                                             effects ? &*effects : nullptr));
+}
+
 int run_screen(ScreenFlags& flags, const CommonOptions& options) {
   Connection connection = options.connect();
-  Screening screening = prepared_screening(flags, connection);
+  const v1::Schema schema = connection.schema();
+  Screening screening = prepared_screening(flags, schema, connection);
   const bool as_json_lines = !flags.json_lines_path.empty();
   ScreeningRun run(screening, as_json_lines ? flags.json_lines_path : flags.csv_path, options);
   run.run(connection);
   run.finish(as_json_lines);
   const std::vector<CandidateFigures> ranking = ranked(screening);
-  std::cout << screening_report(screening, ranking, static_cast<std::size_t>(flags.top),
+  const RankingConfidence confidence =
+      flags.leaves_out_uncertainty ? RankingConfidence()
+                                   : confidence_of(flags, screening, ranking, schema, connection);
+  std::cout << screening_report(screening, ranking, confidence, static_cast<std::size_t>(flags.top),
                                 options.output_format);
-  return ranking.front().refusal.empty() ? kExitOk : kExitFailed;
+  if (!ranking.front().refusal.empty()) return kExitFailed;
+  show_decisions(flags, screening, ranking, options.output_format);
+  return kExitOk;
 }
 
 }  // namespace
@@ -339,14 +483,17 @@ Command screen_command() {
       {"tribodyn screen candidates.csv --like my-oil --speeds 20,40,60 --sumps 40,90",
        "tribodyn screen candidates.csv --like my-oil --speeds 20,60,100 --weights 1,2,1 --csv "
        "points.csv",
+       "tribodyn screen candidates.csv --like my-oil --uncertainty pressure-viscosity=3% --pareto "
+       "cost --effects --plot screening.svg",
        "tribodyn screen candidates.csv --like my-oil --output csv"},
       {},
       {},
       {}};
   add_screen_flags(command.flags, *flags);
   command.check = [flags](Complaints& complaints) { check_screen_flags(*flags, complaints); };
-  command.main_flags = {"table", "--like",     "--speeds",  "--sumps",   "--weights",     "--top",
-                        "--csv", "--gear-set", "--surface", "--vehicle", "--sump-weights"};
+  command.main_flags = {"table",         "--like",    "--speeds",  "--sumps",   "--weights",
+                        "--uncertainty", "--pareto",  "--plot",    "--effects", "--top",
+                        "--csv",         "--surface", "--vehicle", "--gear-set"};
   command.run = [flags](const CommonOptions& options) { return run_screen(*flags, options); };
   return command;
 }

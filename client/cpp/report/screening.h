@@ -33,6 +33,7 @@ ScreenedPoint screened_point(const v1::EvaluatePointsResponse& answer, int row);
 
 /// Candidates at conditions, and what is known of them so far.
 struct Screening {
+  CandidateBase bases;
   CandidateTable table;
   v1::EvaluatePointsRequest request;  ///< the base at all conditions; revisions in place of names
   std::vector<double> weights;        ///< of the conditions; their sum is 1

@@ -130,8 +130,23 @@ void add_refusals(const Screening& screening, const std::vector<CandidateFigures
   }
 }
 
+/// Returns the confidence of a position in the ranking; null if it is not known.
+const CandidateConfidence* confidence_at(const RankingConfidence& confidence,
+                                         std::size_t position) {
+  const bool is_known = position < confidence.of.size() && confidence.of[position];
+  return is_known ? &*confidence.of[position] : nullptr;
+}
+
+std::string verdict_of(const CandidateConfidence* confidence, std::size_t position) {
+  if (confidence == nullptr) return "-";
+  if (position == 0) return "best";
+  const double percent = 100 * confidence->higher_probability;
+  const std::string probability = percent > 99.5 ? "> 99 %" : fixed(percent, 0) + " %";
+  return (confidence->is_tied ? "tie, " : "worse, ") + probability;
+}
+
 std::string ranking_table(const Screening& screening, const std::vector<CandidateFigures>& ranking,
-                          std::size_t top) {
+                          const RankingConfidence& confidence, std::size_t top) {
   using Align = Table::Align;
   const CandidateTable& candidates = screening.table;
   const CandidateFigures base = base_figures(screening);
@@ -141,6 +156,9 @@ std::string ranking_table(const Screening& screening, const std::vector<Candidat
                                         {"+/- solver", "%", Align::kDecimal},
                                         {"vs base", "%", Align::kDecimal},
                                         {"mesh loss", "W", Align::kDecimal}};
+  const bool is_sure = !confidence.of.empty();
+  if (is_sure) columns.insert(columns.begin() + 3, {"+/- inputs", "%", Align::kDecimal});
+  if (is_sure) columns.push_back({"to the best", "", Align::kLeft});
   const std::vector<std::size_t> shown = shown_columns(candidates);
   for (const std::size_t each : shown) {
     columns.push_back({shortened(candidates.headers[each]), "", Align::kDecimal});
@@ -150,36 +168,82 @@ std::string ranking_table(const Screening& screening, const std::vector<Candidat
                                        [](const auto& each) { return each.contact_loss; });
   if (has_contact_loss) columns.push_back({"flanks part", "", Align::kLeft});
   Table table(columns);
-  const auto figures = [](const CandidateFigures& each) {
-    const int places = places_for(each.solver_error);
-    return std::vector<std::string>{fixed(each.inefficiency, places),
-                                    fixed(each.solver_error, places)};
-  };
-  const auto row = [&](const std::string& rank, const std::string& name,
+  // `position` is that in the ranking; absent of the base.
+  const auto row = [&](std::optional<std::size_t> position, const std::string& name,
                        const CandidateFigures& each, const std::vector<std::string>* cells) {
-    std::vector<std::string> out = {rank, name};
-    for (const std::string& text : figures(each)) out.push_back(text);
+    const CandidateConfidence* sure = position ? confidence_at(confidence, *position) : nullptr;
+    const int places = places_for(each.solver_error);
+    std::vector<std::string> out = {position ? std::to_string(*position + 1) : "", name,
+                                    fixed(each.inefficiency, places)};
+    if (is_sure) {
+      out.push_back(sure == nullptr ? "" : significant(sure->standard_uncertainty, 2));
+    }
+    out.push_back(fixed(each.solver_error, places));
     out.push_back(cells == nullptr ? "" : signed_text(relative_difference(each, base), 2));
     out.push_back(fixed(each.loss_power,
                         places_for(each.loss_power * each.solver_error / each.inefficiency)));
+    if (is_sure) out.push_back(position ? verdict_of(sure, *position) : "");
     for (const std::size_t k : shown) out.push_back(cells == nullptr ? "" : (*cells)[k]);
     if (has_contact_loss) out.emplace_back(each.contact_loss ? "yes" : "no");
     table.add_row(out);
   };
   if (base.refusal.empty()) {
-    row("", resource_id(screening.base.lubricant_revision()), base, nullptr);
+    row(std::nullopt, resource_id(screening.base.lubricant_revision()), base, nullptr);
   }
   for (std::size_t i = 0; i < ranking.size() && i < top; ++i) {
     if (!ranking[i].refusal.empty()) break;
     const std::size_t candidate = ranking[i].candidate;
-    row(std::to_string(i + 1), candidates.names[candidate], ranking[i],
-        &candidates.cells[candidate]);
+    row(i, candidates.names[candidate], ranking[i], &candidates.cells[candidate]);
   }
   return table.text();
 }
 
+/// Adds which candidates cannot be told apart from the best one, and by which errors.
+void add_confidence(const Screening& screening, const std::vector<CandidateFigures>& ranking,
+                    const RankingConfidence& confidence, Sheet& sheet) {
+  const auto& of = confidence.of;
+  if (confidence.has_no_inputs) {
+    sheet.heading("How sure the ranking is");
+    sheet.remark(
+        "Nobody states an uncertainty of an input, so that no ties can be found. State those of "
+        "what "
+        "differs with --uncertainty PARAMETER=VALUE or in columns PARAMETER.standard_uncertainty.");
+  }
+  if (of.empty() || !of.front()) return;
+  std::vector<std::string> tied;
+  std::size_t ties = 0;
+  for (std::size_t i = 1; i < of.size(); ++i) {
+    if (!of[i] || !of[i]->is_tied) continue;
+    if (ties++ < 2 * kListedNames) tied.push_back(screening.table.names[ranking[i].candidate]);
+  }
+  const std::string& best = screening.table.names[ranking.front().candidate];
+  const std::string percent = significant(100 * confidence.confidence, 4) + " %";
+  sheet.heading("How sure the ranking is");
+  sheet.remark(ties == 0 ? "At " + percent + " " + best + " loses less than every other candidate."
+                         : std::to_string(ties) + " of " + std::to_string(of.size() - 1) +
+                               " others cannot be told apart from " + best + " at " + percent +
+                               ": " + joined(tied, ", ") +
+                               (ties > tied.size()
+                                    ? " and " + std::to_string(ties - tied.size()) + " more."
+                                    : "."));
+  if (of.size() < ranking.size()) {
+    sheet.remark("Compared: the best " + std::to_string(of.size()) + " candidates.");
+  }
+  sheet.remark(
+      (confidence.own.empty()
+           ? "The values in the table count as exact; --uncertainty PARAMETER=VALUE states "
+             "their uncertainty."
+           : "Errors of each candidate alone: " + joined(confidence.own, ", ") + ".") +
+      (confidence.shared.empty()
+           ? std::string()
+           : " Errors that all candidates have in common and that nearly cancel: " +
+                 joined(confidence.shared, ", ") + ".") +
+      " Probabilities are by the linear model and normal errors; the solver's error "
+      "counts against each difference.");
+}
+
 std::string ranking_text(const Screening& screening, const std::vector<CandidateFigures>& ranking,
-                         std::size_t top) {
+                         const RankingConfidence& confidence, std::size_t top) {
   const std::size_t with_figures = static_cast<std::size_t>(std::count_if(
       ranking.begin(), ranking.end(), [](const auto& each) { return each.refusal.empty(); }));
   Sheet title;
@@ -188,6 +252,7 @@ std::string ranking_text(const Screening& screening, const std::vector<Candidate
                 std::to_string(std::min(top, with_figures)) + " best of " +
                 std::to_string(screening.table.size()) + " candidates");
   Sheet sheet;
+  add_confidence(screening, ranking, confidence, sheet);
   add_refusals(screening, ranking, sheet);
   sheet.heading("What was computed");
   std::vector<std::string> varied, carried;
@@ -204,35 +269,42 @@ std::string ranking_text(const Screening& screening, const std::vector<Candidate
                ". \"vs base\" is the difference in percent of the base, the first line.");
   const CandidateFigures base = base_figures(screening);
   if (!base.refusal.empty()) sheet.remark("The base has no figures: " + base.refusal);
-  return title.text() + ranking_table(screening, ranking, top) + "\n" + sheet.text();
+  return title.text() + ranking_table(screening, ranking, confidence, top) + "\n" + sheet.text();
 }
 
-std::string ranking_csv(const Screening& screening, const std::vector<CandidateFigures>& ranking) {
+std::string ranking_csv(const Screening& screening, const std::vector<CandidateFigures>& ranking,
+                        const RankingConfidence& confidence) {
   const CandidateFigures base = base_figures(screening);
   std::vector<std::string> header = {"rank", "candidate"};
   header.insert(header.end(), screening.table.headers.begin(), screening.table.headers.end());
-  header.insert(header.end(), {"inefficiency_energy_mean_percent", "solver_error_percent",
+  header.insert(header.end(), {"inefficiency_energy_mean_percent", "standard_uncertainty_percent",
+                               "solver_error_percent", "higher_probability", "is_tied_with_best",
                                "difference_from_base_percent_of_base", "mesh_loss_power_watts",
                                "contact_loss", "refusal"});
   std::string out = csv_line(header);
   for (std::size_t i = 0; i < ranking.size(); ++i) {
     const CandidateFigures& each = ranking[i];
     const bool has_figures = each.refusal.empty();
+    const CandidateConfidence* sure = confidence_at(confidence, i);
     const auto number = [&](double value) { return has_figures ? shortest(value) : ""; };
     std::vector<std::string> cells = {has_figures ? std::to_string(i + 1) : "",
                                       screening.table.names[each.candidate]};
     const std::vector<std::string>& typed = screening.table.cells[each.candidate];
     cells.insert(cells.end(), typed.begin(), typed.end());
-    cells.insert(cells.end(),
-                 {number(each.inefficiency), number(each.solver_error),
-                  number(relative_difference(each, base)), number(each.loss_power),
-                  has_figures ? (each.contact_loss ? "true" : "false") : "", each.refusal});
+    cells.insert(
+        cells.end(),
+        {number(each.inefficiency), sure == nullptr ? "" : shortest(sure->standard_uncertainty),
+         number(each.solver_error), sure == nullptr ? "" : shortest(sure->higher_probability),
+         sure == nullptr ? "" : (sure->is_tied ? "true" : "false"),
+         number(relative_difference(each, base)), number(each.loss_power),
+         has_figures ? (each.contact_loss ? "true" : "false") : "", each.refusal});
     out += csv_line(cells);
   }
   return out;
 }
 
-std::string ranking_json(const Screening& screening, const std::vector<CandidateFigures>& ranking) {
+std::string ranking_json(const Screening& screening, const std::vector<CandidateFigures>& ranking,
+                         const RankingConfidence& confidence) {
   const CandidateFigures base = base_figures(screening);
   const auto figures = [](const CandidateFigures& each) {
     return "\"inefficiency_energy_mean_percent\": " + json_number(each.inefficiency) +
@@ -258,6 +330,11 @@ std::string ranking_json(const Screening& screening, const std::vector<Candidate
              json_quoted(screening.table.cells[each.candidate][k]);
     }
     out += "}, ";
+    if (const CandidateConfidence* sure = confidence_at(confidence, i)) {
+      out += "\"standard_uncertainty_percent\": " + json_number(sure->standard_uncertainty) +
+             ", \"higher_probability\": " + json_number(sure->higher_probability) +
+             ", \"is_tied_with_best\": " + (sure->is_tied ? "true, " : "false, ");
+    }
     out += each.refusal.empty() ? "\"rank\": " + std::to_string(i + 1) + ", " + figures(each) +
                                       ", \"difference_from_base_percent_of_base\": " +
                                       json_number(relative_difference(each, base)) + "}"
@@ -301,17 +378,18 @@ std::vector<CandidateFigures> ranked(const Screening& screening) {
 }
 
 std::string screening_report(const Screening& screening,
-                             const std::vector<CandidateFigures>& ranking, std::size_t top,
+                             const std::vector<CandidateFigures>& ranking,
+                             const RankingConfidence& confidence, std::size_t top,
                              OutputFormat format) {
   switch (format) {
     case OutputFormat::kCsv:
-      return ranking_csv(screening, ranking);
+      return ranking_csv(screening, ranking, confidence);
     case OutputFormat::kJson:
-      return ranking_json(screening, ranking);
+      return ranking_json(screening, ranking, confidence);
     case OutputFormat::kTable:
       break;
   }
-  return ranking_text(screening, ranking, top);
+  return ranking_text(screening, ranking, confidence, top);
 }
 
 }  // namespace tribodyn::client

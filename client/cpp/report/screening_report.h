@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,28 @@ CandidateFigures base_figures(const Screening& screening);
 /// the order of the table.
 std::vector<CandidateFigures> ranked(const Screening& screening);
 
-/// Returns the ranking: as a table the `top` best and what was refused, else all candidates.
+/// What the errors of the inputs make of a candidate.
+struct CandidateConfidence {
+  double standard_uncertainty;  ///< of its mean inefficiency [%]
+  double higher_probability;    ///< that it loses more than the best one
+  bool is_tied;                 ///< cannot be told apart from the best one
+};
+
+/// How sure a ranking is.
+struct RankingConfidence {
+  bool has_no_inputs = false;  ///< nobody states an uncertainty of an input
+  double confidence = 0.95;    ///< probability from which on candidates can be told apart
+  /// By position in the ranking, of its first candidates alone; nullopt: not known.
+  std::vector<std::optional<CandidateConfidence>> of;
+  std::vector<std::string> own;     ///< inputs with errors that are independent between candidates
+  std::vector<std::string> shared;  ///< inputs with errors that all candidates have in common
+};
+
+/// Returns the ranking: as a table the `top` best and what was refused, else all candidates. A
+/// confidence without candidates leaves its columns out of the table.
 std::string screening_report(const Screening& screening,
-                             const std::vector<CandidateFigures>& ranking, std::size_t top,
+                             const std::vector<CandidateFigures>& ranking,
+                             const RankingConfidence& confidence, std::size_t top,
                              OutputFormat format);
 
 }  // namespace tribodyn::client

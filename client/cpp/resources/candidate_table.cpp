@@ -37,6 +37,11 @@ bool is_parameter(const RowColumn& column) {
          column.field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;
 }
 
+bool is_uncertainty(const RowColumn& column) {
+  return column.kind == Kind::kProvenance && column.field != nullptr &&
+         column.part == RowColumn::Part::kStandardUncertainty;
+}
+
 /// Whether the server computes parameters of a lubricant from the column.
 bool is_measurement(const RowColumn& column) {
   if (column.field == nullptr || resource_of(column) != v1::Lubricant::descriptor()) return false;
@@ -76,7 +81,10 @@ class ColumnFinder {
       const ResourceKind& kind = kind_of(*type);
       std::string complaint;
       if (const auto column = find_column(kind, rest, complaint)) {
-        if (is_parameter(*column) || is_measurement(*column)) return column;
+        if (is_parameter(*column) || is_measurement(*column) || is_uncertainty(*column)) {
+          return column;
+        }
+        if (column->kind == Kind::kProvenance && !column->field) continue;
         return std::nullopt;
       }
       const std::string near = nearest_column(kind, rest);
@@ -167,7 +175,7 @@ class CandidateReader {
       out_.is_carried.push_back(!column);
       if (!column) continue;
       has_measurements_ = has_measurements_ || is_measurement(*column);
-      has_parameters_ = true;
+      has_parameters_ = has_parameters_ || !is_uncertainty(*column);
     }
     if (!has_parameters_ && wrong_.empty()) {
       wrong_.add(
@@ -179,6 +187,9 @@ class CandidateReader {
       const auto& column = cells_.columns()[k];
       if (cells_.is_name(k)) continue;
       const std::size_t at = index++;
+      if (column && is_uncertainty(*column)) {
+        out_.uncertainties.push_back({column->field, {}, at, unit_of_field(column->field->name())});
+      }
       if (!column || !is_parameter(*column)) continue;
       const bool is_computed =
           has_measurements_ && resource_of(*column) == v1::Lubricant::descriptor();
@@ -201,6 +212,25 @@ class CandidateReader {
     }
   }
 
+  void read_uncertainty(const CsvLine& line, std::size_t k) {
+    const FieldDescriptor* field = cells_.columns()[k]->field;
+    const std::string unit = unit_of_field(field->name());
+    double value = 0;
+    if (!line.cells[k].empty()) {
+      std::string wrong;
+      // The uncertainty of a temperature is a difference.
+      const auto read = read_quantity(line.cells[k], unit, unit, false, wrong);
+      value = read.value_or(-1);
+      if (read && value < 0) wrong = "is below 0";
+      if (!wrong.empty()) {
+        add_wrong_cell(line, k, "'" + printable(line.cells[k].substr(0, 60)) + "' " + wrong);
+      }
+    }
+    for (CandidateParameter& each : out_.uncertainties) {
+      if (each.field == field) each.values.push_back(value);
+    }
+  }
+
   void read_row(const CsvLine& line) {
     const std::string name = name_in(line);
     if (name.empty()) {
@@ -218,7 +248,8 @@ class CandidateReader {
       if (cells_.is_name(k)) continue;
       typed.push_back(printable(line.cells[k]));
       if (!column && has_decimal_commas_) typed.back() = with_decimal_point(typed.back());
-      if (!column || line.cells[k].empty()) continue;
+      if (column && is_uncertainty(*column)) read_uncertainty(line, k);
+      if (!column || line.cells[k].empty() || is_uncertainty(*column)) continue;
       Message& resource = resource_of(*column) == v1::Surface::descriptor()
                               ? static_cast<Message&>(surface)
                               : lubricant;
@@ -336,6 +367,30 @@ std::vector<const FieldDescriptor*> numbers_of_lubricants() {
 std::string CandidateParameter::path() const {
   return (field->containing_type() == v1::Surface::descriptor() ? "surface." : "lubricant.") +
          field->name();
+}
+
+std::vector<const FieldDescriptor*> candidate_parameters() {
+  std::vector<const FieldDescriptor*> out = numbers_of_lubricants();
+  for (const RowColumn& column : columns_of(kind_of(*v1::Surface::descriptor()))) {
+    if (is_parameter(column)) out.push_back(column.field);
+  }
+  return out;
+}
+
+double base_value(const CandidateBase& base, const FieldDescriptor& field) {
+  return field.containing_type() == v1::Surface::descriptor() ? number_of(base.surface, field)
+                                                              : number_of(base.lubricant, field);
+}
+
+double stated_uncertainty(const CandidateBase& base, const FieldDescriptor& field) {
+  const bool is_of_law = field.name().starts_with("vogel_") || field.name().starts_with("density_");
+  if (is_of_law) return 0;
+  const bool is_of_surface = field.containing_type() == v1::Surface::descriptor();
+  for (const v1::ParameterProvenance& entry :
+       is_of_surface ? base.surface.provenance() : base.lubricant.provenance()) {
+    if (entry.field() == field.name()) return entry.standard_uncertainty();
+  }
+  return 0;
 }
 
 CandidateTable read_candidates(const std::string& text, const std::string& path,

@@ -30,6 +30,8 @@ struct CandidateTable {
   std::vector<std::string> refusals;            ///< by candidate; empty: it can be evaluated
   std::vector<bool> is_carried;                 ///< by header: the column is no parameter
   std::vector<CandidateParameter> parameters;
+  /// Standard uncertainties of parameters, from columns FIELD.standard_uncertainty; 0: not stated.
+  std::vector<CandidateParameter> uncertainties;
   /// By candidate, where columns hold measurements from which the server computes parameters; else
   /// empty.
   std::vector<v1::Lubricant> lubricants;
@@ -49,9 +51,10 @@ struct CandidateBase {
 
 /// Returns the candidates of a table. A column is a parameter of the lubricant or of the surface in
 /// any spelling of RowColumn, with "lubricant." or "surface." before it where wanted; or a
-/// measurement of the lubricant; or the candidates' "name", "candidate" or "id", without which they
-/// have the numbers of their rows; or it is carried along. A header that resembles a parameter's
-/// name is an error unless `carried` lists it. Throws Failure (kExitUsage) that lists every error.
+/// measurement of the lubricant; or FIELD.standard_uncertainty; or the candidates' "name",
+/// "candidate" or "id", without which they have the numbers of their rows; or it is carried along.
+/// A header that resembles a parameter's name is an error unless `carried` lists it. Throws Failure
+/// (kExitUsage) that lists every error.
 CandidateTable read_candidates(const std::string& text, const std::string& path,
                                const CandidateBase& base, const std::vector<std::string>& carried);
 
@@ -60,6 +63,17 @@ CandidateTable read_candidates(const std::string& text, const std::string& path,
 /// those that the server rejects.
 void characterise_candidates(Connection& connection, const CandidateBase& base,
                              CandidateTable& table);
+
+/// Returns the parameters of lubricants and surfaces.
+std::vector<const google::protobuf::FieldDescriptor*> candidate_parameters();
+
+/// Returns the value of a parameter of the base, in the unit of the field; NaN if it has none.
+double base_value(const CandidateBase& base, const google::protobuf::FieldDescriptor& field);
+
+/// Returns the standard uncertainty that the base states of a parameter, in the unit of the field;
+/// 0 if it states none. 0 too of the laws of viscosity and density: their parameters err together.
+double stated_uncertainty(const CandidateBase& base,
+                          const google::protobuf::FieldDescriptor& field);
 
 /// Sets the refusals of candidates with a parameter outside the server's range, with the likely
 /// slip.

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "client/cpp/report/screening_report.h"
+#include "client/cpp/service/candidate_errors.h"
+
+namespace tribodyn::client {
+
+/// Returns how sure the ranking is. `effects`: those of the first candidates of the ranking, by
+/// input_effects(); candidates with a NaN among them have no confidence.
+RankingConfidence ranking_confidence(const std::vector<CandidateFigures>& ranking,
+                                     const std::vector<UncertainInput>& inputs,
+                                     const std::vector<std::vector<double>>& effects,
+                                     double confidence);
+
+/// The front of least inefficiency and least or most of a column.
+struct ScreeningFront {
+  std::string column;              ///< as typed in the table
+  bool wants_most = false;         ///< more of the column is better
+  std::vector<double> values;      ///< by candidate; NaN without a number
+  std::vector<std::size_t> front;  ///< candidates, by ascending inefficiency
+};
+
+/// Returns the front. Throws Failure (kExitUsage), naming --pareto, if the table has no such column
+/// or if it has no numbers.
+ScreeningFront screening_front(const Screening& screening,
+                               const std::vector<CandidateFigures>& ranking,
+                               const std::string& column, bool wants_most);
+
+/// Effect of one column, or of one level of a column of words, on the mean inefficiency.
+struct ScreeningEffect {
+  std::string column, from, to;  ///< as typed: lowest and highest number, or two words
+  double effect, low, high;      ///< change of the mean inefficiency and its 95 % interval [%]
+};
+
+struct ScreeningEffects {
+  std::vector<ScreeningEffect> effects;  ///< largest first
+  std::vector<std::string> left_out;     ///< columns without an effect, each with the reason
+  int degrees_of_freedom = 0;
+  double residual_standard_deviation = 0;  ///< of the mean inefficiency about the model [%]
+  double explained_share = 0;              ///< of its variance, 0 to 1
+};
+
+/// Returns the main effects of all columns that differ; nullopt if there are too few candidates.
+std::optional<ScreeningEffects> screening_effects(const Screening& screening,
+                                                  const std::vector<CandidateFigures>& ranking);
+
+std::string front_report(const Screening& screening, const std::vector<CandidateFigures>& ranking,
+                         const ScreeningFront& front);
+std::string effects_report(const ScreeningEffects& effects);
+
+}  // namespace tribodyn::client
