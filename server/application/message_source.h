@@ -34,6 +34,9 @@ class AnyMessageSource {
   virtual void observe(const std::weak_ptr<Observer>&) {}
   /// Returns true if each message takes about a millisecond or less. Constant.
   virtual bool is_short() const { return false; }
+  /// Returns false if the source has nothing to say before the observer's next notification. Takes
+  /// about a microsecond.
+  virtual bool may_continue() const { return true; }
   /// OK (code 0) or why the stream broke off.
   virtual google::rpc::Status error() const { return {}; }
 };

@@ -49,7 +49,9 @@ void StreamMachine::written(bool ok) {
   }
   {
     const std::lock_guard lock(mutex_);
-    state_ = State::kAsking;
+    const bool has_reason = again_ || closing_ || source_->may_continue();
+    state_ = has_reason ? State::kAsking : State::kIdle;
+    if (!has_reason) return;
   }
   source_->is_short() ? transport_.run_short_step() : transport_.run_step();
 }

@@ -91,7 +91,7 @@ class StreamMachine : public Observer {
   ReplySource source_;  // set by open(); then the owner's
   std::mutex mutex_;
   State state_ = State::kOpening;  // guarded by mutex_
-  bool again_ = false;             // guarded by mutex_; changed since the last question
+  bool again_ = false;             // guarded by mutex_; changed since the last step began
   std::optional<google::rpc::Status> closing_;  // guarded by mutex_
   Clock::time_point end_;                       // guarded by mutex_
   Clock::time_point writing_since_;             // guarded by mutex_; of kWriting

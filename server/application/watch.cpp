@@ -5,8 +5,10 @@
 #include <atomic>
 #include <chrono>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "server/application/errors.h"
 #include "server/application/simulation_lookup.h"
@@ -21,37 +23,82 @@ using std::chrono::steady_clock;
 
 constexpr double kRetrySeconds = 10;  // for a place among the watches with a filter
 
-/// What a watch knows of a simulation whose end it has not told.
+/// A simulation whose end the watch has not reported.
 struct Watched {
-  std::shared_ptr<ProgressChannel> channel;
-  std::string name;  ///< full name
-  // After the last event that was told; at first as the simulation is, which a client that has all
-  // events knows.
+  std::int64_t id = 0;      ///< its row
+  std::int64_t number = 0;  ///< in its project
+  // After the last event that was reported; at first as the simulation is, which a client that has
+  // all events has received.
   StoredState state = StoredState::kQueued;
   int attempt = 1;
   std::int64_t told = 0;  ///< sequence number of that event
-  std::int64_t read = 0;  ///< sequence number up to which events were read from the store
+};
+
+/// A running simulation of a watch.
+struct Running {
+  std::shared_ptr<ProgressChannel> channel;  ///< null: it has none yet, or has ended since
   std::uint64_t told_progress = 0;
 };
-using Simulations = std::map<std::int64_t, Watched>;  // by row
+
+/// The simulations of a watch, sorted by row.
+class Simulations {
+ public:
+  void add(const Watched& watched) {
+    const auto place = place_of(watched.id);
+    if (place == all_.end() || place->id != watched.id) all_.insert(place, watched);
+  }
+  void remove(std::int64_t id) {
+    const auto place = place_of(id);
+    if (place != all_.end() && place->id == id) all_.erase(place);
+  }
+  /// Returns null if there is none of this row.
+  Watched* find(std::int64_t id) {
+    const auto place = place_of(id);
+    return place != all_.end() && place->id == id ? &*place : nullptr;
+  }
+  const std::vector<Watched>& all() const { return all_; }
+
+ private:
+  std::vector<Watched>::iterator place_of(std::int64_t id) {
+    return std::lower_bound(all_.begin(), all_.end(), id,
+                            [](const Watched& each, std::int64_t row) { return each.id < row; });
+  }
+
+  std::vector<Watched> all_;
+};
+
+/// What a watch begins with.
+struct Beginning {
+  Simulations simulations;
+  std::map<std::int64_t, Running> running = {};  ///< by row
+  /// Those of `simulations` that have not ended.
+  std::vector<std::shared_ptr<ProgressChannel>> channels = {};
+
+  void add(const Watched& watched, std::shared_ptr<ProgressChannel> channel) {
+    simulations.add(watched);
+    if (watched.state == StoredState::kRunning) running[watched.id] = {channel};
+    if (channel != nullptr) channels.push_back(std::move(channel));
+  }
+};
 
 /// Events of named simulations or, without names, of those of a project that satisfy restrictions.
-/// Events come from the store in the order of their numbers and each once; between them the latest
-/// progress and, if nothing happens, heartbeats. Holds one page of events at most.
+/// Events come in the order of their numbers and each once; between them the latest progress and,
+/// if nothing happens, heartbeats. Holds one page of events at most.
 class Watch : public MessageSource<v1::SimulationEvent> {
  public:
-  /// Of named simulations; the rows in `watched` are those that may still have events after number
-  /// `after`.
-  Watch(Application& application, Simulations watched, std::int64_t after, const CallContext& call)
+  /// Of named simulations: those that may still have events after number `after`.
+  Watch(Application& application, Beginning named, std::int64_t after, const CallContext& call)
       : application_(application),
         limits_{.cancelled = call.limits.cancelled},
         project_(call.project),
         is_named_(true),
-        watched_(std::move(watched)),
+        watched_(std::move(named.simulations)),
+        running_(std::move(named.running)),
+        channels_(std::move(named.channels)),
         told_through_(after) {}
   /// Of those of the project of the call that satisfy the restrictions; `running` are those that
   /// run now.
-  Watch(Application& application, std::vector<Restriction> restrictions, Simulations running,
+  Watch(Application& application, std::vector<Restriction> restrictions, Beginning running,
         std::shared_ptr<void> place, std::int64_t after, const CallContext& call)
       : Watch(application, std::move(running), after, call) {
     is_named_ = false;
@@ -61,7 +108,7 @@ class Watch : public MessageSource<v1::SimulationEvent> {
 
   void observe(const std::weak_ptr<Observer>& observer) override {
     observer_ = observer;
-    for (auto& [id, each] : watched_) each.channel->observe(observer);
+    for (const auto& each : std::exchange(channels_, {})) each->observe(observer);
     if (!is_named_) application_.store.observe(observer);
     application_.jobs.wake(observer);
   }
@@ -71,10 +118,10 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     out.Clear();
     const bool is_quiet = steady_clock::now() - last_message_ >= application_.jobs.heartbeat();
     if (events_.empty()) {
-      // A heartbeat reads the store too: an event may be on disk although its writer was told that
-      // the write failed.
       const std::int64_t before = told_through_;
-      if (may_have_events() || is_quiet) read_events();
+      if (may_have_more_ || application_.store.changes() != seen_changes_ || is_quiet) {
+        read_events(is_quiet);
+      }
       if (events_.empty() && may_have_more_ && told_through_ > before) {
         tell_heartbeat(out);  // after a window without any match: says how far the watch has come
         return Step::kMessage;
@@ -91,29 +138,46 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     return Step::kMessage;
   }
 
- private:
-  bool is_over() const { return is_named_ && watched_.empty(); }
-
-  bool may_have_events() const {
-    if (!is_named_ || may_have_more_) return true;
-    return std::any_of(watched_.begin(), watched_.end(), [](const auto& each) {
-      return each.second.channel->latest().sequence > each.second.read;
-    });
+  bool may_continue() const override {
+    return is_over() || !events_.empty() || may_have_more_ ||
+           std::any_of(running_.begin(), running_.end(), [](const auto& each) {
+             const Running& running = each.second;
+             return running.channel == nullptr ||
+                    running.channel->progress_number() != running.told_progress;
+           });
   }
 
-  void read_events() {
+ private:
+  bool is_over() const { return is_named_ && watched_.all().empty(); }
+
+  /// Reads the next page of events, from memory or, if the memory does not reach back so far or
+  /// `is_quiet`, from the database: a heartbeat also finds events on disk that nothing announced.
+  void read_events(bool is_quiet) {
+    Store& store = application_.store;
+    seen_changes_ = store.changes();
+    if (!is_quiet) {
+      auto recent = store.recent_events(project_, told_through_, limits_);
+      if (recent && is_named_) {
+        std::erase_if(recent->events, [this](const StoredEvent& each) {
+          return watched_.find(each.simulation) == nullptr;
+        });
+      }
+      // Whether a simulation satisfies the restrictions, only the database can say.
+      if (recent && (is_named_ || recent->events.empty())) return take(*std::move(recent));
+    }
     EventQuery query{.project = project_, .restrictions = restrictions_, .after = told_through_};
     if (is_named_) {
-      for (auto& [id, each] : watched_) {
-        query.simulations.push_back(id);
-        each.read = std::max(each.read, each.channel->latest().sequence);
-      }
+      for (const Watched& each : watched_.all()) query.simulations.push_back(each.id);
     }
-    EventPage page = application_.store.events(query, limits_);
+    take(store.events(query, limits_));
+  }
+
+  void take(EventPage page) {
     may_have_more_ = page.more;
     if (page.events.empty()) told_through_ = page.through;
     read_through_ = page.through;
-    events_.assign(page.events.begin(), page.events.end());
+    events_.assign(std::make_move_iterator(page.events.begin()),
+                   std::make_move_iterator(page.events.end()));
   }
 
   void tell_event(const StoredEvent& event, v1::SimulationEvent& out) {
@@ -132,26 +196,27 @@ class Watch : public MessageSource<v1::SimulationEvent> {
 
   /// Begins or ends to watch the progress of the simulation of an event.
   void note(const StoredEvent& event) {
+    running_.erase(event.simulation);
     if (has_ended(event.state) || event.state == StoredState::kDeleted) {
-      watched_.erase(event.simulation);
-      return;
+      return watched_.remove(event.simulation);
     }
-    const auto found = watched_.find(event.simulation);
-    if (found != watched_.end()) {
-      found->second.state = event.state;
-      found->second.attempt = event.attempt;
-      found->second.told = event.sequence;
-    } else if (event.state == StoredState::kRunning) {
-      auto opened = application_.jobs.watch(event.simulation, limits_);
-      if (!opened || opened->simulation.sequence != event.sequence) return;  // an older attempt
-      opened->channel->observe(observer_);
-      watched_[event.simulation] = {std::move(opened->channel),
-                                    name_of(event),
-                                    event.state,
-                                    event.attempt,
-                                    event.sequence,
-                                    event.sequence};
+    const bool runs = event.state == StoredState::kRunning;
+    if (Watched* found = watched_.find(event.simulation)) {
+      found->state = event.state;
+      found->attempt = event.attempt;
+      found->told = event.sequence;
+    } else if (runs) {
+      watched_.add(
+          {event.simulation, event.simulation_number, event.state, event.attempt, event.sequence});
     }
+    if (runs) running_[event.simulation] = {find_channel(event.simulation)};
+  }
+
+  /// Of a named simulation the channel that it had at the beginning is observed already.
+  std::shared_ptr<ProgressChannel> find_channel(std::int64_t id) {
+    auto out = application_.jobs.channel(id);
+    if (out != nullptr && !is_named_) out->observe(observer_);
+    return out;
   }
 
   void set_error(std::int64_t id, v1::SimulationEvent& out) {
@@ -171,29 +236,33 @@ class Watch : public MessageSource<v1::SimulationEvent> {
     out.set_event_number(told_through_);
   }
 
-  static void set_progress(const Watched& watched, const Progress& progress,
-                           v1::SimulationEvent& out) {
-    if (watched.state != StoredState::kRunning) return;
-    out.set_progress_fraction(progress.fraction);
-    out.set_stage(progress.stage);
-    if (progress.remaining_seconds) out.set_remaining_seconds(*progress.remaining_seconds);
+  /// Describes a simulation as it is after the last event that was reported.
+  void set_present(const Watched& watched, const Progress* progress, v1::SimulationEvent& out) {
+    set_common(simulation_name(project_, watched.number), watched.state, watched.attempt,
+               watched.told, out);
+    if (progress == nullptr) return;
+    out.set_progress_fraction(progress->fraction);
+    out.set_stage(progress->stage);
+    if (progress->remaining_seconds) out.set_remaining_seconds(*progress->remaining_seconds);
   }
 
-  /// Tells the progress of one simulation, the next one in turn. Returns false if there is none.
+  /// Reports the progress of one simulation, the next one in turn. Returns false if there is none.
   bool tell_progress(v1::SimulationEvent& out) {
-    auto each = watched_.upper_bound(last_in_turn_);
-    for (std::size_t i = 0; i < watched_.size(); ++i, ++each) {
-      if (each == watched_.end()) each = watched_.begin();
-      auto& [id, watched] = *each;
-      if (watched.state != StoredState::kRunning) continue;
-      const ProgressChannel::Latest latest = watched.channel->latest();
-      if (latest.sequence > watched.read || latest.progress_number == watched.told_progress) {
+    auto each = running_.upper_bound(last_in_turn_);
+    for (std::size_t i = 0; i < running_.size(); ++i, ++each) {
+      if (each == running_.end()) each = running_.begin();
+      auto& [id, running] = *each;
+      if (running.channel == nullptr) running.channel = find_channel(id);
+      if (running.channel == nullptr ||
+          running.channel->progress_number() == running.told_progress) {
         continue;
       }
+      const Watched& watched = *watched_.find(id);
+      const ProgressChannel::Latest latest = running.channel->latest();
+      if (latest.sequence > watched.told) continue;  // progress after an event that comes first
       last_in_turn_ = id;
-      watched.told_progress = latest.progress_number;
-      set_common(watched.name, watched.state, watched.attempt, watched.told, out);
-      set_progress(watched, latest.progress, out);
+      running.told_progress = latest.progress_number;
+      set_present(watched, &latest.progress, out);
       out.set_kind(v1::SimulationEvent::PROGRESS);
       return true;
     }
@@ -203,12 +272,16 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   /// Of a single named simulation it tells the progress again.
   void tell_heartbeat(v1::SimulationEvent& out) {
     last_message_ = steady_clock::now();
-    if (is_named_ && watched_.size() == 1) {
-      Watched& watched = watched_.begin()->second;
-      const ProgressChannel::Latest latest = watched.channel->latest();
-      watched.told_progress = latest.progress_number;
-      set_common(watched.name, watched.state, watched.attempt, watched.told, out);
-      set_progress(watched, latest.progress, out);
+    if (is_named_ && watched_.all().size() == 1) {
+      const Watched& watched = watched_.all().front();
+      const auto running = running_.find(watched.id);
+      if (running != running_.end() && running->second.channel != nullptr) {
+        const ProgressChannel::Latest latest = running->second.channel->latest();
+        running->second.told_progress = latest.progress_number;
+        set_present(watched, &latest.progress, out);
+      } else {
+        set_present(watched, nullptr, out);
+      }
     }
     out.set_kind(v1::SimulationEvent::HEARTBEAT);
     out.set_event_number(told_through_);
@@ -220,10 +293,13 @@ class Watch : public MessageSource<v1::SimulationEvent> {
   const std::string project_;
   bool is_named_;
   std::vector<Restriction> restrictions_;
-  Simulations watched_;
+  Simulations watched_;                                     // without names: those that run
+  std::map<std::int64_t, Running> running_;                 // by row; each is in watched_
+  std::vector<std::shared_ptr<ProgressChannel>> channels_;  // until observe()
   std::weak_ptr<Observer> observer_;
   std::deque<StoredEvent> events_;  // read and not told
-  bool may_have_more_ = true;       // the store has more, or was not asked yet
+  bool may_have_more_ = true;       // there are more events, or none was read yet
+  std::uint64_t seen_changes_ = 0;  // Store::changes() before the last read
   std::int64_t told_through_;       // all events up to this number were told
   std::int64_t read_through_ = 0;   // the same once events_ are told
   std::int64_t last_in_turn_ = 0;   // row of the last simulation whose progress was told
@@ -232,18 +308,8 @@ class Watch : public MessageSource<v1::SimulationEvent> {
 
 using Source = std::shared_ptr<MessageSource<v1::SimulationEvent>>;
 
-Watched watched(SimulationJobs::Watched opened) {
-  const StoredSimulation& now = opened.simulation;
-  return {
-      std::move(opened.channel), name_of(now), now.state, now.attempt, now.sequence, now.sequence};
-}
-
-/// Returns true if a simulation has an event after that number, or will have one.
-bool has_events_after(Store& store, const StoredSimulation& simulation, std::int64_t number,
-                      const CallLimits& limits) {
-  if (!has_ended(simulation.state) || number == 0) return true;
-  const auto last = store.next_event(simulation.id, simulation.sequence - 1, limits);
-  return !last || last->number > number;  // without it: deleted meanwhile
+Watched watched(const StoredSimulation& now) {
+  return {now.id, now.number, now.state, now.attempt, now.sequence};
 }
 
 /// Why a watch cannot resume after an event; nullopt if it can.
@@ -263,24 +329,14 @@ std::optional<google::rpc::Status> unresumable(Store& store, std::int64_t after,
                 {"forgotten", std::to_string(range.forgotten)}});
 }
 
-/// Adds the simulation with this number, unless all its events up to the last one have numbers up
-/// to `after`. Returns false if there is no such simulation.
-bool add_named(Application& application, std::int64_t number, std::int64_t after,
-               const CallContext& call, Simulations& simulations) {
-  Store& store = application.store;
-  const auto stored = store.numbered_simulation(call.project, number, call.limits);
-  auto opened = stored ? application.jobs.watch(stored->id, call.limits) : std::nullopt;
-  if (opened) {
-    if (has_events_after(store, opened->simulation, after, call.limits)) {
-      simulations[stored->id] = watched(std::move(*opened));
-    }
-    return true;
-  }
-  // Of one that was deleted since, the deletion is told to a client that resumes.
+/// Adds the deletion of a simulation that no longer exists, if it comes after number `after`.
+/// Returns false if the client cannot have heard of such a simulation.
+bool add_deleted(Application& application, std::int64_t number, std::int64_t after,
+                 const CallContext& call, Beginning& beginning) {
   if (after == 0) return false;
-  const auto deletion = store.deletion(call.project, number, call.limits);
+  const auto deletion = application.store.deletion(call.project, number, call.limits);
   if (deletion && deletion->number > after) {
-    simulations[deletion->simulation] = {std::make_shared<ProgressChannel>(), name_of(*deletion)};
+    beginning.simulations.add({.id = deletion->simulation, .number = number});
   }
   return deletion.has_value();
 }
@@ -288,20 +344,29 @@ bool add_named(Application& application, std::int64_t number, std::int64_t after
 Outcome<Source> watch_named(Application& application, const v1::WatchSimulationsRequest& request,
                             const CallContext& call) {
   Violations violations;
+  std::vector<std::int64_t> numbers;
   for (int i = 0; i < request.names_size(); ++i) {
-    if (simulation_id(request.names(i))) continue;
+    const auto number = simulation_id(request.names(i));
+    numbers.push_back(number.value_or(0));
+    if (number) continue;
     violations.push_back(
         {fmt::format("names[{}]", i), "not a name of the form \"simulations/{id}\", id a number"});
   }
   if (!violations.empty()) return invalid(violations);
   const std::int64_t after = request.after_event_number();
-  Simulations simulations;
-  for (const std::string& name : request.names()) {
-    if (!add_named(application, *simulation_id(name), after, call, simulations)) {
-      return does_not_exist(name);
+  auto opened = application.jobs.watch(call.project, numbers, call.limits);
+  Beginning beginning;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto& now = opened.states[i];
+    if (!now) {
+      if (add_deleted(application, numbers[i], after, call, beginning)) continue;
+      return does_not_exist(request.names(static_cast<int>(i)));
     }
+    if (has_ended(now->state) && after > 0 && now->event_number <= after) continue;
+    beginning.add({now->id, numbers[i], now->state, now->attempt, now->sequence},
+                  std::move(opened.channels[i]));
   }
-  return Source(std::make_shared<Watch>(application, std::move(simulations), after, call));
+  return Source(std::make_shared<Watch>(application, std::move(beginning), after, call));
 }
 
 /// Returns a place among kMostFilters, which is free again when the last copy is destroyed; null if
@@ -339,15 +404,14 @@ Outcome<Source> watch_filtered(Application& application, const v1::WatchSimulati
       {"state", Restriction::Comparison::kEqual, std::int64_t{v1::Simulation::RUNNING}});
   running.limit = 1000;
   running.byte_limit = kMaximumPageBytes;
-  Simulations simulations;
+  Beginning beginning;
   for (const StoredSimulation& each : application.store.simulations(running, call.limits).rows) {
     auto opened = application.jobs.watch(each.id, call.limits);
     if (!opened || opened->simulation.state != StoredState::kRunning) continue;
-    simulations[each.id] = watched(std::move(*opened));
+    beginning.add(watched(opened->simulation), std::move(opened->channel));
   }
-  return Source(std::make_shared<Watch>(application, std::move(restrictions),
-                                        std::move(simulations), std::move(place),
-                                        request.after_event_number(), call));
+  return Source(std::make_shared<Watch>(application, std::move(restrictions), std::move(beginning),
+                                        std::move(place), request.after_event_number(), call));
 }
 
 }  // namespace
@@ -378,9 +442,9 @@ StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
     return invalid({{"after_sequence", fmt::format("after_sequence = {}; allowed: 0 to {}", after,
                                                    simulation.sequence)}});
   }
-  Simulations simulations;
+  Beginning beginning;
   if (!has_ended(simulation.state) || after < simulation.sequence) {
-    simulations[simulation.id] = watched(std::move(*opened));
+    beginning.add(watched(simulation), std::move(opened->channel));
   }
   std::int64_t number = 0;
   if (after > 0) {
@@ -388,7 +452,7 @@ StreamOutcome<v1::SimulationEvent> watch_simulation(Application& application,
     if (!last) return does_not_exist(request.name());
     number = last->number;
   }
-  return Source(std::make_shared<Watch>(application, std::move(simulations), number, call));
+  return Source(std::make_shared<Watch>(application, std::move(beginning), number, call));
 }
 
 }  // namespace tribodyn::server

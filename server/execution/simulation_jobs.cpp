@@ -58,6 +58,24 @@ std::optional<SimulationJobs::Watched> SimulationJobs::watch(std::int64_t id,
   return Watched{std::move(channel), std::move(*stored)};
 }
 
+SimulationJobs::WatchedStates SimulationJobs::watch(const std::string& project,
+                                                    const std::vector<std::int64_t>& numbers,
+                                                    const CallLimits& limits) {
+  const std::uint64_t changes = store_.changes();
+  WatchedStates out{store_.simulation_states(project, numbers, limits), {}};
+  for (const auto& each : out.states) {
+    const bool is_unfinished = each && !has_ended(each->state);
+    out.channels.push_back(is_unfinished ? board_.open(each->id) : nullptr);
+  }
+  if (store_.changes() == changes) return out;  // whatever ends now will finish its channel
+  out.states = store_.simulation_states(project, numbers, limits);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const auto& state = out.states[i];
+    if (state && has_ended(state->state)) board_.finish(state->id, state->sequence);
+  }
+  return out;
+}
+
 void SimulationJobs::stop() {
   janitor_.stop();
   scheduler_.stop();

@@ -78,6 +78,15 @@ class SimulationJobs {
   };
   /// Returns nullopt if there is no such simulation.
   std::optional<Watched> watch(std::int64_t id, const CallLimits& limits = {});
+  /// The same of many simulations of a project, in the order of their numbers.
+  struct WatchedStates {
+    std::vector<std::optional<SimulationState>> states;  ///< nullopt: there is no such simulation
+    std::vector<std::shared_ptr<ProgressChannel>> channels;  ///< null unless it is unfinished
+  };
+  WatchedStates watch(const std::string& project, const std::vector<std::int64_t>& numbers,
+                      const CallLimits& limits = {});
+  /// Returns the channel of a simulation; null if it has ended, or has none yet.
+  std::shared_ptr<ProgressChannel> channel(std::int64_t id) const { return board_.find(id); }
   /// Notifies the observer at least four times per heartbeat interval.
   void wake(const std::weak_ptr<Observer>& observer) { scheduler_.wake(observer); }
   const QueueLimits& limits() const { return limits_; }

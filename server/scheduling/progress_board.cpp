@@ -20,7 +20,7 @@ void ProgressChannel::publish_progress(Progress progress) {
     const std::lock_guard lock(mutex_);
     progress.fraction = std::max(progress.fraction, latest_.progress.fraction);
     latest_.progress = std::move(progress);
-    ++latest_.progress_number;
+    progress_number_ = ++latest_.progress_number;
   }
   observers_.tell();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -34,13 +35,16 @@ class ProgressChannel {
     Progress progress;                  ///< since that event
   };
   Latest latest() const;
+  /// Returns Latest::progress_number without a lock.
+  std::uint64_t progress_number() const { return progress_number_; }
 
   /// Notifies the observer of later publications until it is destroyed.
   void observe(const std::weak_ptr<Observer>& observer) { observers_.add(observer); }
 
  private:
   mutable std::mutex mutex_;
-  Latest latest_;  // guarded by mutex_
+  Latest latest_;                                   // guarded by mutex_
+  std::atomic<std::uint64_t> progress_number_ = 0;  // that of latest_
   Observers observers_;
 };
 

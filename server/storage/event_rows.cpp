@@ -139,6 +139,7 @@ std::optional<StoredEvent> query_deletion(Connection& db, const std::string& pro
 
 EventPage query_events(Connection& db, const EventQuery& query) {
   EventPage page;
+  const std::int64_t latest = query_event_range(db, query.project).latest;
   if (!query.simulations.empty()) {
     Prepared events(db, std::string(kEventColumns) +
                             "WHERE e.simulation IN (SELECT value FROM json_each(?)) "
@@ -146,12 +147,11 @@ EventPage query_events(Connection& db, const EventQuery& query) {
     events.bind(1, json_array(query.simulations));
     events.bind(2, query.after);
     events.bind(3, kEventPage);
-    page.through = query.after;
     read_events(events, page);
-    if (!page.events.empty()) page.through = page.events.back().number;
+    if (!page.more) page.through = std::max(query.after, latest);
+    if (!page.events.empty()) page.through = std::max(page.through, page.events.back().number);
     return page;
   }
-  const std::int64_t latest = query_event_range(db, query.project).latest;
   page.through = std::min(latest, query.after + kEventWindow);
   const Condition condition = condition_of(db, query.project, query.restrictions);
   SQLite::Statement events(db, std::string(kEventColumns) +
@@ -169,6 +169,28 @@ EventPage query_events(Connection& db, const EventQuery& query) {
   read_events(events, page);
   page.more = page.more || window_end < latest;
   return page;
+}
+
+std::vector<std::optional<SimulationState>> query_states(Connection& db, const std::string& project,
+                                                         const std::vector<std::int64_t>& numbers) {
+  std::vector<std::optional<SimulationState>> out(numbers.size());
+  if (numbers.empty()) return out;
+  Prepared query(db,
+                 "SELECT asked.key, s.id, s.state, s.attempt, s.sequence, e.number "
+                 "FROM json_each(?) asked "
+                 "JOIN simulations s ON s.project = ? AND s.number = asked.value "
+                 "JOIN events e ON e.simulation = s.id AND e.sequence = s.sequence");
+  query.bind(1, json_array(numbers));
+  query.bind(2, project);
+  while (query.executeStep()) {
+    out[static_cast<std::size_t>(query.getColumn(0).getInt64())] =
+        SimulationState{.id = query.getColumn(1).getInt64(),
+                        .state = static_cast<StoredState>(query.getColumn(2).getInt()),
+                        .attempt = query.getColumn(3).getInt(),
+                        .sequence = query.getColumn(4).getInt64(),
+                        .event_number = query.getColumn(5).getInt64()};
+  }
+  return out;
 }
 
 EventRange query_event_range(Connection& db, const std::string& project) {

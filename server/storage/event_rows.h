@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/storage/connection.h"
 #include "server/storage/stored_simulation.h"
@@ -36,6 +37,11 @@ std::optional<StoredEvent> query_deletion(Connection& db, const std::string& pro
 EventPage query_events(Connection& db, const EventQuery& query);
 inline constexpr int kEventPage = 100;
 inline constexpr int kEventWindow = 5000;
+
+/// Returns the states of simulations of a project, in the order of `numbers`; nullopt for one that
+/// does not exist.
+std::vector<std::optional<SimulationState>> query_states(Connection& db, const std::string& project,
+                                                         const std::vector<std::int64_t>& numbers);
 
 EventRange query_event_range(Connection& db, const std::string& project);
 

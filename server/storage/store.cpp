@@ -57,6 +57,18 @@ Connection open_writer(const std::filesystem::path& path) try {
 /// Thrown inside an action to roll back its change.
 struct RollBack {};
 
+/// Notes a change at its end, also after a failure: what failed may be on disk nevertheless.
+class NotedChange {
+ public:
+  explicit NotedChange(RecentEvents& events) : events_(events) {}
+  ~NotedChange() { events_.note_change(); }
+  NotedChange(const NotedChange&) = delete;
+  NotedChange& operator=(const NotedChange&) = delete;
+
+ private:
+  RecentEvents& events_;
+};
+
 }  // namespace
 
 void Store::require_place() const {
@@ -72,6 +84,7 @@ auto Store::write(const CallLimits& limits, const Action& action) {
     const std::lock_guard lock(writer_mutex_);
     check(limits);
     require_place();
+    const NotedChange noted(recent_events_);
     try {
       const Connection::Under under(writer_, limits);
       auto result = action(writer_);
@@ -89,7 +102,11 @@ void Store::write_together(const CallLimits& limits, const GroupCommit::Action& 
   check(limits);
   require_place();
   try {
-    group_commit_.run(action, limits);
+    const auto commit = [&] {
+      const NotedChange noted(recent_events_);
+      group_commit_.run(action, limits);
+    };
+    commit();
     require_place();
     observers_.tell();
   } catch (const RollBack&) {
@@ -455,6 +472,27 @@ std::optional<StoredEvent> Store::deletion(const std::string& project,
 
 EventPage Store::events(const EventQuery& query, const CallLimits& limits) {
   return read(limits, [&](Connection& db) { return query_events(db, query); });
+}
+
+RecentEvents::Source Store::event_source(const std::string& project, const CallLimits& limits) {
+  return {[this, &project, &limits](std::int64_t after) {
+            return events({.project = project, .after = after}, limits);
+          },
+          [this, &project, &limits] { return event_range(project, limits).latest; },
+          [this, &project, &limits](const std::vector<std::int64_t>& numbers) {
+            return read(limits, [&](Connection& db) { return query_states(db, project, numbers); });
+          }};
+}
+
+std::optional<EventPage> Store::recent_events(const std::string& project, std::int64_t after,
+                                              const CallLimits& limits) {
+  return recent_events_.after(project, after, event_source(project, limits));
+}
+
+RecentEvents::States Store::simulation_states(const std::string& project,
+                                              const std::vector<std::int64_t>& numbers,
+                                              const CallLimits& limits) {
+  return recent_events_.states(project, numbers, event_source(project, limits));
 }
 
 std::int64_t Store::result_bytes(const std::string& project, const CallLimits& limits) {

@@ -17,6 +17,7 @@
 #include "server/storage/database_lock.h"
 #include "server/storage/group_commit.h"
 #include "server/storage/history_rows.h"
+#include "server/storage/recent_events.h"
 #include "server/storage/removal.h"
 #include "server/storage/retention.h"
 #include "server/storage/store_error.h"
@@ -151,6 +152,13 @@ class Store {
   std::optional<StoredEvent> deletion(const std::string& project, std::int64_t simulation_number,
                                       const CallLimits& limits = {});
   EventPage events(const EventQuery& query, const CallLimits& limits = {});
+  /// Like the functions of RecentEvents.
+  std::optional<EventPage> recent_events(const std::string& project, std::int64_t after,
+                                         const CallLimits& limits = {});
+  RecentEvents::States simulation_states(const std::string& project,
+                                         const std::vector<std::int64_t>& numbers,
+                                         const CallLimits& limits = {});
+  std::uint64_t changes() const { return recent_events_.changes(); }
   /// Returns the bytes of all results of a project, with their histories.
   std::int64_t result_bytes(const std::string& project, const CallLimits& limits = {});
   EventRange event_range(const std::string& project, const CallLimits& limits = {});
@@ -210,6 +218,8 @@ class Store {
  private:
   void open_schema();
   void require_place() const;
+  /// The arguments must outlive the result.
+  RecentEvents::Source event_source(const std::string& project, const CallLimits& limits);
   /// Changes a row of resources if the stored resource is still `present`.
   template <class Change>
   bool change(const CallLimits& limits, const StoredResource& present, const Change& change);
@@ -231,6 +241,7 @@ class Store {
   ReaderPool readers_;
   std::optional<std::filesystem::path> migration_backup_;
   std::atomic<bool> has_unerased_purge_ = true;
+  RecentEvents recent_events_;
   Observers observers_;
   std::optional<DatabaseFiles> files_;  // set by the constructor when the files exist
   mutable std::mutex projects_mutex_;

@@ -100,6 +100,15 @@ struct SimulationQuery {
   bool counts_all = false;  ///< sets Page::total; only of a query from the start, without `after`
 };
 
+/// What a watch needs of a simulation.
+struct SimulationState {
+  std::int64_t id = 0;  ///< row, over all projects
+  StoredState state = StoredState::kQueued;
+  int attempt = 1;
+  std::int64_t sequence = 0;      ///< number of its latest event among those of the simulation
+  std::int64_t event_number = 0;  ///< the same among those of the project
+};
+
 /// A stored change of state, or the deletion of a simulation.
 struct StoredEvent {
   std::int64_t number = 0;      ///< among the events of its project; grows with each commit

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -20,7 +22,10 @@ class Observers {
  public:
   void add(const std::weak_ptr<Observer>& observer) {
     const std::lock_guard lock(mutex_);
-    std::erase_if(observers_, [](const auto& weak) { return weak.expired(); });
+    if (observers_.size() >= 2 * living_) {
+      std::erase_if(observers_, [](const auto& weak) { return weak.expired(); });
+      living_ = std::max(observers_.size(), kFewest);
+    }
     observers_.push_back(observer);
   }
 
@@ -40,8 +45,13 @@ class Observers {
   }
 
  private:
+  static constexpr std::size_t kFewest = 4;  // observers that are kept although they may be gone
+
   mutable std::mutex mutex_;
   std::vector<std::weak_ptr<Observer>> observers_;  // guarded by mutex_
+  // Guarded by mutex_; observers that were left when those that are gone were last removed: add()
+  // takes constant time on average.
+  std::size_t living_ = kFewest;
 };
 
 }  // namespace tribodyn::server

@@ -38,6 +38,7 @@ class CountingSource : public AnyMessageSource {
  public:
   explicit CountingSource(bool is_short = false) : is_short_(is_short) {}
   bool is_short() const override { return is_short_; }
+  bool may_continue() const override { return !says_when_it_waits || given_ < available; }
   Step next_message(google::protobuf::Message& out) override {
     EXPECT_FALSE(is_asked_.exchange(true)) << "two threads ask at once";
     EXPECT_FALSE(has_ended_) << "asked after the end";
@@ -55,6 +56,7 @@ class CountingSource : public AnyMessageSource {
 
   std::atomic<int> available = 0;
   std::atomic<bool> is_closed = false;  // set after the last message is available
+  bool says_when_it_waits = false;
 
  private:
   const bool is_short_;
@@ -250,6 +252,25 @@ TEST(StreamMachine, OnlyTheEndOfAWriteCausesAShortStep) {
   ++source->available;
   machine.changed();
   EXPECT_TRUE(transport.is_step_due) << "observers are told on threads that must not wait";
+}
+
+TEST(StreamMachine, TakesNoStepAfterAMessageThatNothingFollows) {
+  Manual stream;
+  stream.source->says_when_it_waits = true;
+  stream.source->available = 2;
+  stream.machine.changed();
+  EXPECT_TRUE(stream.run_step());
+  EXPECT_TRUE(stream.end_write());
+  EXPECT_TRUE(stream.run_step()) << "the second message";
+  EXPECT_TRUE(stream.end_write());
+  EXPECT_FALSE(stream.transport.is_step_due);
+  stream.feed();
+  EXPECT_TRUE(stream.run_step()) << "a change after the last write";
+  stream.machine.changed();
+  EXPECT_TRUE(stream.end_write());
+  EXPECT_TRUE(stream.run_step()) << "a change during the last write";
+  stream.machine.close(status_of(google::rpc::UNAVAILABLE));
+  EXPECT_EQ(stream.code(), google::rpc::UNAVAILABLE);
 }
 
 TEST(StreamMachine, CutsOffAClientThatDoesNotReadAMessage) {

@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <map>
 #include <memory>
+#include <memory_resource>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,7 +20,9 @@
 #include "server/application/streams.h"
 #include "server/storage/event_rows.h"
 #include "server/storage/maintenance.h"
+#include "server/storage/recent_events.h"
 #include "server/storage/seeds.h"
+#include "server/support/observers.h"
 #include "tests/service/support.h"
 
 namespace tribodyn::server {
@@ -384,6 +389,63 @@ TEST_F(WatchTest, ARunningSimulationTellsItsProgress) {
   *release = true;
 }
 
+TEST_F(WatchTest, EveryWatchHasEachEventOnceWhereverItBeginsAndWheneverItReads) {
+  // More events than are kept in memory, among simulations of which a watch names every other one.
+  constexpr int kSimulations = 40, kRounds = 25;
+  std::vector<std::string> names, even;
+  const ResultKey key{std::string(64, 'a'), "model", "platform"};
+  for (int i = 0; i < kSimulations; ++i) {
+    const bool is_even = i % 2 == 0;
+    bench_.store().add_simulation({.request = "r",
+                                   .key = key,
+                                   .labels = {{"part", is_even ? "even" : "odd"}},
+                                   .lubricant_revision = "lubricants/paper-fluid-1@1"},
+                                  1);
+    names.push_back("simulations/" + std::to_string(i + 1));
+    if (is_even) even.push_back(names.back());
+  }
+  const std::int64_t begin = latest();
+  struct Reader {
+    std::shared_ptr<MessageSource<v1::SimulationEvent>> source;
+    std::int64_t after = 0;
+    bool is_of_even = false;
+    std::vector<std::int64_t> numbers = {};
+  };
+  std::mt19937 random(7);
+  std::vector<Reader> readers;
+  std::vector<std::int64_t> all, of_even;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::int64_t after = begin + static_cast<int>(random() % (latest() - begin + 1));
+    const bool is_of_even = round % 2 == 0;
+    const auto source =
+        round % 4 < 2
+            ? open(of(is_of_even ? even : names, after))
+            : open(that_satisfy(is_of_even ? "labels.part = even" : "lubricant = paper-fluid-1",
+                                after));
+    ASSERT_TRUE(source.ok()) << source.error().message();
+    readers.push_back({source.message(), after, is_of_even});
+    for (int i = 0; i < kSimulations; ++i) {
+      const auto simulation = *stored(names[i]);
+      const auto event = round % 2 == 0
+                             ? bench_.store().mark_running(simulation.id, 1, key)
+                             : bench_.store().mark_queued(simulation.id, 1, "SERVER_LOST");
+      ASSERT_TRUE(event);
+      all.push_back(event->number);
+      if (i % 2 == 0) of_even.push_back(event->number);
+      for (Reader& each : readers) {
+        if (random() % 40 != 0) continue;
+        for (const auto& told : read(*each.source)) each.numbers.push_back(told.event_number());
+      }
+    }
+  }
+  for (Reader& each : readers) {
+    for (const auto& told : read(*each.source)) each.numbers.push_back(told.event_number());
+    std::vector<std::int64_t> expected = each.is_of_even ? of_even : all;
+    std::erase_if(expected, [&](std::int64_t number) { return number <= each.after; });
+    EXPECT_EQ(each.numbers, expected) << "after " << each.after;
+  }
+}
+
 TEST_F(WatchTest, NothingIsMissedWhileManySimulationsRun) {
   constexpr int kThreads = 3, kEach = 30;
   const auto source = open(that_satisfy("lubricant = paper-fluid-1")).message();
@@ -412,6 +474,148 @@ TEST_F(WatchTest, NothingIsMissedWhileManySimulationsRun) {
     return ended == kThreads * kEach;
   }));
   for (std::thread& thread : threads) thread.join();
+}
+
+/// A database of events that counts how often it is read.
+struct CountedEvents {
+  void add(std::int64_t simulation, std::int64_t sequence, StoredState state) {
+    StoredEvent event;
+    event.number = ++latest;
+    event.simulation = 100 + simulation;
+    event.simulation_number = simulation;
+    event.sequence = sequence;
+    event.state = state;
+    events.push_back(event);
+    recent.note_change();
+  }
+  std::vector<std::int64_t> after(std::int64_t number) {
+    const auto page = recent.after("default", number, source);
+    if (!page) return {-1};
+    EXPECT_EQ(page->through, std::max(number, latest));
+    std::vector<std::int64_t> out;
+    for (const StoredEvent& each : page->events) out.push_back(each.number);
+    return out;
+  }
+  RecentEvents::States states(const std::vector<std::int64_t>& numbers) {
+    return recent.states("default", numbers, source);
+  }
+
+  RecentEvents recent;
+  std::vector<StoredEvent> events;
+  std::int64_t latest = 0;
+  int reads = 0, state_reads = 0;
+  RecentEvents::Source source = {
+      [this](std::int64_t after) {
+        ++reads;
+        EventPage out;
+        for (const StoredEvent& each : events) {
+          if (each.number > after && out.events.size() < kEventPage) out.events.push_back(each);
+        }
+        out.more = out.events.size() == kEventPage;
+        out.through = out.more ? out.events.back().number : std::max(after, latest);
+        return out;
+      },
+      [this] { return latest; },
+      [this](const std::vector<std::int64_t>& numbers) {
+        ++state_reads;
+        RecentEvents::States out;
+        for (const std::int64_t each : numbers) {
+          out.emplace_back(std::nullopt);
+          for (const StoredEvent& event : events) {
+            if (event.simulation_number != each) continue;
+            out.back() = SimulationState{event.simulation, event.state, event.attempt,
+                                         event.sequence, event.number};
+            if (event.state == StoredState::kDeleted) out.back().reset();
+          }
+        }
+        return out;
+      }};
+};
+
+TEST(RecentEvents, AreReadOnceForAllWatches) {
+  CountedEvents base;
+  base.add(1, 1, StoredState::kQueued);
+  EXPECT_THAT(base.after(1), IsEmpty());
+  for (int i = 0; i < 3; ++i) {
+    base.add(1, 2 + i, StoredState::kRunning);
+    for (int k = 0; k < 5; ++k) EXPECT_THAT(base.after(1 + i), ElementsAre(2 + i));
+  }
+  EXPECT_EQ(base.reads, 3);
+  EXPECT_THAT(base.after(1), ElementsAre(2, 3, 4));
+  EXPECT_THAT(base.after(0), ElementsAre(-1)) << "what was there before the first watch";
+}
+
+TEST(RecentEvents, ReachBackSoManyEventsAndBeginAnewAfterAGap) {
+  CountedEvents base;
+  EXPECT_THAT(base.after(0), IsEmpty());
+  const auto most = static_cast<std::int64_t>(RecentEvents::kKept);
+  for (std::int64_t i = 1; i <= most + 10; ++i) {
+    base.add(1, i, StoredState::kQueued);
+    base.after(base.latest);
+  }
+  EXPECT_THAT(base.after(9), ElementsAre(-1));
+  EXPECT_THAT(base.after(10), SizeIs(RecentEvents::kKept));
+  for (int i = 0; i < kEventPage; ++i) base.add(2, 1 + i, StoredState::kQueued);
+  EXPECT_THAT(base.after(base.latest - 1), ElementsAre(-1));
+  base.add(3, 1, StoredState::kQueued);
+  EXPECT_THAT(base.after(base.latest - 1), ElementsAre(base.latest));
+}
+
+TEST(RecentEvents, ADeletionTakesThePlaceOfTheOtherEventsOfItsSimulation) {
+  CountedEvents base;
+  EXPECT_THAT(base.after(0), IsEmpty());
+  base.add(1, 1, StoredState::kQueued);
+  base.add(2, 1, StoredState::kQueued);
+  EXPECT_THAT(base.after(0), ElementsAre(1, 2));
+  base.add(1, 2, StoredState::kDeleted);
+  EXPECT_THAT(base.after(0), ElementsAre(2, 3));
+}
+
+TEST(RecentEvents, StatesFollowTheEventsWithoutAFurtherRead) {
+  CountedEvents base;
+  base.add(1, 1, StoredState::kQueued);
+  base.add(2, 1, StoredState::kQueued);
+  for (int i = 0; i < 3; ++i) {
+    const auto states = base.states({2, 1, 2});
+    EXPECT_EQ(states[1]->id, 101);
+    EXPECT_EQ(states[2]->sequence, 1);
+  }
+  EXPECT_EQ(base.state_reads, 1);
+  base.add(1, 2, StoredState::kRunning);
+  const auto states = base.states({1});
+  EXPECT_EQ(states[0]->state, StoredState::kRunning);
+  EXPECT_EQ(states[0]->event_number, 3);
+  EXPECT_EQ(base.state_reads, 1);
+  base.add(1, 3, StoredState::kDeleted);
+  EXPECT_FALSE(base.states({1})[0]);
+  EXPECT_FALSE(base.states({7})[0]);
+}
+
+TEST(Observers, ThoseThatAreGoneTakeNoMemoryForLong) {
+  /// Counts the blocks of memory of observers, which a weak pointer keeps alive.
+  struct Resource : std::pmr::memory_resource {
+    void* do_allocate(std::size_t bytes, std::size_t alignment) override {
+      ++blocks;
+      return std::pmr::new_delete_resource()->allocate(bytes, alignment);
+    }
+    void do_deallocate(void* at, std::size_t bytes, std::size_t alignment) override {
+      --blocks;
+      std::pmr::new_delete_resource()->deallocate(at, bytes, alignment);
+    }
+    bool do_is_equal(const memory_resource& other) const noexcept override {
+      return this == &other;
+    }
+    int blocks = 0;
+  };
+  Resource memory;
+  const std::pmr::polymorphic_allocator<CountingObserver> allocator(&memory);
+  Observers observers;
+  const auto kept = std::allocate_shared<CountingObserver>(allocator);
+  observers.add(kept);
+  for (int i = 0; i < 1000; ++i) observers.add(std::allocate_shared<CountingObserver>(allocator));
+  EXPECT_LE(memory.blocks, 10);
+  observers.tell();
+  EXPECT_EQ(kept->count, 1);
 }
 
 }  // namespace
