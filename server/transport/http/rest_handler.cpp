@@ -160,8 +160,9 @@ class RestUnary final : public RestCall<UnaryCall> {
   const std::optional<TableRequest> table_;
 };
 
-std::unique_ptr<StreamFormat> stream_format(Form form, const Method& method) {
-  if (form == Form::kEvents) return event_stream_format(*method.descriptor);
+std::unique_ptr<StreamFormat> stream_format(Form form, const Method& method,
+                                            const std::shared_ptr<EventTexts>& texts) {
+  if (form == Form::kEvents) return event_stream_format(*method.descriptor, texts);
   if (form == Form::kLines) return json_lines_format();
   return history_format(form);
 }
@@ -271,7 +272,8 @@ void RestHandler::handle(HttpRequest request, std::shared_ptr<const std::atomic<
   if (!form) return answer(std::move(unacceptable));
   if (method.open) {
     return open_rest_stream(dispatcher_, streams_, *std::move(route), std::move(request),
-                            std::move(cancelled), stream_format(*form, method), answer);
+                            std::move(cancelled), stream_format(*form, method, event_texts_),
+                            answer);
   }
   std::optional<TableRequest> table;
   if (*form != Form::kMessage) {

@@ -13,6 +13,7 @@
 #include "server/transport/http/http_routes.h"
 #include "server/transport/http/session_cookie.h"
 #include "server/transport/http/static_files.h"
+#include "server/transport/http/stream_format.h"
 #include "server/transport/live_streams.h"
 
 namespace tribodyn::server {
@@ -76,6 +77,7 @@ class RestHandler {
   const std::map<std::string, Page> pages_;
   const RestDashboard dashboard_;
   const std::shared_ptr<LiveStreams> streams_;
+  const std::shared_ptr<EventTexts> event_texts_ = std::make_shared<EventTexts>();
 };
 
 /// Returns the headers of every response, for those that are made without a handler.

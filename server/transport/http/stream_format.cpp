@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <utility>
 
 #include "server/transport/http/rest_answer.h"
 
@@ -16,7 +17,8 @@ constexpr char kRetry[] = "retry: 2000\n\n";
 
 class EventStreamFormat final : public StreamFormat {
  public:
-  explicit EventStreamFormat(std::optional<ResumeFields> fields) : fields_(fields) {}
+  EventStreamFormat(std::optional<ResumeFields> fields, std::shared_ptr<EventTexts> texts)
+      : fields_(fields), texts_(std::move(texts)) {}
 
   std::map<std::string, std::string> headers() const override {
     return {{"Content-Type", "text/event-stream; charset=utf-8"},
@@ -30,7 +32,7 @@ class EventStreamFormat final : public StreamFormat {
         fields_ ? message.GetReflection()->GetInt64(message, fields_->message) : 0;
     if (position > 0) out += "id: " + std::to_string(position) + "\n";
     if (is_heartbeat(message)) return out + ": heartbeat\n\n";
-    return out + "data: " + json_of(message, true) + "\n\n";
+    return out + "data: " + texts_->of(message) + "\n\n";
   }
 
   std::optional<std::string> end(const google::rpc::Status& status) override {
@@ -52,6 +54,7 @@ class EventStreamFormat final : public StreamFormat {
   }
 
   const std::optional<ResumeFields> fields_;
+  const std::shared_ptr<EventTexts> texts_;
   bool has_begun_ = false;
 };
 
@@ -84,9 +87,23 @@ std::optional<ResumeFields> resume_fields(const google::protobuf::MethodDescript
   return std::nullopt;
 }
 
-std::unique_ptr<StreamFormat> event_stream_format(
-    const google::protobuf::MethodDescriptor& method) {
-  return std::make_unique<EventStreamFormat>(resume_fields(method));
+std::string EventTexts::of(const Message& message) {
+  std::string key = message.GetDescriptor()->full_name() + '\0';
+  message.AppendToString(&key);
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = texts_.find(key); found != texts_.end()) return found->second;
+  }
+  std::string out = json_of(message, true);
+  const std::lock_guard lock(mutex_);
+  if (texts_.size() == kMost) texts_.clear();
+  texts_.emplace(std::move(key), out);
+  return out;
+}
+
+std::unique_ptr<StreamFormat> event_stream_format(const google::protobuf::MethodDescriptor& method,
+                                                  std::shared_ptr<EventTexts> texts) {
+  return std::make_unique<EventStreamFormat>(resume_fields(method), std::move(texts));
 }
 
 std::unique_ptr<StreamFormat> json_lines_format() { return std::make_unique<JsonLinesFormat>(); }

@@ -3,10 +3,13 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>
 
+#include <cstddef>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <unordered_map>
 
 #include "google/rpc/status.pb.h"
 #include "server/application/message_source.h"
@@ -37,10 +40,25 @@ struct ResumeFields {
 /// Returns the fields of a method, or nullopt if its streams cannot be resumed so.
 std::optional<ResumeFields> resume_fields(const google::protobuf::MethodDescriptor& method);
 
+/// The texts of the latest messages of event streams: streams that send the same events share them.
+/// Safe for concurrent access.
+class EventTexts {
+ public:
+  /// Returns a message as JSON.
+  std::string of(const google::protobuf::Message& message);
+
+ private:
+  static constexpr std::size_t kMost = 500;  // some 800 bytes each with the key
+
+  std::mutex mutex_;
+  std::unordered_map<std::string, std::string> texts_;  // guarded by mutex_; by type and bytes
+};
+
 /// Server-sent events: a message each, as JSON; its position is the event's id. A heartbeat is a
 /// comment with an id. An event "end" follows the last message, an event "failure" with the error
 /// one that is missing.
-std::unique_ptr<StreamFormat> event_stream_format(const google::protobuf::MethodDescriptor& method);
+std::unique_ptr<StreamFormat> event_stream_format(const google::protobuf::MethodDescriptor& method,
+                                                  std::shared_ptr<EventTexts> texts);
 
 /// JSON, a line each: {"result": message}, and after the last one {"error": ...} if any is missing.
 std::unique_ptr<StreamFormat> json_lines_format();
