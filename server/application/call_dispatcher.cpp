@@ -109,6 +109,7 @@ class GrantedSource final : public AnyMessageSource {
     source_->observe(observer);
   }
   bool is_short() const override { return source_->is_short(); }
+  std::string tag() const override { return source_->tag(); }
   bool may_continue() const override { return source_->may_continue(); }
   google::rpc::Status error() const override {
     return has_ended_ ? token_refused() : source_->error();

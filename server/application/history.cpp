@@ -15,6 +15,7 @@
 #include "server/contract/resource_names.h"
 #include "server/mapping/history_columns.h"
 #include "server/storage/history/pyramid.h"
+#include "server/support/sha256.h"
 
 static_assert(std::endian::native == std::endian::little, "chunks are little-endian");
 
@@ -69,7 +70,8 @@ class OpenHistory {
 class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
  public:
   HistorySource(Application& application, std::string name, HistoryShape shape, Window window,
-                const v1::SimulationResult& result, const CallContext& call)
+                const std::string& input_hash, const v1::SimulationResult& result,
+                const CallContext& call)
       : store_(application.store),
         limits_{.cancelled = call.limits.cancelled},
         name_(std::move(name)),
@@ -77,6 +79,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
         shape_(std::move(shape)),
         window_(std::move(window)),
         input_warnings_(result.input_warnings()),
+        tag_(tag_of(input_hash, result)),
         rows_(window_.end_row - window_.start_row) {
     if (window_.maximum_points == 0 || rows_ <= window_.maximum_points) return;
     overview_ = overview(window_.start_row, window_.end_row, shape_.rows, window_.maximum_points);
@@ -112,6 +115,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
     return Step::kMessage;
   }
 
+  std::string tag() const override { return tag_; }
   bool is_short() const override { return rows_ <= kHistoryBlock; }
   google::rpc::Status error() const override { return error_; }
 
@@ -119,6 +123,15 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
   std::int64_t longest_run() const {
     if (order_ != Order::kRows) return open_.chunk_values();
     return open_.row_run(static_cast<std::int64_t>(window_.columns.size()));
+  }
+
+  /// Equal inputs give the same bits on the same platform and with the same model.
+  std::string tag_of(const std::string& input_hash, const v1::SimulationResult& result) const {
+    std::string all =
+        fmt::format("{} {} {} {} {} {}", input_hash, result.model_version(), result.platform(),
+                    window_.start_row, window_.end_row, window_.maximum_points);
+    for (const std::size_t place : window_.columns) all += ' ' + shape_.names[place];
+    return sha256(all);
   }
 
   void tell_schema(v1::HistorySchema& out) const {
@@ -156,6 +169,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
   const HistoryShape shape_;
   const Window window_;
   const google::protobuf::RepeatedPtrField<v1::RangeWarning> input_warnings_;
+  const std::string tag_;
   std::int64_t rows_;  // to come in all
   std::optional<Overview> overview_;
   bool told_schema_ = false;
@@ -253,7 +267,7 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
   auto& result = *google::protobuf::Arena::CreateMessage<v1::SimulationResult>(&arena);
   result.ParseFromString(application.store.result(stored.id, call.limits).value_or(""));
   return Source(std::make_shared<HistorySource>(application, request.name(), std::move(shape),
-                                                std::move(*rows), result, call));
+                                                std::move(*rows), stored.input_hash, result, call));
 }
 
 }  // namespace tribodyn::server

@@ -3,6 +3,7 @@
 #include <google/protobuf/message.h>
 
 #include <memory>
+#include <string>
 
 #include "google/rpc/status.pb.h"
 #include "server/application/guard.h"
@@ -34,6 +35,9 @@ class AnyMessageSource {
   virtual void observe(const std::weak_ptr<Observer>&) {}
   /// Returns true if each message takes about a millisecond or less. Constant.
   virtual bool is_short() const { return false; }
+  /// Returns a text that all sources of the same messages share, and no others; "" if the messages
+  /// may change.
+  virtual std::string tag() const { return {}; }
   /// Returns false if the source has nothing to say before the observer's next notification. Takes
   /// about a microsecond.
   virtual bool may_continue() const { return true; }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "server/application/streams.h"
@@ -23,6 +24,7 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 class ColumnsTest : public testing::Test {
@@ -189,6 +191,77 @@ TEST_F(ColumnsTest, ACurveHasTheNumbersOfItsPoints) {
   const std::string tag = head.substr(head.find("ETag: ") + 6, 66);
   EXPECT_THAT(answer("/v1/" + name + "?alt=csv", "If-None-Match: " + tag + "\r\n").first,
               StartsWith("HTTP/1.0 304"));
+}
+
+TEST_F(ColumnsTest, ATableIsReadInRangesOfItsBytes) {
+  const std::string curve = "/v1/" + finished(curve_simulation()) + "?alt=";
+  const std::string history = "/v1/" + finished_history(30'000) + ":readHistory?alt=";
+  for (const std::string& target :
+       {curve + "csv", curve + "npy", curve + "columns", history + "npy", history + "binary",
+        history + "npy&max_points=100&columns=mesh_force_newtons",
+        history + "npy&start_row=30000"}) {
+    const auto [head, whole] = answer(target);
+    const std::string length = std::to_string(whole.size());
+    EXPECT_THAT(head, HasSubstr("Accept-Ranges: bytes")) << target;
+    EXPECT_THAT(head, HasSubstr("Content-Length: " + length)) << target;
+    const std::string tag = head.substr(head.find("ETag: ") + 6, 66);
+    const std::size_t size = whole.size();
+    const std::vector<std::tuple<std::string, std::size_t, std::size_t>> ranges = {
+        {"0-0", 0, 1},
+        {"10-", 10, size},
+        {"-7", size - 7, size},
+        {"-999999999", 0, size},
+        {std::to_string(size / 3) + "-" + std::to_string(size / 2), size / 3, size / 2 + 1},
+        {"5-999999999", 5, size}};
+    for (const auto& [range, begin, end] : ranges) {
+      const auto [part_head, part] =
+          answer(target, "Range: bytes=" + range + "\r\nIf-Range: " + tag + "\r\n");
+      EXPECT_THAT(part_head, StartsWith("HTTP/1.0 206")) << target << " " << range;
+      EXPECT_THAT(part_head, HasSubstr("Content-Range: bytes " + std::to_string(begin) + "-" +
+                                       std::to_string(end - 1) + "/" + length + "\r\n"));
+      EXPECT_THAT(part_head, HasSubstr("Content-Length: " + std::to_string(end - begin)));
+      EXPECT_TRUE(part == whole.substr(begin, end - begin)) << target << " " << range;
+    }
+    const auto [behind, error] = answer(target, "Range: bytes=" + length + "-\r\n");
+    EXPECT_THAT(behind, StartsWith("HTTP/1.0 416")) << target;
+    EXPECT_THAT(behind, HasSubstr("Content-Range: bytes */" + length + "\r\n"));
+    EXPECT_THAT(error, HasSubstr("the body has " + length + " bytes"));
+    EXPECT_THAT(answer(target, "Range: bytes=-0\r\n").first, StartsWith("HTTP/1.0 416"));
+    const std::string other = "If-Range: \"" + std::string(64, '0') + "\"\r\n";
+    for (const std::string& ignored :
+         {"Range: bytes=0-1\r\n" + other, "Range: bytes=0-1\r\nIf-Range: W/" + tag + "\r\n",
+          std::string("Range: bytes=0-1,4-5\r\n"), std::string("Range: rows=0-1\r\n"),
+          std::string("Range: bytes=2-1\r\n"), std::string("Range: bytes=a-\r\n")}) {
+      const auto [same_head, same] = answer(target, ignored);
+      EXPECT_THAT(same_head, StartsWith("HTTP/1.0 200")) << target << " " << ignored;
+      EXPECT_TRUE(same == whole) << target << " " << ignored;
+    }
+    const auto [known, nothing] =
+        answer(target, "Range: bytes=0-1\r\nIf-None-Match: " + tag + "\r\n");
+    EXPECT_THAT(known, StartsWith("HTTP/1.0 304")) << target;
+    EXPECT_EQ(nothing, "");
+  }
+  for (const char* form : {"csv", "columns", "ndjson"}) {
+    EXPECT_THAT(answer(history + form, "Range: bytes=0-1\r\n").first, StartsWith("HTTP/1.0 200"))
+        << "its length is not known before its end";
+  }
+  const auto [zipped, bytes] = answer(curve + "csv", "Accept-Encoding: gzip\r\n");
+  EXPECT_THAT(zipped, HasSubstr("ETag: W/\"")) << "other bytes than those of ranges";
+  EXPECT_THAT(answer(curve + "csv", "Accept-Encoding: gzip\r\nRange: bytes=0-2000\r\n").first,
+              Not(HasSubstr("Content-Encoding")));
+}
+
+TEST_F(ColumnsTest, HistoriesOfOtherInputsOrOtherRowsHaveOtherTags) {
+  const auto tag = [&](const std::string& name, const std::string& query) {
+    const std::string head = answer("/v1/" + name + ":readHistory?alt=" + query).first;
+    return head.substr(head.find("ETag: ") + 6, 66);
+  };
+  const std::string first = finished_history(100), second = finished_history(200);
+  EXPECT_EQ(tag(first, "npy"), tag(first, "npy"));
+  EXPECT_NE(tag(first, "npy"), tag(first, "binary"));
+  EXPECT_NE(tag(first, "npy"), tag(first, "npy&start_row=1"));
+  EXPECT_NE(tag(first, "npy"), tag(first, "npy&columns=mesh_force_newtons"));
+  EXPECT_NE(tag(first, "npy"), tag(second, "npy&row_count=100"));
 }
 
 TEST(ColumnText, WritesNumbersThatReadBackAndGapsAsSuch) {

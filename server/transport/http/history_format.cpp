@@ -37,7 +37,15 @@ class HistoryFormat : public StreamFormat {
     if (response.has_chunk()) return chunk_text(response.chunk());
     schema_ = response.schema();
     for (const auto& column : schema_.columns()) names_.push_back(column.name());
-    return beginning();
+    std::string out = beginning();
+    beginning_bytes_ = out.size();
+    return out;
+  }
+  bool has_length() const final { return form_ == Form::kNumpy || form_ == Form::kBinary; }
+  std::optional<std::uint64_t> length() const final {
+    if (!has_length() || beginning_bytes_ == 0) return std::nullopt;
+    return beginning_bytes_ +
+           sizeof(double) * names_.size() * static_cast<std::uint64_t>(schema_.row_count());
   }
   std::optional<std::string> end(const google::rpc::Status& status) final {
     if (status.code() != google::rpc::OK) return std::nullopt;
@@ -70,6 +78,7 @@ class HistoryFormat : public StreamFormat {
  private:
   const Form form_;
   const AnyMessageSource::Order order_;
+  std::size_t beginning_bytes_ = 0;  // 0 before the schema
 };
 
 /// Rows of all columns: CSV and NumPy.

@@ -335,6 +335,11 @@ bool takes_etag(const HttpRoutes::Route& route) {
   return body != nullptr && body->message_type()->FindFieldByName("etag") != nullptr;
 }
 
+bool has_form(const HttpRoutes::Route& route, Form form) {
+  const std::vector<Form> forms = forms_of(*route.method);
+  return std::find(forms.begin(), forms.end(), form) != forms.end();
+}
+
 Json OpenApiDocument::parameters_of(const HttpRoutes::Route& route,
                                     const std::vector<std::string>& of_path) {
   Json out = Json::array();
@@ -362,7 +367,14 @@ Json OpenApiDocument::parameters_of(const HttpRoutes::Route& route,
     out.push_back(parameter("header", "If-Match", {{"type", "string"}},
                             "The etag that the resource must have, in double quotes; or *."));
   }
-  if (route.verb == "GET" && route.method->answer) {
+  const bool has_ranges = has_form(route, Form::kNumpy);
+  if (has_ranges) {
+    out.push_back(parameter("header", "Range", {{"type", "string"}},
+                            "One range of bytes of a table whose response has Accept-Ranges."));
+    out.push_back(parameter("header", "If-Range", {{"type", "string"}},
+                            "The strong ETag of the table that the range is of."));
+  }
+  if (route.verb == "GET" && (route.method->answer || has_ranges)) {
     out.push_back(parameter("header", "If-None-Match", {{"type", "string"}},
                             "Etags of answers that the client has."));
   }
@@ -410,9 +422,13 @@ Json OpenApiDocument::answer_of(const HttpRoutes::Route& route) {
 Json OpenApiDocument::responses_of(const HttpRoutes::Route& route) {
   Json out = Json::object();
   out["200"] = answer_of(route);
-  if (route.verb == "GET" && route.method->answer)
+  const bool has_ranges = has_form(route, Form::kNumpy);
+  if (has_ranges) out["206"] = reference("responses", "Range");
+  if (route.verb == "GET" && (route.method->answer || has_ranges)) {
     out["304"] = reference("responses", "NotModified");
+  }
   std::vector<std::string> errors = {"400", "401", "403", "404"};
+  if (has_ranges) errors.emplace_back("416");
   if (route.verb != "GET") errors.emplace_back("409");
   if (takes_etag(route)) errors.emplace_back("412");
   for (const char* each : {"429", "503"}) errors.emplace_back(each);
@@ -500,10 +516,12 @@ void OpenApiDocument::add_error_responses() {
       {"404", "There is no such resource or method."},
       {"409", "It exists already, or has changed meanwhile."},
       {"412", "The resource has another etag."},
+      {"416", "The range begins behind the end of the table."},
       {"429", "A limit is reached; try again after Retry-After."},
       {"503", "The server does not serve now; try again after Retry-After."}};
   Json responses = Json::object();
   responses["NotModified"] = {{"description", "The client has the answer already."}};
+  responses["Range"] = {{"description", "A range of the bytes of a table."}};
   for (const auto& [code, description] : kErrors) {
     Json& each = responses["Error" + code];
     each["description"] = description;

@@ -184,7 +184,8 @@ void set_etag(const std::string& tag, const HttpRequest& request, HttpResponse& 
 void compress(std::string_view accept_encoding, HttpResponse& response) {
   response.headers["Vary"] = "Accept, Accept-Encoding";
   const bool is_compressed = response.headers.contains("Content-Encoding");
-  if (is_compressed || response.body.size() < kLeastCompressed || !accepts_gzip(accept_encoding)) {
+  if (is_compressed || response.status == 206 || response.body.size() < kLeastCompressed ||
+      !accepts_gzip(accept_encoding)) {
     return;
   }
   constexpr int kGzipWindow = 15 + 16;  // 32 kB, with gzip's header
@@ -205,6 +206,10 @@ void compress(std::string_view accept_encoding, HttpResponse& response) {
   if (!is_whole) return;
   response.body = std::move(out);
   response.headers["Content-Encoding"] = "gzip";
+  // A strong tag would let a client join bytes of both forms.
+  if (response.headers.contains("Accept-Ranges")) {
+    response.headers["ETag"] = "W/" + response.headers["ETag"];
+  }
 }
 
 }  // namespace tribodyn::server

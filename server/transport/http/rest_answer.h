@@ -39,8 +39,8 @@ void set_etag(const std::string& tag, const HttpRequest& request, HttpResponse& 
 /// True if the header Accept-Encoding allows gzip.
 bool accepts_gzip(std::string_view header);
 
-/// Compresses the body, unless it is compressed already, if the header Accept-Encoding allows gzip
-/// and the body is long enough to gain.
+/// Compresses the body, unless it is compressed already or a range, if the header Accept-Encoding
+/// allows gzip and the body is long enough to gain.
 void compress(std::string_view accept_encoding, HttpResponse& response);
 
 }  // namespace tribodyn::server

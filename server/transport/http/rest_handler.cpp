@@ -13,6 +13,7 @@
 #include "server/application/log_text.h"
 #include "server/contract/resource_names.h"
 #include "server/support/sha256.h"
+#include "server/transport/http/byte_range.h"
 #include "server/transport/http/curve_table.h"
 #include "server/transport/http/history_format.h"
 #include "server/transport/http/media_types.h"
@@ -153,6 +154,7 @@ class RestUnary final : public RestCall<UnaryCall> {
     auto table = curve_table(simulation, table_->columns, table_->form);
     if (!table.ok()) return error_response(table.error());
     set_etag(sha256(table.message().body), request, table.message());
+    if (table.message().status == 200) offer_range(request, table.message());
     return std::move(table.message());
   }
 

@@ -7,6 +7,8 @@
 #include "server/application/errors.h"
 #include "server/application/guard.h"
 #include "server/application/stream_machine.h"
+#include "server/support/sha256.h"
+#include "server/transport/http/byte_range.h"
 #include "server/transport/http/rest_answer.h"
 #include "server/transport/http/rest_call.h"
 
@@ -51,6 +53,8 @@ class RestStream final : public RestCall<StreamCall>,
     source_->set_order(format_->order());
     HttpResponse response;
     response.headers = format_->headers();
+    google::rpc::Status status;
+    if (!begin_fixed_body(response, status)) return refuse(response, status);
     response.stream = self;
     reply_(std::move(response));
   }
@@ -73,6 +77,43 @@ class RestStream final : public RestCall<StreamCall>,
   void close(const google::rpc::Status& status) override { machine_.close(status); }
 
  private:
+  /// Gives the response of a body that never changes its ETag, its length and the requested range.
+  /// Returns false if it has no body: the client has it, or there is none in that range, or a
+  /// failure, which `status` then is.
+  bool begin_fixed_body(HttpResponse& response, google::rpc::Status& status) {
+    const std::string tag = source_->tag();
+    if (tag.empty() || !format_->has_length()) return true;
+    set_etag(sha256(tag + response.headers["Content-Type"]), request, response);
+    if (response.status == 304) return false;
+    try {
+      const std::unique_ptr<google::protobuf::Message> schema(method.response->New());
+      if (next_step(*source_, *schema, status) == AnyMessageSource::Step::kMessage) {
+        beginning_ = format_->part(*schema);
+      }
+    } catch (...) {
+      status = error_of_exception();
+    }
+    const auto length = format_->length();
+    if (!length) return false;
+    if (const auto range = offer_range(request, *length, response)) {
+      cutter_.emplace(*range);
+      response.headers["Content-Length"] = std::to_string(range->last - range->first + 1);
+    } else {
+      response.headers["Content-Length"] = std::to_string(*length);
+    }
+    return response.status != 416;
+  }
+  void refuse(HttpResponse& response, const google::rpc::Status& status) {
+    dispatcher_.ended(*this, status);
+    live_->remove(this);
+    source_ = nullptr;
+    reply_(status.code() == google::rpc::OK ? std::move(response) : error_response(status));
+  }
+  /// Returns what the response contains of the next text.
+  std::string cut(std::string part) {
+    part.insert(0, std::exchange(beginning_, {}));
+    return cutter_ ? cutter_->cut(part) : part;
+  }
   void open_machine() {
     source_->observe(std::shared_ptr<Observer>(shared_from_this(), &machine_));
     machine_.open(std::move(source_), context.limits.deadline);
@@ -84,10 +125,11 @@ class RestStream final : public RestCall<StreamCall>,
   std::optional<google::rpc::Status> write(const google::protobuf::Message& message) override {
     std::string part;
     try {
-      part = format_->part(message);
+      part = cut(format_->part(message));
     } catch (...) {
       return error_of_exception();
     }
+    if (cutter_ && cutter_->is_complete()) machine_.close({});
     if (part.empty()) {
       machine_.written(true);
     } else {
@@ -108,7 +150,9 @@ class RestStream final : public RestCall<StreamCall>,
   }
   std::optional<std::string> end_text(const google::rpc::Status& status) {
     try {
-      return format_->end(status);
+      auto out = format_->end(status);
+      if (out) out = cut(*std::move(out));
+      return out;
     } catch (const std::exception&) {  // no memory for the text
       return std::nullopt;
     }
@@ -122,6 +166,8 @@ class RestStream final : public RestCall<StreamCall>,
   const Reply reply_;
   std::shared_ptr<RestStream> self_;          // until opened()
   ReplySource source_;                        // from opened() to start()
+  std::string beginning_;                     // text that precedes that of the next message
+  std::optional<RangeCutter> cutter_;         // of a response with a part of the body
   std::shared_ptr<HttpStreamWriter> writer_;  // set by start()
   StreamMachine machine_;
 };

@@ -4,6 +4,7 @@
 #include <google/protobuf/message.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -26,6 +27,10 @@ class StreamFormat {
   virtual std::map<std::string, std::string> headers() const = 0;
   /// Returns the text of the next message; "" if it waits for further ones.
   virtual std::string part(const google::protobuf::Message& message) = 0;
+  /// Returns true if length() is not nullopt after the first message.
+  virtual bool has_length() const { return false; }
+  /// Returns the length of all texts of the stream [bytes]; nullopt if only its end reveals it.
+  virtual std::optional<std::uint64_t> length() const { return std::nullopt; }
   /// Returns the text of the end of the stream, or nullopt if the form cannot express such an end:
   /// the response is then broken off.
   virtual std::optional<std::string> end(const google::rpc::Status& status) = 0;
