@@ -212,6 +212,21 @@ TEST(Arguments, SpeedAndSumpHaveOneMeaningInAllCommands) {
                   .complains_of("either --speed with all speeds, or --first-speed"));
 }
 
+TEST(Arguments, OnlyACurveTakesSeveralSumpTemperatures) {
+  EXPECT_TRUE(Outcome({"curve", "-l", "paper-fluid-1", "--sumps", "40,90"}).complaints.empty());
+  EXPECT_TRUE(Outcome({"point", "-l", "paper-fluid-1", "--speed", "60", "--sump", "40,90"})
+                  .complains_of("--sump: give only one (curve accepts several)"));
+  Scenario scenario;
+  scenario.lubricants = {"a", "b"};
+  scenario.sumps = {40, 90};
+  const std::vector<v1::Simulation> simulations = simulations_of(scenario);
+  ASSERT_EQ(simulations.size(), 4U);
+  EXPECT_EQ(simulations[1].lubricant(), "lubricants/a");
+  EXPECT_EQ(simulations[1].sump_temperature_celsius(), 90);
+  EXPECT_EQ(simulations[2].lubricant(), "lubricants/b");
+  EXPECT_EQ(simulations[2].sump_temperature_celsius(), 40);
+}
+
 TEST(Arguments, QuantitiesOfALubricantNeedNoUnit) {
   const Outcome outcome({"lubricants", "create", "x", "--kv40", "103", "--kv100", "15.1cSt",
                          "--pressure-viscosity", "20", "--pressure-viscosity-temperature", "40",
@@ -291,7 +306,7 @@ TEST(ResultFiles, AreCheckedBeforeAnythingIsComputed) {
       Outcome({"curve", "-l", "paper-fluid-1", "--csv", "/tmp"}).complains_of("is a folder"));
   std::vector<std::string> many = {"curve", "--plot", "x.svg"};
   for (int i = 0; i < 25; ++i) many.insert(many.end(), {"-l", std::to_string(i)});
-  EXPECT_TRUE(Outcome(many).complains_of("25 lubricants; allowed: at most 24"));
+  EXPECT_TRUE(Outcome(many).complains_of("25 curves; allowed: at most 24"));
 }
 
 TEST(Help, IsShortWithoutHelpAll) {

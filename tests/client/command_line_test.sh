@@ -281,6 +281,8 @@ out_has 'inefficiency +inefficiency +inefficiency'
 out_has '\+/- 0\.[0-9]+ +\+/- 0\.0'
 out_has '^Uncertainty of the inputs'
 grep -q 'Bands: 95 % intervals' "$folder/bands.svg" || fail "the plot has no bands"
+expect 0 curve --lubricant sheet-a --speeds 40,60 --sumps 40,90 --no-uncertainty --output csv
+out_lines 5
 expect 0 curve --lubricant sheet-a --speed 40,60 --no-uncertainty
 out_lacks '^Uncertainty of the inputs'
 expect 0 curve --lubricant paper-fluid-1 --lubricant paper-fluid-2,paper-fluid-3 --first-speed 40 --last-speed 60 --speed-step 10 \

@@ -254,6 +254,21 @@ TEST(CurvePlot, NamesModelVersionAndInputHashes) {
             std::string::npos);
 }
 
+TEST(CurvePlot, LabelsCurvesBySumpTemperatureWhereItDiffers) {
+  std::vector<v1::Simulation> simulations = {sample_curve("lubricants/paper-fluid-1", 1),
+                                             sample_curve("lubricants/paper-fluid-1", 1.2)};
+  simulations[0].set_sump_temperature_celsius(40);
+  simulations[1].set_sump_temperature_celsius(90);
+  for (v1::Simulation& each : simulations) {
+    each.mutable_result()->add_input_warnings()->set_code("EXPANSION_ESTIMATED");
+  }
+  const std::string svg = curve_plot(simulations, {});
+  EXPECT_NE(svg.find("not measured [EXPANSION_ESTIMATED]"), std::string::npos);
+  EXPECT_NE(svg.find("sump 90 "), std::string::npos);
+  EXPECT_NE(svg.find("paper-fluid-1 at 90 C: "), std::string::npos);
+  EXPECT_EQ(svg.find("; sump 40"), std::string::npos);  // the caption is of all curves
+}
+
 TEST(CurvePlot, CutsALongTitleWithAnEllipsis) {
   const std::string svg = curve_plot({sample_curve("1", 1)},
                                      {{"lubricants/1", "An oil with quite a long name 75W-90"}});

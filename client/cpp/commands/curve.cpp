@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <memory>
 
@@ -117,11 +118,13 @@ Command curve_command() {
   const auto flags = std::make_shared<CurveFlags>();
   Command command{
       "curve",
-      "inefficiency against speed, for one or more lubricants",
-      "Submits an inefficiency curve for each lubricant, watches them together and prints a table "
+      "inefficiency against speed, for one or more lubricants and sump temperatures",
+      "Submits an inefficiency curve for each lubricant at each sump temperature, watches them "
+      "together and prints a table "
       "for each.",
       {"tribodyn curve --lubricant paper-fluid-1 --lubricant paper-fluid-2 --lubricant "
        "paper-fluid-3 --csv curve.csv --plot curve.svg",
+       "tribodyn curve --lubricant paper-fluid-1,paper-fluid-2 --speeds 20,60,100 --sumps 40,90",
        "tribodyn curve --lubricant paper-fluid-1 --first-speed 60 --last-speed 85 --speed-step 1 "
        "--direction down"},
       {},
@@ -135,9 +138,10 @@ Command curve_command() {
       complaints.emplace_back(
           "give either --speed with all speeds, or --first-speed, --last-speed and --speed-step");
     }
-    const std::size_t count = flags->scenario.lubricants.size();
+    const std::size_t count =
+        flags->scenario.lubricants.size() * std::max<std::size_t>(1, flags->scenario.sumps.size());
     if (!flags->plot_path.empty() && count > kDistinctLooks) {
-      complaints.push_back("--plot: " + std::to_string(count) + " lubricants; allowed: at most " +
+      complaints.push_back("--plot: " + std::to_string(count) + " curves; allowed: at most " +
                            std::to_string(kDistinctLooks) +
                            ", for which colours and dashes differ. Draw them in several pictures");
     }

@@ -98,9 +98,9 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
           "--vehicle", "NAME", "Vehicle: road load. Default: passenger-car.",
           [&](const std::string& name) { simulation.set_vehicle(resource_name("vehicles", name)); })
       .collection = "vehicles";
-  flags.number("--sump-temperature-celsius,--sump", {"C", "-70 to 200", "40"},
-               "Temperature of the oil bath",
-               [&](double value) { simulation.set_sump_temperature_celsius(value); });
+  flags.numbers("--sump-temperature-celsius,--sump,--sumps", {"C", "-70 to 200", "40"},
+                "Temperature of the oil bath; a curve takes several separated by commas",
+                [&](double value) { scenario.sumps.push_back(value); });
   flags.number("--inlet-temperature-rise-kelvin", {"K", "0 to 300", "20"},
                "Temperature rise from the oil bath to the inlet of the contact (eq 14)",
                [&](double value) { simulation.set_inlet_temperature_rise_kelvin(value); });
@@ -143,13 +143,21 @@ void check_scenario(const Scenario& scenario, bool several_lubricants, Complaint
   if (scenario.lubricants.size() > 1 && !several_lubricants) {
     complaints.emplace_back("--lubricant: give only one (curve accepts several)");
   }
+  if (scenario.sumps.size() > 1 && !several_lubricants) {
+    complaints.emplace_back("--sump: give only one (curve accepts several)");
+  }
 }
 
 std::vector<v1::Simulation> simulations_of(const Scenario& scenario) {
   std::vector<v1::Simulation> simulations;
   for (const std::string& lubricant : scenario.lubricants) {
-    simulations.push_back(scenario.simulation);
-    simulations.back().set_lubricant(resource_name("lubricants", lubricant));
+    v1::Simulation simulation = scenario.simulation;
+    simulation.set_lubricant(resource_name("lubricants", lubricant));
+    if (scenario.sumps.empty()) simulations.push_back(simulation);
+    for (const double sump : scenario.sumps) {
+      simulation.set_sump_temperature_celsius(sump);
+      simulations.push_back(simulation);
+    }
   }
   return simulations;
 }
@@ -162,7 +170,10 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
   for (const v1::Simulation& simulation : simulations_of(scenario)) {
     try {
       submitted.push_back(connection.create_simulation(simulation, scenario.create));
-      labels.push_back(simulation.lubricant());
+      labels.push_back(simulation.lubricant() +
+                       (scenario.sumps.size() > 1
+                            ? ", " + significant(simulation.sump_temperature_celsius()) + " C"
+                            : ""));
     } catch (const ServiceError& error) {
       if (error.kind() != ServiceError::Kind::kRefused) throw;
       const std::string refusal = Failure(with_flag_names(error, options.typed_flags)).what();

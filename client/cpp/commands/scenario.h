@@ -12,6 +12,7 @@ namespace tribodyn::client {
 /// and solver. The flags fill a Simulation except for its lubricant and its study.
 struct Scenario {
   std::vector<std::string> lubricants;  ///< as typed: "my-oil" or "lubricants/my-oil"
+  std::vector<double> sumps;            ///< [C]; several for curves alone; empty: the default
   v1::Simulation simulation;
   bool detach = false;  ///< submit, print how to watch the jobs, and return
   CreateOptions create;
@@ -23,7 +24,7 @@ struct Scenario {
 void add_scenario_flags(FlagList& flags, Scenario& scenario);
 void check_scenario(const Scenario& scenario, bool several_lubricants, Complaints& complaints);
 
-/// Returns one Simulation per lubricant.
+/// Returns one Simulation per lubricant and sump temperature.
 std::vector<v1::Simulation> simulations_of(const Scenario& scenario);
 
 /// Submits all simulations, watches them in parallel and returns them when all have ended. With

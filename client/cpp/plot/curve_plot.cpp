@@ -52,10 +52,16 @@ Series series_of(const v1::Simulation& simulation, const Look& look, Value value
   return series;
 }
 
+/// Returns the label of a curve; its note is the sump temperature if `shows_sump`.
 FluidTitle title_of(const v1::Simulation& simulation,
-                    const std::map<std::string, std::string>& titles) {
+                    const std::map<std::string, std::string>& titles, bool shows_sump) {
   const auto found = titles.find(simulation.lubricant());
-  return fluid_title(simulation.lubricant(), found != titles.end() ? found->second : "");
+  FluidTitle out = fluid_title(simulation.lubricant(), found != titles.end() ? found->second : "");
+  if (shows_sump) {
+    out.note = "sump " + significant(inputs_of(simulation).sump_temperature_celsius) + " " +
+               kDegreesCelsius;
+  }
+  return out;
 }
 
 /// Adds the 95 % intervals of an energy mean; none where the line breaks.
@@ -78,6 +84,7 @@ Panel inefficiency_panel(const std::vector<v1::Simulation>& simulations,
   panel.title = "Mesh inefficiency, % of input power";
   panel.x_title = "Vehicle speed, km/h";
   panel.shows_samples = true;
+  const bool shows_sump = sumps_differ(simulations);
   for (std::size_t i = 0; i < simulations.size(); ++i) {
     const Look look = look_of(i);
     Series rms = series_of(simulations[i], look, [](const v1::PointResult& result) {
@@ -98,7 +105,7 @@ Panel inefficiency_panel(const std::vector<v1::Simulation>& simulations,
     if (uncertainty != uncertainties.end()) add_band(uncertainty->second, mean);
     mean.width = 2.4;
     mean.marker = look.marker;
-    const FluidTitle title = title_of(simulations[i], titles);
+    const FluidTitle title = title_of(simulations[i], titles, shows_sump);
     mean.label = title.label;
     mean.note = title.note;
     panel.series.push_back(std::move(mean));
@@ -154,7 +161,7 @@ void draw_key(bool has_bands, bool has_hatching, Svg& svg) {
 std::string caption(const std::vector<v1::Simulation>& simulations) {
   if (simulations.empty()) return "";
   const v1::Simulation& first = simulations.front();
-  std::string text = inputs_text(first, kDegreesCelsius);
+  std::string text = inputs_text(first, kDegreesCelsius, !sumps_differ(simulations));
   text[0] = 'G';
   text += "; " + sweep_text(first.inefficiency_curve());
   return text + "; model " + model_options_text(first.model_options()) + ".";

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "client/cpp/report/inputs.h"
 #include "client/cpp/report/warnings.h"
 #include "client/cpp/text/text.h"
 
@@ -53,11 +54,17 @@ std::string warning_text(const CurveWarning& warning, bool is_curve) {
 /// not concern all of them.
 std::vector<std::string> input_texts(const std::vector<v1::Simulation>& simulations) {
   std::map<std::string, std::vector<std::string>> names;  // by code
+  std::set<std::string> lubricants;
   for (const v1::Simulation& simulation : simulations) {
+    lubricants.insert(simulation.lubricant());
     std::set<std::string> codes;  // a set: some warnings repeat for every measurement
     for (const v1::RangeWarning& warning : simulation.result().input_warnings()) {
       if (codes.insert(warning.code()).second) {
-        names[warning.code()].push_back(simulation.lubricant());
+        std::vector<std::string>& concerned = names[warning.code()];
+        // Curves of one lubricant at several temperatures stand together.
+        if (concerned.empty() || concerned.back() != simulation.lubricant()) {
+          concerned.push_back(simulation.lubricant());
+        }
       }
     }
   }
@@ -65,7 +72,7 @@ std::vector<std::string> input_texts(const std::vector<v1::Simulation>& simulati
   for (const auto& [code, concerned] : names) {
     std::string text = warning_words(code);
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-    if (concerned.size() < simulations.size()) text += " (" + ids_text(concerned) + ")";
+    if (concerned.size() < lubricants.size()) text += " (" + ids_text(concerned) + ")";
     texts.push_back(text + " [" + code + "].");
   }
   return texts;
@@ -75,11 +82,15 @@ std::vector<std::string> input_texts(const std::vector<v1::Simulation>& simulati
 std::string identity_text(const std::vector<v1::Simulation>& simulations) {
   std::set<std::string> versions;
   std::vector<std::string> hashes;
+  const bool shows_sump = sumps_differ(simulations);
   for (const v1::Simulation& simulation : simulations) {
     versions.insert(simulation.result().model_version());
     const std::string hash = simulation.result().input_hash().substr(0, kShownHash);
-    hashes.push_back(simulations.size() == 1 ? hash
-                                             : resource_id(simulation.lubricant()) + ": " + hash);
+    const std::string sump =
+        shows_sump ? " at " + significant(inputs_of(simulation).sump_temperature_celsius) + " C"
+                   : "";
+    hashes.push_back(
+        simulations.size() == 1 ? hash : resource_id(simulation.lubricant()) + sump + ": " + hash);
   }
   return "Model version " + joined({versions.begin(), versions.end()}, ", ") + "; hash of inputs " +
          joined(hashes, ", ") + ".";

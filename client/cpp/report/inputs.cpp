@@ -120,12 +120,20 @@ Inputs inputs_of(const v1::Simulation& simulation) {
                                                      : kDefaultInletTemperatureRiseKelvin};
 }
 
-std::string inputs_text(const v1::Simulation& simulation, const char* celsius) {
+std::string inputs_text(const v1::Simulation& simulation, const char* celsius, bool shows_sump) {
   const Inputs inputs = inputs_of(simulation);
   return "gear set " + resource_id(inputs.gear_set) + ", surface " + resource_id(inputs.surface) +
-         ", vehicle " + resource_id(inputs.vehicle) + "; sump " +
-         significant(inputs.sump_temperature_celsius) + " " + celsius + ", inlet rise " +
-         significant(inputs.inlet_temperature_rise_kelvin) + " K";
+         ", vehicle " + resource_id(inputs.vehicle) + "; " +
+         (shows_sump ? "sump " + significant(inputs.sump_temperature_celsius) + " " + celsius + ", "
+                     : "") +
+         "inlet rise " + significant(inputs.inlet_temperature_rise_kelvin) + " K";
+}
+
+bool sumps_differ(const std::vector<v1::Simulation>& simulations) {
+  return std::any_of(simulations.begin(), simulations.end(), [&](const auto& each) {
+    return inputs_of(each).sump_temperature_celsius !=
+           inputs_of(simulations.front()).sump_temperature_celsius;
+  });
 }
 
 std::string model_options_text(const v1::ModelOptions& options) {

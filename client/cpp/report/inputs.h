@@ -20,7 +20,11 @@ Inputs inputs_of(const v1::Simulation& simulation);
 /// Returns e.g. "gear set reference-axle, surface run-in, vehicle passenger-car; sump 40 C, inlet
 /// rise 20 K". A plot may pass a degree sign for `celsius`; a terminal without UTF-8 cannot show
 /// one.
-std::string inputs_text(const v1::Simulation& simulation, const char* celsius = "C");
+std::string inputs_text(const v1::Simulation& simulation, const char* celsius = "C",
+                        bool shows_sump = true);
+
+/// Whether the sump temperatures of the simulations differ.
+bool sumps_differ(const std::vector<v1::Simulation>& simulations);
 
 /// Returns e.g. "isothermal, newtonian, as published eq17_atan"; "as corrected" if no option is
 /// set.

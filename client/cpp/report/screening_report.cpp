@@ -219,12 +219,15 @@ void add_confidence(const Screening& screening, const std::vector<CandidateFigur
   const std::string& best = screening.table.names[ranking.front().candidate];
   const std::string percent = significant(100 * confidence.confidence, 4) + " %";
   sheet.heading("How sure the ranking is");
-  sheet.remark(ties == 0 ? "At " + percent + " " + best + " loses less than every other candidate."
-                         : std::to_string(ties) + " of " + std::to_string(of.size() - 1) +
-                               " others cannot be told apart from " + best + " at " + percent +
-                               ": " + joined(tied, ", ") +
-                               (ties > tied.size()
-                                    ? " and " + std::to_string(ties - tied.size()) + " more."
+  sheet.remark(
+      ties == 0
+          ? "At " + percent + " " + best +
+                (of.size() < ranking.size() ? " loses less than every other one that was compared."
+                                            : " loses less than every other candidate.")
+          : std::to_string(ties) + " of " + std::to_string(of.size() - 1) +
+                " others cannot be told apart from " + best + " at " + percent + ": " +
+                joined(tied, ", ") +
+                (ties > tied.size() ? " and " + std::to_string(ties - tied.size()) + " more."
                                     : "."));
   if (of.size() < ranking.size()) {
     sheet.remark("Compared: the best " + std::to_string(of.size()) + " candidates.");
