@@ -261,7 +261,7 @@ class StorageFault : public testing::Test {
 
   void fail_every(FaultyVfs::Operation operation, const std::string& name) {
     // There is one session for each operation; under sanitizers all writes would take minutes.
-    const int slowed = kUnderThreadSanitizer ? 12 : kUnderAddressSanitizer ? 4 : 1;
+    const int slowed = kUnderAddressSanitizer ? 4 : 1;
     const int stride = operation == FaultyVfs::Operation::kWrite ? slowed : 1;
     for (const bool lasting : {false, true}) {
       int met = 0;
@@ -335,7 +335,7 @@ TEST_F(StorageFault, EveryWriteMayFail) { fail_every(FaultyVfs::Operation::kWrit
 TEST_F(StorageFault, EverySyncMayFail) { fail_every(FaultyVfs::Operation::kSync, "sync"); }
 
 TEST_F(StorageFault, PowerMayGoAtAnyMoment) {
-  const int losses = number_from("TRIBODYN_POWER_LOSSES", kUnderThreadSanitizer ? 20 : 100);
+  const int losses = number_from("TRIBODYN_POWER_LOSSES", 100);
   RecordProperty("losses", losses);
   EXPECT_THAT(lose_power(losses), IsEmpty());
 }

@@ -14,6 +14,7 @@
 #include "server/transport/listen_address.h"
 #include "tests/service/grpc_fixture.h"
 #include "tests/service/raw_client.h"
+#include "tests/support/run_length.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
 
 namespace tribodyn::server {
@@ -114,11 +115,7 @@ TEST_F(DaemonTest, ATerminationEndsStreamsAndUnfinishedSimulationsRunAfterTheNex
 /// Returns a curve that takes one or two seconds: 13 points, or one under a sanitizer, which slows
 /// the core.
 v1::Simulation some_seconds() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr double kStep = 130;
-#else
-  constexpr double kStep = 10;
-#endif
+  constexpr double kStep = kUnderSanitizer ? 130 : 10;
   v1::Simulation simulation = curve_simulation();
   simulation.mutable_inefficiency_curve()->set_speed_step_kilometres_per_hour(kStep);
   simulation.mutable_solver_options()->set_method(v1::STEADY_STATE_METHOD_MARCH);

@@ -16,6 +16,7 @@
 #include "server/scheduling/janitor.h"
 #include "server/storage/maintenance.h"
 #include "tests/service/support.h"
+#include "tests/support/run_length.h"
 
 namespace tribodyn::server {
 namespace {
@@ -530,11 +531,7 @@ TEST_F(LifeCycle, ACancelTakesEffectAtOnceAndFreesTheProcessor) {
     EXPECT_EQ(cancel_simulation(app, cancel).message().state(), State::CANCELLED) << "again";
   }
   // One round may be slowed by a busy machine; sanitizers slow the core about ten times.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr double kMostMilliseconds = 500;
-#else
-  constexpr double kMostMilliseconds = 100;
-#endif
+  constexpr double kMostMilliseconds = kUnderSanitizer ? 500 : 100;
   std::nth_element(usual.begin(), usual.begin() + 5, usual.end());
   EXPECT_LT(usual[5], kMostMilliseconds);
 }

@@ -13,16 +13,13 @@
 #include "server/storage/maintenance.h"
 #include "server/storage/store.h"
 #include "tests/service/support.h"
+#include "tests/support/run_length.h"
 #include "tribodyn/v1/results.pb.h"
 
 namespace tribodyn::server {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kSchedules = 1'000;  // ten times slower there, and single-threaded
-#else
-constexpr int kSchedules = 10'000;
-#endif
+constexpr int kSchedules = kUnderSanitizer ? 1'000 : 10'000;  // ten times slower, and one thread
 constexpr int kSteps = 12;
 constexpr int kInputs = 2;
 constexpr int kRequestIds = 2;

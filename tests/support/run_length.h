@@ -4,17 +4,16 @@
 
 namespace tribodyn {
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef TRIBODYN_UNDER_ADDRESS_SANITIZER  // defined by tests/CMakeLists.txt
 inline constexpr bool kUnderAddressSanitizer = true;
 #else
 inline constexpr bool kUnderAddressSanitizer = false;
 #endif
-#ifdef __SANITIZE_THREAD__
-inline constexpr bool kUnderThreadSanitizer = true;
+#ifdef TRIBODYN_UNDER_SANITIZER
+inline constexpr bool kUnderSanitizer = true;
 #else
-inline constexpr bool kUnderThreadSanitizer = false;
+inline constexpr bool kUnderSanitizer = false;
 #endif
-inline constexpr bool kUnderSanitizer = kUnderAddressSanitizer || kUnderThreadSanitizer;
 
 /// AddressSanitizer slows the model ten times: sweeps use few of their scenes there. The release
 /// stage runs all of them.
