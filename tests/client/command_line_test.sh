@@ -228,6 +228,10 @@ out_has '^ *2  like the base .* tie, [0-9]+ %'
 out_has 'Errors of each candidate alone: pressure viscosity coefficient'
 out_has '^Pareto front: least inefficiency and least treat rate'
 grep -q '</svg>' "$folder/screen.svg" || fail 'no picture of the front'
+expect 0 screen "$table" --like paper-fluid-1 --pareto 'treat rate' --output json
+out_is_json
+expect 2 screen "$table" --like paper-fluid-1 --pareto 'treat rate' --output csv
+err_has 'use --output json for --pareto'
 expect 2 screen "$table" --like paper-fluid-1 --pareto 'treat rat'
 err_has 'is treat rate meant'
 expect 0 design --range pressure-viscosity=14/GPa:18/GPa --range asperity-friction-coefficient=0.05:0.12 --count 16

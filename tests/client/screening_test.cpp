@@ -343,6 +343,11 @@ TEST(Screening, FindsTheParetoFrontOfAColumn) {
   EXPECT_THAT(picture, HasSubstr("Pareto front"));
   EXPECT_THAT(picture, HasSubstr("additive: A to B"));
   EXPECT_THAT(screening_plot(screening, ranking, nullptr, &*effects), Not(HasSubstr("Pareto")));
+  const std::string json = screening_report(
+      screening, ranking, {}, 1, OutputFormat::kJson,
+      {{"pareto_front", front_json(screening, front)}, {"main_effects", effects_json(*effects)}});
+  EXPECT_THAT(json, HasSubstr("\"pareto_front\": {\"column\": \"cost\", \"wants_most\": false"));
+  EXPECT_THAT(json, HasSubstr("{\"column\": \"additive\", \"from\": \"A\", \"to\": \"B\""));
 }
 
 }  // namespace

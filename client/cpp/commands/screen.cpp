@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -268,6 +269,7 @@ Screening prepared_screening(ScreenFlags& flags, const v1::Schema& schema, Conne
       base_of_rows(connection, kind_of(*v1::Lubricant::descriptor()), out.request.lubricant());
   base.stated = dynamic_cast<const v1::Lubricant&>(*stated);
   out.table = read_candidates(text, flags.path, base, flags.carried);
+  if (!flags.pareto_column.empty()) front_column(out.table, flags.pareto_column);
   if (!out.table.note.empty()) std::cerr << "tribodyn: " << printable(out.table.note) << "\n";
   characterise_candidates(connection, base, out.table);
   check_candidate_ranges(schema, out.table);
@@ -310,13 +312,22 @@ class ScreeningRun {
       if (screening_.table.refusals[i].empty()) candidates_.push_back(i);
     }
     start_ = std::chrono::steady_clock::now();
-    evaluate_candidates(
-        connection, screening_.request, screening_.table.parameters, candidates_,
-        [this](const PointBatch& batch) { take(batch); },
-        [this] {
-          show("running");
-          return !InterruptGuard::interrupted();
-        });
+    try {
+      evaluate_candidates(
+          connection, screening_.request, screening_.table.parameters, candidates_,
+          [this](const PointBatch& batch) { take(batch); },
+          [this] {
+            show("running");
+            return !InterruptGuard::interrupted();
+          });
+    } catch (const ServiceError& error) {
+      if (!file_ || error.kind() == ServiceError::Kind::kRefused) throw;
+      const Failure failure(error);
+      throw Failure(failure.exit_code(),
+                    std::string(failure.what()) +
+                        "\n  Run the same command again to go on: the candidates so far are in " +
+                        file_->target());
+    }
     if (InterruptGuard::interrupted()) throw interruption();
     write_until(screening_.table.size());
     show("succeeded");
@@ -424,32 +435,38 @@ RankingConfidence confidence_of(const ScreenFlags& flags, const Screening& scree
   return out;
 }
 
-/// Prints and draws the Pareto front and the main effects that were asked for.
-void show_decisions(const ScreenFlags& flags, const Screening& screening,
-                    const std::vector<CandidateFigures>& ranking, OutputFormat format) {
+/// The Pareto front and the main effects that were asked for.
+struct Decisions {
   std::optional<ScreeningFront> front;
   std::optional<ScreeningEffects> effects;
+};
+
+Decisions decisions_of(const ScreenFlags& flags, const Screening& screening,
+                       const std::vector<CandidateFigures>& ranking) {
+  Decisions out;
+  if (!ranking.front().refusal.empty()) return out;
   if (!flags.pareto_column.empty()) {
-    front = screening_front(screening, ranking, flags.pareto_column, flags.wants_most);
+    out.front = screening_front(screening, ranking, flags.pareto_column, flags.wants_most);
   }
   if (flags.wants_effects) {
-    effects = screening_effects(screening, ranking);
-    if (!effects) {
+    out.effects = screening_effects(screening, ranking);
+    if (!out.effects) {
       throw Failure(kExitUsage,
                     "--effects: too few candidates for as many columns; give at least two more "
                     "candidates with figures than columns that differ");
     }
   }
-  if (format == OutputFormat::kTable) {
-    if (front) std::cout << "\n" << front_report(screening, ranking, *front);
-    if (effects) std::cout << "\n" << effects_report(*effects);
-  }
-  if (flags.plot_path.empty()) return;
-  write_file(flags.plot_path, screening_plot(screening, ranking, front ? &*front : nullptr,
-                                             effects ? &*effects : nullptr));
+  return out;
 }
 
 int run_screen(ScreenFlags& flags, const CommonOptions& options) {
+  const bool has_decisions = !flags.pareto_column.empty() || flags.wants_effects;
+  if (options.output_format == OutputFormat::kCsv && has_decisions && flags.plot_path.empty()) {
+    throw Failure(
+        kExitUsage,
+        "--output csv is the ranking alone; use --output json for --pareto and --effects, "
+        "or draw them with --plot");
+  }
   Connection connection = options.connect();
   const v1::Schema schema = connection.schema();
   Screening screening = prepared_screening(flags, schema, connection);
@@ -461,11 +478,21 @@ int run_screen(ScreenFlags& flags, const CommonOptions& options) {
   const RankingConfidence confidence =
       flags.leaves_out_uncertainty ? RankingConfidence()
                                    : confidence_of(flags, screening, ranking, schema, connection);
+  const auto [front, effects] = decisions_of(flags, screening, ranking);
+  std::map<std::string, std::string> members;
+  if (front) members["pareto_front"] = front_json(screening, *front);
+  if (effects) members["main_effects"] = effects_json(*effects);
   std::cout << screening_report(screening, ranking, confidence, static_cast<std::size_t>(flags.top),
-                                options.output_format);
-  if (!ranking.front().refusal.empty()) return kExitFailed;
-  show_decisions(flags, screening, ranking, options.output_format);
-  return kExitOk;
+                                options.output_format, members);
+  if (options.output_format == OutputFormat::kTable) {
+    if (front) std::cout << "\n" << front_report(screening, ranking, *front);
+    if (effects) std::cout << "\n" << effects_report(*effects);
+  }
+  if (!flags.plot_path.empty() && (front || effects)) {
+    write_file(flags.plot_path, screening_plot(screening, ranking, front ? &*front : nullptr,
+                                               effects ? &*effects : nullptr));
+  }
+  return ranking.front().refusal.empty() ? kExitOk : kExitFailed;
 }
 
 }  // namespace

@@ -170,21 +170,24 @@ RankingConfidence ranking_confidence(const std::vector<CandidateFigures>& rankin
   return out;
 }
 
+std::size_t front_column(const CandidateTable& table, const std::string& column) {
+  const auto found = std::find(table.headers.begin(), table.headers.end(), column);
+  if (found != table.headers.end()) {
+    return static_cast<std::size_t>(found - table.headers.begin());
+  }
+  const std::string meant = nearest(column, table.headers);
+  throw Failure(kExitUsage, "--pareto: the table has no column '" + printable(column) + "'" +
+                                (meant.empty() ? "; it has " + joined(table.headers, ", ")
+                                               : " (is " + meant + " meant?)"));
+}
+
 ScreeningFront screening_front(const Screening& screening,
                                const std::vector<CandidateFigures>& ranking,
                                const std::string& column, bool wants_most) {
-  const CandidateTable& table = screening.table;
-  const auto found = std::find(table.headers.begin(), table.headers.end(), column);
-  if (found == table.headers.end()) {
-    const std::string meant = nearest(column, table.headers);
-    throw Failure(kExitUsage, "--pareto: the table has no column '" + printable(column) + "'" +
-                                  (meant.empty() ? "; it has " + joined(table.headers, ", ")
-                                                 : " (is " + meant + " meant?)"));
-  }
   ScreeningFront out;
   out.column = column;
   out.wants_most = wants_most;
-  out.values = numbers_of_column(table, static_cast<std::size_t>(found - table.headers.begin()));
+  out.values = numbers_of_column(screening.table, front_column(screening.table, column));
   std::vector<double> inefficiencies, values;
   for (const CandidateFigures& each : ranking) {
     const double value = each.refusal.empty() ? out.values[each.candidate] : kNoValue;
@@ -295,6 +298,35 @@ std::string effects_report(const ScreeningEffects& effects) {
     note.remark("Without an effect: " + joined(effects.left_out, ", ") + ".");
   }
   return title.text() + table.text() + note.text();
+}
+
+std::string front_json(const Screening& screening, const ScreeningFront& front) {
+  std::string out;
+  for (const std::size_t candidate : front.front) {
+    out += std::string(out.empty() ? "" : ", ") +
+           "{\"candidate\": " + json_quoted(screening.table.names[candidate]) +
+           ", \"value\": " + json_number(front.values[candidate]) + "}";
+  }
+  return "{\"column\": " + json_quoted(front.column) +
+         ", \"wants_most\": " + (front.wants_most ? "true" : "false") + ", \"candidates\": [" +
+         out + "]}";
+}
+
+std::string effects_json(const ScreeningEffects& effects) {
+  std::string out;
+  for (const ScreeningEffect& each : effects.effects) {
+    out += std::string(out.empty() ? "" : ",") +
+           "\n      {\"column\": " + json_quoted(each.column) +
+           ", \"from\": " + json_quoted(each.from) + ", \"to\": " + json_quoted(each.to) +
+           ", \"effect_percent\": " + json_number(each.effect) +
+           ", \"low_percent\": " + json_number(each.low) +
+           ", \"high_percent\": " + json_number(each.high) + "}";
+  }
+  return "{\"explained_share\": " + json_number(effects.explained_share) +
+         ", \"residual_standard_deviation_percent\": " +
+         json_number(effects.residual_standard_deviation) +
+         ", \"degrees_of_freedom\": " + std::to_string(effects.degrees_of_freedom) +
+         ", \"effects\": [" + out + "]}";
 }
 
 }  // namespace tribodyn::client

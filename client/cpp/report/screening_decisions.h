@@ -25,6 +25,10 @@ struct ScreeningFront {
   std::vector<std::size_t> front;  ///< candidates, by ascending inefficiency
 };
 
+/// Returns the index of a column. Throws Failure (kExitUsage), naming --pareto, if the table has no
+/// such column.
+std::size_t front_column(const CandidateTable& table, const std::string& column);
+
 /// Returns the front. Throws Failure (kExitUsage), naming --pareto, if the table has no such column
 /// or if it has no numbers.
 ScreeningFront screening_front(const Screening& screening,
@@ -52,5 +56,9 @@ std::optional<ScreeningEffects> screening_effects(const Screening& screening,
 std::string front_report(const Screening& screening, const std::vector<CandidateFigures>& ranking,
                          const ScreeningFront& front);
 std::string effects_report(const ScreeningEffects& effects);
+
+// The same as JSON objects.
+std::string front_json(const Screening& screening, const ScreeningFront& front);
+std::string effects_json(const ScreeningEffects& effects);
 
 }  // namespace tribodyn::client

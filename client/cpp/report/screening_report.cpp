@@ -307,7 +307,8 @@ std::string ranking_csv(const Screening& screening, const std::vector<CandidateF
 }
 
 std::string ranking_json(const Screening& screening, const std::vector<CandidateFigures>& ranking,
-                         const RankingConfidence& confidence) {
+                         const RankingConfidence& confidence,
+                         const std::map<std::string, std::string>& members) {
   const CandidateFigures base = base_figures(screening);
   const auto figures = [](const CandidateFigures& each) {
     return "\"inefficiency_energy_mean_percent\": " + json_number(each.inefficiency) +
@@ -343,7 +344,9 @@ std::string ranking_json(const Screening& screening, const std::vector<Candidate
                                       json_number(relative_difference(each, base)) + "}"
                                 : refusal(each) + "}";
   }
-  return out + "\n  ]\n}\n";
+  out += "\n  ]";
+  for (const auto& [name, value] : members) out += ",\n  " + json_quoted(name) + ": " + value;
+  return out + "\n}\n";
 }
 
 }  // namespace
@@ -383,12 +386,13 @@ std::vector<CandidateFigures> ranked(const Screening& screening) {
 std::string screening_report(const Screening& screening,
                              const std::vector<CandidateFigures>& ranking,
                              const RankingConfidence& confidence, std::size_t top,
-                             OutputFormat format) {
+                             OutputFormat format,
+                             const std::map<std::string, std::string>& members) {
   switch (format) {
     case OutputFormat::kCsv:
       return ranking_csv(screening, ranking, confidence);
     case OutputFormat::kJson:
-      return ranking_json(screening, ranking, confidence);
+      return ranking_json(screening, ranking, confidence, members);
     case OutputFormat::kTable:
       break;
   }

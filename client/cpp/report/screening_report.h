@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,10 +47,12 @@ struct RankingConfidence {
 };
 
 /// Returns the ranking: as a table the `top` best and what was refused, else all candidates. A
-/// confidence without candidates leaves its columns out of the table.
+/// confidence without candidates leaves its columns out of the table. JSON gets `members` too:
+/// values by their names.
 std::string screening_report(const Screening& screening,
                              const std::vector<CandidateFigures>& ranking,
                              const RankingConfidence& confidence, std::size_t top,
-                             OutputFormat format);
+                             OutputFormat format,
+                             const std::map<std::string, std::string>& members = {});
 
 }  // namespace tribodyn::client
