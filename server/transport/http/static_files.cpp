@@ -8,9 +8,6 @@
 #include <system_error>
 #include <utility>
 
-#include "server/support/sha256.h"
-#include "server/transport/http/rest_answer.h"
-
 namespace tribodyn::server {
 namespace {
 
@@ -47,9 +44,26 @@ std::string content(const fs::path& file) {
   return std::move(out).str();
 }
 
+std::map<std::string, std::string> headers_of(const std::string& path) {
+  std::map<std::string, std::string> out = {{"Content-Type", media_type(path)}};
+  if (path.starts_with(kHashedFolder)) {
+    out["Cache-Control"] = "public, max-age=31536000, immutable";
+  }
+  if (path.ends_with(".html")) {
+    out["Content-Security-Policy"] = kPagePolicy;
+    out["Cross-Origin-Opener-Policy"] = "same-origin";
+    out["Permissions-Policy"] = "camera=(), geolocation=(), microphone=()";
+  }
+  return out;
+}
+
 }  // namespace
 
 StaticFiles::StaticFiles(const fs::path& folder) {
+  struct File {
+    std::string body, compressed;
+  };
+  std::map<std::string, File> files;
   std::size_t bytes = 0;
   for (const fs::directory_entry& each : fs::recursive_directory_iterator(folder)) {
     if (!each.is_regular_file()) continue;
@@ -61,11 +75,13 @@ StaticFiles::StaticFiles(const fs::path& folder) {
     fs::path path = each.path();
     const bool is_compressed = path.extension() == ".gz";
     if (is_compressed) path.replace_extension();
-    File& file = files_["/" + fs::relative(path, folder).generic_string()];
+    File& file = files["/" + fs::relative(path, folder).generic_string()];
     (is_compressed ? file.compressed : file.body) = content(each.path());
-    file.type = media_type(path);
   }
-  for (auto& [path, file] : files_) file.tag = sha256(file.body).substr(0, 32);
+  for (auto& [path, file] : files) {
+    files_.emplace(path,
+                   StaticPage(std::move(file.body), headers_of(path), std::move(file.compressed)));
+  }
   if (!files_.contains("/index.html")) {
     throw std::runtime_error(folder.string() + " has no index.html");
   }
@@ -81,25 +97,7 @@ std::optional<HttpResponse> StaticFiles::answer(const HttpRequest& request,
     if (!is_view) return std::nullopt;
     found = files_.find("/index.html");
   }
-  const File& file = found->second;
-  HttpResponse out;
-  out.headers["Content-Type"] = file.type;
-  if (found->first.starts_with(kHashedFolder)) {
-    out.headers["Cache-Control"] = "public, max-age=31536000, immutable";
-  }
-  if (found->first.ends_with(".html")) {
-    out.headers["Content-Security-Policy"] = kPagePolicy;
-    out.headers["Cross-Origin-Opener-Policy"] = "same-origin";
-    out.headers["Permissions-Policy"] = "camera=(), geolocation=(), microphone=()";
-  }
-  if (!file.compressed.empty() && accepts_gzip(request.header("accept-encoding"))) {
-    out.body = file.compressed;
-    out.headers["Content-Encoding"] = "gzip";
-  } else {
-    out.body = file.body;
-  }
-  set_etag(file.tag, request, out);
-  return out;
+  return found->second.answer(request);
 }
 
 fs::path default_dashboard_folder() {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "server/transport/http/http_message.h"
+#include "server/transport/http/static_page.h"
 
 namespace tribodyn::server {
 
@@ -22,13 +23,7 @@ class StaticFiles {
   std::optional<HttpResponse> answer(const HttpRequest& request, const std::string& path) const;
 
  private:
-  struct File {
-    std::string type;  ///< media type
-    std::string body;
-    std::string compressed;  ///< by gzip; empty: the file has no such form
-    std::string tag;         ///< hash of the body
-  };
-  std::map<std::string, File> files_;  ///< by path, e.g. "/assets/index-1a2b.js"
+  std::map<std::string, StaticPage> files_;  ///< by path, e.g. "/assets/index-1a2b.js"
 };
 
 /// Returns the folder of the dashboard beside this program: that of the build, or that of an

@@ -7,11 +7,16 @@
 
 namespace tribodyn::server {
 
-StaticPage::StaticPage(std::string body, std::map<std::string, std::string> headers)
+StaticPage::StaticPage(std::string body, std::map<std::string, std::string> headers,
+                       std::string compressed)
     : tag_(sha256(body)) {
   plain_.headers = std::move(headers);
   plain_.body = std::move(body);
   compressed_ = plain_;
+  if (!compressed.empty()) {
+    compressed_.body = std::move(compressed);
+    compressed_.headers["Content-Encoding"] = "gzip";
+  }
   compress("gzip", compressed_);
 }
 
