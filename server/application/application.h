@@ -7,6 +7,7 @@
 
 #include "server/application/audit_log.h"
 #include "server/application/authorizer.h"
+#include "server/application/quota.h"
 #include "server/execution/simulation_jobs.h"
 #include "server/simulation/prepared_gear_sets.h"
 #include "server/storage/store.h"
@@ -22,6 +23,7 @@ struct Application {
   AuditLog audit = AuditLog({});
   /// Of the page tokens of lists; the database keeps it.
   std::string page_token_key = std::string(32, '\0');
+  std::shared_ptr<ProjectQuotas> project_quotas = std::make_shared<ProjectQuotas>();
   /// Most bytes of results that a project may have; 0: no limit.
   std::int64_t project_bytes = 0;
   /// Number of histories that are being read. Shared, because a reader may outlive the object.

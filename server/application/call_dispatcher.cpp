@@ -175,6 +175,33 @@ std::optional<google::rpc::Status> CallDispatcher::take_stream(const CallContext
   return std::nullopt;
 }
 
+std::optional<google::rpc::Status> CallDispatcher::take_project_call(
+    const CallContext& call) const {
+  const double rate = application_.project_quotas->quota().calls_per_second;
+  if (rate <= 0 || call.grant->principal == kOwner) return std::nullopt;
+  const auto allowance = application_.project_quotas->of(call.project);
+  const double wait = allowance->take_call(rate, std::chrono::steady_clock::now());
+  if (wait <= 0) return std::nullopt;
+  return over_quota("project " + call.project, "project-calls-per-second",
+                    fmt::format("{:.3g} calls a second", rate), wait);
+}
+
+std::optional<google::rpc::Status> CallDispatcher::take_project_stream(
+    const CallContext& call, std::shared_ptr<void>& place) const {
+  const int most = application_.project_quotas->quota().streams;
+  if (most == 0 || call.grant->principal == kOwner) return std::nullopt;
+  const auto allowance = application_.project_quotas->of(call.project);
+  if (!allowance->open_stream(most)) {
+    return over_quota("project " + call.project, "project-streams",
+                      fmt::format("{} open streams", most), kStreamRetrySeconds);
+  }
+  place = std::shared_ptr<void>(nullptr, [allowance, own = std::move(place)](void*) mutable {
+    own = nullptr;
+    allowance->close_stream();
+  });
+  return std::nullopt;
+}
+
 template <class Answer>
 Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
                                            const Method::UseCase<Answer>& use_case) {
@@ -189,6 +216,7 @@ Outcome<Answer> CallDispatcher::outcome_of(IncomingCall& call,
     if (auto refused = enter_project(application_, *request, call.context)) {
       return *std::move(refused);
     }
+    if (auto refused = take_project_call(call.context)) return *std::move(refused);
     changes = changes && !validates_only(*request);
     if (changes) names = audited_names(*request);
     return use_case(application_, *request, call.context);
@@ -245,6 +273,9 @@ void CallDispatcher::open(StreamCall& call) {
       call,
       [this, &call, finish, kept = std::move(place)]() mutable {
         Outcome<ReplySource> outcome = outcome_of(call, call.method.open);
+        if (outcome.ok()) {
+          if (auto refused = take_project_stream(call.context, kept)) outcome = *std::move(refused);
+        }
         if (outcome.ok()) {
           outcome.message() =
               std::make_shared<GrantedSource>(std::move(outcome.message()), call.context.grant,

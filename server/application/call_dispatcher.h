@@ -103,6 +103,11 @@ class CallDispatcher {
   /// Returns the error of a caller who has none left; else nullopt.
   static std::optional<google::rpc::Status> take_stream(const CallContext& call,
                                                         std::shared_ptr<void>& place);
+  /// The same of the project of the call, for which `place` then stands too. The owner takes none.
+  std::optional<google::rpc::Status> take_project_stream(const CallContext& call,
+                                                         std::shared_ptr<void>& place) const;
+  /// Takes a call of the project. Returns the error of a project that has none left; else nullopt.
+  std::optional<google::rpc::Status> take_project_call(const CallContext& call) const;
   /// Runs a short task on the calling thread, without the two changes of threads of a lane. Returns
   /// false if another task runs so: only one may, so that a slow disk blocks at most one thread of
   /// a transport.

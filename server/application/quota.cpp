@@ -31,4 +31,11 @@ void Allowance::close_stream() {
   --streams_;
 }
 
+std::shared_ptr<Allowance> ProjectQuotas::of(const std::string& project) {
+  const std::lock_guard lock(mutex_);
+  auto& out = allowances_[project];
+  if (out == nullptr) out = std::make_shared<Allowance>();
+  return out;
+}
+
 }  // namespace tribodyn::server

@@ -1,18 +1,22 @@
 #pragma once
 
 #include <chrono>
+#include <map>
+#include <memory>
 #include <mutex>
+#include <string>
 
 namespace tribodyn::server {
 
-/// What one principal may take. 0: no limit but the server's own.
+/// What one principal, or all principals together in one project, may take. 0: no limit but the
+/// server's own.
 struct Quota {
   double calls_per_second = 0;  ///< on average; kBurstSeconds of calls may come at once
   int streams = 0;              ///< open at a time
-  double processor_hours = 0;   ///< estimated, of its simulations that wait and run
+  double processor_hours = 0;   ///< estimated, of the simulations that wait and run
 };
 
-/// What one principal has taken of its quota: a token bucket of calls, and open streams. Safe for
+/// What has been taken of a quota: a token bucket of calls, and open streams. Safe for
 /// concurrent access.
 class Allowance {
  public:
@@ -33,6 +37,21 @@ class Allowance {
   double calls_ = 0;
   Time filled_;
   int streams_ = 0;
+};
+
+/// The quota of each project, and what has been taken of it. Safe for concurrent access.
+class ProjectQuotas {
+ public:
+  explicit ProjectQuotas(const Quota& quota = {}) : quota_(quota) {}
+  const Quota& quota() const { return quota_; }
+  /// Returns the allowance of a project. Requires that the project exists: the object keeps an
+  /// allowance for each name.
+  std::shared_ptr<Allowance> of(const std::string& project);
+
+ private:
+  const Quota quota_;
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<Allowance>> allowances_;  // guarded by mutex_
 };
 
 }  // namespace tribodyn::server

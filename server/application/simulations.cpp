@@ -258,6 +258,23 @@ std::optional<google::rpc::Status> project_full(Application& application, const 
                     kRetryAfterDeletion);
 }
 
+/// Returns the error of a project whose simulations that wait and run leave no room for a further
+/// one of that cost [s of one processor]; else nullopt. Like project_full(), two calls at the same
+/// time may both pass.
+std::optional<google::rpc::Status> project_busy(Application& application, double cost_seconds,
+                                                const CallContext& call) {
+  constexpr double kRetrySeconds = 10;
+  const double most = 3600 * application.project_quotas->quota().processor_hours;
+  if (most <= 0 ||
+      application.store.unfinished_seconds(call.project, call.limits) + cost_seconds <= most) {
+    return std::nullopt;
+  }
+  return over_quota(
+      "project " + call.project, "project-processor-hours",
+      fmt::format("{:.3g} processor hours of simulations that wait and run", most / 3600),
+      kRetrySeconds);
+}
+
 }  // namespace
 
 Outcome<v1::Simulation> create_simulation(Application& application,
@@ -285,6 +302,9 @@ Outcome<v1::Simulation> create_simulation(Application& application,
   const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), call);
   if (request.validate_only()) return preview(*inputs, simulation);
   if (auto full = project_full(application, call)) return *std::move(full);
+  if (auto busy = project_busy(application, simulation.cost_seconds, call)) {
+    return *std::move(busy);
+  }
   const SimulationJobs::Submitted submitted = application.jobs.submit(
       simulation, std::make_shared<const SimulationInputs>(std::move(*inputs)), call.limits);
   const AddOutcome& added = submitted.added;

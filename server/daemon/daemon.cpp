@@ -263,6 +263,9 @@ int serve(const Settings& settings, const std::vector<ListenAddress>& addresses,
   Application application{
       .store = store, .jobs = jobs, .audit = AuditLog(settings.database + ".audit")};
   application.project_bytes = static_cast<std::int64_t>(1e6 * settings.project_megabytes);
+  application.project_quotas = std::make_shared<ProjectQuotas>(
+      Quota{settings.project_calls_per_second, settings.project_streams,
+            settings.project_processor_hours});
   application.authorizer = std::make_shared<Authorizer>(Quota{settings.principal_calls_per_second,
                                                               settings.principal_streams,
                                                               settings.principal_processor_hours});

@@ -230,6 +230,21 @@ void add_flags(CLI::App& app, Settings& settings) {
                  "three quarters of --waiting-processor-hours may wait. Recommended: 0")
       ->check(between(0, 1e6))
       ->capture_default_str();
+  app.add_option("--project-calls-per-second", settings.project_calls_per_second,
+                 "Calls a second about one project that all tokens together may make on average. "
+                 "0: no limit. The owner makes as many as it wants. Recommended: 0")
+      ->check(between(0, 1e6))
+      ->capture_default_str();
+  app.add_option("--project-streams", settings.project_streams,
+                 "Streams about one project that all tokens together may have open. 0: no limit. "
+                 "Recommended: 0")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--project-processor-hours", settings.project_processor_hours,
+                 "Estimated processor hours of waiting and running simulations of one project. "
+                 "0: no limit but that of the queue. Recommended: 0")
+      ->check(between(0, 1e6))
+      ->capture_default_str();
   app.add_option("--project-megabytes", settings.project_megabytes,
                  "Results of a project; beyond it a project accepts no further simulations until "
                  "some are deleted. 0: no limit. Recommended: 0")

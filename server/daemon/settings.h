@@ -61,6 +61,9 @@ struct Settings {
   double principal_calls_per_second = 200;
   int principal_streams = 200;
   double principal_processor_hours = 0;
+  double project_calls_per_second = 0;
+  int project_streams = 0;
+  double project_processor_hours = 0;
   double project_megabytes = 0;
 };
 

@@ -504,6 +504,17 @@ std::int64_t Store::result_bytes(const std::string& project, const CallLimits& l
   });
 }
 
+double Store::unfinished_seconds(const std::string& project, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) {
+    Prepared sum(db,
+                 "SELECT coalesce(sum(cost_seconds), 0) FROM simulations "
+                 "WHERE project = ? AND state IN (1, 2)");
+    sum.bind(1, project);
+    sum.executeStep();
+    return sum.getColumn(0).getDouble();
+  });
+}
+
 EventRange Store::event_range(const std::string& project, const CallLimits& limits) {
   return read(limits, [&](Connection& db) { return query_event_range(db, project); });
 }

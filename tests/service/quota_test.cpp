@@ -12,12 +12,14 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "google/rpc/code.pb.h"
 #include "google/rpc/error_details.pb.h"
 #include "server/application/call_dispatcher.h"
 #include "server/application/workers.h"
+#include "server/storage/seeds.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/schemas.pb.h"
 
@@ -57,8 +59,9 @@ class QuotaCall : public UnaryCall, public StreamCall {
     answer_.set_value(outcome.ok() ? google::rpc::Status() : outcome.error());
   }
   void opened(Outcome<ReplySource> outcome) override {
-    if (outcome.ok()) source = outcome.message();
-    answer_.set_value(outcome.ok() ? google::rpc::Status() : outcome.error());
+    const auto status = outcome.ok() ? google::rpc::Status() : outcome.error();
+    if (outcome.ok()) source = std::move(outcome.message());
+    answer_.set_value(status);
   }
 
   ReplySource source;  ///< open until it is destroyed
@@ -197,6 +200,84 @@ TEST_F(QuotaTest, AProjectWithTooManyBytesOfResultsAcceptsNoSimulation) {
   EXPECT_THAT(refused.message(), HasSubstr("the quota of project default is"));
   ASSERT_EQ(bench_.store().remove_simulation(1), Store::Removal::kDone);
   EXPECT_EQ(answer(create(point_simulation()), "usual").code(), google::rpc::OK);
+}
+
+TEST_F(QuotaTest, CallsAboutAProjectBeyondItsRateAreRefusedWhoeverMakesThemButTheOwner) {
+  app_.project_quotas = std::make_shared<ProjectQuotas>(Quota{.calls_per_second = 0.2});
+  const auto list = [](const std::string& project) {
+    v1::ListLubricantsRequest out;
+    out.set_parent("projects/" + project);
+    return out;
+  };
+  bench_.store().add_project("acme", {}, 1);
+  EXPECT_EQ(answer(list("default"), "usual").code(), google::rpc::OK);
+  const google::rpc::Status refused = answer(list("default"), "slow");
+  EXPECT_EQ(quota_of(refused), "project-calls-per-second");
+  EXPECT_THAT(refused.message(), HasSubstr("the quota of project default is 0.2 calls a second"));
+  EXPECT_EQ(quota_of(answer(list("default"), "usual")), "project-calls-per-second");
+  EXPECT_EQ(answer(list("acme"), "usual").code(), google::rpc::OK) << "another project";
+  EXPECT_EQ(answer(list("default"), "owner").code(), google::rpc::OK);
+}
+
+TEST_F(QuotaTest, StreamsAboutAProjectBeyondItsQuotaAreRefusedUntilOneEnds) {
+  app_.project_quotas = std::make_shared<ProjectQuotas>(Quota{.streams = 1});
+  v1::WatchSimulationsRequest request;
+  request.set_filter("lubricant = paper-fluid-1");
+  const Method& method = row(request);
+  QuotaCall first(method, request, "usual"), second(method, request, "slow");
+  QuotaCall third(method, request, "usual"), owners(method, request, "owner");
+  EXPECT_EQ(first.answer(dispatcher_).code(), google::rpc::OK);
+  EXPECT_EQ(quota_of(second.answer(dispatcher_)), "project-streams");
+  EXPECT_EQ(owners.answer(dispatcher_).code(), google::rpc::OK);
+  first.source = nullptr;
+  EXPECT_EQ(third.answer(dispatcher_).code(), google::rpc::OK);
+}
+
+TEST_F(QuotaTest, SimulationsOfAProjectBeyondItsProcessorHoursAreRefusedWhoeverSubmitsThem) {
+  const v1::CreateSimulationRequest one = create(long_simulation());
+  EXPECT_EQ(answer(one, "usual").code(), google::rpc::OK);
+  const double hours = bench_.store().unfinished_seconds("default") / 3600;
+  ASSERT_GT(hours, 0);
+  app_.project_quotas = std::make_shared<ProjectQuotas>(Quota{.processor_hours = 1.5 * hours});
+  for (const char* token : {"usual", "owner"}) {
+    const google::rpc::Status refused = answer(one, token);
+    EXPECT_EQ(quota_of(refused), "project-processor-hours") << refused.message();
+  }
+  bench_.store().add_project("acme", seed_resources(), 1);
+  v1::CreateSimulationRequest elsewhere = one;
+  elsewhere.set_parent("projects/acme");
+  EXPECT_EQ(answer(elsewhere, "usual").code(), google::rpc::OK);
+  *release_ = true;
+  ASSERT_TRUE(eventually([&] { return bench_.store().unfinished_seconds("default") == 0; }));
+  EXPECT_EQ(answer(one, "usual").code(), google::rpc::OK);
+}
+
+TEST_F(QuotaTest, AResultIsReadInAnotherProjectOnlyByATokenThatAnAdministratorMadeForBoth) {
+  *release_ = true;
+  bench_.store().add_project("acme", seed_resources(), 1);
+  app_.authorizer->set_tokens(
+      {{.name = "own", .hash = token_hash("own"), .scope = Scope::kWrite, .projects = {"acme"}},
+       {.name = "both",
+        .hash = token_hash("both"),
+        .scope = Scope::kWrite,
+        .projects = {"acme", "default"}}},
+      0);
+  v1::CreateSimulationRequest first;
+  *first.mutable_simulation() = point_simulation();
+  EXPECT_EQ(answer(first, "both").code(), google::rpc::OK);
+  ASSERT_TRUE(bench_.reaches("simulations/1", v1::Simulation::SUCCEEDED));
+  v1::GetSimulationRequest get;
+  get.set_name("projects/default/simulations/1");
+  EXPECT_EQ(answer(get, "both").code(), google::rpc::OK);
+  EXPECT_EQ(answer(get, "own").code(), google::rpc::PERMISSION_DENIED);
+  first.set_parent("projects/acme");
+  for (const char* token : {"own", "both"}) {
+    EXPECT_EQ(answer(first, token).code(), google::rpc::OK);
+  }
+  const auto other = [&] { return *bench_.store().numbered_simulation("acme", 1); };
+  ASSERT_TRUE(eventually([&] { return other().state == StoredState::kSucceeded; }));
+  EXPECT_FALSE(other().cache_hit)
+      << "equal inputs are computed again: the time would tell of the other project";
 }
 
 /// What principals queue while the only thread is held, in the order in which it runs.
