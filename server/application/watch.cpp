@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/application/errors.h"
+#include "server/application/paging.h"
 #include "server/application/simulation_lookup.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "google/rpc/code.pb.h"
 #include "server/transport/http/column_text.h"
 #include "tribodyn/v1/simulations.pb.h"
 

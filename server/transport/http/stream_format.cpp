@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "google/rpc/code.pb.h"
 #include "server/transport/http/rest_answer.h"
 
 namespace tribodyn::server {
