@@ -269,6 +269,8 @@ err_has 'resumes after [1-9][0-9]* of 400 candidates'
 cmp "$folder/whole.csv" "$folder/resumed.csv" || fail 'a resumed file differs from an uninterrupted one'
 expect 0 screen "$table" --like paper-fluid-1 --speeds 20,60 --jsonl "$folder/points.jsonl"
 [ "$(wc -l <"$folder/points.jsonl")" -eq 800 ] || fail 'JSON lines are missing'
+"$client" screen "$table" --like paper-fluid-1 --speeds 20,60 --jsonl /dev/fd/3 3>&1 >/dev/null 2>&1 |
+  cmp - "$folder/points.jsonl" || fail 'a pipe gets other JSON lines than a file'
 
 expect 0 sensitivities paper-fluid-1 --speed 100
 out_has 'lubricant pressure viscosity coefficient .*\|#'

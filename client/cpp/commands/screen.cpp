@@ -289,11 +289,14 @@ Screening prepared_screening(ScreenFlags& flags, const v1::Schema& schema, Conne
 /// Computes the points of a screening and writes them as they come.
 class ScreeningRun {
  public:
-  ScreeningRun(Screening& screening, std::string path, const CommonOptions& options)
+  ScreeningRun(Screening& screening, std::string path, bool as_json_lines,
+               const CommonOptions& options)
       : screening_(screening),
         path_(std::move(path)),
+        as_json_lines_(as_json_lines),
         display_(std::cerr, options.progress_form(), standard_error_width()) {
-    if (path_.empty()) return;
+    // JSON lines are made of the part at the end: a pipe gets nothing but them.
+    if (path_.empty() || (as_json_lines_ && PartFile::is_stream(path_))) return;
     file_.emplace(path_, screening_identity(screening_), screening_header(screening_));
     if (file_->rows_there() == 0) return;
     rows_written_ = read_screening_rows(read_file(file_->target()), screening_);
@@ -335,11 +338,11 @@ class ScreeningRun {
   }
 
   /// Gives the file its final name and form.
-  void finish(bool as_json_lines) {
-    if (!file_) return;
-    if (!as_json_lines) return file_->finish();
+  void finish() {
+    if (path_.empty()) return;
+    if (!as_json_lines_) return file_->finish();
     write_file(path_, screening_json_lines(screening_));
-    file_->discard();
+    if (file_) file_->discard();
   }
 
  private:
@@ -402,6 +405,7 @@ class ScreeningRun {
 
   Screening& screening_;
   const std::string path_;
+  const bool as_json_lines_;
   ProgressDisplay display_;
   std::optional<PartFile> file_;
   std::vector<std::size_t> candidates_;  ///< that are to be evaluated
@@ -471,9 +475,10 @@ int run_screen(ScreenFlags& flags, const CommonOptions& options) {
   const v1::Schema schema = connection.schema();
   Screening screening = prepared_screening(flags, schema, connection);
   const bool as_json_lines = !flags.json_lines_path.empty();
-  ScreeningRun run(screening, as_json_lines ? flags.json_lines_path : flags.csv_path, options);
+  ScreeningRun run(screening, as_json_lines ? flags.json_lines_path : flags.csv_path, as_json_lines,
+                   options);
   run.run(connection);
-  run.finish(as_json_lines);
+  run.finish();
   const std::vector<CandidateFigures> ranking = ranked(screening);
   const RankingConfidence confidence =
       flags.leaves_out_uncertainty ? RankingConfidence()

@@ -15,12 +15,12 @@ namespace {
 
 constexpr std::size_t kIdentityLength = 12;
 
-bool is_stream(const std::string& path) {
+}  // namespace
+
+bool PartFile::is_stream(const std::string& path) {
   struct stat info;
   return stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode);
 }
-
-}  // namespace
 
 PartFile::PartFile(std::string path, const std::string& identity, const std::string& header,
                    std::size_t row_bytes)

@@ -17,6 +17,9 @@ class PartFile {
   PartFile(std::string path, const std::string& identity, const std::string& header,
            std::size_t row_bytes = 0);
 
+  /// Whether the path is that of a pipe or a device.
+  static bool is_stream(const std::string& path);
+
   /// Returns the number of rows that an earlier run left in the file.
   std::int64_t rows_there() const { return rows_there_; }
   const std::string& target() const { return target_; }  ///< path of the file that is written
