@@ -2,12 +2,11 @@
 #include <google/protobuf/arena.h>
 
 #include <algorithm>
-#include <atomic>
-#include <bit>
 #include <memory>
 #include <numeric>
 #include <optional>
 
+#include "server/application/column_source.h"
 #include "server/application/errors.h"
 #include "server/application/simulation_lookup.h"
 #include "server/application/streams.h"
@@ -16,8 +15,6 @@
 #include "server/mapping/history_columns.h"
 #include "server/storage/history/pyramid.h"
 #include "server/support/sha256.h"
-
-static_assert(std::endian::native == std::endian::little, "chunks are little-endian");
 
 namespace tribodyn::server {
 namespace {
@@ -38,93 +35,29 @@ constexpr char kHistoryType[] = "tribodyn.v1.History";
 /// What ResourceInfo calls the history of a simulation.
 std::string history_name(const std::string& simulation) { return simulation + "/history"; }
 
-/// A place among the open histories, all of which share one budget of memory.
-class OpenHistory {
- public:
-  explicit OpenHistory(std::shared_ptr<std::atomic<int>> open) : open_(std::move(open)) {
-    ++*open_;
-  }
-  ~OpenHistory() { --*open_; }
-  OpenHistory(const OpenHistory&) = delete;
-  OpenHistory& operator=(const OpenHistory&) = delete;
-
-  /// Values of a chunk at present: whole blocks, 256 KiB while few read.
-  std::int64_t chunk_values() const {
-    const std::int64_t share = kOpenHistoryValues / std::max(1, open_->load());
-    return std::clamp(share / kHistoryBlock * kHistoryBlock, kHistoryBlock, kChunkValues);
-  }
-
-  /// Rows of a run at present whose columns a reader keeps together.
-  std::int64_t row_run(std::int64_t columns) const {
-    const std::int64_t share = kOpenHistoryValues / std::max(1, open_->load()) / columns;
-    const std::int64_t unit = share < kHistoryBlock ? kLeastRun : kHistoryBlock;
-    return std::clamp(share / unit * unit, kLeastRun, kChunkValues);
-  }
-
- private:
-  static constexpr std::int64_t kLeastRun = 512;  // rows; even, as pairs of an overview are
-  std::shared_ptr<std::atomic<int>> open_;
-};
-
-/// The schema, then chunks: each column as far as the others before any goes on.
-class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
+/// The rows of a history, or of an overview of it.
+class HistorySource final : public ColumnSource<v1::ReadHistoryResponse> {
  public:
   HistorySource(Application& application, std::string name, HistoryShape shape, Window window,
                 const std::string& input_hash, const v1::SimulationResult& result,
                 const CallContext& call)
-      : store_(application.store),
+      : ColumnSource(application, window.columns.size()),
+        store_(application.store),
         limits_{.cancelled = call.limits.cancelled},
         name_(std::move(name)),
-        open_(application.open_histories),
         shape_(std::move(shape)),
         window_(std::move(window)),
         input_warnings_(result.input_warnings()),
-        tag_(tag_of(input_hash, result)),
-        rows_(window_.end_row - window_.start_row) {
+        tag_(tag_of(input_hash, result)) {
+    rows_ = window_.end_row - window_.start_row;
     if (window_.maximum_points == 0 || rows_ <= window_.maximum_points) return;
     overview_ = overview(window_.start_row, window_.end_row, shape_.rows, window_.maximum_points);
     rows_ = 2 * overview_->pairs();
   }
 
-  void set_order(Order order) override { order_ = order; }
-
-  Step next(v1::ReadHistoryResponse& out) override {
-    out.Clear();
-    if (!told_schema_) {
-      told_schema_ = true;
-      tell_schema(*out.mutable_schema());
-      return Step::kMessage;
-    }
-    if (next_row_ >= rows_) return Step::kEnd;
-    if (column_ == 0 || order_ == Order::kColumns) {
-      run_ = std::min(longest_run(), rows_ - next_row_);
-    }
-    const std::vector<double> values = read(shape_.columns[window_.columns[column_]]);
-    v1::HistoryChunk& chunk = *out.mutable_chunk();
-    chunk.set_column(static_cast<int>(column_));
-    chunk.set_first_row(next_row_);
-    chunk.set_values(values.data(), values.size() * sizeof(double));
-    if (error_.code() != 0) return Step::kEnd;
-    if (order_ == Order::kColumns) {
-      next_row_ += run_;
-      if (next_row_ == rows_ && ++column_ < window_.columns.size()) next_row_ = 0;
-    } else if (++column_ == window_.columns.size()) {
-      column_ = 0;
-      next_row_ += run_;
-    }
-    return Step::kMessage;
-  }
-
   std::string tag() const override { return tag_; }
-  bool is_short() const override { return rows_ <= kHistoryBlock; }
-  google::rpc::Status error() const override { return error_; }
 
  private:
-  std::int64_t longest_run() const {
-    if (order_ != Order::kRows) return open_.chunk_values();
-    return open_.row_run(static_cast<std::int64_t>(window_.columns.size()));
-  }
-
   /// Equal inputs give the same bits on the same platform and with the same model.
   std::string tag_of(const std::string& input_hash, const v1::SimulationResult& result) const {
     std::string all =
@@ -134,7 +67,7 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
     return sha256(all);
   }
 
-  void tell_schema(v1::HistorySchema& out) const {
+  void tell_schema(v1::HistorySchema& out) const override {
     for (const std::size_t place : window_.columns) {
       v1::HistorySchema::Column* column = out.add_columns();
       column->set_name(shape_.names[place]);
@@ -147,10 +80,10 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
     *out.mutable_input_warnings() = input_warnings_;
   }
 
-  /// The present run of a column.
-  std::vector<double> read(std::int64_t column) {
-    const auto level = [&](int which, std::int64_t start, std::int64_t count) {
-      std::vector<double> values(static_cast<std::size_t>(count));
+  std::vector<double> read(std::size_t place, std::int64_t first, std::int64_t count) override {
+    const std::int64_t column = shape_.columns[window_.columns[place]];
+    const auto level = [&](int which, std::int64_t start, std::int64_t length) {
+      std::vector<double> values(static_cast<std::size_t>(length));
       if (!store_.read_history(column, which, start, values, limits_)) {
         error_ = not_found(kHistoryType, history_name(name_),
                            "the history of " + name_ + " has been evicted",
@@ -158,26 +91,18 @@ class HistorySource : public MessageSource<v1::ReadHistoryResponse> {
       }
       return values;
     };
-    if (!overview_) return level(0, window_.start_row + next_row_, run_);
-    return overview_pairs(*overview_, next_row_ / 2, run_ / 2, level);
+    if (!overview_) return level(0, window_.start_row + first, count);
+    return overview_pairs(*overview_, first / 2, count / 2, level);
   }
 
   Store& store_;
   const CallLimits limits_;  // the end of the stream is its transport's
   const std::string name_;   // of the simulation
-  const OpenHistory open_;
   const HistoryShape shape_;
   const Window window_;
   const google::protobuf::RepeatedPtrField<v1::RangeWarning> input_warnings_;
   const std::string tag_;
-  std::int64_t rows_;  // to come in all
   std::optional<Overview> overview_;
-  bool told_schema_ = false;
-  std::int64_t next_row_ = 0;
-  std::int64_t run_ = 0;  // rows of the present chunks
-  std::size_t column_ = 0;
-  Order order_ = Order::kChunks;
-  google::rpc::Status error_;
 };
 
 /// Places of the stored names that a request means: "flank_load_newtons" stands for its three

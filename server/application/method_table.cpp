@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "server/application/campaigns.h"
 #include "server/application/contacts.h"
 #include "server/application/imports.h"
 #include "server/application/points.h"
@@ -176,6 +177,15 @@ std::vector<Method> rows() {
       stream(Scope::kRead, watch_simulation),
       stream(Scope::kRead, watch_simulations),
       stream(Scope::kRead, read_history),
+
+      unary(Scope::kWrite, kWrite, create_campaign),
+      unary(Scope::kRead, kRead, get_campaign),
+      unary(Scope::kRead, kSearch, list_campaigns),
+      unary(Scope::kWrite, kWrite, pause_campaign),
+      unary(Scope::kWrite, kWrite, resume_campaign),
+      unary(Scope::kWrite, kWrite, cancel_campaign),
+      unary(Scope::kWrite, kWrite, delete_campaign),
+      stream(Scope::kRead, read_campaign),
   };
 }
 

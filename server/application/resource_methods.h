@@ -176,17 +176,25 @@ Outcome<Resource> undelete_resource(Application& application, const Request& req
 /// Why a resource cannot be purged as the request asks; nullopt if it can.
 template <class Resource, class Request>
 std::optional<google::rpc::Status> unpurgeable(const StoredResource& present,
-                                               const Dependents& simulations,
+                                               const Dependents& dependents,
                                                const Request& request) {
   if (!request.etag().empty() && request.etag() != etag_of(present)) {
     return etag_mismatch<Resource>(present.name, request.etag());
   }
-  const int count = simulations.count();
-  if (count == 0 || request.delete_simulations()) return std::nullopt;
-  return not_possible(v1::ERROR_REASON_IN_USE, Resource::descriptor()->full_name(), present.name,
-                      fmt::format("{} {} used {}; delete_simulations deletes them too", count,
-                                  count == 1 ? "simulation" : "simulations", present.name),
-                      {{"simulations", std::to_string(count)}});
+  if (!dependents.exist() || request.delete_simulations()) return std::nullopt;
+  const int simulations = dependents.simulations(), campaigns = dependents.campaigns();
+  std::string users;
+  if (simulations > 0) {
+    users = fmt::format("{} {}", simulations, simulations == 1 ? "simulation" : "simulations");
+  }
+  if (campaigns > 0) {
+    users += fmt::format("{}{} {}", users.empty() ? "" : " and ", campaigns,
+                         campaigns == 1 ? "campaign" : "campaigns");
+  }
+  return not_possible(
+      v1::ERROR_REASON_IN_USE, Resource::descriptor()->full_name(), present.name,
+      fmt::format("{} used {}; delete_simulations deletes them too", users, present.name),
+      {{"simulations", std::to_string(simulations)}, {"campaigns", std::to_string(campaigns)}});
 }
 
 /// Erases a resource with all its revisions, and what a former purge left to be erased.
@@ -208,20 +216,26 @@ Outcome<v1::PurgeReport> purge_resource(Application& application, const Request&
       return store.has_unerased_purge() && !request.validate_only() ? erase() : report;
     }
     const StoredResource& present = found.message();
-    const Dependents simulations = store.dependents_of(present, call.limits);
-    if (auto refused = unpurgeable<Resource>(present, simulations, request)) {
+    const Dependents dependents = store.dependents_of(present, call.limits);
+    if (auto refused = unpurgeable<Resource>(present, dependents, request)) {
       return *std::move(refused);
     }
+    const auto state = [&report](const Dependents& users) {
+      report.set_simulations(users.simulations());
+      report.set_results(users.results);
+      report.set_campaigns(users.campaigns());
+    };
     report.set_revisions(present.revision);  // numbered from 1 without gaps
-    report.set_simulations(simulations.count());
-    report.set_results(simulations.results);
+    state(dependents);
     if (request.validate_only()) return report;
-    for (const std::int64_t id : simulations.unfinished) application.jobs.cancel(id, call.limits);
+    for (const std::int64_t id : dependents.unfinished) application.jobs.cancel(id, call.limits);
+    for (const std::int64_t id : dependents.unfinished_campaigns) {
+      application.jobs.campaigns().cancel(id, call.limits);
+    }
     const Store::Purge purge =
         store.purge_resource(present, request.delete_simulations(), call.limits);
     if (purge.revisions == 0) continue;  // others changed or used it meanwhile
-    report.set_simulations(purge.simulations.count());
-    report.set_results(purge.simulations.results);
+    state(purge.dependents);
     return erase();
   }
   return contention<Resource>(request.name());

@@ -12,6 +12,7 @@
 #include "server/application/list_filter.h"
 #include "server/application/page_token.h"
 #include "server/application/paging.h"
+#include "server/application/project_space.h"
 #include "server/application/read_mask.h"
 #include "server/application/request_text.h"
 #include "server/application/result_summary.h"
@@ -243,36 +244,6 @@ google::rpc::Status no_place(Application& application, const SimulationJobs::Sub
                   application.jobs.limits().jobs, application.jobs.limits().cost_seconds / 3600,
                   retry_seconds),
       retry_seconds);
-}
-
-/// Returns the error of a project whose results take all the bytes that it may have; else nullopt.
-std::optional<google::rpc::Status> project_full(Application& application, const CallContext& call) {
-  constexpr double kRetryAfterDeletion = 60;  // [s]; somebody has to delete simulations first
-  const std::int64_t most = application.project_bytes;
-  if (most <= 0 || application.store.result_bytes(call.project, call.limits) < most) {
-    return std::nullopt;
-  }
-  return over_quota("project " + call.project, "project-megabytes",
-                    fmt::format("{:.3g} MB of results; delete simulations that nobody needs",
-                                1e-6 * static_cast<double>(most)),
-                    kRetryAfterDeletion);
-}
-
-/// Returns the error of a project whose simulations that wait and run leave no room for a further
-/// one of that cost [s of one processor]; else nullopt. Like project_full(), two calls at the same
-/// time may both pass.
-std::optional<google::rpc::Status> project_busy(Application& application, double cost_seconds,
-                                                const CallContext& call) {
-  constexpr double kRetrySeconds = 10;
-  const double most = 3600 * application.project_quotas->quota().processor_hours;
-  if (most <= 0 ||
-      application.store.unfinished_seconds(call.project, call.limits) + cost_seconds <= most) {
-    return std::nullopt;
-  }
-  return over_quota(
-      "project " + call.project, "project-processor-hours",
-      fmt::format("{:.3g} processor hours of simulations that wait and run", most / 3600),
-      kRetrySeconds);
 }
 
 }  // namespace

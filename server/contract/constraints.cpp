@@ -222,6 +222,12 @@ constexpr Constraint kConstraints[] = {
     {"ComparePointsRequest", "draws", "", 19, 1999, "work limit",
      "39 draws or more hold a 95 % interval", Zero::kUnset},
 
+    {"Campaign", "tolerance", "", 1e-8, 1e-2, "eq 30", "what shooting can estimate and keep",
+     Zero::kUnset},
+    {"Campaign", "condition_weights", "", 1e-9, 1e9, "mean over conditions", ""},
+    {"CampaignBudget", "processor_seconds", "s", 0, 1e9, "work limit", ""},
+    {"CampaignBudget", "points", "", 0, 20'000'000, "work limit", ""},
+
     {"BatchCreateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",
      "requests of one transaction"},
     {"BatchUpdateLubricantsRequest", "requests", "", 1, kMaximumBatchSize, "work limit",

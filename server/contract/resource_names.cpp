@@ -40,6 +40,18 @@ EditDistances edit_distances(std::string_view a, std::string_view b) {
 /// Returns the part after "lubricants/". Names are compared without their collection.
 std::string_view id_of(std::string_view name) { return name.substr(name.find('/') + 1); }
 
+/// Returns the number in "collection/{id}", or nullopt if `name` has another form.
+std::optional<std::int64_t> number_in(std::string_view name, std::string_view collection) {
+  if (!is_resource_name(name, collection)) return std::nullopt;
+  const std::string_view digits = name.substr(collection.size() + 1);
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc() || end != digits.data() + digits.size() || number <= 0) {
+    return std::nullopt;
+  }
+  return number;
+}
+
 }  // namespace
 
 bool is_project_id(std::string_view id) {
@@ -131,18 +143,19 @@ std::string deleted_name_text(std::string_view name) {
 }
 
 std::optional<std::int64_t> simulation_id(std::string_view name) {
-  if (!is_resource_name(name, kSimulations)) return std::nullopt;
-  const std::string_view digits = name.substr(std::string_view(kSimulations).size() + 1);
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (error != std::errc() || end != digits.data() + digits.size() || number <= 0) {
-    return std::nullopt;
-  }
-  return number;
+  return number_in(name, kSimulations);
 }
 
 std::string simulation_name(std::string_view project, std::int64_t number) {
   return full_name(project, fmt::format("{}/{}", kSimulations, number));
+}
+
+std::optional<std::int64_t> campaign_id(std::string_view name) {
+  return number_in(name, kCampaigns);
+}
+
+std::string campaign_name(std::string_view project, std::int64_t number) {
+  return full_name(project, fmt::format("{}/{}", kCampaigns, number));
 }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& existing) {

@@ -19,6 +19,7 @@ inline constexpr char kGearSets[] = "gearSets";
 inline constexpr char kSurfaces[] = "surfaces";
 inline constexpr char kVehicles[] = "vehicles";
 inline constexpr char kSimulations[] = "simulations";
+inline constexpr char kCampaigns[] = "campaigns";
 
 // Projects. The full name of a resource is "projects/{project}/lubricants/{id}". The project
 // `default` is the exception: the full name of its resource is the relative name,
@@ -109,6 +110,10 @@ std::string revision_name(std::string_view name, int revision);
 std::optional<std::int64_t> simulation_id(std::string_view name);
 /// Returns the full name of a simulation. Each project numbers its simulations from 1.
 std::string simulation_name(std::string_view project, std::int64_t number);
+/// Returns the number in "campaigns/{id}", or nullopt if `name` has another form.
+std::optional<std::int64_t> campaign_id(std::string_view name);
+/// Returns the full name of a campaign. Each project numbers its campaigns from 1.
+std::string campaign_name(std::string_view project, std::int64_t number);
 
 /// Returns the first 60 bytes of a client's text with '?' for each byte that is not printable
 /// ASCII.

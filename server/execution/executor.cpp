@@ -71,8 +71,10 @@ class Executor::Reporter {
   steady_clock::time_point last_extension_ = begin_;
 };
 
-Executor::Executor(Scheduler& scheduler, Metrics& metrics, int threads, StudyFunctions studies)
+Executor::Executor(Scheduler& scheduler, CampaignJobs& campaigns, Metrics& metrics, int threads,
+                   StudyFunctions studies)
     : scheduler_(scheduler),
+      campaigns_(campaigns),
       metrics_(metrics),
       thread_count_(std::max(1, threads)),
       studies_(std::move(studies)) {}
@@ -105,7 +107,25 @@ void Executor::join() {
   completers_.clear();
 }
 
-double Executor::run(Lease lease, bool may_lend) {
+void Executor::run(Lease lease, bool may_lend) {
+  if (campaign_part(lease.id)) return run_slice(lease, may_lend);
+  run_simulation(std::move(lease), may_lend);
+}
+
+void Executor::run_slice(const Lease& lease, bool may_lend) {
+  double lent = 0;
+  campaigns_.run_slice(lease, gear_sets_, [&] {
+    if (!may_lend || !scheduler_.is_urgent()) return lent;
+    const double begin = processor_seconds();
+    if (auto urgent = scheduler_.claim_beside(LeaseTerms::kLocalWorker, lease)) {
+      run(std::move(*urgent), false);
+      lent += processor_seconds() - begin;
+    }
+    return lent;
+  });
+}
+
+void Executor::run_simulation(Lease lease, bool may_lend) {
   const v1::Simulation& asked = lease.task.effective();
   const v1::PointModel model = asked.has_operating_point() ? asked.operating_point().model()
                                                            : asked.inefficiency_curve().model();
@@ -129,7 +149,6 @@ double Executor::run(Lease lease, bool may_lend) {
   }
   // One of the completers takes no history.
   is_small ? changed_.notify_one() : changed_.notify_all();
-  return used;
 }
 
 void Executor::compute_all() {

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "server/execution/campaign_jobs.h"
 #include "server/scheduling/scheduler.h"
 #include "server/simulation/compute.h"
 #include "server/simulation/prepared_gear_sets.h"
@@ -16,13 +17,15 @@ namespace tribodyn::server {
 /// Threads of this process that claim leases and compute them. The executor reads no row of the
 /// store, because a lease contains all that its task needs. As many other threads complete the
 /// leases, so that the computing ones begin the next job at once; one more completes those without
-/// a history, because the writing of a long history takes seconds. Where a study reports its
+/// a history, because the writing of a long history takes seconds. A slice of a campaign writes its
+/// own tiles. Where a study reports its
 /// progress, its thread may run one urgent job (Scheduler::claim_beside) before it continues.
 /// `start` and `join` from one thread.
 class Executor {
  public:
-  /// Scheduler and metrics must outlive the object.
-  Executor(Scheduler& scheduler, Metrics& metrics, int threads, StudyFunctions studies);
+  /// Scheduler, campaigns and metrics must outlive the object.
+  Executor(Scheduler& scheduler, CampaignJobs& campaigns, Metrics& metrics, int threads,
+           StudyFunctions studies);
   ~Executor();
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
@@ -43,11 +46,13 @@ class Executor {
 
   void compute_all();
   void complete_all(bool takes_histories);
-  /// Computes a lease. Returns the processor time used [s]. `may_lend`: urgent jobs may run where
-  /// the study reports its progress.
-  double run(Lease lease, bool may_lend);
+  /// Computes a lease. `may_lend`: urgent jobs may run where the study reports its progress.
+  void run(Lease lease, bool may_lend);
+  void run_simulation(Lease lease, bool may_lend);
+  void run_slice(const Lease& lease, bool may_lend);
 
   Scheduler& scheduler_;
+  CampaignJobs& campaigns_;
   Metrics& metrics_;
   const int thread_count_;
   const StudyFunctions studies_;

@@ -31,7 +31,8 @@ SimulationJobs::SimulationJobs(Store& store, Options options)
       retention_(options.retention),
       janitor_(store, retention_, options.clock),
       scheduler_(store, board_, metrics_, scheduler_options(options)),
-      executor_(scheduler_, metrics_, options.threads, std::move(options.studies)) {}
+      campaigns_(store, scheduler_, options.threads, options.clock),
+      executor_(scheduler_, campaigns_, metrics_, options.threads, std::move(options.studies)) {}
 
 SimulationJobs::~SimulationJobs() { stop(); }
 
@@ -80,6 +81,7 @@ void SimulationJobs::stop() {
   janitor_.stop();
   scheduler_.stop();
   executor_.join();
+  campaigns_.finish();
 }
 
 }  // namespace tribodyn::server

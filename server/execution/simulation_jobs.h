@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "server/execution/campaign_jobs.h"
 #include "server/execution/executor.h"
 #include "server/metrics/metrics.h"
 #include "server/scheduling/janitor.h"
@@ -16,9 +17,9 @@
 
 namespace tribodyn::server {
 
-/// The application's interface to simulations: owns the scheduler, the executor of this process and
-/// what both need. Safe for concurrent access without external synchronization; `resume`, `start`,
-/// `drain` and `stop` from one thread.
+/// The application's interface to simulations and campaigns: owns the scheduler, the executor of
+/// this process and what both need. Safe for concurrent access without external synchronization;
+/// `resume`, `start`, `drain` and `stop` from one thread.
 ///
 /// Reads and commits between a request and its result: the use case reads the four resources, and
 /// the request_id if there is one. The first commit looks for the request_id again and for a result
@@ -47,8 +48,8 @@ class SimulationJobs {
   SimulationJobs(const SimulationJobs&) = delete;
   SimulationJobs& operator=(const SimulationJobs&) = delete;
 
-  /// As Scheduler::resume.
-  std::size_t resume() { return scheduler_.resume(); }
+  /// As Scheduler::resume and CampaignJobs::resume.
+  std::size_t resume() { return scheduler_.resume() + campaigns_.resume(); }
   /// Starts the executor; before it, simulations are accepted and wait. If this machine computes a
   /// wrong golden case, starts nothing and returns a sentence that says what is wrong.
   std::string start();
@@ -91,6 +92,7 @@ class SimulationJobs {
   void wake(const std::weak_ptr<Observer>& observer) { scheduler_.wake(observer); }
   const QueueLimits& limits() const { return limits_; }
   const Retention& retention() const { return retention_; }
+  CampaignJobs& campaigns() { return campaigns_; }
   Metrics& metrics() { return metrics_; }
   Occupancy occupancy() const { return scheduler_.occupancy(); }
   /// Returns the number of deadlines of simulations that have not ended.
@@ -115,6 +117,7 @@ class SimulationJobs {
   const Retention retention_;
   Janitor janitor_;
   Scheduler scheduler_;
+  CampaignJobs campaigns_;
   Executor executor_;
 };
 

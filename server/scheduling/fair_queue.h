@@ -26,9 +26,27 @@ enum class Urgency {
   kBulk,         ///< all others
 };
 
+/// Largest number of threads that compute one campaign at a time.
+inline constexpr int kMostCampaignParts = 256;
+
+/// Returns the id of a part of a campaign in the queue. Those of simulations are positive.
+constexpr std::int64_t campaign_part_id(std::int64_t campaign, int part) {
+  return -(campaign * kMostCampaignParts + part);
+}
+/// A part of a campaign: one of the threads that may compute it. Parts count from 0.
+struct CampaignPart {
+  std::int64_t campaign = 0;  ///< row
+  int part = 0;
+};
+/// Returns the part with this id; nullopt for the id of a simulation.
+constexpr std::optional<CampaignPart> campaign_part(std::int64_t id) {
+  if (id >= 0) return std::nullopt;
+  return CampaignPart{-id / kMostCampaignParts, static_cast<int>(-id % kMostCampaignParts)};
+}
+
 /// A job that waits.
 struct QueuedJob {
-  std::int64_t id = 0;
+  std::int64_t id = 0;         ///< row of a simulation, or campaign_part_id()
   std::string principal = {};  ///< whose share of the processors pays for it
   double cost_seconds = 0;     ///< estimate, in seconds of one processor
   bool alone = false;          ///< may have killed the server, so no other job runs beside it

@@ -39,8 +39,8 @@ int Janitor::remove_expired() {
   int count = 0;
   while (retention_.keep && !is_stopping()) {
     const Removed removed = store_.remove_oldest(clock_() - *retention_.keep, kAtATime);
-    if (removed.simulations == 0) break;
-    count += removed.simulations;
+    if (removed.count() == 0) break;
+    count += removed.count();
   }
   return count;
 }
@@ -53,8 +53,8 @@ int Janitor::remove_beyond_budget() {
   std::int64_t left = store_.removable_bytes();
   while (left > budget && !is_stopping()) {
     const Removed removed = store_.remove_oldest(clock_() - kLeastAge, kAtATime);
-    if (removed.simulations == 0) break;
-    count += removed.simulations;
+    if (removed.count() == 0) break;
+    count += removed.count();
     left -= removed.bytes;
   }
   return count;

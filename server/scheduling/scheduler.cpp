@@ -199,6 +199,24 @@ void Scheduler::ensure_queued(const StoredSimulation& simulation) {
   note_change();
 }
 
+void Scheduler::add_part(const CampaignPart& part, const std::string& principal) {
+  const QueuedJob job{campaign_part_id(part.campaign, part.part), principal, kSliceSeconds};
+  const std::lock_guard lock(mutex_);
+  policy_.add(job);
+  note_change();
+}
+
+void Scheduler::return_slice(const Lease& lease, double used_seconds, bool goes_on) {
+  {
+    const std::lock_guard lock(mutex_);
+    leased_.erase(lease.id);
+    policy_.computed(lease.id, used_seconds);
+    goes_on ? policy_.requeue(lease.id, false) : policy_.end(lease.id);
+    note_change();
+  }
+  ended_.notify_all();
+}
+
 std::optional<StoredEvent> Scheduler::cancel(std::int64_t id, const CallLimits& limits) {
   auto event = store_.mark_cancelled(id, options_.clock(), limits);
   if (event) metrics_.count(SimulationOutcome::kCancelled);
@@ -270,6 +288,7 @@ std::optional<Lease> Scheduler::begin(const std::string& worker, const Lease* le
                                       bool& has_begun) {
   std::optional<QueuedJob> job;
   std::string platform;
+  Lease slice;
   {
     const std::lock_guard lock(mutex_);
     const auto enrolled = enrolled_.find(worker);
@@ -281,8 +300,11 @@ std::optional<Lease> Scheduler::begin(const std::string& worker, const Lease* le
     Leased& leased = leased_[job->id];
     leased.stop = std::make_shared<StopSignal>();
     leased.expires = SteadyTime::max();
+    slice.id = job->id;
+    slice.stop = leased.stop;
     note_change();
   }
+  if (campaign_part(job->id)) return slice;
   return lease_of(*job, worker, platform);
 }
 

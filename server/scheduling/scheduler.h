@@ -31,9 +31,9 @@ struct Capabilities {
   int threads = 1;
 };
 
-/// The right of an executor to compute one attempt of a simulation.
+/// The right of an executor to compute one attempt of a simulation, or a slice of a campaign.
 struct Lease {
-  std::int64_t id = 0;    ///< row of the simulation
+  std::int64_t id = 0;    ///< row of the simulation, or campaign_part_id()
   std::string name = {};  ///< of the simulation, for log lines
   int attempt = 1;
   internal::v1::ComputeTask task;
@@ -92,6 +92,13 @@ class Scheduler {
   /// state. Returns nullopt, and changes nothing, if the simulation has ended.
   std::optional<StoredEvent> cancel(std::int64_t id, const CallLimits& limits = {});
 
+  /// Queues a part of a campaign for a slice: a time of about kSliceSeconds, after which the part
+  /// waits again. Does nothing if it waits or runs.
+  void add_part(const CampaignPart& part, const std::string& principal);
+  /// Estimate of a slice [s]: a tenth of what somebody notices as a delay, and fifty times what the
+  /// claim of a slice takes.
+  static constexpr double kSliceSeconds = 0.05;
+
   // Executors call these functions.
 
   /// Computes the golden case with `compute`. If the result is right, the executor may claim
@@ -110,6 +117,9 @@ class Scheduler {
   bool is_urgent() const { return is_urgent_.load(std::memory_order_relaxed); }
   /// Extends the lease and records the processor time used so far. May request a stop of the lease.
   void extend(const Lease& lease, double used_seconds);
+  /// Ends the slice of a campaign and charges its principal. The part waits for its next slice if
+  /// it `goes_on`.
+  void return_slice(const Lease& lease, double used_seconds, bool goes_on);
   /// Frees the thread of the job, whose lease no longer expires. The executor must call complete()
   /// next.
   void computed(const Lease& lease, const internal::v1::ComputeResult& result);

@@ -13,7 +13,7 @@ struct Work {
 };
 
 constexpr double kPreparationSeconds = 0.26e-3;  // [s] for each scene
-constexpr double kSensitivitySeconds = 4e-3;      // [s] for each point, at the usual tolerance
+constexpr double kSensitivitySeconds = 4e-3;     // [s] for each point, at the usual tolerance
 constexpr double kUsualTolerance = 1e-3;
 constexpr Work kQuasiStaticPoint{340, 0.25e-6};  // at the usual tolerance
 constexpr double kQuasiStaticOrder = 0.4;        // exponent of their growth with 1 / tolerance
@@ -137,6 +137,17 @@ v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
   add_study(effective, out);
   // Round, so that jobs of practically equal cost are served first in, first out.
   out.set_processor_seconds(rounded(out.processor_seconds()));
+  return out;
+}
+
+v1::CostEstimate estimate_screening_cost(const v1::Simulation& effective, int candidates,
+                                         const std::vector<double>& speeds_kilometres_per_hour) {
+  v1::CostEstimate out;
+  for (const double speed : speeds_kilometres_per_hour) {
+    add_shot_point(speed, effective.solver_options(), out);
+  }
+  out.set_contact_solutions(candidates * out.contact_solutions());
+  out.set_processor_seconds(rounded(candidates * out.processor_seconds()));
   return out;
 }
 

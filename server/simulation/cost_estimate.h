@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::server {
@@ -9,5 +11,10 @@ namespace tribodyn::server {
 /// estimate is correct within a factor of three (measured by service_benchmark). It is too low if
 /// shooting finds no attracting response and the march takes over.
 v1::CostEstimate estimate_cost(const v1::Simulation& effective);
+
+/// Estimates the cost of points by screen_point() at these vehicle speeds [km/h], each for all
+/// candidates. `effective` has the solver options. Right within a factor of three.
+v1::CostEstimate estimate_screening_cost(const v1::Simulation& effective, int candidates,
+                                         const std::vector<double>& speeds_kilometres_per_hour);
 
 }  // namespace tribodyn::server

@@ -49,10 +49,8 @@ const std::map<std::string, const FieldDescriptor*>& candidate_parameters() {
 }
 
 std::string unknown_parameter_text(const std::string& path) {
-  std::vector<std::string> known;
-  for (const auto& [name, field] : candidate_parameters()) known.push_back(name);
   return fmt::format("\"{}\" is no parameter of a lubricant or surface that the model uses{}",
-                     plain_excerpt(path), meant_text(path, known));
+                     plain_excerpt(path), meant_text(path, candidate_parameter_names()));
 }
 
 /// Checks the values of a column against the allowed range of its parameter.
@@ -240,8 +238,15 @@ void compute_group(const Scene& scene, const PointEvaluation::Group& group,
 
 }  // namespace
 
+std::vector<std::string> candidate_parameter_names() {
+  std::vector<std::string> out;
+  for (const auto& [name, field] : candidate_parameters()) out.push_back(name);
+  return out;
+}
+
 std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& request,
-                                           const ResourceLookup& lookup, Violations& violations) {
+                                           const ResourceLookup& lookup, Violations& violations,
+                                           int most, const char* remedy) {
   const std::size_t before = violations.size();
   check_message(request, "", violations);
   PointEvaluation out;
@@ -250,13 +255,12 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
   out.conditions = request.conditions_size();
   if (out.conditions == 0) {
     violations.push_back({"conditions", "not set; allowed: at least one"});
-  } else if (out.candidates > kMaximumEvaluatedPoints / out.conditions) {
+  } else if (out.candidates > most / out.conditions) {
     violations.push_back(
         {"conditions",
-         fmt::format("{} candidates at {} conditions are {} points; allowed: at most "
-                     "{} in one request; send several",
+         fmt::format("{} candidates at {} conditions are {} points; allowed: at most {} {}",
                      out.candidates, out.conditions,
-                     static_cast<long>(out.candidates) * out.conditions, kMaximumEvaluatedPoints)});
+                     static_cast<long>(out.candidates) * out.conditions, most, remedy)});
   }
   // The conditions are valid by now, so that what the base adds is about the base.
   const v1::PointCondition usual = [] {
@@ -273,6 +277,26 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
   return out;
 }
 
+void evaluate_group(const PointEvaluation::Group& group, const v1::Lubricant& lubricant,
+                    Scene& physical, const TemperatureErrors& errors, const PointOptions& options,
+                    const std::shared_ptr<PreparedGearSet>& gear_set,
+                    std::vector<EvaluatedPoint>& out) {
+  const double sump = group.sump_temperature_celsius + errors.sump_kelvin;
+  const double rise = std::max(0.0, group.inlet_temperature_rise_kelvin + errors.inlet_rise_kelvin);
+  Violations inlet;
+  check_fluid_at_inlet(lubricant, sump, rise, "lubricant", inlet);
+  if (!inlet.empty()) {
+    for (const auto& [position, condition] : group.conditions) {
+      out[static_cast<std::size_t>(position)] = {std::nullopt, "INVALID_AT_INLET",
+                                                 inlet.front().description};
+    }
+    return;
+  }
+  physical.sump_temperature = sump + kZeroCelsius;
+  physical.inlet_temperature_rise = rise;
+  compute_group(physical, group, options, gear_set, out);
+}
+
 std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluation,
                                                 const v1::Lubricant& lubricant, Scene& physical,
                                                 const TemperatureErrors& errors,
@@ -281,57 +305,60 @@ std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluatio
   std::vector<EvaluatedPoint> out(static_cast<std::size_t>(evaluation.conditions));
   physical.lubricant = to_core(lubricant);
   for (const PointEvaluation::Group& group : evaluation.groups) {
-    const double sump = group.sump_temperature_celsius + errors.sump_kelvin;
-    const double rise =
-        std::max(0.0, group.inlet_temperature_rise_kelvin + errors.inlet_rise_kelvin);
-    Violations inlet;
-    check_fluid_at_inlet(lubricant, sump, rise, "lubricant", inlet);
-    if (!inlet.empty()) {
-      for (const auto& [position, condition] : group.conditions) {
-        out[static_cast<std::size_t>(position)] = {std::nullopt, "INVALID_AT_INLET",
-                                                   inlet.front().description};
-      }
-      continue;
-    }
-    physical.sump_temperature = sump + kZeroCelsius;
-    physical.inlet_temperature_rise = rise;
-    compute_group(physical, group, options, gear_set, out);
+    evaluate_group(group, lubricant, physical, errors, options, gear_set, out);
   }
   return out;
+}
+
+CandidateScene::CandidateScene(const PointEvaluation& evaluation, std::function<bool()> goes_on)
+    : evaluation_(evaluation),
+      options_(std::get<PointStudy>(study(evaluation.base)).options),
+      physical_(server::scene(evaluation.base)),
+      lubricant_(*evaluation.base.lubricant),
+      surface_(*evaluation.base.surface) {
+  options_.progress = [keep = std::move(goes_on)](double) { return keep(); };
+}
+
+void CandidateScene::set_candidate(int candidate) {
+  for (const PointEvaluation::Column& column : evaluation_.columns) {
+    google::protobuf::Message& resource =
+        column.field->containing_type() == v1::Lubricant::descriptor()
+            ? static_cast<google::protobuf::Message&>(lubricant_)
+            : surface_;
+    resource.GetReflection()->SetDouble(&resource, column.field,
+                                        column.values[static_cast<std::size_t>(candidate)]);
+  }
+  physical_.lubricant = to_core(lubricant_);
+  physical_.roughness = roughness(surface_);
+  physical_.boundary = boundary_friction(surface_);
+}
+
+void CandidateScene::evaluate(const PointEvaluation::Group& group,
+                              const std::shared_ptr<PreparedGearSet>& gear_set,
+                              std::vector<EvaluatedPoint>& out) {
+  evaluate_group(group, lubricant_, physical_, {}, options_, gear_set, out);
 }
 
 v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,
                                            PreparedGearSets& gear_sets,
                                            const std::function<bool()>& is_over) {
   Rows rows(evaluation.candidates * evaluation.conditions);
-  Scene physical = scene(evaluation.base);
-  PointOptions options = std::get<PointStudy>(study(evaluation.base)).options;
-  options.progress = [&is_over](double) { return !is_over(); };
+  CandidateScene candidate(evaluation, [&is_over] { return !is_over(); });
   const std::shared_ptr<PreparedGearSet> gear_set =
-      gear_sets.take(evaluation.base.gear_set, physical);
-
-  v1::Lubricant lubricant = *evaluation.base.lubricant;
-  v1::Surface surface = *evaluation.base.surface;
+      gear_sets.take(evaluation.base.gear_set, candidate.scene());
+  std::vector<EvaluatedPoint> points(static_cast<std::size_t>(evaluation.conditions));
   for (int i = 0; i < evaluation.candidates; ++i) {
-    for (const PointEvaluation::Column& column : evaluation.columns) {
-      google::protobuf::Message& resource =
-          column.field->containing_type() == v1::Lubricant::descriptor()
-              ? static_cast<google::protobuf::Message&>(lubricant)
-              : surface;
-      resource.GetReflection()->SetDouble(&resource, column.field,
-                                          column.values[static_cast<std::size_t>(i)]);
+    candidate.set_candidate(i);
+    for (const PointEvaluation::Group& group : evaluation.groups) {
+      candidate.evaluate(group, gear_set, points);
     }
-    physical.roughness = roughness(surface);
-    physical.boundary = boundary_friction(surface);
-    const std::vector<EvaluatedPoint> points =
-        evaluate_conditions(evaluation, lubricant, physical, {}, options, gear_set);
     for (int k = 0; k < evaluation.conditions; ++k) {
       rows.set(i * evaluation.conditions + k, points[static_cast<std::size_t>(k)]);
     }
   }
   // An exception that ends the study may leave the gear set half prepared: then it is not given
   // back. A refused point does not end it, nor does one in a speed sweep.
-  gear_sets.give_back(evaluation.base.gear_set, physical.options, gear_set);
+  gear_sets.give_back(evaluation.base.gear_set, candidate.scene().options, gear_set);
 
   v1::EvaluatePointsResponse out = rows.take();
   out.set_candidates(evaluation.candidates);

@@ -53,9 +53,24 @@ struct TemperatureErrors {
 };
 
 /// Checks the request and finds its resources. Returns nullopt and adds all violations if the
-/// request is invalid.
+/// request is invalid or has more than `most` points; `remedy` says what to do then.
 std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& request,
-                                           const ResourceLookup& lookup, Violations& violations);
+                                           const ResourceLookup& lookup, Violations& violations,
+                                           int most = kMaximumEvaluatedPoints,
+                                           const char* remedy = "in one request; send several");
+
+/// Returns "lubricant.relaxation_time_seconds" and so on for each parameter in which candidates may
+/// differ, sorted.
+std::vector<std::string> candidate_parameter_names();
+
+/// Computes the points of a lubricant at one group of conditions by screen_point() and writes them
+/// to their positions in `out`. `physical` is the scene, whose lubricant must be this one and whose
+/// temperatures are set here; `options.progress` must be set. Throws Cancelled as soon as it
+/// returns false.
+void evaluate_group(const PointEvaluation::Group& group, const v1::Lubricant& lubricant,
+                    Scene& physical, const TemperatureErrors& errors, const PointOptions& options,
+                    const std::shared_ptr<PreparedGearSet>& gear_set,
+                    std::vector<EvaluatedPoint>& out);
 
 /// Computes the points of a lubricant at all conditions of the evaluation by screen_point().
 /// `physical` is the scene, whose lubricant and temperatures are set here; `options.progress` must
@@ -65,6 +80,30 @@ std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluatio
                                                 const TemperatureErrors& errors,
                                                 const PointOptions& options,
                                                 const std::shared_ptr<PreparedGearSet>& gear_set);
+
+/// The candidates of an evaluation, one at a time. Not safe for concurrent access.
+class CandidateScene {
+ public:
+  /// `evaluation` must outlive the object. `goes_on` is called at least once for each point.
+  CandidateScene(const PointEvaluation& evaluation, std::function<bool()> goes_on);
+  CandidateScene(const CandidateScene&) = delete;
+  CandidateScene& operator=(const CandidateScene&) = delete;
+
+  /// Makes the scene that of a candidate, counted from 0.
+  void set_candidate(int candidate);
+  /// Computes the candidate at one group of conditions. Throws Cancelled as soon as `goes_on`
+  /// returns false; then the gear set may be half prepared.
+  void evaluate(const PointEvaluation::Group& group,
+                const std::shared_ptr<PreparedGearSet>& gear_set, std::vector<EvaluatedPoint>& out);
+  const Scene& scene() const { return physical_; }
+
+ private:
+  const PointEvaluation& evaluation_;
+  PointOptions options_;
+  Scene physical_;
+  v1::Lubricant lubricant_;
+  v1::Surface surface_;
+};
 
 /// Computes all points by screen_point(). A point that the core refuses is a refused row. Throws
 /// Cancelled soon after `is_over` returns true.

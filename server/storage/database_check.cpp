@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "server/contract/resource_names.h"
+#include "server/storage/campaign_rows.h"
 #include "server/storage/checksum.h"
 #include "server/storage/history_rows.h"
 #include "server/storage/properties.h"
@@ -115,6 +116,21 @@ void check_rows(Connection& db, Problems& problems) {
            "': columns of its history differ in length' "
            "FROM simulations s JOIN history_columns h ON h.result = s.result GROUP BY s.id "
            "HAVING min(rows) <> max(rows)",
+           "SELECT 'campaign ' || c.number || ' of ' || c.project || ': its project does not exist "
+           "or has given no such number' FROM campaigns c WHERE NOT EXISTS (SELECT 1 FROM projects "
+           "p WHERE p.name = c.project AND c.number <= p.last_campaign)",
+           "SELECT 'campaign ' || c.number || ' of ' || c.project || ': the number of its computed "
+           "points is wrong' FROM campaigns c WHERE points_done <> "
+           "(SELECT coalesce(sum(rows), 0) FROM campaign_tiles WHERE campaign = c.id)",
+           "SELECT 'campaign ' || c.number || ' of ' || c.project || ': two tiles have the same "
+           "rows, or a tile has none of it' FROM campaigns c WHERE EXISTS (SELECT 1 FROM "
+           "(SELECT first_row + rows AS last, lead(first_row) OVER (ORDER BY first_row) AS next "
+           "FROM campaign_tiles WHERE campaign = c.id) "
+           "WHERE last > coalesce(next, c.candidates * c.conditions))",
+           "SELECT 'campaign ' || c.number || ' of ' || c.project || ': columns of a tile that it "
+           "has not' FROM campaigns c WHERE EXISTS (SELECT 1 FROM campaign_blobs b WHERE "
+           "b.campaign = c.id AND NOT EXISTS (SELECT 1 FROM campaign_tiles t WHERE "
+           "t.campaign = b.campaign AND t.first_row = b.first_row))",
        }) {
     find_rows(db, sql, problems);
   }
@@ -125,6 +141,22 @@ void check_histories(Connection& db, Problems& problems) {
   while (problems.size() < kMaximumProblems && query.executeStep()) {
     if (is_whole_column(db, query.getColumn(0).getInt64())) continue;
     problems.push_back("result " + query.getColumn(1).getString() + ": its history is damaged");
+  }
+}
+
+void check_tiles(Connection& db, Problems& problems) {
+  SQLite::Statement query(db,
+                          "SELECT t.campaign, t.first_row, t.rows, c.project, c.number, "
+                          "(SELECT count(DISTINCT number) FROM campaign_blobs b "
+                          "WHERE b.campaign = c.id) "
+                          "FROM campaign_tiles t JOIN campaigns c ON c.id = t.campaign");
+  while (problems.size() < kMaximumProblems && query.executeStep()) {
+    const RowRange rows{query.getColumn(1).getInt64(), query.getColumn(2).getInt64()};
+    const int columns = query.getColumn(5).getInt();
+    if (columns > 0 && is_whole_tile(db, query.getColumn(0).getInt64(), rows, columns)) continue;
+    problems.push_back(
+        campaign_name(query.getColumn(3).getString(), query.getColumn(4).getInt64()) +
+        ": its tile from row " + std::to_string(rows.first) + " on is damaged");
   }
 }
 
@@ -286,6 +318,7 @@ Problems problems_of(Connection& db, const std::filesystem::path& path,
   db.exec("BEGIN");  // a snapshot: a server may write meanwhile
   check_rows(db, problems);
   check_histories(db, problems);
+  check_tiles(db, problems);
   check_ledgers(db, problems);
   check_bodies(db, problems);
   check_properties(db, problems);

@@ -9,13 +9,15 @@
 #include <thread>
 #include <vector>
 
+#include "server/storage/campaign_rows.h"
 #include "server/storage/event_rows.h"
 #include "server/storage/resource_types.h"
 
 namespace tribodyn::server {
 namespace {
 
-/// Returns the condition that a simulation used a revision of resource ?1. The column has an index.
+/// Returns the condition that a simulation or a campaign used a revision of resource ?1. The
+/// columns have indexes.
 std::string uses(const StoredResource& resource) {
   static const std::map<std::string, std::string> kColumns = {{"lubricants", "lubricant"},
                                                               {"gearSets", "gear_set"},
@@ -31,8 +33,10 @@ int remove_rows(Connection& db, const char* sql, std::int64_t key) {
   return statement.exec();
 }
 
-std::vector<std::int64_t> simulations_of(Connection& db, const StoredResource& resource) {
-  Prepared query(db, "SELECT id FROM simulations WHERE " + uses(resource));
+/// Returns the rows of a table, simulations or campaigns, that used the resource.
+std::vector<std::int64_t> users_of(Connection& db, const std::string& table,
+                                   const StoredResource& resource) {
+  Prepared query(db, "SELECT id FROM " + table + " WHERE " + uses(resource));
   query.bind(1, resource.id);
   std::vector<std::int64_t> out;
   while (query.executeStep()) out.push_back(query.getColumn(0).getInt64());
@@ -95,11 +99,21 @@ Dependents dependents_of(Connection& db, const StoredResource& resource) {
   results.bind(1, resource.id);
   results.executeStep();
   out.results = results.getColumn(0).getInt();
+  Prepared campaigns(db, "SELECT id, state FROM campaigns WHERE " + uses(resource));
+  campaigns.bind(1, resource.id);
+  while (campaigns.executeStep()) {
+    if (has_ended(static_cast<CampaignState>(campaigns.getColumn(1).getInt()))) {
+      ++out.ended_campaigns;
+    } else {
+      out.unfinished_campaigns.push_back(campaigns.getColumn(0).getInt64());
+    }
+  }
   return out;
 }
 
 int remove_resource(Connection& db, const StoredResource& resource) {
-  for (const std::int64_t id : simulations_of(db, resource)) remove_simulation(db, id);
+  for (const std::int64_t id : users_of(db, "simulations", resource)) remove_simulation(db, id);
+  for (const std::int64_t id : users_of(db, "campaigns", resource)) remove_campaign(db, id);
   remove_rows(db, "DELETE FROM properties WHERE resource = ?1", resource.id);
   // The trigger that protects revisions is dropped and created again within the transaction.
   const std::string trigger =

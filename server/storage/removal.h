@@ -13,21 +13,26 @@ namespace tribodyn::server {
 /// result. Works inside the caller's transaction. Throws SQLite::Exception.
 std::int64_t remove_simulation(Connection& db, std::int64_t id);
 
-/// Simulations that used any revision of a resource.
+/// Simulations and campaigns that used any revision of a resource.
 struct Dependents {
-  std::vector<std::int64_t> unfinished;  ///< QUEUED or RUNNING
-  int ended = 0;
-  int results = 0;  ///< results that no other simulation has
+  std::vector<std::int64_t> unfinished;            ///< simulations that are QUEUED or RUNNING
+  int ended = 0;                                   ///< simulations that are neither
+  int results = 0;                                 ///< results that no other simulation has
+  std::vector<std::int64_t> unfinished_campaigns;  ///< RUNNING or PAUSED
+  int ended_campaigns = 0;
 
-  int count() const { return static_cast<int>(unfinished.size()) + ended; }
+  int simulations() const { return static_cast<int>(unfinished.size()) + ended; }
+  int campaigns() const { return static_cast<int>(unfinished_campaigns.size()) + ended_campaigns; }
+  bool exist() const { return simulations() + campaigns() > 0; }
+  bool are_ended() const { return unfinished.empty() && unfinished_campaigns.empty(); }
 };
 
-/// Returns the simulations that used a revision of the resource. Throws SQLite::Exception.
+/// Returns what used a revision of the resource. Throws SQLite::Exception.
 Dependents dependents_of(Connection& db, const StoredResource& resource);
 
-/// Removes a resource with all its revisions, and every simulation, pinned or not, that used one of
-/// them. Requires that none of these is QUEUED or RUNNING. Returns the number of revisions. Works
-/// inside the caller's transaction. Throws SQLite::Exception.
+/// Removes a resource with all its revisions, and every simulation, pinned or not, and every
+/// campaign that used one of them. Requires that all of these have ended. Returns the number of
+/// revisions. Works inside the caller's transaction. Throws SQLite::Exception.
 int remove_resource(Connection& db, const StoredResource& resource);
 
 /// Rewrites the database, so that neither its file nor its write-ahead log contains bytes of

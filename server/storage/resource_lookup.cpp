@@ -22,15 +22,19 @@ ResourceLookup resource_lookup(Store& store, const std::string& project, const C
 }
 
 ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation) {
-  ResourceLookup out = resource_lookup(store, simulation.project);
+  return accepted_lookup(store, simulation.project,
+                         {simulation.lubricant_revision, simulation.gear_set_revision,
+                          simulation.surface_revision, simulation.vehicle_revision});
+}
+
+ResourceLookup accepted_lookup(Store& store, const std::string& project,
+                               const std::vector<std::string>& revisions) {
+  ResourceLookup out = resource_lookup(store, project);
   std::vector<RevisionName> accepted;
-  const auto add = [&accepted](const std::string& name, const char* collection) {
-    if (const auto parsed = parse_revision_name(name, collection)) accepted.push_back(*parsed);
-  };
-  add(simulation.lubricant_revision, kLubricants);
-  add(simulation.gear_set_revision, kGearSets);
-  add(simulation.surface_revision, kSurfaces);
-  add(simulation.vehicle_revision, kVehicles);
+  for (const std::string& each : revisions) {
+    const auto parsed = parse_revision_name(each, std::string_view(each).substr(0, each.find('/')));
+    if (parsed) accepted.push_back(*parsed);
+  }
   out.find = [find = out.find, accepted](RevisionName name) {
     for (const RevisionName& each : accepted) {
       if (each.name == name.name) name = each;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "server/contract/resource_names.h"
 #include "server/storage/store.h"
 #include "tribodyn/v1/simulations.pb.h"
@@ -14,6 +17,10 @@ ResourceLookup resource_lookup(Store& store, const std::string& project,
 /// Like resource_lookup(), but finds the four resources of `simulation` in the revisions with which
 /// it was accepted, even if a resource has been deleted since.
 ResourceLookup accepted_lookup(Store& store, const StoredSimulation& simulation);
+
+/// The same for resources of a project in stated revisions, e.g. "lubricants/paper-fluid-1@2".
+ResourceLookup accepted_lookup(Store& store, const std::string& project,
+                               const std::vector<std::string>& revisions);
 
 /// Fills each empty resource name of `request` with the name of the revision that `simulation` was
 /// accepted with: an older version may have accepted it with another default.

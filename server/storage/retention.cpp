@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "server/storage/campaign_rows.h"
 #include "server/storage/removal.h"
 
 namespace tribodyn::server {
@@ -17,15 +18,29 @@ constexpr std::int64_t kBytesOfASimulation = 1110;
 
 Removed remove_oldest(Connection& db, Microseconds ended_by, int limit) {
   Prepared query(db,
-                 "SELECT id FROM simulations "
+                 "SELECT id, end_time FROM simulations "
                  "WHERE state >= 3 AND pinned = 0 AND end_time <= ? "
                  "ORDER BY end_time LIMIT ?");
   query.bind(1, ended_by);
   query.bind(2, limit);
   std::vector<std::int64_t> oldest;
-  while (query.executeStep()) oldest.push_back(query.getColumn(0).getInt64());
+  Microseconds newest = ended_by;  // of those that go, if there are as many as may go
+  while (query.executeStep()) {
+    oldest.push_back(query.getColumn(0).getInt64());
+    if (oldest.size() == static_cast<std::size_t>(limit)) newest = query.getColumn(1).getInt64();
+  }
   query.reset();
   Removed removed;
+  Prepared campaigns(db,
+                     "SELECT id FROM campaigns WHERE state >= 3 AND end_time <= ? "
+                     "ORDER BY end_time LIMIT 1");
+  campaigns.bind(1, newest);
+  if (campaigns.executeStep()) {
+    const std::int64_t id = campaigns.getColumn(0).getInt64();
+    campaigns.reset();
+    ++removed.campaigns;
+    removed.bytes += remove_campaign(db, id);
+  }
   for (const std::int64_t id : oldest) {
     ++removed.simulations;
     removed.bytes += kBytesOfASimulation + remove_simulation(db, id);
@@ -43,8 +58,12 @@ std::int64_t removable_bytes(Connection& db) {
   constexpr char kCountOfRemovable[] =
       "SELECT count(*) FROM simulations INDEXED BY ended_simulations "
       "WHERE state >= 3 AND pinned = 0";
+  constexpr char kBytesOfCampaigns[] =
+      "SELECT coalesce(sum(stored_bytes), 0) FROM campaigns INDEXED BY ended_campaigns "
+      "WHERE state >= 3";
   return db.execAndGet(kBytesOfResults).getInt64() - db.execAndGet(kBytesOfPinned).getInt64() +
-         kBytesOfASimulation * db.execAndGet(kCountOfRemovable).getInt64();
+         kBytesOfASimulation * db.execAndGet(kCountOfRemovable).getInt64() +
+         db.execAndGet(kBytesOfCampaigns).getInt64();
 }
 
 std::int64_t used_bytes(Connection& db) {

@@ -8,13 +8,13 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 10. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 11. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   projects     one row per project; last_number is that of its latest simulation, removed or
 ///                not, and last_event that of its latest event. deletions: how many events of state
 ///                0 it has; forgotten_event: the largest number of those that were forgotten since
-///                (kKeptDeletions)
+///                (kKeptDeletions); last_campaign: number of its latest campaign, removed or not
 ///   resources    lubricants, gear sets, surfaces, vehicles: one row a name, with the revision that
 ///                is the present one; delete_time is set while it is deleted (nothing is lost).
 ///                name and collection are full ones, "projects/acme/lubricants/my-oil": the project
@@ -51,6 +51,17 @@ namespace tribodyn::server {
 ///                first job that has it. platform is empty, and the result serves no other job,
 ///                where it comes from an older schema. checksum: of body (checksum.h);
 ///                stored_bytes: of body and of the blocks of its history, which go together
+///   campaigns    one row per campaign; number counts within its project. state as in
+///                Campaign.State, stop_reason and stop_message why it is paused or failed.
+///                request: the Campaign as the client stated it, without its columns of candidates,
+///                which are the Campaign candidate_table. points_done and the like change with each
+///                tile. lost_attempts: processes that began to compute it and neither ended in good
+///                order nor wrote tiles for long. stored_bytes: of both messages and of all blobs.
+///                When a campaign is removed, all below goes with it
+///   campaign_tiles  runs of rows that are computed; whole candidates each, in no row two
+///   campaign_blobs  columns of tiles, compressed (column_codec.h). number: that of the column
+///                (campaign_columns.h). checksum: of data
+///   campaign_refusals  the sentences that column 0 numbers
 ///   history_columns  of time histories, in the order of position; ids are never used again
 ///   history_blocks   a column cut into runs of kHistoryBlock doubles, numbered 0, 1, ..., and each
 ///                compressed (column_codec.h): level 0 as it is, levels above it the least and
@@ -65,7 +76,7 @@ namespace tribodyn::server {
 ///
 /// The text of a schema that a release has written never changes: the tables of a database are
 /// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 10;
+inline constexpr int kSchemaVersion = 11;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

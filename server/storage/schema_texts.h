@@ -439,4 +439,87 @@ ALTER TABLE tokens ADD COLUMN streams INTEGER CHECK (streams > 0);
 ALTER TABLE tokens ADD COLUMN processor_hours REAL CHECK (processor_hours > 0);
 )sql";
 
+// Tiles are small beside their blobs, which are of kilobytes: only tiles are without row ids.
+inline constexpr char kSchema11[] = R"sql(
+ALTER TABLE projects ADD COLUMN last_campaign INTEGER NOT NULL DEFAULT 0
+  CHECK (last_campaign >= 0);
+
+CREATE TABLE campaigns (
+  id INTEGER PRIMARY KEY AUTOINCREMENT,
+  project TEXT NOT NULL REFERENCES projects (name),
+  number INTEGER NOT NULL CHECK (number >= 1),
+  state INTEGER NOT NULL CHECK (state BETWEEN 1 AND 5),
+  stop_reason TEXT NOT NULL DEFAULT '',
+  stop_message TEXT NOT NULL DEFAULT '',
+  lost_attempts INTEGER NOT NULL DEFAULT 0 CHECK (lost_attempts >= 0),
+  create_time INTEGER NOT NULL,
+  end_time INTEGER,
+  request_id TEXT CHECK (length(request_id) > 0),
+  request_hash TEXT NOT NULL CHECK (length(request_hash) = 64),
+  input_hash TEXT NOT NULL CHECK (length(input_hash) = 64),
+  model_version TEXT NOT NULL,
+  platform TEXT NOT NULL,
+  client TEXT NOT NULL,
+  principal TEXT NOT NULL,
+  lubricant INTEGER NOT NULL REFERENCES revisions (id),
+  gear_set INTEGER NOT NULL REFERENCES revisions (id),
+  surface INTEGER NOT NULL REFERENCES revisions (id),
+  vehicle INTEGER NOT NULL REFERENCES revisions (id),
+  candidates INTEGER NOT NULL CHECK (candidates >= 1),
+  conditions INTEGER NOT NULL CHECK (conditions >= 1),
+  points_done INTEGER NOT NULL DEFAULT 0,
+  points_refused INTEGER NOT NULL DEFAULT 0,
+  budget_seconds REAL NOT NULL CHECK (budget_seconds >= 0),
+  budget_points INTEGER NOT NULL CHECK (budget_points >= 0),
+  processor_seconds REAL NOT NULL DEFAULT 0,
+  stored_bytes INTEGER NOT NULL,
+  request BLOB NOT NULL,
+  candidate_table BLOB NOT NULL,
+  CHECK (points_done BETWEEN 0 AND candidates * conditions),
+  CHECK (points_refused BETWEEN 0 AND points_done),
+  CHECK ((state = 3) <= (points_done = candidates * conditions)),
+  CHECK ((state >= 3) = (end_time IS NOT NULL))
+) STRICT;
+CREATE UNIQUE INDEX campaigns_by_number ON campaigns (project, number);
+CREATE UNIQUE INDEX one_campaign_per_request ON campaigns (project, request_id);
+CREATE INDEX campaigns_by_size ON campaigns (project, stored_bytes);
+CREATE INDEX running_campaigns ON campaigns (id) WHERE state = 1;
+CREATE INDEX ended_campaigns ON campaigns (end_time, stored_bytes) WHERE state >= 3;
+CREATE INDEX campaigns_by_lubricant ON campaigns (lubricant);
+CREATE INDEX campaigns_by_gear_set ON campaigns (gear_set);
+CREATE INDEX campaigns_by_surface ON campaigns (surface);
+CREATE INDEX campaigns_by_vehicle ON campaigns (vehicle);
+CREATE TRIGGER campaigns_end_once BEFORE UPDATE ON campaigns
+WHEN OLD.state >= 3
+BEGIN SELECT RAISE(ABORT, 'a campaign that has ended never changes'); END;
+CREATE TRIGGER campaigns_stay_in_their_project BEFORE UPDATE OF project, number ON campaigns
+BEGIN SELECT RAISE(ABORT, 'a campaign keeps its project and its number'); END;
+
+CREATE TABLE campaign_tiles (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  first_row INTEGER NOT NULL CHECK (first_row >= 0),
+  rows INTEGER NOT NULL CHECK (rows BETWEEN 1 AND 4096),
+  PRIMARY KEY (campaign, first_row)
+) STRICT, WITHOUT ROWID;
+CREATE TRIGGER tiles_never_change BEFORE UPDATE ON campaign_tiles
+BEGIN SELECT RAISE(ABORT, 'a tile never changes'); END;
+
+CREATE TABLE campaign_blobs (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  number INTEGER NOT NULL CHECK (number >= 0),
+  first_row INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  data BLOB NOT NULL,
+  UNIQUE (campaign, number, first_row)
+) STRICT;
+
+CREATE TABLE campaign_refusals (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  number INTEGER NOT NULL CHECK (number >= 1),
+  reason TEXT NOT NULL,
+  message TEXT NOT NULL,
+  PRIMARY KEY (campaign, number)
+) STRICT, WITHOUT ROWID;
+)sql";
+
 }  // namespace tribodyn::server

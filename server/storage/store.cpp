@@ -411,14 +411,13 @@ Store::Removal Store::remove_simulation(std::int64_t id, const std::optional<std
   });
 }
 
-Store::Purge Store::purge_resource(const StoredResource& present, bool with_simulations,
+Store::Purge Store::purge_resource(const StoredResource& present, bool with_dependents,
                                    const CallLimits& limits) {
   return write(limits, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     Purge out{.is_current = is_unchanged(db, present),
-              .simulations = server::dependents_of(db, present)};
-    const bool may_go =
-        out.simulations.unfinished.empty() && (with_simulations || out.simulations.ended == 0);
+              .dependents = server::dependents_of(db, present)};
+    const bool may_go = out.dependents.are_ended() && (with_dependents || !out.dependents.exist());
     if (!out.is_current || !may_go) return out;
     has_unerased_purge_ = true;
     out.revisions = remove_resource(db, present);
@@ -497,7 +496,9 @@ RecentEvents::States Store::simulation_states(const std::string& project,
 
 std::int64_t Store::result_bytes(const std::string& project, const CallLimits& limits) {
   return read(limits, [&](Connection& db) {
-    Prepared sum(db, "SELECT coalesce(sum(stored_bytes), 0) FROM results WHERE project = ?");
+    Prepared sum(db,
+                 "SELECT (SELECT coalesce(sum(stored_bytes), 0) FROM results WHERE project = ?1) + "
+                 "(SELECT coalesce(sum(stored_bytes), 0) FROM campaigns WHERE project = ?1)");
     sum.bind(1, project);
     sum.executeStep();
     return sum.getColumn(0).getInt64();
@@ -595,6 +596,96 @@ std::vector<UnfinishedSimulation> Store::requeue_unfinished(Microseconds now) {
     std::vector<UnfinishedSimulation> waiting = requeue_lost(db, now);
     transaction.commit();
     return waiting;
+  });
+}
+
+CampaignAdded Store::add_campaign(const NewCampaign& campaign, Microseconds now,
+                                  const CallLimits& limits) {
+  CampaignAdded out;
+  write_together(limits, [&](Connection& db) { out = insert_campaign(db, campaign, now); });
+  return out;
+}
+
+std::optional<StoredCampaign> Store::campaign(std::int64_t id, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_campaign(db, id); });
+}
+
+std::optional<StoredCampaign> Store::numbered_campaign(const std::string& project,
+                                                       std::int64_t number,
+                                                       const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_numbered_campaign(db, project, number); });
+}
+
+std::optional<StoredCampaign> Store::campaign_of_request(const std::string& project,
+                                                         const std::string& request_id,
+                                                         const CallLimits& limits) {
+  return read(limits,
+              [&](Connection& db) { return query_campaign_of_request(db, project, request_id); });
+}
+
+Page<StoredCampaign> Store::campaigns(const std::string& project, std::int64_t before, int limit,
+                                      const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_campaigns(db, project, before, limit); });
+}
+
+std::vector<std::int64_t> Store::running_campaigns() {
+  return read({}, [](Connection& db) { return query_running_campaigns(db); });
+}
+
+std::string Store::candidate_table(std::int64_t id, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_candidate_table(db, id); });
+}
+
+std::optional<StoredCampaign> Store::change_campaign(const CampaignChange& change,
+                                                     const CallLimits& limits) {
+  std::optional<StoredCampaign> out;
+  write_together(limits, [&](Connection& db) { out = server::change_campaign(db, change); });
+  return out;
+}
+
+std::optional<StoredCampaign> Store::begin_campaign(std::int64_t id) {
+  std::optional<StoredCampaign> out;
+  write_together({}, [&](Connection& db) { out = server::begin_campaign(db, id); });
+  return out;
+}
+
+void Store::release_campaign(std::int64_t id) {
+  write_together({}, [&](Connection& db) { server::release_campaign(db, id); });
+}
+
+std::optional<StoredCampaign> Store::add_tile(std::int64_t id, const NewTile& tile,
+                                              Microseconds now) {
+  // Compresses before the transaction, so that other writers do not wait.
+  const std::vector<std::string> blobs = compress_tile(tile);
+  std::optional<StoredCampaign> out;
+  write_together({}, [&](Connection& db) { out = insert_tile(db, id, tile, blobs, now); });
+  return out;
+}
+
+std::vector<RowRange> Store::campaign_tiles(std::int64_t id, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_tiles(db, id); });
+}
+
+std::vector<CampaignRefusal> Store::campaign_refusals(std::int64_t id, const CallLimits& limits) {
+  return read(limits, [&](Connection& db) { return query_refusals(db, id); });
+}
+
+bool Store::remove_campaign(std::int64_t id, const CallLimits& limits) {
+  return write(limits, [&](Connection& db) {
+    SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
+    const auto stored = query_campaign(db, id);
+    if (stored && !has_ended(stored->state)) return false;
+    server::remove_campaign(db, id);
+    transaction.commit();
+    return true;
+  });
+}
+
+void Store::read_campaign(std::int64_t id, int column, std::int64_t start, std::span<double> values,
+                          const CallLimits& limits) {
+  read(limits, [&](Connection& db) {
+    query_campaign_column(db, id, column, start, values);
+    return true;
   });
 }
 

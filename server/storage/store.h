@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "server/storage/call_limits.h"
+#include "server/storage/campaign_rows.h"
 #include "server/storage/connections.h"
 #include "server/storage/database_files.h"
 #include "server/storage/database_lock.h"
@@ -21,6 +22,7 @@
 #include "server/storage/removal.h"
 #include "server/storage/retention.h"
 #include "server/storage/store_error.h"
+#include "server/storage/stored_campaign.h"
 #include "server/storage/stored_resource.h"
 #include "server/storage/stored_simulation.h"
 #include "server/support/observers.h"
@@ -119,16 +121,17 @@ class Store {
   enum class Removal { kDone, kAbsent, kUnfinished, kPinned, kChanged };
   Removal remove_simulation(std::int64_t id, const std::optional<std::string>& request = {},
                             const CallLimits& limits = {});
-  /// Removes a resource with all its revisions and, if `with_simulations`, every simulation that
-  /// used one of them. Changes nothing, and returns revisions 0, if the resource has changed since
-  /// it was read, if such a simulation is unfinished, or if there is one and `with_simulations` is
-  /// false. Free pages of the files still contain the removed bytes until erase_removed().
+  /// Removes a resource with all its revisions and, if `with_dependents`, every simulation and
+  /// campaign that used one of them. Changes nothing, and returns revisions 0, if the resource has
+  /// changed since it was read, if such a simulation or campaign is unfinished, or if there is one
+  /// and `with_dependents` is false. Free pages of the files still contain the removed bytes until
+  /// erase_removed().
   struct Purge {
     bool is_current = false;  ///< the resource has not changed since it was read
-    Dependents simulations;   ///< simulations that used the resource
+    Dependents dependents;    ///< what used the resource
     int revisions = 0;        ///< removed revisions
   };
-  Purge purge_resource(const StoredResource& present, bool with_simulations,
+  Purge purge_resource(const StoredResource& present, bool with_dependents,
                        const CallLimits& limits = {});
   /// Returns what purge_resource() would find, and changes nothing.
   Dependents dependents_of(const StoredResource& present, const CallLimits& limits = {});
@@ -159,7 +162,7 @@ class Store {
                                          const std::vector<std::int64_t>& numbers,
                                          const CallLimits& limits = {});
   std::uint64_t changes() const { return recent_events_.changes(); }
-  /// Returns the bytes of all results of a project, with their histories.
+  /// Returns the bytes of all results of a project, with their histories, and of its campaigns.
   std::int64_t result_bytes(const std::string& project, const CallLimits& limits = {});
   /// Returns the estimated cost of all simulations of a project that wait or run [s of one
   /// processor].
@@ -204,8 +207,36 @@ class Store {
   /// another process computes come with their lease.
   std::vector<UnfinishedSimulation> requeue_unfinished(Microseconds now);
 
+  // Campaigns, as in campaign_rows.h.
+
+  CampaignAdded add_campaign(const NewCampaign& campaign, Microseconds now,
+                             const CallLimits& limits = {});
+  std::optional<StoredCampaign> campaign(std::int64_t id, const CallLimits& limits = {});
+  std::optional<StoredCampaign> numbered_campaign(const std::string& project, std::int64_t number,
+                                                  const CallLimits& limits = {});
+  std::optional<StoredCampaign> campaign_of_request(const std::string& project,
+                                                    const std::string& request_id,
+                                                    const CallLimits& limits = {});
+  Page<StoredCampaign> campaigns(const std::string& project, std::int64_t before, int limit,
+                                 const CallLimits& limits = {});
+  std::vector<std::int64_t> running_campaigns();
+  std::string candidate_table(std::int64_t id, const CallLimits& limits = {});
+  std::optional<StoredCampaign> change_campaign(const CampaignChange& change,
+                                                const CallLimits& limits = {});
+  std::optional<StoredCampaign> begin_campaign(std::int64_t id);
+  void release_campaign(std::int64_t id);
+  std::optional<StoredCampaign> add_tile(std::int64_t id, const NewTile& tile, Microseconds now);
+  std::vector<RowRange> campaign_tiles(std::int64_t id, const CallLimits& limits = {});
+  std::vector<CampaignRefusal> campaign_refusals(std::int64_t id, const CallLimits& limits = {});
+  /// Removes a campaign that has ended. Returns false, and changes nothing, if it has not; true if
+  /// it does not exist.
+  bool remove_campaign(std::int64_t id, const CallLimits& limits = {});
+
   // These functions compare stored bytes with their checksums and throw StoreError kDataLoss if
   // they differ.
+
+  void read_campaign(std::int64_t id, int column, std::int64_t start, std::span<double> values,
+                     const CallLimits& limits = {});
 
   /// Returns the serialised SimulationResult with the assumptions of this simulation.
   std::optional<std::string> result(std::int64_t id, const CallLimits& limits = {});

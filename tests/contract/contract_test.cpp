@@ -152,8 +152,9 @@ TEST(Contract, StatesTheLongestTextsThatTheServerTakes) {
   EXPECT_EQ(bytes("ImportGearSetRequest", "tooth_contact_csv"), server::kMaximumCsvBytes);
   EXPECT_EQ(bytes("ImportGearSetRequest", "series_csv"), server::kMaximumCsvBytes);
   EXPECT_EQ(bytes("SurfaceProfile", "csv"), server::kMaximumProfileBytes);
-  EXPECT_EQ(bytes("CreateSimulationRequest", "request_id"),
-            std::size_t{server::kMaximumRequestIdLength});
+  for (const char* each : {"CreateSimulationRequest", "CreateCampaignRequest"}) {
+    EXPECT_EQ(bytes(each, "request_id"), std::size_t{server::kMaximumRequestIdLength});
+  }
   for (const char* each : {"Lubricants", "GearSets", "Surfaces", "Vehicles", "Simulations"}) {
     EXPECT_EQ(bytes("List" + std::string(each) + "Request", "filter"),
               server::kMaximumFilterLength);

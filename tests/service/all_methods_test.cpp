@@ -148,9 +148,15 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
       {"VehicleService", "vehicles/passenger-car"}};
   const auto known = kCollections.find(GetParam()->service()->name());
   if (known == kCollections.end()) {
+    const bool is_campaign = GetParam()->service()->name() == "CampaignService";
     if (has("name")) {
-      set("name", "simulations/99999");
-      return expect_refused(*message, "simulations/99999");
+      const std::string name = is_campaign ? "campaigns/99999" : "simulations/99999";
+      set("name", name);
+      return expect_refused(*message, name);
+    }
+    if (method == "CreateCampaign") {
+      set_inner("campaign", "lubricant", "lubricants/paper-fluid-11");
+      return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");
     }
     if (method == "GetSchema") {
       set("message", "Lubricnt");
@@ -183,7 +189,7 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
           message.get(), message->GetDescriptor()->FindFieldByName("names"), "simulations/99999");
       return expect_refused(*message, "simulations/99999");
     }
-    if (method == "ListSimulations") {
+    if (method == "ListSimulations" || method == "ListCampaigns") {
       set("page_token", "simulations/x");
       return expect_refused(*message, "page_token");
     }

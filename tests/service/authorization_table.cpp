@@ -21,11 +21,9 @@ std::atomic<long> statement_count = 0;
 
 /// Sets every name of a request: parent, name and names, also of the resource that it holds.
 void set_names(Message& message, const std::string& project, const std::string& id) {
-  static const std::map<std::string, std::string> kCollections = {{"Lubricant", "lubricants"},
-                                                                  {"GearSet", "gearSets"},
-                                                                  {"Surface", "surfaces"},
-                                                                  {"Vehicle", "vehicles"},
-                                                                  {"Simulation", "simulations"}};
+  static const std::map<std::string, std::string> kCollections = {
+      {"Lubricant", "lubricants"}, {"GearSet", "gearSets"},       {"Surface", "surfaces"},
+      {"Vehicle", "vehicles"},     {"Simulation", "simulations"}, {"Campaign", "campaigns"}};
   std::string collection = "simulations";
   for (const auto& [kind, name] : kCollections) {
     if (message.GetDescriptor()->name().find(kind) != std::string::npos) collection = name;

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <vector>
 
+#include "server/application/campaigns.h"
 #include "server/application/streams.h"
 #include "server/transport/http/column_text.h"
 #include "server/transport/http/http_server.h"
@@ -146,6 +147,39 @@ TEST_F(ColumnsTest, EveryFormOfAHistoryHasTheNumbersOfItsMessages) {
     }
     EXPECT_EQ(doubles(binary, sizeof length + length), one_after_another);
   }
+}
+
+TEST_F(ColumnsTest, RowsOfACampaignHaveTheSameForms) {
+  v1::CreateCampaignRequest request;
+  v1::Campaign& campaign = *request.mutable_campaign();
+  campaign.set_lubricant("lubricants/paper-fluid-1");
+  v1::CandidateColumn& column = *campaign.add_candidate_columns();
+  column.set_path("surface.asperity_friction_coefficient");
+  column.add_values(0.1);
+  column.add_values(0.12);
+  campaign.add_conditions()->set_speed_kilometres_per_hour(50);
+  campaign.add_conditions()->set_speed_kilometres_per_hour(110);
+  const std::string name = create_campaign(app_, request).message().name();
+  v1::GetCampaignRequest get;
+  get.set_name(name);
+  ASSERT_TRUE(eventually(
+      [&] { return get_campaign(app_, get).message().state() == v1::Campaign::SUCCEEDED; }));
+  const std::string target = "/v1/" + name +
+                             ":read?columns=candidate&columns=speed_kilometres_per_hour&"
+                             "columns=mesh_loss_power_watts&start_row=1&alt=";
+  std::string header;
+  const Columns rows = of_csv(body(target + "csv"), header);
+  EXPECT_EQ(header, "candidate,speed_kilometres_per_hour,mesh_loss_power_watts");
+  EXPECT_THAT(rows.at(0), ElementsAre(0, 1, 1));
+  EXPECT_THAT(rows.at(1), ElementsAre(110, 50, 110));
+  const json columns = json::parse(body(target + "columns"));
+  EXPECT_EQ(columns["columns"]["mesh_loss_power_watts"].get<std::vector<double>>(), rows[2]);
+  EXPECT_EQ(columns["units"]["mesh_loss_power_watts"], "W");
+  EXPECT_EQ(columns["total_rows"], 4);
+  const std::string numpy = body(target + "npy");
+  EXPECT_EQ(doubles(numpy, numpy.find('\n') + 1),
+            (std::vector<double>{0, 110, rows[2][0], 1, 50, rows[2][1], 1, 110, rows[2][2]}));
+  EXPECT_THAT(body(target + "ndjson"), StartsWith(R"({"result":{"schema":)"));
 }
 
 TEST_F(ColumnsTest, AHistoryIsReadInPartAndByAccept) {

@@ -15,6 +15,7 @@
 #include "server/contract/output_only.h"
 #include "server/resources/gear_set_checks.h"
 #include "server/resources/imports/import_surface.h"
+#include "server/simulation/campaign_inputs.h"
 #include "server/simulation/contact_inputs.h"
 #include "server/simulation/point_comparison.h"
 #include "server/simulation/point_evaluation.h"
@@ -92,6 +93,7 @@ struct Subject {
   v1::EvaluatePointsRequest points = one_point();
   v1::EvaluateRigRequest rig = one_rig();
   v1::ComparePointsRequest comparison;
+  v1::Campaign campaign;
   std::unique_ptr<Message> batch;
   Message* message = nullptr;
   std::string path;
@@ -125,6 +127,12 @@ struct Subject {
       *comparison.mutable_conditions() = points.conditions();
       comparison.add_condition_weights(1);
       use(&comparison, "");
+    } else if (name == "Campaign" || name == "CampaignBudget") {
+      campaign.set_lubricant(points.lubricant());
+      *campaign.mutable_conditions() = points.conditions();
+      campaign.add_condition_weights(1);
+      use(&campaign, "");
+      if (name == "CampaignBudget") use(campaign.mutable_budget(), "budget.");
     } else if (name == "PointCondition") {
       use(points.mutable_conditions(0), "conditions[0].");
     } else if (name == "EvaluateRigRequest") {
@@ -199,6 +207,10 @@ struct Subject {
     }
     if (message == &comparison) {
       read_comparison(comparison, seed_lookup(), violations);
+      return violations;
+    }
+    if (message == &campaign || path == "budget.") {
+      read_campaign(campaign, seed_lookup(), "", violations);
       return violations;
     }
     if (message == &profiles) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "tests/service/grpc_fixture.h"
+#include "tribodyn/v1/campaigns.grpc.pb.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
 
 namespace tribodyn::server {
@@ -95,6 +96,34 @@ class PurgeTest : public GrpcTest {
     return created.name();
   }
 
+  /// Screens candidates around the secret; waits for the state.
+  void screen(int candidates, v1::Campaign::State state) {
+    const auto campaigns = v1::CampaignService::NewStub(channel_);
+    v1::CreateCampaignRequest request;
+    v1::Campaign& campaign = *request.mutable_campaign();
+    campaign.set_lubricant("lubricants/secret");
+    campaign.set_display_name(kMarker);
+    auto& column = *campaign.add_candidate_columns();
+    column.set_path("lubricant.pressure_viscosity_coefficient_per_pascal");
+    auto& additive = *campaign.add_candidate_attributes();
+    additive.set_name("additive");
+    for (int i = 0; i < candidates; ++i) {
+      column.add_values(kMarkerNumber);
+      additive.add_texts(kMarker);
+    }
+    campaign.add_conditions()->set_speed_kilometres_per_hour(50);
+    v1::Campaign stored;
+    grpc::ClientContext context;
+    const grpc::Status created = campaigns->CreateCampaign(&context, request, &stored);
+    ASSERT_TRUE(created.ok()) << created.error_message();
+    v1::GetCampaignRequest get;
+    get.set_name(stored.name());
+    EXPECT_TRUE(eventually([&] {
+      grpc::ClientContext again;
+      return campaigns->GetCampaign(&again, get, &stored).ok() && stored.state() == state;
+    }));
+  }
+
   grpc::Status purge(const v1::PurgeLubricantRequest& request, v1::PurgeReport* report) {
     grpc::ClientContext context;
     return lubricants_->PurgeLubricant(&context, request, report);
@@ -109,10 +138,12 @@ TEST_F(PurgeTest, APurgedFormulationIsInNoFileOfTheDataFolder) {
   point.mutable_operating_point()->mutable_history()->add_columns("mesh_force_newtons");
   simulate(point, v1::Simulation::SUCCEEDED);
   simulate(point, v1::Simulation::SUCCEEDED);  // shares the result
+  screen(100, v1::Campaign::SUCCEEDED);
   std::ofstream(folder_.file("tribodyn.db.schema-4")) << kMarker;
   std::ofstream(folder_.file("tribodyn.db.replaced")) << "a former database";
   restart_after_a_kill();  // leaves a write-ahead log
   const std::string running = simulate(long_simulation(), v1::Simulation::RUNNING);
+  screen(20'000, v1::Campaign::RUNNING);
   ASSERT_FALSE(files_with(kMarker).empty());
   ASSERT_FALSE(files_with(marker_bytes()).empty());
 
@@ -121,7 +152,8 @@ TEST_F(PurgeTest, APurgedFormulationIsInNoFileOfTheDataFolder) {
   v1::PurgeReport report;
   const grpc::Status in_use = purge(request, &report);
   EXPECT_EQ(in_use.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
-  EXPECT_THAT(in_use.error_message(), HasSubstr("3 simulations used lubricants/secret"));
+  EXPECT_THAT(in_use.error_message(),
+              HasSubstr("3 simulations and 2 campaigns used lubricants/secret"));
   request.set_delete_simulations(true);
   request.set_validate_only(true);
   ASSERT_TRUE(purge(request, &report).ok());
@@ -133,6 +165,7 @@ TEST_F(PurgeTest, APurgedFormulationIsInNoFileOfTheDataFolder) {
   EXPECT_EQ(report.revisions(), 2);
   EXPECT_EQ(report.simulations(), 3);
   EXPECT_EQ(report.results(), 1);
+  EXPECT_EQ(report.campaigns(), 2);
   EXPECT_THAT(report.remaining_files(), testing::ElementsAre("tribodyn.db.replaced"));
   expect_no_trace();
 

@@ -90,8 +90,8 @@ TEST_F(Removals, APurgedFormulationIsInNoFile) {
 
   const auto purge = store_.purge_resource(*store_.resource("lubricants/secret"), true);
   EXPECT_EQ(purge.revisions, 3);
-  EXPECT_EQ(purge.simulations.ended, 2);
-  EXPECT_EQ(purge.simulations.results, 2);
+  EXPECT_EQ(purge.dependents.ended, 2);
+  EXPECT_EQ(purge.dependents.results, 2);
   EXPECT_EQ(store_.resource("lubricants/secret"), std::nullopt);
   EXPECT_EQ(store_.revision("lubricants/secret", 1), std::nullopt);
   EXPECT_FALSE(files_with(kMarker).empty()) << "free pages are expected to hold what was removed";
@@ -124,7 +124,7 @@ TEST_F(Removals, AResourceStaysWhileASimulationOfItIsUnfinished) {
   const auto id = queue('a', 1);
   const auto purge = store_.purge_resource(*store_.resource("lubricants/secret"), true);
   EXPECT_EQ(purge.revisions, 0);
-  EXPECT_EQ(purge.simulations.unfinished, std::vector<std::int64_t>{id});
+  EXPECT_EQ(purge.dependents.unfinished, std::vector<std::int64_t>{id});
   EXPECT_TRUE(store_.resource("lubricants/secret"));
   EXPECT_EQ(store_.remove_simulation(id), Store::Removal::kUnfinished);
 }

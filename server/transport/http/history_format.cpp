@@ -9,6 +9,7 @@
 
 #include "google/rpc/code.pb.h"
 #include "server/transport/http/column_text.h"
+#include "tribodyn/v1/campaigns.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 static_assert(std::endian::native == std::endian::little, "chunks are little-endian");
@@ -24,6 +25,25 @@ std::vector<double> values_of(const v1::HistoryChunk& chunk) {
   return out;
 }
 
+/// A part of a stream of columns: one of the two.
+struct ColumnPart {
+  const v1::HistorySchema* schema = nullptr;
+  const v1::HistoryChunk* chunk = nullptr;
+};
+
+template <class Response>
+ColumnPart part_of(const Message& message) {
+  const auto& response = static_cast<const Response&>(message);
+  if (response.has_chunk()) return {nullptr, &response.chunk()};
+  return {&response.schema(), nullptr};
+}
+
+ColumnPart part_of(const Message& message) {
+  return message.GetDescriptor() == v1::ReadCampaignResponse::descriptor()
+             ? part_of<v1::ReadCampaignResponse>(message)
+             : part_of<v1::ReadHistoryResponse>(message);
+}
+
 /// What all forms of a history share: the schema comes first, and an end is well or breaks off.
 class HistoryFormat : public StreamFormat {
  public:
@@ -34,9 +54,9 @@ class HistoryFormat : public StreamFormat {
     return {{"Content-Type", content_type(form_)}};
   }
   std::string part(const Message& message) final {
-    const auto& response = static_cast<const v1::ReadHistoryResponse&>(message);
-    if (response.has_chunk()) return chunk_text(response.chunk());
-    schema_ = response.schema();
+    const ColumnPart one = part_of(message);
+    if (one.chunk != nullptr) return chunk_text(*one.chunk);
+    schema_ = *one.schema;
     for (const auto& column : schema_.columns()) names_.push_back(column.name());
     std::string out = beginning();
     beginning_bytes_ = out.size();

@@ -7,7 +7,8 @@
 
 namespace tribodyn::server {
 
-/// Returns the format of a history (ReadHistoryResponse) in the form kColumns, kCsv, kNumpy or
+/// Returns the format of a history or of rows of a campaign (ReadHistoryResponse,
+/// ReadCampaignResponse) in the form kColumns, kCsv, kNumpy or
 /// kBinary. A stream that fails is broken off: no form of columns can express a failure.
 std::unique_ptr<StreamFormat> history_format(Form form);
 

@@ -1,0 +1,537 @@
+#include "server/execution/campaign_jobs.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "core/refusal.h"
+#include "core/version.h"
+#include "server/simulation/campaign_columns.h"
+#include "server/simulation/compute.h"
+#include "server/simulation/result_key.h"
+#include "server/storage/resource_lookup.h"
+
+namespace tribodyn::server {
+namespace {
+
+/// Rows of the first tiles of a campaign that runs: the first rows come early, and tiles of a few
+/// rows would cost a quarter more (measured).
+constexpr std::int64_t kRamp[] = {128, 512, 2048, kMaximumTileRows};
+/// Processor time after which a tile is written although it has room [s]: what a crash loses on
+/// each thread.
+constexpr double kTileSeconds = 0.4;
+/// Tiles that a process writes before earlier processes that were lost are forgiven: some seconds.
+constexpr int kTilesOfHealth = 16;
+/// Sentences of refusals that a campaign tells apart.
+constexpr std::size_t kMostSentences = 100;
+constexpr char kFurtherSentences[] =
+    "other sentences of this reason; EvaluatePoints states that of each point";
+/// Pause before another attempt to write a tile while the store cannot be written.
+constexpr auto kStorePause = std::chrono::milliseconds(200);
+/// Largest size of the requests of all campaigns that run, and the share of one principal.
+constexpr std::size_t kMostRunningBytes = 256 << 20;
+constexpr std::size_t kMostRunning = 1000;
+constexpr double kShareOfOne = 0.75;
+
+/// Returns the runs of candidates whose rows no tile has. Tiles hold whole candidates.
+std::deque<RowRange> missing_candidates(const std::vector<RowRange>& tiles, std::int64_t candidates,
+                                        std::int64_t conditions) {
+  std::deque<RowRange> out;
+  std::int64_t next = 0;
+  for (const RowRange& tile : tiles) {
+    const std::int64_t first = tile.first / conditions;
+    if (first > next) out.push_back({next, first - next});
+    next = (tile.first + tile.count) / conditions;
+  }
+  if (next < candidates) out.push_back({next, candidates - next});
+  return out;
+}
+
+}  // namespace
+
+/// Rows that are computed and not written yet.
+struct CampaignJobs::Tile {
+  RowRange candidates;
+  std::int64_t done = 0;               ///< candidates whose rows are in `columns`
+  std::size_t group = 0;               ///< next group of conditions of the candidate after those
+  std::vector<EvaluatedPoint> points;  ///< of that candidate, by condition
+  std::vector<std::vector<double>> columns;
+  std::map<int, CampaignRefusal> refusals;  ///< by number
+  std::int64_t refused = 0;
+  double seconds = 0;  ///< processor time
+
+  bool is_full() const { return done == candidates.count || (done > 0 && seconds >= kTileSeconds); }
+};
+
+/// What one thread computes. The thread of its slice alone uses it, but for what is marked.
+struct CampaignJobs::Part {
+  int number = 0;
+  bool is_queued = false;                // guarded by Running::mutex; waits or runs
+  std::shared_ptr<StopSignal> stop;      // guarded by Running::mutex; of the present slice
+  std::function<bool()> goes_on;         ///< of the present slice
+  std::function<double()> used_seconds;  ///< by the present slice, without other jobs
+  std::optional<Tile> tile;
+  std::unique_ptr<CandidateScene> candidate;
+};
+
+/// A campaign that is RUNNING, or whose last slices end.
+struct CampaignJobs::Running {
+  Running(const StoredCampaign& campaign, int parts_, std::optional<double> cost)
+      : id(campaign.id),
+        name(name_of(campaign)),
+        principal(campaign.principal),
+        bytes(static_cast<std::size_t>(campaign.stored_bytes)),
+        points(campaign.points()),
+        cost_seconds(cost.value_or(0)),
+        points_done(campaign.points_done),
+        parts(static_cast<std::size_t>(parts_)) {
+    for (std::size_t i = 0; i < parts.size(); ++i) parts[i].number = static_cast<int>(i);
+  }
+  const std::int64_t id;
+  const std::string name;
+  const std::string principal;
+  const std::size_t bytes;  ///< of its request, when it began to run
+  const std::int64_t points;
+
+  std::mutex mutex;
+  double cost_seconds;  // guarded by mutex, as all below
+  std::int64_t points_done;
+  bool is_halted = false;                        // no further row is to be computed
+  std::shared_ptr<const CampaignInputs> inputs;  // null before the first slice
+  std::deque<RowRange> missing;                  // candidates that no part has taken
+  std::size_t tiles_taken = 0;
+  int tiles_written = 0;
+  std::map<std::pair<std::string, std::string>, int> refusal_numbers;  // by reason and message
+  std::deque<Part> parts;
+
+  double remaining_seconds() {
+    const std::lock_guard lock(mutex);
+    return cost_seconds * static_cast<double>(points - points_done) / static_cast<double>(points);
+  }
+};
+
+CampaignJobs::CampaignJobs(Store& store, Scheduler& scheduler, int threads, Clock clock)
+    : store_(store),
+      scheduler_(scheduler),
+      threads_(std::clamp(threads, 1, kMostCampaignParts)),
+      clock_(std::move(clock)) {}
+
+CampaignJobs::~CampaignJobs() = default;
+
+CampaignJobs::RunningPointer CampaignJobs::find(std::int64_t id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = running_.find(id);
+  return found == running_.end() ? nullptr : found->second;
+}
+
+std::size_t CampaignJobs::resume() {
+  const std::lock_guard control(control_mutex_);
+  std::size_t count = 0;
+  for (const std::int64_t id : store_.running_campaigns()) {
+    if (const auto stored = store_.campaign(id)) {
+      activate(*stored, {});
+      ++count;
+    }
+  }
+  return count;
+}
+
+/// Queues the parts of a campaign. Requires control_mutex_.
+void CampaignJobs::activate(const StoredCampaign& campaign, std::optional<double> cost_seconds) {
+  RunningPointer running;
+  {
+    const std::lock_guard lock(mutex_);
+    RunningPointer& entry = running_[campaign.id];
+    if (!entry) entry = std::make_shared<Running>(campaign, threads_, cost_seconds);
+    running = entry;
+  }
+  {
+    const std::lock_guard lock(running->mutex);
+    running->is_halted = false;
+  }
+  start_parts(*running);
+}
+
+/// Queues the parts that neither wait nor run and may find rows to compute.
+void CampaignJobs::start_parts(Running& running) {
+  const std::lock_guard lock(running.mutex);
+  if (running.is_halted) return;
+  for (Part& part : running.parts) {
+    if (part.is_queued || (running.inputs && running.missing.empty())) continue;
+    part.is_queued = true;
+    scheduler_.add_part({running.id, part.number}, running.principal);
+  }
+}
+
+/// Stops the slices of a campaign; their parts write what they have. Requires control_mutex_.
+void CampaignJobs::halt(std::int64_t id) {
+  const RunningPointer running = find(id);
+  if (!running) return;
+  {
+    const std::lock_guard lock(running->mutex);
+    running->is_halted = true;
+    for (const Part& part : running->parts) {
+      if (part.stop) part.stop->request(StopReason::kEnded);
+    }
+  }
+  forget_if_idle(id);
+}
+
+/// Brings what runs into line with the stored state.
+void CampaignJobs::settle(std::int64_t id) {
+  const std::lock_guard control(control_mutex_);
+  const auto stored = store_.campaign(id);
+  if (!stored || stored->state != CampaignState::kRunning) halt(id);
+}
+
+/// Frees a campaign that is halted and none of whose parts waits or runs.
+void CampaignJobs::forget_if_idle(std::int64_t id) {
+  RunningPointer forgotten;  // freed without the mutex
+  const std::lock_guard lock(mutex_);
+  const auto found = running_.find(id);
+  if (found == running_.end()) return;
+  {
+    const std::lock_guard inner(found->second->mutex);
+    if (!found->second->is_halted) return;
+    for (const Part& part : found->second->parts) {
+      if (part.is_queued) return;
+    }
+  }
+  forgotten = std::move(found->second);
+  running_.erase(found);
+}
+
+CampaignJobs::Admitted CampaignJobs::submit(const NewCampaign& campaign, double cost_seconds,
+                                            double principal_seconds, const CallLimits& limits) {
+  std::size_t count = 0, all_bytes = 0, own_bytes = 0;
+  double own_seconds = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, running] : running_) {
+      ++count;
+      all_bytes += running->bytes;
+      if (running->principal != campaign.principal) continue;
+      own_bytes += running->bytes;
+      own_seconds += running->remaining_seconds();
+    }
+  }
+  const std::size_t bytes = campaign.request.size() + campaign.candidate_table.size();
+  Admitted out;
+  out.is_over_quota = principal_seconds > 0 && own_seconds + cost_seconds > principal_seconds;
+  out.has_place = count < kMostRunning && all_bytes + bytes <= kMostRunningBytes &&
+                  static_cast<double>(own_bytes + bytes) <=
+                      kShareOfOne * static_cast<double>(kMostRunningBytes);
+  if (out.is_over_quota || !out.has_place) return out;
+  const std::lock_guard control(control_mutex_);
+  out.added = store_.add_campaign(campaign, clock_(), limits);
+  if (out.added.kind == CampaignAdded::Kind::kAdded) activate(out.added.stored, cost_seconds);
+  return out;
+}
+
+void CampaignJobs::ensure_queued(const StoredCampaign& campaign) {
+  if (campaign.state != CampaignState::kRunning || find(campaign.id)) return;
+  const std::lock_guard control(control_mutex_);
+  const auto stored = store_.campaign(campaign.id);
+  if (stored && stored->state == CampaignState::kRunning) activate(*stored, {});
+}
+
+/// Changes the state in the store, and what runs. Returns the campaign as it is then.
+std::optional<StoredCampaign> CampaignJobs::change(const CampaignChange& change,
+                                                   const CallLimits& limits) {
+  const std::lock_guard control(control_mutex_);
+  const auto changed = store_.change_campaign(change, limits);
+  if (!changed) return store_.campaign(change.id);
+  if (changed->state != CampaignState::kRunning) {
+    halt(change.id);
+    return changed;
+  }
+  const RunningPointer running = find(change.id);
+  const bool is_loaded = [&] {
+    if (!running) return false;
+    const std::lock_guard lock(running->mutex);
+    return running->inputs != nullptr;
+  }();
+  if (is_loaded) store_.begin_campaign(change.id);
+  activate(*changed, {});
+  return changed;
+}
+
+std::optional<StoredCampaign> CampaignJobs::pause(std::int64_t id, const CallLimits& limits) {
+  return change({.id = id,
+                 .to = CampaignState::kPaused,
+                 .time = clock_(),
+                 .reason = "PAUSE_REQUESTED",
+                 .message = "it was paused; resume it to go on",
+                 .from = CampaignState::kRunning},
+                limits);
+}
+
+std::optional<StoredCampaign> CampaignJobs::go_on(std::int64_t id,
+                                                  const std::optional<CampaignBudget>& budget,
+                                                  const CallLimits& limits) {
+  return change({.id = id, .to = CampaignState::kRunning, .time = clock_(), .budget = budget},
+                limits);
+}
+
+std::optional<StoredCampaign> CampaignJobs::cancel(std::int64_t id, const CallLimits& limits) {
+  return change({.id = id, .to = CampaignState::kCancelled, .time = clock_()}, limits);
+}
+
+void CampaignJobs::fail(std::int64_t id, const std::string& reason, const std::string& message) {
+  // The message may quote inputs, so only the reason is logged.
+  spdlog::warn("event=campaign_failed campaign=row:{} reason={}", id, reason);
+  change({.id = id,
+          .to = CampaignState::kFailed,
+          .time = clock_(),
+          .reason = reason,
+          .message = message},
+         {});
+}
+
+/// Reads the campaign from the store. Requires its mutex. Throws Refusal or StoreError.
+void CampaignJobs::load(Running& running) {
+  const auto stored = store_.begin_campaign(running.id);
+  if (!stored || stored->state != CampaignState::kRunning) {
+    running.is_halted = true;
+    return;
+  }
+  if (stored->model_version != kModelVersion || stored->platform != platform()) {
+    throw Refusal("MODEL_CHANGED", "its rows are of model " + stored->model_version + " on " +
+                                       stored->platform + ", this server computes model " +
+                                       kModelVersion + " on " + platform() + ": create it again");
+  }
+  const ResourceLookup lookup =
+      accepted_lookup(store_, stored->project,
+                      {stored->lubricant_revision, stored->gear_set_revision,
+                       stored->surface_revision, stored->vehicle_revision});
+  auto inputs = std::make_shared<CampaignInputs>(
+      stored_campaign_inputs(*stored, store_.candidate_table(running.id), lookup));
+  for (const CampaignRefusal& each : store_.campaign_refusals(running.id)) {
+    running.refusal_numbers[{each.reason, each.message}] = each.number;
+  }
+  running.missing =
+      missing_candidates(store_.campaign_tiles(running.id), stored->candidates, stored->conditions);
+  running.cost_seconds = estimate_cost(*inputs).processor_seconds();
+  inputs->table.Clear();  // the columns are in `points`
+  running.inputs = std::move(inputs);
+}
+
+void CampaignJobs::run_slice(const Lease& lease, PreparedGearSets& gear_sets,
+                             const std::function<double()>& lend) {
+  const CampaignPart asked = *campaign_part(lease.id);
+  const RunningPointer running = find(asked.campaign);
+  if (!running) return scheduler_.return_slice(lease, 0, false);
+  Part& part = running->parts[static_cast<std::size_t>(asked.part)];
+  const double begin = processor_seconds();
+  double lent = 0;
+  part.used_seconds = [&] { return processor_seconds() - begin - lent; };
+  part.goes_on = [&] {
+    lent = lend();
+    return !lease.stop->requested();
+  };
+  {
+    const std::lock_guard lock(running->mutex);
+    part.stop = lease.stop;
+  }
+  bool goes_on = false;
+  try {
+    try {
+      goes_on = compute_slice(*running, part, gear_sets);
+    } catch (const Refusal& refusal) {
+      fail(running->id, refusal.reason(), refusal.what());
+    } catch (const std::bad_alloc&) {
+      fail(running->id, "OUT_OF_MEMORY", "not enough memory for this campaign");
+    } catch (const StoreError&) {
+      throw;
+    } catch (const std::exception& defect) {
+      spdlog::error("event=internal_error campaign={} cause=\"{}\"", running->name, defect.what());
+      fail(running->id, "INTERNAL", "internal error; the server's log states its cause");
+    }
+  } catch (const StoreError& error) {
+    spdlog::error("{}: {}", running->name, error.what());
+    goes_on = lease.stop->wait_for(kStorePause);
+  }
+  scheduler_.return_slice(lease, part.used_seconds(), goes_on);
+  {
+    const std::lock_guard lock(running->mutex);
+    part.stop = nullptr;
+    part.is_queued = goes_on;
+  }
+  if (goes_on) return;
+  start_parts(*running);  // if it was resumed meanwhile
+  forget_if_idle(running->id);
+}
+
+/// Computes for about Scheduler::kSliceSeconds. Returns true if there may be more to do. Throws
+/// Refusal or StoreError; then the tile stays as it is.
+bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets& gear_sets) {
+  std::shared_ptr<const CampaignInputs> inputs;
+  {
+    const std::lock_guard lock(running.mutex);
+    if (!running.inputs && !running.is_halted) load(running);
+    inputs = running.inputs;
+  }
+  if (!inputs) return false;
+  if (!part.candidate) {
+    part.candidate =
+        std::make_unique<CandidateScene>(inputs->points, [&part] { return part.goes_on(); });
+  }
+  const Scene& scene = part.candidate->scene();
+  std::shared_ptr<PreparedGearSet> gear_set;
+  const auto give_back = [&] {
+    if (!gear_set) return;
+    gear_sets.give_back(inputs->points.base.gear_set, scene.options, std::move(gear_set));
+  };
+  for (;;) {
+    const bool is_halted = [&] {
+      const std::lock_guard lock(running.mutex);
+      return running.is_halted;
+    }();
+    if (part.tile && (part.tile->is_full() || is_halted || !part.goes_on())) write(running, part);
+    if (is_halted || !part.goes_on()) break;
+    if (!part.tile && !take_tile(running, part)) break;
+    if (!gear_set) gear_set = gear_sets.take(inputs->points.base.gear_set, scene);
+    try {
+      compute_unit(running, part, gear_set);
+    } catch (const Cancelled&) {
+      gear_set.reset();  // it may be half prepared
+      part.tile->group = 0;
+      continue;
+    }
+    if (part.used_seconds() < Scheduler::kSliceSeconds) continue;
+    if (part.tile->is_full()) write(running, part);
+    give_back();
+    return true;
+  }
+  give_back();
+  return false;
+}
+
+/// Takes the next candidates for a tile. Returns false if there are none. The last tiles are small,
+/// so that all threads end at about the same time.
+bool CampaignJobs::take_tile(Running& running, Part& part) {
+  const std::lock_guard lock(running.mutex);
+  if (running.missing.empty()) return false;
+  const std::int64_t conditions = running.inputs->points.conditions;
+  std::int64_t left = 0;
+  for (const RowRange& each : running.missing) left += each.count;
+  const std::int64_t ramp = kRamp[std::min(running.tiles_taken, std::size(kRamp) - 1)];
+  const std::int64_t share = std::max(kRamp[0], left * conditions / (2 * threads_));
+  RowRange& next = running.missing.front();
+  const std::int64_t count =
+      std::clamp<std::int64_t>(std::min(ramp, share) / conditions, 1, next.count);
+  Tile& tile = part.tile.emplace();
+  tile.candidates = {next.first, count};
+  tile.points.resize(static_cast<std::size_t>(conditions));
+  tile.columns.resize(kCampaignColumns.size());
+  for (auto& each : tile.columns) each.reserve(static_cast<std::size_t>(count * conditions));
+  next.first += count;
+  next.count -= count;
+  if (next.count == 0) running.missing.pop_front();
+  ++running.tiles_taken;
+  return true;
+}
+
+/// Computes the next candidate of the tile at its next group of conditions. Throws Cancelled.
+void CampaignJobs::compute_unit(Running& running, Part& part,
+                                const std::shared_ptr<PreparedGearSet>& gear_set) {
+  Tile& tile = *part.tile;
+  const PointEvaluation& points = running.inputs->points;
+  const double before = part.used_seconds();
+  if (tile.group == 0) {
+    part.candidate->set_candidate(static_cast<int>(tile.candidates.first + tile.done));
+  }
+  part.candidate->evaluate(points.groups[tile.group], gear_set, tile.points);
+  if (++tile.group == points.groups.size()) {
+    tile.group = 0;
+    add_rows(running, tile);
+    ++tile.done;
+  }
+  tile.seconds += part.used_seconds() - before;
+}
+
+/// Adds the rows of the present candidate to the columns.
+void CampaignJobs::add_rows(Running& running, Tile& tile) {
+  for (const EvaluatedPoint& point : tile.points) {
+    const auto row = campaign_row(point, refusal_number(running, point, tile));
+    for (std::size_t i = 0; i < row.size(); ++i) tile.columns[i].push_back(row[i]);
+  }
+}
+
+/// Returns the number of the refusal of a point; 0 if it has figures.
+int CampaignJobs::refusal_number(Running& running, const EvaluatedPoint& point, Tile& tile) {
+  if (point.figures) return 0;
+  ++tile.refused;
+  const std::lock_guard lock(running.mutex);
+  auto& numbers = running.refusal_numbers;
+  std::pair<std::string, std::string> key(point.refusal_reason, point.refusal_message);
+  if (!numbers.contains(key) && numbers.size() >= kMostSentences) key.second = kFurtherSentences;
+  const int number = numbers.emplace(key, static_cast<int>(numbers.size()) + 1).first->second;
+  tile.refusals[number] = {number, key.first, key.second};
+  return number;
+}
+
+/// Writes the complete candidates of the tile; the others are missing again. Throws StoreError, and
+/// then changes nothing.
+void CampaignJobs::write(Running& running, Part& part) {
+  Tile& tile = *part.tile;
+  const std::int64_t conditions = running.inputs->points.conditions;
+  std::optional<StoredCampaign> stored;
+  if (tile.done > 0) {
+    NewTile rows;
+    rows.rows = {tile.candidates.first * conditions, tile.done * conditions};
+    for (const auto& [number, refusal] : tile.refusals) rows.refusals.push_back(refusal);
+    rows.refused_points = tile.refused;
+    rows.processor_seconds = tile.seconds;
+    {
+      const std::lock_guard lock(running.mutex);
+      rows.proves_health = running.tiles_written >= kTilesOfHealth;
+    }
+    rows.columns.swap(tile.columns);
+    try {
+      stored = store_.add_tile(running.id, rows, clock_());
+    } catch (...) {
+      rows.columns.swap(tile.columns);
+      throw;
+    }
+  }
+  {
+    const std::lock_guard lock(running.mutex);
+    if (tile.done > 0) ++running.tiles_written;
+    if (stored) running.points_done = stored->points_done;
+    const RowRange rest{tile.candidates.first + tile.done, tile.candidates.count - tile.done};
+    if (rest.count > 0) running.missing.push_front(rest);
+  }
+  const bool was_written = tile.done > 0;
+  part.tile.reset();
+  if (was_written && (!stored || stored->state != CampaignState::kRunning)) settle(running.id);
+  if (stored && stored->state == CampaignState::kSucceeded) {
+    spdlog::info("event=campaign_computed campaign={} points={} processor_seconds={:.3f}",
+                 running.name, stored->points(), stored->processor_seconds);
+  }
+}
+
+void CampaignJobs::finish() {
+  std::map<std::int64_t, RunningPointer> ended;
+  {
+    const std::lock_guard lock(mutex_);
+    ended.swap(running_);
+  }
+  for (const auto& [id, running] : ended) {
+    try {
+      for (Part& part : running->parts) {
+        if (part.tile) write(*running, part);
+      }
+      if (running->inputs) store_.release_campaign(id);
+    } catch (const StoreError& error) {
+      spdlog::error("{}: {}", running->name, error.what());
+    }
+  }
+}
+
+}  // namespace tribodyn::server

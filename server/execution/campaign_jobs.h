@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "server/scheduling/scheduler.h"
+#include "server/simulation/campaign_inputs.h"
+#include "server/simulation/prepared_gear_sets.h"
+#include "server/storage/store.h"
+
+namespace tribodyn::server {
+
+/// Computes campaigns in slices on the threads of the executor. A campaign has one part for each
+/// thread; a part fills a tile over one or more slices and writes it with the campaign's progress
+/// in one commit. Only what a tile holds counts: after a crash the campaign continues at the rows
+/// that no tile has. The store is the only truth about the state of a campaign. Safe for concurrent
+/// access without external synchronization; `resume` and `finish` from one thread.
+class CampaignJobs {
+ public:
+  /// Store and scheduler must outlive the object.
+  CampaignJobs(Store& store, Scheduler& scheduler, int threads, Clock clock);
+  ~CampaignJobs();
+  CampaignJobs(const CampaignJobs&) = delete;
+  CampaignJobs& operator=(const CampaignJobs&) = delete;
+
+  /// Queues the campaigns that are RUNNING. Returns their number.
+  std::size_t resume();
+
+  struct Admitted {
+    CampaignAdded added;
+    bool has_place = true;       ///< false: too many campaigns run; nothing was added
+    bool is_over_quota = false;  ///< the quota of the principal has no room; nothing was added
+  };
+  /// Adds a campaign and queues it. `cost_seconds`: estimate of its points. `principal_seconds`:
+  /// what is left of all campaigns of the principal that run may take so long, by estimate; 0: no
+  /// limit.
+  Admitted submit(const NewCampaign& campaign, double cost_seconds, double principal_seconds,
+                  const CallLimits& limits = {});
+  /// Queues a campaign that is RUNNING in the store, if it is not queued: a commit may succeed
+  /// although its writer sees an error.
+  void ensure_queued(const StoredCampaign& campaign);
+
+  // These functions return the campaign as it is then; nullopt if it does not exist. They change
+  // nothing if it has ended.
+  std::optional<StoredCampaign> pause(std::int64_t id, const CallLimits& limits = {});
+  std::optional<StoredCampaign> go_on(std::int64_t id, const std::optional<CampaignBudget>& budget,
+                                      const CallLimits& limits = {});
+  std::optional<StoredCampaign> cancel(std::int64_t id, const CallLimits& limits = {});
+
+  /// Computes the slice of a lease and returns it to the scheduler. `lend` is called at least once
+  /// for each point; it may run another job on this thread, and returns the processor time [s] that
+  /// such jobs have taken during this slice.
+  void run_slice(const Lease& lease, PreparedGearSets& gear_sets,
+                 const std::function<double()>& lend);
+
+  /// Writes what open tiles hold. Requires that no slice runs or will run.
+  void finish();
+
+ private:
+  struct Tile;
+  struct Part;
+  struct Running;
+  using RunningPointer = std::shared_ptr<Running>;
+
+  RunningPointer find(std::int64_t id);
+  void activate(const StoredCampaign& campaign, std::optional<double> cost_seconds);
+  void halt(std::int64_t id);
+  void settle(std::int64_t id);
+  std::optional<StoredCampaign> change(const CampaignChange& change, const CallLimits& limits);
+  void start_parts(Running& running);
+  void forget_if_idle(std::int64_t id);
+  void load(Running& running);
+  bool take_tile(Running& running, Part& part);
+  bool compute_slice(Running& running, Part& part, PreparedGearSets& gear_sets);
+  void compute_unit(Running& running, Part& part, const std::shared_ptr<PreparedGearSet>& gear_set);
+  void add_rows(Running& running, Tile& tile);
+  int refusal_number(Running& running, const EvaluatedPoint& point, Tile& tile);
+  void write(Running& running, Part& part);
+  void fail(std::int64_t id, const std::string& reason, const std::string& message);
+
+  Store& store_;
+  Scheduler& scheduler_;
+  const int threads_;
+  const Clock clock_;
+  std::mutex control_mutex_;  // of changes of states, with what follows from them in memory
+  std::mutex mutex_;
+  std::map<std::int64_t, RunningPointer> running_;  // guarded by mutex_
+};
+
+}  // namespace tribodyn::server

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "server/contract/resource_names.h"
+#include "server/contract/violations.h"
+#include "server/simulation/point_evaluation.h"
+#include "server/storage/stored_campaign.h"
+#include "tribodyn/v1/campaigns.pb.h"
+
+namespace tribodyn::server {
+
+/// Largest number of rows of a campaign: 1 GB of figures, and an hour of one processor.
+inline constexpr int kMaximumCampaignPoints = 20'000'000;
+inline constexpr int kMaximumCandidates = 100'000;
+
+/// Inputs of a campaign.
+struct CampaignInputs {
+  v1::Campaign requested;  ///< what the client set, without its columns of candidates
+  v1::Campaign table;      ///< its columns of candidates, and nothing else
+  PointEvaluation points;
+  std::string input_hash;  ///< SHA-256, 64 hex digits
+};
+
+/// Checks the request, finds its resources and fills in defaults. Returns nullopt and adds all
+/// violations if the request is invalid; their paths start with `path`.
+std::optional<CampaignInputs> read_campaign(v1::Campaign request, const ResourceLookup& lookup,
+                                            const std::string& path, Violations& violations);
+
+/// Reads a stored campaign again. Throws Refusal if it cannot be read or this server's model
+/// refuses it.
+CampaignInputs stored_campaign_inputs(const StoredCampaign& stored, const std::string& table,
+                                      const ResourceLookup& lookup);
+
+/// Estimates what all points take: right within a factor of a few.
+v1::CostEstimate estimate_cost(const CampaignInputs& inputs);
+
+}  // namespace tribodyn::server

@@ -1,0 +1,400 @@
+#include "server/storage/campaign_rows.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <stdexcept>
+
+#include "server/storage/checksum.h"
+#include "server/storage/history/column_codec.h"
+#include "server/storage/life_cycle.h"
+#include "server/storage/resource_rows.h"
+#include "server/storage/store_error.h"
+
+namespace tribodyn::server {
+namespace {
+
+constexpr char kCampaignColumns[] =
+    "SELECT id, project, number, state, stop_reason, stop_message, create_time, end_time, request, "
+    "request_id, request_hash, input_hash, model_version, platform, principal, candidates, "
+    "conditions, points_done, points_refused, budget_seconds, budget_points, processor_seconds, "
+    "stored_bytes, "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
+    "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = vehicle) "
+    "FROM campaigns ";
+
+StoredCampaign stored_campaign(const SQLite::Statement& query) {
+  StoredCampaign out;
+  int at = 0;
+  const auto next = [&] { return query.getColumn(at++); };
+  out.id = next().getInt64();
+  out.project = next().getString();
+  out.number = next().getInt64();
+  out.state = static_cast<CampaignState>(next().getInt());
+  out.stop_reason = next().getString();
+  out.stop_message = next().getString();
+  out.create_time = next().getInt64();
+  if (const SQLite::Column end = next(); !end.isNull()) out.end_time = end.getInt64();
+  out.request = next().getString();
+  out.request_id = next().getString();
+  out.request_hash = next().getString();
+  out.input_hash = next().getString();
+  out.model_version = next().getString();
+  out.platform = next().getString();
+  out.principal = next().getString();
+  out.candidates = next().getInt();
+  out.conditions = next().getInt();
+  out.points_done = next().getInt64();
+  out.points_refused = next().getInt64();
+  out.budget.processor_seconds = next().getDouble();
+  out.budget.points = next().getInt64();
+  out.processor_seconds = next().getDouble();
+  out.stored_bytes = next().getInt64();
+  out.lubricant_revision = relative_name(next().getString());
+  out.gear_set_revision = relative_name(next().getString());
+  out.surface_revision = relative_name(next().getString());
+  out.vehicle_revision = relative_name(next().getString());
+  return out;
+}
+
+std::int64_t next_campaign_number(Connection& db, const std::string& project) {
+  Prepared update(db,
+                  "UPDATE projects SET last_campaign = last_campaign + 1 WHERE name = ? "
+                  "RETURNING last_campaign");
+  update.bind(1, project);
+  if (!update.executeStep()) throw SQLite::Exception("no such project");
+  const std::int64_t number = update.getColumn(0).getInt64();
+  update.executeStep();  // to its end: only then is it done
+  return number;
+}
+
+/// Decompresses the blob of a tile. Throws StoreError kDataLoss if it is damaged.
+void decompress_blob(const SQLite::Column& data, std::int64_t expected, std::span<double> values) {
+  const std::string_view bytes = bytes_of(data);
+  const StoreError damaged(StoreError::Kind::kDataLoss, "a tile of a stored campaign is damaged");
+  if (checksum(bytes) != expected) throw damaged;
+  try {
+    decompress_column(bytes, values);
+  } catch (const std::runtime_error&) {
+    throw damaged;
+  }
+}
+
+/// Returns true if a tile has one of the rows.
+bool overlaps(Connection& db, std::int64_t id, const RowRange& rows) {
+  Prepared query(db,
+                 "SELECT 1 FROM campaign_tiles WHERE campaign = ?1 AND first_row < ?2 AND "
+                 "first_row + rows > ?3");
+  query.bind(1, id);
+  query.bind(2, rows.first + rows.count);
+  query.bind(3, rows.first);
+  return query.executeStep();
+}
+
+void insert_blobs(Connection& db, std::int64_t id, const NewTile& tile,
+                  const std::vector<std::string>& blobs) {
+  Prepared insert(db, "INSERT INTO campaign_tiles VALUES (?, ?, ?)");
+  insert.bind(1, id);
+  insert.bind(2, tile.rows.first);
+  insert.bind(3, tile.rows.count);
+  insert.exec();
+  Prepared blob(db, "INSERT INTO campaign_blobs VALUES (?, ?, ?, ?, ?)");
+  for (std::size_t i = 0; i < blobs.size(); ++i) {
+    blob.bind(1, id);
+    blob.bind(2, static_cast<int>(i));
+    blob.bind(3, tile.rows.first);
+    blob.bind(4, checksum(blobs[i]));
+    blob.bindNoCopy(5, blobs[i].data(), static_cast<int>(blobs[i].size()));
+    blob.exec();
+    blob.reset();
+  }
+  for (const CampaignRefusal& each : tile.refusals) {
+    Prepared refusal(db,
+                     "INSERT INTO campaign_refusals VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING");
+    refusal.bind(1, id);
+    refusal.bind(2, each.number);
+    refusal.bind(3, each.reason);
+    refusal.bind(4, each.message);
+    refusal.exec();
+  }
+}
+
+}  // namespace
+
+CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Microseconds now) {
+  if (!campaign.request_id.empty()) {
+    if (auto stored = query_campaign_of_request(db, campaign.project, campaign.request_id)) {
+      const bool is_same = stored->request_hash == campaign.request_hash;
+      return {is_same ? CampaignAdded::Kind::kRepeated : CampaignAdded::Kind::kRequestIdTaken,
+              std::move(*stored)};
+    }
+  }
+  const std::int64_t number = next_campaign_number(db, campaign.project);
+  Prepared insert(
+      db,
+      "INSERT INTO campaigns (project, number, state, create_time, request_id, request_hash, "
+      "input_hash, model_version, platform, client, principal, candidates, conditions, "
+      "budget_seconds, budget_points, stored_bytes, request, candidate_table, lubricant, gear_set, "
+      "surface, vehicle) VALUES (?, ?, 1, ?, nullif(?, ''), ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
+      "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?))");
+  int at = 0;
+  const auto bind = [&](const auto& value) { insert.bind(++at, value); };
+  bind(campaign.project);
+  bind(number);
+  bind(now);
+  bind(campaign.request_id);
+  bind(campaign.request_hash);
+  bind(campaign.input_hash);
+  bind(campaign.model_version);
+  bind(campaign.platform);
+  bind(campaign.client);
+  bind(campaign.principal);
+  bind(campaign.candidates);
+  bind(campaign.conditions);
+  bind(campaign.budget.processor_seconds);
+  bind(campaign.budget.points);
+  bind(static_cast<std::int64_t>(campaign.request.size() + campaign.candidate_table.size()));
+  bind_blob(insert, ++at, campaign.request);
+  bind_blob(insert, ++at, campaign.candidate_table);
+  for (const std::string* revision : {&campaign.lubricant_revision, &campaign.gear_set_revision,
+                                      &campaign.surface_revision, &campaign.vehicle_revision}) {
+    const std::size_t end = revision->find('@');
+    bind(full_name(campaign.project, revision->substr(0, end)));
+    bind(std::stoi(revision->substr(end + 1)));
+  }
+  insert.exec();
+  return {CampaignAdded::Kind::kAdded, *query_campaign(db, db.getLastInsertRowid())};
+}
+
+std::optional<StoredCampaign> query_campaign(Connection& db, std::int64_t id) {
+  Prepared query(db, std::string(kCampaignColumns) + "WHERE id = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) return std::nullopt;
+  return stored_campaign(query);
+}
+
+std::optional<StoredCampaign> query_numbered_campaign(Connection& db, const std::string& project,
+                                                      std::int64_t number) {
+  Prepared query(db, std::string(kCampaignColumns) + "WHERE project = ? AND number = ?");
+  query.bind(1, project);
+  query.bind(2, number);
+  if (!query.executeStep()) return std::nullopt;
+  return stored_campaign(query);
+}
+
+std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const std::string& project,
+                                                        const std::string& request_id) {
+  Prepared query(db, std::string(kCampaignColumns) + "WHERE project = ? AND request_id = ?");
+  query.bind(1, project);
+  query.bind(2, request_id);
+  if (!query.executeStep()) return std::nullopt;
+  return stored_campaign(query);
+}
+
+Page<StoredCampaign> query_campaigns(Connection& db, const std::string& project,
+                                     std::int64_t before, int limit) {
+  Prepared query(db, std::string(kCampaignColumns) +
+                         "WHERE project = ?1 AND (?2 = 0 OR number < ?2) "
+                         "ORDER BY number DESC LIMIT ?3");
+  query.bind(1, project);
+  query.bind(2, before);
+  query.bind(3, limit + 1);
+  Page<StoredCampaign> out;
+  while (query.executeStep()) out.rows.push_back(stored_campaign(query));
+  out.more = out.rows.size() > static_cast<std::size_t>(limit);
+  if (out.more) out.rows.pop_back();
+  Prepared count(db, "SELECT count(*) FROM campaigns WHERE project = ?");
+  count.bind(1, project);
+  count.executeStep();
+  out.total = count.getColumn(0).getInt64();
+  return out;
+}
+
+std::vector<std::int64_t> query_running_campaigns(Connection& db) {
+  Prepared query(db, "SELECT id FROM campaigns WHERE state = 1 ORDER BY id");
+  std::vector<std::int64_t> out;
+  while (query.executeStep()) out.push_back(query.getColumn(0).getInt64());
+  return out;
+}
+
+std::string query_candidate_table(Connection& db, std::int64_t id) {
+  Prepared query(db, "SELECT candidate_table FROM campaigns WHERE id = ?");
+  query.bind(1, id);
+  return query.executeStep() ? query.getColumn(0).getString() : std::string();
+}
+
+std::optional<StoredCampaign> change_campaign(Connection& db, const CampaignChange& change) {
+  Prepared update(db,
+                  "UPDATE campaigns SET state = ?2, stop_reason = ?3, stop_message = ?4, "
+                  "end_time = CASE WHEN ?2 >= 3 THEN ?5 END, "
+                  "budget_seconds = coalesce(?6, budget_seconds), "
+                  "budget_points = coalesce(?7, budget_points), lost_attempts = 0 "
+                  "WHERE id = ?1 AND state <= 2 AND state = coalesce(?8, state)");
+  update.bind(1, change.id);
+  update.bind(2, static_cast<int>(change.to));
+  update.bind(3, change.reason);
+  update.bind(4, change.message);
+  update.bind(5, change.time);
+  if (change.budget) {
+    update.bind(6, change.budget->processor_seconds);
+    update.bind(7, change.budget->points);
+  }
+  if (change.from) update.bind(8, static_cast<int>(*change.from));
+  if (update.exec() == 0) return std::nullopt;
+  return query_campaign(db, change.id);
+}
+
+std::optional<StoredCampaign> begin_campaign(Connection& db, std::int64_t id) {
+  Prepared update(db,
+                  "UPDATE campaigns SET lost_attempts = lost_attempts + 1 "
+                  "WHERE id = ? AND state <= 2 "
+                  "RETURNING lost_attempts");
+  update.bind(1, id);
+  if (!update.executeStep()) return std::nullopt;
+  const int attempts = update.getColumn(0).getInt();
+  update.executeStep();  // to its end: only then is it done
+  if (attempts > kMaximumLostAttempts) {
+    change_campaign(db, {.id = id,
+                         .to = CampaignState::kPaused,
+                         .reason = "WORKER_LOST",
+                         .message = "the server ended " + std::to_string(kMaximumLostAttempts) +
+                                    " times while it computed this campaign; resume it to go on",
+                         .from = CampaignState::kRunning});
+  }
+  return query_campaign(db, id);
+}
+
+void release_campaign(Connection& db, std::int64_t id) {
+  Prepared update(db, "UPDATE campaigns SET lost_attempts = 0 WHERE id = ? AND state <= 2");
+  update.bind(1, id);
+  update.exec();
+}
+
+std::vector<std::string> compress_tile(const NewTile& tile) {
+  std::vector<std::string> out;
+  out.reserve(tile.columns.size());
+  for (const std::vector<double>& each : tile.columns) out.push_back(compress_column(each));
+  return out;
+}
+
+std::optional<StoredCampaign> insert_tile(Connection& db, std::int64_t id, const NewTile& tile,
+                                          const std::vector<std::string>& blobs, Microseconds now) {
+  if (overlaps(db, id, tile.rows)) return std::nullopt;
+  std::size_t bytes = 0;
+  for (const std::string& each : blobs) bytes += each.size();
+  Prepared update(db,
+                  "UPDATE campaigns SET points_done = points_done + ?2, "
+                  "points_refused = points_refused + ?3, "
+                  "processor_seconds = processor_seconds + ?4, stored_bytes = stored_bytes + ?5, "
+                  "lost_attempts = CASE WHEN ?6 THEN 0 ELSE lost_attempts END "
+                  "WHERE id = ?1 AND state <= 2");
+  update.bind(1, id);
+  update.bind(2, tile.rows.count);
+  update.bind(3, tile.refused_points);
+  update.bind(4, tile.processor_seconds);
+  update.bind(5, static_cast<std::int64_t>(bytes));
+  update.bind(6, tile.proves_health ? 1 : 0);
+  if (update.exec() == 0) return std::nullopt;
+  insert_blobs(db, id, tile, blobs);
+  std::optional<StoredCampaign> stored = query_campaign(db, id);
+  const CampaignBudget& budget = stored->budget;
+  if (stored->points_done == stored->points()) {
+    return change_campaign(db, {.id = id, .to = CampaignState::kSucceeded, .time = now});
+  }
+  const bool is_spent =
+      (budget.points > 0 && stored->points_done >= budget.points) ||
+      (budget.processor_seconds > 0 && stored->processor_seconds >= budget.processor_seconds);
+  if (!is_spent || stored->state != CampaignState::kRunning) return stored;
+  return change_campaign(db, {.id = id,
+                              .to = CampaignState::kPaused,
+                              .reason = "BUDGET_SPENT",
+                              .message = "the budget is spent; resume it with a larger one"});
+}
+
+std::vector<RowRange> query_tiles(Connection& db, std::int64_t id) {
+  Prepared query(
+      db, "SELECT first_row, rows FROM campaign_tiles WHERE campaign = ? ORDER BY first_row");
+  query.bind(1, id);
+  std::vector<RowRange> out;
+  while (query.executeStep()) {
+    out.push_back({query.getColumn(0).getInt64(), query.getColumn(1).getInt64()});
+  }
+  return out;
+}
+
+std::vector<CampaignRefusal> query_refusals(Connection& db, std::int64_t id) {
+  Prepared query(db,
+                 "SELECT number, reason, message FROM campaign_refusals WHERE campaign = ? "
+                 "ORDER BY number");
+  query.bind(1, id);
+  std::vector<CampaignRefusal> out;
+  while (query.executeStep()) {
+    out.push_back({query.getColumn(0).getInt(), query.getColumn(1).getString(),
+                   query.getColumn(2).getString()});
+  }
+  return out;
+}
+
+void query_campaign_column(Connection& db, std::int64_t id, int column, std::int64_t start,
+                           std::span<double> values) {
+  const std::int64_t end = start + static_cast<std::int64_t>(values.size());
+  Prepared query(db,
+                 "SELECT b.first_row, t.rows, b.checksum, b.data FROM campaign_blobs b "
+                 "JOIN campaign_tiles t ON t.campaign = b.campaign AND t.first_row = b.first_row "
+                 "WHERE b.campaign = ?1 AND b.number = ?2 AND b.first_row > ?3 AND "
+                 "b.first_row < ?4 ORDER BY b.first_row");
+  query.bind(1, id);
+  query.bind(2, column);
+  query.bind(3, start - kMaximumTileRows);
+  query.bind(4, end);
+  std::vector<double> part;
+  while (query.executeStep()) {
+    const std::int64_t first = query.getColumn(0).getInt64();
+    const std::int64_t last = first + query.getColumn(1).getInt64();
+    if (last <= start) continue;
+    if (first >= start && last <= end) {
+      decompress_blob(query.getColumn(3), query.getColumn(2).getInt64(),
+                      values.subspan(static_cast<std::size_t>(first - start),
+                                     static_cast<std::size_t>(last - first)));
+      continue;
+    }
+    part.resize(static_cast<std::size_t>(last - first));
+    decompress_blob(query.getColumn(3), query.getColumn(2).getInt64(), part);
+    const std::int64_t from = std::max(first, start), to = std::min(last, end);
+    std::copy(part.begin() + (from - first), part.begin() + (to - first),
+              values.begin() + (from - start));
+  }
+}
+
+bool is_whole_tile(Connection& db, std::int64_t id, const RowRange& tile, int columns) try {
+  if (tile.count < 1 || tile.count > kMaximumTileRows) return false;
+  Prepared query(db,
+                 "SELECT number, checksum, data FROM campaign_blobs WHERE campaign = ? AND "
+                 "first_row = ? ORDER BY number");
+  query.bind(1, id);
+  query.bind(2, tile.first);
+  std::vector<double> values(static_cast<std::size_t>(tile.count));
+  int found = 0;
+  for (; query.executeStep(); ++found) {
+    if (query.getColumn(0).getInt() != found) return false;
+    decompress_blob(query.getColumn(2), query.getColumn(1).getInt64(), values);
+  }
+  return found == columns;
+} catch (const StoreError&) {
+  return false;
+}
+
+std::int64_t remove_campaign(Connection& db, std::int64_t id) {
+  Prepared remove(db, "DELETE FROM campaigns WHERE id = ? RETURNING stored_bytes");
+  remove.bind(1, id);
+  if (!remove.executeStep()) return 0;
+  const std::int64_t bytes = remove.getColumn(0).getInt64();
+  remove.executeStep();  // the row is removed only when the statement is finished
+  return bytes;
+}
+
+}  // namespace tribodyn::server

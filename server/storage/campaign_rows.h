@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "server/storage/connection.h"
+#include "server/storage/stored_campaign.h"
+#include "server/storage/stored_resource.h"
+
+namespace tribodyn::server {
+
+// Rows of campaigns on an open connection, inside the caller's transaction. All throw
+// SQLite::Exception; query_campaign_column() also throws StoreError kDataLoss.
+
+/// Adds a campaign that is RUNNING, or returns the one that an earlier request with the same
+/// request_id added to the same project.
+CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Microseconds now);
+
+std::optional<StoredCampaign> query_campaign(Connection& db, std::int64_t id);
+std::optional<StoredCampaign> query_numbered_campaign(Connection& db, const std::string& project,
+                                                      std::int64_t number);
+std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const std::string& project,
+                                                        const std::string& request_id);
+/// Returns the campaigns of a project with numbers below `before` (0: all), the latest first.
+Page<StoredCampaign> query_campaigns(Connection& db, const std::string& project,
+                                     std::int64_t before, int limit);
+/// Returns the rows of all campaigns that are RUNNING, the oldest first.
+std::vector<std::int64_t> query_running_campaigns(Connection& db);
+/// Returns NewCampaign::candidate_table; empty if the campaign does not exist.
+std::string query_candidate_table(Connection& db, std::int64_t id);
+
+/// A change of the state of a campaign that has not ended.
+struct CampaignChange {
+  std::int64_t id = 0;
+  CampaignState to = CampaignState::kRunning;
+  Microseconds time = 0;
+  std::string reason = {};
+  std::string message = {};
+  std::optional<CampaignState> from = {};     ///< the only state that may change; empty: any
+  std::optional<CampaignBudget> budget = {};  ///< its budget from now on; empty: the present one
+};
+/// Changes the state. Returns the campaign; nullopt, and changes nothing, if it has ended or is in
+/// another state than `from`.
+std::optional<StoredCampaign> change_campaign(Connection& db, const CampaignChange& change);
+
+/// Counts the beginning of the campaign's computation by a process. If the attempts of
+/// kMaximumLostAttempts earlier processes were lost, pauses it with WORKER_LOST. Returns the
+/// campaign; nullopt if it does not exist or has ended.
+std::optional<StoredCampaign> begin_campaign(Connection& db, std::int64_t id);
+/// Forgives the attempts that were counted: the process ends in good order.
+void release_campaign(Connection& db, std::int64_t id);
+
+/// Blobs of a tile: one for each column.
+std::vector<std::string> compress_tile(const NewTile& tile);
+/// Adds a tile, and changes the campaign to SUCCEEDED if no row is missing, or to PAUSED with
+/// BUDGET_SPENT if its budget is. Returns the campaign; nullopt, and changes nothing, if the
+/// campaign does not exist or has ended, or holds one of the rows.
+std::optional<StoredCampaign> insert_tile(Connection& db, std::int64_t id, const NewTile& tile,
+                                          const std::vector<std::string>& blobs, Microseconds now);
+
+/// Returns the rows of all tiles, in their order.
+std::vector<RowRange> query_tiles(Connection& db, std::int64_t id);
+std::vector<CampaignRefusal> query_refusals(Connection& db, std::int64_t id);
+/// Reads rows [start, start + values.size()) of a column. Rows without a tile keep their values.
+void query_campaign_column(Connection& db, std::int64_t id, int column, std::int64_t start,
+                           std::span<double> values);
+/// Returns false if a tile lacks one of the columns 0 to `columns` - 1, or one is damaged.
+bool is_whole_tile(Connection& db, std::int64_t id, const RowRange& tile, int columns);
+
+/// Removes a campaign with its tiles. Returns the freed bytes.
+std::int64_t remove_campaign(Connection& db, std::int64_t id);
+
+}  // namespace tribodyn::server

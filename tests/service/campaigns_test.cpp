@@ -1,0 +1,496 @@
+// Campaigns: many candidates at many conditions, computed in tiles that outlive the process.
+#include "server/application/campaigns.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "google/rpc/code.pb.h"
+#include "server/application/points.h"
+#include "server/application/simulations.h"
+#include "server/simulation/campaign_columns.h"
+#include "server/simulation/campaign_inputs.h"
+#include "server/storage/maintenance.h"
+#include "tests/service/support.h"
+
+namespace tribodyn::server {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// Columns of a campaign by name.
+using Table = std::map<std::string, std::vector<double>>;
+
+/// Candidates that differ in a parameter of the lubricant and one of the surface, at six
+/// conditions.
+v1::Campaign campaign_of(int candidates) {
+  v1::Campaign out;
+  out.set_lubricant("lubricants/paper-fluid-1");
+  v1::CandidateColumn& coefficient = *out.add_candidate_columns();
+  coefficient.set_path("lubricant.pressure_viscosity_coefficient_per_pascal");
+  v1::CandidateColumn& friction = *out.add_candidate_columns();
+  friction.set_path("surface.asperity_friction_coefficient");
+  v1::CandidateAttribute& additive = *out.add_candidate_attributes();
+  additive.set_name("additive");
+  v1::CandidateAttribute& cost = *out.add_candidate_attributes();
+  cost.set_name("cost_euros_per_kilogram");
+  for (int i = 0; i < candidates; ++i) {
+    coefficient.add_values(1.2e-8 + 1e-8 * i / candidates);
+    friction.add_values(0.08 + 0.04 * (i % 7) / 7);
+    additive.add_texts("additive " + std::to_string(i % 3));
+    cost.add_values(2 + i);
+  }
+  for (const double sump : {40.0, 90.0}) {
+    for (const double speed : {30.0, 70.0, 110.0}) {
+      v1::PointCondition& condition = *out.add_conditions();
+      condition.set_speed_kilometres_per_hour(speed);
+      condition.set_sump_temperature_celsius(sump);
+      out.add_condition_weights(speed);
+    }
+  }
+  return out;
+}
+
+bool have_equal_bits(const std::vector<double>& one, const std::vector<double>& other) {
+  return one.size() == other.size() &&
+         std::memcmp(one.data(), other.data(), one.size() * sizeof(double)) == 0;
+}
+
+class CampaignTest : public testing::Test {
+ protected:
+  Outcome<v1::Campaign> try_create(const v1::Campaign& campaign, const std::string& request_id = {},
+                                   bool validate_only = false) {
+    v1::CreateCampaignRequest request;
+    *request.mutable_campaign() = campaign;
+    request.set_request_id(request_id);
+    request.set_validate_only(validate_only);
+    Application application = bench_.application();
+    return create_campaign(application, request);
+  }
+  std::string create(const v1::Campaign& campaign, const std::string& request_id = {}) {
+    const auto created = try_create(campaign, request_id);
+    if (!created.ok()) throw std::runtime_error(created.error().message());
+    return created.message().name();
+  }
+  v1::Campaign get(const std::string& name, v1::CampaignView view = v1::CAMPAIGN_VIEW_BASIC) {
+    v1::GetCampaignRequest request;
+    request.set_name(name);
+    request.set_view(view);
+    Application application = bench_.application();
+    return get_campaign(application, request).message();
+  }
+  bool reaches(const std::string& name, v1::Campaign::State state) {
+    return eventually([&] { return get(name).state() == state; });
+  }
+  template <class Request, class UseCase>
+  auto call(UseCase use_case, const std::string& name, Request request = {}) {
+    request.set_name(name);
+    Application application = bench_.application();
+    return use_case(application, request, CallContext());
+  }
+
+  StreamOutcome<v1::ReadCampaignResponse> open(const v1::ReadCampaignRequest& request) {
+    application_.emplace(bench_.application());
+    return read_campaign(*application_, request);
+  }
+  Table read(const std::string& name, const std::vector<std::string>& columns = {},
+             std::int64_t start = 0, std::int64_t count = 0) {
+    v1::ReadCampaignRequest request;
+    request.set_name(name);
+    request.set_start_row(start);
+    request.set_row_count(count);
+    for (const std::string& each : columns) request.add_columns(each);
+    const auto source = open(request);
+    if (!source.ok()) throw std::runtime_error(complaints(source.error()));
+    Table out;
+    v1::HistorySchema schema;
+    for (v1::ReadCampaignResponse part;
+         source.message()->next(part) == AnyMessageSource::Step::kMessage;) {
+      if (part.has_schema()) {
+        schema = part.schema();
+        for (const auto& column : schema.columns()) out[column.name()];
+        continue;
+      }
+      std::vector<double>& column = out[schema.columns(part.chunk().column()).name()];
+      const std::string& bytes = part.chunk().values();
+      const std::size_t before = column.size();
+      EXPECT_EQ(part.chunk().first_row(), static_cast<std::int64_t>(before));
+      column.resize(before + bytes.size() / sizeof(double));
+      std::memcpy(column.data() + before, bytes.data(), bytes.size());
+    }
+    EXPECT_EQ(source.message()->error().code(), 0);
+    return out;
+  }
+
+  Bench bench_;
+  std::optional<Application> application_;
+};
+
+void expect_equal_tables(const Table& one, const Table& other) {
+  ASSERT_EQ(one.size(), other.size());
+  for (const auto& [name, values] : one) {
+    EXPECT_TRUE(have_equal_bits(values, other.at(name))) << name;
+  }
+}
+
+TEST_F(CampaignTest, HasTheBitsOfEvaluatePoints) {
+  const v1::Campaign campaign = campaign_of(100);
+  const std::string name = create(campaign);
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  v1::EvaluatePointsRequest points;
+  points.set_lubricant(campaign.lubricant());
+  *points.mutable_candidate_columns() = campaign.candidate_columns();
+  *points.mutable_conditions() = campaign.conditions();
+  Application application = bench_.application();
+  const auto expected = evaluate_points(application, points);
+  ASSERT_TRUE(expected.ok());
+  const Table table = read(name);
+  EXPECT_EQ(table.size(), kCampaignColumns.size());
+  const v1::EvaluatePointsResponse& figures = expected.message();
+  const auto expect_column = [&](const std::string& column, const auto& values) {
+    EXPECT_TRUE(have_equal_bits(table.at(column), {values.begin(), values.end()})) << column;
+  };
+  expect_column("refusal_number", figures.refusal_numbers());
+  expect_column("pinion_torque_newton_metres", figures.pinion_torque_newton_metres());
+  expect_column("wheel_torque_newton_metres", figures.wheel_torque_newton_metres());
+  expect_column("inefficiency_rms_percent", figures.inefficiency_rms_percent());
+  expect_column("inefficiency_energy_mean_percent", figures.inefficiency_energy_mean_percent());
+  expect_column("mesh_loss_power_watts", figures.mesh_loss_power_watts());
+  expect_column("dynamic_transmission_error_minimum_metres",
+                figures.dynamic_transmission_error_minimum_metres());
+  expect_column("dynamic_transmission_error_maximum_metres",
+                figures.dynamic_transmission_error_maximum_metres());
+  expect_column("contact_loss", figures.contact_loss());
+  expect_column("settled", figures.settled());
+  expect_column("period_in_mesh_cycles", figures.period_in_mesh_cycles());
+  expect_column("estimated_relative_error", figures.estimated_relative_error());
+  expect_column("model", figures.model());
+}
+
+TEST_F(CampaignTest, TellsItsProgressAndWhatItRestsOn) {
+  const std::string name = create(campaign_of(50));
+  EXPECT_EQ(name, "campaigns/1");
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  const v1::Campaign done = get(name);
+  EXPECT_EQ(done.candidates(), 50);
+  EXPECT_EQ(done.points(), 300);
+  EXPECT_EQ(done.points_done(), 300);
+  EXPECT_EQ(done.points_refused(), 0);
+  EXPECT_EQ(done.first_missing_row(), 300);
+  EXPECT_GT(done.processor_seconds(), 0);
+  EXPECT_EQ(done.lubricant_revision(), "lubricants/paper-fluid-1@1");
+  EXPECT_EQ(done.input_hash().size(), 64U);
+  EXPECT_TRUE(done.has_end_time());
+  EXPECT_EQ(done.condition_weights_size(), 6);
+  EXPECT_EQ(done.candidate_columns_size(), 0) << "view BASIC";
+  const v1::Campaign whole = get(name, v1::CAMPAIGN_VIEW_FULL);
+  EXPECT_EQ(whole.candidate_columns(0).values_size(), 50);
+  EXPECT_EQ(whole.candidate_attributes(0).texts(1), "additive 1");
+}
+
+TEST_F(CampaignTest, ReadsColumnsOfCandidatesAndConditionsBesideFigures) {
+  const v1::Campaign campaign = campaign_of(40);
+  const std::string name = create(campaign);
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  const Table all = read(name);
+  const Table part =
+      read(name,
+           {"candidate", "condition", "sump_temperature_celsius", "inlet_temperature_rise_kelvin",
+            "cost_euros_per_kilogram", "lubricant.pressure_viscosity_coefficient_per_pascal",
+            "mesh_loss_power_watts"},
+           71, 3);
+  EXPECT_THAT(part.at("candidate"), ElementsAre(11, 12, 12));
+  EXPECT_THAT(part.at("condition"), ElementsAre(5, 0, 1));
+  EXPECT_THAT(part.at("sump_temperature_celsius"), ElementsAre(90, 40, 40));
+  EXPECT_THAT(part.at("inlet_temperature_rise_kelvin"), ElementsAre(20, 20, 20));
+  EXPECT_THAT(part.at("cost_euros_per_kilogram"), ElementsAre(13, 14, 14));
+  EXPECT_EQ(part.at("lubricant.pressure_viscosity_coefficient_per_pascal")[1],
+            campaign.candidate_columns(0).values(12));
+  const auto& losses = all.at("mesh_loss_power_watts");
+  EXPECT_THAT(part.at("mesh_loss_power_watts"), ElementsAre(losses[71], losses[72], losses[73]));
+  v1::ReadCampaignRequest request;
+  request.set_name(name);
+  request.add_columns("mesh_loss_power_wats");
+  request.set_start_row(241);
+  EXPECT_THAT(complaints(open(request).error()),
+              testing::AllOf(HasSubstr("did you mean \"mesh_loss_power_watts\"?"),
+                             HasSubstr("start_row = 241; allowed: 0 to 240")));
+}
+
+TEST_F(CampaignTest, PausesWhenItsBudgetIsSpentAndContinuesWithTheSameBits) {
+  const v1::Campaign whole = campaign_of(300);
+  v1::Campaign limited = whole;
+  limited.mutable_budget()->set_points(200);
+  const std::string name = create(limited);
+  ASSERT_TRUE(reaches(name, v1::Campaign::PAUSED));
+  const v1::Campaign paused = get(name);
+  EXPECT_EQ(paused.stop().reason(), "BUDGET_SPENT");
+  EXPECT_GE(paused.points_done(), 200);
+  EXPECT_LT(paused.points_done(), 1800);
+  const Table early = read(name, {"refusal_number", "mesh_loss_power_watts"}, 1799, 1);
+  EXPECT_THAT(early.at("refusal_number"), ElementsAre(kNotComputed));
+  EXPECT_TRUE(std::isnan(early.at("mesh_loss_power_watts")[0]));
+  v1::ResumeCampaignRequest more;
+  more.mutable_budget()->set_points(0);
+  ASSERT_TRUE(call(resume_campaign, name, more).ok());
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  EXPECT_EQ(get(name).points_done(), 1800);
+  const std::string undisturbed = create(whole);
+  ASSERT_TRUE(reaches(undisturbed, v1::Campaign::SUCCEEDED));
+  EXPECT_EQ(get(undisturbed).input_hash(), get(name).input_hash());
+  expect_equal_tables(read(name), read(undisturbed));
+  EXPECT_THAT(check_database(bench_.database()), IsEmpty());
+}
+
+TEST_F(CampaignTest, ContinuesAfterARestartAtTheMissingRows) {
+  const std::string name = create(campaign_of(2000));
+  ASSERT_TRUE(eventually([&] { return get(name).points_done() > 0; }));
+  bench_.restart(quick_studies());
+  const v1::Campaign restarted = get(name);
+  EXPECT_GT(restarted.points_done(), 0);
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  const v1::Campaign done = get(name);
+  EXPECT_EQ(done.points_done(), 12'000);
+  EXPECT_GT(done.processor_seconds(), restarted.processor_seconds());
+  const std::string undisturbed = create(campaign_of(2000));
+  ASSERT_TRUE(reaches(undisturbed, v1::Campaign::SUCCEEDED));
+  expect_equal_tables(read(name), read(undisturbed));
+  EXPECT_THAT(check_database(bench_.database()), IsEmpty());
+}
+
+TEST_F(CampaignTest, IsPausedAndResumedByRequest) {
+  const std::string name = create(campaign_of(3000));
+  const auto paused = call<v1::PauseCampaignRequest>(pause_campaign, name);
+  ASSERT_TRUE(paused.ok());
+  ASSERT_EQ(paused.message().state(), v1::Campaign::PAUSED);
+  EXPECT_EQ(paused.message().stop().reason(), "PAUSE_REQUESTED");
+  for (int i = 0; i < 20; ++i) {  // whatever its parts do meanwhile
+    ASSERT_TRUE(call<v1::ResumeCampaignRequest>(resume_campaign, name).ok());
+    ASSERT_TRUE(call<v1::PauseCampaignRequest>(pause_campaign, name).ok());
+  }
+  EXPECT_LT(get(name).points_done(), 18'000);
+  EXPECT_EQ(call<v1::ResumeCampaignRequest>(resume_campaign, name).message().state(),
+            v1::Campaign::RUNNING);
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  EXPECT_EQ(get(name).points_done(), 18'000);
+  EXPECT_EQ(call<v1::ResumeCampaignRequest>(resume_campaign, name).error().code(),
+            google::rpc::FAILED_PRECONDITION);
+  EXPECT_EQ(call<v1::PauseCampaignRequest>(pause_campaign, name).message().state(),
+            v1::Campaign::SUCCEEDED)
+      << "it has ended";
+}
+
+TEST_F(CampaignTest, CancelledKeepsItsRowsAndIsDeleted) {
+  const std::string name = create(campaign_of(3000));
+  ASSERT_TRUE(eventually([&] { return get(name).points_done() > 0; }));
+  EXPECT_EQ(call<v1::DeleteCampaignRequest>(delete_campaign, name).error().code(),
+            google::rpc::FAILED_PRECONDITION);
+  ASSERT_EQ(call<v1::CancelCampaignRequest>(cancel_campaign, name).message().state(),
+            v1::Campaign::CANCELLED);
+  const v1::Campaign cancelled = get(name);
+  EXPECT_GT(cancelled.points_done(), 0);
+  EXPECT_EQ(read(name, {"refusal_number"}, 0, 1).at("refusal_number")[0], 0);
+  EXPECT_TRUE(call<v1::DeleteCampaignRequest>(delete_campaign, name).ok());
+  EXPECT_EQ(call<v1::GetCampaignRequest>(get_campaign, name).error().code(),
+            google::rpc::NOT_FOUND);
+  const std::string running = create(campaign_of(3000));
+  EXPECT_EQ(running, "campaigns/2") << "no name is given twice";
+  v1::DeleteCampaignRequest request;
+  request.set_cancel(true);
+  EXPECT_TRUE(call(delete_campaign, running, request).ok());
+  SQLite::Database raw = bench_.open_database();
+  EXPECT_EQ(raw.execAndGet("SELECT count(*) FROM campaign_blobs").getInt(), 0);
+}
+
+/// A candidate that solidifies at the inlet says nothing about the others.
+TEST_F(CampaignTest, RefusedRowsHaveAReasonAndDoNotStopIt) {
+  v1::Campaign campaign = campaign_of(240);
+  campaign.mutable_conditions()->DeleteSubrange(3, 3);  // those of 90 C
+  campaign.clear_condition_weights();
+  v1::CandidateColumn& vogel = *campaign.mutable_candidate_columns(1);
+  vogel.set_path("lubricant.vogel_reference_temperature_kelvin");
+  for (int i = 0; i < 240; ++i) vogel.set_values(i, i % 2 == 0 ? 150 : 350 + 0.01 * i);
+  const std::string name = create(campaign);
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  const v1::Campaign done = get(name);
+  EXPECT_EQ(done.points_refused(), 360);
+  const Table table = read(name, {"refusal_number", "candidate", "mesh_loss_power_watts"});
+  std::set<int> numbers;
+  for (std::size_t i = 0; i < 720; ++i) {
+    const int number = static_cast<int>(table.at("refusal_number")[i]);
+    const bool is_refused = static_cast<int>(table.at("candidate")[i]) % 2 == 1;
+    ASSERT_EQ(number > 0, is_refused) << i;
+    ASSERT_EQ(std::isnan(table.at("mesh_loss_power_watts")[i]), is_refused) << i;
+    if (!is_refused) continue;
+    numbers.insert(number);
+    ASSERT_LE(number, done.refusals_size());
+    EXPECT_EQ(done.refusals(number - 1).reason(), "INVALID_AT_INLET");
+    EXPECT_NE(done.refusals(number - 1).message(), "");
+  }
+  EXPECT_EQ(numbers.size(), 101U) << "a hundred sentences, and one for all others";
+}
+
+TEST_F(CampaignTest, ARequestIdMakesOneCampaign) {
+  const std::string name = create(campaign_of(10), "one");
+  EXPECT_EQ(create(campaign_of(10), "one"), name);
+  v1::Campaign other = campaign_of(10);
+  other.mutable_candidate_attributes(1)->set_values(3, 99);
+  const auto refused = try_create(other, "one");
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message(), HasSubstr("differs in campaign.candidate_attributes"));
+  EXPECT_NE(create(campaign_of(10)), name);
+}
+
+TEST_F(CampaignTest, ValidateOnlyStatesWhatItWouldTakeAndMakesNothing) {
+  const auto preview = try_create(campaign_of(1000), "", true);
+  ASSERT_TRUE(preview.ok());
+  EXPECT_EQ(preview.message().name(), "");
+  EXPECT_EQ(preview.message().points(), 6000);
+  EXPECT_GT(preview.message().cost_estimate().processor_seconds(), 0.02);
+  EXPECT_LT(preview.message().cost_estimate().processor_seconds(), 5);
+  EXPECT_EQ(bench_.store().campaigns("default", 0, 10).total, 0);
+}
+
+TEST_F(CampaignTest, StatesAllViolationsAtOnce) {
+  v1::Campaign wrong = campaign_of(4);
+  wrong.set_lubricant("lubricants/paper-fluid-11");
+  wrong.mutable_candidate_columns(1)->set_values(2, -1);
+  wrong.mutable_candidate_attributes(0)->add_texts("one too many");
+  wrong.mutable_candidate_attributes(1)->set_name("mesh_loss_power_watts");
+  wrong.mutable_condition_weights()->RemoveLast();
+  wrong.mutable_budget()->set_processor_seconds(-1);
+  EXPECT_THAT(
+      complaint_lines(try_create(wrong).error()),
+      testing::UnorderedElementsAre(
+          HasSubstr("campaign.lubricant: "),
+          HasSubstr("campaign.candidate_columns[1].values[2]: asperity_friction_coefficient = -1"),
+          HasSubstr("campaign.candidate_attributes[0]: 5 texts and 0 values; allowed: 4"),
+          HasSubstr("campaign.candidate_attributes[1].name: \"mesh_loss_power_watts\" is the name "
+                    "of another column"),
+          HasSubstr("campaign.condition_weights: 5 weights"),
+          HasSubstr("campaign.budget.processor_seconds: processor_seconds = -1")));
+}
+
+TEST_F(CampaignTest, ListsTheLatestFirstInPages) {
+  for (int i = 0; i < 5; ++i) create(campaign_of(2));
+  v1::ListCampaignsRequest request;
+  request.set_page_size(2);
+  std::vector<std::string> names;
+  Application application = bench_.application();
+  do {
+    const auto page = list_campaigns(application, request);
+    ASSERT_TRUE(page.ok());
+    EXPECT_EQ(page.message().total_size(), 5);
+    for (const auto& each : page.message().campaigns()) names.push_back(each.name());
+    request.set_page_token(page.message().next_page_token());
+  } while (!request.page_token().empty());
+  EXPECT_THAT(names, ElementsAre("campaigns/5", "campaigns/4", "campaigns/3", "campaigns/2",
+                                 "campaigns/1"));
+}
+
+TEST_F(CampaignTest, AnInteractiveSimulationRunsBesideIt) {
+  create(campaign_of(20'000));
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = point_simulation();
+  request.set_scheduling_class(v1::SCHEDULING_CLASS_INTERACTIVE);
+  for (int i = 0; i < 5; ++i) {
+    request.set_force(true);
+    EXPECT_TRUE(bench_.reaches(bench_.create(request), v1::Simulation::SUCCEEDED));
+  }
+  EXPECT_EQ(get("campaigns/1").state(), v1::Campaign::RUNNING);
+}
+
+TEST_F(CampaignTest, ItsPrincipalsQuotaHoldsForItsEstimate) {
+  v1::CreateCampaignRequest request;
+  *request.mutable_campaign() = campaign_of(20'000);
+  Application application = bench_.application();
+  CallContext call;
+  auto grant = std::make_shared<Grant>();
+  grant->principal = "anna";
+  grant->quota.processor_hours = 1e-4;
+  call.grant = grant;
+  const auto refused = create_campaign(application, request, call);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().code(), google::rpc::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(refused.error().message(), HasSubstr("processor hours of campaigns"));
+}
+
+TEST_F(CampaignTest, ExpiresAsSimulationsDo) {
+  const std::string name = create(campaign_of(10));
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  EXPECT_GT(bench_.store().removable_bytes(), 0);
+  EXPECT_GT(bench_.store().result_bytes("default"), 0);
+  const std::string running = create(campaign_of(20'000));
+  EXPECT_EQ(bench_.store().remove_oldest(system_time() + 1, 50).campaigns, 1);
+  EXPECT_EQ(bench_.store().remove_oldest(system_time() + 1, 50).campaigns, 0);
+  EXPECT_EQ(call<v1::GetCampaignRequest>(get_campaign, name).error().code(),
+            google::rpc::NOT_FOUND);
+  EXPECT_TRUE(call<v1::GetCampaignRequest>(get_campaign, running).ok());
+}
+
+TEST_F(CampaignTest, DamageIsFoundByReadersAndByTheCheck) {
+  const std::string name = create(campaign_of(10));
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  bench_.open_database().exec("UPDATE campaign_blobs SET data = substr(data, 2) WHERE number = 5");
+  EXPECT_THAT(check_database(bench_.database()), Contains(HasSubstr("campaigns/1: its tile")));
+  EXPECT_THROW(read(name), StoreError);
+  EXPECT_NO_THROW(read(name, {"pinion_torque_newton_metres"}));
+}
+
+TEST_F(CampaignTest, ACampaignThatKillsTheServerIsPaused) {
+  v1::Campaign limited = campaign_of(20'000);
+  limited.mutable_budget()->set_points(1);
+  const std::string name = create(limited);
+  ASSERT_TRUE(reaches(name, v1::Campaign::PAUSED));
+  ASSERT_TRUE(eventually([&] {
+    const Occupancy parts = bench_.jobs().occupancy();
+    return parts.running + parts.waiting == 0;
+  }));
+  const std::int64_t id = bench_.store().numbered_campaign("default", 1)->id;
+  bench_.store().change_campaign({.id = id, .to = CampaignState::kRunning});
+  for (int i = 0; i < 3; ++i) {  // as three processes that are lost
+    EXPECT_EQ(bench_.store().begin_campaign(id)->state, CampaignState::kRunning);
+  }
+  const auto fourth = bench_.store().begin_campaign(id);
+  EXPECT_EQ(fourth->state, CampaignState::kPaused);
+  EXPECT_EQ(fourth->stop_reason, "WORKER_LOST");
+}
+
+/// Two tiles never have a row in common, and none is added to a campaign that has ended.
+TEST_F(CampaignTest, TheStoreTakesEachRowOnce) {
+  v1::Campaign limited = campaign_of(1000);
+  limited.mutable_budget()->set_points(1);
+  create(limited);
+  ASSERT_TRUE(reaches("campaigns/1", v1::Campaign::PAUSED));
+  ASSERT_TRUE(eventually([&] {
+    const Occupancy parts = bench_.jobs().occupancy();
+    return parts.running + parts.waiting == 0;
+  }));
+  Store& store = bench_.store();
+  const StoredCampaign campaign = *store.numbered_campaign("default", 1);
+  NewTile tile;
+  tile.rows = {5994, 6};
+  tile.columns.assign(kCampaignColumns.size(), std::vector<double>(6, 1.5));
+  ASSERT_TRUE(store.add_tile(campaign.id, tile, 1));
+  EXPECT_EQ(store.add_tile(campaign.id, tile, 1), std::nullopt);
+  EXPECT_EQ(store.campaign(campaign.id)->points_done, campaign.points_done + 6);
+  std::vector<double> values(8, -7);
+  store.read_campaign(campaign.id, 3, 5992, values);
+  EXPECT_THAT(values, ElementsAre(-7, -7, 1.5, 1.5, 1.5, 1.5, 1.5, 1.5));
+  store.change_campaign({.id = campaign.id, .to = CampaignState::kCancelled, .time = 2});
+  tile.rows.first -= 6;
+  EXPECT_EQ(store.add_tile(campaign.id, tile, 1), std::nullopt);
+}
+
+}  // namespace
+}  // namespace tribodyn::server
