@@ -49,6 +49,8 @@ std::string body(char input) {
 
 std::vector<double> rows(char input) { return std::vector<double>(700, input); }
 
+constexpr int kTileRows = 300;
+
 /// Resources of one batch.
 constexpr std::array<const char*, 3> kBatch = {"surfaces/1", "surfaces/2", "surfaces/3"};
 
@@ -58,7 +60,10 @@ struct Acknowledged {
   std::map<std::int64_t, std::vector<StoredEvent>> events;  ///< changes of state, in order
   std::map<std::int64_t, char> results;                     ///< inputs of succeeded simulations
   std::map<std::string, int> revisions;                     ///< latest revision by resource
-  std::map<std::int64_t, bool> pins;  ///< pinned or not; left out after an error
+  std::map<std::int64_t, bool> pins;   ///< pinned or not; left out after an error
+  std::int64_t campaign = 0;           ///< 0: none
+  std::map<std::int64_t, char> tiles;  ///< by first row: what its columns hold
+  bool campaign_succeeded = false;
 };
 
 /// A session with a store. Each step is acknowledged or fails with a sentence.
@@ -83,6 +88,9 @@ class Session {
     pin("r1", true);
     pin("r5", true);
     pin("r5", false);
+    screen();
+    add_tile(0, 'a');
+    add_tile(2, 'c');
     change("r2", [&](std::int64_t id) { return store_->mark_failed(id, 5, "X", "y"); });
     change("r3", [&](std::int64_t id) { return store_->mark_cancelled(id, 6); });
     start("r4", 'c');
@@ -97,6 +105,8 @@ class Session {
     });
     store_.reset();
     if (!open()) return;
+    screen();
+    for (const char input : {'a', 'b', 'c'}) add_tile(input - 'a', input);
     step([&] { store_->requeue_unfinished(9); });
     submit("r1", 'a');
     start("r4", 'c');
@@ -164,6 +174,36 @@ class Session {
     });
   }
 
+  /// Adds a campaign of three candidates, under the same request_id each time. The store asks for
+  /// four revisions, whatever they are of.
+  void screen() {
+    if (told_.revisions.count("lubricants/x") == 0) return;
+    step([&] {
+      server::NewCampaign campaign;
+      campaign.request_id = "c1";
+      campaign.request_hash = campaign.input_hash = std::string(64, 'c');
+      campaign.candidates = 3;
+      campaign.conditions = kTileRows;
+      for (std::string* each : {&campaign.lubricant_revision, &campaign.gear_set_revision,
+                                &campaign.surface_revision, &campaign.vehicle_revision}) {
+        *each = "lubricants/x@1";
+      }
+      told_.campaign = store_->add_campaign(campaign, 2).stored.id;
+    });
+  }
+  /// Adds the rows of a candidate, if they are missing.
+  void add_tile(std::int64_t candidate, char input) {
+    if (told_.campaign == 0) return;
+    step([&] {
+      server::NewTile tile;
+      tile.rows = {candidate * kTileRows, kTileRows};
+      tile.columns.assign(3, std::vector<double>(kTileRows, input));
+      const auto stored = store_->add_tile(told_.campaign, tile, 3);
+      told_.tiles[tile.rows.first] = input;
+      if (stored) told_.campaign_succeeded = stored->state == server::CampaignState::kSucceeded;
+    });
+  }
+
   template <class Change>
   void change(const std::string& request_id, const Change& change) {
     const auto found = told_.simulations.find(request_id);
@@ -213,6 +253,20 @@ std::vector<std::string> lost(const std::string& path, const Acknowledged& told)
   for (const auto& [id, events] : told.events) {
     for (const StoredEvent& event : events) {
       if (!is_kept(store, id, event)) out.push_back("event " + std::to_string(event.sequence));
+    }
+  }
+  if (told.campaign != 0) {
+    const auto campaign = store.campaign_of_request("default", "c1");
+    if (!campaign || campaign->id != told.campaign) return {"the campaign"};
+    for (const auto& [row, input] : told.tiles) {
+      std::vector<double> values(kTileRows);
+      store.read_campaign(told.campaign, 2, row, values);
+      if (values != std::vector<double>(kTileRows, input)) out.push_back("a tile");
+    }
+    const auto tiles = static_cast<std::int64_t>(store.campaign_tiles(told.campaign).size());
+    if (campaign->points_done != kTileRows * tiles) out.push_back("progress of the campaign");
+    if (told.campaign_succeeded && campaign->state != server::CampaignState::kSucceeded) {
+      out.push_back("state of the campaign");
     }
   }
   for (const auto& [id, input] : told.results) {

@@ -1,0 +1,97 @@
+// Campaigns of a real server that is killed: only open tiles are lost, and no bit differs.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <string>
+
+#include "tests/service/grpc_fixture.h"
+#include "tribodyn/v1/campaigns.grpc.pb.h"
+
+namespace tribodyn::server {
+namespace {
+
+class CampaignCrashTest : public GrpcTest {
+ protected:
+  void SetUp() override { restart(); }
+  void restart() {
+    start();
+    campaigns_ = v1::CampaignService::NewStub(channel_);
+  }
+  void kill_server() {
+    process_->signal(SIGKILL);
+    process_->wait();
+  }
+
+  static v1::CreateCampaignRequest request(const std::string& request_id) {
+    v1::CreateCampaignRequest out;
+    out.set_request_id(request_id);
+    v1::Campaign& campaign = *out.mutable_campaign();
+    campaign.set_lubricant("lubricants/paper-fluid-1");
+    v1::CandidateColumn& column = *campaign.add_candidate_columns();
+    column.set_path("lubricant.relaxation_time_seconds");
+    for (int i = 0; i < 2000; ++i) column.add_values(1e-12 * (1 + i));
+    for (int speed = 20; speed <= 140; speed += 5) {
+      campaign.add_conditions()->set_speed_kilometres_per_hour(speed);
+    }
+    return out;
+  }
+  v1::Campaign create(const std::string& request_id) {
+    grpc::ClientContext context;
+    v1::Campaign out;
+    const grpc::Status status = campaigns_->CreateCampaign(&context, request(request_id), &out);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return out;
+  }
+  v1::Campaign get_campaign(const std::string& name) {
+    grpc::ClientContext context;
+    v1::GetCampaignRequest request;
+    request.set_name(name);
+    v1::Campaign out;
+    const grpc::Status status = campaigns_->GetCampaign(&context, request, &out);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return out;
+  }
+  /// All rows of all columns, as bytes.
+  std::string bits(const std::string& name) {
+    grpc::ClientContext context;
+    v1::ReadCampaignRequest request;
+    request.set_name(name);
+    const auto reader = campaigns_->ReadCampaign(&context, request);
+    std::string out;
+    for (v1::ReadCampaignResponse part; reader->Read(&part);) out += part.chunk().values();
+    EXPECT_TRUE(reader->Finish().ok());
+    return out;
+  }
+
+  std::unique_ptr<v1::CampaignService::Stub> campaigns_;
+};
+
+TEST_F(CampaignCrashTest, AKilledServerContinuesAtTheMissingRowsWithTheSameBits) {
+  const std::string name = create("one").name();
+  std::int32_t done = 0;
+  for (int kill = 0; kill < 2; ++kill) {
+    ASSERT_TRUE(eventually([&] { return get_campaign(name).points_done() > done + 2000; }));
+    done = get_campaign(name).points_done();
+    kill_server();
+    restart();
+    const v1::Campaign after = get_campaign(name);
+    EXPECT_GE(after.points_done(), done) << "what was told is on disk";
+    EXPECT_LT(after.points_done(), 50'000);
+    EXPECT_EQ(after.state(), v1::Campaign::RUNNING);
+    done = after.points_done();
+  }
+  EXPECT_EQ(create("one").name(), name) << "a request that is sent again makes nothing";
+  ASSERT_TRUE(eventually([&] { return get_campaign(name).state() == v1::Campaign::SUCCEEDED; }));
+  const v1::Campaign finished = get_campaign(name);
+  EXPECT_EQ(finished.points_done(), 50'000);
+  EXPECT_EQ(finished.points_refused(), 0);
+  const std::string undisturbed = create("two").name();
+  ASSERT_TRUE(
+      eventually([&] { return get_campaign(undisturbed).state() == v1::Campaign::SUCCEEDED; }));
+  const std::string expected = bits(undisturbed);
+  EXPECT_EQ(expected.size(), std::size_t{50'000} * 13 * sizeof(double));
+  EXPECT_TRUE(bits(name) == expected);
+}
+
+}  // namespace
+}  // namespace tribodyn::server
