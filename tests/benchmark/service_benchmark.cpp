@@ -1,7 +1,8 @@
 // The server under load: what it adds to an empty gRPC method, a bare commit, an empty stream and
 // the core's own time. Figures that are compared are of one run on one machine. usage:
 // service_benchmark [RESULTS.json [PART...]]      default: build/benchmark/results.json, all parts:
-// requests, lists, histories, watchers, overload, refusals, interactive, screening, estimates
+// requests, lists, histories, watchers, overload, refusals, interactive, screening, campaigns,
+// estimates
 #include <SQLiteCpp/Database.h>
 #include <fmt/format.h>
 #include <grpcpp/generic/generic_stub.h>
@@ -35,6 +36,7 @@
 #include "tests/service/server_process.h"
 #include "tests/service/support.h"
 #include "tests/support/paths.h"
+#include "tribodyn/v1/campaigns.grpc.pb.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
 #include "tribodyn/v1/points.grpc.pb.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
@@ -872,6 +874,84 @@ void measure_screening(std::vector<Measurement>& out) {
       {"screened_point_of_its_own_over_the_core", median(points) / median(core), "-", {}});
 }
 
+/// What one campaign took.
+struct CampaignRun {
+  double processor_seconds = 0;  ///< of the server, from the request until the last row
+  double first_rows_seconds = 0;
+  double bytes = 0;  ///< of its rows in the database
+  double read_seconds = 0;
+};
+
+CampaignRun run_campaign(const std::vector<v1::Lubricant>& fluids) {
+  const Server server;
+  const auto stub = v1::CampaignService::NewStub(connect(server.address()));
+  const v1::EvaluatePointsRequest points = evaluation(fluids);
+  v1::CreateCampaignRequest request;
+  request.mutable_campaign()->set_lubricant(points.lubricant());
+  *request.mutable_campaign()->mutable_candidate_columns() = points.candidate_columns();
+  *request.mutable_campaign()->mutable_conditions() = points.conditions();
+  const auto check = [](const grpc::Status& status) {
+    if (!status.ok()) throw std::runtime_error(status.error_message());
+  };
+  CampaignRun out;
+  v1::Campaign campaign;
+  const double begin = process_figures(server.id()).processor_seconds;
+  const auto start = Clock::now();
+  {
+    grpc::ClientContext context;
+    check(stub->CreateCampaign(&context, request, &campaign));
+  }
+  const double request_bytes = static_cast<double>(campaign.stored_bytes());
+  v1::GetCampaignRequest get;
+  get.set_name(campaign.name());
+  while (campaign.state() == v1::Campaign::RUNNING) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(campaign.points_done() == 0 ? 1 : 20));
+    grpc::ClientContext context;
+    check(stub->GetCampaign(&context, get, &campaign));
+    if (out.first_rows_seconds == 0 && campaign.points_done() > 0) {
+      out.first_rows_seconds = seconds_since(start);
+    }
+  }
+  if (campaign.state() != v1::Campaign::SUCCEEDED || campaign.points_refused() > 0) {
+    throw std::runtime_error("a campaign did not succeed");
+  }
+  out.processor_seconds = process_figures(server.id()).processor_seconds - begin;
+  out.bytes = static_cast<double>(campaign.stored_bytes()) - request_bytes;
+  const auto before = Clock::now();
+  grpc::ClientContext context;
+  v1::ReadCampaignRequest read;
+  read.set_name(campaign.name());
+  const auto reader = stub->ReadCampaign(&context, read);
+  std::size_t bytes = 0;
+  for (v1::ReadCampaignResponse part; reader->Read(&part);) bytes += part.chunk().values().size();
+  check(reader->Finish());
+  if (bytes < fluids.size()) throw std::runtime_error("rows are missing");
+  out.read_seconds = seconds_since(before);
+  return out;
+}
+
+/// A campaign of a thousand fluids at 39 conditions against the same points screened in the core
+/// alone.
+void measure_campaigns(std::vector<Measurement>& out) {
+  const std::vector<v1::Lubricant> fluids = candidates(1000);
+  const double points = 1000.0 * kSpeeds * std::size(kSumpCelsius);
+  std::vector<double> core, server, bytes, first, reads;
+  for (int run = 0; run < 3; ++run) {
+    core.push_back(1e6 * screen_in_core(fluids) / points);
+    const CampaignRun campaign = run_campaign(fluids);
+    server.push_back(1e6 * campaign.processor_seconds / points);
+    bytes.push_back(campaign.bytes / points);
+    first.push_back(1e3 * campaign.first_rows_seconds);
+    reads.push_back(1e3 * campaign.read_seconds);
+  }
+  out.push_back({"campaign_point_in_the_core", median(core), "us", {}});
+  out.push_back({"campaign_point_in_the_server", median(server), "us", {}});
+  out.push_back({"campaign_point_over_the_core", median(server) / median(core), "-", 1.05});
+  out.push_back({"campaign_bytes_of_a_point", median(bytes), "B", 60});
+  out.push_back({"campaign_first_rows_visible", median(first), "ms", 100});
+  out.push_back({"campaign_of_39000_points_read", median(reads), "ms", 150});
+}
+
 struct EstimatedCase {
   const char* name;
   v1::Simulation simulation;
@@ -934,7 +1014,7 @@ int main(int argc, char** argv) {
       {"histories", measure_histories},     {"watchers", measure_watchers},
       {"overload", measure_overload},       {"refusals", measure_refusals},
       {"interactive", measure_interactive}, {"screening", measure_screening},
-      {"estimates", measure_estimates}};
+      {"campaigns", measure_campaigns},     {"estimates", measure_estimates}};
   const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
   const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
   for (const auto& [name, measure] : parts) {
