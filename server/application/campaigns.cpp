@@ -161,6 +161,7 @@ NewCampaign new_campaign(const v1::CreateCampaignRequest& request, const Campaig
   out.principal = payer(call);
   out.candidates = inputs.points.candidates;
   out.conditions = inputs.points.conditions;
+  out.cost_seconds = estimate_cost(inputs).processor_seconds();
   out.budget = to_budget(inputs.requested.budget());
   out.lubricant_revision = effective.lubricant_revision();
   out.gear_set_revision = effective.gear_set_revision();
@@ -245,9 +246,9 @@ Outcome<v1::Campaign> create_campaign(Application& application,
   if (request.validate_only()) return campaign_preview(*inputs, campaign);
   if (auto full = project_full(application, call)) return *std::move(full);
   if (application.jobs.is_stopping()) return shutting_down();
-  const auto admitted =
-      application.jobs.campaigns().submit(campaign, estimate_cost(*inputs).processor_seconds(),
-                                          3600 * call.grant->quota.processor_hours, call.limits);
+  if (auto busy = project_busy(application, campaign.cost_seconds, call)) return *std::move(busy);
+  const auto admitted = application.jobs.campaigns().submit(
+      campaign, campaign.cost_seconds, 3600 * call.grant->quota.processor_hours, call.limits);
   if (!admitted.has_place || admitted.is_over_quota) {
     return campaign_turned_away(application, admitted.is_over_quota, call);
   }

@@ -135,8 +135,10 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
       db,
       "INSERT INTO campaigns (project, number, state, create_time, request_id, request_hash, "
       "input_hash, model_version, platform, client, principal, candidates, conditions, "
-      "budget_seconds, budget_points, stored_bytes, request, candidate_table, lubricant, gear_set, "
+      "cost_seconds, budget_seconds, budget_points, stored_bytes, request, candidate_table, "
+      "lubricant, gear_set, "
       "surface, vehicle) VALUES (?, ?, 1, ?, nullif(?, ''), ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?, "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
       "(SELECT revision_id FROM revision_names WHERE name = ? AND revision = ?), "
@@ -155,6 +157,7 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
   bind(campaign.principal);
   bind(campaign.candidates);
   bind(campaign.conditions);
+  bind(campaign.cost_seconds);
   bind(campaign.budget.processor_seconds);
   bind(campaign.budget.points);
   bind(static_cast<std::int64_t>(campaign.request.size() + campaign.candidate_table.size()));

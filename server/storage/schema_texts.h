@@ -469,6 +469,7 @@ CREATE TABLE campaigns (
   conditions INTEGER NOT NULL CHECK (conditions >= 1),
   points_done INTEGER NOT NULL DEFAULT 0,
   points_refused INTEGER NOT NULL DEFAULT 0,
+  cost_seconds REAL NOT NULL CHECK (cost_seconds >= 0),
   budget_seconds REAL NOT NULL CHECK (budget_seconds >= 0),
   budget_points INTEGER NOT NULL CHECK (budget_points >= 0),
   processor_seconds REAL NOT NULL DEFAULT 0,

@@ -508,8 +508,11 @@ std::int64_t Store::result_bytes(const std::string& project, const CallLimits& l
 double Store::unfinished_seconds(const std::string& project, const CallLimits& limits) {
   return read(limits, [&](Connection& db) {
     Prepared sum(db,
-                 "SELECT coalesce(sum(cost_seconds), 0) FROM simulations "
-                 "WHERE project = ? AND state IN (1, 2)");
+                 "SELECT (SELECT coalesce(sum(cost_seconds), 0) FROM simulations "
+                 "WHERE project = ?1 AND state IN (1, 2)) + "
+                 "(SELECT coalesce(sum(cost_seconds * (1 - 1.0 * points_done / "
+                 "(candidates * conditions))), 0) FROM campaigns INDEXED BY running_campaigns "
+                 "WHERE project = ?1 AND state = 1)");
     sum.bind(1, project);
     sum.executeStep();
     return sum.getColumn(0).getDouble();

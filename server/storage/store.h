@@ -164,8 +164,8 @@ class Store {
   std::uint64_t changes() const { return recent_events_.changes(); }
   /// Returns the bytes of all results of a project, with their histories, and of its campaigns.
   std::int64_t result_bytes(const std::string& project, const CallLimits& limits = {});
-  /// Returns the estimated cost of all simulations of a project that wait or run [s of one
-  /// processor].
+  /// Returns the estimated cost of all simulations of a project that wait or run, and of what is
+  /// left of its campaigns that run [s of one processor].
   double unfinished_seconds(const std::string& project, const CallLimits& limits = {});
   EventRange event_range(const std::string& project, const CallLimits& limits = {});
   /// Tells the observer of every later commit, for as long as it lives.

@@ -42,6 +42,7 @@ struct NewCampaign {
   std::string principal;
   int candidates = 1;
   int conditions = 1;
+  double cost_seconds = 0;  ///< estimate, in seconds of one processor
   CampaignBudget budget;
   // Revisions of its resources, as relative names; each exists in the project.
   std::string lubricant_revision;
