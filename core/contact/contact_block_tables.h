@@ -40,11 +40,7 @@ struct StartFit {
 /// with L = ln eta_0(T) + 9.67 and c = 5.1e-9 1/Pa (eq 31): R is tabulated once for the fluid's Z,
 /// so that no quadrature remains in the solve.
 struct ContactBlockTables {
-  /// False: everything goes to the reference.
-  bool covered = false;
-
-  double log_film = 0;  ///< see log_film_constant
-  bool inlet_shear_heating = false;
+  double log_film = 0;             ///< see log_film_constant
   double log_thermal_loading = 0;  ///< see log_thermal_loading of laws
   double reduced_modulus = 0;      ///< E' [Pa]
   double inverse_roughness = 0;    ///< 1/sigma_G [1/m]
@@ -52,6 +48,10 @@ struct ContactBlockTables {
   BoundaryFriction boundary{};  ///< 0: no F_b
   double conductance_factor_1 = 0, conductance_factor_2 = 0;
   double inlet_temperature = 0;
+
+  /// False: everything goes to the reference.
+  bool covered = false;
+  bool inlet_shear_heating = false;
   bool isothermal = false, limited = false;
 
   ShearLaw<double> shear{};

@@ -8,6 +8,7 @@
 #include <exception>
 #include <limits>
 
+#include "server/storage/checksum.h"
 #include "server/storage/database_check.h"
 #include "server/storage/database_files.h"
 #include "server/storage/durable_files.h"

@@ -179,7 +179,8 @@ std::vector<Measurement> measure_flood() {
   const std::string request = message.SerializeAsString();
   const double gets_alone = percentile_99(gets(dispatcher, *row, request, kGets));
   const double simulations_alone = percentile_99(simulations(bench, app, kSimulations));
-  for (int i = 0; i < kFloodSimulations; ++i) create(app, "flood", v1::SCHEDULING_CLASS_UNSPECIFIED);
+  for (int i = 0; i < kFloodSimulations; ++i)
+    create(app, "flood", v1::SCHEDULING_CLASS_UNSPECIFIED);
   const double simulations_beside = percentile_99(simulations(bench, app, kSimulations));
   std::atomic<bool> is_stopping = false;
   std::atomic<int> open = 0;
@@ -250,5 +251,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: guard_benchmark RESULTS.json [calls]\n");
     return 2;
   }
-  return tribodyn::server::run(argv[1], argc > 2 ? std::atoi(argv[2]) : 100'000);
+  try {
+    return tribodyn::server::run(argv[1], argc > 2 ? std::atoi(argv[2]) : 100'000);
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "guard_benchmark: %s\n", failure.what());
+    return 1;
+  }
 }

@@ -26,7 +26,7 @@ using testing::HasSubstr;
 /// Resources of a test besides the seeds.
 class Fluids {
  public:
-  void add(const std::string& name, v1::Lubricant lubricant) {
+  void add(const std::string& name, const v1::Lubricant& lubricant) {
     bodies_[name] = lubricant.SerializeAsString();
   }
   ResourceLookup lookup() const {

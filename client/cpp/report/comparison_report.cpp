@@ -66,7 +66,7 @@ std::string shares_text(const Shares& shares) {
   for (const v1::InputShare& share : shares) {
     if (static_cast<int>(parts.size()) == kListedShares) break;
     if (share.variance_share() < kSmallestListedShare) break;
-    const std::string of = share.lubricant_revision();
+    const std::string& of = share.lubricant_revision();
     parts.push_back(input_text(share.input()) + (of.empty() ? "" : " of " + resource_id(of)) + " " +
                     share_text(share.variance_share()));
   }
@@ -318,8 +318,9 @@ std::string input_error_text(const v1::UncertainFigure& figure) {
 
 std::string curve_uncertainty_remark(const v1::ComparePointsResponse& response) {
   const v1::ComparedLubricant& lubricant = response.lubricants(0);
-  const std::string exact = "No uncertainty of the lubricant's parameters is stated.";
-  if (lubricant.mean_shares().empty()) return exact;
+  if (lubricant.mean_shares().empty()) {
+    return "No uncertainty of the lubricant's parameters is stated.";
+  }
   return linearity_text(lubricant.mean_inefficiency_percent(), response.draws()) + " " +
          advice_text(lubricant.mean_shares());
 }

@@ -80,7 +80,7 @@ class ColumnFinder {
       if (type == v1::Lubricant::descriptor() ? is_of_surface : is_of_lubricant) continue;
       const ResourceKind& kind = kind_of(*type);
       std::string complaint;
-      if (const auto column = find_column(kind, rest, complaint)) {
+      if (auto column = find_column(kind, rest, complaint)) {
         if (is_parameter(*column) || is_measurement(*column) || is_uncertainty(*column)) {
           return column;
         }

@@ -55,14 +55,19 @@ class ByteStream {
   auto async_read_some(const Buffers& buffers, Handler&& handler) {
     const boost::asio::mutable_buffer first = *boost::asio::buffer_sequence_begin(buffers);
     return boost::asio::async_initiate<Handler, void(Error, std::size_t)>(
-        [this, first](auto&& done) { read_some(first, copyable(std::move(done))); }, handler);
+        [this, first](auto&& done) {
+          read_some(first, copyable(std::forward<decltype(done)>(done)));
+        },
+        handler);
   }
   template <class Buffers, class Handler>
   auto async_write_some(const Buffers& buffers, Handler&& handler) {
     std::vector<boost::asio::const_buffer> all(boost::asio::buffer_sequence_begin(buffers),
                                                boost::asio::buffer_sequence_end(buffers));
     return boost::asio::async_initiate<Handler, void(Error, std::size_t)>(
-        [this, &all](auto&& done) { write_some(std::move(all), copyable(std::move(done))); },
+        [this, &all](auto&& done) {
+          write_some(std::move(all), copyable(std::forward<decltype(done)>(done)));
+        },
         handler);
   }
 

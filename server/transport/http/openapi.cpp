@@ -391,15 +391,13 @@ Json OpenApiDocument::answer_of(const HttpRoutes::Route& route) {
     std::string type = content_type(form);
     type = type.substr(0, type.find(';'));
     Json schema = {{"type", "string"}};
-    if (form == Form::kMessage) {
+    if (form == Form::kMessage || form == Form::kEvents) {  // an event's data is a message
       schema = message_reference(*route.method->descriptor->output_type());
     } else if (form == Form::kColumns) {
       schema = {{"type", "object"}, {"additionalProperties", true}};
       if (content.contains(type)) {  // the form of a message as well
         schema = {{"anyOf", {content[type]["schema"], schema}}};
       }
-    } else if (form == Form::kEvents) {  // the data of an event
-      schema = message_reference(*route.method->descriptor->output_type());
     } else if (form == Form::kLines) {  // a line
       const Json message = message_reference(*route.method->descriptor->output_type());
       schema = {{"type", "object"},

@@ -104,7 +104,7 @@ fs::path default_dashboard_folder() {
   std::error_code missing;
   const fs::path program = fs::read_symlink("/proc/self/exe", missing).parent_path();
   for (const char* each : {"../../web/dist", "../share/tribodyn/dashboard"}) {
-    const fs::path folder = (program / each).lexically_normal();
+    fs::path folder = (program / each).lexically_normal();
     if (fs::exists(folder / "index.html", missing)) return folder;
   }
   return {};
