@@ -6,6 +6,18 @@
 #include <numeric>
 
 namespace tribodyn {
+namespace {
+
+/// Returns the variance of the difference of two candidates by inputs whose errors they share, or
+/// whose errors are independent between them. `effects`: standard uncertainty of an input times its
+/// effect, by candidate and input; none: 0.
+double variance(const Eigen::MatrixXd& effects, Eigen::Index one, Eigen::Index other, bool shared) {
+  if (effects.cols() == 0) return 0;  // Eigen has no row of it: its data are null
+  if (shared) return (effects.row(one) - effects.row(other)).squaredNorm();
+  return effects.row(one).squaredNorm() + effects.row(other).squaredNorm();
+}
+
+}  // namespace
 
 CandidateComparison compare_candidates(const UncertainCandidates& candidates, Eigen::Index one,
                                        Eigen::Index other) {
@@ -13,10 +25,8 @@ CandidateComparison compare_candidates(const UncertainCandidates& candidates, Ei
   out.difference = candidates.values(one) - candidates.values(other);
   out.higher_probability = 0.5;
   if (one == other) return out;
-  out.standard_uncertainty = std::sqrt(
-      candidates.own_effects.row(one).squaredNorm() +
-      candidates.own_effects.row(other).squaredNorm() +
-      (candidates.shared_effects.row(one) - candidates.shared_effects.row(other)).squaredNorm());
+  out.standard_uncertainty = std::sqrt(variance(candidates.own_effects, one, other, false) +
+                                       variance(candidates.shared_effects, one, other, true));
   out.solver_error = candidates.solver_errors(one) + candidates.solver_errors(other);
   const double certain =
       std::copysign(std::max(0.0, std::abs(out.difference) - out.solver_error), out.difference);

@@ -244,7 +244,7 @@ void CampaignJobs::ensure_queued(const StoredCampaign& campaign) {
 std::optional<StoredCampaign> CampaignJobs::change(const CampaignChange& change,
                                                    const CallLimits& limits) {
   const std::lock_guard control(control_mutex_);
-  const auto changed = store_.change_campaign(change, limits);
+  auto changed = store_.change_campaign(change, limits);
   if (!changed) return store_.campaign(change.id);
   if (changed->state != CampaignState::kRunning) {
     halt(change.id);
