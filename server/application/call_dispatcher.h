@@ -43,8 +43,8 @@ class IncomingCall {
   virtual std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() = 0;
   /// Frees the serialised request.
   virtual void drop_request() = 0;
-  /// Returns true if the thread that passes the call to the dispatcher may run it: if the transport
-  /// has a further thread that reads requests and writes answers meanwhile.
+  /// Returns true if the thread that passes the call to the dispatcher may run it, should it be a
+  /// short read: what waits for that thread meanwhile waits for a millisecond.
   virtual bool may_run_on_calling_thread() const { return false; }
 
   const Method& method;
