@@ -13,11 +13,11 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr char kCampaignColumns[] =
+constexpr char kSelectCampaigns[] =
     "SELECT id, project, number, state, stop_reason, stop_message, create_time, end_time, request, "
     "request_id, request_hash, input_hash, model_version, platform, principal, candidates, "
     "conditions, points_done, points_refused, budget_seconds, budget_points, processor_seconds, "
-    "stored_bytes, "
+    "cost_seconds, stored_bytes, "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "

@@ -26,7 +26,7 @@ PointResult point(double kilometres_per_hour, PointStart start = PointStart::kQu
   return solve_operating_point(reference_scene(), cruise(kilometres_per_hour), options);
 }
 
-bool warns(const PointResult& result, const std::string& code) {
+bool has_warning(const PointResult& result, const std::string& code) {
   return std::any_of(result.warnings.begin(), result.warnings.end(),
                      [&](const RangeWarning& warning) { return warning.code == code; });
 }
@@ -75,8 +75,8 @@ TEST(SteadyStates, ThePeriodDoublesNearTwiceTheResonance) {
     EXPECT_EQ(r.recorded_mesh_cycles, 2);
     EXPECT_TRUE(r.contact_loss);
     EXPECT_LT(r.statistics.largest_multiplier, 1);
-    EXPECT_TRUE(warns(r, "PERIOD"));
-    EXPECT_FALSE(warns(r, "NOT_SETTLED"));
+    EXPECT_TRUE(has_warning(r, "PERIOD"));
+    EXPECT_FALSE(has_warning(r, "NOT_SETTLED"));
     for (const ContactLoss& loss : r.contact_losses) {
       EXPECT_GE(loss.start_mesh_phase, 0);
       EXPECT_LT(loss.start_mesh_phase, 2);
@@ -302,7 +302,7 @@ TEST(SteadyStates, WithoutWorkToSettleTheAnswerSaysSo) {
   EXPECT_FALSE(r.settled);
   EXPECT_EQ(r.period_in_mesh_cycles, 0);
   EXPECT_EQ(r.recorded_mesh_cycles, 3);
-  EXPECT_TRUE(warns(r, "NOT_SETTLED"));
+  EXPECT_TRUE(has_warning(r, "NOT_SETTLED"));
   EXPECT_TRUE(std::isfinite(r.inefficiency_rms.value()));
 }
 

@@ -34,10 +34,10 @@ struct StepCase {
 void PrintTo(const StepCase& c, std::ostream* out) { *out << c.name; }
 
 /// A gear pair that runs, with a march of kept flanks over one mesh cycle to compare with.
-struct Bench {
+struct PointBench {
   static constexpr double kSpeed = 230;  // of the pinion [rad/s]
 
-  Bench(const StepCase& c, int steps, bool wheel_torque)
+  PointBench(const StepCase& c, int steps, bool wheel_torque)
       : scene(changed(c)),
         mesh(scene.gear_set),
         contacts({scene.lubricant, scene.solid, scene.roughness, scene.boundary,
@@ -105,7 +105,7 @@ class StepsSideBySide : public testing::TestWithParam<StepCase> {};
 TEST_P(StepsSideBySide, LeadWhereEachLeadsAlone) {
   for (const int steps : {5, 12, 16, 31}) {
     SCOPED_TRACE(steps);
-    Bench bench(GetParam(), steps, false);
+    PointBench bench(GetParam(), steps, false);
     ASSERT_TRUE(bench.marched);
     for (const InstructionSet set : supported_instruction_sets()) {
       SCOPED_TRACE(FlankContactBatch::name(set));
@@ -126,7 +126,7 @@ TEST_P(StepsSideBySide, LeadWhereEachLeadsAlone) {
 TEST_P(StepsSideBySide, HaveTheDerivativesOfTheWholeMarch) {
   constexpr int kSteps = 20;
   for (const bool wheel : {false, true}) {
-    Bench bench(GetParam(), kSteps, wheel);
+    PointBench bench(GetParam(), kSteps, wheel);
     for (const InstructionSet set : supported_instruction_sets()) {
       SCOPED_TRACE(FlankContactBatch::name(set));
       Columns end(kWheelSpeed + 1, kSteps);
@@ -139,7 +139,7 @@ TEST_P(StepsSideBySide, HaveTheDerivativesOfTheWholeMarch) {
         // By components' sizes: their derivatives have many units.
         const bool by_torque = j + 1 == kStepUnknowns;
         const double by =
-            by_torque ? march_scales(bench.system, Bench::kSpeed).torque : bench.scale(j + 1);
+            by_torque ? march_scales(bench.system, PointBench::kSpeed).torque : bench.scale(j + 1);
         for (int i = kPinionShaftTwist; i <= kWheelSpeed; ++i) {
           EXPECT_NEAR(whole[kStepUnknowns * j + i - 1] * by / bench.scale(i),
                       bench.sensitivity[i](j) * by / bench.scale(i), 1e-11)
@@ -159,7 +159,7 @@ TEST_P(StepsSideBySide, HaveTheDerivativesOfTheWholeMarch) {
 
 TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
   constexpr int kSteps = 12;
-  Bench bench(GetParam(), kSteps, false);
+  PointBench bench(GetParam(), kSteps, false);
   GearPairSystem& system = bench.system;
   for (const InstructionSet set : supported_instruction_sets()) {
     SCOPED_TRACE(FlankContactBatch::name(set));
@@ -216,7 +216,7 @@ TEST_P(StepsSideBySide, KnowForcesMiddlesAndWhatContactsSee) {
 
 TEST_P(StepsSideBySide, AreGivenUpWhereTheyMeanNothing) {
   constexpr int kSteps = 12;
-  Bench bench(GetParam(), kSteps, false);
+  PointBench bench(GetParam(), kSteps, false);
   for (const InstructionSet set : supported_instruction_sets()) {
     SCOPED_TRACE(FlankContactBatch::name(set));
     Columns end(kWheelSpeed + 1, kSteps);
@@ -235,7 +235,7 @@ TEST_P(StepsSideBySide, AreGivenUpWhereTheyMeanNothing) {
 
 /// Everything that a block of steps gives.
 struct Given {
-  Given(InstructionSet set, const Bench& bench)
+  Given(InstructionSet set, const PointBench& bench)
       : steps(bench.grid.steps()),
         end(kWheelSpeed + 1, steps),
         derivatives(CycleDerivatives::kMatrix, steps),
@@ -284,7 +284,7 @@ TEST_P(StepsSideBySide, AreTheSameBitsInEveryWidthWithFusedMultiplyAdds) {
   if (!FlankContactBatch::supported(InstructionSet::kAvx512)) GTEST_SKIP() << "no AVX-512 here";
   for (const int steps : {5, 16, 31}) {
     SCOPED_TRACE(steps);
-    const Bench bench(GetParam(), steps, false);
+    const PointBench bench(GetParam(), steps, false);
     const Given narrow(InstructionSet::kAvx2, bench), wide(InstructionSet::kAvx512, bench);
     const auto count = static_cast<std::size_t>(steps);
     EXPECT_TRUE(same_bits(narrow.end, wide.end, kWheelSpeed + 1, count));
@@ -306,7 +306,7 @@ TEST_P(StepsSideBySide, AreTheSameBitsInEveryWidthWithFusedMultiplyAdds) {
 // Without fused multiply-adds sums are rounded once more; nothing else may differ.
 TEST_P(StepsSideBySide, DifferInTheLastDigitsWithoutFusedMultiplyAdds) {
   constexpr int kSteps = 16;
-  const Bench bench(GetParam(), kSteps, false);
+  const PointBench bench(GetParam(), kSteps, false);
   const Given plain(InstructionSet::kPortable, bench);
   for (const InstructionSet set : supported_instruction_sets()) {
     SCOPED_TRACE(FlankContactBatch::name(set));
@@ -323,7 +323,7 @@ TEST_P(StepsSideBySide, DifferInTheLastDigitsWithoutFusedMultiplyAdds) {
 
 TEST_P(StepsSideBySide, DoNotKnowTheirNeighbours) {
   constexpr int kSteps = 16;
-  const Bench bench(GetParam(), kSteps, false);
+  const PointBench bench(GetParam(), kSteps, false);
   for (const InstructionSet set : supported_instruction_sets()) {
     SCOPED_TRACE(FlankContactBatch::name(set));
     Columns end(kWheelSpeed + 1, kSteps), end_in_company(kWheelSpeed + 1, kSteps);

@@ -17,8 +17,8 @@
 namespace tribodyn::server {
 namespace {
 
-const std::string kMarker = "Grandmother's secret additive 4711";
-constexpr double kMarkerNumber = 1.2345678901234567e-8;
+const std::string kSecretName = "Grandmother's secret additive 4711";
+constexpr double kSecretNumber = 1.2345678901234567e-8;
 
 std::string bytes_of(double number) {
   std::string out(sizeof number, '\0');
@@ -32,9 +32,9 @@ class Removals : public testing::Test {
 
   StoredResource write_secret(int revision) {
     v1::Lubricant body;
-    body.set_display_name(kMarker);
-    body.set_description(std::string(5000, 'd') + kMarker + std::to_string(revision));
-    body.set_pressure_viscosity_coefficient_per_pascal(kMarkerNumber);
+    body.set_display_name(kSecretName);
+    body.set_description(std::string(5000, 'd') + kSecretName + std::to_string(revision));
+    body.set_pressure_viscosity_coefficient_per_pascal(kSecretNumber);
     const auto present = store_.resource("lubricants/secret");
     return store_
         .write_resources({{{"lubricants/secret", body.SerializeAsString()}, present}}, revision)
@@ -44,12 +44,12 @@ class Removals : public testing::Test {
   std::int64_t queue(char input, int revision) {
     v1::SimulationResult assumptions;
     assumptions.add_assumptions()->set_value("1.2345678901234567e-8 /Pa");
-    assumptions.mutable_assumptions(0)->set_source(kMarker);
+    assumptions.mutable_assumptions(0)->set_source(kSecretName);
     return store_
         .add_simulation({.request = "request",
                          .key = key(input),
                          .ledger = assumptions.SerializeAsString(),
-                         .labels = {{"series", kMarker}},
+                         .labels = {{"series", kSecretName}},
                          .lubricant_revision = "lubricants/secret@" + std::to_string(revision)},
                         10)
         .id;
@@ -59,7 +59,7 @@ class Removals : public testing::Test {
     const auto id = queue(input, revision);
     EXPECT_TRUE(store_.mark_running(id, 11, key(input)));
     EXPECT_TRUE(store_.mark_succeeded(
-        id, 12, {key(input), kMarker, {{"column", std::vector<double>(50, kMarkerNumber)}}}));
+        id, 12, {key(input), kSecretName, {{"column", std::vector<double>(50, kSecretNumber)}}}));
     return id;
   }
 
@@ -85,8 +85,8 @@ TEST_F(Removals, APurgedFormulationIsInNoFile) {
   const auto old = finish('c', 2);
   ASSERT_EQ(store_.remove_simulation(old), Store::Removal::kDone);
   store_.add_resources({{"lubricants/other", "other"}}, 20);
-  ASSERT_FALSE(files_with(kMarker).empty());
-  ASSERT_FALSE(files_with(bytes_of(kMarkerNumber)).empty());
+  ASSERT_FALSE(files_with(kSecretName).empty());
+  ASSERT_FALSE(files_with(bytes_of(kSecretNumber)).empty());
 
   const auto purge = store_.purge_resource(*store_.resource("lubricants/secret"), true);
   EXPECT_EQ(purge.revisions, 3);
@@ -94,11 +94,12 @@ TEST_F(Removals, APurgedFormulationIsInNoFile) {
   EXPECT_EQ(purge.dependents.results, 2);
   EXPECT_EQ(store_.resource("lubricants/secret"), std::nullopt);
   EXPECT_EQ(store_.revision("lubricants/secret", 1), std::nullopt);
-  EXPECT_FALSE(files_with(kMarker).empty()) << "free pages are expected to hold what was removed";
+  EXPECT_FALSE(files_with(kSecretName).empty())
+      << "free pages are expected to hold what was removed";
 
   store_.erase_removed();
-  EXPECT_EQ(files_with(kMarker), std::vector<std::string>());
-  EXPECT_EQ(files_with(bytes_of(kMarkerNumber)), std::vector<std::string>());
+  EXPECT_EQ(files_with(kSecretName), std::vector<std::string>());
+  EXPECT_EQ(files_with(bytes_of(kSecretNumber)), std::vector<std::string>());
   EXPECT_EQ(files_with("1.2345678901234567"), std::vector<std::string>());
   EXPECT_TRUE(store_.resource("lubricants/other")) << "others stay";
 }
@@ -154,7 +155,7 @@ TEST_F(Removals, AResultIsKeptWhileAnotherSimulationUsesIt) {
   ASSERT_EQ(store_.simulation(second)->state, StoredState::kSucceeded);
   EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kDone);
   EXPECT_TRUE(store_.result(second));
-  EXPECT_EQ(store_.history_rows(second, "column", 0, 1).front(), kMarkerNumber);
+  EXPECT_EQ(store_.history_rows(second, "column", 0, 1).front(), kSecretNumber);
   EXPECT_EQ(store_.remove_simulation(first), Store::Removal::kAbsent);
 }
 

@@ -159,12 +159,12 @@ TEST(WaveLength, IsThatOfASine) {
 }
 
 TEST(WaveLength, TellsFilteredNoiseFromWhiteNoise) {
-  constexpr double kSpacing = 0.5e-6;
+  constexpr double kSampling = 0.5e-6;
   std::mt19937 random(1);
   std::normal_distribution<double> height(0, 0.3e-6);
   std::vector<double> white(40'000);
   for (double& z : white) z = height(random);
-  EXPECT_NEAR(wave_length_in_spacings(spectral_moments(white, kSpacing), kSpacing), 3, 0.05);
+  EXPECT_NEAR(wave_length_in_spacings(spectral_moments(white, kSampling), kSampling), 3, 0.05);
   // ISO 16610-21 with lambda_s of five spacings.
   constexpr double kCutOff = 5, kAlpha = 0.4697;
   std::vector<double> filtered;
@@ -177,7 +177,7 @@ TEST(WaveLength, TellsFilteredNoiseFromWhiteNoise) {
     }
     filtered.push_back(sum);
   }
-  const double waves = wave_length_in_spacings(spectral_moments(filtered, kSpacing), kSpacing);
+  const double waves = wave_length_in_spacings(spectral_moments(filtered, kSampling), kSampling);
   EXPECT_NEAR(waves, 5.3, 0.1);
   EXPECT_GT(waves, kLeastSpacingsPerWave);
 }

@@ -134,18 +134,18 @@ std::vector<std::string> screening_footer(const Screening& screening,
 
 std::string screening_plot(const Screening& screening, const std::vector<CandidateFigures>& ranking,
                            const ScreeningFront* front, const ScreeningEffects* effects) {
-  constexpr double kTop = 90;
-  const double effects_top = kTop + (front == nullptr ? 0 : kFrontHeight + 96);
+  constexpr double kFrontTop = 90;
+  const double effects_top = kFrontTop + (front == nullptr ? 0 : kFrontHeight + 96);
   const std::size_t drawn =
       effects == nullptr ? 0 : std::min(effects->effects.size(), kDrawnEffects);
   const double footer_top = effects == nullptr
-                                ? kTop + kFrontHeight + 66
+                                ? kFrontTop + kFrontHeight + 66
                                 : effects_top + kEffectHeight * static_cast<double>(drawn) + 50;
   const std::vector<std::string> lines = footer_lines(
       screening_footer(screening, ranking, front, effects), kScreeningWidth - 2 * kScreeningLeft);
   Svg svg(kScreeningWidth, footer_top + kFooterPitch * static_cast<double>(lines.size()));
   svg.text({kScreeningLeft, 40}, "Screening", {21, "start", "#111", true, 0});
-  if (front != nullptr) draw_panel(front_panel(screening, ranking, *front, kTop), svg);
+  if (front != nullptr) draw_panel(front_panel(screening, ranking, *front, kFrontTop), svg);
   if (effects != nullptr) draw_effects(*effects, effects_top, svg);
   draw_footer(lines, {kScreeningLeft, footer_top}, svg);
   return svg.finish();

@@ -19,7 +19,7 @@ namespace {
 
 using google::protobuf::Message;
 
-std::vector<double> values_of(const v1::HistoryChunk& chunk) {
+std::vector<double> stored_values(const v1::HistoryChunk& chunk) {
   std::vector<double> out(chunk.values().size() / sizeof(double));
   std::memcpy(out.data(), chunk.values().data(), out.size() * sizeof(double));
   return out;
@@ -114,7 +114,7 @@ class RowFormat final : public HistoryFormat {
     return is_csv_ ? csv_header(names_) : numpy_header(names_, schema_.row_count());
   }
   std::string chunk_text(const v1::HistoryChunk& chunk) override {
-    run_.push_back(values_of(chunk));
+    run_.push_back(stored_values(chunk));
     if (run_.size() < names_.size()) return {};
     const Columns run = std::exchange(run_, {});
     return is_csv_ ? csv_rows(run) : numpy_rows(run);
@@ -139,7 +139,7 @@ class JsonColumnsFormat final : public HistoryFormat {
       out = begun_ == 0 ? "\"" : "],\"";
       out += names_[begun_++] + "\":[";
     }
-    for (const double value : values_of(chunk)) {
+    for (const double value : stored_values(chunk)) {
       if (out.empty() || out.back() != '[') out += ',';
       append_json_number(value, out);
     }

@@ -81,7 +81,7 @@ std::string lower_case(std::string_view text) {
 }
 
 constexpr double kBusySeconds = 2;  // until a body of usual length has been read
-constexpr auto kShutdownGrace = std::chrono::seconds(1);          // for answers under way
+constexpr auto kAnswersGrace = std::chrono::seconds(1);           // for answers under way
 constexpr auto kFarewell = std::chrono::seconds(2);               // for a client to end TLS in turn
 constexpr auto kHangupInterval = std::chrono::milliseconds(200);  // of looks at a busy connection
 // Parts of streams, some 20 us each, that are written before a pause: 16,000 a second in all.
@@ -584,7 +584,7 @@ void HttpServer::Connections::begin_stop() {
     if (!session->is_answering()) session->drop();
   }
   if (sessions_.empty()) return end_stop();
-  grace_.expires_after(kShutdownGrace);
+  grace_.expires_after(kAnswersGrace);
   grace_.async_wait([this](Error failure) {
     if (!failure) end_stop();
   });
