@@ -183,16 +183,9 @@ v1::Campaign campaign_preview(const CampaignInputs& inputs, const NewCampaign& c
   return out;
 }
 
-google::rpc::Status campaign_turned_away(Application& application, bool is_over_quota,
-                                         const CallContext& call) {
+google::rpc::Status campaign_turned_away(Application& application) {
   constexpr double kRetrySeconds = 60;  // campaigns take seconds to hours
   if (application.jobs.is_stopping()) return shutting_down();
-  if (is_over_quota) {
-    return over_quota(call.grant->principal, "processor-hours",
-                      fmt::format("{:.3g} processor hours of campaigns that run",
-                                  call.grant->quota.processor_hours),
-                      kRetrySeconds);
-  }
   return exhausted(v1::ERROR_REASON_TOO_MANY_WAITING,
                    fmt::format("too many campaigns run, or their candidates take too much memory; "
                                "try again in {:g} s",
@@ -246,12 +239,12 @@ Outcome<v1::Campaign> create_campaign(Application& application,
   if (request.validate_only()) return campaign_preview(*inputs, campaign);
   if (auto full = project_full(application, call)) return *std::move(full);
   if (application.jobs.is_stopping()) return shutting_down();
-  if (auto busy = project_busy(application, campaign.cost_seconds, call)) return *std::move(busy);
-  const auto admitted = application.jobs.campaigns().submit(
-      campaign, campaign.cost_seconds, 3600 * call.grant->quota.processor_hours, call.limits);
-  if (!admitted.has_place || admitted.is_over_quota) {
-    return campaign_turned_away(application, admitted.is_over_quota, call);
+  WorkPlace place;
+  if (auto refused = take_hours(application, campaign.cost_seconds, call, place)) {
+    return *std::move(refused);
   }
+  const auto admitted = application.jobs.campaigns().submit(campaign, call.limits);
+  if (!admitted.has_place) return campaign_turned_away(application);
   const StoredCampaign& stored = admitted.added.stored;
   if (admitted.added.kind != CampaignAdded::Kind::kAdded) {
     return repeated_answer(application, stored, request, stated, call);
@@ -334,6 +327,11 @@ Outcome<v1::Campaign> resume_campaign(Application& application,
   if (!violations.empty()) return invalid(violations);
   std::optional<CampaignBudget> budget;
   if (request.has_budget()) budget = to_budget(request.budget());
+  WorkPlace place;
+  if (found.message().state == CampaignState::kPaused) {
+    auto refused = take_hours(application, found.message().remaining_seconds(), call, place);
+    if (refused) return *std::move(refused);
+  }
   const auto stored = application.jobs.campaigns().go_on(found.message().id, budget, call.limits);
   if (!stored) return no_campaign(request.name());
   if (!has_ended(stored->state)) return to_message(application, *stored);

@@ -19,19 +19,35 @@ std::optional<google::rpc::Status> project_full(Application& application, const 
       kRetryAfterDeletion);
 }
 
-std::optional<google::rpc::Status> project_busy(Application& application, double cost_seconds,
-                                                const CallContext& call) {
+std::optional<google::rpc::Status> take_hours(Application& application, double cost_seconds,
+                                              const CallContext& call, WorkPlace& place) {
   constexpr double kRetrySeconds = 10;
-  const double most = 3600 * application.project_quotas->quota().processor_hours;
-  if (most <= 0 ||
-      application.store.unfinished_seconds(call.project, call.limits) + cost_seconds <= most) {
-    return std::nullopt;
+  const auto over = [](const std::string& whose, const std::string& quota, double hours) {
+    return over_quota(
+        whose, quota,
+        fmt::format("{:.3g} processor hours of simulations and campaigns that wait and run", hours),
+        kRetrySeconds);
+  };
+  const double principals = call.grant->quota.processor_hours;
+  if (principals > 0) {
+    place.of_principal = call.grant->allowance.reserve(cost_seconds, 3600 * principals, [&] {
+      return application.jobs.unfinished_seconds(payer(call));
+    });
+    if (place.of_principal == nullptr) {
+      return over(call.grant->principal, "processor-hours", principals);
+    }
   }
-  return over_quota(
-      "project " + call.project, "project-processor-hours",
-      fmt::format("{:.3g} processor hours of simulations and campaigns that wait and run",
-                  most / 3600),
-      kRetrySeconds);
+  const double projects = application.project_quotas->quota().processor_hours;
+  if (projects > 0) {
+    place.of_project = application.project_quotas->of(call.project);
+    place.in_project = place.of_project->reserve(cost_seconds, 3600 * projects, [&] {
+      return application.store.unfinished_seconds(call.project, call.limits);
+    });
+    if (place.in_project == nullptr) {
+      return over("project " + call.project, "project-processor-hours", projects);
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace tribodyn::server

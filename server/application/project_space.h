@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "google/rpc/status.pb.h"
@@ -12,10 +13,17 @@ namespace tribodyn::server {
 /// else nullopt.
 std::optional<google::rpc::Status> project_full(Application& application, const CallContext& call);
 
-/// Returns the error of a project whose simulations and campaigns that wait and run leave no room
-/// for a further one of that cost [s of one processor]; else nullopt. Like project_full(), two
-/// calls at the same time may both pass.
-std::optional<google::rpc::Status> project_busy(Application& application, double cost_seconds,
-                                                const CallContext& call);
+/// Room in the quotas of processor hours, held until the work that takes it is written.
+struct WorkPlace {
+  std::shared_ptr<Allowance> of_project;
+  std::shared_ptr<void> in_project = nullptr;
+  std::shared_ptr<void> of_principal = nullptr;
+};
+
+/// Takes room for a simulation or campaign of that cost [s of one processor] in the quotas of its
+/// project and of the principal that calls: simulations and campaigns that wait and run count.
+/// Returns the error of the quota without room; else nullopt.
+std::optional<google::rpc::Status> take_hours(Application& application, double cost_seconds,
+                                              const CallContext& call, WorkPlace& place);
 
 }  // namespace tribodyn::server

@@ -31,6 +31,18 @@ void Allowance::close_stream() {
   --streams_;
 }
 
+std::shared_ptr<void> Allowance::reserve(double seconds, double most,
+                                         const std::function<double()>& unfinished) {
+  const std::lock_guard lock(mutex_);
+  // Work that is written meanwhile counts twice for a moment, none is left out.
+  if (unfinished() + reserved_seconds_ + seconds > most) return nullptr;
+  reserved_seconds_ += seconds;
+  return std::shared_ptr<void>(this, [this, seconds](void*) {
+    const std::lock_guard inner(mutex_);
+    reserved_seconds_ -= seconds;
+  });
+}
+
 std::shared_ptr<Allowance> ProjectQuotas::of(const std::string& project) {
   const std::lock_guard lock(mutex_);
   auto& out = allowances_[project];

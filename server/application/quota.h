@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -16,8 +17,8 @@ struct Quota {
   double processor_hours = 0;   ///< estimated, of the simulations that wait and run
 };
 
-/// What has been taken of a quota: a token bucket of calls, and open streams. Safe for
-/// concurrent access.
+/// What has been taken of a quota: a token bucket of calls, open streams, and processor time of
+/// work that is about to be queued. Safe for concurrent access.
 class Allowance {
  public:
   using Time = std::chrono::steady_clock::time_point;
@@ -31,12 +32,19 @@ class Allowance {
   bool open_stream(int most);
   void close_stream();
 
+  /// Reserves `seconds` of a processor until the returned place is destroyed, which must not
+  /// outlive the object: when the work is written. `unfinished` returns the time that written work
+  /// still takes [s]. Returns null, and reserves nothing, if all together would exceed `most`.
+  std::shared_ptr<void> reserve(double seconds, double most,
+                                const std::function<double()>& unfinished);
+
  private:
   std::mutex mutex_;
   bool has_begun_ = false;  // guarded by mutex_, as all below
   double calls_ = 0;
   Time filled_;
   int streams_ = 0;
+  double reserved_seconds_ = 0;
 };
 
 /// The quota of each project, and what has been taken of it. Safe for concurrent access.

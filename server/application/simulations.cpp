@@ -76,7 +76,6 @@ NewSimulation new_simulation(const v1::CreateSimulationRequest& request,
           .deadline_time = deadline_time(inputs.requested, system_time()),
           .client = call.client,
           .principal = payer(call),
-          .principal_seconds = 3600 * call.grant->quota.processor_hours,
           .scheduling_class = request.scheduling_class(),
           .cost_seconds = estimate_cost(inputs.effective).processor_seconds(),
           .labels = std::move(labels),
@@ -226,16 +225,8 @@ void log_submission(const CallContext& call, const NewSimulation& simulation,
       simulation.key.input_hash, simulation.cost_seconds, call.request_id);
 }
 
-google::rpc::Status no_place(Application& application, const SimulationJobs::Submitted& refused,
-                             const CallContext& call) {
-  const double retry_seconds = refused.retry_seconds;
+google::rpc::Status no_place(Application& application, double retry_seconds) {
   if (application.jobs.is_stopping()) return shutting_down();
-  if (refused.is_over_quota) {
-    return over_quota(call.grant->principal, "processor-hours",
-                      fmt::format("{:.3g} processor hours of simulations that wait and run",
-                                  call.grant->quota.processor_hours),
-                      retry_seconds);
-  }
   return exhausted(
       v1::ERROR_REASON_TOO_MANY_WAITING,
       fmt::format("the queue has no place for this simulation: at most {} simulations and {:.3g} "
@@ -273,14 +264,16 @@ Outcome<v1::Simulation> create_simulation(Application& application,
   const NewSimulation simulation = new_simulation(request, *inputs, sha256(text), call);
   if (request.validate_only()) return preview(*inputs, simulation);
   if (auto full = project_full(application, call)) return *std::move(full);
-  if (auto busy = project_busy(application, simulation.cost_seconds, call)) {
-    return *std::move(busy);
-  }
+  WorkPlace place;
+  auto refused = take_hours(application, simulation.cost_seconds, call, place);
   const SimulationJobs::Submitted submitted = application.jobs.submit(
-      simulation, std::make_shared<const SimulationInputs>(std::move(*inputs)), call.limits);
+      simulation, std::make_shared<const SimulationInputs>(std::move(*inputs)), call.limits,
+      !refused);
   const AddOutcome& added = submitted.added;
   log_submission(call, simulation, added);
-  if (added.kind == AddOutcome::Kind::kNoPlace) return no_place(application, submitted, call);
+  if (added.kind == AddOutcome::Kind::kNoPlace) {
+    return refused ? *std::move(refused) : no_place(application, submitted.retry_seconds);
+  }
   if (added.kind == AddOutcome::Kind::kRequestIdTaken) {
     return request_id_taken(added.stored, request, text);
   }

@@ -81,13 +81,13 @@ struct CampaignJobs::Part {
 
 /// A campaign that is RUNNING, or whose last slices end.
 struct CampaignJobs::Running {
-  Running(const StoredCampaign& campaign, int parts_, std::optional<double> cost)
+  Running(const StoredCampaign& campaign, int parts_)
       : id(campaign.id),
         name(name_of(campaign)),
         principal(campaign.principal),
         bytes(static_cast<std::size_t>(campaign.stored_bytes)),
         points(campaign.points()),
-        cost_seconds(cost.value_or(0)),
+        cost_seconds(campaign.cost_seconds),
         points_done(campaign.points_done),
         parts(static_cast<std::size_t>(parts_)) {
     for (std::size_t i = 0; i < parts.size(); ++i) parts[i].number = static_cast<int>(i);
@@ -97,10 +97,10 @@ struct CampaignJobs::Running {
   const std::string principal;
   const std::size_t bytes;  ///< of its request, when it began to run
   const std::int64_t points;
+  const double cost_seconds;  ///< estimate of all points, of one processor
 
   std::mutex mutex;
-  double cost_seconds;  // guarded by mutex, as all below
-  std::int64_t points_done;
+  std::int64_t points_done;                      // guarded by mutex, as all below
   bool is_halted = false;                        // no further row is to be computed
   std::shared_ptr<const CampaignInputs> inputs;  // null before the first slice
   std::deque<RowRange> missing;                  // candidates that no part has taken
@@ -111,6 +111,7 @@ struct CampaignJobs::Running {
 
   double remaining_seconds() {
     const std::lock_guard lock(mutex);
+    if (is_halted) return 0;
     return cost_seconds * static_cast<double>(points - points_done) / static_cast<double>(points);
   }
 };
@@ -134,7 +135,7 @@ std::size_t CampaignJobs::resume() {
   std::size_t count = 0;
   for (const std::int64_t id : store_.running_campaigns()) {
     if (const auto stored = store_.campaign(id)) {
-      activate(*stored, {});
+      activate(*stored);
       ++count;
     }
   }
@@ -142,12 +143,12 @@ std::size_t CampaignJobs::resume() {
 }
 
 /// Queues the parts of a campaign. Requires control_mutex_.
-void CampaignJobs::activate(const StoredCampaign& campaign, std::optional<double> cost_seconds) {
+void CampaignJobs::activate(const StoredCampaign& campaign) {
   RunningPointer running;
   {
     const std::lock_guard lock(mutex_);
     RunningPointer& entry = running_[campaign.id];
-    if (!entry) entry = std::make_shared<Running>(campaign, threads_, cost_seconds);
+    if (!entry) entry = std::make_shared<Running>(campaign, threads_);
     running = entry;
   }
   {
@@ -206,30 +207,34 @@ void CampaignJobs::forget_if_idle(std::int64_t id) {
   running_.erase(found);
 }
 
-CampaignJobs::Admitted CampaignJobs::submit(const NewCampaign& campaign, double cost_seconds,
-                                            double principal_seconds, const CallLimits& limits) {
+double CampaignJobs::unfinished_seconds(const std::string& principal) const {
+  double out = 0;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, running] : running_) {
+    if (running->principal == principal) out += running->remaining_seconds();
+  }
+  return out;
+}
+
+CampaignJobs::Admitted CampaignJobs::submit(const NewCampaign& campaign, const CallLimits& limits) {
   std::size_t count = 0, all_bytes = 0, own_bytes = 0;
-  double own_seconds = 0;
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [id, running] : running_) {
       ++count;
       all_bytes += running->bytes;
-      if (running->principal != campaign.principal) continue;
-      own_bytes += running->bytes;
-      own_seconds += running->remaining_seconds();
+      if (running->principal == campaign.principal) own_bytes += running->bytes;
     }
   }
   const std::size_t bytes = campaign.request.size() + campaign.candidate_table.size();
   Admitted out;
-  out.is_over_quota = principal_seconds > 0 && own_seconds + cost_seconds > principal_seconds;
   out.has_place = count < kMostRunning && all_bytes + bytes <= kMostRunningBytes &&
                   static_cast<double>(own_bytes + bytes) <=
                       kShareOfOne * static_cast<double>(kMostRunningBytes);
-  if (out.is_over_quota || !out.has_place) return out;
+  if (!out.has_place) return out;
   const std::lock_guard control(control_mutex_);
   out.added = store_.add_campaign(campaign, clock_(), limits);
-  if (out.added.kind == CampaignAdded::Kind::kAdded) activate(out.added.stored, cost_seconds);
+  if (out.added.kind == CampaignAdded::Kind::kAdded) activate(out.added.stored);
   return out;
 }
 
@@ -237,7 +242,7 @@ void CampaignJobs::ensure_queued(const StoredCampaign& campaign) {
   if (campaign.state != CampaignState::kRunning || find(campaign.id)) return;
   const std::lock_guard control(control_mutex_);
   const auto stored = store_.campaign(campaign.id);
-  if (stored && stored->state == CampaignState::kRunning) activate(*stored, {});
+  if (stored && stored->state == CampaignState::kRunning) activate(*stored);
 }
 
 /// Changes the state in the store, and what runs. Returns the campaign as it is then.
@@ -257,7 +262,7 @@ std::optional<StoredCampaign> CampaignJobs::change(const CampaignChange& change,
     return running->inputs != nullptr;
   }();
   if (is_loaded) store_.begin_campaign(change.id);
-  activate(*changed, {});
+  activate(*changed);
   return changed;
 }
 
@@ -316,7 +321,6 @@ void CampaignJobs::load(Running& running) {
   }
   running.missing =
       missing_candidates(store_.campaign_tiles(running.id), stored->candidates, stored->conditions);
-  running.cost_seconds = estimate_cost(*inputs).processor_seconds();
   inputs->table.Clear();  // the columns are in `points`
   running.inputs = std::move(inputs);
 }

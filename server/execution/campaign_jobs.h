@@ -33,14 +33,13 @@ class CampaignJobs {
 
   struct Admitted {
     CampaignAdded added;
-    bool has_place = true;       ///< false: too many campaigns run; nothing was added
-    bool is_over_quota = false;  ///< the quota of the principal has no room; nothing was added
+    bool has_place = true;  ///< false: too many campaigns run; nothing was added
   };
-  /// Adds a campaign and queues it. `cost_seconds`: estimate of its points. `principal_seconds`:
-  /// what is left of all campaigns of the principal that run may take so long, by estimate; 0: no
-  /// limit.
-  Admitted submit(const NewCampaign& campaign, double cost_seconds, double principal_seconds,
-                  const CallLimits& limits = {});
+  /// Adds a campaign and queues it.
+  Admitted submit(const NewCampaign& campaign, const CallLimits& limits = {});
+  /// Returns the estimate of what is left of the campaigns of a principal that run [s of one
+  /// processor].
+  double unfinished_seconds(const std::string& principal) const;
   /// Queues a campaign that is RUNNING in the store, if it is not queued: a commit may succeed
   /// although its writer sees an error.
   void ensure_queued(const StoredCampaign& campaign);
@@ -68,7 +67,7 @@ class CampaignJobs {
   using RunningPointer = std::shared_ptr<Running>;
 
   RunningPointer find(std::int64_t id);
-  void activate(const StoredCampaign& campaign, std::optional<double> cost_seconds);
+  void activate(const StoredCampaign& campaign);
   void halt(std::int64_t id);
   void settle(std::int64_t id);
   std::optional<StoredCampaign> change(const CampaignChange& change, const CallLimits& limits);
@@ -88,7 +87,7 @@ class CampaignJobs {
   const int threads_;
   const Clock clock_;
   std::mutex control_mutex_;  // of changes of states, with what follows from them in memory
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::map<std::int64_t, RunningPointer> running_;  // guarded by mutex_
 };
 

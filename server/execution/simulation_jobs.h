@@ -58,8 +58,13 @@ class SimulationJobs {
   /// As Scheduler::admit.
   Submitted submit(const NewSimulation& simulation,
                    std::shared_ptr<const SimulationInputs> inputs = nullptr,
-                   const CallLimits& limits = {}) {
-    return scheduler_.admit(simulation, std::move(inputs), limits);
+                   const CallLimits& limits = {}, bool may_wait = true) {
+    return scheduler_.admit(simulation, std::move(inputs), limits, may_wait);
+  }
+  /// Returns the estimate of the simulations and campaigns of a principal that wait and run [s of
+  /// one processor].
+  double unfinished_seconds(const std::string& principal) const {
+    return scheduler_.unfinished_seconds(principal) + campaigns_.unfinished_seconds(principal);
   }
   /// As Scheduler::ensure_queued.
   void ensure_queued(const StoredSimulation& simulation) { scheduler_.ensure_queued(simulation); }

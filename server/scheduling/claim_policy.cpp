@@ -22,15 +22,15 @@ double ClaimPolicy::allowed_seconds(const QueuedJob& job) {
   return std::clamp(kOutrunFactor * job.cost_seconds, kLeastAllowedSeconds, kSmallJobSeconds);
 }
 
-double ClaimPolicy::running_seconds_of(const std::string& principal) const {
-  double out = 0;
+double ClaimPolicy::unfinished_seconds(const std::string& principal) const {
+  double out = queue_.cost_seconds_of(principal);
   for (const auto& [id, running] : running_) {
     if (running.job.principal == principal) out += running.job.cost_seconds;
   }
   return out;
 }
 
-Admission ClaimPolicy::reserve(const QueuedJob& job, Turns::Time now, double principal_seconds) {
+Admission ClaimPolicy::reserve(const QueuedJob& job, Turns::Time now) {
   Reserved& own = reserved_of_[job.principal];
   const double all_seconds = queue_.cost_seconds() + reserved_.cost_seconds;
   const double own_seconds = queue_.cost_seconds_of(job.principal) + own.cost_seconds;
@@ -42,16 +42,11 @@ Admission ClaimPolicy::reserve(const QueuedJob& job, Turns::Time now, double pri
       (own_jobs == 0 ||
        (static_cast<double>(own_jobs) < kShareOfOne * static_cast<double>(limits_.jobs) &&
         own_seconds + job.cost_seconds <= kShareOfOne * limits_.cost_seconds));
-  const bool is_over_quota =
-      principal_seconds > 0 &&
-      own_seconds + running_seconds_of(job.principal) + job.cost_seconds > principal_seconds;
-  if (!has_room || is_over_quota) {
+  if (!has_room) {
     if (own.jobs == 0) reserved_of_.erase(job.principal);
     const int threads = std::max(1, threads_);
-    return {false,
-            turns_.next(job.principal, kRetryProgressShare * all_seconds / threads,
-                        std::max(job.cost_seconds, kServiceSeconds) / threads, now),
-            is_over_quota};
+    return {false, turns_.next(job.principal, kRetryProgressShare * all_seconds / threads,
+                               std::max(job.cost_seconds, kServiceSeconds) / threads, now)};
   }
   for (Reserved* each : {&own, &reserved_}) {
     ++each->jobs;

@@ -27,7 +27,6 @@ struct QueueLimits {
 struct Admission {
   bool is_admitted = false;
   double retry_seconds = 0;
-  bool is_over_quota = false;  ///< the principal's own quota has no room
 };
 
 /// Decides which job a claim gets, and keeps account of the jobs that wait and run. It has no
@@ -49,10 +48,8 @@ class ClaimPolicy {
   /// Adds threads that compute.
   void add_threads(int count) { threads_ += count; }
 
-  /// Reserves a place in the queue for a job that is not in the store yet and has no id. The
-  /// estimates of the principal's jobs that wait and run may reach `principal_seconds`; 0: no
-  /// limit.
-  Admission reserve(const QueuedJob& job, Turns::Time now, double principal_seconds = 0);
+  /// Reserves a place in the queue for a job that is not in the store yet and has no id.
+  Admission reserve(const QueuedJob& job, Turns::Time now);
   void release(const QueuedJob& job);  ///< frees a reserved place
   void push(const QueuedJob& job);     ///< queues the job in its reserved place
   /// Queues a job that was accepted before, whatever the limits. Returns false if the job waits or
@@ -90,6 +87,8 @@ class ClaimPolicy {
   bool is_running(std::int64_t id) const { return running_.contains(id); }
   std::size_t running() const { return running_.size(); }
   Occupancy occupancy() const;
+  /// Returns the sum of the estimates of the principal's jobs that wait and run [s].
+  double unfinished_seconds(const std::string& principal) const;
 
   /// Returns the processor time after which a job counts as bulk [s]: four times its estimate, but
   /// at least 0.1 s, because the estimates of the smallest jobs are the least precise, and at most
@@ -115,7 +114,6 @@ class ClaimPolicy {
     std::string key;  ///< of its inputs, if jobs may wait for its result
   };
 
-  double running_seconds_of(const std::string& principal) const;
   std::optional<QueuedJob> start(QueuedJob job, std::int64_t lender);
   bool fits(const QueuedJob& job) const;
   Urgency least_urgency() const;

@@ -138,16 +138,14 @@ Scheduler::Known Scheduler::take(std::int64_t id) {
 
 Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
                                      std::shared_ptr<const SimulationInputs> inputs,
-                                     const CallLimits& limits) {
+                                     const CallLimits& limits, bool may_wait) {
   QueuedJob job{0, simulation.principal, simulation.cost_seconds, false,
                 static_cast<RequestedClass>(simulation.scheduling_class)};
   if (inputs) job.result_bytes = history_bytes(inputs->effective);
   Admission admission;
   {
     const std::lock_guard lock(mutex_);
-    if (!stopping_) {
-      admission = policy_.reserve(job, options_.steady(), simulation.principal_seconds);
-    }
+    if (!stopping_ && may_wait) admission = policy_.reserve(job, options_.steady());
   }
   const auto release = [&] {
     const std::lock_guard lock(mutex_);
@@ -165,7 +163,7 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
   metrics_.count(submission_of(added.kind));
   if (added.kind != AddOutcome::Kind::kQueued) {
     release();
-    return {added, admission.retry_seconds, admission.is_over_quota};
+    return {added, admission.retry_seconds};
   }
   if (simulation.deadline_time) timekeeper_.set_deadline(added.id, *simulation.deadline_time);
   job.id = added.id;
@@ -186,6 +184,11 @@ Scheduler::Admitted Scheduler::admit(const NewSimulation& simulation,
   policy_.push(job);
   note_change();
   return {added, 0};
+}
+
+double Scheduler::unfinished_seconds(const std::string& principal) const {
+  const std::lock_guard lock(mutex_);
+  return policy_.unfinished_seconds(principal);
 }
 
 void Scheduler::ensure_queued(const StoredSimulation& simulation) {

@@ -81,10 +81,12 @@ class Scheduler {
   struct Admitted {
     AddOutcome added;
     double retry_seconds = 0;
-    bool is_over_quota = false;  ///< the quota of the principal has no room
   };
+  /// `may_wait` = false: as if the queue had no place.
   Admitted admit(const NewSimulation& simulation, std::shared_ptr<const SimulationInputs> inputs,
-                 const CallLimits& limits = {});
+                 const CallLimits& limits = {}, bool may_wait = true);
+  /// Returns the estimate of the simulations of a principal that wait and run [s of one processor].
+  double unfinished_seconds(const std::string& principal) const;
   /// Queues a simulation that is QUEUED in the store, if it is not in the queue: a commit may
   /// succeed although its writer sees an error.
   void ensure_queued(const StoredSimulation& simulation);

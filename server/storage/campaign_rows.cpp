@@ -50,6 +50,7 @@ StoredCampaign stored_campaign(const SQLite::Statement& query) {
   out.budget.processor_seconds = next().getDouble();
   out.budget.points = next().getInt64();
   out.processor_seconds = next().getDouble();
+  out.cost_seconds = next().getDouble();
   out.stored_bytes = next().getInt64();
   out.lubricant_revision = relative_name(next().getString());
   out.gear_set_revision = relative_name(next().getString());
@@ -174,7 +175,7 @@ CampaignAdded insert_campaign(Connection& db, const NewCampaign& campaign, Micro
 }
 
 std::optional<StoredCampaign> query_campaign(Connection& db, std::int64_t id) {
-  Prepared query(db, std::string(kCampaignColumns) + "WHERE id = ?");
+  Prepared query(db, std::string(kSelectCampaigns) + "WHERE id = ?");
   query.bind(1, id);
   if (!query.executeStep()) return std::nullopt;
   return stored_campaign(query);
@@ -182,7 +183,7 @@ std::optional<StoredCampaign> query_campaign(Connection& db, std::int64_t id) {
 
 std::optional<StoredCampaign> query_numbered_campaign(Connection& db, const std::string& project,
                                                       std::int64_t number) {
-  Prepared query(db, std::string(kCampaignColumns) + "WHERE project = ? AND number = ?");
+  Prepared query(db, std::string(kSelectCampaigns) + "WHERE project = ? AND number = ?");
   query.bind(1, project);
   query.bind(2, number);
   if (!query.executeStep()) return std::nullopt;
@@ -191,7 +192,7 @@ std::optional<StoredCampaign> query_numbered_campaign(Connection& db, const std:
 
 std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const std::string& project,
                                                         const std::string& request_id) {
-  Prepared query(db, std::string(kCampaignColumns) + "WHERE project = ? AND request_id = ?");
+  Prepared query(db, std::string(kSelectCampaigns) + "WHERE project = ? AND request_id = ?");
   query.bind(1, project);
   query.bind(2, request_id);
   if (!query.executeStep()) return std::nullopt;
@@ -200,7 +201,7 @@ std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const st
 
 Page<StoredCampaign> query_campaigns(Connection& db, const std::string& project,
                                      std::int64_t before, int limit) {
-  Prepared query(db, std::string(kCampaignColumns) +
+  Prepared query(db, std::string(kSelectCampaigns) +
                          "WHERE project = ?1 AND (?2 = 0 OR number < ?2) "
                          "ORDER BY number DESC LIMIT ?3");
   query.bind(1, project);

@@ -73,6 +73,7 @@ struct StoredCampaign {
   std::int64_t points_refused = 0;
   CampaignBudget budget;
   double processor_seconds = 0;
+  double cost_seconds = 0;  ///< estimate of all its points, in seconds of one processor
   std::int64_t stored_bytes = 0;
   // Revisions of its resources, as relative names.
   std::string lubricant_revision;
@@ -81,6 +82,10 @@ struct StoredCampaign {
   std::string vehicle_revision;
 
   std::int64_t points() const { return std::int64_t{candidates} * conditions; }
+  /// Returns the estimate of the points that are not done.
+  double remaining_seconds() const {
+    return cost_seconds * (1 - static_cast<double>(points_done) / static_cast<double>(points()));
+  }
 };
 
 /// Returns the full name of a stored campaign.

@@ -33,11 +33,8 @@ struct NewSimulation {
   std::optional<Microseconds> deadline_time = {};
   std::string client = {};     ///< client that submitted it
   std::string principal = {};  ///< whose share of the processors pays for it
-  /// Quota of its simulations that wait and run, by estimate [s of one processor]; 0: none. Not
-  /// stored.
-  double principal_seconds = 0;
-  int scheduling_class = 0;  ///< SchedulingClass
-  double cost_seconds = 0;   ///< estimate, in seconds of one processor
+  int scheduling_class = 0;    ///< SchedulingClass
+  double cost_seconds = 0;     ///< estimate, in seconds of one processor
   std::vector<std::pair<std::string, std::string>> labels = {};
   // Revisions of its resources, as relative names, e.g. "lubricants/paper-fluid-1@2"; each exists
   // in the project or is empty.

@@ -422,7 +422,48 @@ TEST_F(CampaignTest, ItsPrincipalsQuotaHoldsForItsEstimate) {
   const auto refused = create_campaign(application, request, call);
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().code(), google::rpc::RESOURCE_EXHAUSTED);
-  EXPECT_THAT(refused.error().message(), HasSubstr("processor hours of campaigns"));
+  EXPECT_THAT(refused.error().message(), HasSubstr("processor hours of simulations and campaigns"));
+}
+
+TEST_F(CampaignTest, CountsWithTheSimulationsOfItsPrincipalAndWhenItIsResumed) {
+  v1::CreateCampaignRequest request;
+  *request.mutable_campaign() = campaign_of(20'000);
+  request.set_validate_only(true);
+  Application application = bench_.application();
+  CallContext call;
+  auto grant = std::make_shared<Grant>();
+  grant->principal = "anna";
+  call.grant = grant;
+  v1::CreateSimulationRequest simulation;
+  *simulation.mutable_simulation() = long_simulation();
+  simulation.set_force(true);
+  simulation.set_validate_only(true);
+  const auto seconds_of = [](const auto& preview) {
+    return preview.message().cost_estimate().processor_seconds();
+  };
+  const double cost = seconds_of(create_campaign(application, request, call));
+  const double more = seconds_of(create_simulation(application, simulation, call));
+  grant->quota.processor_hours = (cost + 0.5 * std::min(cost, more)) / 3600;
+  simulation.set_validate_only(false);
+  request.set_validate_only(false);
+  const auto first = create_campaign(application, request, call);
+  ASSERT_TRUE(first.ok());
+  const auto pause = [&](const std::string& name) {
+    v1::PauseCampaignRequest out;
+    out.set_name(name);
+    return pause_campaign(application, out, call);
+  };
+  ASSERT_TRUE(pause(first.message().name()).ok());
+  const auto second = create_campaign(application, request, call);
+  ASSERT_TRUE(second.ok()) << "what is paused does not count";
+  EXPECT_EQ(create_simulation(application, simulation, call).error().code(),
+            google::rpc::RESOURCE_EXHAUSTED);
+  v1::ResumeCampaignRequest resume;
+  resume.set_name(first.message().name());
+  EXPECT_EQ(resume_campaign(application, resume, call).error().code(),
+            google::rpc::RESOURCE_EXHAUSTED);
+  ASSERT_TRUE(pause(second.message().name()).ok());
+  EXPECT_TRUE(resume_campaign(application, resume, call).ok());
 }
 
 TEST_F(CampaignTest, ExpiresAsSimulationsDo) {

@@ -12,6 +12,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -108,6 +109,21 @@ TEST(Allowance, OfLessThanACallASecondHasOneCall) {
   EXPECT_NEAR(allowance.take_call(0.1, {}), 10, 1e-9);
 }
 
+TEST(Allowance, ReservesAsMuchProcessorTimeAsThereIsUntilThePlaceIsReturned) {
+  Allowance allowance;
+  double written = 1;
+  const auto unfinished = [&] { return written; };
+  auto first = allowance.reserve(2, 5, unfinished);
+  EXPECT_NE(first, nullptr);
+  EXPECT_EQ(allowance.reserve(3, 5, unfinished), nullptr);
+  const auto second = allowance.reserve(2, 5, unfinished);
+  EXPECT_NE(second, nullptr);
+  first = nullptr;
+  EXPECT_NE(allowance.reserve(2, 5, unfinished), nullptr);
+  written = 4;
+  EXPECT_EQ(allowance.reserve(2, 5, unfinished), nullptr);
+}
+
 class QuotaTest : public testing::Test {
  protected:
   QuotaTest() {
@@ -185,7 +201,8 @@ TEST_F(QuotaTest, AStreamThatIsRefusedForItsRequestTakesNoPlace) {
 TEST_F(QuotaTest, SimulationsBeyondTheProcessorHoursAreRefusedWhileOthersWaitAndRun) {
   const google::rpc::Status refused = answer(create(long_simulation()), "slow");
   EXPECT_EQ(quota_of(refused), "processor-hours");
-  EXPECT_THAT(refused.message(), HasSubstr("processor hours of simulations that wait and run"));
+  EXPECT_THAT(refused.message(),
+              HasSubstr("processor hours of simulations and campaigns that wait and run"));
   EXPECT_EQ(answer(create(long_simulation()), "usual").code(), google::rpc::OK);
   *release_ = true;
 }
@@ -250,6 +267,37 @@ TEST_F(QuotaTest, SimulationsOfAProjectBeyondItsProcessorHoursAreRefusedWhoeverS
   *release_ = true;
   ASSERT_TRUE(eventually([&] { return bench_.store().unfinished_seconds("default") == 0; }));
   EXPECT_EQ(answer(one, "usual").code(), google::rpc::OK);
+}
+
+TEST_F(QuotaTest, SubmissionsAtTheSameTimeDoNotPassTheProcessorHoursOfAProjectTogether) {
+  EXPECT_EQ(answer(create(long_simulation()), "usual").code(), google::rpc::OK);
+  const double hours = bench_.store().unfinished_seconds("default") / 3600;
+  app_.project_quotas = std::make_shared<ProjectQuotas>(Quota{.processor_hours = 3.5 * hours});
+  std::atomic<int> accepted = 0, refused = 0;
+  std::vector<std::thread> clients;
+  for (int i = 0; i < 6; ++i) {
+    clients.emplace_back([&] {
+      const google::rpc::Status status = answer(create(long_simulation()), "usual");
+      ++(quota_of(status).empty() ? accepted : refused);
+    });
+  }
+  for (std::thread& each : clients) each.join();
+  EXPECT_LE(accepted, 2);  // fewer if all come before the first is written
+  EXPECT_EQ(accepted + refused, 6);
+  EXPECT_LE(bench_.store().unfinished_seconds("default") / 3600, 3.5 * hours);
+  *release_ = true;
+}
+
+TEST_F(QuotaTest, AnEqualResultIsServedWhateverWaitsAndRuns) {
+  *release_ = true;
+  v1::CreateSimulationRequest one;
+  *one.mutable_simulation() = point_simulation();
+  EXPECT_EQ(answer(one, "usual").code(), google::rpc::OK);
+  ASSERT_TRUE(bench_.reaches("simulations/1", v1::Simulation::SUCCEEDED));
+  app_.project_quotas = std::make_shared<ProjectQuotas>(Quota{.processor_hours = 1e-9});
+  EXPECT_EQ(answer(one, "usual").code(), google::rpc::OK);
+  one.set_force(true);
+  EXPECT_EQ(quota_of(answer(one, "usual")), "project-processor-hours");
 }
 
 TEST_F(QuotaTest, AResultIsReadInAnotherProjectOnlyByATokenThatAnAdministratorMadeForBoth) {
