@@ -165,6 +165,8 @@ std::vector<Method> rows() {
       unary<v1::EvaluateRigRequest, v1::EvaluateRigResponse>(Scope::kRead, kCompute, evaluate_rig),
       unary<v1::ComparePointsRequest, v1::ComparePointsResponse>(Scope::kRead, kCompute,
                                                                  compare_points),
+      unary<v1::ExplainPointsRequest, v1::ExplainPointsResponse>(Scope::kRead, kCompute,
+                                                                 explain_points),
 
       unary(Scope::kWrite, kWrite, create_simulation),
       unary(Scope::kRead, kRead, get_simulation),

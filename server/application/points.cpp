@@ -4,6 +4,7 @@
 #include "server/application/errors.h"
 #include "server/simulation/point_comparison.h"
 #include "server/simulation/point_evaluation.h"
+#include "server/simulation/point_explanation.h"
 #include "server/storage/resource_lookup.h"
 
 namespace tribodyn::server {
@@ -32,6 +33,21 @@ Outcome<v1::ComparePointsResponse> compare_points(Application& application,
   if (!comparison) return invalid(violations);
   try {
     return compare_points(*comparison, *application.gear_sets,
+                          [&call] { return call.limits.are_over(); });
+  } catch (const Cancelled&) {
+    return call_over(call.limits);
+  }
+}
+
+Outcome<v1::ExplainPointsResponse> explain_points(Application& application,
+                                                  const v1::ExplainPointsRequest& request,
+                                                  const CallContext& call) {
+  Violations violations;
+  const auto explanation = read_explanation(
+      request, resource_lookup(application.store, call.project, call.limits), violations);
+  if (!explanation) return invalid(violations);
+  try {
+    return explain_points(*explanation, *application.gear_sets,
                           [&call] { return call.limits.are_over(); });
   } catch (const Cancelled&) {
     return call_over(call.limits);

@@ -18,4 +18,9 @@ Outcome<v1::ComparePointsResponse> compare_points(Application& application,
                                                   const v1::ComparePointsRequest& request,
                                                   const CallContext& call = {});
 
+/// Attributes the difference of two lubricants to groups of parameters. Stores nothing.
+Outcome<v1::ExplainPointsResponse> explain_points(Application& application,
+                                                  const v1::ExplainPointsRequest& request,
+                                                  const CallContext& call = {});
+
 }  // namespace tribodyn::server

@@ -222,6 +222,17 @@ constexpr Constraint kConstraints[] = {
     {"ComparePointsRequest", "draws", "", 19, 1999, "work limit",
      "39 draws or more hold a 95 % interval", Zero::kUnset},
 
+    {"ExplainPointsRequest", "tolerance", "", 1e-8, 1e-2, "eq 30",
+     "what shooting can estimate and keep", Zero::kUnset},
+    {"ExplainPointsRequest", "condition_weights", "", 1e-9, 1e9, "mean over conditions", ""},
+    {"ExplainPointsRequest", "sump_temperature_uncertainty_kelvin", "K", 0, 100, "eq 14",
+     "standard uncertainty"},
+    {"ExplainPointsRequest", "inlet_temperature_rise_uncertainty_kelvin", "K", 0, 100, "eq 14",
+     "standard uncertainty"},
+    {"ExplainPointsRequest", "estimate_correlation", "", 0, 1, "correlation of estimates", ""},
+    {"ExplainPointsRequest", "draws", "", 19, 1999, "work limit",
+     "39 draws or more hold a 95 % interval", Zero::kUnset},
+
     {"Campaign", "tolerance", "", 1e-8, 1e-2, "eq 30", "what shooting can estimate and keep",
      Zero::kUnset},
     {"Campaign", "condition_weights", "", 1e-9, 1e9, "mean over conditions", ""},

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -18,14 +16,12 @@
 #include "core/version.h"
 #include "server/contract/check_message.h"
 #include "server/mapping/to_core.h"
+#include "server/simulation/input_deviations.h"
 
 namespace tribodyn::server {
 namespace {
 
-constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kSeed = 1;  // any: equal requests give equal answers
-/// Largest share of refused draws with which the others still make an interval.
-constexpr double kMostRefused = 0.05;
 
 /// The figures of a point that a comparison speaks of.
 enum Figure { kEnergyMean, kRms, kLossPower, kPinionTorque, kFigures };
@@ -36,16 +32,6 @@ struct ComparedFigures {
 };
 /// By condition, and last the weighted mean of all conditions; nullopt: no figures.
 using FiguresByCondition = std::vector<std::optional<ComparedFigures>>;
-
-/// A standard normal deviation as a sum of independent ones: an own part and a common part.
-struct Mixture {
-  int own, common;
-  double own_factor, common_factor;
-
-  double at(const NormalDraws& draws, int draw) const {
-    return own_factor * draws.at(draw, own) + common_factor * draws.at(draw, common);
-  }
-};
 
 /// A source of error of one fluid, and what it does to the figures.
 struct Source {
@@ -101,54 +87,6 @@ FiguresByCondition figures_by_condition(const std::vector<EvaluatedPoint>& point
     }
   }
   out.push_back(mean);
-  return out;
-}
-
-/// Numbers the independent deviations behind the errors: equal names mean one deviation.
-class Deviations {
- public:
-  explicit Deviations(double estimate_correlation) : correlation_(estimate_correlation) {}
-
-  std::vector<Mixture> of(const InputError& error, const std::string& lubricant_revision) {
-    std::vector<Mixture> out;
-    for (int i = 0; i < error.deviations; ++i) {
-      const std::string name = fmt::format("{} {}", error.input, i);
-      switch (error.sharing) {
-        case InputError::Sharing::kScene: {
-          const int common = number("scene " + name);
-          out.push_back({common, common, 0, 1});
-          break;
-        }
-        case InputError::Sharing::kOwn: {
-          const int own = number(lubricant_revision + " " + name);
-          out.push_back({own, own, 1, 0});
-          break;
-        }
-        case InputError::Sharing::kEstimate:
-          out.push_back({number(lubricant_revision + " " + name),
-                         number("estimate " + error.estimator), std::sqrt(1 - correlation_),
-                         std::sqrt(correlation_)});
-          break;
-      }
-    }
-    return out;
-  }
-  int count() const { return static_cast<int>(numbers_.size()); }
-
- private:
-  int number(const std::string& name) {
-    return numbers_.emplace(name, static_cast<int>(numbers_.size())).first->second;
-  }
-
-  double correlation_;
-  std::map<std::string, int> numbers_;
-};
-
-/// Correlation of the deviations of two sources.
-double correlation(const Mixture& a, const Mixture& b) {
-  double out = 0;
-  if (a.own == b.own) out += a.own_factor * b.own_factor;
-  if (a.common == b.common) out += a.common_factor * b.common_factor;
   return out;
 }
 
@@ -236,14 +174,8 @@ class FluidPoints {
 };
 
 /// Sets standard uncertainty and interval from the draws that the model did not refuse.
-void set_spread(const std::vector<double>& drawn, int draws, double widening,
-                v1::UncertainFigure& out) {
-  const bool is_exact = draws == 0;
-  const bool is_enough =
-      static_cast<double>(drawn.size()) >= (1 - kMostRefused) * draws && drawn.size() >= 2;
-  const Spread spread = is_exact    ? Spread{0, out.value(), out.value()}
-                        : is_enough ? spread_of(drawn)
-                                    : Spread{kNoNumber, kNoNumber, kNoNumber};
+void set_spread(std::vector<double> drawn, int draws, double widening, v1::UncertainFigure& out) {
+  const Spread spread = spread_of_draws(std::move(drawn), draws, out.value());
   out.set_standard_uncertainty(spread.standard_deviation);
   out.set_interval_minimum(spread.low - widening);
   out.set_interval_maximum(spread.high + widening);
@@ -262,7 +194,7 @@ v1::UncertainFigure figure_message(const ComputedFluid& fluid, std::size_t condi
   for (const FiguresByCondition& draw : fluid.drawn) {
     if (draw[condition]) drawn.push_back(draw[condition]->value[figure]);
   }
-  set_spread(drawn, static_cast<int>(fluid.drawn.size()), 0, out);
+  set_spread(std::move(drawn), static_cast<int>(fluid.drawn.size()), 0, out);
   return out;
 }
 

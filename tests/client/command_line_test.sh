@@ -11,7 +11,7 @@ err_has 'cannot connect to the server at 127.0.0.1:9'
 expect 3 --server "unix:$folder/none" lubricants list
 expect 0 --help
 out_has 'Exit codes'
-for command in point curve compare screen design sensitivities history contact traction film stribeck diff validate \
+for command in point curve compare explain report screen design sensitivities history contact traction film stribeck diff validate \
   schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun"; do
@@ -208,6 +208,36 @@ expect 2 compare sheet-a --speed 40,60 --weights 1
 err_has '1 weights of 2 speeds'
 expect 1 compare sheet-a no-such-oil
 err_has 'lubricants/no-such-oil'
+echo "--- explanation"
+expect 0 explain paper-fluid-1 paper-fluid-3 --speed 40,100 --plot "$folder/why.svg"
+out_has '^viscosity and its temperature law +-?[0-9.]+ '
+out_has '^shear thinning \(equal\) +0\.0'
+out_has '^difference +-?[0-9.]+ +100 '
+out_has '^share, % points +40 +100'
+grep -q '</svg>' "$folder/why.svg" || fail 'no picture of the shares'
+expect 0 explain sheet-a sheet-b --speed 40 --draws 19 --output csv
+out_lines 13
+out_has '^lubricants/sheet-a@1,lubricants/sheet-b@1,one,40,'
+expect 0 explain paper-fluid-1 paper-fluid-3 --output json
+out_is_json
+expect 2 explain paper-fluid-1
+err_has 'give two lubricants'
+expect 2 explain paper-fluid-1 paper-fluid-3 --speed 40,60 --weights 1
+err_has '1 weights of 2 speeds'
+expect 1 explain paper-fluid-1 no-such-oil
+err_has 'lubricants/no-such-oil'
+echo "--- report"
+expect 0 report sheet-a sheet-b --speeds 40,100 --html "$folder/report.html"
+out_has 'report\.html'
+for part in '<h2>Which loses less' '<td>cannot be told apart</td>' 'aria-label="Inefficiency against speed"' \
+  '<h2>Why sheet-b@1 differs from sheet-a@1' 'measure first: pressure viscosity' '+/- ' \
+  'tribodyn report sheet-a@1 sheet-b@1 --speeds 40,100'; do
+  grep -qF -- "$part" "$folder/report.html" || fail "the report has no '$part'"
+done
+grep -Eq 'https?://[^w]' "$folder/report.html" && fail 'the report refers to another place'
+expect 0 report paper-fluid-1 --speeds 40 --html "$folder/alone.html"
+expect 2 report paper-fluid-1
+err_has 'give the page to write: --html FILE.html'
 echo "--- screening"
 table=$folder/candidates.csv
 printf '%s\n' 'name;treat rate;pressure-viscosity (1/GPa);asperity friction coefficient' \

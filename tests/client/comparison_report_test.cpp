@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "client/cpp/plot/curve_plot.h"
+#include "client/cpp/plot/explanation_plot.h"
 #include "client/cpp/report/curve_report.h"
+#include "client/cpp/report/explanation_report.h"
+#include "client/cpp/report/report_page.h"
 #include "client/cpp/report/sensitivity_report.h"
 #include "tests/client/sample_simulations.h"
 
@@ -152,6 +156,117 @@ TEST(CurvePlot, DrawsUncertaintiesAsBandsAndExplainsThem) {
   EXPECT_TRUE(has_text(with, "fill-opacity=\"0.13\""));
   EXPECT_TRUE(has_text(with, "Bands: 95 % intervals"));
   EXPECT_FALSE(has_text(curve_plot({curve}, {}), "Bands: 95 % intervals"));
+}
+
+v1::DrawnFigure drawn_figure(double value, double uncertainty) {
+  v1::DrawnFigure out;
+  out.set_value(value);
+  out.set_standard_uncertainty(uncertainty);
+  out.set_interval_minimum(value - 2 * uncertainty);
+  out.set_interval_maximum(value + 2 * uncertainty);
+  out.set_solver_error(0.0001);
+  return out;
+}
+
+/// Of two lubricants that differ by 0.3 in viscosity and by -0.1 in pressure response.
+v1::DifferenceExplanation sample_explanation() {
+  v1::DifferenceExplanation out;
+  *out.mutable_inefficiency_percent() = drawn_figure(1, 0.1);
+  *out.mutable_other_inefficiency_percent() = drawn_figure(1.2, 0.1);
+  *out.mutable_inefficiency_difference_percent() = drawn_figure(0.2, 0.02);
+  *out.mutable_mesh_loss_power_difference_watts() = drawn_figure(40, 4);
+  for (int group = 1; group <= 6; ++group) {
+    v1::DifferenceCause& cause = *out.add_causes();
+    cause.set_group(static_cast<v1::ParameterGroup>(group));
+    cause.set_is_equal(group > 2);
+    const double share = group == 1 ? 0.3 : group == 2 ? -0.1 : 0;
+    *cause.mutable_inefficiency_percent()->mutable_shapley_value() =
+        drawn_figure(share, group > 2 ? 0 : 0.015);
+    cause.mutable_inefficiency_percent()->set_first_effect(0.9 * share);
+    cause.mutable_inefficiency_percent()->set_last_effect(1.1 * share);
+  }
+  v1::CauseInteraction& interaction = *out.add_interactions();
+  interaction.set_group(v1::PARAMETER_GROUP_VISCOSITY);
+  interaction.set_other_group(v1::PARAMETER_GROUP_PRESSURE_RESPONSE);
+  interaction.set_inefficiency_percent(-0.05);
+  return out;
+}
+
+struct SampleExplanation {
+  v1::ExplainPointsRequest request;
+  v1::ExplainPointsResponse response;
+
+  SampleExplanation() {
+    response.set_draws(99);
+    response.set_lubricant_revision("lubricants/a@1");
+    response.set_other_lubricant_revision("lubricants/b@2");
+    response.set_model_version("model-x");
+    for (const double speed : {40, 80}) {
+      request.add_conditions()->set_speed_kilometres_per_hour(speed);
+      *response.add_points() = sample_explanation();
+    }
+    response.mutable_points(1)->set_contact_loss_combinations(12);
+    *response.mutable_mean() = sample_explanation();
+  }
+};
+
+TEST(ExplanationReport, ListsTheSharesLargestFirstWithTheirSum) {
+  const SampleExplanation sample;
+  const std::string text = explanation_report(sample.request, sample.response);
+  EXPECT_LT(text.find("viscosity and its temperature law"), text.find("pressure response"));
+  EXPECT_TRUE(has_text(text, "Why b@2 differs from a@1")) << text;
+  EXPECT_TRUE(has_text(text, "a@1 1.000 +/- 0.100 %, b@2 1.200 +/- 0.100 %")) << text;
+  EXPECT_TRUE(has_text(text, "0.270 to 0.330")) << text;
+  EXPECT_TRUE(has_text(text, "boundary film (equal)")) << text;
+  EXPECT_TRUE(has_text(text, "viscosity and its temperature law with")) << text;
+  EXPECT_TRUE(has_text(text, "80 km/h (12 of 64")) << text;
+}
+
+TEST(ExplanationReport, SaysWhyThereAreNoShares) {
+  SampleExplanation sample;
+  sample.response.mutable_mean()->Clear();
+  sample.response.mutable_mean()->set_refusal_reason("NO_FILM");
+  sample.response.mutable_mean()->set_refusal_message("the film vanishes");
+  const std::string text = explanation_report(sample.request, sample.response);
+  EXPECT_TRUE(has_text(text, "refuses a combination of both: the film vanishes [NO_FILM]")) << text;
+}
+
+TEST(ExplanationReport, CsvHasARowForEachGroupAtEachConditionAndInTheMean) {
+  const SampleExplanation sample;
+  const std::string csv = explanation_csv(sample.request, sample.response);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 6);
+  EXPECT_TRUE(has_text(csv, "lubricants/a@1,lubricants/b@2,mean,")) << csv;
+}
+
+TEST(ExplanationPlot, HasABarForEachGroupAndAStackForEachSpeed) {
+  const SampleExplanation sample;
+  const std::string svg = explanation_plot(sample.request, sample.response);
+  for (const char* part :
+       {"boundary film", ">difference<", ">0.3<", ">-0.1<", ">80<", "speed, km/h",
+        "95 % intervals from 99 draws", "Model version model-x"}) {
+    EXPECT_TRUE(has_text(svg, part)) << part;
+  }
+}
+
+TEST(ReportPage, NeedsNoOtherFileAndEscapesWhatOthersWrote) {
+  const SampleExplanation sample;
+  ReportContents contents;
+  contents.curves = {sample_curve("a<script>", 1), sample_curve("b", 1.1)};
+  contents.comparison_request = sample_request();
+  contents.comparison = sample_comparison(v1::ComparedDifference::LOWER);
+  contents.explanations = {{sample.request, sample.response}};
+  contents.command = "tribodyn report a b";
+  const std::string page = report_page(contents);
+  EXPECT_FALSE(has_text(page, "<script")) << "a name reached the page as it is";
+  EXPECT_TRUE(has_text(page, "&lt;script"));
+  for (const char* reference : {"src=", "href=", "@import"}) {
+    EXPECT_FALSE(has_text(page, reference)) << reference;
+  }
+  for (const char* part : {"default-src 'none'", "loses less", "Why b@2 differs from a@1",
+                           "tribodyn report a b", "hash of the inputs"}) {
+    EXPECT_TRUE(has_text(page, part)) << part;
+  }
+  EXPECT_EQ(page.find("id=\"clip1\""), std::string::npos) << "ids of two pictures may be equal";
 }
 
 }  // namespace

@@ -166,10 +166,15 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
       set("lubricant", "lubricants/paper-fluid-11");
       return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");
     }
-    if (method == "ComparePoints") {
-      message->GetReflection()->AddString(message.get(),
-                                          message->GetDescriptor()->FindFieldByName("lubricants"),
-                                          "lubricants/paper-fluid-11");
+    if (method == "ComparePoints" || method == "ExplainPoints") {
+      if (method == "ComparePoints") {
+        message->GetReflection()->AddString(message.get(),
+                                            message->GetDescriptor()->FindFieldByName("lubricants"),
+                                            "lubricants/paper-fluid-11");
+      } else {
+        set("lubricant", "lubricants/paper-fluid-1");
+        set("other_lubricant", "lubricants/paper-fluid-11");
+      }
       const auto* conditions = message->GetDescriptor()->FindFieldByName("conditions");
       Message* condition = message->GetReflection()->AddMessage(message.get(), conditions);
       condition->GetReflection()->SetDouble(

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,58 +15,13 @@
 #include "server/resources/lubricant_parameters.h"
 #include "server/simulation/point_comparison.h"
 #include "tests/service/support.h"
+#include "tests/service/uncertain_fluids.h"
 #include "tests/support/run_length.h"
 
 namespace tribodyn::server {
 namespace {
 
 using testing::HasSubstr;
-
-/// Resources of a test besides the seeds.
-class Fluids {
- public:
-  void add(const std::string& name, const v1::Lubricant& lubricant) {
-    bodies_[name] = lubricant.SerializeAsString();
-  }
-  ResourceLookup lookup() const {
-    ResourceLookup out = seed_lookup();
-    out.find = [seeds = out.find,
-                bodies = bodies_](const RevisionName& name) -> std::optional<FoundResource> {
-      const auto found = bodies.find(name.name);
-      if (found == bodies.end()) return seeds(name);
-      return FoundResource{1, false, found->second};
-    };
-    return out;
-  }
-
- private:
-  std::map<std::string, std::string> bodies_;
-};
-
-void set_uncertainty(v1::Lubricant& lubricant, const std::string& field, double uncertainty,
-                     bool is_estimate = false) {
-  for (v1::ParameterProvenance& entry : *lubricant.mutable_provenance()) {
-    if (entry.field() != field) continue;
-    entry.set_standard_uncertainty(uncertainty);
-    entry.set_provenance(is_estimate ? v1::PROVENANCE_ASSUMED : v1::PROVENANCE_MEASURED);
-    entry.set_computed(is_estimate);
-    return;
-  }
-  FAIL() << field;
-}
-
-constexpr char kAlpha[] = "pressure_viscosity_coefficient_per_pascal";
-
-/// Fluid 1 with a pressure-viscosity coefficient known to 5 % or so.
-v1::Lubricant fluid(double factor = 1, double relative_uncertainty = 0.05,
-                    bool is_estimate = false) {
-  auto out = seed<v1::Lubricant>("lubricants/paper-fluid-1");
-  const double value = factor * out.pressure_viscosity_coefficient_per_pascal();
-  out.set_pressure_viscosity_coefficient_per_pascal(value);
-  set_uncertainty(out, kAlpha, relative_uncertainty * value, is_estimate);
-  out.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
-  return out;
-}
 
 v1::ComparePointsRequest request_at(const std::vector<double>& speeds,
                                     const std::vector<std::string>& lubricants) {
@@ -97,8 +51,9 @@ std::string violations_of(const v1::ComparePointsRequest& request) {
 
 TEST(ComparePoints, MovesAFigureByItsOnlyUncertainInputAsARecomputationDoes) {
   Fluids fluids;
-  fluids.add("lubricants/a", fluid());
-  fluids.add("lubricants/plus", fluid(std::exp(std::sqrt(std::log1p(0.05 * 0.05))), 0.05));
+  fluids.add("lubricants/a", fluid_with_alpha());
+  fluids.add("lubricants/plus",
+             fluid_with_alpha(std::exp(std::sqrt(std::log1p(0.05 * 0.05))), 0.05));
   const auto out = compare(request_at({50}, {"lubricants/a", "lubricants/plus"}), fluids);
   const v1::ComparedPoint& a = out.lubricants(0).points(0);
   const v1::UncertainFigure& figure = a.inefficiency_energy_mean_percent();
@@ -117,7 +72,7 @@ TEST(ComparePoints, MovesAFigureByItsOnlyUncertainInputAsARecomputationDoes) {
 
 TEST(ComparePoints, FindsALubricantNeitherBetterNorWorseThanItself) {
   Fluids fluids;
-  fluids.add("lubricants/a", fluid());
+  fluids.add("lubricants/a", fluid_with_alpha());
   const auto out = compare(request_at({50}, {"lubricants/a", "lubricants/a"}), fluids);
   const v1::ComparedDifference& difference = out.lubricants(1).mean_difference();
   EXPECT_EQ(difference.verdict(), v1::ComparedDifference::CANNOT_BE_TOLD_APART);
@@ -129,8 +84,8 @@ TEST(ComparePoints, FindsALubricantNeitherBetterNorWorseThanItself) {
 TEST(ComparePoints, SaysWhichLubricantLosesLessOnlyIfTheInputsBearIt) {
   const auto verdict = [](double factor, double relative_uncertainty) {
     Fluids fluids;
-    fluids.add("lubricants/a", fluid(1, relative_uncertainty));
-    fluids.add("lubricants/b", fluid(factor, relative_uncertainty));
+    fluids.add("lubricants/a", fluid_with_alpha(1, relative_uncertainty));
+    fluids.add("lubricants/b", fluid_with_alpha(factor, relative_uncertainty));
     const auto out = compare(request_at({50}, {"lubricants/a", "lubricants/b"}), fluids);
     return out.lubricants(1).mean_difference();
   };
@@ -147,8 +102,8 @@ TEST(ComparePoints, SaysWhichLubricantLosesLessOnlyIfTheInputsBearIt) {
 TEST(ComparePoints, MeasuredValuesAreIndependentAndEstimatesShareTheirErrorAsStated) {
   const auto deviation = [](bool is_estimate, std::optional<double> correlation) {
     Fluids fluids;
-    fluids.add("lubricants/a", fluid(1, 0.05, is_estimate));
-    fluids.add("lubricants/b", fluid(1, 0.05, is_estimate));
+    fluids.add("lubricants/a", fluid_with_alpha(1, 0.05, is_estimate));
+    fluids.add("lubricants/b", fluid_with_alpha(1, 0.05, is_estimate));
     auto request = request_at({50}, {"lubricants/a", "lubricants/b"});
     if (correlation) request.set_estimate_correlation(*correlation);
     const auto out = compare(request, fluids);
@@ -166,8 +121,8 @@ TEST(ComparePoints, MeasuredValuesAreIndependentAndEstimatesShareTheirErrorAsSta
 
 TEST(ComparePoints, ErrorsOfTheSceneAreCommonToAllLubricants) {
   Fluids fluids;
-  fluids.add("lubricants/a", fluid(1, 0));
-  fluids.add("lubricants/b", fluid(1.02, 0));
+  fluids.add("lubricants/a", fluid_with_alpha(1, 0));
+  fluids.add("lubricants/b", fluid_with_alpha(1.02, 0));
   auto request = request_at({50}, {"lubricants/a", "lubricants/b"});
   request.set_inlet_temperature_rise_uncertainty_kelvin(5);
   const auto out = compare(request, fluids);
@@ -181,7 +136,7 @@ TEST(ComparePoints, ErrorsOfTheSceneAreCommonToAllLubricants) {
 
 TEST(ComparePoints, TheMeanWeighsItsConditions) {
   Fluids fluids;
-  fluids.add("lubricants/a", fluid());
+  fluids.add("lubricants/a", fluid_with_alpha());
   auto request = request_at({40, 100}, {"lubricants/a"});
   request.add_condition_weights(3);
   request.add_condition_weights(1);
@@ -240,8 +195,8 @@ TEST(ComparePoints, OfADataSheetNamesThePressureViscosityCoefficientFirst) {
 
 TEST(ComparePoints, EqualRequestsHaveEqualAnswersWhicheverLubricantsComeWithThem) {
   Fluids fluids;
-  fluids.add("lubricants/a", fluid());
-  fluids.add("lubricants/b", fluid(1.1));
+  fluids.add("lubricants/a", fluid_with_alpha());
+  fluids.add("lubricants/b", fluid_with_alpha(1.1));
   const auto once = compare(request_at({66}, {"lubricants/a", "lubricants/b"}), fluids);
   const auto again = compare(request_at({66}, {"lubricants/a", "lubricants/b"}), fluids);
   EXPECT_EQ(once.SerializeAsString(), again.SerializeAsString());
@@ -267,7 +222,7 @@ TEST(ComparePoints, RefusesWhatItCannotCompareAndNamesTheField) {
 TEST(ComparePoints, StopsWhenItsCallIsOver) {
   Violations violations;
   Fluids fluids;
-  fluids.add("lubricants/a", fluid());
+  fluids.add("lubricants/a", fluid_with_alpha());
   const auto comparison =
       read_comparison(request_at({50}, {"lubricants/a"}), fluids.lookup(), violations);
   PreparedGearSets gear_sets;

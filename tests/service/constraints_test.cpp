@@ -19,6 +19,7 @@
 #include "server/simulation/contact_inputs.h"
 #include "server/simulation/point_comparison.h"
 #include "server/simulation/point_evaluation.h"
+#include "server/simulation/point_explanation.h"
 #include "server/simulation/rig_evaluation.h"
 #include "server/simulation/simulation_inputs.h"
 #include "tests/service/support.h"
@@ -93,6 +94,7 @@ struct Subject {
   v1::EvaluatePointsRequest points = one_point();
   v1::EvaluateRigRequest rig = one_rig();
   v1::ComparePointsRequest comparison;
+  v1::ExplainPointsRequest explanation;
   v1::Campaign campaign;
   std::unique_ptr<Message> batch;
   Message* message = nullptr;
@@ -127,6 +129,12 @@ struct Subject {
       *comparison.mutable_conditions() = points.conditions();
       comparison.add_condition_weights(1);
       use(&comparison, "");
+    } else if (name == "ExplainPointsRequest") {
+      explanation.set_lubricant(points.lubricant());
+      explanation.set_other_lubricant(points.lubricant());
+      *explanation.mutable_conditions() = points.conditions();
+      explanation.add_condition_weights(1);
+      use(&explanation, "");
     } else if (name == "Campaign" || name == "CampaignBudget") {
       campaign.set_lubricant(points.lubricant());
       *campaign.mutable_conditions() = points.conditions();
@@ -203,6 +211,10 @@ struct Subject {
     }
     if (message == &points || path == "conditions[0].") {
       read_points(points, seed_lookup(), violations);
+      return violations;
+    }
+    if (message == &explanation) {
+      read_explanation(explanation, seed_lookup(), violations);
       return violations;
     }
     if (message == &comparison) {

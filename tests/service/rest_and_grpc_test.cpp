@@ -546,6 +546,13 @@ TEST_F(RestAndGrpc, EveryMethodGivesTheSameAnswers) {
   check("ComparePoints",
         "lubricants: 'lubricants/none' conditions { speed_kilometres_per_hour: 1 }",
         google::rpc::INVALID_ARGUMENT);
+  check("ExplainPoints",
+        R"(lubricant: "lubricants/paper-fluid-1" other_lubricant: "lubricants/paper-fluid-2"
+      conditions { speed_kilometres_per_hour: 110 } tolerance: 1e-3)");
+  check("ExplainPoints",
+        R"(lubricant: "lubricants/none" other_lubricant: "lubricants/paper-fluid-2"
+      conditions { speed_kilometres_per_hour: 110 })",
+        google::rpc::INVALID_ARGUMENT);
   check_simulations();
   check_campaigns();
   for (const auto* each : all_methods()) {

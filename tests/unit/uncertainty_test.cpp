@@ -9,6 +9,7 @@
 #include "core/uncertainty/drawn_value.h"
 #include "core/uncertainty/input_draw.h"
 #include "core/uncertainty/normal_draws.h"
+#include "core/uncertainty/shapley.h"
 #include "core/uncertainty/spread.h"
 
 namespace tribodyn {
@@ -74,6 +75,35 @@ TEST(Spread, OfEqualDrawsIsNothing) {
 TEST(Spread, SharesBelowZeroCountZerosHalf) {
   const std::vector<double> draws = {-1, 0, 0, 2};
   EXPECT_EQ(share_below_zero(draws), 0.5);
+}
+
+TEST(ShapleyValues, AreThoseOfTheGloveGame) {
+  // Causes 0 and 1 have a left glove each, cause 2 a right one; a pair is worth 1.
+  const std::vector<double> values = {0, 0, 0, 0, 0, 1, 1, 1};
+  const std::vector<double> shapley = shapley_values(values);
+  ASSERT_EQ(shapley.size(), 3U);
+  EXPECT_NEAR(shapley[0], 1.0 / 6, 1e-15);
+  EXPECT_NEAR(shapley[1], 1.0 / 6, 1e-15);
+  EXPECT_NEAR(shapley[2], 4.0 / 6, 1e-15);
+}
+
+TEST(ShapleyValues, SumToTheDifferenceAndSplitAProductEvenly) {
+  // Six causes add 1, 2, 4 ... and causes 1 and 4 another 10 together.
+  std::vector<double> values(64);
+  for (std::size_t set = 0; set < values.size(); ++set) {
+    values[set] = static_cast<double>(set) + ((set & 0b10010U) == 0b10010U ? 10 : 0);
+  }
+  const std::vector<double> shapley = shapley_values(values);
+  const std::vector<double> expected = {1, 2 + 5, 4, 8, 16 + 5, 32};
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(shapley[i], expected[i], 1e-12);
+  const std::vector<double> interactions = shapley_interactions(values);
+  ASSERT_EQ(interactions.size(), 15U);
+  std::size_t pair = 0;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i + 1; j < 6; ++j, ++pair) {
+      EXPECT_NEAR(interactions[pair], i == 1 && j == 4 ? 10 : 0, 1e-12) << i << " and " << j;
+    }
+  }
 }
 
 TEST(DrawnValue, IsLogNormalAboutAPositiveValueAndNormalAboutAnother) {

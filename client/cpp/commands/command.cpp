@@ -65,6 +65,8 @@ std::vector<Command> all_commands() {
   commands.push_back(curve_command());
   commands.push_back(point_command());
   commands.push_back(compare_command());
+  commands.push_back(explain_command());
+  commands.push_back(report_command());
   commands.push_back(screen_command());
   commands.push_back(design_command());
   commands.push_back(sensitivities_command());

@@ -71,6 +71,8 @@ Command stribeck_command();
 Command compare_command();
 Command screen_command();
 Command design_command();
+Command explain_command();
+Command report_command();
 Command sensitivities_command();
 Command diff_command();
 Command validate_command();

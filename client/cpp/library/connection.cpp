@@ -153,4 +153,8 @@ v1::ComparePointsResponse Connection::compare_points(const v1::ComparePointsRequ
   return services_->call(*services_->points, &v1::PointService::Stub::ComparePoints, request);
 }
 
+v1::ExplainPointsResponse Connection::explain_points(const v1::ExplainPointsRequest& request) {
+  return services_->call(*services_->points, &v1::PointService::Stub::ExplainPoints, request);
+}
+
 }  // namespace tribodyn::client

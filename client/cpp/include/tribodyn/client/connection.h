@@ -237,6 +237,8 @@ class Connection {
   v1::EvaluatePointsResponse evaluate_points(const v1::EvaluatePointsRequest& request);
   /// Compares lubricants at conditions with the uncertainty of their inputs.
   v1::ComparePointsResponse compare_points(const v1::ComparePointsRequest& request);
+  /// Attributes the difference of two lubricants to groups of parameters.
+  v1::ExplainPointsResponse explain_points(const v1::ExplainPointsRequest& request);
 
  private:
   struct Services;
