@@ -38,6 +38,11 @@ Outcome<google::protobuf::Empty> delete_campaign(Application& application,
                                                  const v1::DeleteCampaignRequest& request,
                                                  const CallContext& call = {});
 
+/// How far a campaign is, at once and after each change until its end.
+StreamOutcome<v1::CampaignEvent> watch_campaign(Application& application,
+                                                const v1::WatchCampaignRequest& request,
+                                                const CallContext& call = {});
+
 /// The schema of columns of a campaign, then their rows.
 StreamOutcome<v1::ReadCampaignResponse> read_campaign(Application& application,
                                                       const v1::ReadCampaignRequest& request,

@@ -187,6 +187,7 @@ std::vector<Method> rows() {
       unary(Scope::kWrite, kWrite, resume_campaign),
       unary(Scope::kWrite, kWrite, cancel_campaign),
       unary(Scope::kWrite, kWrite, delete_campaign),
+      stream(Scope::kRead, watch_campaign),
       stream(Scope::kRead, read_campaign),
   };
 }

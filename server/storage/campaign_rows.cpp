@@ -319,6 +319,32 @@ std::optional<StoredCampaign> insert_tile(Connection& db, std::int64_t id, const
                               .message = "the budget is spent; resume it with a larger one"});
 }
 
+std::optional<CampaignProgress> query_campaign_progress(Connection& db, std::int64_t id,
+                                                        std::int64_t first_missing_row) {
+  Prepared query(db,
+                 "SELECT state, stop_reason, stop_message, candidates * conditions, points_done, "
+                 "points_refused, processor_seconds FROM campaigns WHERE id = ?");
+  query.bind(1, id);
+  if (!query.executeStep()) return std::nullopt;
+  CampaignProgress out{.state = static_cast<CampaignState>(query.getColumn(0).getInt()),
+                       .stop_reason = query.getColumn(1).getString(),
+                       .stop_message = query.getColumn(2).getString(),
+                       .points = query.getColumn(3).getInt64(),
+                       .points_done = query.getColumn(4).getInt64(),
+                       .points_refused = query.getColumn(5).getInt64(),
+                       .first_missing_row = first_missing_row,
+                       .processor_seconds = query.getColumn(6).getDouble()};
+  Prepared tiles(db,
+                 "SELECT first_row, rows FROM campaign_tiles WHERE campaign = ? AND "
+                 "first_row >= ? ORDER BY first_row");
+  tiles.bind(1, id);
+  tiles.bind(2, first_missing_row);
+  while (tiles.executeStep() && tiles.getColumn(0).getInt64() == out.first_missing_row) {
+    out.first_missing_row += tiles.getColumn(1).getInt64();
+  }
+  return out;
+}
+
 std::vector<RowRange> query_tiles(Connection& db, std::int64_t id) {
   Prepared query(
       db, "SELECT first_row, rows FROM campaign_tiles WHERE campaign = ? ORDER BY first_row");

@@ -61,6 +61,10 @@ std::vector<std::string> compress_tile(const NewTile& tile);
 std::optional<StoredCampaign> insert_tile(Connection& db, std::int64_t id, const NewTile& tile,
                                           const std::vector<std::string>& blobs, Microseconds now);
 
+/// Returns how far a campaign is; nullopt if it does not exist. `first_missing_row`: of an earlier
+/// call, or 0; the tiles before it are not read again.
+std::optional<CampaignProgress> query_campaign_progress(Connection& db, std::int64_t id,
+                                                        std::int64_t first_missing_row);
 /// Returns the rows of all tiles, in their order.
 std::vector<RowRange> query_tiles(Connection& db, std::int64_t id);
 std::vector<CampaignRefusal> query_refusals(Connection& db, std::int64_t id);

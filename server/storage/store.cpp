@@ -644,12 +644,14 @@ std::optional<StoredCampaign> Store::change_campaign(const CampaignChange& chang
                                                      const CallLimits& limits) {
   std::optional<StoredCampaign> out;
   write_together(limits, [&](Connection& db) { out = server::change_campaign(db, change); });
+  tell_campaign_change();
   return out;
 }
 
 std::optional<StoredCampaign> Store::begin_campaign(std::int64_t id) {
   std::optional<StoredCampaign> out;
   write_together({}, [&](Connection& db) { out = server::begin_campaign(db, id); });
+  tell_campaign_change();  // it may pause the campaign
   return out;
 }
 
@@ -663,7 +665,20 @@ std::optional<StoredCampaign> Store::add_tile(std::int64_t id, const NewTile& ti
   const std::vector<std::string> blobs = compress_tile(tile);
   std::optional<StoredCampaign> out;
   write_together({}, [&](Connection& db) { out = insert_tile(db, id, tile, blobs, now); });
+  tell_campaign_change();
   return out;
+}
+
+void Store::tell_campaign_change() {
+  ++campaign_changes_;  // before anybody is notified, so that who looks then finds it
+  campaign_observers_.tell();
+}
+
+std::optional<CampaignProgress> Store::campaign_progress(std::int64_t id,
+                                                         std::int64_t first_missing_row,
+                                                         const CallLimits& limits) {
+  return read(limits,
+              [&](Connection& db) { return query_campaign_progress(db, id, first_missing_row); });
 }
 
 std::vector<RowRange> Store::campaign_tiles(std::int64_t id, const CallLimits& limits) {
@@ -675,7 +690,7 @@ std::vector<CampaignRefusal> Store::campaign_refusals(std::int64_t id, const Cal
 }
 
 bool Store::remove_campaign(std::int64_t id, const CallLimits& limits) {
-  return write(limits, [&](Connection& db) {
+  const bool is_gone = write(limits, [&](Connection& db) {
     SQLite::Transaction transaction(db, SQLite::TransactionBehavior::IMMEDIATE);
     const auto stored = query_campaign(db, id);
     if (stored && !has_ended(stored->state)) return false;
@@ -683,6 +698,8 @@ bool Store::remove_campaign(std::int64_t id, const CallLimits& limits) {
     transaction.commit();
     return true;
   });
+  if (is_gone) tell_campaign_change();
+  return is_gone;
 }
 
 void Store::read_campaign(std::int64_t id, int column, std::int64_t start, std::span<double> values,

@@ -226,6 +226,15 @@ class Store {
   std::optional<StoredCampaign> begin_campaign(std::int64_t id);
   void release_campaign(std::int64_t id);
   std::optional<StoredCampaign> add_tile(std::int64_t id, const NewTile& tile, Microseconds now);
+  std::optional<CampaignProgress> campaign_progress(std::int64_t id, std::int64_t first_missing_row,
+                                                    const CallLimits& limits = {});
+  /// Returns a number that grows with each change of a campaign that this process made by one of
+  /// these functions.
+  std::uint64_t campaign_changes() const { return campaign_changes_; }
+  /// Notifies the observer of every later change of a campaign until it is destroyed.
+  void observe_campaigns(const std::weak_ptr<Observer>& observer) {
+    campaign_observers_.add(observer);
+  }
   std::vector<RowRange> campaign_tiles(std::int64_t id, const CallLimits& limits = {});
   std::vector<CampaignRefusal> campaign_refusals(std::int64_t id, const CallLimits& limits = {});
   /// Removes a campaign that has ended. Returns false, and changes nothing, if it has not; true if
@@ -264,6 +273,7 @@ class Store {
   auto write(const CallLimits& limits, const Action& action);
   /// Runs an action in a transaction that it may share with others.
   void write_together(const CallLimits& limits, const GroupCommit::Action& action);
+  void tell_campaign_change();
   template <class Action>
   auto read(const CallLimits& limits, const Action& action);
 
@@ -277,6 +287,8 @@ class Store {
   std::atomic<bool> has_unerased_purge_ = true;
   RecentEvents recent_events_;
   Observers observers_;
+  std::atomic<std::uint64_t> campaign_changes_ = 1;
+  Observers campaign_observers_;
   std::optional<DatabaseFiles> files_;  // set by the constructor when the files exist
   mutable std::mutex projects_mutex_;
   std::set<std::string> projects_;  // guarded by projects_mutex_; those of the database

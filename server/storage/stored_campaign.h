@@ -110,6 +110,18 @@ struct RowRange {
   std::int64_t count = 0;
 };
 
+/// How far a campaign is.
+struct CampaignProgress {
+  CampaignState state = CampaignState::kRunning;
+  std::string stop_reason;  ///< why it is paused or failed; else empty
+  std::string stop_message;
+  std::int64_t points = 0;
+  std::int64_t points_done = 0;
+  std::int64_t points_refused = 0;
+  std::int64_t first_missing_row = 0;  ///< all rows before it are in tiles
+  double processor_seconds = 0;
+};
+
 /// A sentence of the refusals of a campaign, and its number, from 1.
 struct CampaignRefusal {
   int number = 0;

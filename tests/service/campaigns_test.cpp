@@ -132,6 +132,29 @@ class CampaignTest : public testing::Test {
     return out;
   }
 
+  std::shared_ptr<MessageSource<v1::CampaignEvent>> watch(const std::string& name,
+                                                          std::int64_t after_version = 0) {
+    v1::WatchCampaignRequest request;
+    request.set_name(name);
+    request.set_after_version(after_version);
+    application_.emplace(bench_.application());
+    return watch_campaign(*application_, request).message();
+  }
+  /// Returns the next event of a watch, heartbeats left out; nullopt at its end.
+  static std::optional<v1::CampaignEvent> next_event(MessageSource<v1::CampaignEvent>& source) {
+    std::optional<v1::CampaignEvent> out;
+    EXPECT_TRUE(eventually([&] {
+      v1::CampaignEvent event;
+      const auto step = source.next(event);
+      if (step == AnyMessageSource::Step::kEnd) return true;
+      if (step == AnyMessageSource::Step::kWait) return false;
+      if (event.kind() == v1::CampaignEvent::HEARTBEAT) return false;
+      out = event;
+      return true;
+    }));
+    return out;
+  }
+
   Bench bench_;
   std::optional<Application> application_;
 };
@@ -266,6 +289,67 @@ TEST_F(CampaignTest, ContinuesAfterARestartAtTheMissingRows) {
   ASSERT_TRUE(reaches(undisturbed, v1::Campaign::SUCCEEDED));
   expect_equal_tables(read(name), read(undisturbed));
   EXPECT_THAT(check_database(bench_.database()), IsEmpty());
+}
+
+TEST_F(CampaignTest, AWatchHasEveryStateAndGrowingProgressUntilTheEnd) {
+  const std::string name = create(campaign_of(3000));
+  const auto source = watch(name);
+  auto event = next_event(*source);
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->kind(), v1::CampaignEvent::STATE_CHANGE);
+  EXPECT_EQ(event->state(), v1::Campaign::RUNNING);
+  EXPECT_EQ(event->points(), 18'000);
+  std::int32_t done = event->points_done();
+  while (done < 2000) {
+    event = next_event(*source);
+    ASSERT_TRUE(event);
+    EXPECT_EQ(event->kind(), v1::CampaignEvent::PROGRESS);
+    EXPECT_GT(event->points_done(), done);
+    EXPECT_LE(event->first_missing_row(), event->points_done());
+    done = event->points_done();
+    const Table written = read(name, {"refusal_number"}, 0, event->first_missing_row());
+    EXPECT_THAT(written.at("refusal_number"), testing::Each(0)) << "can be read";
+  }
+  ASSERT_TRUE(call<v1::PauseCampaignRequest>(pause_campaign, name).ok());
+  do {
+    event = next_event(*source);
+    ASSERT_TRUE(event);
+  } while (event->kind() == v1::CampaignEvent::PROGRESS);
+  EXPECT_EQ(event->state(), v1::Campaign::PAUSED);
+  EXPECT_EQ(event->stop().reason(), "PAUSE_REQUESTED");
+  ASSERT_TRUE(call<v1::ResumeCampaignRequest>(resume_campaign, name).ok());
+  std::optional<v1::CampaignEvent> last;
+  while ((event = next_event(*source))) last = event;
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->state(), v1::Campaign::SUCCEEDED);
+  EXPECT_EQ(last->first_missing_row(), 18'000);
+  EXPECT_FALSE(next_event(*watch(name, last->version()))) << "the client has the end";
+  event = next_event(*watch(name, last->version() - 1));
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->version(), last->version());
+}
+
+TEST_F(CampaignTest, AWatchEndsWithTheDeletion) {
+  v1::Campaign limited = campaign_of(3000);
+  limited.mutable_budget()->set_points(100);
+  const std::string name = create(limited);
+  ASSERT_TRUE(reaches(name, v1::Campaign::PAUSED));
+  const auto source = watch(name);
+  v1::DeleteCampaignRequest request;
+  request.set_cancel(true);
+  ASSERT_TRUE(call(delete_campaign, name, request).ok());
+  std::optional<v1::CampaignEvent> last;
+  while (const auto event = next_event(*source)) last = event;
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->kind(), v1::CampaignEvent::DELETED);
+  EXPECT_EQ(last->version(), 0);
+}
+
+TEST_F(CampaignTest, AWatchRefusesAVersionThatNoEventHas) {
+  v1::WatchCampaignRequest request;
+  request.set_after_version(-1);
+  EXPECT_THAT(complaints(call(watch_campaign, create(campaign_of(1)), request).error()),
+              HasSubstr("after_version = -1; allowed: 0 or more"));
 }
 
 TEST_F(CampaignTest, IsPausedAndResumedByRequest) {

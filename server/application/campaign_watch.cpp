@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "server/application/campaigns.h"
+#include "server/application/errors.h"
+
+namespace tribodyn::server {
+namespace {
+
+/// Differs between two states of a campaign that clients can tell apart: rows only come, and
+/// without new rows only the state changes.
+std::int64_t version_of(const CampaignProgress& progress) {
+  constexpr std::int64_t kStates = 8;
+  return progress.points_done * kStates + static_cast<std::int64_t>(progress.state);
+}
+
+/// How far one campaign is. Holds nothing but the present state, so that a slow reader costs no
+/// memory and a campaign of thousands of tiles leaves no events behind.
+class CampaignWatch final : public MessageSource<v1::CampaignEvent> {
+ public:
+  CampaignWatch(Application& application, const StoredCampaign& campaign, std::int64_t after,
+                const CallContext& call)
+      : application_(application),
+        limits_{.cancelled = call.limits.cancelled},
+        campaign_(campaign.id),
+        name_(name_of(campaign)),
+        told_version_(after) {}
+
+  void observe(const std::weak_ptr<Observer>& observer) override {
+    application_.store.observe_campaigns(observer);
+    application_.jobs.wake(observer);
+  }
+
+  Step next(v1::CampaignEvent& out) override {
+    if (is_over_) return Step::kEnd;
+    // A heartbeat also finds changes that nothing announced, such as the removal of an old
+    // campaign.
+    const bool is_quiet = Steady::now() - last_message_ >= application_.jobs.heartbeat();
+    if (application_.store.campaign_changes() == seen_changes_ && !is_quiet) return Step::kWait;
+    seen_changes_ = application_.store.campaign_changes();  // before the state is read
+    const auto progress =
+        application_.store.campaign_progress(campaign_, first_missing_row_, limits_);
+    out.Clear();
+    out.set_name(name_);
+    if (!progress) {
+      is_over_ = true;
+      out.set_kind(v1::CampaignEvent::DELETED);
+      return Step::kMessage;
+    }
+    is_over_ = has_ended(progress->state);
+    first_missing_row_ = progress->first_missing_row;
+    const std::int64_t version = version_of(*progress);
+    if (version == told_version_ && !is_quiet) return is_over_ ? Step::kEnd : Step::kWait;
+    out.set_kind(kind_of(*progress, version));
+    fill(*progress, version, out);
+    told_version_ = version;
+    told_state_ = progress->state;
+    last_message_ = Steady::now();
+    return Step::kMessage;
+  }
+
+  bool is_short() const override { return true; }
+  bool may_continue() const override {
+    return is_over_ || application_.store.campaign_changes() != seen_changes_;
+  }
+
+ private:
+  using Steady = std::chrono::steady_clock;
+
+  v1::CampaignEvent::Kind kind_of(const CampaignProgress& progress, std::int64_t version) const {
+    if (version == told_version_) return v1::CampaignEvent::HEARTBEAT;
+    return told_state_ == progress.state ? v1::CampaignEvent::PROGRESS
+                                         : v1::CampaignEvent::STATE_CHANGE;
+  }
+
+  static void fill(const CampaignProgress& progress, std::int64_t version, v1::CampaignEvent& out) {
+    out.set_state(static_cast<v1::Campaign::State>(progress.state));
+    if (!progress.stop_reason.empty()) {
+      out.mutable_stop()->set_reason(progress.stop_reason);
+      out.mutable_stop()->set_message(progress.stop_message);
+    }
+    out.set_points(static_cast<int>(progress.points));
+    out.set_points_done(static_cast<int>(progress.points_done));
+    out.set_points_refused(static_cast<int>(progress.points_refused));
+    out.set_first_missing_row(static_cast<int>(progress.first_missing_row));
+    out.set_processor_seconds(progress.processor_seconds);
+    out.set_version(version);
+  }
+
+  Application application_;
+  const CallLimits limits_;  // the end of the stream is its transport's
+  const std::int64_t campaign_;
+  const std::string name_;
+  std::int64_t told_version_;
+  std::optional<CampaignState> told_state_;  // empty before the first event
+  std::int64_t first_missing_row_ = 0;
+  std::uint64_t seen_changes_ = 0;  // Store::campaign_changes() before the last read
+  bool is_over_ = false;
+  Steady::time_point last_message_ = Steady::now();
+};
+
+}  // namespace
+
+StreamOutcome<v1::CampaignEvent> watch_campaign(Application& application,
+                                                const v1::WatchCampaignRequest& request,
+                                                const CallContext& call) {
+  using Source = std::shared_ptr<MessageSource<v1::CampaignEvent>>;
+  if (request.after_version() < 0) {
+    return invalid({{"after_version", fmt::format("after_version = {}; allowed: 0 or more",
+                                                  request.after_version())}});
+  }
+  const auto found = find_campaign(application, request.name(), call);
+  if (!found.ok()) return found.error();
+  return Source(
+      std::make_shared<CampaignWatch>(application, found.message(), request.after_version(), call));
+}
+
+}  // namespace tribodyn::server
