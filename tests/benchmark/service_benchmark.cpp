@@ -20,6 +20,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <thread>
@@ -748,8 +749,8 @@ double thread_processor_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Processor time that the core's screening of all candidates takes [s].
-double screen_in_core(const std::vector<v1::Lubricant>& fluids) {
+/// Fluids at each sump, as the core takes them.
+std::vector<SimulationInputs> screening_inputs(const std::vector<v1::Lubricant>& fluids) {
   ResourceLookup lookup = seed_lookup();
   lookup.find = [&fluids,
                  seeds = lookup.find](const RevisionName& name) -> std::optional<FoundResource> {
@@ -758,28 +759,50 @@ double screen_in_core(const std::vector<v1::Lubricant>& fluids) {
     }
     return seeds(name);
   };
-  std::vector<SimulationInputs> inputs;
+  std::vector<SimulationInputs> out;
   for (const v1::Simulation& simulation : screening_curves(fluids)) {
     Violations violations;
-    inputs.push_back(read_simulation(simulation, lookup, "simulation", violations).value());
+    out.push_back(read_simulation(simulation, lookup, "simulation", violations).value());
   }
-  const double begin = thread_processor_seconds();
+  return out;
+}
+
+/// Processor time that the core's screening of some fluids takes on this thread, without the
+/// conversion of messages [s].
+double screen_on_this_thread(std::span<const SimulationInputs> inputs) {
   std::shared_ptr<PreparedGearSet> gear_set;
+  double out = 0;
   for (const SimulationInputs& input : inputs) {
     const Scene physical = scene(input);
+    const auto study = std::get<CurveStudy>(server::study(input));
+    const double begin = thread_processor_seconds();
     if (!gear_set) {
       gear_set =
           std::make_shared<PreparedGearSet>(physical.gear_set, physical.solid, physical.options);
     }
     PreparedScene prepared(physical, gear_set);
-    const auto study = std::get<CurveStudy>(server::study(input));
     for (const double speed : study.vehicle_speeds) {
       OperatingCondition condition;
       condition.vehicle_speed = speed;
       screen_point(prepared, condition, study.options.point);
     }
+    out += thread_processor_seconds() - begin;
   }
-  return thread_processor_seconds() - begin;
+  return out;
+}
+
+/// The same on several threads at once, which share caches and memory as those of a server do [s].
+double screen_in_core(const std::vector<SimulationInputs>& inputs, std::size_t threads) {
+  std::vector<double> taken(threads);
+  std::vector<std::thread> all;
+  for (std::size_t i = 0; i < threads; ++i) {
+    const std::size_t begin = i * inputs.size() / threads, end = (i + 1) * inputs.size() / threads;
+    all.emplace_back([&, i, begin, end] {
+      taken[i] = screen_on_this_thread(std::span(inputs).subspan(begin, end - begin));
+    });
+  }
+  for (std::thread& each : all) each.join();
+  return std::accumulate(taken.begin(), taken.end(), 0.0);
 }
 
 /// Processor time of the server from the first submission, 64 under way, until all have ended [s].
@@ -849,10 +872,11 @@ double evaluate_over_the_wire(const Server& server, std::span<const v1::Lubrican
 /// that store nothing, against the same points screened in the core alone.
 void measure_screening(std::vector<Measurement>& out) {
   const std::vector<v1::Lubricant> fluids = candidates(kCandidates);
+  const std::vector<SimulationInputs> inputs = screening_inputs(fluids);
   const auto milliseconds_a_point = [](double total) { return 1e3 * total / kScreened; };
   std::vector<double> core, curves, points, calls;
   for (int run = 0; run < 3; ++run) {
-    core.push_back(milliseconds_a_point(screen_in_core(fluids)));
+    core.push_back(milliseconds_a_point(screen_in_core(inputs, 1)));
     for (const bool as_curves : {true, false}) {
       const Server server;
       create_lubricants(server, fluids);
@@ -874,82 +898,212 @@ void measure_screening(std::vector<Measurement>& out) {
       {"screened_point_of_its_own_over_the_core", median(points) / median(core), "-", {}});
 }
 
+void check_status(const grpc::Status& status) {
+  if (!status.ok()) throw std::runtime_error(status.error_message());
+}
+
+v1::CreateCampaignRequest campaign_request(std::span<const v1::Lubricant> fluids) {
+  const v1::EvaluatePointsRequest points = evaluation(fluids);
+  v1::CreateCampaignRequest out;
+  out.mutable_campaign()->set_lubricant(points.lubricant());
+  *out.mutable_campaign()->mutable_candidate_columns() = points.candidate_columns();
+  *out.mutable_campaign()->mutable_conditions() = points.conditions();
+  return out;
+}
+
+v1::Campaign create_campaign(v1::CampaignService::Stub& stub,
+                             const v1::CreateCampaignRequest& request) {
+  grpc::ClientContext context;
+  context.AddMetadata("tribodyn-client", kOneClient);
+  v1::Campaign out;
+  check_status(stub.CreateCampaign(&context, request, &out));
+  return out;
+}
+
+/// Follows a campaign until it ends or pauses. Calls `progress` after each change.
+v1::CampaignEvent follow_campaign(v1::CampaignService::Stub& stub, const std::string& name,
+                                  const std::function<void(const v1::CampaignEvent&)>& progress) {
+  grpc::ClientContext context;
+  v1::WatchCampaignRequest request;
+  request.set_name(name);
+  const auto reader = stub.WatchCampaign(&context, request);
+  v1::CampaignEvent event;
+  while (reader->Read(&event)) {
+    progress(event);
+    if (event.state() != v1::Campaign::RUNNING) break;
+  }
+  context.TryCancel();
+  reader->Finish();
+  return event;
+}
+
 /// What one campaign took.
 struct CampaignRun {
   double processor_seconds = 0;  ///< of the server, from the request until the last row
+  double seconds = 0;            ///< the same by the clock
   double first_rows_seconds = 0;
   double bytes = 0;  ///< of its rows in the database
   double read_seconds = 0;
 };
 
-CampaignRun run_campaign(const std::vector<v1::Lubricant>& fluids) {
-  const Server server;
+CampaignRun run_campaign(std::span<const v1::Lubricant> fluids, std::size_t threads) {
+  const Server server({"--threads", std::to_string(threads)});
   const auto stub = v1::CampaignService::NewStub(connect(server.address()));
-  const v1::EvaluatePointsRequest points = evaluation(fluids);
-  v1::CreateCampaignRequest request;
-  request.mutable_campaign()->set_lubricant(points.lubricant());
-  *request.mutable_campaign()->mutable_candidate_columns() = points.candidate_columns();
-  *request.mutable_campaign()->mutable_conditions() = points.conditions();
-  const auto check = [](const grpc::Status& status) {
-    if (!status.ok()) throw std::runtime_error(status.error_message());
-  };
+  const v1::CreateCampaignRequest request = campaign_request(fluids);
   CampaignRun out;
-  v1::Campaign campaign;
   const double begin = process_figures(server.id()).processor_seconds;
   const auto start = Clock::now();
-  {
-    grpc::ClientContext context;
-    check(stub->CreateCampaign(&context, request, &campaign));
-  }
-  const double request_bytes = static_cast<double>(campaign.stored_bytes());
-  v1::GetCampaignRequest get;
-  get.set_name(campaign.name());
-  while (campaign.state() == v1::Campaign::RUNNING) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(campaign.points_done() == 0 ? 1 : 20));
-    grpc::ClientContext context;
-    check(stub->GetCampaign(&context, get, &campaign));
-    if (out.first_rows_seconds == 0 && campaign.points_done() > 0) {
-      out.first_rows_seconds = seconds_since(start);
-    }
-  }
-  if (campaign.state() != v1::Campaign::SUCCEEDED || campaign.points_refused() > 0) {
+  const v1::Campaign created = create_campaign(*stub, request);
+  const v1::CampaignEvent end =
+      follow_campaign(*stub, created.name(), [&](const v1::CampaignEvent& event) {
+        if (out.first_rows_seconds == 0 && event.points_done() > 0) {
+          out.first_rows_seconds = seconds_since(start);
+        }
+      });
+  out.seconds = seconds_since(start);
+  out.processor_seconds = process_figures(server.id()).processor_seconds - begin;
+  if (end.state() != v1::Campaign::SUCCEEDED || end.points_refused() > 0) {
     throw std::runtime_error("a campaign did not succeed");
   }
-  out.processor_seconds = process_figures(server.id()).processor_seconds - begin;
-  out.bytes = static_cast<double>(campaign.stored_bytes()) - request_bytes;
+  {
+    grpc::ClientContext context;
+    v1::GetCampaignRequest get;
+    get.set_name(created.name());
+    v1::Campaign done;
+    check_status(stub->GetCampaign(&context, get, &done));
+    out.bytes = static_cast<double>(done.stored_bytes() - created.stored_bytes());
+  }
   const auto before = Clock::now();
   grpc::ClientContext context;
   v1::ReadCampaignRequest read;
-  read.set_name(campaign.name());
+  read.set_name(created.name());
   const auto reader = stub->ReadCampaign(&context, read);
   std::size_t bytes = 0;
   for (v1::ReadCampaignResponse part; reader->Read(&part);) bytes += part.chunk().values().size();
-  check(reader->Finish());
+  check_status(reader->Finish());
   if (bytes < fluids.size()) throw std::runtime_error("rows are missing");
   out.read_seconds = seconds_since(before);
   return out;
 }
 
 /// A campaign of a thousand fluids at 39 conditions against the same points screened in the core
-/// alone.
-void measure_campaigns(std::vector<Measurement>& out) {
+/// alone, on as many threads: two threads slow each other down by some percent, in the core as in
+/// the server.
+void measure_campaign_cost(std::size_t threads, std::vector<Measurement>& out) {
   const std::vector<v1::Lubricant> fluids = candidates(1000);
+  const std::vector<SimulationInputs> inputs = screening_inputs(fluids);
   const double points = 1000.0 * kSpeeds * std::size(kSumpCelsius);
-  std::vector<double> core, server, bytes, first, reads;
-  for (int run = 0; run < 3; ++run) {
-    core.push_back(1e6 * screen_in_core(fluids) / points);
-    const CampaignRun campaign = run_campaign(fluids);
+  std::vector<double> core, server, ratios, bytes, first, reads;
+  for (int run = 0; run < kRuns; ++run) {
+    core.push_back(1e6 * screen_in_core(inputs, threads) / points);
+    const CampaignRun campaign = run_campaign(fluids, threads);
     server.push_back(1e6 * campaign.processor_seconds / points);
+    ratios.push_back(server.back() / core.back());
     bytes.push_back(campaign.bytes / points);
     first.push_back(1e3 * campaign.first_rows_seconds);
     reads.push_back(1e3 * campaign.read_seconds);
   }
-  out.push_back({"campaign_point_in_the_core", median(core), "us", {}});
-  out.push_back({"campaign_point_in_the_server", median(server), "us", {}});
-  out.push_back({"campaign_point_over_the_core", median(server) / median(core), "-", 1.05});
-  out.push_back({"campaign_bytes_of_a_point", median(bytes), "B", 60});
-  out.push_back({"campaign_first_rows_visible", median(first), "ms", 100});
-  out.push_back({"campaign_of_39000_points_read", median(reads), "ms", 150});
+  const std::string name = fmt::format("campaign_with_{}_threads", threads);
+  out.push_back({name + "_point_in_the_core", median(core), "us", {}});
+  out.push_back({name + "_point_in_the_server", median(server), "us", {}});
+  out.push_back({name + "_point_over_the_core", median(ratios), "-", 1.05});
+  out.push_back({name + "_bytes_of_a_point", median(bytes), "B", 60});
+  out.push_back({name + "_first_rows_visible", median(first), "ms", 100});
+  out.push_back({name + "_of_39000_points_read", median(reads), "ms", 150});
+}
+
+/// How much faster two threads compute a campaign of some seconds than one.
+void measure_campaign_threads(std::vector<Measurement>& out) {
+  const std::vector<v1::Lubricant> fluids = candidates(4000);
+  std::vector<double> ratios;
+  for (int run = 0; run < 3; ++run) {
+    const double one = run_campaign(fluids, 1).seconds;
+    ratios.push_back(one / run_campaign(fluids, 2).seconds);
+  }
+  out.push_back({"campaign_two_threads_over_one", median(ratios), "-", 1.8, false});
+}
+
+/// How much longer a client waits for a point stated INTERACTIVE while its own campaign takes all
+/// threads than while nothing runs.
+void measure_interactive_beside_a_campaign(std::vector<Measurement>& out) {
+  for (const char* threads : {"1", "2"}) {
+    const Server server({"--threads", threads});
+    const auto stub = v1::CampaignService::NewStub(connect(server.address()));
+    const Latencies idle = interactive_points(server.stub(), 30);
+    v1::CreateCampaignRequest request = campaign_request(candidates(1000));
+    // Equal candidates are computed again: enough for as long as this takes.
+    for (v1::CandidateColumn& column : *request.mutable_campaign()->mutable_candidate_columns()) {
+      const std::vector<double> values(column.values().begin(), column.values().end());
+      for (int i = 1; i < 50; ++i) column.mutable_values()->Add(values.begin(), values.end());
+    }
+    const std::string campaign = create_campaign(*stub, request).name();
+    const Latencies busy = interactive_points(server.stub(), 60);
+    v1::Campaign::State state{};
+    follow_campaign(*stub, campaign, [&](const v1::CampaignEvent& event) {
+      state = event.state();
+      if (state != v1::Campaign::RUNNING) return;
+      grpc::ClientContext context;
+      v1::CancelCampaignRequest cancel;
+      cancel.set_name(campaign);
+      v1::Campaign cancelled;
+      check_status(stub->CancelCampaign(&context, cancel, &cancelled));
+    });
+    const int lost = idle.failures + busy.failures + (state == v1::Campaign::CANCELLED ? 0 : 1);
+    const std::string name = fmt::format("interactive_beside_a_campaign_with_{}_threads", threads);
+    out.push_back({name + "_p99_beyond_idle", 1e3 * (busy.percentile(0.99) - idle.percentile(0.99)),
+                   "ms", 50});
+    out.push_back({name + "_p99", 1e3 * busy.percentile(0.99), "ms", {}});
+    out.push_back({name + "_not_succeeded", static_cast<double>(lost), "-", 0});
+  }
+}
+
+/// Ten million points, of which a tenth is computed: what the server keeps in memory beyond what it
+/// has after a hundredth.
+void measure_large_campaign(std::vector<Measurement>& out) {
+  constexpr int kManyCandidates = 100'000, kConditions = 100;
+  const Server server;
+  const auto stub = v1::CampaignService::NewStub(connect(server.address()));
+  v1::CreateCampaignRequest request;
+  v1::Campaign& campaign = *request.mutable_campaign();
+  campaign.set_lubricant("lubricants/paper-fluid-1");
+  v1::CandidateColumn& column = *campaign.add_candidate_columns();
+  column.set_path("lubricant.relaxation_time_seconds");
+  for (int i = 0; i < kManyCandidates; ++i) column.add_values(1e-12 * (1 + 1e-4 * i));
+  for (int i = 0; i < kConditions; ++i) {
+    campaign.add_conditions()->set_speed_kilometres_per_hour(20 + 1.2 * i);
+  }
+  campaign.mutable_budget()->set_points(kManyCandidates);
+  const auto start = Clock::now();
+  const std::string name = create_campaign(*stub, request).name();
+  const double accepted = seconds_since(start);
+  const auto nothing = [](const v1::CampaignEvent&) {};
+  follow_campaign(*stub, name, nothing);
+  const double before = process_figures(server.id()).anonymous_bytes;
+  grpc::ClientContext context;
+  v1::ResumeCampaignRequest resume;
+  resume.set_name(name);
+  resume.mutable_budget()->set_points(10 * kManyCandidates);
+  v1::Campaign resumed;
+  check_status(stub->ResumeCampaign(&context, resume, &resumed));
+  const auto from = Clock::now();
+  const v1::CampaignEvent end = follow_campaign(*stub, name, nothing);
+  if (end.stop().reason() != "BUDGET_SPENT") throw std::runtime_error("the campaign was stopped");
+  out.push_back({"campaign_of_10000000_points_accepted", 1e3 * accepted, "ms", 1000});
+  out.push_back({"campaign_of_10000000_points_rate",
+                 9.0 * kManyCandidates / seconds_since(from),
+                 "1/s",
+                 {},
+                 false});
+  out.push_back({"campaign_of_10000000_points_memory_growth",
+                 (process_figures(server.id()).anonymous_bytes - before) / kMegabyte, "MB", 8});
+}
+
+void measure_campaigns(std::vector<Measurement>& out) {
+  measure_campaign_cost(1, out);
+  measure_campaign_cost(2, out);
+  measure_campaign_threads(out);
+  measure_interactive_beside_a_campaign(out);
+  measure_large_campaign(out);
 }
 
 struct EstimatedCase {
