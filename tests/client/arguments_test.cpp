@@ -227,6 +227,28 @@ TEST(Arguments, OnlyACurveTakesSeveralSumpTemperatures) {
   EXPECT_EQ(simulations[2].sump_temperature_celsius(), 40);
 }
 
+TEST(Arguments, ACurveIsComputedOnEachSurfaceAndWithEachVariant) {
+  EXPECT_TRUE(Outcome({"curve", "-l", "paper-fluid-1", "--surfaces", "run-in,new", "--compare",
+                       "isothermal,no-boundary,eq17,houpert,down"})
+                  .complaints.empty());
+  EXPECT_TRUE(Outcome({"curve", "-l", "paper-fluid-1", "--compare", "warmer"})
+                  .complains_of("--compare: 'warmer' must be one of"));
+  EXPECT_TRUE(Outcome({"point", "-l", "paper-fluid-1", "--speed", "60", "--surface", "run-in,new"})
+                  .complains_of("--surface: give only one (curve accepts several)"));
+  Scenario scenario;
+  scenario.lubricants = {"a"};
+  scenario.surfaces = {"run-in", "new"};
+  scenario.compared = {"no-boundary", "down"};
+  const std::vector<v1::Simulation> simulations = simulations_of(scenario);
+  ASSERT_EQ(simulations.size(), 6U);
+  EXPECT_EQ(simulations[0].surface(), "surfaces/run-in");
+  EXPECT_FALSE(simulations[0].model_options().no_boundary_friction());
+  EXPECT_TRUE(simulations[1].model_options().no_boundary_friction());
+  EXPECT_EQ(simulations[2].inefficiency_curve().direction(), v1::SWEEP_DIRECTION_DOWN);
+  EXPECT_FALSE(simulations[2].model_options().no_boundary_friction());
+  EXPECT_EQ(simulations[3].surface(), "surfaces/new");
+}
+
 TEST(Arguments, QuantitiesOfALubricantNeedNoUnit) {
   const Outcome outcome({"lubricants", "create", "x", "--kv40", "103", "--kv100", "15.1cSt",
                          "--pressure-viscosity", "20", "--pressure-viscosity-temperature", "40",

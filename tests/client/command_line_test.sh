@@ -319,6 +319,13 @@ out_has '^Uncertainty of the inputs'
 grep -q 'Bands: 95 % intervals' "$folder/bands.svg" || fail "the plot has no bands"
 expect 0 curve --lubricant sheet-a --speeds 40,60 --sumps 40,90 --no-uncertainty --output csv
 out_lines 5
+expect 0 curve --lubricant paper-fluid-1 --speeds 20,100 --compare isothermal,no-boundary,down \
+  --plot "$folder/variants.svg"
+out_has 'difference %'
+out_has '^ *20 +1\.3[0-9]+ +\+1[0-9]\.[0-9]{2} +-2[0-9]\.[0-9]{2}'
+grep -q 'Difference of the energy mean' "$folder/variants.svg" || fail "the plot has no differences"
+expect 2 curve --lubricant paper-fluid-1 --compare warmer
+err_has "'warmer' must be one of"
 expect 0 curve --lubricant sheet-a --speed 40,60 --no-uncertainty
 out_lacks '^Uncertainty of the inputs'
 expect 0 curve --lubricant paper-fluid-1 --lubricant paper-fluid-2,paper-fluid-3 --first-speed 40 --last-speed 60 --speed-step 10 \

@@ -18,6 +18,8 @@
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/plot/svg.h"
 #include "client/cpp/report/rig_rows.h"
+#include "client/cpp/report/variant_report.h"
+#include "client/cpp/text/text.h"
 #include "tests/client/sample_simulations.h"
 
 namespace tribodyn::client {
@@ -265,8 +267,37 @@ TEST(CurvePlot, LabelsCurvesBySumpTemperatureWhereItDiffers) {
   const std::string svg = curve_plot(simulations, {});
   EXPECT_NE(svg.find("not measured [EXPANSION_ESTIMATED]"), std::string::npos);
   EXPECT_NE(svg.find("sump 90 "), std::string::npos);
-  EXPECT_NE(svg.find("paper-fluid-1 at 90 C: "), std::string::npos);
+  EXPECT_NE(svg.find("paper-fluid-1 (sump 90 C): "), std::string::npos);
   EXPECT_EQ(svg.find("; sump 40"), std::string::npos);  // the caption is of all curves
+}
+
+TEST(CurvePlot, VariantsOfAModelAreLabelledAndTheirDifferenceIsDrawnBelow) {
+  std::vector<v1::Simulation> simulations = {sample_curve("lubricants/paper-fluid-1", 1),
+                                             sample_curve("lubricants/paper-fluid-1", 1.25),
+                                             sample_curve("lubricants/paper-fluid-1", 1)};
+  EXPECT_EQ(curve_plot({simulations[0]}, {}).find("Difference of the energy mean"),
+            std::string::npos);
+  simulations[1].mutable_model_options()->set_isothermal(true);
+  simulations[2].mutable_inefficiency_curve()->set_direction(v1::SWEEP_DIRECTION_DOWN);
+  EXPECT_EQ(variant_notes(simulations),
+            (std::vector<std::string>{"as corrected", "isothermal", "down-sweep"}));
+  const std::string svg = curve_plot(simulations, {});
+  EXPECT_NE(svg.find(">isothermal</text>"), std::string::npos);
+  EXPECT_NE(svg.find("Difference of the energy mean"), std::string::npos);
+  EXPECT_EQ(svg.find("; model as corrected"), std::string::npos);  // the caption is of all curves
+  const auto variants = variants_of(simulations);
+  ASSERT_EQ(variants.size(), 2U);
+  const auto differences = relative_differences(variants[0]);
+  ASSERT_FALSE(differences.empty());
+  const v1::CurvePoint& first = simulations[0].result().points(0);
+  const double base = first.result().inefficiency_energy_mean_percent();
+  const double other =
+      simulations[1].result().points(0).result().inefficiency_energy_mean_percent();
+  EXPECT_EQ(differences.front().first, first.speed_kilometres_per_hour());
+  EXPECT_NEAR(differences.front().second, 100 * (other / base - 1), 1e-9);
+  EXPECT_GT(std::abs(differences.front().second), 1);
+  EXPECT_NE(variant_report(simulations).find(signed_fixed(differences.front().second, 2)),
+            std::string::npos);
 }
 
 TEST(CurvePlot, CutsALongTitleWithAnEllipsis) {

@@ -10,6 +10,7 @@
 #include "client/cpp/plot/curve_plot.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/report/curve_report.h"
+#include "client/cpp/report/variant_report.h"
 
 namespace tribodyn::client {
 namespace {
@@ -72,6 +73,17 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
       "Leave out the uncertainty of the inputs, which takes about three times as long as the "
       "curve.",
       [&] { flags.leaves_out_uncertainty = true; });
+  list.choices(
+      "--compare", compared_words(),
+      "Compute each curve also with a switch of the model, a misprint of the paper, or the "
+      "other direction, separated by commas, and show the difference in percent: " +
+          compared_words() + ". Leaves out the uncertainty of the inputs.",
+      [&](const std::string& word) {
+        v1::Simulation ignored;
+        if (!apply_variant(word, ignored)) return false;
+        flags.scenario.compared.push_back(word);
+        return true;
+      });
   list.group("Files");
   add_result_file_flag(list, "--csv", "FILE", "Also write every field of every point as CSV.",
                        flags.csv_path);
@@ -92,7 +104,7 @@ int run_curve(CurveFlags& flags, const CommonOptions& options) {
   const auto ended = run_scenario(flags.scenario, connection, options);
   if (ended.empty()) return kExitOk;
   const bool shows_uncertainty =
-      !flags.leaves_out_uncertainty &&
+      !flags.leaves_out_uncertainty && flags.scenario.compared.empty() &&
       (options.output_format == OutputFormat::kTable || !flags.plot_path.empty());
   const CurveUncertainties uncertainties =
       shows_uncertainty ? curve_uncertainties(ended, connection) : CurveUncertainties();
@@ -101,6 +113,9 @@ int run_curve(CurveFlags& flags, const CommonOptions& options) {
   std::vector<v1::Simulation> succeeded;
   for (const v1::Simulation& simulation : ended) {
     if (simulation.state() == v1::Simulation::SUCCEEDED) succeeded.push_back(simulation);
+  }
+  if (options.output_format == OutputFormat::kTable && !flags.scenario.compared.empty()) {
+    std::cout << "\n" << variant_report(succeeded);
   }
   if (!flags.csv_path.empty() && !succeeded.empty()) {
     write_file(flags.csv_path, points_csv(succeeded));
@@ -118,13 +133,14 @@ Command curve_command() {
   const auto flags = std::make_shared<CurveFlags>();
   Command command{
       "curve",
-      "inefficiency against speed, for one or more lubricants and sump temperatures",
-      "Submits an inefficiency curve for each lubricant at each sump temperature, watches them "
-      "together and prints a table "
-      "for each.",
+      "inefficiency against speed, for one or more lubricants, surfaces and sump temperatures",
+      "Submits an inefficiency curve for each lubricant on each surface at each sump temperature, "
+      "watches them together and prints a table for each.",
       {"tribodyn curve --lubricant paper-fluid-1 --lubricant paper-fluid-2 --lubricant "
        "paper-fluid-3 --csv curve.csv --plot curve.svg",
        "tribodyn curve --lubricant paper-fluid-1,paper-fluid-2 --speeds 20,60,100 --sumps 40,90",
+       "tribodyn curve --lubricant paper-fluid-1 --compare isothermal,newtonian,no-boundary --plot "
+       "models.svg",
        "tribodyn curve --lubricant paper-fluid-1 --first-speed 60 --last-speed 85 --speed-step 1 "
        "--direction down"},
       {},
@@ -138,8 +154,7 @@ Command curve_command() {
       complaints.emplace_back(
           "give either --speed with all speeds, or --first-speed, --last-speed and --speed-step");
     }
-    const std::size_t count =
-        flags->scenario.lubricants.size() * std::max<std::size_t>(1, flags->scenario.sumps.size());
+    const std::size_t count = simulations_of(flags->scenario).size();
     if (!flags->plot_path.empty() && count > kDistinctLooks) {
       complaints.push_back("--plot: " + std::to_string(count) + " curves; allowed: at most " +
                            std::to_string(kDistinctLooks) +

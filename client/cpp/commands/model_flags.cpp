@@ -93,7 +93,50 @@ void add_as_published_flag(FlagList& flags, v1::ModelOptions& options) {
   };
 }
 
+/// Returns the switches of ModelOptions as words of --compare, e.g. "no-boundary-friction", by
+/// field.
+std::map<std::string, std::string> switch_words() {
+  std::map<std::string, std::string> out;
+  const auto* descriptor = v1::ModelOptions::descriptor();
+  for (int i = 0; i < descriptor->field_count(); ++i) {
+    const FieldDescriptor& field = *descriptor->field(i);
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_BOOL) {
+      out[field.name()] = flag_of_field(field.name()).substr(2);
+    }
+  }
+  return out;
+}
+
 }  // namespace
+
+std::string compared_words() {
+  std::string out;
+  for (const auto& [field, word] : switch_words()) out += word + "|";
+  return out + "houpert|" + misprint_words() + "|up|down";
+}
+
+bool apply_variant(const std::string& word, v1::Simulation& simulation) {
+  for (const auto& [field, name] : switch_words()) {
+    // "no-boundary" is short for "no-boundary-friction".
+    if (word != name && (word != "no-boundary" || name != "no-boundary-friction")) continue;
+    switch_on(*simulation.mutable_model_options(), field);
+    return true;
+  }
+  for (const auto& [name, field] : misprints()) {
+    if (word != name) continue;
+    switch_on(*simulation.mutable_model_options()->mutable_as_published(), field);
+    return true;
+  }
+  if (word == "houpert") {
+    simulation.mutable_model_options()->set_pressure_viscosity_index(
+        v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT);
+    return true;
+  }
+  if (word != "up" && word != "down") return false;
+  simulation.mutable_inefficiency_curve()->set_direction(word == "up" ? v1::SWEEP_DIRECTION_UP
+                                                                      : v1::SWEEP_DIRECTION_DOWN);
+  return true;
+}
 
 void add_model_flags(FlagList& flags, v1::ModelOptions& options) {
   flags.group("Model (default: the paper's model with its misprints corrected)");

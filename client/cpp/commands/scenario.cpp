@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "client/cpp/report/inputs.h"
 #include "client/cpp/service/follow.h"
 #include "client/cpp/text/text.h"
 
@@ -89,9 +90,9 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
             })
       .collection = "gearSets";
   flags
-      .text(
-          "--surface", "NAME", "Surface: composite roughness of the flanks. Default: run-in.",
-          [&](const std::string& name) { simulation.set_surface(resource_name("surfaces", name)); })
+      .texts("--surface,--surfaces", "NAME",
+             "Surface: composite roughness of the flanks; a curve takes several. Default: run-in.",
+             [&](const std::string& name) { scenario.surfaces.push_back(name); })
       .collection = "surfaces";
   flags
       .text(
@@ -146,17 +147,34 @@ void check_scenario(const Scenario& scenario, bool several_lubricants, Complaint
   if (scenario.sumps.size() > 1 && !several_lubricants) {
     complaints.emplace_back("--sump: give only one (curve accepts several)");
   }
+  if (scenario.surfaces.size() > 1 && !several_lubricants) {
+    complaints.emplace_back("--surface: give only one (curve accepts several)");
+  }
 }
 
 std::vector<v1::Simulation> simulations_of(const Scenario& scenario) {
   std::vector<v1::Simulation> simulations;
+  const auto add = [&](const v1::Simulation& simulation) {
+    simulations.push_back(simulation);
+    for (const std::string& word : scenario.compared) {
+      simulations.push_back(simulation);
+      apply_variant(word, simulations.back());
+    }
+  };
+  const auto add_sumps = [&](v1::Simulation simulation) {
+    if (scenario.sumps.empty()) add(simulation);
+    for (const double sump : scenario.sumps) {
+      simulation.set_sump_temperature_celsius(sump);
+      add(simulation);
+    }
+  };
   for (const std::string& lubricant : scenario.lubricants) {
     v1::Simulation simulation = scenario.simulation;
     simulation.set_lubricant(resource_name("lubricants", lubricant));
-    if (scenario.sumps.empty()) simulations.push_back(simulation);
-    for (const double sump : scenario.sumps) {
-      simulation.set_sump_temperature_celsius(sump);
-      simulations.push_back(simulation);
+    if (scenario.surfaces.empty()) add_sumps(simulation);
+    for (const std::string& surface : scenario.surfaces) {
+      simulation.set_surface(resource_name("surfaces", surface));
+      add_sumps(simulation);
     }
   }
   return simulations;
@@ -167,13 +185,13 @@ std::vector<v1::Simulation> run_scenario(const Scenario& scenario, Connection& c
   std::vector<v1::Simulation> submitted;
   std::vector<std::string> labels;
   Complaints refusals;
-  for (const v1::Simulation& simulation : simulations_of(scenario)) {
+  const std::vector<v1::Simulation> simulations = simulations_of(scenario);
+  const Differences differences = differences_of(simulations);
+  for (const v1::Simulation& simulation : simulations) {
     try {
       submitted.push_back(connection.create_simulation(simulation, scenario.create));
-      labels.push_back(simulation.lubricant() +
-                       (scenario.sumps.size() > 1
-                            ? ", " + significant(simulation.sump_temperature_celsius()) + " C"
-                            : ""));
+      const std::string apart = distinction(simulation, differences);
+      labels.push_back(simulation.lubricant() + (apart.empty() ? "" : ", " + apart));
     } catch (const ServiceError& error) {
       if (error.kind() != ServiceError::Kind::kRefused) throw;
       const std::string refusal = Failure(with_flag_names(error, options.typed_flags)).what();

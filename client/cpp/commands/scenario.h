@@ -13,6 +13,9 @@ namespace tribodyn::client {
 struct Scenario {
   std::vector<std::string> lubricants;  ///< as typed: "my-oil" or "lubricants/my-oil"
   std::vector<double> sumps;            ///< [C]; several for curves alone; empty: the default
+  std::vector<std::string> surfaces;    ///< as typed; several for curves alone; empty: the default
+  /// What else each curve is computed with: a word of compared_words() each.
+  std::vector<std::string> compared;
   v1::Simulation simulation;
   bool detach = false;  ///< submit, print how to watch the jobs, and return
   CreateOptions create;
@@ -24,7 +27,8 @@ struct Scenario {
 void add_scenario_flags(FlagList& flags, Scenario& scenario);
 void check_scenario(const Scenario& scenario, bool several_lubricants, Complaints& complaints);
 
-/// Returns one Simulation per lubricant and sump temperature.
+/// Returns for each lubricant, surface and sump temperature one Simulation, followed by one for
+/// each word of `compared`.
 std::vector<v1::Simulation> simulations_of(const Scenario& scenario);
 
 /// Submits all simulations, watches them in parallel and returns them when all have ended. With
@@ -39,5 +43,10 @@ int report_failures(const std::vector<v1::Simulation>& simulations);
 /// Adds a flag for each switch of the model, e.g. "--no-limiting-shear-stress" for
 /// "no_limiting_shear_stress".
 void add_model_flags(FlagList& flags, v1::ModelOptions& options);
+
+/// Returns the words for variants of a curve, separated by '|', e.g. "isothermal|newtonian".
+std::string compared_words();
+/// Changes a curve to the variant of that word. Returns false if there is no such word.
+bool apply_variant(const std::string& word, v1::Simulation& simulation);
 
 }  // namespace tribodyn::client

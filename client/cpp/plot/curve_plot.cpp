@@ -8,6 +8,7 @@
 #include "client/cpp/plot/footer.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/report/inputs.h"
+#include "client/cpp/report/variant_report.h"
 #include "client/cpp/report/warnings.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
@@ -16,7 +17,8 @@ namespace tribodyn::client {
 namespace {
 
 constexpr double kCurveWidth = 960;
-constexpr double kFooterTop = 826;  // base line of the first line of the footer
+constexpr double kFooterTop = 826;          // base line of the first line of the footer
+constexpr double kDifferencesHeight = 275;  // of the panel of differences
 constexpr double kCurveLeft = 70;
 constexpr double kCurveRight = 30;
 constexpr char kDegreesCelsius[] = "\xC2\xB0\x43";
@@ -52,15 +54,12 @@ Series series_of(const v1::Simulation& simulation, const Look& look, Value value
   return series;
 }
 
-/// Returns the label of a curve; its note is the sump temperature if `shows_sump`.
+/// Returns the label of a curve, with a note unless that is empty.
 FluidTitle title_of(const v1::Simulation& simulation,
-                    const std::map<std::string, std::string>& titles, bool shows_sump) {
+                    const std::map<std::string, std::string>& titles, const std::string& note) {
   const auto found = titles.find(simulation.lubricant());
   FluidTitle out = fluid_title(simulation.lubricant(), found != titles.end() ? found->second : "");
-  if (shows_sump) {
-    out.note = "sump " + significant(inputs_of(simulation).sump_temperature_celsius) + " " +
-               kDegreesCelsius;
-  }
+  if (!note.empty()) out.note = note;
   return out;
 }
 
@@ -84,7 +83,7 @@ Panel inefficiency_panel(const std::vector<v1::Simulation>& simulations,
   panel.title = "Mesh inefficiency, % of input power";
   panel.x_title = "Vehicle speed, km/h";
   panel.shows_samples = true;
-  const bool shows_sump = sumps_differ(simulations);
+  const std::vector<std::string> notes = variant_notes(simulations, kDegreesCelsius);
   for (std::size_t i = 0; i < simulations.size(); ++i) {
     const Look look = look_of(i);
     Series rms = series_of(simulations[i], look, [](const v1::PointResult& result) {
@@ -105,7 +104,7 @@ Panel inefficiency_panel(const std::vector<v1::Simulation>& simulations,
     if (uncertainty != uncertainties.end()) add_band(uncertainty->second, mean);
     mean.width = 2.4;
     mean.marker = look.marker;
-    const FluidTitle title = title_of(simulations[i], titles, shows_sump);
+    const FluidTitle title = title_of(simulations[i], titles, notes[i]);
     mean.label = title.label;
     mean.note = title.note;
     panel.series.push_back(std::move(mean));
@@ -124,6 +123,30 @@ Panel small_panel(const std::vector<v1::Simulation>& simulations, Point corner,
   panel.x_title = "Vehicle speed, km/h";
   for (std::size_t i = 0; i < simulations.size(); ++i) {
     panel.series.push_back(series_of(simulations[i], look_of(i), value));
+  }
+  return panel;
+}
+
+/// Draws by how many percent each variant differs from the first curve of its inputs.
+Panel difference_panel(const std::vector<Variant>& variants) {
+  Panel panel;
+  panel.corner = {kCurveLeft, 840};
+  panel.width = 690;
+  panel.height = 200;
+  panel.title = "Difference of the energy mean from the first curve of the same inputs, %";
+  panel.x_title = "Vehicle speed, km/h";
+  panel.line_at = 0;
+  for (const Variant& variant : variants) {
+    const Look look = look_of(variant.index);
+    Series series;
+    series.colour = look.colour;
+    series.dashes = look.dashes;
+    series.marker = look.marker;
+    for (const auto& [speed, percent] : relative_differences(variant)) {
+      series.x.push_back(speed);
+      series.y.push_back(percent);
+    }
+    panel.series.push_back(std::move(series));
   }
   return panel;
 }
@@ -161,10 +184,12 @@ void draw_key(bool has_bands, bool has_hatching, Svg& svg) {
 std::string caption(const std::vector<v1::Simulation>& simulations) {
   if (simulations.empty()) return "";
   const v1::Simulation& first = simulations.front();
-  std::string text = inputs_text(first, kDegreesCelsius, !sumps_differ(simulations));
+  const Differences differences = differences_of(simulations);
+  std::string text = inputs_text(first, kDegreesCelsius, differences);
   text[0] = 'G';
-  text += "; " + sweep_text(first.inefficiency_curve());
-  return text + "; model " + model_options_text(first.model_options()) + ".";
+  if (!differences.sweeps) text += "; " + sweep_text(first.inefficiency_curve());
+  if (!differences.models) text += "; model " + model_options_text(first.model_options());
+  return text + ".";
 }
 
 bool has_uncertainty(const CurveUncertainties& uncertainties) {
@@ -233,7 +258,9 @@ std::string curve_plot(const std::vector<v1::Simulation>& simulations,
   const std::vector<std::string> below =
       footer_lines(texts_below(simulations, has_uncertainty(uncertainties)),
                    kCurveWidth - kCurveLeft - kCurveRight);
-  Svg svg(kCurveWidth, kFooterTop + kFooterPitch * static_cast<double>(below.size()));
+  const std::vector<Variant> variants = variants_of(simulations);
+  const double footer_top = kFooterTop + (variants.empty() ? 0 : kDifferencesHeight);
+  Svg svg(kCurveWidth, footer_top + kFooterPitch * static_cast<double>(below.size()));
   svg.text({kCurveLeft, 40}, "What each fluid costs in the gear mesh",
            {21, "start", "#111", true, 0});
   draw_key(!bands.empty(), !hatching.bands.empty() || !hatching.strips.empty(), svg);
@@ -256,7 +283,12 @@ std::string curve_plot(const std::vector<v1::Simulation>& simulations,
     panel.hatched = hatching.bands;
     draw_panel(panel, svg);
   }
-  draw_footer(below, {kCurveLeft, kFooterTop}, svg);
+  if (!variants.empty()) {
+    Panel panel = difference_panel(variants);
+    panel.bands = bands;
+    draw_panel(panel, svg);
+  }
+  draw_footer(below, {kCurveLeft, footer_top}, svg);
   return svg.finish();
 }
 

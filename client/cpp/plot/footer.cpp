@@ -82,15 +82,15 @@ std::vector<std::string> input_texts(const std::vector<v1::Simulation>& simulati
 std::string identity_text(const std::vector<v1::Simulation>& simulations) {
   std::set<std::string> versions;
   std::vector<std::string> hashes;
-  const bool shows_sump = sumps_differ(simulations);
+  const Differences differences = differences_of(simulations);
   for (const v1::Simulation& simulation : simulations) {
     versions.insert(simulation.result().model_version());
     const std::string hash = simulation.result().input_hash().substr(0, kShownHash);
-    const std::string sump =
-        shows_sump ? " at " + significant(inputs_of(simulation).sump_temperature_celsius) + " C"
-                   : "";
-    hashes.push_back(
-        simulations.size() == 1 ? hash : resource_id(simulation.lubricant()) + sump + ": " + hash);
+    const std::string apart = distinction(simulation, differences);
+    hashes.push_back(simulations.size() == 1
+                         ? hash
+                         : resource_id(simulation.lubricant()) +
+                               (apart.empty() ? "" : " (" + apart + ")") + ": " + hash);
   }
   return "Model version " + joined({versions.begin(), versions.end()}, ", ") + "; hash of inputs " +
          joined(hashes, ", ") + ".";

@@ -120,20 +120,44 @@ Inputs inputs_of(const v1::Simulation& simulation) {
                                                      : kDefaultInletTemperatureRiseKelvin};
 }
 
-std::string inputs_text(const v1::Simulation& simulation, const char* celsius, bool shows_sump) {
+std::string inputs_text(const v1::Simulation& simulation, const char* celsius,
+                        const Differences& differences) {
   const Inputs inputs = inputs_of(simulation);
-  return "gear set " + resource_id(inputs.gear_set) + ", surface " + resource_id(inputs.surface) +
-         ", vehicle " + resource_id(inputs.vehicle) + "; " +
-         (shows_sump ? "sump " + significant(inputs.sump_temperature_celsius) + " " + celsius + ", "
-                     : "") +
+  return "gear set " + resource_id(inputs.gear_set) +
+         (differences.surfaces ? "" : ", surface " + resource_id(inputs.surface)) + ", vehicle " +
+         resource_id(inputs.vehicle) + "; " +
+         (differences.sumps
+              ? ""
+              : "sump " + significant(inputs.sump_temperature_celsius) + " " + celsius + ", ") +
          "inlet rise " + significant(inputs.inlet_temperature_rise_kelvin) + " K";
 }
 
-bool sumps_differ(const std::vector<v1::Simulation>& simulations) {
-  return std::any_of(simulations.begin(), simulations.end(), [&](const auto& each) {
-    return inputs_of(each).sump_temperature_celsius !=
-           inputs_of(simulations.front()).sump_temperature_celsius;
-  });
+Differences differences_of(const std::vector<v1::Simulation>& simulations) {
+  Differences out;
+  for (const v1::Simulation& each : simulations) {
+    const v1::Simulation& first = simulations.front();
+    const Inputs inputs = inputs_of(each), firsts = inputs_of(first);
+    out.sumps |= inputs.sump_temperature_celsius != firsts.sump_temperature_celsius;
+    out.surfaces |= inputs.surface != firsts.surface;
+    out.models |=
+        model_options_text(each.model_options()) != model_options_text(first.model_options());
+    out.sweeps |= sweep_text(each.inefficiency_curve()) != sweep_text(first.inefficiency_curve());
+  }
+  return out;
+}
+
+std::string distinction(const v1::Simulation& simulation, const Differences& differences,
+                        const char* celsius) {
+  const Inputs inputs = inputs_of(simulation);
+  std::string out;
+  const auto add = [&](bool differs, const std::string& text) {
+    if (differs) out += (out.empty() ? "" : ", ") + text;
+  };
+  add(differences.sumps, "sump " + significant(inputs.sump_temperature_celsius) + " " + celsius);
+  add(differences.surfaces, "surface " + resource_id(inputs.surface));
+  add(differences.models, model_options_text(simulation.model_options()));
+  add(differences.sweeps, sweep_text(simulation.inefficiency_curve()));
+  return out;
 }
 
 std::string model_options_text(const v1::ModelOptions& options) {

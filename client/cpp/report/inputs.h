@@ -17,14 +17,22 @@ struct Inputs {
 };
 Inputs inputs_of(const v1::Simulation& simulation);
 
-/// Returns e.g. "gear set reference-axle, surface run-in, vehicle passenger-car; sump 40 C, inlet
-/// rise 20 K". A plot may pass a degree sign for `celsius`; a terminal without UTF-8 cannot show
-/// one.
-std::string inputs_text(const v1::Simulation& simulation, const char* celsius = "C",
-                        bool shows_sump = true);
+/// Which inputs besides the lubricant differ between simulations.
+struct Differences {
+  bool sumps = false, surfaces = false, models = false, sweeps = false;
+};
+Differences differences_of(const std::vector<v1::Simulation>& simulations);
 
-/// Whether the sump temperatures of the simulations differ.
-bool sumps_differ(const std::vector<v1::Simulation>& simulations);
+/// Returns e.g. "gear set reference-axle, surface run-in, vehicle passenger-car; sump 40 C, inlet
+/// rise 20 K", without what differs. A plot may pass a degree sign for `celsius`; a terminal
+/// without UTF-8 cannot show one.
+std::string inputs_text(const v1::Simulation& simulation, const char* celsius = "C",
+                        const Differences& differences = {});
+
+/// Returns what tells a simulation from the others, e.g. "sump 90 C, isothermal"; empty if nothing
+/// differs.
+std::string distinction(const v1::Simulation& simulation, const Differences& differences,
+                        const char* celsius = "C");
 
 /// Returns e.g. "isothermal, newtonian, as published eq17_atan"; "as corrected" if no option is
 /// set.

@@ -64,6 +64,11 @@ std::string fixed(double value, int decimals) {
   return text;
 }
 
+std::string signed_fixed(double value, int decimals) {
+  const std::string text = fixed(value, decimals);
+  return (value > 0 && text.find_first_of("123456789") != text.npos ? "+" : "") + text;
+}
+
 std::string significant(double value, int digits) {
   if (!std::isfinite(value)) return "-";
   std::array<char, 64> buffer;
