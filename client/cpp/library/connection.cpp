@@ -116,6 +116,7 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   services_->surfaces = v1::SurfaceService::NewStub(services_->channel);
   services_->vehicles = v1::VehicleService::NewStub(services_->channel);
   services_->simulations = v1::SimulationService::NewStub(services_->channel);
+  services_->campaigns = v1::CampaignService::NewStub(services_->channel);
   services_->points = v1::PointService::NewStub(services_->channel);
   services_->contacts = v1::ContactService::NewStub(services_->channel);
   services_->rigs = v1::RigService::NewStub(services_->channel);

@@ -1,35 +1,7 @@
-#include <cstring>
-#include <optional>
-#include <thread>
-
+#include "client/cpp/library/column_stream.h"
 #include "client/cpp/library/services.h"
 
 namespace tribodyn::client {
-namespace {
-
-constexpr auto kBetweenReads = std::chrono::milliseconds(250);
-constexpr int kReadRetries = 20;  // about 40 s in all: long enough for a server that restarts
-
-/// Joins chunks of columns into rows.
-class RowJoiner {
- public:
-  explicit RowJoiner(int columns) { rows_.columns.resize(columns); }
-
-  /// Returns the rows that are complete; null while a column is missing.
-  const HistoryRows* add(const v1::HistoryChunk& chunk, std::int64_t offset) {
-    std::vector<double>& column = rows_.columns.at(chunk.column());
-    column.resize(chunk.values().size() / sizeof(double));
-    std::memcpy(column.data(), chunk.values().data(), column.size() * sizeof(double));
-    rows_.first_row = offset + chunk.first_row();
-    const bool is_last = chunk.column() + 1 == static_cast<int>(rows_.columns.size());
-    return is_last ? &rows_ : nullptr;
-  }
-
- private:
-  HistoryRows rows_;
-};
-
-}  // namespace
 
 void Connection::stream_history(const std::string& name, const HistoryOptions& options,
                                 const std::function<void(const v1::HistorySchema&)>& on_schema,
@@ -38,48 +10,12 @@ void Connection::stream_history(const std::string& name, const HistoryOptions& o
   request.set_name(name);
   add_project(services_->project, request);
   *request.mutable_columns() = {options.columns.begin(), options.columns.end()};
+  request.set_start_row(options.start_row);
+  request.set_row_count(options.row_count);
   request.set_max_points(options.maximum_points);
-  std::optional<v1::HistorySchema> schema;
-  std::int64_t done = 0;  // rows that on_rows has received
-  Backoff backoff;
-  for (int tries_left = kReadRetries;;) {
-    // The buckets of an overview depend on its first row: a retry reads it from its start again and
-    // skips the rows that were delivered.
-    const bool is_overview = schema && schema->rows_per_pair() > 0;
-    const std::int64_t skipped = is_overview ? 0 : done;
-    request.set_start_row(options.start_row + skipped);
-    request.set_row_count(options.row_count == 0 ? 0 : options.row_count - skipped);
-    if (schema && done == schema->row_count()) return;
-    grpc::ClientContext context;
-    services_->prepare(context);
-    const auto reader = services_->simulations->ReadHistory(&context, request);
-    std::optional<RowJoiner> joiner;
-    for (v1::ReadHistoryResponse part; reader->Read(&part);) {
-      if (part.has_schema()) {
-        joiner.emplace(part.schema().columns_size());
-        if (!schema) {
-          schema = part.schema();
-          on_schema(*schema);
-        }
-        continue;
-      }
-      if (!joiner) break;  // chunks without a schema: not this contract
-      const HistoryRows* rows = joiner->add(part.chunk(), skipped);
-      if (rows == nullptr || rows->first_row < done) continue;
-      on_rows(*rows);
-      done = rows->first_row + static_cast<std::int64_t>(rows->columns.front().size());
-      tries_left = kReadRetries;
-      backoff.reset();
-    }
-    const grpc::Status status = reader->Finish();
-    if (status.ok()) return;
-    const bool is_broken = status.error_code() == grpc::StatusCode::UNAVAILABLE ||
-                           status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
-    if (!is_broken || tries_left-- == 0 || (never_connected(status) && !schema)) {
-      throw service_error(status, address());
-    }
-    std::this_thread::sleep_for(backoff.next(kBetweenReads));
-  }
+  stream_columns<v1::ReadHistoryResponse>(*services_, *services_->simulations,
+                                          &v1::SimulationService::Stub::ReadHistory, request,
+                                          on_schema, on_rows);
 }
 
 v1::History Connection::read_history(const std::string& name, const HistoryOptions& options) {

@@ -45,8 +45,8 @@ std::optional<Detail> detail(const grpc::Status& status) {
 }  // namespace
 
 bool may_repeat(const Message& request) {
-  static constexpr std::array<std::string_view, 7> kRepeatable = {
-      "Get", "List", "Evaluate", "Compare", "Explain", "Cancel", "Delete"};
+  static constexpr std::array<std::string_view, 9> kRepeatable = {
+      "Get", "List", "Evaluate", "Compare", "Explain", "Pause", "Resume", "Cancel", "Delete"};
   const std::string& name = request.GetDescriptor()->name();
   // The repetition of a deletion for good would not find what the first one deleted.
   const bool deletes_for_good = (name.starts_with("Delete") || name.starts_with("Purge")) &&

@@ -11,8 +11,8 @@
 namespace tribodyn::client {
 
 /// Whether a request may be sent again when the fate of the first try is unknown: it reads, checks,
-/// or has the same effect however often it is carried out (cancel, delete, and create with a
-/// request_id). A second undelete is refused.
+/// or has the same effect however often it is carried out (pause, resume, cancel, delete, and
+/// create with a request_id). A second undelete is refused.
 bool may_repeat(const google::protobuf::Message& request);
 
 /// Whether the status guarantees that the request had no effect and may succeed later: the server

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -12,11 +13,12 @@
 #include "client/cpp/library/retry.h"
 #include "client/cpp/library/status.h"
 #include "tribodyn/client/connection.h"
+#include "tribodyn/v1/campaigns.grpc.pb.h"
 #include "tribodyn/v1/contacts.grpc.pb.h"
 #include "tribodyn/v1/gear_sets.grpc.pb.h"
 #include "tribodyn/v1/lubricants.grpc.pb.h"
-#include "tribodyn/v1/rigs.grpc.pb.h"
 #include "tribodyn/v1/points.grpc.pb.h"
+#include "tribodyn/v1/rigs.grpc.pb.h"
 #include "tribodyn/v1/schemas.grpc.pb.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
 #include "tribodyn/v1/surfaces.grpc.pb.h"
@@ -25,6 +27,9 @@
 namespace tribodyn::client {
 
 inline constexpr int kLargestPage = 1000;  ///< most entries that the server lists in one page
+
+/// Waits; returns false if `stop` was requested meanwhile.
+bool pause_unless_stopped(std::chrono::milliseconds time, const std::stop_token& stop);
 
 /// The channel and its stubs.
 struct Connection::Services {
@@ -38,6 +43,7 @@ struct Connection::Services {
   std::unique_ptr<v1::SurfaceService::Stub> surfaces;
   std::unique_ptr<v1::VehicleService::Stub> vehicles;
   std::unique_ptr<v1::SimulationService::Stub> simulations;
+  std::unique_ptr<v1::CampaignService::Stub> campaigns;
   std::unique_ptr<v1::ContactService::Stub> contacts;
   std::unique_ptr<v1::RigService::Stub> rigs;
   std::unique_ptr<v1::PointService::Stub> points;

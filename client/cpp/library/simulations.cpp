@@ -18,16 +18,15 @@ constexpr std::size_t kMostWatched = 1000;  // simulations that the server watch
 constexpr int kWatchRetries =
     20;  // about 40 s in all: long enough for a server that drains and restarts
 
-/// Waits; returns false if `stop` was requested meanwhile.
-bool pause(milliseconds time, const std::stop_token& stop) {
+}  // namespace
+
+bool pause_unless_stopped(milliseconds time, const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any never;
   std::unique_lock lock(mutex);
   never.wait_for(lock, stop, time, [] { return false; });
   return !stop.stop_requested();
 }
-
-}  // namespace
 
 bool has_ended(v1::Simulation::State state) {
   return state == v1::Simulation::SUCCEEDED || state == v1::Simulation::FAILED ||
@@ -174,7 +173,7 @@ void Connection::watch_some(const std::string& project, std::set<std::string> op
         throw ServiceError(ServiceError::Kind::kCannotConnect, "lost the server at " + address());
       }
     }
-    if (!pause(backoff.next(kBetweenWatches), stop)) return;
+    if (!pause_unless_stopped(backoff.next(kBetweenWatches), stop)) return;
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -346,6 +347,86 @@ TEST(TurnedAway, AClientThatRetriesAfterTheRequestedPauseIsServed) {
   for (std::thread& client : clients) client.join();
   EXPECT_THAT(states, testing::Each(v1::Simulation::SUCCEEDED));
   std::filesystem::remove_all(folder);
+}
+
+/// A campaign of candidates with relaxation times from 1 ns on, at two speeds.
+v1::Campaign campaign_of_times(int candidates) {
+  v1::Campaign out;
+  out.set_lubricant("lubricants/paper-fluid-1");
+  v1::CandidateColumn& column = *out.add_candidate_columns();
+  column.set_path("lubricant.relaxation_time_seconds");
+  for (int i = 1; i <= candidates; ++i) column.add_values(1e-9 * i);
+  for (const double speed : {20.0, 60.0}) {
+    out.add_conditions()->set_speed_kilometres_per_hour(speed);
+  }
+  return out;
+}
+
+TEST_F(Library, ACampaignIsFollowedToItsEndAndReadByRanges) {
+  const v1::Campaign request = campaign_of_times(700);
+  const v1::Campaign checked = connection.create_campaign(request, {.validate_only = true});
+  EXPECT_EQ(checked.name(), "");
+  EXPECT_EQ(checked.points(), 1400);
+  const v1::Campaign made = connection.create_campaign(request, {.request_id = "followed"});
+  EXPECT_EQ(connection.create_campaign(request, {.request_id = "followed"}).name(), made.name());
+  int looks = 0, done = 0;
+  const v1::Campaign ended = connection.follow_campaign(made.name(), [&](const v1::Campaign& each) {
+    ++looks;
+    EXPECT_GE(each.points_done(), done);
+    done = each.points_done();
+  });
+  EXPECT_EQ(ended.state(), v1::Campaign::SUCCEEDED);
+  EXPECT_EQ(done, 1400);
+  EXPECT_GE(looks, 1);
+  CampaignRowsOptions part;
+  part.columns = {"candidate", "inefficiency_energy_mean_percent"};
+  part.start_row = 600;
+  part.row_count = 700;
+  std::vector<double> candidates, figures;
+  v1::HistorySchema schema;
+  connection.stream_campaign(
+      made.name(), part, [&](const v1::HistorySchema& found) { schema = found; },
+      [&](const HistoryRows& rows) {
+        EXPECT_EQ(rows.first_row, static_cast<std::int64_t>(candidates.size()));
+        candidates.insert(candidates.end(), rows.columns[0].begin(), rows.columns[0].end());
+        figures.insert(figures.end(), rows.columns[1].begin(), rows.columns[1].end());
+      });
+  EXPECT_EQ(schema.total_rows(), 1400);
+  ASSERT_EQ(candidates.size(), 700U);
+  EXPECT_EQ(candidates.front(), 300);
+  EXPECT_EQ(candidates.back(), 649);
+  v1::EvaluatePointsRequest one;
+  one.set_lubricant(request.lubricant());
+  *one.mutable_conditions() = request.conditions();
+  v1::CandidateColumn& column = *one.add_candidate_columns();
+  column.set_path(request.candidate_columns(0).path());
+  column.add_values(request.candidate_columns(0).values(300));
+  const auto answer = connection.evaluate_points(one);
+  EXPECT_NEAR(figures[0] / answer.inefficiency_energy_mean_percent(0), 1, 1e-3);
+  EXPECT_EQ(connection.list_campaigns({.limit = 1}).resources.at(0).name(), made.name());
+  connection.delete_campaign(made.name());
+  EXPECT_EQ(refused([&] { connection.get_campaign(made.name()); }).status_code(), kNotFound);
+  connection.delete_campaign(made.name(), {.allow_missing = true});
+}
+
+TEST_F(Library, ACampaignIsPausedResumedAndCancelled) {
+  const v1::Campaign made = connection.create_campaign(campaign_of_times(50000));
+  EXPECT_EQ(connection.pause_campaign(made.name()).state(), v1::Campaign::PAUSED);
+  EXPECT_EQ(connection.follow_campaign(made.name()).stop().reason(), "PAUSE_REQUESTED");
+  v1::CampaignBudget budget;
+  budget.set_points(1000);
+  EXPECT_EQ(connection.resume_campaign(made.name(), budget).state(), v1::Campaign::RUNNING);
+  const v1::Campaign spent = connection.follow_campaign(made.name());
+  EXPECT_EQ(spent.stop().reason(), "BUDGET_SPENT");
+  EXPECT_GE(spent.points_done(), 1000);
+  std::stop_source stop;
+  connection.resume_campaign(made.name(), v1::CampaignBudget());
+  const v1::Campaign running = connection.follow_campaign(
+      made.name(), [&](const v1::Campaign&) { stop.request_stop(); }, stop.get_token());
+  EXPECT_EQ(running.state(), v1::Campaign::RUNNING);
+  EXPECT_EQ(connection.cancel_campaign(made.name()).state(), v1::Campaign::CANCELLED);
+  EXPECT_TRUE(has_ended(connection.follow_campaign(made.name()).state()));
+  connection.delete_campaign(made.name());
 }
 
 TEST_F(Library, CandidatesComeInOrderAndEndEarlyOnRequest) {

@@ -4,12 +4,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "tribodyn/client/error.h"
+#include "tribodyn/v1/campaigns.pb.h"
 #include "tribodyn/v1/contacts.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
@@ -100,6 +102,13 @@ struct CreateOptions {
       {};  ///< a repeated request with the same id starts no second simulation; empty: random
 };
 
+/// Options of a new campaign.
+struct CreateCampaignOptions {
+  bool validate_only = false;  ///< check everything, run nothing
+  /// A repeated request with the same id returns the campaign of the first one; empty: random.
+  std::string request_id = {};
+};
+
 /// Options of the deletion of a simulation.
 struct DeleteOptions {
   bool cancel = false;         ///< cancel it first if it has not ended
@@ -123,6 +132,13 @@ struct HistoryOptions {
   int maximum_points = 0;      ///< 0: all rows; else an overview where there are more
 };
 
+/// The part of a campaign to read.
+struct CampaignRowsOptions {
+  std::vector<std::string> columns = {};  ///< empty: refusal_number and all figures
+  std::int64_t start_row = 0;
+  std::int64_t row_count = 0;  ///< 0: to the end
+};
+
 /// Consecutive rows: for each column of the schema its values, equally many.
 struct HistoryRows {
   std::int64_t first_row = 0;  ///< 0 is the first requested row
@@ -136,7 +152,8 @@ struct HistoryRows {
 /// v1::Lubricant, v1::GearSet, v1::Surface or v1::Vehicle.
 class Connection {
  public:
-  /// `timeout` limits every call except watch(), wait_for_end() and the reading of histories.
+  /// `timeout` limits every call except watch(), wait_for_end(), follow_campaign() and the reading
+  /// of histories and campaigns.
   /// A Unix socket needs no token. The connection uses TLS unless the address is loopback or a Unix
   /// socket, and always if `access.authorities` is set. Throws std::invalid_argument if a file
   /// cannot be read.
@@ -230,6 +247,34 @@ class Connection {
                       const std::function<void(const v1::HistorySchema&)>& on_schema,
                       const std::function<void(const HistoryRows&)>& on_rows);
 
+  /// Returns before the campaign has run. Retries under the same request_id if the server is lost
+  /// meanwhile.
+  v1::Campaign create_campaign(const v1::Campaign& campaign,
+                               const CreateCampaignOptions& options = {});
+  v1::Campaign get_campaign(const std::string& name,
+                            v1::CampaignView view = v1::CAMPAIGN_VIEW_BASIC);
+  /// Lists campaigns, newest first; of the options it takes limit and page_token.
+  Listing<v1::Campaign> list_campaigns(const ListOptions& options = {});
+  v1::Campaign pause_campaign(const std::string& name);
+  /// Resumes a campaign that is paused, and sets its budget if there is one here.
+  v1::Campaign resume_campaign(const std::string& name,
+                               const std::optional<v1::CampaignBudget>& budget = {});
+  v1::Campaign cancel_campaign(const std::string& name);
+  /// Removes a campaign for good, with its rows; of the options it takes cancel and allow_missing.
+  void delete_campaign(const std::string& name, const DeleteOptions& options = {});
+  /// Blocks until the campaign has ended or is paused, or until `stop` is requested, and returns
+  /// it. Gets it up to 100 times a second at first, later twice a second, and calls `on_progress`
+  /// in the calling thread after each time. Waits for a server that is lost, for a limited time.
+  v1::Campaign follow_campaign(const std::string& name,
+                               const std::function<void(const v1::Campaign&)>& on_progress = {},
+                               const std::stop_token& stop = {});
+  /// Calls `on_rows` in the calling thread for rows as they arrive, once and in order. Rows that
+  /// are not computed yet are NaN, and -1 in refusal_number. Resumes a broken stream at the first
+  /// missing row, for a limited time.
+  void stream_campaign(const std::string& name, const CampaignRowsOptions& options,
+                       const std::function<void(const v1::HistorySchema&)>& on_schema,
+                       const std::function<void(const HistoryRows&)>& on_rows);
+
   v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request);
 
   v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request);
@@ -252,5 +297,6 @@ class Connection {
 
 /// Whether the state is final: succeeded, failed or cancelled.
 bool has_ended(v1::Simulation::State state);
+bool has_ended(v1::Campaign::State state);
 
 }  // namespace tribodyn::client

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <chrono>
+
+#include "client/cpp/library/column_stream.h"
+#include "client/cpp/library/services.h"
+
+namespace tribodyn::client {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Pauses between two looks at a campaign: a small one ends after some milliseconds, and a large one
+// is not asked for more often than a person reads.
+constexpr milliseconds kFirstLook(10);
+constexpr milliseconds kLatestLook(500);
+constexpr milliseconds kWhileLost(250);
+constexpr int kFollowRetries =
+    20;  // about 40 s in all: long enough for a server that drains and restarts
+
+}  // namespace
+
+bool has_ended(v1::Campaign::State state) {
+  return state == v1::Campaign::SUCCEEDED || state == v1::Campaign::FAILED ||
+         state == v1::Campaign::CANCELLED;
+}
+
+v1::Campaign Connection::create_campaign(const v1::Campaign& campaign,
+                                         const CreateCampaignOptions& options) {
+  v1::CreateCampaignRequest request;
+  *request.mutable_campaign() = campaign;
+  request.set_validate_only(options.validate_only);
+  request.set_request_id(options.request_id.empty() ? new_request_id() : options.request_id);
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::CreateCampaign,
+                         request);
+}
+
+v1::Campaign Connection::get_campaign(const std::string& name, v1::CampaignView view) {
+  v1::GetCampaignRequest request;
+  request.set_name(name);
+  request.set_view(view);
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::GetCampaign, request);
+}
+
+Listing<v1::Campaign> Connection::list_campaigns(const ListOptions& options) {
+  Listing<v1::Campaign> all;
+  v1::ListCampaignsRequest request;
+  request.set_page_token(options.page_token);
+  const int limit = options.limit;
+  do {
+    const int missing = limit - static_cast<int>(all.resources.size());
+    request.set_page_size(limit == 0 ? kLargestPage : std::min(missing, kLargestPage));
+    const auto page =
+        services_->call(*services_->campaigns, &v1::CampaignService::Stub::ListCampaigns, request);
+    all.resources.insert(all.resources.end(), page.campaigns().begin(), page.campaigns().end());
+    all.total_size = page.total_size();
+    request.set_page_token(page.next_page_token());
+  } while (!request.page_token().empty() &&
+           (limit == 0 || static_cast<int>(all.resources.size()) < limit));
+  all.next_page_token = request.page_token();
+  all.has_more = !all.next_page_token.empty();
+  return all;
+}
+
+v1::Campaign Connection::pause_campaign(const std::string& name) {
+  v1::PauseCampaignRequest request;
+  request.set_name(name);
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::PauseCampaign, request);
+}
+
+v1::Campaign Connection::resume_campaign(const std::string& name,
+                                         const std::optional<v1::CampaignBudget>& budget) {
+  v1::ResumeCampaignRequest request;
+  request.set_name(name);
+  if (budget) *request.mutable_budget() = *budget;
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::ResumeCampaign,
+                         request);
+}
+
+v1::Campaign Connection::cancel_campaign(const std::string& name) {
+  v1::CancelCampaignRequest request;
+  request.set_name(name);
+  return services_->call(*services_->campaigns, &v1::CampaignService::Stub::CancelCampaign,
+                         request);
+}
+
+void Connection::delete_campaign(const std::string& name, const DeleteOptions& options) {
+  v1::DeleteCampaignRequest request;
+  request.set_name(name);
+  request.set_cancel(options.cancel);
+  request.set_allow_missing(options.allow_missing);
+  services_->call(*services_->campaigns, &v1::CampaignService::Stub::DeleteCampaign, request);
+}
+
+v1::Campaign Connection::follow_campaign(
+    const std::string& name, const std::function<void(const v1::Campaign&)>& on_progress,
+    const std::stop_token& stop) {
+  milliseconds between = kFirstLook;
+  Backoff backoff;
+  bool was_found = false;
+  for (int tries_left = kFollowRetries;;) {
+    try {
+      v1::Campaign campaign = get_campaign(name);
+      was_found = true;
+      tries_left = kFollowRetries;
+      backoff.reset();
+      if (on_progress) on_progress(campaign);
+      if (campaign.state() != v1::Campaign::RUNNING || !pause_unless_stopped(between, stop))
+        return campaign;
+      between = std::min(between * 5 / 4, kLatestLook);
+    } catch (const ServiceError& error) {
+      const bool is_lost = error.kind() == ServiceError::Kind::kCannotConnect;
+      if (!is_lost || !was_found || tries_left-- == 0) throw;
+      if (!pause_unless_stopped(backoff.next(kWhileLost), stop)) throw;
+    }
+  }
+}
+
+void Connection::stream_campaign(const std::string& name, const CampaignRowsOptions& options,
+                                 const std::function<void(const v1::HistorySchema&)>& on_schema,
+                                 const std::function<void(const HistoryRows&)>& on_rows) {
+  v1::ReadCampaignRequest request;
+  request.set_name(name);
+  add_project(services_->project, request);
+  *request.mutable_columns() = {options.columns.begin(), options.columns.end()};
+  request.set_start_row(options.start_row);
+  request.set_row_count(options.row_count);
+  stream_columns<v1::ReadCampaignResponse>(*services_, *services_->campaigns,
+                                           &v1::CampaignService::Stub::ReadCampaign, request,
+                                           on_schema, on_rows);
+}
+
+}  // namespace tribodyn::client
