@@ -14,7 +14,8 @@ out_has 'Exit codes'
 for command in point curve compare explain report screen design sensitivities history contact traction film stribeck diff validate \
   schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
-  "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun"; do
+  "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun" "campaigns list" \
+  "campaigns show" "campaigns pause" "campaigns resume" "campaigns cancel" "campaigns delete" "campaigns columns"; do
   # shellcheck disable=SC2086  # the words of a command
   expect 0 $command --help
   out_has '^Examples$'
@@ -285,22 +286,92 @@ err_has 'give either --csv or --jsonl'
 expect 1 screen "$table" --like no-such-oil --speeds 900
 err_has '--speeds = 900 km/h'
 err_has '"lubricants/no-such-oil" does not exist'
-# The limit of the size of a file ends the first run in the middle.
 {
-  echo relaxation_time_seconds
-  seq 400 | sed 's/$/e-9/'
+  echo relaxation_time_seconds,cost
+  seq 400 | sed 's/.*/&e-9,&/'
 } >"$table"
 expect 0 screen "$table" --like paper-fluid-1 --speeds 20,60 --csv "$folder/whole.csv"
-(ulimit -f 100 && "$client" screen "$table" --like paper-fluid-1 --speeds 20,60 --csv "$folder/resumed.csv") \
-  >"$folder/out" 2>"$folder/err" && fail 'a run without room for its file succeeded'
-[ ! -e "$folder/resumed.csv" ] || fail 'an incomplete file has its final name'
-expect 0 screen "$table" --like paper-fluid-1 --speeds 20,60 --csv "$folder/resumed.csv"
-err_has 'resumes after [1-9][0-9]* of 400 candidates'
-cmp "$folder/whole.csv" "$folder/resumed.csv" || fail 'a resumed file differs from an uninterrupted one'
+out_has 'The server keeps the figures as campaigns/[0-9]+'
+campaign=$(grep -oE 'screen --campaign [0-9]+' "$folder/out" | grep -oE '[0-9]+$')
 expect 0 screen "$table" --like paper-fluid-1 --speeds 20,60 --jsonl "$folder/points.jsonl"
+out_has "campaigns/$campaign:"
 [ "$(wc -l <"$folder/points.jsonl")" -eq 800 ] || fail 'JSON lines are missing'
 "$client" screen "$table" --like paper-fluid-1 --speeds 20,60 --jsonl /dev/fd/3 3>&1 >/dev/null 2>&1 |
   cmp - "$folder/points.jsonl" || fail 'a pipe gets other JSON lines than a file'
+(ulimit -f 20 && "$client" screen "$table" --like paper-fluid-1 --speeds 20,60 --csv "$folder/cut.csv") \
+  >"$folder/out" 2>"$folder/err" && fail 'a run without room for its file succeeded'
+[ ! -e "$folder/cut.csv" ] || fail 'an incomplete file has its final name'
+expect 0 screen --campaign "$campaign" --csv "$folder/again.csv"
+out_has 'Carried along: cost'
+cut -d, -f4- "$folder/whole.csv" >"$folder/whole.figures"
+cut -d, -f4- "$folder/again.csv" | cmp - "$folder/whole.figures" || fail 'a campaign is read otherwise'
+expect 0 screen --campaign "$campaign" --weights 1,3 --pareto cost --output json
+out_is_json
+expect 2 screen --campaign "$campaign" --weights 1,3,4
+err_has '3 weights of 2 speeds'
+expect 2 screen "$table" --campaign "$campaign" --speeds 20 --tolerance 1e-4
+err_has 'a table and --campaign'
+err_has '--speeds and --campaign'
+err_has '--tolerance and --campaign'
+
+echo "--- campaigns: a screening outlives its client and its server"
+expect 0 campaigns list
+out_has "^$campaign +succeeded +100 +800 +0 "
+expect 0 campaigns list --limit 1 --output json
+out_is_json
+expect 0 campaigns show "$campaign"
+out_has 'points computed +800 +of 800, 400 candidates at 2 conditions'
+expect 0 campaigns show "$campaign" --output csv
+out_is_csv
+expect 0 campaigns columns "$campaign" --columns candidate,cost,mesh_loss_power_watts --start-row 2 --row-count 3 --output csv
+out_lines 4
+out_has '^1,2,[0-9.]+$'
+expect 0 campaigns columns "$campaign"
+err_has 'Rows 0 to 19 of 800'
+expect 0 campaigns columns "$campaign" --row-count 2 --output json
+out_is_json
+expect 1 campaigns columns "$campaign" --columns mesh_los_power_watts
+err_has 'mesh_loss_power_watts'
+expect 0 campaigns pause "$campaign"
+err_has 'had already ended'
+expect 1 campaigns resume "$campaign"
+expect 2 campaigns show
+expect 1 campaigns show 99999
+{
+  echo relaxation_time_seconds
+  seq 60000 | sed 's/$/e-11/'
+} >"$table"
+expect 1 screen "$table" --like paper-fluid-1 --speeds 20,60,80 --budget-points 3000 --no-uncertainty
+err_has 'is paused after [0-9]+ of 180000 points'
+out_has 'not computed'
+campaign=$(grep -oE 'campaigns/[0-9]+' "$folder/err" | head -n 1 | grep -oE '[0-9]+$')
+"$client" screen "$table" --like paper-fluid-1 --speeds 20,60,80 --no-uncertainty --progress lines \
+  >"$folder/out" 2>"$folder/err" </dev/null &
+screening=$!
+asked="screen, then Ctrl-C"
+for _ in $(seq 600); do
+  grep -q 'running' "$folder/err" && break
+  sleep 0.05
+done
+kill -INT "$screening"
+code=0
+wait "$screening" || code=$?
+[ "$code" -eq 130 ] || fail "an interrupted screening ends with exit code $code"
+err_has "resumes campaigns/$campaign after [0-9]+ of 180000 points"
+err_has "tribodyn screen --campaign $campaign"
+kill -9 "$server_pid"
+wait "$server_pid" 2>/dev/null
+start_server
+expect 0 campaigns pause "$campaign"
+out_has "^$campaign +paused"
+expect 0 campaigns resume "$campaign" --points 20000
+expect 0 campaigns cancel "$campaign"
+expect 1 screen "$table" --like paper-fluid-1 --speeds 20,60,80 --no-uncertainty
+err_has "campaigns/$campaign is cancelled"
+err_has "tribodyn campaigns delete $campaign"
+expect 0 campaigns delete "$campaign"
+expect 1 campaigns delete "$campaign"
+expect 0 campaigns delete "$campaign" --allow-missing
 
 expect 0 sensitivities paper-fluid-1 --speed 100
 out_has 'lubricant pressure viscosity coefficient .*\|#'

@@ -1,15 +1,19 @@
-// Tests of tables of candidates, of their ranking and of the file of their points.
+// Tests of tables of candidates, of their campaigns, of their ranking and of the file of their
+// points.
 #include "client/cpp/report/screening.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "client/cpp/failure.h"
 #include "client/cpp/plot/screening_plot.h"
 #include "client/cpp/report/screening_decisions.h"
 #include "client/cpp/report/screening_report.h"
+#include "client/cpp/service/screening_campaign.h"
+#include "client/cpp/text/csv.h"
 
 namespace tribodyn::client {
 namespace {
@@ -158,6 +162,7 @@ Screening sample_screening() {
   refusal.set_reason("TOO_HOT");
   refusal.set_message("the contact is too hot, \"far\"\ntoo hot");
   for (int row = 0; row < 6; ++row) out.points.push_back(screened_point(answer, row));
+  out.refusals.assign(answer.refusals().begin(), answer.refusals().end());
   return out;
 }
 
@@ -179,38 +184,89 @@ TEST(Screening, RanksByTheWeightedMean) {
   EXPECT_THAT(csv, HasSubstr("\n2,a,0.1,\"1,5\","));
 }
 
-TEST(Screening, ReadsBackTheRowsThatItWrote) {
-  const Screening written = sample_screening();
-  const std::string csv = screening_header(written) + screening_rows(written, 0, 3);
-  Screening read = written;
-  for (ScreenedPoint& point : read.points) point = {};
-  EXPECT_EQ(read_screening_rows(csv, read), 6U);
-  EXPECT_EQ(screening_rows(read, 0, 3), screening_rows(written, 0, 3));
-  EXPECT_EQ(read.points[1].figures, written.points[1].figures);
-  EXPECT_EQ(read.points[5].refusal_reason, "TOO_HOT");
-  const std::size_t fourth = csv.rfind("\nb,");
-  EXPECT_EQ(read_screening_rows(csv.substr(0, fourth + 1) + "b,0.1\n", read), 3U);
+TEST(Screening, WritesEveryPointAsCsv) {
+  std::ostringstream csv;
+  write_screening_csv(sample_screening(), csv);
+  const std::vector<CsvLine> lines = read_csv(csv.str());
+  ASSERT_EQ(lines.size(), 7U);
+  for (const CsvLine& line : lines) EXPECT_EQ(line.cells.size(), lines[0].cells.size());
+  EXPECT_THAT(csv.str(), HasSubstr("candidate,asperity_friction_coefficient,cost,speed_kilometres"));
+  EXPECT_THAT(csv.str(), HasSubstr("\na,0.1,\"1,5\",60,0,90,0,1,3,0.3333333333333333,"));
+  EXPECT_THAT(csv.str(), HasSubstr("TOO_HOT,\"the contact is too hot, \"\"far\"\" too hot\""));
 }
 
-TEST(Screening, IsAnotherOneWithOtherCandidatesOrConditionsButNotWithOtherWeights) {
+TEST(Screening, PointsThatAreNotComputedSaySo) {
+  Screening screening = sample_screening();
+  std::vector<std::vector<double>> columns(screened_columns().size(), {std::nan("")});
+  columns.back()[0] = -1;
+  screening.points[0] = screened_point(columns, 0);
+  EXPECT_EQ(refusal_of(screening, 0, 0).reason(), "NOT_COMPUTED");
+  EXPECT_EQ(refusal_of(screening, 0, 1).reason(), "");
+  EXPECT_EQ(refusal_of(screening, 2, 1).reason(), "TOO_HOT");
+  EXPECT_THAT(candidate_figures(screening, 0).refusal, HasSubstr("not computed"));
+  screening.table.refusals[0] = "no oil";
+  EXPECT_EQ(refusal_of(screening, 0, 0).reason(), "INVALID_CANDIDATE");
+}
+
+TEST(Screening, IsACampaignOfItsAcceptedCandidatesWithWhatIsCarriedAlong) {
+  Screening screening = sample_screening();
+  screening.request.set_lubricant("lubricants/x@1");
+  screening.table.refusals[1] = "out of range";
+  const v1::Campaign campaign = campaign_of(screening, "c.csv");
+  EXPECT_EQ(campaign.display_name(), "c.csv");
+  EXPECT_EQ(campaign.lubricant(), "lubricants/x@1");
+  ASSERT_EQ(campaign.candidate_columns_size(), 1);
+  EXPECT_EQ(campaign.candidate_columns(0).path(), "surface.asperity_friction_coefficient");
+  EXPECT_THAT(campaign.candidate_columns(0).values(), ElementsAre(0.1, 0.2));
+  ASSERT_EQ(campaign.candidate_attributes_size(), 2);
+  EXPECT_THAT(campaign.candidate_attributes(0).texts(), ElementsAre("a", "c"));
+  EXPECT_THAT(campaign.candidate_attributes(1).texts(), ElementsAre("1,5", "3"));
+  EXPECT_THAT(campaign.condition_weights(), ElementsAre(0.75, 0.25));
+  screening.table.cells[0][1] = "1.5";
+  EXPECT_THAT(campaign_of(screening, "").candidate_attributes(1).values(), ElementsAre(1.5, 3));
+}
+
+TEST(Screening, ACampaignsAttributesHaveNamesThatTheServerTakes) {
+  Screening screening = sample_screening();
+  screening.table = candidates(
+      "candidate,relaxation time (ns),treat rate,treat_rate,settled,Öl\na,400,1,2,3,x\n");
+  std::vector<std::string> names;
+  const v1::Campaign campaign = campaign_of(screening, "");
+  for (const auto& each : campaign.candidate_attributes()) names.push_back(each.name());
+  EXPECT_THAT(names, ElementsAre("name", "treat_rate", "treat_rate_2", "settled_2", "__l"));
+}
+
+TEST(Screening, CandidatesThatEqualTheBaseAreCandidatesOfACampaign) {
+  Screening screening = sample_screening();
+  screening.bases = base_of_tests();
+  screening.table.parameters.clear();
+  const v1::Campaign campaign = campaign_of(screening, "");
+  ASSERT_EQ(campaign.candidate_columns_size(), 1);
+  EXPECT_EQ(campaign.candidate_columns(0).values_size(), 3);
+}
+
+TEST(Screening, IsAnotherRequestWithOtherCandidatesConditionsOrModel) {
   const Screening screening = sample_screening();
-  const std::string identity = screening_identity(screening);
-  EXPECT_EQ(identity.size(), 16U);
+  const auto id = [](const Screening& each) {
+    return screening_request_id(campaign_of(each, ""), each.base.model_version());
+  };
+  EXPECT_THAT(id(screening), testing::MatchesRegex("screen-[0-9a-f]+"));
+  EXPECT_EQ(id(screening), id(sample_screening()));
   Screening other = screening;
-  other.weights = {0.5, 0.5};
-  EXPECT_EQ(screening_identity(other), identity);
   other.request.mutable_conditions(0)->set_speed_kilometres_per_hour(21);
-  EXPECT_NE(screening_identity(other), identity);
+  EXPECT_NE(id(other), id(screening));
   other = screening;
   other.table.parameters[0].values[1] *= 1 + 1e-15;
-  EXPECT_NE(screening_identity(other), identity);
+  EXPECT_NE(id(other), id(screening));
   other = screening;
   other.base.set_model_version("model-2");
-  EXPECT_NE(screening_identity(other), identity);
+  EXPECT_NE(id(other), id(screening));
 }
 
 TEST(Screening, WritesJsonLines) {
-  const std::string lines = screening_json_lines(sample_screening());
+  std::ostringstream written;
+  write_screening_json_lines(sample_screening(), written);
+  const std::string lines = written.str();
   EXPECT_THAT(lines, HasSubstr("{\"candidate\": \"a\", \"asperity_friction_coefficient\": 0.1, "
                                "\"cost\": \"1,5\", \"speed_kilometres_per_hour\": 20,"));
   EXPECT_THAT(lines,

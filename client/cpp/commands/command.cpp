@@ -1,6 +1,7 @@
 #include "client/cpp/commands/command.h"
 
 #include <stdexcept>
+#include <utility>
 
 #include "client/cpp/resources/kind.h"
 
@@ -90,6 +91,7 @@ std::vector<Command> all_commands() {
   commands.push_back(jobs_delete_command());
   commands.push_back(jobs_pin_command());
   commands.push_back(jobs_unpin_command());
+  for (Command& command : campaign_commands()) commands.push_back(std::move(command));
   commands.push_back(help_command());
   commands.push_back(completion_command());
   return commands;

@@ -79,6 +79,8 @@ Command validate_command();
 Command schema_command();
 Command completion_command();
 Command help_command();
+/// Returns list, show, pause, resume, cancel, delete and columns of campaigns.
+std::vector<Command> campaign_commands();
 Command jobs_list_command();
 Command jobs_get_command();
 Command jobs_watch_command();

@@ -73,6 +73,11 @@ std::vector<std::string> names_of(const std::string& collection, const std::stri
         names.push_back(resource_id(simulation.name()));
       }
     }
+    if (collection == "campaigns") {
+      for (const auto& campaign : connection.list_campaigns({.limit = 50}).resources) {
+        names.push_back(resource_id(campaign.name()));
+      }
+    }
     for (const ResourceKind& kind : resource_kinds()) {
       if (kind.collection != collection) continue;
       ListOptions list;

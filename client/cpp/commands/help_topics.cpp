@@ -29,9 +29,9 @@ digit in the unit at the end of each name, mostly SI.
        R"text(Screening
 
 `tribodyn screen TABLE.csv --like LUBRICANT` evaluates variants of one lubricant, one a row, and
-ranks them by their mesh inefficiency. Nothing is stored on the server. The table is a CSV file as
-for import (`tribodyn help files`): commas, semicolons or tabs, decimal points or commas, units in
-the header, in the second row or in a cell. An empty cell leaves the value of the base.
+ranks them by their mesh inefficiency. The table is a CSV file as for import (`tribodyn help files`):
+commas, semicolons or tabs, decimal points or commas, units in the header, in the second row or in a
+cell. An empty cell leaves the value of the base.
 
   name, candidate or id: the candidates' names; without such a column they have the numbers 1, 2, ...
   Parameters of the lubricant and of the surface, by their names with or without their units:
@@ -50,8 +50,15 @@ the header, in the second row or in a cell. An empty cell leaves the value of th
 `tribodyn design` makes such tables from ranges, or from the uncertainties of a lubricant.
 
 A candidate with a value outside its range, or that the model refuses, is listed with the reason; the
-others are ranked. --csv FILE and --jsonl FILE write every candidate at every condition. Until it is
-complete, the file is FILE.ID.part; after an interruption the same command goes on where it ended.
+others are ranked. --csv FILE and --jsonl FILE write every candidate at every condition.
+
+The server computes the table as a campaign, of up to 100,000 candidates and 20 million points, and
+keeps its figures (`tribodyn campaigns list`). The request id of the campaign is made of base,
+candidates, conditions, weights and model: the same command finds its campaign, goes on after an
+interruption of client or server, and reads what is computed. It resumes a campaign that is paused.
+--budget-points and --budget-processor-seconds pause it when they are spent. `tribodyn screen
+--campaign NAME` ranks a campaign without its table, with other --weights if they are stated, by the
+candidates' parameters in the units of their fields.
 
 Candidates that cannot be told apart from the best one at the --confidence are ties. Uncertainties of
 parameters in the table (--uncertainty, columns) are each candidate's own; those of all other

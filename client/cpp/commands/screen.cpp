@@ -1,26 +1,27 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "client/cpp/commands/resource_writes.h"
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/plot/screening_plot.h"
-#include "client/cpp/report/part_file.h"
 #include "client/cpp/report/screening.h"
 #include "client/cpp/report/screening_decisions.h"
 #include "client/cpp/report/screening_report.h"
 #include "client/cpp/resources/edits.h"
 #include "client/cpp/resources/json_input.h"
 #include "client/cpp/resources/table_files.h"
+#include "client/cpp/service/campaign_run.h"
 #include "client/cpp/service/candidate_errors.h"
-#include "client/cpp/service/interrupt.h"
+#include "client/cpp/service/follow.h"
 #include "client/cpp/service/point_batches.h"
+#include "client/cpp/service/screening_campaign.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 
@@ -31,8 +32,12 @@ namespace {
 /// two points for each input and condition.
 constexpr int kLeastCompared = 30, kMostCompared = 200;
 
+constexpr int kMostPointsOfACampaign = 20'000'000;  // that the server takes
+
 struct ScreenFlags {
   std::string path;
+  std::string campaign;  ///< name of a campaign in place of a table
+  std::optional<v1::CampaignBudget> budget;
   v1::EvaluatePointsRequest request;  ///< without conditions
   std::vector<double> speeds, sumps;
   std::vector<double> speed_weights, sump_weights;
@@ -82,6 +87,11 @@ void read_uncertainty_flag(const std::string& text, std::vector<StatedUncertaint
   out.push_back({field, is_relative ? *read / 100 : *read, is_relative});
 }
 
+v1::CampaignBudget& budget_of(ScreenFlags& flags) {
+  if (!flags.budget) flags.budget.emplace();
+  return *flags.budget;
+}
+
 void add_screen_flags(FlagList& list, ScreenFlags& flags) {
   v1::EvaluatePointsRequest& request = flags.request;
   list.group("Arguments");
@@ -99,6 +109,12 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
   list.texts("--carry", "COLUMN",
              "Columns that are carried along although their names resemble those of parameters",
              [&flags](const std::string& name) { flags.carried.push_back(name); });
+  list.text(
+          "--campaign", "NAME",
+          "Continues and ranks a campaign, e.g. 12 or campaigns/12 (`tribodyn campaigns list`), "
+          "in place of a table and its conditions.",
+          [&flags](const std::string& name) { flags.campaign = resource_name("campaigns", name); })
+      .collection = "campaigns";
   list.group("Conditions (every speed at every sump temperature)");
   list.numbers("--speed-kilometres-per-hour,--speeds,--speed", {"km/h", "0.1 to 400", "60"},
                "Vehicle speeds separated by commas",
@@ -115,7 +131,6 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
   list.number("--ascent-angle-degrees,--ascent", {"degrees", "-45 to 45", "0"},
               "Road slope, also in percent: 6%",
               [&flags](double value) { flags.common.set_ascent_angle_degrees(value); });
-  flags.common.set_inlet_temperature_rise_kelvin(20);
   list.number("--inlet-temperature-rise-kelvin", {"K", "0 to 300", "20"},
               "Temperature rise from the oil bath to the inlet of the contact (eq 14)",
               [&flags](double value) { flags.common.set_inlet_temperature_rise_kelvin(value); });
@@ -124,7 +139,6 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
               request.set_gear_set(resource_name("gearSets", name));
             })
       .collection = "gearSets";
-  request.set_surface("surfaces/run-in");
   list.text("--surface", "NAME",
             "Surface of all candidates where they state no roughness or boundary friction of their "
             "own. Default: run-in.",
@@ -172,12 +186,16 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
                     "all of them",
                     [&flags](int value) { flags.top = value; });
   add_result_file_flag(list, "--csv", "FILE",
-                       "Also write every candidate at every condition as CSV. After an "
-                       "interruption the same command goes on where it ended.",
-                       flags.csv_path);
-  add_result_file_flag(list, "--jsonl", "FILE",
-                       "The same as JSON, one object a line, with the same resumption.",
+                       "Also write every candidate at every condition as CSV.", flags.csv_path);
+  add_result_file_flag(list, "--jsonl", "FILE", "The same as JSON, one object a line.",
                        flags.json_lines_path);
+  list.group("Budget");
+  list.number("--budget-processor-seconds", {"s", "0 to 1e9", "no limit"},
+              "Processor time after which the campaign pauses, counted from its start; 0: no limit",
+              [&flags](double value) { budget_of(flags).set_processor_seconds(value); });
+  list.whole_number("--budget-points", {"points", "0 to 20000000", "no limit"},
+                    "Points after which the campaign pauses, counted from its start; 0: no limit",
+                    [&flags](int value) { budget_of(flags).set_points(value); });
   list.group("Solver");
   list.number("--tolerance", {"-", "1e-8 to 0.01", "0.001"},
               "Target of the relative solver error of every point",
@@ -193,14 +211,52 @@ void check_weights(const char* flag, std::size_t weights, std::size_t values, co
                        "; give one for each");
 }
 
-void check_screen_flags(const ScreenFlags& flags, Complaints& complaints) {
-  if (flags.path.empty()) {
-    complaints.emplace_back("give a table: tribodyn screen candidates.csv --like LUBRICANT");
+/// Checks what a campaign has of its own.
+void check_campaign_flags(const ScreenFlags& flags, Complaints& complaints) {
+  const v1::EvaluatePointsRequest& request = flags.request;
+  const std::pair<const char*, bool> given[] = {
+      {"a table", !flags.path.empty()},
+      {"--like", !request.lubricant().empty()},
+      {"--carry", !flags.carried.empty()},
+      {"--speeds", !flags.speeds.empty()},
+      {"--sumps", !flags.sumps.empty()},
+      {"--ascent", flags.common.ascent_angle_degrees() != 0},
+      {"--inlet-temperature-rise-kelvin", flags.common.has_inlet_temperature_rise_kelvin()},
+      {"--gear-set", !request.gear_set().empty()},
+      {"--surface", !request.surface().empty()},
+      {"--vehicle", !request.vehicle().empty()},
+      {"--tolerance", request.tolerance() != 0},
+      {"options of the model", request.model_options().ByteSizeLong() > 0}};
+  for (const auto& [flag, is_given] : given) {
+    if (!is_given) continue;
+    complaints.push_back(std::string(flag) + " and --campaign: the campaign has its own; give one");
   }
-  if (flags.request.lubricant().empty()) complaints.emplace_back("--like is missing");
-  check_weights("--weights", flags.speed_weights.size(), flags.speeds.size(), "speeds", complaints);
-  check_weights("--sump-weights", flags.sump_weights.size(), flags.sumps.size(),
-                "sump temperatures", complaints);
+}
+
+void check_screen_flags(const ScreenFlags& flags, Complaints& complaints) {
+  if (!flags.campaign.empty()) {
+    check_campaign_flags(flags, complaints);
+  } else {
+    if (flags.path.empty()) {
+      complaints.emplace_back("give a table: tribodyn screen candidates.csv --like LUBRICANT");
+    }
+    if (flags.request.lubricant().empty()) complaints.emplace_back("--like is missing");
+    check_weights("--weights", flags.speed_weights.size(), flags.speeds.size(), "speeds",
+                  complaints);
+    check_weights("--sump-weights", flags.sump_weights.size(), flags.sumps.size(),
+                  "sump temperatures", complaints);
+  }
+  if (flags.budget) {
+    const v1::CampaignBudget& budget = *flags.budget;
+    if (!(budget.processor_seconds() >= 0 && budget.processor_seconds() <= 1e9)) {
+      complaints.push_back("--budget-processor-seconds = " +
+                           significant(budget.processor_seconds()) + " s; allowed: 0 to 1e9 s");
+    }
+    if (budget.points() < 0 || budget.points() > kMostPointsOfACampaign) {
+      complaints.push_back("--budget-points = " + std::to_string(budget.points()) +
+                           "; allowed: 0 to " + std::to_string(kMostPointsOfACampaign));
+    }
+  }
   for (const auto* weights : {&flags.speed_weights, &flags.sump_weights}) {
     for (const double weight : *weights) {
       if (weight > 0) continue;
@@ -240,6 +296,9 @@ void set_conditions(ScreenFlags& flags, Screening& screening) {
     for (std::size_t i = 0; i < flags.speeds.size(); ++i) {
       v1::PointCondition& condition = *screening.request.add_conditions();
       condition = flags.common;
+      if (!condition.has_inlet_temperature_rise_kelvin()) {
+        condition.set_inlet_temperature_rise_kelvin(20);
+      }
       condition.set_sump_temperature_celsius(flags.sumps[j]);
       condition.set_speed_kilometres_per_hour(flags.speeds[i]);
       screening.weights.push_back((flags.speed_weights.empty() ? 1 : flags.speed_weights[i]) *
@@ -273,147 +332,127 @@ Screening prepared_screening(ScreenFlags& flags, const v1::Schema& schema, Conne
   if (!out.table.note.empty()) std::cerr << "tribodyn: " << printable(out.table.note) << "\n";
   characterise_candidates(connection, base, out.table);
   check_candidate_ranges(schema, out.table);
-  ScreenedPoint none{};
-  none.figures.fill(std::nan(""));
-  out.points.assign(out.table.size() * out.conditions(), none);
-  for (std::size_t i = 0; i < out.table.size(); ++i) {
-    for (std::size_t k = 0; k < out.conditions() && !out.table.refusals[i].empty(); ++k) {
-      ScreenedPoint& point = out.points[i * out.conditions() + k];
-      point.refusal_reason = "INVALID_CANDIDATE";
-      point.refusal_message = out.table.refusals[i];
-    }
-  }
   return out;
 }
 
-/// Computes the points of a screening and writes them as they come.
-class ScreeningRun {
- public:
-  ScreeningRun(Screening& screening, std::string path, bool as_json_lines,
-               const CommonOptions& options)
-      : screening_(screening),
-        path_(std::move(path)),
-        as_json_lines_(as_json_lines),
-        display_(std::cerr, options.progress_form(), standard_error_width()) {
-    // JSON lines are made of the part at the end: a pipe gets nothing but them.
-    if (path_.empty() || (as_json_lines_ && PartFile::is_stream(path_))) return;
-    file_.emplace(path_, screening_identity(screening_), screening_header(screening_));
-    if (file_->rows_there() == 0) return;
-    rows_written_ = read_screening_rows(read_file(file_->target()), screening_);
-    if (rows_written_ != static_cast<std::size_t>(file_->rows_there())) {
-      throw Failure(kExitFailed, file_->target() + ": row " + std::to_string(rows_written_ + 2) +
-                                     " is damaged. Remove the file to begin again.");
-    }
-    first_ = rows_written_ / screening_.conditions();
-    std::cerr << "tribodyn: resumes after " << first_ << " of " << screening_.table.size()
-              << " candidates in " << printable(file_->target()) << "\n";
-  }
+/// Returns the place of a value among those that were given before it, in their order.
+std::size_t place_among(double value, std::vector<double>& values) {
+  const auto found = std::find(values.begin(), values.end(), value);
+  const auto place = static_cast<std::size_t>(found - values.begin());
+  if (found == values.end()) values.push_back(value);
+  return place;
+}
 
-  void run(Connection& connection) {
-    const InterruptGuard guard;
-    for (std::size_t i = first_; i < screening_.table.size(); ++i) {
-      if (screening_.table.refusals[i].empty()) candidates_.push_back(i);
-    }
-    start_ = std::chrono::steady_clock::now();
-    try {
-      evaluate_candidates(
-          connection, screening_.request, screening_.table.parameters, candidates_,
-          [this](const PointBatch& batch) { take(batch); },
-          [this] {
-            show("running");
-            return !InterruptGuard::interrupted();
-          });
-    } catch (const ServiceError& error) {
-      if (!file_ || error.kind() == ServiceError::Kind::kRefused) throw;
-      const Failure failure(error);
-      throw Failure(failure.exit_code(),
-                    std::string(failure.what()) +
-                        "\n  Run the same command again to go on: the candidates so far are in " +
-                        file_->target());
-    }
-    if (InterruptGuard::interrupted()) throw interruption();
-    write_until(screening_.table.size());
-    show("succeeded");
-    display_.finish();
+/// Sets weights of a campaign's conditions that the command line states.
+void set_weights(const ScreenFlags& flags, Screening& screening) {
+  if (flags.speed_weights.empty() && flags.sump_weights.empty()) return;
+  std::vector<double> speeds, sumps;
+  std::vector<std::pair<std::size_t, std::size_t>> places;
+  for (const v1::PointCondition& each : screening.request.conditions()) {
+    places.emplace_back(place_among(each.speed_kilometres_per_hour(), speeds),
+                        place_among(each.sump_temperature_celsius(), sumps));
   }
-
-  /// Gives the file its final name and form.
-  void finish() {
-    if (path_.empty()) return;
-    if (!as_json_lines_) return file_->finish();
-    write_file(path_, screening_json_lines(screening_));
-    if (file_) file_->discard();
+  Complaints complaints;
+  check_weights("--weights", flags.speed_weights.size(), speeds.size(), "speeds", complaints);
+  check_weights("--sump-weights", flags.sump_weights.size(), sumps.size(), "sump temperatures",
+                complaints);
+  if (!complaints.empty()) throw Failure(kExitUsage, joined(complaints, "\n"));
+  double sum = 0;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    screening.weights[k] =
+        (flags.speed_weights.empty() ? 1 : flags.speed_weights[places[k].first]) *
+        (flags.sump_weights.empty() ? 1 : flags.sump_weights[places[k].second]);
+    sum += screening.weights[k];
   }
+  for (double& weight : screening.weights) weight /= sum;
+}
 
- private:
-  void take(const PointBatch& batch) {
-    const std::size_t conditions = screening_.conditions();
-    for (std::size_t i = 0; i < batch.count; ++i) {
-      const std::size_t candidate = candidates_[batch.first + i];
-      for (std::size_t k = 0; k < conditions; ++k) {
-        screening_.points[candidate * conditions + k] =
-            screened_point(batch.answer, static_cast<int>(i * conditions + k));
-      }
-    }
-    done_ = batch.first + batch.count;
-    write_until(candidates_[done_ - 1] + 1);
+/// Returns the campaign of the command line, and sets `screening` to what it screens.
+v1::Campaign campaign_to_follow(ScreenFlags& flags, const v1::Schema& schema,
+                                Connection& connection, Screening& screening) {
+  if (!flags.campaign.empty()) {
+    v1::Campaign campaign = connection.get_campaign(flags.campaign, v1::CAMPAIGN_VIEW_FULL);
+    screening = screening_of(connection, campaign);
+    set_weights(flags, screening);
+    return campaign;
   }
+  screening = prepared_screening(flags, schema, connection);
+  const auto& refusals = screening.table.refusals;
+  const bool is_any_accepted = std::any_of(refusals.begin(), refusals.end(),
+                                           [](const std::string& each) { return each.empty(); });
+  if (!is_any_accepted) return {};
+  const v1::Campaign request =
+      campaign_of(screening, flags.path == "-" ? "" : flags.path.substr(flags.path.rfind('/') + 1));
+  CreateCampaignOptions create;
+  create.request_id = screening_request_id(request, screening.base.model_version());
+  return connection.create_campaign(request, create);
+}
 
-  /// Writes the rows of all candidates before `end` that are not in the file.
-  void write_until(std::size_t end) {
-    if (!file_) return;
-    const std::size_t conditions = screening_.conditions();
-    std::string rows;
-    for (std::size_t i = rows_written_ / conditions; i < end; ++i) {
-      const std::string of_candidate = screening_rows(screening_, i, i + 1);
-      // A part may end within a candidate.
-      std::size_t begin = 0;
-      for (std::size_t n = i * conditions; n < rows_written_; ++n) {
-        begin = of_candidate.find('\n', begin) + 1;
-      }
-      rows += of_candidate.substr(begin);
-      rows_written_ = (i + 1) * conditions;
-    }
-    file_->add(rows);
+/// Sets the budget that the command line states, and resumes a campaign that is paused; without a
+/// budget on the command line it has none from then on.
+void go_on(const ScreenFlags& flags, const v1::Campaign& campaign, Connection& connection) {
+  const bool is_paused = campaign.state() == v1::Campaign::PAUSED;
+  if (has_ended(campaign.state()) || (!is_paused && !flags.budget)) return;
+  try {
+    connection.resume_campaign(campaign.name(), flags.budget.value_or(v1::CampaignBudget()));
+  } catch (const ServiceError& error) {
+    if (error.reason() != "ENDED") throw;  // since it was created or read
   }
+}
 
-  void show(const std::string& state) {
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const double rate = static_cast<double>(done_ * screening_.conditions()) / seconds;
-    JobProgress progress;
-    progress.label = "screening";
-    progress.state = state;
-    progress.stage = std::to_string(first_ + done_) + " of " +
-                     std::to_string(screening_.table.size()) + " candidates" +
-                     (done_ == 0 ? "" : ", " + significant(rate, 2) + " points/s");
-    progress.fraction = candidates_.empty()
-                            ? 1
-                            : static_cast<double>(done_) / static_cast<double>(candidates_.size());
-    progress.ended = state == "succeeded";
-    if (progress.ended) progress.state += ", " + progress.stage;
-    display_.show({progress});
+/// Says why a campaign has points that are not computed, and how to go on.
+void report_stop(const v1::Campaign& campaign, const Connection& connection) {
+  const std::string program = program_of(connection), id = resource_id(campaign.name());
+  std::cerr << "tribodyn: " << campaign.name() << " is " << state_text(campaign.state())
+            << " after " << points_text(campaign);
+  if (campaign.has_stop()) std::cerr << ": " << printable(campaign.stop().message());
+  std::cerr << "\n"
+            << (campaign.state() == v1::Campaign::PAUSED
+                    ? "  Go on: the same command, with a larger budget or none, or " + program +
+                          " campaigns resume " + id
+                    : "  To compute it again, delete it first: " + program + " campaigns delete " +
+                          id)
+            << "\n";
+}
+
+/// Computes the points of a screening. Returns whether there are all of them.
+bool compute(ScreenFlags& flags, const v1::Schema& schema, Connection& connection,
+             const CommonOptions& options, Screening& screening) {
+  const v1::Campaign started = campaign_to_follow(flags, schema, connection, screening);
+  screening.program = program_of(connection);
+  screening.campaign = started.name();
+  screening.input_hash = started.input_hash();
+  ScreenedPoint none{};
+  none.figures.fill(std::nan(""));
+  screening.points.assign(screening.table.size() * screening.conditions(), none);
+  if (started.name().empty()) return true;
+  if (started.points_done() > 0 && !has_ended(started.state())) {
+    std::cerr << "tribodyn: resumes " << started.name() << " after " << points_text(started)
+              << "\n";
   }
-
-  Failure interruption() const {
-    std::string text = "interrupted after " + std::to_string(first_ + done_) + " of " +
-                       std::to_string(screening_.table.size()) + " candidates. ";
-    text += file_ ? "Run the same command again to go on: they are in " + file_->target()
-                  : "Nothing was kept; with --csv FILE the same command would go on.";
-    return {kExitInterrupted, text};
+  go_on(flags, started, connection);
+  const v1::Campaign campaign = follow_to_end(connection, started.name(), options.progress_form());
+  read_points(connection, campaign, screening);
+  if (campaign.model_version() != screening.base.model_version()) {
+    std::cerr << "tribodyn: " << campaign.name() << " was computed by "
+              << printable(campaign.model_version()) << ", its base now by "
+              << printable(screening.base.model_version()) << "\n";
   }
+  const bool is_complete = campaign.state() == v1::Campaign::SUCCEEDED;
+  if (!is_complete) report_stop(campaign, connection);
+  return is_complete;
+}
 
-  Screening& screening_;
-  const std::string path_;
-  const bool as_json_lines_;
-  ProgressDisplay display_;
-  std::optional<PartFile> file_;
-  std::vector<std::size_t> candidates_;  ///< that are to be evaluated
-  std::size_t first_ = 0;                ///< candidates that were in the file
-  std::size_t done_ = 0;                 ///< of candidates_
-  std::size_t rows_written_ = 0;
-  std::chrono::steady_clock::time_point start_;
-};
+/// Writes the files of all points that are asked for.
+void write_point_files(const ScreenFlags& flags, const Screening& screening) {
+  if (!flags.csv_path.empty()) {
+    write_file(flags.csv_path, [&](std::ostream& file) { write_screening_csv(screening, file); });
+  }
+  if (!flags.json_lines_path.empty()) {
+    write_file(flags.json_lines_path,
+               [&](std::ostream& file) { write_screening_json_lines(screening, file); });
+  }
+}
 
 /// Returns how sure the ranking is. Where all compared candidates are ties, more are compared.
 RankingConfidence confidence_of(const ScreenFlags& flags, const Screening& screening,
@@ -473,12 +512,9 @@ int run_screen(ScreenFlags& flags, const CommonOptions& options) {
   }
   Connection connection = options.connect();
   const v1::Schema schema = connection.schema();
-  Screening screening = prepared_screening(flags, schema, connection);
-  const bool as_json_lines = !flags.json_lines_path.empty();
-  ScreeningRun run(screening, as_json_lines ? flags.json_lines_path : flags.csv_path, as_json_lines,
-                   options);
-  run.run(connection);
-  run.finish();
+  Screening screening;
+  const bool is_complete = compute(flags, schema, connection, options, screening);
+  write_point_files(flags, screening);
   const std::vector<CandidateFigures> ranking = ranked(screening);
   const RankingConfidence confidence =
       flags.leaves_out_uncertainty ? RankingConfidence()
@@ -497,7 +533,7 @@ int run_screen(ScreenFlags& flags, const CommonOptions& options) {
     write_file(flags.plot_path, screening_plot(screening, ranking, front ? &*front : nullptr,
                                                effects ? &*effects : nullptr));
   }
-  return ranking.front().refusal.empty() ? kExitOk : kExitFailed;
+  return is_complete && ranking.front().refusal.empty() ? kExitOk : kExitFailed;
 }
 
 }  // namespace
@@ -510,22 +546,25 @@ Command screen_command() {
       "Evaluates variants of a lubricant, one a row of a table, at every speed and sump "
       "temperature "
       "and ranks them by the weighted mean of the inefficiency. Columns override parameters of the "
-      "lubricant and of the surface, or hold measurements; others are carried along. Nothing is "
-      "stored on the server.",
+      "lubricant and of the surface, or hold measurements; others are carried along. The server "
+      "computes the table as a campaign and keeps its figures: after an interruption of either "
+      "side "
+      "the same command goes on where it ended, and once it is complete reads the figures.",
       {"tribodyn screen candidates.csv --like my-oil --speeds 20,40,60 --sumps 40,90",
        "tribodyn screen candidates.csv --like my-oil --speeds 20,60,100 --weights 1,2,1 --csv "
        "points.csv",
        "tribodyn screen candidates.csv --like my-oil --uncertainty pressure-viscosity=3% --pareto "
        "cost --effects --plot screening.svg",
-       "tribodyn screen candidates.csv --like my-oil --output csv"},
+       "tribodyn screen candidates.csv --like my-oil --output csv",
+       "tribodyn screen --campaign 12 --weights 2,1,1"},
       {},
       {},
       {}};
   add_screen_flags(command.flags, *flags);
   command.check = [flags](Complaints& complaints) { check_screen_flags(*flags, complaints); };
-  command.main_flags = {"table",         "--like",    "--speeds",  "--sumps",   "--weights",
-                        "--uncertainty", "--pareto",  "--plot",    "--effects", "--top",
-                        "--csv",         "--surface", "--vehicle", "--gear-set"};
+  command.main_flags = {"table",         "--like",    "--speeds",  "--sumps",    "--weights",
+                        "--uncertainty", "--pareto",  "--plot",    "--effects",  "--top",
+                        "--csv",         "--surface", "--vehicle", "--gear-set", "--campaign"};
   command.run = [flags](const CommonOptions& options) { return run_screen(*flags, options); };
   return command;
 }

@@ -126,7 +126,7 @@ std::vector<std::string> screening_footer(const Screening& screening,
                        : ""));
   }
   out.push_back("Model version " + screening.base.model_version() + "; hash of inputs " +
-                screening_identity(screening).substr(0, 12) + ".");
+                screening.input_hash.substr(0, 12) + ".");
   return out;
 }
 

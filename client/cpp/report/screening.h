@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -21,8 +21,8 @@ struct ScreenedPoint {
   bool settled = false;
   int period_in_mesh_cycles = 0;
   v1::PointModel model = v1::POINT_MODEL_UNSPECIFIED;
-  std::string refusal_reason;  ///< empty: there are figures
-  std::string refusal_message;
+  /// 0: there are figures; n: Screening::refusals[n - 1] says why not; -1: not computed.
+  int refusal_number = 0;
 };
 
 /// Returns the names of the figures, which end in their units.
@@ -31,6 +31,11 @@ const std::array<const char*, ScreenedPoint::kFigures>& screened_figures();
 /// Returns row `row` of an answer.
 ScreenedPoint screened_point(const v1::EvaluatePointsResponse& answer, int row);
 
+/// Returns the columns of a campaign that hold its points.
+std::vector<std::string> screened_columns();
+/// Returns row `row` of these columns.
+ScreenedPoint screened_point(const std::vector<std::vector<double>>& columns, std::size_t row);
+
 /// Candidates at conditions, and what is known of them so far.
 struct Screening {
   CandidateBase bases;
@@ -38,23 +43,25 @@ struct Screening {
   v1::EvaluatePointsRequest request;  ///< the base at all conditions; revisions in place of names
   std::vector<double> weights;        ///< of the conditions; their sum is 1
   v1::EvaluatePointsResponse base;    ///< the base at all conditions
+  std::string campaign;               ///< its name; empty: no candidate could be evaluated
+  std::string input_hash;             ///< of the campaign
+  std::string program = "tribodyn";   ///< how the command line is called for its project
   std::vector<ScreenedPoint> points;  ///< by candidate, then by condition
+  std::vector<v1::PointRefusal> refusals;
 
   std::size_t conditions() const { return weights.size(); }
+  const ScreenedPoint& point(std::size_t candidate, std::size_t condition) const {
+    return points[candidate * conditions() + condition];
+  }
 };
 
-/// Returns a hash of all that decides the points, e.g. "3f1c...": base, candidates, conditions and
-/// version of the model. Weights are not in it.
-std::string screening_identity(const Screening& screening);
+/// Returns why a candidate has no figures at a condition; without a reason if it has.
+v1::PointRefusal refusal_of(const Screening& screening, std::size_t candidate,
+                            std::size_t condition);
 
-/// Returns the header of the CSV table of all points.
-std::string screening_header(const Screening& screening);
-/// Returns the rows of the candidates [first, end) as CSV, or as JSON objects, one a line.
-std::string screening_rows(const Screening& screening, std::size_t first, std::size_t end);
-std::string screening_json_lines(const Screening& screening);
-/// Reads the points that screening_rows() wrote. Returns the number of rows; stops at the first one
-/// that is not of the screening.
-std::size_t read_screening_rows(const std::string& csv, Screening& screening);
+/// Writes the table of all points as CSV with a header, or as JSON objects, one a line.
+void write_screening_csv(const Screening& screening, std::ostream& out);
+void write_screening_json_lines(const Screening& screening, std::ostream& out);
 
 /// Returns "\"text\"" as JSON.
 std::string json_quoted(const std::string& text);

@@ -28,17 +28,20 @@ std::string condition_text(const v1::PointCondition& condition) {
          significant(condition.sump_temperature_celsius()) + " C";
 }
 
-/// Sums the figures of the points of one fluid, which `point_of(k)` returns.
-template <class PointOf>
-CandidateFigures weighted_figures(const Screening& screening, const PointOf& point_of) {
+/// Sums the figures of the points of one fluid, which `point_of(k)` returns; `message_of(k)` says
+/// why there are none.
+template <class PointOf, class MessageOf>
+CandidateFigures weighted_figures(const Screening& screening, const PointOf& point_of,
+                                  const MessageOf& message_of) {
   CandidateFigures out;
   for (std::size_t k = 0; k < screening.conditions(); ++k) {
     const ScreenedPoint point = point_of(k);
     const double energy_mean = point.figures[ScreenedPoint::kEnergyMean];
-    if (!point.refusal_reason.empty() || !std::isfinite(energy_mean)) {
-      out.refusal = point.refusal_message.empty()
-                        ? "no power comes in, so that there is no inefficiency"
-                        : point.refusal_message;
+    if (point.refusal_number != 0 || !std::isfinite(energy_mean)) {
+      out.refusal = message_of(k);
+      if (out.refusal.empty()) {
+        out.refusal = "no power comes in, so that there is no inefficiency";
+      }
       out.refusal +=
           " (at " + condition_text(screening.request.conditions(static_cast<int>(k))) + ")";
       return out;
@@ -268,6 +271,12 @@ std::string ranking_text(const Screening& screening, const std::vector<Candidate
                ", " + screening.base.gear_set_revision() + " and " +
                screening.base.vehicle_revision() + ", except for: " + joined(varied, ", ") + "." +
                (carried.empty() ? "" : " Carried along: " + joined(carried, ", ") + "."));
+  if (!screening.campaign.empty()) {
+    const std::string id = resource_id(screening.campaign);
+    sheet.remark("The server keeps the figures as " + screening.campaign + ": `" +
+                 screening.program + " screen --campaign " + id + "` ranks them again, `" +
+                 screening.program + " campaigns delete " + id + "` deletes them.");
+  }
   sheet.remark("Model " + screening.base.model_version() +
                ". \"vs base\" is the difference in percent of the base, the first line.");
   const CandidateFigures base = base_figures(screening);
@@ -319,7 +328,8 @@ std::string ranking_json(const Screening& screening, const std::vector<Candidate
   const auto refusal = [](const CandidateFigures& each) {
     return "\"refusal\": " + json_quoted(each.refusal);
   };
-  std::string out = "{\n  \"model_version\": " + json_quoted(screening.base.model_version()) +
+  std::string out = "{\n  \"campaign\": " + json_quoted(screening.campaign) +
+                    ",\n  \"model_version\": " + json_quoted(screening.base.model_version()) +
                     ",\n  \"base\": {\"lubricant_revision\": " +
                     json_quoted(screening.base.lubricant_revision()) + ", " +
                     (base.refusal.empty() ? figures(base) : refusal(base)) +
@@ -354,9 +364,9 @@ std::string ranking_json(const Screening& screening, const std::vector<Candidate
 CandidateFigures candidate_figures(const Screening& screening, std::size_t candidate) {
   CandidateFigures out;
   if (screening.table.refusals[candidate].empty()) {
-    out = weighted_figures(screening, [&](std::size_t k) {
-      return screening.points[candidate * screening.conditions() + k];
-    });
+    out = weighted_figures(
+        screening, [&](std::size_t k) { return screening.point(candidate, k); },
+        [&](std::size_t k) { return refusal_of(screening, candidate, k).message(); });
   } else {
     out.refusal = screening.table.refusals[candidate];
   }
@@ -365,9 +375,13 @@ CandidateFigures candidate_figures(const Screening& screening, std::size_t candi
 }
 
 CandidateFigures base_figures(const Screening& screening) {
-  return weighted_figures(screening, [&](std::size_t k) {
-    return screened_point(screening.base, static_cast<int>(k));
-  });
+  const v1::EvaluatePointsResponse& base = screening.base;
+  return weighted_figures(
+      screening, [&](std::size_t k) { return screened_point(base, static_cast<int>(k)); },
+      [&](std::size_t k) {
+        const int number = base.refusal_numbers(static_cast<int>(k));
+        return number == 0 ? std::string() : base.refusals(number - 1).message();
+      });
 }
 
 std::vector<CandidateFigures> ranked(const Screening& screening) {

@@ -26,13 +26,17 @@ std::string json_text(const google::protobuf::Message& message) {
 }
 
 void write_file(const std::string& path, const std::string& text) {
+  write_file(path, [&](std::ostream& file) { file << text; });
+}
+
+void write_file(const std::string& path, const std::function<void(std::ostream&)>& write) {
   struct stat info;
   // Only a regular file can be replaced; a pipe or a device (/dev/stdout) is written in place.
   const bool replace = stat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode);
   const std::string target = replace ? path + ".part" + std::to_string(getpid()) : path;
   {
     std::ofstream file(target, std::ios::binary);
-    file << text;
+    write(file);
     file.close();
     if (!file) {
       const std::string why = std::strerror(errno);

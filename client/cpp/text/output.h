@@ -2,6 +2,8 @@
 
 #include <google/protobuf/message.h>
 
+#include <functional>
+#include <ostream>
 #include <string>
 
 namespace tribodyn::client {
@@ -15,6 +17,8 @@ std::string json_text(const google::protobuf::Message& message);
 /// Replaces the file in one step: a reader sees either the old text or the new text. Throws Failure
 /// if the file cannot be written.
 void write_file(const std::string& path, const std::string& text);
+/// As above; `write` writes the text.
+void write_file(const std::string& path, const std::function<void(std::ostream&)>& write);
 
 /// Returns why write_file() would fail for a path, as far as a check without writing can find out;
 /// empty if the check finds no obstacle.

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "client/cpp/report/screening.h"
+#include "tribodyn/client/connection.h"
+
+namespace tribodyn::client {
+
+/// Returns the campaign that computes the candidates without a refusal, in their order. It keeps
+/// the candidates' names, carried columns and uncertainties as attributes.
+v1::Campaign campaign_of(const Screening& screening, const std::string& title);
+
+/// Returns the id under which a campaign is created, e.g. "screen-3f1c...": a hash of the campaign
+/// and of the version of the model, so that the same screening finds the campaign that it made.
+std::string screening_request_id(const v1::Campaign& campaign, const std::string& model_version);
+
+/// Returns the screening of a campaign, without points: the opposite of campaign_of(). Candidates
+/// without names have their numbers, counted from 1. Evaluates the base.
+Screening screening_of(Connection& connection, const v1::Campaign& campaign);
+
+/// Reads the points of the campaign, finished or not.
+void read_points(Connection& connection, const v1::Campaign& campaign, Screening& screening);
+
+}  // namespace tribodyn::client
