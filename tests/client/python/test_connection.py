@@ -201,6 +201,9 @@ def test_coroutines_have_the_names_and_arguments_of_the_blocking_client():
     from tribodyn._resources import AsyncResources
 
     assert signatures(AsyncResources) == signatures(tribodyn.Resources)
+    from tribodyn._campaigns import AsyncCampaign
+
+    assert signatures(AsyncCampaign) == signatures(tribodyn.Campaign)
 
 
 def test_coroutines_run_together(server):

@@ -31,11 +31,25 @@ def test_two_oils_are_compared_with_a_plot(server, tmp_path):
     assert "saved_watts" in out and (tmp_path / "oils.svg").stat().st_size > 10_000
 
 
+def test_variants_are_screened_and_ranked(server, tmp_path):
+    for _ in range(2):  # the second run finds the campaign of the first
+        out = run(server, tmp_path, PYTHON / "examples/screen_variants.py")
+        assert re.search(r"^0 +B-2.0 +16.00? +[\d.]+ +OK$", out, re.M) and "B: W of mesh loss" in out
+
+
 def test_the_loop_of_optimisation_ends_inside_its_bounds(server, tmp_path):
     out = run(server, tmp_path, PYTHON / "examples/find_best_viscosity.py")
     found = re.search(r"([\d.]+) W at ([\d.]+) times .* after (\d+) .*; ([\d.]+) W as it is", out)
     assert float(found[1]) < 0.97 * float(found[4]) and 1 < float(found[2]) < 6
     assert int(found[3]) < 30
+
+
+def test_the_loop_with_gradients_finds_the_best_oil_within_twenty_evaluations(server, tmp_path):
+    out = run(server, tmp_path, PYTHON / "examples/find_best_oil.py")
+    found = re.search(
+        r"inefficiency: ([\d.]+) % after (\d+) evaluations, with a film\nof ([\d.]+)", out
+    )
+    assert float(found[1]) < 1.037 and int(found[2]) <= 20 and float(found[3]) >= 0.979
 
 
 def test_type_hints_hold():

@@ -30,6 +30,24 @@ def test_what_a_result_does_not_have_is_nan_and_not_zero(client):
     assert np.isnan(point["coexisting_response_inefficiency_rms_percent"][0])
 
 
+def test_sensitivities_are_the_slopes_between_neighbouring_points(client):
+    found = client.sensitivities(FLUID, speed_kilometres_per_hour=100)
+    rows = {name: i for i, name in enumerate(found["parameter"])}
+    figure = "inefficiency_energy_mean_percent"
+    slope = found[f"derivative.{figure}"][rows["lubricant.relaxation_time"]]
+    times = np.array([4.4e-7, 4.6e-7])
+    near = client.evaluate(
+        {"lubricant.relaxation_time_seconds": times},
+        lubricant=FLUID,
+        speed_kilometres_per_hour=100,
+        tolerance=1e-5,
+    )
+    assert slope == pytest.approx(np.diff(near[figure])[0] / 2e-8, rel=0.02)
+    assert found.attrs["figures"]["film_ratio.mean"] > 1 and not found.attrs["one_sided"]
+    # No derivatives exist where flanks part.
+    assert len(client.sensitivities(FLUID, speed_kilometres_per_hour=75)) == 0
+
+
 def test_a_torque_and_model_options_are_taken(client):
     coast = client.point(
         FLUID,

@@ -9,11 +9,12 @@
 
 from tribodyn._frames import Table
 from tribodyn._studies import Options
-from tribodyn.client import Client, Resources
+from tribodyn.client import Campaign, Client, Resources
 from tribodyn.errors import TribodynError, Violation
 from tribodyn.units import Quantity, QuantityError, quantity
 
 __all__ = [
+    "Campaign",
     "Client",
     "Options",
     "Quantity",

@@ -42,6 +42,9 @@ _FIGURES = [
 Values = tuple[float | None, ...]
 
 
+FIGURES = [each.name for each in _FIGURES]  # names of the columns of figures
+
+
 def is_parameter(name: str) -> bool:
     """Whether evaluate() takes the name: an argument, or "lubricant." or "surface." and a field."""
     return name in BASE or name in CONDITION or name.partition(".")[0] in _VARIED
@@ -233,12 +236,17 @@ def _read(
     )
     if condition[0] is None:
         arguments.wrong(CONDITION[0], f"{CONDITION[0]} is missing")
+    return base, read_varied(arguments, row), condition
+
+
+def read_varied(arguments: Arguments, row: Mapping[str, Any]) -> dict[str, float]:
+    """Returns the paths and values of the parameters that a row states."""
     varied = {}
     for name, value in row.items():
         owner, dot, parameter = name.partition(".")
         if dot and owner in _VARIED and value is not None:
             varied.update(_varied(arguments, owner, parameter, value))
-    return base, varied, condition
+    return varied
 
 
 def _varied(arguments: Arguments, owner: str, parameter: str, value: Quantity) -> dict[str, float]:

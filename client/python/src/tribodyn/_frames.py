@@ -179,6 +179,27 @@ def result_attrs(simulation: simulations_pb2.Simulation) -> dict[str, Any]:
     }
 
 
+def sensitivity_table(
+    simulation: simulations_pb2.Simulation,
+) -> tuple[dict[str, list[Any]], dict[str, Any]]:
+    """Returns columns and attributes of the sensitivities of an operating point."""
+    found = simulation.result.points[0].result.sensitivities
+    columns: dict[str, list[Any]] = {
+        "parameter": [each.parameter for each in found.parameters],
+        "unit": [each.unit for each in found.parameters],
+        "value": [each.value for each in found.parameters],
+    }
+    for i, figure in enumerate(found.figures):
+        columns[f"derivative.{figure}"] = [each.derivatives[i] for each in found.parameters]
+        columns[f"elasticity.{figure}"] = [each.elasticities[i] for each in found.parameters]
+    figures = dict(zip(found.figures, found.values))
+    return columns, {
+        **result_attrs(simulation),
+        "figures": figures,
+        "one_sided": found.one_sided,
+    }
+
+
 def in_columns(rows: Iterable[Mapping[str, Any]]) -> dict[str, list[Any]]:
     """Returns the columns of rows that have equal keys."""
     columns: dict[str, list[Any]] = {}

@@ -14,6 +14,7 @@ from google.protobuf.message import Message
 from tribodyn.errors import details_of, reason_of, retry_delay_of, service_error
 from tribodyn.settings import DEFAULT_PROJECT, Settings
 from tribodyn.v1 import (
+    campaigns_pb2,
     contacts_pb2,
     gear_sets_pb2,
     lubricants_pb2,
@@ -26,6 +27,7 @@ from tribodyn.v1 import (
 )
 
 _FILES = (
+    campaigns_pb2,
     contacts_pb2,
     gear_sets_pb2,
     lubricants_pb2,
@@ -39,7 +41,15 @@ _FILES = (
 _SERVICES = {
     name: service for file in _FILES for name, service in file.DESCRIPTOR.services_by_name.items()
 }
-_RESOURCES = {"Lubricant", "GearSet", "Surface", "Vehicle", "Simulation", "SimulationEvent"}
+_RESOURCES = {
+    "Lubricant",
+    "GearSet",
+    "Surface",
+    "Vehicle",
+    "Simulation",
+    "SimulationEvent",
+    "Campaign",
+}
 
 _OPTIONS = (
     # With BDP probes, gRPC would buffer megabytes of a watch stream that is not read.
@@ -59,7 +69,7 @@ _TURNED_AWAY = {
     "TOO_MANY_LARGE_REQUESTS",
     "TOO_MANY_CALLS",
 }
-_REPEATABLE = ("Get", "List", "Evaluate", "Cancel", "Delete")
+_REPEATABLE = ("Get", "List", "Evaluate", "Pause", "Resume", "Cancel", "Delete")
 
 
 class Backoff:

@@ -8,10 +8,19 @@ from types import TracebackType
 from typing import Any, Callable, Mapping, Sequence
 
 from tribodyn import _points, _studies
+from tribodyn._campaigns import AsyncCampaign, start_campaign
+from tribodyn._columns import read_columns
 from tribodyn._csv import rows_of
 from tribodyn._evaluate import Evaluation, is_parameter
-from tribodyn._frames import Frame, columns_of, frame, in_columns, point_row, result_attrs
-from tribodyn._history import read_history
+from tribodyn._frames import (
+    Frame,
+    columns_of,
+    frame,
+    in_columns,
+    point_row,
+    result_attrs,
+    sensitivity_table,
+)
 from tribodyn._jobs import Outcome, run_all
 from tribodyn._progress import Progress
 from tribodyn._resources import AsyncResources
@@ -20,6 +29,7 @@ from tribodyn._transport import Transport
 from tribodyn.errors import TribodynError
 from tribodyn.settings import read_settings
 from tribodyn.units import Quantity
+from tribodyn.v1.campaigns_pb2 import Campaign, ListCampaignsRequest
 from tribodyn.v1.gear_sets_pb2 import GearSet
 from tribodyn.v1.lubricants_pb2 import Lubricant
 from tribodyn.v1.schemas_pb2 import GetSchemaRequest, Schema
@@ -118,6 +128,50 @@ class Client:
         )
         (found,) = await self._run(arguments, [simulation], options, "point")
         return frame(_columns(found), result_attrs(found))
+
+    async def sensitivities(
+        self,
+        lubricant: str,
+        *,
+        speed_kilometres_per_hour: Quantity | None = None,
+        acceleration_metres_per_second_squared: Quantity | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        pinion_torque_newton_metres: Quantity | None = None,
+        pinion_speed_radians_per_second: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        arguments = Arguments()
+        simulation = _studies.scene(
+            arguments,
+            lubricant,
+            options,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            sump_temperature_celsius=sump_temperature_celsius,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            tolerance=tolerance,
+        )
+        study = _studies.point(
+            arguments,
+            simulation,
+            options,
+            speed_kilometres_per_hour=speed_kilometres_per_hour,
+            acceleration_metres_per_second_squared=acceleration_metres_per_second_squared,
+            ascent_angle_degrees=ascent_angle_degrees,
+            pinion_torque_newton_metres=pinion_torque_newton_metres,
+            pinion_speed_radians_per_second=pinion_speed_radians_per_second,
+        )
+        study.sensitivities = True
+        (found,) = await self._run(arguments, [simulation], options, "sensitivities")
+        columns, attrs = sensitivity_table(found)
+        return frame(columns, attrs)
 
     async def curve(
         self,
@@ -255,8 +309,15 @@ class Client:
         max_points: int = 0,
     ) -> Frame:
         name = full_name("simulations", simulation)
-        schema, values = await read_history(
-            self._transport, name, columns, start_row, row_count, max_points
+        request = pb.ReadHistoryRequest(
+            name=name,
+            columns=columns,
+            start_row=start_row,
+            row_count=row_count,
+            max_points=max_points,
+        )
+        schema, values = await read_columns(
+            self._transport, "SimulationService", "ReadHistory", request
         )
         attrs = {
             "simulation": name,
@@ -283,6 +344,74 @@ class Client:
         evaluation = Evaluation(self._transport, model_options or {})
         cells = await evaluation.run(rows, self._settings.progress)
         return _joined(table, given, cells, evaluation.attrs)
+
+    async def screen(
+        self,
+        table: Any,
+        lubricant: str,
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
+        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        speed_weights: Sequence[float] | None = None,
+        sump_weights: Sequence[float] | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        tolerance: float | None = None,
+        model_options: Mapping[str, Any] | None = None,
+        budget_points: int | None = None,
+        budget_processor_seconds: float | None = None,
+        display_name: str = "",
+        request_id: str | None = None,
+    ) -> AsyncCampaign:
+        _, rows = _rows(table, {}, lambda name: True)
+        return await start_campaign(
+            self._transport,
+            self._settings.progress,
+            rows,
+            base={
+                "lubricant": lubricant,
+                "gear_set": gear_set,
+                "surface": surface,
+                "vehicle": vehicle,
+            },
+            speeds=list(speeds_kilometres_per_hour),
+            sumps=list(sump_temperatures_celsius),
+            speed_weights=speed_weights,
+            sump_weights=sump_weights,
+            ascent_angle_degrees=ascent_angle_degrees,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            tolerance=tolerance,
+            model_options=model_options or {},
+            budget_points=budget_points,
+            budget_processor_seconds=budget_processor_seconds,
+            display_name=display_name,
+            request_id=request_id,
+        )
+
+    async def campaign(self, name: str) -> AsyncCampaign:
+        campaign = AsyncCampaign(
+            self._transport,
+            self._settings.progress,
+            Campaign(name=full_name("campaigns", name)),
+        )
+        await campaign.refresh()
+        return campaign
+
+    async def campaigns(self, limit: int | None = None) -> list[AsyncCampaign]:
+        found: list[Campaign] = []
+        request = ListCampaignsRequest(page_size=min(limit or 1000, 1000))
+        while True:
+            page = await self._transport.call("CampaignService", "ListCampaigns", request)
+            found += page.campaigns
+            request.page_token = page.next_page_token
+            if not request.page_token or (limit is not None and len(found) >= limit):
+                break
+        return [
+            AsyncCampaign(self._transport, self._settings.progress, each) for each in found[:limit]
+        ]
 
     async def _curves(
         self,

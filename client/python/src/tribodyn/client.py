@@ -6,15 +6,17 @@ import asyncio
 import atexit
 import threading
 from types import TracebackType
-from typing import Any, Coroutine, Generic, List, Mapping, Sequence, TypeVar
+from typing import Any, Coroutine, Generic, Iterator, List, Mapping, Sequence, TypeVar
 
 from google.protobuf.message import Message
 
 from tribodyn import aio
+from tribodyn._campaigns import AsyncCampaign
 from tribodyn._frames import Frame
 from tribodyn._resources import AsyncResources
 from tribodyn._studies import Options
 from tribodyn.units import Quantity
+from tribodyn.v1.campaigns_pb2 import Campaign as CampaignMessage
 from tribodyn.v1.gear_sets_pb2 import GearSet
 from tribodyn.v1.lubricants_pb2 import Lubricant
 from tribodyn.v1.schemas_pb2 import Schema
@@ -145,6 +147,101 @@ class Resources(Generic[R]):
         )
 
 
+class Campaign:
+    """A table of candidates that the server screens and keeps, whatever becomes of this program.
+
+    Row i * conditions + k of its tables is candidate i at condition k, counted from 0. A row has the
+    candidate's parameters and what rides along with them, the condition, the figures, and
+    ``status``: "OK", the reason why there are no figures, or "NOT_COMPUTED".
+    """
+
+    def __init__(self, campaign: AsyncCampaign) -> None:
+        self._campaign = campaign
+
+    @property
+    def name(self) -> str:
+        """Its name, e.g. "campaigns/12"."""
+        return self._campaign.name
+
+    @property
+    def state(self) -> str:
+        """The state when the server last answered: "running", "paused", "succeeded", "failed" or
+        "cancelled"."""
+        return self._campaign.state
+
+    @property
+    def message(self) -> CampaignMessage:
+        """The message as the server last answered it, e.g. ``message.points_done``."""
+        return self._campaign.message
+
+    def refresh(self) -> CampaignMessage:
+        """Asks the server for the present message, and returns it."""
+        return _LOOP.run(self._campaign.refresh())
+
+    def wait(self) -> None:
+        """Waits until the campaign has ended or is paused, with a progress bar; also over a restart
+        of the server. Raises TribodynError if it failed or was cancelled."""
+        _LOOP.run(self._campaign.wait())
+
+    def follow(self, columns: Sequence[str] = (), *, start_row: int = 0) -> Iterator[Frame]:
+        """Yields tables of the rows that are computed, in their order and without gaps, until the
+        campaign has ended or is paused. A program that was interrupted states as ``start_row`` the
+        number of rows that it has. Columns as of frame(). Raises as wait()."""
+        frames = self._campaign.follow(columns, start_row=start_row)
+
+        async def following() -> Frame:
+            return await frames.__anext__()
+
+        async def close() -> None:
+            await frames.aclose()
+
+        try:
+            while True:
+                try:
+                    found = _LOOP.run(following())
+                except StopAsyncIteration:
+                    return
+                yield found
+        finally:
+            _LOOP.run(close())
+
+    def frame(
+        self, columns: Sequence[str] = (), *, start_row: int = 0, row_count: int = 0
+    ) -> Frame:
+        """Returns rows as a table, finished or not; ``row_count`` 0: to the end. ``columns``: what
+        the candidates were created with, "candidate" and "condition" (numbers from 0), the fields of
+        conditions, figures, "status" and "status_message"; empty: all but the two numbers."""
+        return _LOOP.run(self._campaign.frame(columns, start_row=start_row, row_count=row_count))
+
+    def ranking(self) -> Frame:
+        """Returns a table of the candidates, one a row: by their mean inefficiency over the
+        conditions with their weights, the best first. Candidates without figures come last."""
+        return _LOOP.run(self._campaign.ranking())
+
+    def pause(self) -> None:
+        """Pauses it; what is computed is kept."""
+        _LOOP.run(self._campaign.pause())
+
+    def resume(
+        self, *, budget_points: int | None = None, budget_processor_seconds: float | None = None
+    ) -> None:
+        """Resumes it at its missing rows. Budgets count from its start and replace the present one;
+        0: no limit; None of both: the present one stays."""
+        _LOOP.run(
+            self._campaign.resume(
+                budget_points=budget_points, budget_processor_seconds=budget_processor_seconds
+            )
+        )
+
+    def cancel(self) -> None:
+        """Cancels it; what is computed is kept."""
+        _LOOP.run(self._campaign.cancel())
+
+    def delete(self) -> None:
+        """Removes it for good, with its figures; cancels it first if it has not ended."""
+        _LOOP.run(self._campaign.delete())
+
+
 class Client:
     """A server and a project. Safe for concurrent use; the constructor sends nothing.
 
@@ -260,6 +357,53 @@ class Client:
                 inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
                 tolerance=tolerance,
                 model=model,
+                options=options,
+            )
+        )
+
+    def sensitivities(
+        self,
+        lubricant: str,
+        *,
+        speed_kilometres_per_hour: Quantity | None = None,
+        acceleration_metres_per_second_squared: Quantity | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        pinion_torque_newton_metres: Quantity | None = None,
+        pinion_speed_radians_per_second: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        sump_temperature_celsius: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        tolerance: float | None = None,
+        options: Options = Options(),
+    ) -> Frame:
+        """Returns the derivatives of the figures of an operating point by every scalar parameter of
+        oil, surface, gear set and conditions, exact to rounding on the grid of the solution: a table
+        of one row a parameter, for loops of optimisation and budgets of uncertainty.
+
+        Arguments as of point(). Columns: ``parameter``, e.g. "lubricant.relaxation_time" or
+        "vehicle_speed"; ``unit`` (SI, temperatures in K); ``value``; for each figure
+        "derivative.FIGURE", the unit of the figure over that of the parameter, and
+        "elasticity.FIGURE", relative change over relative change. ``attrs``, besides those of
+        point(), holds ``figures``, the values of the figures by their names, e.g. "film_ratio.mean",
+        and ``one_sided``: the response is at the edge of an event, so that the derivatives hold on
+        one side. Costs 16 to 28 times the point. The table is empty where flanks part.
+        """
+        return _LOOP.run(
+            self._client.sensitivities(
+                lubricant,
+                speed_kilometres_per_hour=speed_kilometres_per_hour,
+                acceleration_metres_per_second_squared=acceleration_metres_per_second_squared,
+                ascent_angle_degrees=ascent_angle_degrees,
+                pinion_torque_newton_metres=pinion_torque_newton_metres,
+                pinion_speed_radians_per_second=pinion_speed_radians_per_second,
+                gear_set=gear_set,
+                surface=surface,
+                vehicle=vehicle,
+                sump_temperature_celsius=sump_temperature_celsius,
+                inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+                tolerance=tolerance,
                 options=options,
             )
         )
@@ -447,3 +591,71 @@ class Client:
         the revisions used.
         """
         return _LOOP.run(self._client.evaluate(table, model_options=model_options, **parameters))
+
+    def screen(
+        self,
+        table: Any,
+        lubricant: str,
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
+        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        speed_weights: Sequence[float] | None = None,
+        sump_weights: Sequence[float] | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        tolerance: float | None = None,
+        model_options: Mapping[str, Any] | None = None,
+        budget_points: int | None = None,
+        budget_processor_seconds: float | None = None,
+        display_name: str = "",
+        request_id: str | None = None,
+    ) -> Campaign:
+        """Screens candidates, one a row, at every speed and sump temperature, and returns the
+        campaign at once. The server computes and keeps it: up to 100,000 candidates and 20 million
+        points.
+
+        ``table`` is as of points(). A column "lubricant.FIELD" or "surface.FIELD" states what
+        candidates have in place of the parameter of ``lubricant`` or ``surface``, as of evaluate();
+        an empty cell leaves that. Other columns ride along, "name" among them; characters of their
+        names beyond letters, digits, "-", "_" and "." become "_". Weights, one for each speed and
+        sump temperature and above 0, are those of ranking(); None: equal.
+
+        The same call again finds its campaign by a request id that is a hash of all that decides its
+        figures, goes on if it is paused, and computes nothing twice; ``request_id`` states another
+        one. A budget pauses the campaign when it is spent. Raises if a parameter or condition is
+        outside its range, with all of them.
+        """
+        return Campaign(
+            _LOOP.run(
+                self._client.screen(
+                    table,
+                    lubricant,
+                    speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+                    sump_temperatures_celsius=sump_temperatures_celsius,
+                    speed_weights=speed_weights,
+                    sump_weights=sump_weights,
+                    ascent_angle_degrees=ascent_angle_degrees,
+                    inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+                    gear_set=gear_set,
+                    surface=surface,
+                    vehicle=vehicle,
+                    tolerance=tolerance,
+                    model_options=model_options,
+                    budget_points=budget_points,
+                    budget_processor_seconds=budget_processor_seconds,
+                    display_name=display_name,
+                    request_id=request_id,
+                )
+            )
+        )
+
+    def campaign(self, name: str) -> Campaign:
+        """Returns a campaign, e.g. "12" or "campaigns/12"."""
+        return Campaign(_LOOP.run(self._client.campaign(name)))
+
+    def campaigns(self, limit: int | None = None) -> List[Campaign]:
+        """Returns campaigns, newest first; at most ``limit``."""
+        return [Campaign(each) for each in _LOOP.run(self._client.campaigns(limit))]

@@ -1,4 +1,4 @@
-"""Streams of histories that break, from a scripted server."""
+"""Streams of columns that break, from a scripted server."""
 
 import asyncio
 from types import SimpleNamespace
@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import grpc
 import numpy as np
 
-from tribodyn._history import read_history
+from tribodyn._columns import read_columns
 from tribodyn.v1 import simulations_pb2 as pb
 
 ROWS = 10
@@ -50,7 +50,8 @@ class BreakingServer:
 
 
 def read(server):
-    return asyncio.run(read_history(server, "simulations/1", [], 0, 0, 0))
+    request = pb.ReadHistoryRequest(name="simulations/1")
+    return asyncio.run(read_columns(server, "SimulationService", "ReadHistory", request))
 
 
 def test_a_broken_stream_goes_on_at_the_first_row_that_a_column_misses():

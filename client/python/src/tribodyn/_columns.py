@@ -1,9 +1,9 @@
-"""Reads time histories, resumed after a broken connection."""
+"""Reads columns of histories and campaigns, resumed after a broken connection."""
 
 from __future__ import annotations
 
 import asyncio
-from typing import Sequence
+from typing import Any
 
 import grpc
 import numpy as np
@@ -15,16 +15,11 @@ from tribodyn.v1 import simulations_pb2 as pb
 _READ_RETRIES = 20  # about 40 s in all: long enough for a server that restarts
 
 
-async def read_history(
-    transport: Transport,
-    name: str,
-    columns: Sequence[str],
-    start_row: int,
-    row_count: int,
-    max_points: int,
+async def read_columns(
+    transport: Transport, service: str, method: str, request: Any
 ) -> tuple[pb.HistorySchema, list[np.ndarray]]:
-    """Returns the schema of a history, and its columns."""
-    request = pb.ReadHistoryRequest(name=name, columns=columns, max_points=max_points)
+    """Returns the schema of a stream of columns, and the columns."""
+    start_row, row_count = request.start_row, request.row_count
     schema: pb.HistorySchema | None = None
     parts: list[list[np.ndarray]] = []
     backoff, tries_left = Backoff(), _READ_RETRIES
@@ -40,7 +35,7 @@ async def read_history(
         if schema is not None and done == schema.row_count:
             break
         try:
-            async for answer in transport.stream("SimulationService", "ReadHistory", request):
+            async for answer in transport.stream(service, method, request):
                 backoff.reset()
                 if answer.HasField("schema"):
                     if schema is None:

@@ -1,0 +1,384 @@
+"""Campaigns: tables of candidates that the server screens and keeps."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import re
+from typing import Any, AsyncGenerator, Mapping, Sequence
+
+import numpy as np
+
+from tribodyn._columns import read_columns
+from tribodyn._evaluate import CONDITION, FIGURES, read_varied
+from tribodyn._frames import Frame, enum_word, frame
+from tribodyn._progress import Progress
+from tribodyn._studies import Arguments, full_name, set_switches
+from tribodyn._transport import Backoff, Transport
+from tribodyn.errors import TribodynError
+from tribodyn.units import Quantity
+from tribodyn.v1 import campaigns_pb2 as pb
+from tribodyn.v1 import lubricants_pb2, points_pb2, results_pb2, surfaces_pb2
+
+_SERVICE = "CampaignService"
+# Pauses between two looks at a campaign [s]: a small one ends after some milliseconds, and a large
+# one is not asked for more often than a person reads.
+_FIRST_LOOK, _LATEST_LOOK = 0.01, 0.5
+_FOLLOW_RETRIES = 20  # about 40 s in all: long enough for a server that drains and restarts
+_NOT_COMPUTED = -1  # in refusal_number
+_DEFAULTS = {"sump_temperature_celsius": 40.0, "inlet_temperature_rise_kelvin": 20.0}
+_STATUS = ("status", "status_message")
+_COLLECTIONS = {
+    "lubricant": "lubricants",
+    "gear_set": "gearSets",
+    "surface": "surfaces",
+    "vehicle": "vehicles",
+}
+_GETTERS = {
+    "lubricant": ("LubricantService", "GetLubricant", lubricants_pb2.GetLubricantRequest),
+    "surface": ("SurfaceService", "GetSurface", surfaces_pb2.GetSurfaceRequest),
+}
+
+
+class AsyncCampaign:
+    """A campaign of the server. As tribodyn.Campaign, with coroutines."""
+
+    def __init__(self, transport: Transport, progress_form: str, message: pb.Campaign) -> None:
+        self._transport = transport
+        self._progress_form = progress_form
+        self._details: pb.Campaign | None = None
+        self.message = message
+
+    @property
+    def name(self) -> str:
+        return self.message.name
+
+    @property
+    def state(self) -> str:
+        return pb.Campaign.State.Name(self.message.state).lower()
+
+    async def refresh(self) -> pb.Campaign:
+        self.message = await self._get(pb.CAMPAIGN_VIEW_BASIC)
+        return self.message
+
+    async def wait(self) -> None:
+        progress = Progress(self._progress_form, max(self.message.points, 1), self.name)
+        try:
+            async for message in self._looks():
+                progress.update("points", message.points_done)
+        finally:
+            progress.close()
+
+    async def follow(
+        self, columns: Sequence[str] = (), *, start_row: int = 0
+    ) -> AsyncGenerator[Frame, None]:
+        async for message in self._looks():
+            count = message.first_missing_row - start_row
+            if count > 0:
+                yield await self.frame(columns, start_row=start_row, row_count=count)
+                start_row += count
+
+    async def frame(
+        self, columns: Sequence[str] = (), *, start_row: int = 0, row_count: int = 0
+    ) -> Frame:
+        if self._details is None:
+            self._details = await self._get(pb.CAMPAIGN_VIEW_FULL)
+        own = _OwnColumns(self._details)
+        names = [columns] if isinstance(columns, str) else list(columns)
+        names = names or [*own.names(), *FIGURES, *_STATUS]
+        arguments = Arguments()
+        known = {*own.names(), *FIGURES, *_STATUS, "candidate", "condition"}
+        for name in names:
+            if name not in known:
+                arguments.wrong("columns", f"{name} is no column of {self.name}")
+        arguments.check()
+        stored = [name for name in names if name in FIGURES] + ["refusal_number"]
+        schema, values = await read_columns(
+            self._transport,
+            _SERVICE,
+            "ReadCampaign",
+            pb.ReadCampaignRequest(
+                name=self.name, columns=stored, start_row=start_row, row_count=row_count
+            ),
+        )
+        read = dict(zip(stored, values))
+        cells = {name: _tight(name, each) for name, each in read.items()}
+        if any(name in _STATUS for name in names):
+            cells |= await self._status(read["refusal_number"].astype(int))
+        rows = np.arange(schema.start_row, schema.start_row + schema.row_count)
+        out = {name: cells[name] if name in cells else own.column(name, rows) for name in names}
+        return frame(out, {**self._attrs(), "start_row": schema.start_row})
+
+    async def ranking(self) -> Frame:
+        figures = ["inefficiency_energy_mean_percent", "mesh_loss_power_watts"]
+        points = await self.frame([*figures, *_STATUS])
+        assert self._details is not None
+        own = _OwnColumns(self._details)
+        shape = (self.message.candidates, len(self._details.conditions))
+        weights = np.array(self._details.condition_weights or [1.0] * shape[1])
+        weights /= weights.sum()
+        candidates = np.arange(shape[0]) * shape[1]
+        first_bad = (np.asarray(points["status"]).reshape(shape) != "OK").argmax(axis=1)
+        out = {name: own.column(name, candidates) for name in own.of_candidates()}
+        out["candidate"] = np.arange(shape[0])
+        for name in figures:
+            out[name] = np.asarray(points[name]).reshape(shape) @ weights
+        for name in _STATUS:
+            out[name] = np.asarray(points[name])[candidates + first_bad]
+        # NaN last, and equal ones in the order of the table.
+        order = np.argsort(out[figures[0]], kind="stable")
+        return frame({name: each[order] for name, each in out.items()}, self._attrs())
+
+    async def pause(self) -> None:
+        await self._change("PauseCampaign", pb.PauseCampaignRequest(name=self.name))
+
+    async def resume(
+        self,
+        *,
+        budget_points: int | None = None,
+        budget_processor_seconds: float | None = None,
+    ) -> None:
+        request = pb.ResumeCampaignRequest(name=self.name)
+        if budget_points is not None or budget_processor_seconds is not None:
+            request.budget.points = budget_points or 0
+            request.budget.processor_seconds = budget_processor_seconds or 0.0
+        await self._change("ResumeCampaign", request)
+
+    async def cancel(self) -> None:
+        await self._change("CancelCampaign", pb.CancelCampaignRequest(name=self.name))
+
+    async def delete(self) -> None:
+        request = pb.DeleteCampaignRequest(name=self.name, cancel=True, allow_missing=True)
+        await self._transport.call(_SERVICE, "DeleteCampaign", request)
+
+    def _attrs(self) -> dict[str, Any]:
+        message = self.message
+        return {
+            "campaign": message.name,
+            "total_rows": message.points,
+            "lubricant": message.lubricant_revision,
+            "gear_set": message.gear_set_revision,
+            "surface": message.surface_revision,
+            "vehicle": message.vehicle_revision,
+            "input_hash": message.input_hash,
+            "model_version": message.model_version,
+        }
+
+    async def _get(self, view: Any) -> pb.Campaign:
+        request = pb.GetCampaignRequest(name=self.name, view=view)
+        return await self._transport.call(_SERVICE, "GetCampaign", request)
+
+    async def _change(self, method: str, request: Any) -> None:
+        self.message = await self._transport.call(_SERVICE, method, request)
+
+    async def _looks(self) -> AsyncGenerator[pb.Campaign, None]:
+        """Yields the campaign again and again until it is not RUNNING. Waits for a server that is
+        lost, for a limited time. Raises if the campaign failed or was cancelled."""
+        pause, tries_left, backoff = _FIRST_LOOK, _FOLLOW_RETRIES, Backoff()
+        while True:
+            try:
+                message = await self.refresh()
+            except TribodynError as error:
+                tries_left -= 1
+                if error.reason != "CANNOT_CONNECT" or tries_left == 0:
+                    raise
+                await asyncio.sleep(backoff.next(0.25))
+                continue
+            tries_left = _FOLLOW_RETRIES
+            backoff.reset()
+            yield message
+            if message.state != pb.Campaign.RUNNING:
+                break
+            await asyncio.sleep(pause)
+            pause = min(1.25 * pause, _LATEST_LOOK)
+        if message.state == pb.Campaign.CANCELLED:
+            raise TribodynError(f"{self.name} was cancelled", reason="CANCELLED")
+        if message.state == pb.Campaign.FAILED:
+            raise TribodynError(
+                f"{self.name} failed: {message.stop.message}", reason=message.stop.reason
+            )
+
+    async def _status(self, numbers: np.ndarray) -> dict[str, np.ndarray]:
+        if numbers.max(initial=0) > len(self.message.refusals):
+            await self.refresh()
+        reasons = ["OK", *(each.reason for each in self.message.refusals), "NOT_COMPUTED"]
+        messages = ["", *(each.message for each in self.message.refusals), "not computed yet"]
+        assert _NOT_COMPUTED == -1  # the last one
+        return {
+            "status": np.array(reasons, dtype=object)[numbers],
+            "status_message": np.array(messages, dtype=object)[numbers],
+        }
+
+
+class _OwnColumns:
+    """Columns that a campaign was created with."""
+
+    def __init__(self, campaign: pb.Campaign) -> None:
+        self._conditions = campaign.conditions
+        self._of_candidates: dict[str, np.ndarray] = {}
+        for each in campaign.candidate_attributes:
+            values = np.array(each.texts, dtype=object) if each.texts else np.array(each.values)
+            self._of_candidates[each.name] = values
+        for column in campaign.candidate_columns:
+            self._of_candidates[column.path] = np.array(column.values)
+
+    def of_candidates(self) -> list[str]:
+        return list(self._of_candidates)
+
+    def names(self) -> list[str]:
+        return [*self._of_candidates, *CONDITION]
+
+    def column(self, name: str, rows: np.ndarray) -> np.ndarray:
+        """Returns the values of a column in some rows."""
+        candidates, conditions = np.divmod(rows, len(self._conditions))
+        if name == "candidate":
+            return candidates
+        if name == "condition":
+            return conditions
+        if name in self._of_candidates:
+            return self._of_candidates[name][candidates]
+        default = _DEFAULTS.get(name)
+        values = [
+            default if default is not None and not each.HasField(name) else getattr(each, name)
+            for each in self._conditions
+        ]
+        return np.array(values)[conditions]
+
+
+def _tight(name: str, values: np.ndarray) -> np.ndarray:
+    """Returns words for models, and whole numbers and truth values where no row lacks them."""
+    if name == "model":
+        kind = results_pb2.PointModel.DESCRIPTOR
+        words = [enum_word(kind, number) for number in range(len(kind.values))]
+        return np.array(words, dtype=object)[np.nan_to_num(values).astype(int)]
+    if np.isnan(values).any():
+        return values
+    if name in ("contact_loss", "settled"):
+        return values.astype(bool)
+    return values.astype(int) if name == "period_in_mesh_cycles" else values
+
+
+async def start_campaign(
+    transport: Transport,
+    progress_form: str,
+    rows: Sequence[Mapping[str, Any]],
+    *,
+    base: Mapping[str, str | None],
+    speeds: Sequence[Quantity],
+    sumps: Sequence[Quantity],
+    speed_weights: Sequence[float] | None,
+    sump_weights: Sequence[float] | None,
+    ascent_angle_degrees: Quantity | None,
+    inlet_temperature_rise_kelvin: Quantity | None,
+    tolerance: float | None,
+    model_options: Mapping[str, Any],
+    budget_points: int | None,
+    budget_processor_seconds: float | None,
+    display_name: str,
+    request_id: str | None,
+) -> AsyncCampaign:
+    """Creates a campaign, or finds the one that an equal call made, and resumes it if it is
+    paused."""
+    arguments = Arguments()
+    campaign = pb.Campaign(display_name=display_name, tolerance=tolerance or 0.0)
+    set_switches(arguments, "model_options", model_options, campaign.model_options)
+    for sump in sumps:
+        for speed in speeds:
+            condition = campaign.conditions.add()
+            stated = (speed, ascent_angle_degrees, sump, inlet_temperature_rise_kelvin)
+            for name, value in zip(CONDITION, stated):
+                if value is not None:
+                    setattr(condition, name, arguments.number(name, value))
+    _set_weights(arguments, campaign, (speeds, speed_weights), (sumps, sump_weights))
+    candidates = [read_varied(arguments, row) for row in rows]
+    arguments.check()
+    # Names become revisions, so that a later call after a change of one is another campaign.
+    model_version = await _pin(transport, campaign, base)
+    await _add_candidates(transport, campaign, candidates)
+    _add_attributes(campaign, rows)
+    if request_id is None:
+        inputs = campaign.SerializeToString(deterministic=True) + model_version.encode()
+        request_id = "screen-" + hashlib.sha256(inputs).hexdigest()[:32]
+    request = pb.CreateCampaignRequest(campaign=campaign, request_id=request_id)
+    out = AsyncCampaign(
+        transport,
+        progress_form,
+        await transport.call(_SERVICE, "CreateCampaign", request, patient=True),
+    )
+    has_budget = budget_points is not None or budget_processor_seconds is not None
+    if out.state == "paused" or (out.state == "running" and has_budget):
+        try:
+            await out.resume(
+                budget_points=budget_points or 0,
+                budget_processor_seconds=budget_processor_seconds or 0.0,
+            )
+        except TribodynError as error:
+            if error.reason != "ENDED":  # since it was created
+                raise
+            await out.refresh()
+    return out
+
+
+def _set_weights(
+    arguments: Arguments,
+    campaign: pb.Campaign,
+    *axes: tuple[Sequence[Quantity], Sequence[float] | None],
+) -> None:
+    (speeds, of_speeds), (sumps, of_sumps) = axes
+    for name, values, weights in (
+        ("speed_weights", speeds, of_speeds),
+        ("sump_weights", sumps, of_sumps),
+    ):
+        if weights is not None and len(weights) != len(values):
+            arguments.wrong(name, f"{len(weights)} weights of {len(values)} values")
+            return
+    if of_speeds is not None or of_sumps is not None:
+        of_speeds = [1.0] * len(speeds) if of_speeds is None else of_speeds
+        of_sumps = [1.0] * len(sumps) if of_sumps is None else of_sumps
+        campaign.condition_weights.extend(float(a) * float(b) for a in of_sumps for b in of_speeds)
+
+
+async def _pin(transport: Transport, campaign: pb.Campaign, base: Mapping[str, str | None]) -> str:
+    """Sets the revisions of the base, and returns the version of the model."""
+    request = points_pb2.EvaluatePointsRequest(
+        model_options=campaign.model_options,
+        tolerance=campaign.tolerance,
+        conditions=campaign.conditions[:1],
+    )
+    for kind, collection in _COLLECTIONS.items():
+        name = base[kind]
+        if name:
+            setattr(request, kind, full_name(collection, name))
+    answer = await transport.call("PointService", "EvaluatePoints", request, patient=True)
+    for kind in _COLLECTIONS:
+        setattr(campaign, kind, getattr(answer, kind + "_revision"))
+    return answer.model_version
+
+
+async def _add_candidates(
+    transport: Transport, campaign: pb.Campaign, candidates: Sequence[Mapping[str, float]]
+) -> None:
+    """Adds a column for each parameter; a candidate that states none has that of the base."""
+    for path in dict.fromkeys(path for each in candidates for path in each):
+        values = [each.get(path) for each in candidates]
+        if None in values:
+            owner, _, field = path.partition(".")
+            service, method, kind = _GETTERS[owner]
+            resource = await transport.call(service, method, kind(name=getattr(campaign, owner)))
+            usual = getattr(resource, field)
+            values = [usual if each is None else each for each in values]
+        campaign.candidate_columns.add(path=path, values=values)
+
+
+def _add_attributes(campaign: pb.Campaign, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Adds the columns of the table that are no parameters."""
+    columns = dict.fromkeys(name for row in rows for name in row)
+    for name in columns:
+        if name.partition(".")[0] in _GETTERS and "." in name:
+            continue
+        attribute = campaign.candidate_attributes.add(name=re.sub(r"[^A-Za-z0-9._-]", "_", name))
+        values = [row.get(name) for row in rows]
+        if all(isinstance(each, (int, float)) and np.isfinite(each) for each in values):
+            attribute.values.extend(float(each) for each in values if each is not None)
+        else:
+            attribute.texts.extend("" if each is None else str(each) for each in values)

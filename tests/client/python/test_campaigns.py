@@ -1,0 +1,179 @@
+import asyncio
+import json
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pandas
+import pytest
+
+import tribodyn
+from test_connection import InThread, wait_until
+from tribodyn import aio
+
+FLUID = "paper-fluid-1"
+
+
+def variants(count):
+    return pandas.DataFrame(
+        {
+            "name": [f"v{i}" for i in range(count)],
+            "treat rate": np.linspace(0, 2, count),
+            "lubricant.relaxation_time": [f"{100 + i} ns" for i in range(count)],
+            "surface.asperity_friction_coefficient": [0.1] * (count - 1) + [np.nan],
+        }
+    )
+
+
+def test_a_campaign_is_a_table_of_candidates_at_conditions(client):
+    campaign = client.screen(
+        variants(40),
+        FLUID,
+        speeds_kilometres_per_hour=[40, "20 m/s"],
+        sump_temperatures_celsius=[90],
+        speed_weights=[3, 1],
+        display_name="variants",
+    )
+    campaign.wait()
+    assert campaign.state == "succeeded" and campaign.message.display_name == "variants"
+    points = campaign.frame()
+    assert list(points["name"][:4]) == ["v0", "v0", "v1", "v1"]
+    assert list(points["speed_kilometres_per_hour"][:3]) == [40, 72, 40]
+    assert set(points["status"]) == {"OK"} and set(points["model"]) == {"full"}
+    assert set(points["inlet_temperature_rise_kelvin"]) == {20}
+    assert points["treat_rate"].iloc[-1] == 2 and points["settled"].dtype == bool
+    usual = client.surfaces.get("run-in").asperity_friction_coefficient
+    assert points["surface.asperity_friction_coefficient"].iloc[-1] == usual
+    one = client.evaluate(
+        {"speed_kilometres_per_hour": [40, 72]},
+        lubricant=FLUID,
+        sump_temperature_celsius=90,
+        **{"lubricant.relaxation_time": "107 ns", "surface.asperity_friction_coefficient": 0.1},
+    )
+    losses = points["mesh_loss_power_watts"]
+    assert list(losses[14:16]) == pytest.approx(list(one["mesh_loss_power_watts"]), rel=2e-3)
+    part = campaign.frame(["candidate", "mesh_loss_power_watts"], start_row=5, row_count=3)
+    assert list(part["candidate"]) == [2, 3, 3] and part.attrs["start_row"] == 5
+    assert list(part["mesh_loss_power_watts"]) == list(losses[5:8])
+    ranking = campaign.ranking()
+    means = ranking["inefficiency_energy_mean_percent"]
+    assert len(ranking) == 40 and (np.diff(means) >= 0).all()
+    best = points[points["name"] == ranking["name"][0]]["inefficiency_energy_mean_percent"]
+    assert means[0] == pytest.approx(0.75 * best.iloc[0] + 0.25 * best.iloc[1], rel=1e-12)
+    with pytest.raises(tribodyn.TribodynError, match="mesh_loss is no column"):
+        campaign.frame(["mesh_loss"])
+
+
+def test_the_same_call_again_finds_its_campaign(client):
+    first = client.screen(variants(3), FLUID)
+    again = client.screen(variants(3), FLUID, budget_points=0)
+    other = client.screen(variants(3), FLUID, sump_temperatures_celsius=[41])
+    assert first.name == again.name != other.name
+    assert client.campaign(first.name).message.request_id.startswith("screen-")
+    names = [each.name for each in client.campaigns(limit=2)]
+    assert names == [other.name, first.name]
+    for each in (first, other):
+        each.delete()
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.campaign(first.name)
+    assert caught.value.reason == "NOT_FOUND"
+
+
+def test_what_is_wrong_with_a_screening_is_reported_together(client):
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.screen(
+            {"lubricant.relaxation_time": ["3 m", "400 ns"], "surface.nothing": [1, 2]},
+            FLUID,
+            speeds_kilometres_per_hour=["fast"],
+            sump_weights=[1, 2],
+        )
+    assert len(caught.value.violations) == 5
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.screen({"surface.asperity_friction_coefficient": [0.1, 50]}, FLUID)
+    assert "values[1]" in caught.value.violations[0].field
+
+
+def test_rows_are_followed_over_a_pause_and_the_death_of_the_server(new_server):
+    server = new_server("--threads", "1")
+    client = tribodyn.Client(server.address)
+    speeds = range(20, 100)
+    campaign = client.screen(
+        variants(500), FLUID, speeds_kilometres_per_hour=speeds, budget_points=200
+    )
+    campaign.wait()
+    assert campaign.state == "paused" and campaign.message.stop.reason == "BUDGET_SPENT"
+    assert "NOT_COMPUTED" in set(campaign.frame(["status"])["status"])
+    campaign.resume(budget_points=0)
+    campaign.pause()
+    assert campaign.state == "paused"
+    # The same call goes on.
+    again = client.screen(variants(500), FLUID, speeds_kilometres_per_hour=speeds)
+    assert again.name == campaign.name and again.state == "running"
+    rows = []
+
+    def follow():
+        for part in again.follow(["candidate", "mesh_loss_power_watts"]):
+            rows.append(part)
+
+    following = InThread(follow)
+    wait_until(lambda: rows)
+    server.kill()
+    time.sleep(0.3)
+    server.start()
+    following.result()
+    assert again.state == "succeeded"
+    assert sum(map(len, rows)) == 40000
+    assert not np.isnan(pandas.concat(rows)["mesh_loss_power_watts"]).any()
+    assert [each.attrs["start_row"] for each in rows[1:]] == list(
+        np.cumsum([len(each) for each in rows])[:-1]
+    )
+    late = list(again.follow(["candidate"], start_row=39990))
+    assert [len(each) for each in late] == [10]
+
+
+def test_a_cancelled_campaign_is_an_error_with_that_reason(client):
+    campaign = client.screen(variants(3000), FLUID, speeds_kilometres_per_hour=range(20, 140))
+    campaign.cancel()
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        campaign.wait()
+    assert caught.value.reason == "CANCELLED" and len(campaign.frame(["status"])) == 360000
+    campaign.delete()
+
+
+def test_coroutines_screen_together(server):
+    async def run():
+        async with aio.Client(server.address) as client:
+            campaigns = await asyncio.gather(
+                client.screen(variants(10), FLUID, speeds_kilometres_per_hour=[33]),
+                client.screen(variants(10), FLUID, speeds_kilometres_per_hour=[34]),
+            )
+            await asyncio.gather(*(each.wait() for each in campaigns))
+            rows = [len(part) async for part in campaigns[0].follow()]
+            return [each.state for each in campaigns], rows, await campaigns[1].ranking()
+
+    states, rows, ranking = asyncio.run(run())
+    assert states == ["succeeded"] * 2 and rows == [10] and len(ranking) == 10
+
+
+def test_campaigns_are_structured_arrays_without_pandas(server):
+    code = """
+import sys
+sys.modules["pandas"] = sys.modules["tqdm"] = sys.modules["tqdm.auto"] = None
+import json, tribodyn
+campaign = tribodyn.Client().screen({"lubricant.relaxation_time": ["1 ns", "2 ns"],
+                                     "additive": ["x", "y"]}, "paper-fluid-1")
+campaign.wait()
+table = campaign.frame()
+print(json.dumps([type(table).__name__, list(table["additive"]), list(table["status"]),
+                  len(campaign.ranking())]))
+"""
+    found = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "TRIBODYN_SERVER": server.address},
+    )
+    assert json.loads(found.stdout) == ["Table", ["x", "y"], ["OK", "OK"], 2]
