@@ -551,10 +551,9 @@ Command screen_command() {
       "side "
       "the same command goes on where it ended, and once it is complete reads the figures.",
       {"tribodyn screen candidates.csv --like my-oil --speeds 20,40,60 --sumps 40,90",
-       "tribodyn screen candidates.csv --like my-oil --speeds 20,60,100 --weights 1,2,1 --csv "
-       "points.csv",
-       "tribodyn screen candidates.csv --like my-oil --uncertainty pressure-viscosity=3% --pareto "
-       "cost --effects --plot screening.svg",
+       "tribodyn screen candidates.csv --like my-oil --speeds 20,60 --weights 1,2 --csv all.csv",
+       "tribodyn screen oils.csv --like my-oil --uncertainty pressure-viscosity=3% --pareto cost",
+       "tribodyn screen oils.csv --like my-oil --effects --plot screening.svg",
        "tribodyn screen candidates.csv --like my-oil --output csv",
        "tribodyn screen --campaign 12 --weights 2,1,1"},
       {},
