@@ -450,7 +450,12 @@ PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condi
     }
     if (found) return figures_of(system, found->orbit, found->estimated_error, target);
   }
-  const PointResult r = solve_prepared_point(prepared, condition, plain);
+  return main_figures(solve_prepared_point(prepared, condition, plain));
+}
+
+}  // namespace
+
+PointFigures main_figures(const PointResult& r) {
   return {r.pinion_torque,
           r.wheel_torque,
           r.inefficiency_rms,
@@ -465,8 +470,6 @@ PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condi
           r.statistics.contact_solutions,
           r.model};
 }
-
-}  // namespace
 
 PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,
                                  const PointOptions& options) {

@@ -235,6 +235,9 @@ struct PointFigures {
   PointModel model = PointModel::kFull;  ///< used
 };
 
+/// The main figures of a result.
+PointFigures main_figures(const PointResult& result);
+
 /// As solve_prepared_point from PointOptions::start, to within the tolerance, but faster. Histories
 /// and coexisting responses are not looked for; the start is never carried. Throws as
 /// solve_prepared_point does.

@@ -8,12 +8,14 @@
 #include "server/application/errors.h"
 #include "server/application/list_filter.h"
 #include "server/contract/constraints.h"
+#include "server/contract/contract_comments.h"
 #include "server/mapping/history_columns.h"
 #include "server/resources/imports/import_gear_set.h"
 #include "server/resources/imports/import_lubricant.h"
 #include "server/resources/imports/import_surface.h"
 #include "server/resources/provenance.h"
 #include "server/storage/resource_types.h"
+#include "tribodyn/v1/results.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
 
 namespace tribodyn::server {
@@ -71,6 +73,32 @@ void add_vocabularies(v1::Schema& out) {
   }
 }
 
+void add_column(const std::string& table, const std::string& name, const std::string& description,
+                v1::Schema& out) {
+  v1::ColumnDescription* added = out.add_columns();
+  added->set_table(table);
+  added->set_name(name);
+  added->set_unit(std::string(history_column_unit(name)));
+  added->set_description(description);
+}
+
+/// Adds the figures of a point, with the comments of the contract, and the columns of histories.
+void add_columns(v1::Schema& out) {
+  static const ContractComments kComments;
+  const auto& point = *v1::PointResult::descriptor();
+  for (int i = 0; i < point.field_count(); ++i) {
+    const auto* field = point.field(i);
+    const bool is_extremes = field->message_type() == v1::Extremes::descriptor();
+    if (field->is_repeated() || (field->message_type() != nullptr && !is_extremes)) continue;
+    add_column(point.name(), field->name(), kComments.of(field->full_name()), out);
+  }
+  for (int i = 0; i < kHistoryColumns; ++i) {
+    const auto column = static_cast<HistoryColumn>(i);
+    add_column("history.columns", std::string(history_column_name(column)),
+               std::string(history_column_description(column)), out);
+  }
+}
+
 std::vector<std::string> known_messages() {
   std::vector<std::string> out;
   for (const Constraint& row : constraints()) {
@@ -93,7 +121,10 @@ Outcome<v1::Schema> get_schema(Application&, const v1::GetSchemaRequest& request
         {{"message", fmt::format("\"{}\" has no constraints{}", plain_excerpt(request.message()),
                                  meant_text(request.message(), known_messages()))}});
   }
-  if (request.message().empty()) add_vocabularies(out);
+  if (request.message().empty()) {
+    add_vocabularies(out);
+    add_columns(out);
+  }
   return out;
 }
 

@@ -19,6 +19,62 @@ std::vector<std::string> history_column_names() {
   return names;
 }
 
+std::string_view history_column_description(HistoryColumn column) {
+  switch (column) {
+    case HistoryColumn::kTime:
+      return "time from the first row";
+    case HistoryColumn::kMeshPhase:
+      return "mesh cycles from the first row";
+    case HistoryColumn::kPinionShaftSpeed:
+      return "speed of the pinion shaft";
+    case HistoryColumn::kPinionSpeed:
+      return "speed of the pinion";
+    case HistoryColumn::kGearSpeed:
+      return "speed of the gear";
+    case HistoryColumn::kWheelSpeed:
+      return "speed of the wheel";
+    case HistoryColumn::kDynamicTransmissionError:
+      return "dynamic transmission error, eq 6";
+    case HistoryColumn::kDynamicTransmissionErrorVelocity:
+      return "rate of the dynamic transmission error";
+    case HistoryColumn::kMeshForce:
+      return "force of the mesh, spring and damper";
+    case HistoryColumn::kPinionShaftTorque:
+      return "torque in the shaft of the pinion, spring and damper";
+    case HistoryColumn::kGearShaftTorque:
+      return "torque in the shaft of the gear, spring and damper";
+    case HistoryColumn::kPinionFrictionTorque:
+      return "torque of the flanks' friction on the pinion, eq 29";
+    case HistoryColumn::kGearFrictionTorque:
+      return "torque of the flanks' friction on the gear, eq 29";
+    case HistoryColumn::kMeshLossPower:
+      return "loss power of the mesh: friction times sliding speed over all flanks";
+    case HistoryColumn::kInefficiency:
+      return "loss power over the power that comes in, eq 30, at this instant";
+    case HistoryColumn::kFlankLoad:
+      return "normal load of the flank";
+    case HistoryColumn::kFlankFriction:
+      return "friction of the flank, viscous and boundary";
+    case HistoryColumn::kFlankViscousFriction:
+      return "viscous friction F_v of the flank";
+    case HistoryColumn::kFlankBoundaryFriction:
+      return "boundary friction F_b of the flank, eq 40";
+    case HistoryColumn::kFlankFilmThickness:
+      return "central film thickness of the flank, eq 12";
+    case HistoryColumn::kFlankFilmRatio:
+      return "film ratio lambda_s of the flank: film thickness over roughness";
+    case HistoryColumn::kFlankContactTemperature:
+      return "mean temperature T_c of the film of the flank, eq 38";
+    case HistoryColumn::kFlankMaximumPressure:
+      return "largest pressure of the flank, eq 19";
+    case HistoryColumn::kFlankShearRate:
+      return "shear rate of the film of the flank, eq 18";
+    case HistoryColumn::kFlankSlidingSpeed:
+      return "sliding speed V_s of the flank";
+  }
+  return "";
+}
+
 std::string_view history_column_unit(std::string_view name) {
   struct Unit {
     std::string_view suffix;
@@ -35,6 +91,9 @@ std::string_view history_column_unit(std::string_view name) {
       {"_newtons", "N"},
       {"_watts", "W"},
       {"_percent", "%"},
+      {"_hertz", "Hz"},
+      {"_joules", "J"},
+      {"_kilometres_per_hour", "km/h"},
       {"_kelvin", "K"},
       {"_pascals", "Pa"},
   };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -21,10 +22,21 @@
 namespace tribodyn::server {
 namespace {
 
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kSeed = 1;  // any: equal requests give equal answers
 
 /// The figures of a point that a comparison speaks of.
-enum Figure { kEnergyMean, kRms, kLossPower, kPinionTorque, kFigures };
+enum Figure {
+  kEnergyMean,
+  kRms,
+  kLossPower,
+  kPinionTorque,
+  kDteMinimum,
+  kDteMaximum,
+  kFilmRatio,           // NaN unless contact figures are asked for
+  kContactTemperature,  // likewise
+  kFigures
+};
 struct ComparedFigures {
   std::array<double, kFigures> value;
   std::array<double, kFigures> solver_error;  // in the unit of the figure
@@ -62,13 +74,20 @@ std::optional<ComparedFigures> figures_of(const EvaluatedPoint& point) {
     return std::nullopt;
   }
   const PointFigures& f = *point.figures;
-  ComparedFigures out{
-      {*f.inefficiency_energy_mean, *f.inefficiency_rms, f.mesh_loss_power, f.pinion_torque},
-      {},
-      f.contact_loss};
-  for (int i = 0; i < kFigures; ++i) {
-    out.solver_error[i] = f.estimated_relative_error.value_or(0) * std::abs(out.value[i]);
+  ComparedFigures out{{*f.inefficiency_energy_mean, *f.inefficiency_rms, f.mesh_loss_power,
+                       f.pinion_torque, f.dte_minimum, f.dte_maximum, kNoNumber, kNoNumber},
+                      {},
+                      f.contact_loss};
+  if (point.contact) {
+    out.value[kFilmRatio] = point.contact->film_ratio_minimum;
+    out.value[kContactTemperature] = point.contact->contact_temperature_maximum;
   }
+  const double relative_error = f.estimated_relative_error.value_or(0);
+  for (int i = 0; i < kFigures; ++i) out.solver_error[i] = relative_error * std::abs(out.value[i]);
+  // The estimate is relative to the largest transmission error, and there is none of the contact.
+  out.solver_error[kDteMinimum] = out.solver_error[kDteMaximum] =
+      relative_error * std::max(std::abs(f.dte_minimum), std::abs(f.dte_maximum));
+  out.solver_error[kFilmRatio] = out.solver_error[kContactTemperature] = kNoNumber;
   return out;
 }
 
@@ -324,6 +343,15 @@ v1::ComparedPoint point_message(const ComputedFluid& fluid, std::size_t conditio
   *out.mutable_inefficiency_rms_percent() = figure_message(fluid, condition, kRms);
   *out.mutable_mesh_loss_power_watts() = figure_message(fluid, condition, kLossPower);
   *out.mutable_pinion_torque_newton_metres() = figure_message(fluid, condition, kPinionTorque);
+  *out.mutable_dynamic_transmission_error_minimum_metres() =
+      figure_message(fluid, condition, kDteMinimum);
+  *out.mutable_dynamic_transmission_error_maximum_metres() =
+      figure_message(fluid, condition, kDteMaximum);
+  if (fluid.points[condition].contact) {
+    *out.mutable_film_ratio_minimum() = figure_message(fluid, condition, kFilmRatio);
+    *out.mutable_contact_temperature_maximum_kelvin() =
+        figure_message(fluid, condition, kContactTemperature);
+  }
   out.set_contact_loss(fluid.stated[condition]->contact_loss);
   for (const FiguresByCondition& draw : fluid.drawn) {
     if (!draw[condition]) out.set_refused_draws(out.refused_draws() + 1);
@@ -361,6 +389,7 @@ v1::EvaluatePointsRequest points_of(const v1::ComparePointsRequest& request,
   out.set_gear_set(request.gear_set());
   out.set_surface(request.surface());
   out.set_vehicle(request.vehicle());
+  out.set_sheared_lubricant(request.sheared_lubricant());
   if (request.has_model_options()) *out.mutable_model_options() = request.model_options();
   out.set_tolerance(request.tolerance());
   *out.mutable_conditions() = request.conditions();
@@ -412,9 +441,12 @@ std::optional<PointComparison> read_comparison(const v1::ComparePointsRequest& r
       if (is_about_lubricant) {
         each.field = fmt::format("lubricants[{}]{}", i, each.field.substr(9));
       }
-      if (i == 0 || is_about_lubricant) violations.push_back(std::move(each));
+      if (i == 0 || is_about_lubricant || each.field == "sheared_lubricant") {
+        violations.push_back(std::move(each));
+      }
     }
     if (!evaluation) continue;
+    evaluation->with_contact = request.contact_figures();
     InputErrors errors = lubricant_errors(*evaluation->base.lubricant);
     out.fluids.push_back({std::move(*evaluation), std::move(errors)});
   }

@@ -115,6 +115,7 @@ v1::Simulation simulation_of(const v1::EvaluatePointsRequest& request,
   out.set_gear_set(request.gear_set());
   out.set_surface(request.surface());
   out.set_vehicle(request.vehicle());
+  out.set_sheared_lubricant(request.sheared_lubricant());
   if (request.has_model_options()) *out.mutable_model_options() = request.model_options();
   out.mutable_solver_options()->set_tolerance(request.tolerance());
   out.set_sump_temperature_celsius(sump_temperature(condition));
@@ -208,7 +209,7 @@ bool is_finite(const PointFigures& figures) {
 }
 
 /// Computes the points of a scene at one group of conditions.
-void compute_group(const Scene& scene, const PointEvaluation::Group& group,
+void compute_group(const Scene& scene, const PointEvaluation::Group& group, bool with_contact,
                    const PointOptions& options, const std::shared_ptr<PreparedGearSet>& gear_set,
                    std::vector<EvaluatedPoint>& out) {
   const auto at = [&out](int position) -> EvaluatedPoint& {
@@ -219,19 +220,26 @@ void compute_group(const Scene& scene, const PointEvaluation::Group& group,
     prepared.emplace(scene, gear_set);
   } catch (const Refusal& refusal) {
     for (const auto& [position, condition] : group.conditions) {
-      at(position) = {std::nullopt, refusal.reason(), refusal.what()};
+      at(position) = {std::nullopt, {}, refusal.reason(), refusal.what()};
     }
     return;
   }
   for (const auto& [position, condition] : group.conditions) {
     if (!options.progress(0)) throw Cancelled();
     try {
-      at(position).figures = screen_point(*prepared, condition, options);
+      if (with_contact) {
+        const PointResult result = solve_prepared_point(*prepared, condition, options);
+        at(position).figures = main_figures(result);
+        at(position).contact = {result.film_ratio.minimum, result.contact_temperature.maximum};
+      } else {
+        at(position).figures = screen_point(*prepared, condition, options);
+      }
       if (!is_finite(*at(position).figures)) {
-        at(position) = {std::nullopt, "RESULT_NOT_FINITE", "a figure of the point is not finite"};
+        at(position) = {
+            std::nullopt, {}, "RESULT_NOT_FINITE", "a figure of the point is not finite"};
       }
     } catch (const Refusal& refusal) {
-      at(position) = {std::nullopt, refusal.reason(), refusal.what()};
+      at(position) = {std::nullopt, {}, refusal.reason(), refusal.what()};
     }
   }
 }
@@ -277,8 +285,9 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
   return out;
 }
 
-void evaluate_group(const PointEvaluation::Group& group, const v1::Lubricant& lubricant,
-                    Scene& physical, const TemperatureErrors& errors, const PointOptions& options,
+void evaluate_group(const PointEvaluation::Group& group, bool with_contact,
+                    const v1::Lubricant& lubricant, Scene& physical,
+                    const TemperatureErrors& errors, const PointOptions& options,
                     const std::shared_ptr<PreparedGearSet>& gear_set,
                     std::vector<EvaluatedPoint>& out) {
   const double sump = group.sump_temperature_celsius + errors.sump_kelvin;
@@ -287,14 +296,14 @@ void evaluate_group(const PointEvaluation::Group& group, const v1::Lubricant& lu
   check_fluid_at_inlet(lubricant, sump, rise, "lubricant", inlet);
   if (!inlet.empty()) {
     for (const auto& [position, condition] : group.conditions) {
-      out[static_cast<std::size_t>(position)] = {std::nullopt, "INVALID_AT_INLET",
-                                                 inlet.front().description};
+      out[static_cast<std::size_t>(position)] = {
+          std::nullopt, {}, "INVALID_AT_INLET", inlet.front().description};
     }
     return;
   }
   physical.sump_temperature = sump + kZeroCelsius;
   physical.inlet_temperature_rise = rise;
-  compute_group(physical, group, options, gear_set, out);
+  compute_group(physical, group, with_contact, options, gear_set, out);
 }
 
 std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluation,
@@ -305,7 +314,8 @@ std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluatio
   std::vector<EvaluatedPoint> out(static_cast<std::size_t>(evaluation.conditions));
   physical.lubricant = to_core(lubricant);
   for (const PointEvaluation::Group& group : evaluation.groups) {
-    evaluate_group(group, lubricant, physical, errors, options, gear_set, out);
+    evaluate_group(group, evaluation.with_contact, lubricant, physical, errors, options, gear_set,
+                   out);
   }
   return out;
 }
@@ -336,7 +346,8 @@ void CandidateScene::set_candidate(int candidate) {
 void CandidateScene::evaluate(const PointEvaluation::Group& group,
                               const std::shared_ptr<PreparedGearSet>& gear_set,
                               std::vector<EvaluatedPoint>& out) {
-  evaluate_group(group, lubricant_, physical_, {}, options_, gear_set, out);
+  evaluate_group(group, evaluation_.with_contact, lubricant_, physical_, {}, options_, gear_set,
+                 out);
 }
 
 v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,

@@ -37,12 +37,20 @@ struct PointEvaluation {
   std::vector<Group> groups;
   int candidates = 1;
   int conditions = 0;
+  bool with_contact = false;  ///< points have ContactExtremes, for some six times the work
+};
+
+/// Extremes over the loaded flanks and the steady state.
+struct ContactExtremes {
+  double film_ratio_minimum;           ///< lambda_s [-]
+  double contact_temperature_maximum;  ///< T_c [K]
 };
 
 /// The figures of one point, or why it has none.
 struct EvaluatedPoint {
   std::optional<PointFigures> figures;
-  std::string refusal_reason;  ///< UPPER_SNAKE_CASE; empty if there are figures
+  std::optional<ContactExtremes> contact;  ///< if the evaluation is with_contact
+  std::string refusal_reason;              ///< UPPER_SNAKE_CASE; empty if there are figures
   std::string refusal_message;
 };
 
@@ -63,12 +71,13 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
 /// differ, sorted.
 std::vector<std::string> candidate_parameter_names();
 
-/// Computes the points of a lubricant at one group of conditions by screen_point() and writes them
-/// to their positions in `out`. `physical` is the scene, whose lubricant must be this one and whose
-/// temperatures are set here; `options.progress` must be set. Throws Cancelled as soon as it
-/// returns false.
-void evaluate_group(const PointEvaluation::Group& group, const v1::Lubricant& lubricant,
-                    Scene& physical, const TemperatureErrors& errors, const PointOptions& options,
+/// Computes the points of a lubricant at one group of conditions by screen_point(), those
+/// `with_contact` by solve_prepared_point(), and writes them to their positions in `out`.
+/// `physical` is the scene, whose lubricant must be this one and whose temperatures are set here;
+/// `options.progress` must be set. Throws Cancelled as soon as it returns false.
+void evaluate_group(const PointEvaluation::Group& group, bool with_contact,
+                    const v1::Lubricant& lubricant, Scene& physical,
+                    const TemperatureErrors& errors, const PointOptions& options,
                     const std::shared_ptr<PreparedGearSet>& gear_set,
                     std::vector<EvaluatedPoint>& out);
 

@@ -350,8 +350,10 @@ v1::DifferenceExplanation explanation_message(const ComputedCombinations& all,
 
 /// Returns the request for the points of one lubricant on its surface.
 v1::EvaluatePointsRequest points_of_side(const v1::ExplainPointsRequest& request,
-                                         const std::string& lubricant, const std::string& surface) {
+                                         const std::string& lubricant, const std::string& surface,
+                                         bool is_sheared) {
   v1::EvaluatePointsRequest out;
+  out.set_sheared_lubricant(is_sheared);
   out.set_lubricant(lubricant);
   out.set_gear_set(request.gear_set());
   out.set_surface(surface);
@@ -400,17 +402,19 @@ std::optional<PointExplanation> read_explanation(const v1::ExplainPointsRequest&
   check_message(request, "", violations);
   check_explanation_counts(request, draws, violations);
   if (violations.size() > before) return std::nullopt;
-  auto first = read_points(points_of_side(request, request.lubricant(), request.surface()), lookup,
-                           violations);
+  auto first = read_points(
+      points_of_side(request, request.lubricant(), request.surface(), request.sheared_lubricant()),
+      lookup, violations);
   const bool has_other_surface = !request.other_surface().empty();
   Violations found;
   auto other =
       read_points(points_of_side(request, request.other_lubricant(),
-                                 has_other_surface ? request.other_surface() : request.surface()),
+                                 has_other_surface ? request.other_surface() : request.surface(),
+                                 request.other_sheared_lubricant()),
                   lookup, found);
   for (Violation each : found) {
     // The first lubricant has the same violations of what both share.
-    const bool is_own = each.field.starts_with("lubricant") ||
+    const bool is_own = each.field.starts_with("lubricant") || each.field == "sheared_lubricant" ||
                         (has_other_surface && each.field.starts_with("surface"));
     if (is_own) {
       each.field = "other_" + each.field;

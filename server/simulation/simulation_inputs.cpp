@@ -1,12 +1,16 @@
 #include "server/simulation/simulation_inputs.h"
 
+#include <fmt/format.h>
+
 #include <numbers>
+#include <utility>
 
 #include "server/contract/check_message.h"
 #include "server/contract/labels.h"
 #include "server/contract/output_only.h"
 #include "server/mapping/history_columns.h"
 #include "server/mapping/to_core.h"
+#include "server/resources/sheared_lubricant.h"
 #include "server/simulation/fluid_grounds.h"
 #include "server/simulation/solver_defaults.h"
 #include "server/simulation/study_checks.h"
@@ -223,6 +227,17 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
       find(&inputs.surface, asked.surface(), kDefaultSurface, kSurfaces, "surface");
   const std::string vehicle =
       find(&inputs.vehicle, asked.vehicle(), kDefaultVehicle, kVehicles, "vehicle");
+  if (!lubricant.empty() && asked.sheared_lubricant()) {
+    if (auto sheared = sheared_lubricant(*inputs.lubricant)) {
+      inputs.lubricant = std::make_shared<const v1::Lubricant>(*std::move(sheared));
+    } else {
+      violations.push_back(
+          {join_path(path, "sheared_lubricant"),
+           fmt::format("{} states no viscosity after the shear test; needs its measurements."
+                       "sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second",
+                       lubricant)});
+    }
+  }
   if (!lubricant.empty()) {
     const double sump = asked.has_sump_temperature_celsius() ? asked.sump_temperature_celsius()
                                                              : kDefaultSumpTemperatureCelsius;

@@ -227,6 +227,21 @@ expect 2 explain paper-fluid-1 paper-fluid-3 --speed 40,60 --weights 1
 err_has '1 weights of 2 speeds'
 expect 1 explain paper-fluid-1 no-such-oil
 err_has 'lubricants/no-such-oil'
+expect 0 lubricants create sheet-c --kv40 103 --kv100 15.1 --kv100-sheared 13.6 --density15 868 --base-oil-class pao
+expect 0 point --lubricant sheet-c --speed 60 --condition sheared --assumptions
+out_has 'lubricant after the shear test'
+out_has 'viscosities times 0\.9007'
+out_has 'film ratio lambda, minimum: [0-9.]+ .*\(inputs\), 95 %'
+out_has 'contact temperature, maximum: [0-9.]+ C'
+expect 0 explain sheet-c sheet-c --other-condition sheared --draws 19
+out_has '^viscosity and its temperature law +-?[0-9.]+ '
+expect 1 point --lubricant sheet-a --speed 60 --condition sheared
+err_has '--condition.* states no viscosity after the shear test'
+expect 0 help columns
+out_has '^Columns of results'
+expect 0 schema
+out_has '^mesh_loss_power_watts +W +mean loss power of the mesh'
+out_has '^flank_sliding_speed_metres_per_second +m/s +sliding speed'
 echo "--- report"
 expect 0 report sheet-a sheet-b --speeds 40,100 --html "$folder/report.html"
 out_has 'report\.html'

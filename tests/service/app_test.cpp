@@ -6,9 +6,11 @@
 #include <cstring>
 #include <map>
 
+#include "core/study/history.h"
 #include "google/rpc/error_details.pb.h"
 #include "server/application/contacts.h"
 #include "server/application/errors.h"
+#include "server/application/schemas.h"
 #include "server/application/simulations.h"
 #include "server/application/streams.h"
 #include "server/contract/constraints.h"
@@ -71,6 +73,21 @@ TEST_F(AppTest, EveryErrorHasAReasonInErrorInfo) {
     EXPECT_NE(status.code(), google::rpc::OK);
     EXPECT_FALSE(status.message().empty());
   }
+}
+
+TEST_F(AppTest, TheSchemaDescribesEveryColumnOfResults) {
+  const auto schema = get_schema(app_, {}, {});
+  ASSERT_TRUE(schema.ok());
+  int figures = 0, columns = 0;
+  for (const v1::ColumnDescription& column : schema.message().columns()) {
+    EXPECT_NE(column.description(), "") << column.name();
+    (column.table() == "PointResult" ? figures : columns) += 1;
+    if (column.name() == "mesh_loss_power_watts") {
+      EXPECT_EQ(column.unit(), "W");
+    }
+  }
+  EXPECT_GT(figures, 30);
+  EXPECT_EQ(columns, kHistoryColumns);
 }
 
 TEST_F(AppTest, MetadataHasTheVariablesOfAMessage) {

@@ -178,6 +178,23 @@ TEST(ExplainPoints, AnotherSurfaceIsTheShareOfTheBoundaryFilm) {
               difference, 1e-12);
 }
 
+TEST(ExplainPoints, ALubricantDiffersFromItselfAfterTheShearTestByItsViscosity) {
+  auto oil = seed<v1::Lubricant>(kFirst);
+  oil.mutable_measurements()
+      ->set_sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second(14);
+  Fluids fluids;
+  fluids.add("lubricants/oil", oil);
+  auto request = explanation_of("lubricants/oil", "lubricants/oil", {60});
+  request.set_other_sheared_lubricant(true);
+  const v1::DifferenceExplanation mean = explain(request, fluids).mean();
+  EXPECT_GT(std::abs(mean.inefficiency_difference_percent().value()), 1e-3);
+  EXPECT_NEAR(share(mean, v1::PARAMETER_GROUP_VISCOSITY).shapley_value().value(),
+              mean.inefficiency_difference_percent().value(), 1e-12);
+  request = explanation_of(kFirst, kFirst, {60});
+  request.set_other_sheared_lubricant(true);
+  EXPECT_THAT(explanation_violations(request), testing::StartsWith("other_sheared_lubricant: "));
+}
+
 TEST(ExplainPoints, AnUncertainGroupThatIsEqualHasAShareOfZeroWithAnUncertainty) {
   const auto with_uncertain_shear = [](const char* name) {
     auto out = seed<v1::Lubricant>(name);

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "server/transport/http/contract_comments.h"
+#include "server/contract/contract_comments.h"
 #include "server/transport/http/description_pages.h"
 #include "tests/service/contract_methods.h"
 #include "tests/service/support.h"

@@ -57,6 +57,12 @@ void add_compare_flags(FlagList& list, CompareFlags& flags) {
               request.set_vehicle(resource_name("vehicles", name));
             })
       .collection = "vehicles";
+  list.choice(
+          "--condition", {"fresh", "sheared"},
+          "fresh: the lubricants as they are stated; sheared: as they are after the shear test, "
+          "by KV100 after it. Default: fresh.",
+          [&request](int index) { request.set_sheared_lubricant(index == 1); })
+      .field = "sheared_lubricant";
   list.group("Uncertainty");
   list.number("--sump-temperature-uncertainty-kelvin,--sump-uncertainty", {"K", "0 to 100", "0"},
               "Standard uncertainty of the temperature of the oil bath",

@@ -75,6 +75,15 @@ void add_explain_flags(FlagList& list, ExplainFlags& flags) {
               request.set_vehicle(resource_name("vehicles", name));
             })
       .collection = "vehicles";
+  list.choice(
+          "--condition", {"fresh", "sheared"},
+          "fresh: A as it is stated; sheared: as it is after the shear test, by KV100 after it. "
+          "Default: fresh.",
+          [&request](int index) { request.set_sheared_lubricant(index == 1); })
+      .field = "sheared_lubricant";
+  list.choice("--other-condition", {"fresh", "sheared"}, "The same for B.",
+              [&request](int index) { request.set_other_sheared_lubricant(index == 1); })
+      .field = "other_sheared_lubricant";
   list.group("Uncertainty");
   list.number("--sump-temperature-uncertainty-kelvin,--sump-uncertainty", {"K", "0 to 100", "0"},
               "Standard uncertainty of the temperature of the oil bath",
@@ -142,7 +151,8 @@ Command explain_command() {
       {"tribodyn explain paper-fluid-1 paper-fluid-2 --speed 20,60,100",
        "tribodyn explain my-oil their-oil --speed 30,60,120 --weights 1,2,1 --sump 90 --plot "
        "why.svg",
-       "tribodyn explain my-oil my-oil --surface run-in --other-surface phosphate-film"},
+       "tribodyn explain my-oil my-oil --surface run-in --other-surface phosphate-film",
+       "tribodyn explain my-oil my-oil --other-condition sheared"},
       {},
       {},
       {}};

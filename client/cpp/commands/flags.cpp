@@ -163,9 +163,9 @@ Flag& FlagList::choices(const std::string& names, const std::string& words,
   return flags_.back();
 }
 
-void FlagList::choice(const std::string& names, const std::vector<std::string>& words,
-                      const std::string& description, const std::function<void(int)>& set,
-                      const std::map<std::string, std::string>& removed) {
+Flag& FlagList::choice(const std::string& names, const std::vector<std::string>& words,
+                       const std::string& description, const std::function<void(int)>& set,
+                       const std::map<std::string, std::string>& removed) {
   const std::string name = names.substr(0, names.find(','));
   std::string all;
   for (const std::string& word : words) {
@@ -183,6 +183,7 @@ void FlagList::choice(const std::string& names, const std::vector<std::string>& 
     }
   });
   flags_.back().words = words;
+  return flags_.back();
 }
 
 void FlagList::toggle(const std::string& names, const std::string& description,

@@ -69,9 +69,9 @@ class FlagList {
               const std::string& description, const std::function<void(const std::string&)>& add);
   /// Adds a choice of one of `words`; `set` receives its index. `removed`: words of earlier
   /// versions, each with the end of the sentence that refuses it and says what to use.
-  void choice(const std::string& names, const std::vector<std::string>& words,
-              const std::string& description, const std::function<void(int)>& set,
-              const std::map<std::string, std::string>& removed = {});
+  Flag& choice(const std::string& names, const std::vector<std::string>& words,
+               const std::string& description, const std::function<void(int)>& set,
+               const std::map<std::string, std::string>& removed = {});
   /// Like texts(), for values among `words`; `add` returns false for any other value.
   Flag& choices(const std::string& names, const std::string& words, const std::string& description,
                 const std::function<bool(const std::string&)>& add);

@@ -64,6 +64,30 @@ Candidates that cannot be told apart from the best one at the --confidence are t
 parameters in the table (--uncertainty, columns) are each candidate's own; those of all other
 parameters, stated there or by the base, are common to all candidates and nearly cancel.
 )text"},
+      {"columns", "names and units of the columns of results",
+       R"(Columns of results
+
+Each name ends in its unit, mostly SI: mesh_loss_power_watts, contact_temperature_kelvin; a name without
+a unit is a pure number or a word. `tribodyn schema` lists every column at its end, with what it means,
+and GetSchema returns the same to programs.
+
+Points and curves (--output csv, curve --csv): one row for each speed, first the inputs, then every
+figure of the result.
+  inefficiency_energy_mean_percent   loss energy over the energy that comes in: the figure that
+                                     compare, explain and screen rank by
+  inefficiency_rms_percent           eq 30 over the power that comes in, root mean square over time
+  viscous_loss_power_watts, boundary_loss_power_watts   the two parts of mesh_loss_power_watts
+  minimum_, mean_, maximum_ before film_ratio, contact_temperature_kelvin, maximum_pressure_pascals,
+    dynamic_transmission_error_metres, ...   over the steady state; of contacts over loaded flanks
+  limiting_stress_area_share         mean share of the contact area at the limiting shear stress
+  estimated_relative_error           of inefficiencies, torque and transmission error, by the solver
+Histories (--columns): one row for each sample. Names that begin with flank_ have a column for each
+slot: flank_load_newtons_flank_0 to _flank_2.
+compare: FIGURE_value, FIGURE_standard_uncertainty (of the inputs), FIGURE_interval_minimum and
+  _interval_maximum (95 %), FIGURE_linear_standard_uncertainty, FIGURE_solver_error.
+explain: one row for each group of parameters; shapley_value is its share in the difference,
+  first_effect and last_effect what it adds before and after all other groups.
+)"},
       {"files", "what import, export and validate read and write",
        R"text(Files
 

@@ -34,6 +34,7 @@ void set_scene(const v1::Simulation& simulation, Request& request) {
   request.set_gear_set(simulation.gear_set_revision());
   request.set_surface(simulation.surface_revision());
   request.set_vehicle(simulation.vehicle_revision());
+  request.set_sheared_lubricant(simulation.sheared_lubricant());
   *request.mutable_model_options() = simulation.model_options();
   for (const v1::CurvePoint& point : simulation.result().points()) {
     v1::PointCondition& condition = *request.add_conditions();
@@ -69,6 +70,7 @@ ReportContents contents_of(std::vector<v1::Simulation> curves, Connection& conne
     set_scene(first, request);
     request.set_lubricant(first.lubricant_revision());
     request.set_other_lubricant(out.curves[i].lubricant_revision());
+    request.set_other_sheared_lubricant(first.sheared_lubricant());
     request.set_draws(
         draws_for(speeds * kReportCombinations, kReportExplainedPoints, kReportExplanationDraws));
     out.explanations.push_back({request, connection.explain_points(request)});
@@ -93,6 +95,7 @@ std::string command_text(const ReportContents& contents) {
   if (first.has_sump_temperature_celsius()) {
     out += " --sump " + shortest(first.sump_temperature_celsius());
   }
+  if (first.sheared_lubricant()) out += " --condition sheared";
   return out + " --gear-set " + resource_id(first.gear_set_revision()) + " --surface " +
          resource_id(first.surface_revision()) + " --vehicle " +
          resource_id(first.vehicle_revision()) + " --html FILE.html";

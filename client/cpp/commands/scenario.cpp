@@ -105,6 +105,12 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
   flags.number("--inlet-temperature-rise-kelvin", {"K", "0 to 300", "20"},
                "Temperature rise from the oil bath to the inlet of the contact (eq 14)",
                [&](double value) { simulation.set_inlet_temperature_rise_kelvin(value); });
+  flags
+      .choice("--condition", {"fresh", "sheared"},
+              "fresh: the lubricant as it is stated; sheared: as it is after the shear test, by "
+              "KV100 after it (--kv100-sheared of the lubricant). Default: fresh.",
+              [&](int index) { simulation.set_sheared_lubricant(index == 1); })
+      .field = "sheared_lubricant";
   add_model_flags(flags, *simulation.mutable_model_options());
   add_solver_flags(flags, simulation);
   flags.group("Job");

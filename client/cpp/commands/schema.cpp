@@ -49,6 +49,18 @@ std::string schema_table(const v1::Schema& schema) {
         "\n" + printable(vocabulary.name()) + "\n" +
         wrapped(printable(joined({vocabulary.words().begin(), vocabulary.words().end()}, ", ")), 2);
   }
+  for (int i = 0; i < schema.columns_size();) {
+    const std::string name = schema.columns(i).table();
+    Table table({{"column of " + printable(name), "", Table::Align::kLeft},
+                 {"unit", "", Table::Align::kLeft},
+                 {"meaning", "", Table::Align::kLeft}});
+    for (; i < schema.columns_size() && schema.columns(i).table() == name; ++i) {
+      const v1::ColumnDescription& column = schema.columns(i);
+      table.add_row(
+          {printable(column.name()), printable(column.unit()), printable(column.description())});
+    }
+    text += "\n" + table.text();
+  }
   return text;
 }
 

@@ -34,6 +34,7 @@ v1::ComparePointsRequest request_of(const v1::Simulation& simulation) {
   out.set_gear_set(simulation.gear_set_revision());
   out.set_surface(simulation.surface_revision());
   out.set_vehicle(simulation.vehicle_revision());
+  out.set_sheared_lubricant(simulation.sheared_lubricant());
   *out.mutable_model_options() = simulation.model_options();
   out.set_tolerance(simulation.solver_options().tolerance());
   return out;
@@ -105,6 +106,7 @@ std::string point_uncertainty(const v1::Simulation& simulation, Connection& conn
   const v1::OperatingPointStudy& point = simulation.operating_point();
   if (!point.has_cruise() || !is_screened(simulation, point)) return "";
   v1::ComparePointsRequest request = request_of(simulation);
+  request.set_contact_figures(true);
   add_condition(simulation, point.cruise().speed_kilometres_per_hour(),
                 point.cruise().ascent_angle_degrees(), request);
   try {

@@ -25,6 +25,7 @@ int decimals_for(double error) {
 }
 
 int error_decimals(const v1::UncertainFigure& figure) {
+  // std::max returns the first argument if the second one is NaN.
   return decimals_for(std::max(figure.standard_uncertainty(), figure.solver_error()));
 }
 
@@ -192,6 +193,17 @@ std::string table_of(const v1::ComparePointsRequest& request, const v1::Compared
   return table.text();
 }
 
+/// Returns the figure times `factor`, plus `offset`.
+v1::UncertainFigure scaled(v1::UncertainFigure figure, double factor, double offset) {
+  figure.set_value(factor * figure.value() + offset);
+  figure.set_interval_minimum(factor * figure.interval_minimum() + offset);
+  figure.set_interval_maximum(factor * figure.interval_maximum() + offset);
+  figure.set_standard_uncertainty(factor * figure.standard_uncertainty());
+  figure.set_linear_standard_uncertainty(factor * figure.linear_standard_uncertainty());
+  figure.set_solver_error(factor * figure.solver_error());
+  return figure;
+}
+
 /// Adds the fields that count as exact.
 void add_exact_inputs(const v1::ComparePointsResponse& response, Sheet& sheet) {
   const auto list = [](const auto& inputs) {
@@ -214,11 +226,12 @@ void add_exact_inputs(const v1::ComparePointsResponse& response, Sheet& sheet) {
 
 std::string with_errors(const v1::UncertainFigure& figure, const std::string& unit) {
   return value_text(figure) + (unit.empty() ? "" : " " + unit) + " +/- " +
-         (figure.standard_uncertainty() > 0 ? spread_text(figure) : "0") + " (inputs) +/- " +
-         (figure.solver_error() > 0
-              ? fixed(figure.solver_error(), decimals_for(figure.solver_error()) - 1)
-              : "0") +
-         " (solver)";
+         (figure.standard_uncertainty() > 0 ? spread_text(figure) : "0") + " (inputs)" +
+         (std::isnan(figure.solver_error()) ? ""
+          : figure.solver_error() > 0
+              ? " +/- " + fixed(figure.solver_error(), decimals_for(figure.solver_error()) - 1) +
+                    " (solver)"
+              : " +/- 0 (solver)");
 }
 
 std::string comparison_report(const v1::ComparePointsRequest& request,
@@ -306,6 +319,15 @@ std::string uncertainty_report(const v1::ComparePointsResponse& response) {
   line("inefficiency, RMS", point.inefficiency_rms_percent(), "%");
   line("mesh loss", point.mesh_loss_power_watts(), "W");
   line("pinion torque", point.pinion_torque_newton_metres(), "N m");
+  line("transmission error (DTE), minimum",
+       scaled(point.dynamic_transmission_error_minimum_metres(), 1e6, 0), "um");
+  line("transmission error (DTE), maximum",
+       scaled(point.dynamic_transmission_error_maximum_metres(), 1e6, 0), "um");
+  if (point.has_film_ratio_minimum()) {
+    line("film ratio lambda, minimum", point.film_ratio_minimum(), "");
+    line("contact temperature, maximum",
+         scaled(point.contact_temperature_maximum_kelvin(), 1, -kZeroCelsius), "C");
+  }
   sheet.remark(linearity_text(point.inefficiency_energy_mean_percent(), response.draws()));
   sheet.remark(advice_text(point.shares()));
   add_exact_inputs(response, sheet);

@@ -195,6 +195,7 @@ std::string points_csv(const std::vector<v1::Simulation>& simulations) {
           {"vehicle", inputs.vehicle},
           {"sump_temperature_celsius", shortest(inputs.sump_temperature_celsius)},
           {"inlet_temperature_rise_kelvin", shortest(inputs.inlet_temperature_rise_kelvin)},
+          {"lubricant_condition", simulation.sheared_lubricant() ? "sheared" : "fresh"},
           {"model_options", model_options_text(simulation.model_options())},
           {"direction", direction_word(simulation)}};
       row.emplace_back("speed_kilometres_per_hour", shortest(point.speed_kilometres_per_hour()));

@@ -129,7 +129,8 @@ std::string inputs_text(const v1::Simulation& simulation, const char* celsius,
          (differences.sumps
               ? ""
               : "sump " + significant(inputs.sump_temperature_celsius) + " " + celsius + ", ") +
-         "inlet rise " + significant(inputs.inlet_temperature_rise_kelvin) + " K";
+         "inlet rise " + significant(inputs.inlet_temperature_rise_kelvin) + " K" +
+         (simulation.sheared_lubricant() ? "; lubricant after the shear test" : "");
 }
 
 Differences differences_of(const std::vector<v1::Simulation>& simulations) {

@@ -20,7 +20,7 @@
 #include "proto/field_behavior.h"
 #include "server/application/errors.h"
 #include "server/contract/constraints.h"
-#include "server/transport/http/contract_comments.h"
+#include "server/contract/contract_comments.h"
 #include "server/transport/http/method_forms.h"
 #include "server/transport/http/stream_format.h"
 #include "tribodyn/v1/errors.pb.h"

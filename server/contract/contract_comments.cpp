@@ -1,4 +1,4 @@
-#include "server/transport/http/contract_comments.h"
+#include "server/contract/contract_comments.h"
 
 #include <google/protobuf/descriptor.pb.h>
 
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/transport/http/embedded_contract.h"
+#include "server/contract/embedded_contract.h"
 
 namespace tribodyn::server {
 namespace {

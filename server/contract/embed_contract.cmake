@@ -3,7 +3,7 @@ file(READ ${INPUT} bytes HEX)
 string(LENGTH "${bytes}" length)
 math(EXPR count "${length} / 2")
 string(REGEX REPLACE "([0-9a-f][0-9a-f])" "\\\\x\\1" bytes "${bytes}")
-file(WRITE ${OUTPUT} "#include \"server/transport/http/embedded_contract.h\"
+file(WRITE ${OUTPUT} "#include \"server/contract/embedded_contract.h\"
 
 namespace tribodyn::server {
 
