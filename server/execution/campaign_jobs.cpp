@@ -14,6 +14,7 @@
 #include "server/simulation/campaign_columns.h"
 #include "server/simulation/compute.h"
 #include "server/simulation/result_key.h"
+#include "server/storage/life_cycle.h"
 #include "server/storage/resource_lookup.h"
 
 namespace tribodyn::server {
@@ -38,7 +39,13 @@ constexpr std::size_t kMostRunningBytes = 256 << 20;
 constexpr std::size_t kMostRunning = 1000;
 constexpr double kShareOfOne = 0.75;
 
-/// Returns the runs of candidates whose rows no tile has. Tiles hold whole candidates.
+/// Processes that began a campaign, the present one included, from which on it is computed with
+/// care: one tile at a time, each noted before it is computed. If the process is lost then, its
+/// successor has the rows that it was at.
+constexpr int kCarefulAttempts = 2;
+
+/// Returns the runs of candidates whose rows are in none of the runs of rows, which are in their
+/// order and hold whole candidates.
 std::deque<RowRange> missing_candidates(const std::vector<RowRange>& tiles, std::int64_t candidates,
                                         std::int64_t conditions) {
   std::deque<RowRange> out;
@@ -52,11 +59,20 @@ std::deque<RowRange> missing_candidates(const std::vector<RowRange>& tiles, std:
   return out;
 }
 
+/// A point of a candidate whose computation no process has survived.
+EvaluatedPoint lost_point() {
+  return {std::nullopt, "WORKER_LOST",
+          "the server ended " + std::to_string(kMaximumLostAttempts) +
+              " times while it computed this candidate"};
+}
+
 }  // namespace
 
 /// Rows that are computed and not written yet.
 struct CampaignJobs::Tile {
   RowRange candidates;
+  int lost_attempts = 0;               ///< as in CampaignSuspect
+  bool is_noted = false;               ///< as a suspect that is begun
   std::int64_t done = 0;               ///< candidates whose rows are in `columns`
   std::size_t group = 0;               ///< next group of conditions of the candidate after those
   std::vector<EvaluatedPoint> points;  ///< of that candidate, by condition
@@ -104,6 +120,8 @@ struct CampaignJobs::Running {
   bool is_halted = false;                        // no further row is to be computed
   std::shared_ptr<const CampaignInputs> inputs;  // null before the first slice
   std::deque<RowRange> missing;                  // candidates that no part has taken
+  std::deque<CampaignSuspect> suspects;          // the same that come first, one at a time
+  bool is_careful = false;                       // part 0 alone computes
   std::size_t tiles_taken = 0;
   int tiles_written = 0;
   std::map<std::pair<std::string, std::string>, int> refusal_numbers;  // by reason and message
@@ -133,7 +151,7 @@ CampaignJobs::RunningPointer CampaignJobs::find(std::int64_t id) {
 std::size_t CampaignJobs::resume() {
   const std::lock_guard control(control_mutex_);
   std::size_t count = 0;
-  for (const std::int64_t id : store_.running_campaigns()) {
+  for (const std::int64_t id : store_.resume_campaigns()) {
     if (const auto stored = store_.campaign(id)) {
       activate(*stored);
       ++count;
@@ -162,11 +180,34 @@ void CampaignJobs::activate(const StoredCampaign& campaign) {
 void CampaignJobs::start_parts(Running& running) {
   const std::lock_guard lock(running.mutex);
   if (running.is_halted) return;
+  const bool has_rows = !running.missing.empty() || !running.suspects.empty();
   for (Part& part : running.parts) {
-    if (part.is_queued || (running.inputs && running.missing.empty())) continue;
+    if (part.is_queued || (running.inputs && !has_rows)) continue;
+    if (running.is_careful && !may_take_care(running, part)) continue;
     part.is_queued = true;
     scheduler_.add_part({running.id, part.number}, running.principal);
   }
+}
+
+/// Returns true if the part may compute a campaign that needs care: part 0, unless another campaign
+/// is computed with care. Then a lost process was at the noted rows, or at none of them.
+bool CampaignJobs::may_take_care(const Running& running, const Part& part) const {
+  const std::int64_t careful = careful_campaign_;
+  return part.number == 0 && (careful == 0 || careful == running.id);
+}
+
+/// Lets other campaigns be computed with care, if this one was.
+void CampaignJobs::end_care(const Running& running) {
+  std::int64_t careful = running.id;
+  if (!careful_campaign_.compare_exchange_strong(careful, 0)) return;
+  std::vector<RunningPointer> others;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, other] : running_) {
+      if (id != running.id) others.push_back(other);
+    }
+  }
+  for (const RunningPointer& other : others) start_parts(*other);
 }
 
 /// Stops the slices of a campaign; their parts write what they have. Requires control_mutex_.
@@ -246,22 +287,22 @@ void CampaignJobs::ensure_queued(const StoredCampaign& campaign) {
 }
 
 /// Changes the state in the store, and what runs. Returns the campaign as it is then.
-std::optional<StoredCampaign> CampaignJobs::change(const CampaignChange& change,
+std::optional<StoredCampaign> CampaignJobs::change(CampaignChange change,
                                                    const CallLimits& limits) {
   const std::lock_guard control(control_mutex_);
-  auto changed = store_.change_campaign(change, limits);
-  if (!changed) return store_.campaign(change.id);
-  if (changed->state != CampaignState::kRunning) {
-    halt(change.id);
-    return changed;
-  }
   const RunningPointer running = find(change.id);
   const bool is_loaded = [&] {
     if (!running) return false;
     const std::lock_guard lock(running->mutex);
     return running->inputs != nullptr;
   }();
-  if (is_loaded) store_.begin_campaign(change.id);
+  change.lost_attempts = is_loaded ? 1 : 0;  // this process has begun it
+  auto changed = store_.change_campaign(change, limits);
+  if (!changed) return store_.campaign(change.id);
+  if (changed->state != CampaignState::kRunning) {
+    halt(change.id);
+    return changed;
+  }
   activate(*changed);
   return changed;
 }
@@ -319,8 +360,15 @@ void CampaignJobs::load(Running& running) {
   for (const CampaignRefusal& each : store_.campaign_refusals(running.id)) {
     running.refusal_numbers[{each.reason, each.message}] = each.number;
   }
-  running.missing =
-      missing_candidates(store_.campaign_tiles(running.id), stored->candidates, stored->conditions);
+  std::vector<RowRange> taken = store_.campaign_tiles(running.id);
+  for (const CampaignSuspect& each : store_.campaign_suspects(running.id)) {
+    running.suspects.push_back(each);
+    taken.push_back(each.rows);
+  }
+  std::sort(taken.begin(), taken.end(),
+            [](const RowRange& one, const RowRange& other) { return one.first < other.first; });
+  running.missing = missing_candidates(taken, stored->candidates, stored->conditions);
+  running.is_careful = stored->lost_attempts >= kCarefulAttempts || !running.suspects.empty();
   inputs->table.Clear();  // the columns are in `points`
   running.inputs = std::move(inputs);
 }
@@ -367,7 +415,8 @@ void CampaignJobs::run_slice(const Lease& lease, PreparedGearSets& gear_sets,
     part.is_queued = goes_on;
   }
   if (goes_on) return;
-  start_parts(*running);  // if it was resumed meanwhile
+  if (part.number == 0) end_care(*running);
+  start_parts(*running);  // if it was resumed meanwhile, or needs no care any more
   forget_if_idle(running->id);
 }
 
@@ -416,12 +465,58 @@ bool CampaignJobs::compute_slice(Running& running, Part& part, PreparedGearSets&
   return false;
 }
 
-/// Takes the next candidates for a tile. Returns false if there are none. The last tiles are small,
-/// so that all threads end at about the same time.
+/// Takes the next candidates for a tile. Returns false if the part finds none. Throws StoreError;
+/// then no candidates are taken.
 bool CampaignJobs::take_tile(Running& running, Part& part) {
-  const std::lock_guard lock(running.mutex);
-  if (running.missing.empty()) return false;
+  bool is_careful = false;
+  {
+    const std::lock_guard lock(running.mutex);
+    is_careful = running.is_careful;
+    if (is_careful) {
+      if (!may_take_care(running, part)) return false;
+      std::int64_t careful = 0;
+      careful_campaign_.compare_exchange_strong(careful, running.id);
+      if (careful_campaign_ != running.id) return false;  // another one was faster
+    }
+    const auto candidates = next_candidates(running);
+    if (!candidates) return false;
+    Tile& tile = part.tile.emplace(*candidates);
+    const auto conditions = static_cast<std::size_t>(running.inputs->points.conditions);
+    tile.points.resize(conditions);
+    tile.columns.resize(kCampaignColumns.size());
+    for (auto& each : tile.columns) {
+      each.reserve(static_cast<std::size_t>(tile.candidates.count) * conditions);
+    }
+    ++running.tiles_taken;
+  }
+  if (!is_careful || part.tile->lost_attempts >= kMaximumLostAttempts) return true;
+  try {
+    const std::int64_t conditions = running.inputs->points.conditions;
+    store_.begin_suspect(running.id, {part.tile->candidates.first * conditions,
+                                      part.tile->candidates.count * conditions});
+    part.tile->is_noted = true;
+  } catch (...) {
+    return_rows(running, *part.tile);
+    part.tile.reset();
+    throw;
+  }
+  return true;
+}
+
+/// Takes candidates out of those that are missing, suspects first. The last tiles are small, so
+/// that all threads end at about the same time. Returns nullopt if there are none. Requires the
+/// mutex of the campaign.
+std::optional<CampaignJobs::Tile> CampaignJobs::next_candidates(Running& running) const {
   const std::int64_t conditions = running.inputs->points.conditions;
+  Tile out;
+  if (!running.suspects.empty()) {
+    const CampaignSuspect& suspect = running.suspects.front();
+    out.candidates = {suspect.rows.first / conditions, suspect.rows.count / conditions};
+    out.lost_attempts = suspect.lost_attempts;
+    running.suspects.pop_front();
+    return out;
+  }
+  if (running.missing.empty()) return std::nullopt;
   std::int64_t left = 0;
   for (const RowRange& each : running.missing) left += each.count;
   const std::int64_t ramp = kRamp[std::min(running.tiles_taken, std::size(kRamp) - 1)];
@@ -429,16 +524,22 @@ bool CampaignJobs::take_tile(Running& running, Part& part) {
   RowRange& next = running.missing.front();
   const std::int64_t count =
       std::clamp<std::int64_t>(std::min(ramp, share) / conditions, 1, next.count);
-  Tile& tile = part.tile.emplace();
-  tile.candidates = {next.first, count};
-  tile.points.resize(static_cast<std::size_t>(conditions));
-  tile.columns.resize(kCampaignColumns.size());
-  for (auto& each : tile.columns) each.reserve(static_cast<std::size_t>(count * conditions));
+  out.candidates = {next.first, count};
   next.first += count;
   next.count -= count;
   if (next.count == 0) running.missing.pop_front();
-  ++running.tiles_taken;
-  return true;
+  return out;
+}
+
+/// Makes the candidates of a tile that are not computed the next ones.
+void CampaignJobs::return_rows(Running& running, const Tile& tile) {
+  const RowRange rest{tile.candidates.first + tile.done, tile.candidates.count - tile.done};
+  if (rest.count == 0) return;
+  const std::lock_guard lock(running.mutex);
+  if (!running.is_careful) return running.missing.push_front(rest);
+  const std::int64_t conditions = running.inputs->points.conditions;
+  running.suspects.push_front(
+      {{rest.first * conditions, rest.count * conditions}, tile.lost_attempts});
 }
 
 /// Computes the next candidate of the tile at its next group of conditions. Throws Cancelled.
@@ -447,11 +548,17 @@ void CampaignJobs::compute_unit(Running& running, Part& part,
   Tile& tile = *part.tile;
   const PointEvaluation& points = running.inputs->points;
   const double before = part.used_seconds();
-  if (tile.group == 0) {
-    part.candidate->set_candidate(static_cast<int>(tile.candidates.first + tile.done));
+  if (tile.lost_attempts >= kMaximumLostAttempts) {
+    std::fill(tile.points.begin(), tile.points.end(), lost_point());
+    tile.group = points.groups.size();
+  } else {
+    if (tile.group == 0) {
+      part.candidate->set_candidate(static_cast<int>(tile.candidates.first + tile.done));
+    }
+    part.candidate->evaluate(points.groups[tile.group], gear_set, tile.points);
+    ++tile.group;
   }
-  part.candidate->evaluate(points.groups[tile.group], gear_set, tile.points);
-  if (++tile.group == points.groups.size()) {
+  if (tile.group == points.groups.size()) {
     tile.group = 0;
     add_rows(running, tile);
     ++tile.done;
@@ -504,15 +611,23 @@ void CampaignJobs::write(Running& running, Part& part) {
       throw;
     }
   }
-  {
-    const std::lock_guard lock(running.mutex);
-    if (tile.done > 0) ++running.tiles_written;
-    if (stored) running.points_done = stored->points_done;
-    const RowRange rest{tile.candidates.first + tile.done, tile.candidates.count - tile.done};
-    if (rest.count > 0) running.missing.push_front(rest);
-  }
+  if (tile.done == 0 && tile.is_noted) store_.end_suspects(running.id);
+  return_rows(running, tile);
   const bool was_written = tile.done > 0;
   part.tile.reset();
+  bool has_ended_care = false;
+  {
+    const std::lock_guard lock(running.mutex);
+    if (was_written) ++running.tiles_written;
+    if (stored) running.points_done = stored->points_done;
+    has_ended_care =
+        running.is_careful && running.suspects.empty() && running.tiles_written > kTilesOfHealth;
+    if (has_ended_care) running.is_careful = false;
+  }
+  if (has_ended_care) {
+    end_care(running);
+    start_parts(running);
+  }
   if (was_written && (!stored || stored->state != CampaignState::kRunning)) settle(running.id);
   if (stored && stored->state == CampaignState::kSucceeded) {
     spdlog::info("event=campaign_computed campaign={} points={} processor_seconds={:.3f}",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -18,7 +19,11 @@ namespace tribodyn::server {
 /// Computes campaigns in slices on the threads of the executor. A campaign has one part for each
 /// thread; a part fills a tile over one or more slices and writes it with the campaign's progress
 /// in one commit. Only what a tile holds counts: after a crash the campaign continues at the rows
-/// that no tile has. The store is the only truth about the state of a campaign. Safe for concurrent
+/// that no tile has. If a process is lost soon after it began a campaign, the next one computes it
+/// with care: one tile at a time, over all campaigns, each noted in the store before it begins. A
+/// tile that was noted when a process was lost is halved, down to the single candidate, which is
+/// refused after kMaximumLostAttempts attempts. The store is the only truth about the state of a
+/// campaign. Safe for concurrent
 /// access without external synchronization; `resume` and `finish` from one thread.
 class CampaignJobs {
  public:
@@ -70,11 +75,15 @@ class CampaignJobs {
   void activate(const StoredCampaign& campaign);
   void halt(std::int64_t id);
   void settle(std::int64_t id);
-  std::optional<StoredCampaign> change(const CampaignChange& change, const CallLimits& limits);
+  std::optional<StoredCampaign> change(CampaignChange change, const CallLimits& limits);
   void start_parts(Running& running);
+  bool may_take_care(const Running& running, const Part& part) const;
+  void end_care(const Running& running);
   void forget_if_idle(std::int64_t id);
   void load(Running& running);
   bool take_tile(Running& running, Part& part);
+  std::optional<Tile> next_candidates(Running& running) const;
+  void return_rows(Running& running, const Tile& tile);
   bool compute_slice(Running& running, Part& part, PreparedGearSets& gear_sets);
   void compute_unit(Running& running, Part& part, const std::shared_ptr<PreparedGearSet>& gear_set);
   void add_rows(Running& running, Tile& tile);
@@ -86,6 +95,7 @@ class CampaignJobs {
   Scheduler& scheduler_;
   const int threads_;
   const Clock clock_;
+  std::atomic<std::int64_t> careful_campaign_ = 0;  // the one that is computed with care; 0: none
   std::mutex control_mutex_;  // of changes of states, with what follows from them in memory
   mutable std::mutex mutex_;
   std::map<std::int64_t, RunningPointer> running_;  // guarded by mutex_

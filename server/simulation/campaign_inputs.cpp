@@ -148,10 +148,9 @@ std::string hash_of(const PointEvaluation& points) {
   return hash.finish();
 }
 
-}  // namespace
-
-std::optional<CampaignInputs> read_campaign(v1::Campaign request, const ResourceLookup& lookup,
-                                            const std::string& path, Violations& violations) {
+/// As read_campaign(), without input_hash.
+std::optional<CampaignInputs> check_campaign(v1::Campaign request, const ResourceLookup& lookup,
+                                             const std::string& path, Violations& violations) {
   Violations found;
   keep_client_part(request);
   CampaignInputs out;
@@ -169,8 +168,16 @@ std::optional<CampaignInputs> read_campaign(v1::Campaign request, const Resource
   }
   if (!read || !found.empty()) return std::nullopt;
   out.points = std::move(*read);
-  out.input_hash = hash_of(out.points);
   divide_groups(out.points);
+  return out;
+}
+
+}  // namespace
+
+std::optional<CampaignInputs> read_campaign(v1::Campaign request, const ResourceLookup& lookup,
+                                            const std::string& path, Violations& violations) {
+  auto out = check_campaign(std::move(request), lookup, path, violations);
+  if (out) out->input_hash = hash_of(out->points);
   return out;
 }
 
@@ -187,7 +194,7 @@ CampaignInputs stored_campaign_inputs(const StoredCampaign& stored, const std::s
   request.set_surface(stored.surface_revision);
   request.set_vehicle(stored.vehicle_revision);
   Violations violations;
-  auto inputs = read_campaign(std::move(request), lookup, "campaign", violations);
+  auto inputs = check_campaign(std::move(request), lookup, "campaign", violations);
   if (!inputs) {
     throw Refusal("STORED_REQUEST_INVALID",
                   violations.front().field + ": " + violations.front().description);

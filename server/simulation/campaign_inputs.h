@@ -28,8 +28,8 @@ struct CampaignInputs {
 std::optional<CampaignInputs> read_campaign(v1::Campaign request, const ResourceLookup& lookup,
                                             const std::string& path, Violations& violations);
 
-/// Reads a stored campaign again. Throws Refusal if it cannot be read or this server's model
-/// refuses it.
+/// Reads a stored campaign again, without its hash. Throws Refusal if it cannot be read or this
+/// server's model refuses it.
 CampaignInputs stored_campaign_inputs(const StoredCampaign& stored, const std::string& table,
                                       const ResourceLookup& lookup);
 

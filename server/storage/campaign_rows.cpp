@@ -16,8 +16,8 @@ namespace {
 constexpr char kSelectCampaigns[] =
     "SELECT id, project, number, state, stop_reason, stop_message, create_time, end_time, request, "
     "request_id, request_hash, input_hash, model_version, platform, principal, candidates, "
-    "conditions, points_done, points_refused, budget_seconds, budget_points, processor_seconds, "
-    "cost_seconds, stored_bytes, "
+    "conditions, points_done, points_refused, lost_attempts, budget_seconds, budget_points, "
+    "processor_seconds, cost_seconds, stored_bytes, "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = lubricant), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = gear_set), "
     "(SELECT name || '@' || revision FROM revision_names WHERE revision_id = surface), "
@@ -47,6 +47,7 @@ StoredCampaign stored_campaign(const SQLite::Statement& query) {
   out.conditions = next().getInt();
   out.points_done = next().getInt64();
   out.points_refused = next().getInt64();
+  out.lost_attempts = next().getInt();
   out.budget.processor_seconds = next().getDouble();
   out.budget.points = next().getInt64();
   out.processor_seconds = next().getDouble();
@@ -91,6 +92,78 @@ bool overlaps(Connection& db, std::int64_t id, const RowRange& rows) {
   query.bind(2, rows.first + rows.count);
   query.bind(3, rows.first);
   return query.executeStep();
+}
+
+/// A suspect that a lost process had begun.
+struct LostSuspect {
+  std::int64_t campaign = 0;
+  RowRange rows;
+  std::int64_t conditions = 1;
+  int lost_attempts = 0;
+};
+
+std::vector<LostSuspect> query_lost_suspects(Connection& db) {
+  Prepared query(db,
+                 "SELECT s.campaign, s.first_row, s.rows, c.conditions, s.lost_attempts "
+                 "FROM campaign_suspects s JOIN campaigns c ON c.id = s.campaign "
+                 "WHERE s.is_begun = 1");
+  std::vector<LostSuspect> out;
+  while (query.executeStep()) {
+    out.push_back({query.getColumn(0).getInt64(),
+                   {query.getColumn(1).getInt64(), query.getColumn(2).getInt64()},
+                   query.getColumn(3).getInt64(),
+                   query.getColumn(4).getInt()});
+  }
+  return out;
+}
+
+/// Halves a suspect of several candidates.
+void halve(Connection& db, const LostSuspect& suspect) {
+  const std::int64_t first = suspect.rows.count / suspect.conditions / 2 * suspect.conditions;
+  Prepared shorten(db,
+                   "UPDATE campaign_suspects SET rows = ?3, is_begun = 0 WHERE campaign = ?1 AND "
+                   "first_row = ?2");
+  shorten.bind(1, suspect.campaign);
+  shorten.bind(2, suspect.rows.first);
+  shorten.bind(3, first);
+  shorten.exec();
+  Prepared insert(db, "INSERT INTO campaign_suspects VALUES (?, ?, ?, 0, 0)");
+  insert.bind(1, suspect.campaign);
+  insert.bind(2, suspect.rows.first + first);
+  insert.bind(3, suspect.rows.count - first);
+  insert.exec();
+}
+
+/// Counts the lost attempt of a suspect of one candidate.
+void count_attempt(Connection& db, const LostSuspect& suspect) {
+  Prepared count(db,
+                 "UPDATE campaign_suspects SET lost_attempts = lost_attempts + 1, is_begun = 0 "
+                 "WHERE campaign = ? AND first_row = ?");
+  count.bind(1, suspect.campaign);
+  count.bind(2, suspect.rows.first);
+  count.exec();
+  if (suspect.lost_attempts + 1 != kMaximumLostAttempts) return;
+  Prepared refuse(db, "UPDATE campaigns SET lost_candidates = lost_candidates + 1 WHERE id = ?");
+  refuse.bind(1, suspect.campaign);
+  refuse.exec();
+}
+
+/// Removes suspects whose rows a tile holds, and shortens one of which it holds the first rows.
+void clear_suspects(Connection& db, std::int64_t id, const RowRange& tile) {
+  Prepared remove(db,
+                  "DELETE FROM campaign_suspects WHERE campaign = ?1 AND first_row >= ?2 AND "
+                  "first_row + rows <= ?3");
+  remove.bind(1, id);
+  remove.bind(2, tile.first);
+  remove.bind(3, tile.first + tile.count);
+  remove.exec();
+  Prepared shorten(db,
+                   "UPDATE campaign_suspects SET rows = first_row + rows - ?3, first_row = ?3, "
+                   "is_begun = 0 WHERE campaign = ?1 AND first_row = ?2");
+  shorten.bind(1, id);
+  shorten.bind(2, tile.first);
+  shorten.bind(3, tile.first + tile.count);
+  shorten.exec();
 }
 
 void insert_blobs(Connection& db, std::int64_t id, const NewTile& tile,
@@ -218,7 +291,17 @@ Page<StoredCampaign> query_campaigns(Connection& db, const std::string& project,
   return out;
 }
 
-std::vector<std::int64_t> query_running_campaigns(Connection& db) {
+std::vector<std::int64_t> resume_campaigns(Connection& db) {
+  const std::vector<LostSuspect> lost = query_lost_suspects(db);
+  for (const LostSuspect& each : lost) {
+    each.rows.count > each.conditions ? halve(db, each) : count_attempt(db, each);
+  }
+  if (!lost.empty()) {
+    // That explains the loss of the process: it says nothing of the other campaigns.
+    db.exec(
+        "UPDATE campaigns SET lost_attempts = lost_attempts - 1 WHERE state <= 2 AND "
+        "lost_attempts > 0");
+  }
   Prepared query(db, "SELECT id FROM campaigns WHERE state = 1 ORDER BY id");
   std::vector<std::int64_t> out;
   while (query.executeStep()) out.push_back(query.getColumn(0).getInt64());
@@ -236,7 +319,8 @@ std::optional<StoredCampaign> change_campaign(Connection& db, const CampaignChan
                   "UPDATE campaigns SET state = ?2, stop_reason = ?3, stop_message = ?4, "
                   "end_time = CASE WHEN ?2 >= 3 THEN ?5 END, "
                   "budget_seconds = coalesce(?6, budget_seconds), "
-                  "budget_points = coalesce(?7, budget_points), lost_attempts = 0 "
+                  "budget_points = coalesce(?7, budget_points), lost_attempts = ?9, "
+                  "lost_candidates = 0 "
                   "WHERE id = ?1 AND state <= 2 AND state = coalesce(?8, state)");
   update.bind(1, change.id);
   update.bind(2, static_cast<int>(change.to));
@@ -248,26 +332,36 @@ std::optional<StoredCampaign> change_campaign(Connection& db, const CampaignChan
     update.bind(7, change.budget->points);
   }
   if (change.from) update.bind(8, static_cast<int>(*change.from));
+  update.bind(9, change.lost_attempts);
   if (update.exec() == 0) return std::nullopt;
+  if (has_ended(change.to)) {
+    Prepared remove(db, "DELETE FROM campaign_suspects WHERE campaign = ?");
+    remove.bind(1, change.id);
+    remove.exec();
+  }
   return query_campaign(db, change.id);
 }
 
 std::optional<StoredCampaign> begin_campaign(Connection& db, std::int64_t id) {
   Prepared update(db,
                   "UPDATE campaigns SET lost_attempts = lost_attempts + 1 "
-                  "WHERE id = ? AND state <= 2 "
-                  "RETURNING lost_attempts");
+                  "WHERE id = ? AND state <= 2 RETURNING lost_attempts, lost_candidates");
   update.bind(1, id);
   if (!update.executeStep()) return std::nullopt;
-  const int attempts = update.getColumn(0).getInt();
+  const int attempts = update.getColumn(0).getInt(), candidates = update.getColumn(1).getInt();
   update.executeStep();  // to its end: only then is it done
-  if (attempts > kMaximumLostAttempts) {
-    change_campaign(db, {.id = id,
-                         .to = CampaignState::kPaused,
-                         .reason = "WORKER_LOST",
-                         .message = "the server ended " + std::to_string(kMaximumLostAttempts) +
-                                    " times while it computed this campaign; resume it to go on",
-                         .from = CampaignState::kRunning});
+  CampaignChange pause{.id = id,
+                       .to = CampaignState::kPaused,
+                       .reason = "WORKER_LOST",
+                       .from = CampaignState::kRunning};
+  if (candidates > kMaximumLostCandidates) {
+    pause.message = "the server ended whenever it computed one of " + std::to_string(candidates) +
+                    " candidates; resume the campaign to go on with the others";
+    change_campaign(db, pause);
+  } else if (attempts > kMaximumLostAttempts) {
+    pause.message = "the server ended " + std::to_string(kMaximumLostAttempts) +
+                    " times while it computed this campaign; resume it to go on";
+    change_campaign(db, pause);
   }
   return query_campaign(db, id);
 }
@@ -276,6 +370,37 @@ void release_campaign(Connection& db, std::int64_t id) {
   Prepared update(db, "UPDATE campaigns SET lost_attempts = 0 WHERE id = ? AND state <= 2");
   update.bind(1, id);
   update.exec();
+  end_suspects(db, id);
+}
+
+std::vector<CampaignSuspect> query_suspects(Connection& db, std::int64_t id) {
+  Prepared query(db,
+                 "SELECT first_row, rows, lost_attempts FROM campaign_suspects WHERE campaign = ? "
+                 "ORDER BY first_row");
+  query.bind(1, id);
+  std::vector<CampaignSuspect> out;
+  while (query.executeStep()) {
+    out.push_back({{query.getColumn(0).getInt64(), query.getColumn(1).getInt64()},
+                   query.getColumn(2).getInt()});
+  }
+  return out;
+}
+
+void begin_suspect(Connection& db, std::int64_t id, const RowRange& rows) {
+  Prepared begin(db,
+                 "INSERT INTO campaign_suspects SELECT id, ?2, ?3, 1, 0 FROM campaigns "
+                 "WHERE id = ?1 AND state <= 2 "
+                 "ON CONFLICT (campaign, first_row) DO UPDATE SET is_begun = 1");
+  begin.bind(1, id);
+  begin.bind(2, rows.first);
+  begin.bind(3, rows.count);
+  begin.exec();
+}
+
+void end_suspects(Connection& db, std::int64_t id) {
+  Prepared end(db, "UPDATE campaign_suspects SET is_begun = 0 WHERE campaign = ? AND is_begun = 1");
+  end.bind(1, id);
+  end.exec();
 }
 
 std::vector<std::string> compress_tile(const NewTile& tile) {
@@ -304,6 +429,7 @@ std::optional<StoredCampaign> insert_tile(Connection& db, std::int64_t id, const
   update.bind(6, tile.proves_health ? 1 : 0);
   if (update.exec() == 0) return std::nullopt;
   insert_blobs(db, id, tile, blobs);
+  clear_suspects(db, id, tile.rows);
   std::optional<StoredCampaign> stored = query_campaign(db, id);
   const CampaignBudget& budget = stored->budget;
   if (stored->points_done == stored->points()) {

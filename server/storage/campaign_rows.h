@@ -27,8 +27,11 @@ std::optional<StoredCampaign> query_campaign_of_request(Connection& db, const st
 /// Returns the campaigns of a project with numbers below `before` (0: all), the latest first.
 Page<StoredCampaign> query_campaigns(Connection& db, const std::string& project,
                                      std::int64_t before, int limit);
-/// Returns the rows of all campaigns that are RUNNING, the oldest first.
-std::vector<std::int64_t> query_running_campaigns(Connection& db);
+/// Returns the rows of all campaigns that are RUNNING, the oldest first. Called once by a process,
+/// before begin_campaign(). A suspect that an earlier process had begun is halved; of a single
+/// candidate the lost attempt is counted. Either explains the loss of that process, which counts
+/// for no campaign then.
+std::vector<std::int64_t> resume_campaigns(Connection& db);
 /// Returns NewCampaign::candidate_table; empty if the campaign does not exist.
 std::string query_candidate_table(Connection& db, std::int64_t id);
 
@@ -41,17 +44,28 @@ struct CampaignChange {
   std::string message = {};
   std::optional<CampaignState> from = {};     ///< the only state that may change; empty: any
   std::optional<CampaignBudget> budget = {};  ///< its budget from now on; empty: the present one
+  int lost_attempts = 0;                      ///< as in StoredCampaign, from now on
 };
 /// Changes the state. Returns the campaign; nullopt, and changes nothing, if it has ended or is in
 /// another state than `from`.
 std::optional<StoredCampaign> change_campaign(Connection& db, const CampaignChange& change);
 
-/// Counts the beginning of the campaign's computation by a process. If the attempts of
-/// kMaximumLostAttempts earlier processes were lost, pauses it with WORKER_LOST. Returns the
-/// campaign; nullopt if it does not exist or has ended.
+/// Counts the beginning of the campaign's computation by a process. Pauses the campaign with
+/// WORKER_LOST if the attempts of kMaximumLostAttempts processes were lost without a suspect, or
+/// more than kMaximumLostCandidates candidates have had so many. Returns the campaign; nullopt if
+/// it does not exist or has ended.
 std::optional<StoredCampaign> begin_campaign(Connection& db, std::int64_t id);
+inline constexpr int kMaximumLostCandidates = 10;
 /// Forgives the attempts that were counted: the process ends in good order.
 void release_campaign(Connection& db, std::int64_t id);
+
+/// Returns the suspects of a campaign in the order of their rows.
+std::vector<CampaignSuspect> query_suspects(Connection& db, std::int64_t id);
+/// Notes that a process computes rows, which are a suspect from now on until a tile holds them.
+/// Changes nothing if the campaign does not exist or has ended.
+void begin_suspect(Connection& db, std::int64_t id, const RowRange& rows);
+/// Notes that no process computes suspects of the campaign.
+void end_suspects(Connection& db, std::int64_t id);
 
 /// Blobs of a tile: one for each column.
 std::vector<std::string> compress_tile(const NewTile& tile);

@@ -127,6 +127,10 @@ void check_rows(Connection& db, Problems& problems) {
            "(SELECT first_row + rows AS last, lead(first_row) OVER (ORDER BY first_row) AS next "
            "FROM campaign_tiles WHERE campaign = c.id) "
            "WHERE last > coalesce(next, c.candidates * c.conditions))",
+           "SELECT 'campaign ' || c.number || ' of ' || c.project || ': rows of a tile are still "
+           "suspected' FROM campaigns c WHERE EXISTS (SELECT 1 FROM campaign_suspects s JOIN "
+           "campaign_tiles t ON t.campaign = s.campaign AND t.first_row < s.first_row + s.rows AND "
+           "s.first_row < t.first_row + t.rows WHERE s.campaign = c.id)",
            "SELECT 'campaign ' || c.number || ' of ' || c.project || ': columns of a tile that it "
            "has not' FROM campaigns c WHERE EXISTS (SELECT 1 FROM campaign_blobs b WHERE "
            "b.campaign = c.id AND NOT EXISTS (SELECT 1 FROM campaign_tiles t WHERE "

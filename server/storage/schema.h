@@ -8,7 +8,7 @@
 
 namespace tribodyn::server {
 
-/// What is on disk, schema 11. Times are microseconds since 1970 (UTC). Messages are the protos of
+/// What is on disk, schema 12. Times are microseconds since 1970 (UTC). Messages are the protos of
 /// tribodyn.v1 in binary form: field numbers never change meaning.
 ///
 ///   projects     one row per project; last_number is that of its latest simulation, removed or
@@ -56,12 +56,18 @@ namespace tribodyn::server {
 ///                request: the Campaign as the client stated it, without its columns of candidates,
 ///                which are the Campaign candidate_table. points_done and the like change with each
 ///                tile. lost_attempts: processes that began to compute it and neither ended in good
-///                order nor wrote tiles for long. stored_bytes: of both messages and of all blobs.
-///                When a campaign is removed, all below goes with it
+///                order nor wrote tiles for long, where no suspect explains the loss.
+///                lost_candidates: those that are refused because processes were lost while they
+///                computed them, since the campaign was resumed. stored_bytes: of both messages and
+///                of all blobs. When a campaign is removed, all below goes with it
 ///   campaign_tiles  runs of rows that are computed; whole candidates each, in no row two
 ///   campaign_blobs  columns of tiles, compressed (column_codec.h). number: that of the column
 ///                (campaign_columns.h). checksum: of data
 ///   campaign_refusals  the sentences that column 0 numbers
+///   campaign_suspects  runs of rows without a tile that are computed one at a time, because an
+///                earlier process was lost; whole candidates each. is_begun: a process computes
+///                them; if it is lost, they are halved. lost_attempts: processes that were lost
+///                while they computed this one candidate
 ///   history_columns  of time histories, in the order of position; ids are never used again
 ///   history_blocks   a column cut into runs of kHistoryBlock doubles, numbered 0, 1, ..., and each
 ///                compressed (column_codec.h): level 0 as it is, levels above it the least and
@@ -76,7 +82,7 @@ namespace tribodyn::server {
 ///
 /// The text of a schema that a release has written never changes: the tables of a database are
 /// compared with it (schema_differences).
-inline constexpr int kSchemaVersion = 11;
+inline constexpr int kSchemaVersion = 12;
 inline constexpr int kApplicationId = 0x54524244;  // "TRBD"
 
 /// Brings a database of schema `from`, 0 for an empty one, to kSchemaVersion in one transaction. A

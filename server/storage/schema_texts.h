@@ -523,4 +523,18 @@ CREATE TABLE campaign_refusals (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+inline constexpr char kSchema12[] = R"sql(
+ALTER TABLE campaigns ADD COLUMN lost_candidates INTEGER NOT NULL DEFAULT 0
+  CHECK (lost_candidates >= 0);
+
+CREATE TABLE campaign_suspects (
+  campaign INTEGER NOT NULL REFERENCES campaigns (id) ON DELETE CASCADE,
+  first_row INTEGER NOT NULL CHECK (first_row >= 0),
+  rows INTEGER NOT NULL CHECK (rows >= 1),
+  is_begun INTEGER NOT NULL CHECK (is_begun IN (0, 1)),
+  lost_attempts INTEGER NOT NULL CHECK (lost_attempts >= 0),
+  PRIMARY KEY (campaign, first_row)
+) STRICT, WITHOUT ROWID;
+)sql";
+
 }  // namespace tribodyn::server

@@ -632,8 +632,10 @@ Page<StoredCampaign> Store::campaigns(const std::string& project, std::int64_t b
   return read(limits, [&](Connection& db) { return query_campaigns(db, project, before, limit); });
 }
 
-std::vector<std::int64_t> Store::running_campaigns() {
-  return read({}, [](Connection& db) { return query_running_campaigns(db); });
+std::vector<std::int64_t> Store::resume_campaigns() {
+  std::vector<std::int64_t> out;
+  write_together({}, [&](Connection& db) { out = server::resume_campaigns(db); });
+  return out;
 }
 
 std::string Store::candidate_table(std::int64_t id, const CallLimits& limits) {
@@ -657,6 +659,18 @@ std::optional<StoredCampaign> Store::begin_campaign(std::int64_t id) {
 
 void Store::release_campaign(std::int64_t id) {
   write_together({}, [&](Connection& db) { server::release_campaign(db, id); });
+}
+
+std::vector<CampaignSuspect> Store::campaign_suspects(std::int64_t id) {
+  return read({}, [&](Connection& db) { return query_suspects(db, id); });
+}
+
+void Store::begin_suspect(std::int64_t id, const RowRange& rows) {
+  write_together({}, [&](Connection& db) { server::begin_suspect(db, id, rows); });
+}
+
+void Store::end_suspects(std::int64_t id) {
+  write_together({}, [&](Connection& db) { server::end_suspects(db, id); });
 }
 
 std::optional<StoredCampaign> Store::add_tile(std::int64_t id, const NewTile& tile,

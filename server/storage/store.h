@@ -219,12 +219,15 @@ class Store {
                                                     const CallLimits& limits = {});
   Page<StoredCampaign> campaigns(const std::string& project, std::int64_t before, int limit,
                                  const CallLimits& limits = {});
-  std::vector<std::int64_t> running_campaigns();
+  std::vector<std::int64_t> resume_campaigns();
   std::string candidate_table(std::int64_t id, const CallLimits& limits = {});
   std::optional<StoredCampaign> change_campaign(const CampaignChange& change,
                                                 const CallLimits& limits = {});
   std::optional<StoredCampaign> begin_campaign(std::int64_t id);
   void release_campaign(std::int64_t id);
+  std::vector<CampaignSuspect> campaign_suspects(std::int64_t id);
+  void begin_suspect(std::int64_t id, const RowRange& rows);
+  void end_suspects(std::int64_t id);
   std::optional<StoredCampaign> add_tile(std::int64_t id, const NewTile& tile, Microseconds now);
   std::optional<CampaignProgress> campaign_progress(std::int64_t id, std::int64_t first_missing_row,
                                                     const CallLimits& limits = {});

@@ -71,6 +71,8 @@ struct StoredCampaign {
   int conditions = 1;
   std::int64_t points_done = 0;
   std::int64_t points_refused = 0;
+  /// Processes that began to compute it, this one included, and have not proved that they can.
+  int lost_attempts = 0;
   CampaignBudget budget;
   double processor_seconds = 0;
   double cost_seconds = 0;  ///< estimate of all its points, in seconds of one processor
@@ -108,6 +110,12 @@ struct CampaignAdded {
 struct RowRange {
   std::int64_t first = 0;
   std::int64_t count = 0;
+};
+
+/// Rows of whole candidates that are computed with care, because an earlier process was lost.
+struct CampaignSuspect {
+  RowRange rows;
+  int lost_attempts = 0;  ///< of processes that computed it as a single candidate
 };
 
 /// How far a campaign is.

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tests/service/grpc_fixture.h"
+#include "tests/support/run_length.h"
 #include "tribodyn/v1/campaigns.grpc.pb.h"
 
 namespace tribodyn::server {
@@ -91,6 +92,44 @@ TEST_F(CampaignCrashTest, AKilledServerContinuesAtTheMissingRowsWithTheSameBits)
   const std::string expected = bits(undisturbed);
   EXPECT_EQ(expected.size(), std::size_t{50'000} * 13 * sizeof(double));
   EXPECT_TRUE(bits(name) == expected);
+}
+
+/// Ten million points, of which the first few are computed.
+TEST_F(CampaignCrashTest, AHugeCampaignTakesNoMoreMemoryTheLongerItRuns) {
+  v1::CreateCampaignRequest huge = request("huge");
+  v1::Campaign& campaign = *huge.mutable_campaign();
+  campaign.mutable_candidate_columns(0)->clear_values();
+  for (int i = 0; i < 100'000; ++i) {
+    campaign.mutable_candidate_columns(0)->add_values(1e-12 * (1 + 1e-4 * i));
+  }
+  campaign.clear_conditions();
+  for (int i = 0; i < 100; ++i) {
+    campaign.add_conditions()->set_speed_kilometres_per_hour(20 + 1.2 * i);
+  }
+  campaign.mutable_budget()->set_points(4000);
+  v1::Campaign created;
+  {
+    grpc::ClientContext context;
+    const grpc::Status status = campaigns_->CreateCampaign(&context, huge, &created);
+    ASSERT_TRUE(status.ok()) << status.error_message();
+  }
+  EXPECT_EQ(created.points(), 10'000'000);
+  const auto is_paused = [&] {
+    return get_campaign(created.name()).state() == v1::Campaign::PAUSED;
+  };
+  ASSERT_TRUE(eventually(is_paused));
+  const long before = process_->peak_memory_kibibytes();
+  grpc::ClientContext context;
+  v1::ResumeCampaignRequest more;
+  more.set_name(created.name());
+  more.mutable_budget()->set_points(24'000);
+  v1::Campaign resumed;
+  ASSERT_TRUE(campaigns_->ResumeCampaign(&context, more, &resumed).ok());
+  ASSERT_TRUE(eventually(is_paused));
+  EXPECT_GE(get_campaign(created.name()).points_done(), 24'000);
+  if (!kUnderSanitizer) {  // a sanitizer's own memory is counted too
+    EXPECT_LT(process_->peak_memory_kibibytes() - before, 16 << 10);
+  }
 }
 
 }  // namespace

@@ -591,6 +591,66 @@ TEST_F(CampaignTest, ACampaignThatKillsTheServerIsPaused) {
   EXPECT_EQ(fourth->stop_reason, "WORKER_LOST");
 }
 
+TEST_F(CampaignTest, RowsAtWhichAProcessIsLostAreHalvedDownToOneCandidate) {
+  v1::Campaign limited = campaign_of(20'000);
+  limited.mutable_budget()->set_points(1);
+  create(limited);
+  ASSERT_TRUE(reaches("campaigns/1", v1::Campaign::PAUSED));
+  ASSERT_TRUE(eventually([&] {
+    const Occupancy parts = bench_.jobs().occupancy();
+    return parts.running + parts.waiting == 0;
+  }));
+  Store& store = bench_.store();
+  const std::int64_t id = store.numbered_campaign("default", 1)->id;
+  const auto suspects = [&] {
+    std::vector<std::pair<std::int64_t, std::int64_t>> out;
+    for (const CampaignSuspect& each : store.campaign_suspects(id)) {
+      out.emplace_back(each.rows.first, each.rows.count);
+    }
+    return out;
+  };
+  const auto begin = [&] {  // as a process that starts does
+    store.resume_campaigns();
+    return store.begin_campaign(id);
+  };
+  store.change_campaign({.id = id, .to = CampaignState::kRunning, .budget = CampaignBudget()});
+  ASSERT_EQ(begin()->lost_attempts, 1);
+  store.begin_suspect(id, {6000, 18});  // three candidates
+  EXPECT_EQ(begin()->lost_attempts, 1) << "the rows explain the loss";
+  EXPECT_THAT(suspects(), ElementsAre(testing::Pair(6000, 6), testing::Pair(6006, 12)));
+  store.begin_suspect(id, {6006, 12});
+  begin();
+  EXPECT_THAT(suspects(),
+              ElementsAre(testing::Pair(6000, 6), testing::Pair(6006, 6), testing::Pair(6012, 6)));
+  for (int i = 0; i < 3; ++i) {
+    store.begin_suspect(id, {6006, 6});
+    EXPECT_EQ(begin()->state, CampaignState::kRunning);
+  }
+  EXPECT_EQ(store.campaign_suspects(id)[1].lost_attempts, 3) << "nothing is left to halve";
+  EXPECT_EQ(store.campaign_suspects(id)[0].lost_attempts, 0);
+  NewTile tile;
+  tile.rows = {6006, 6};
+  tile.columns.assign(kCampaignColumns.size(), std::vector<double>(6, 1.5));
+  ASSERT_TRUE(store.add_tile(id, tile, 1));
+  EXPECT_THAT(suspects(), ElementsAre(testing::Pair(6000, 6), testing::Pair(6012, 6)));
+  store.begin_suspect(id, {6000, 6});
+  store.end_suspects(id);  // as a process that ends in good order
+  begin();
+  EXPECT_EQ(store.campaign_suspects(id)[0].lost_attempts, 0);
+  EXPECT_THAT(check_database(bench_.database()), IsEmpty());
+  for (int candidate = 0; candidate < kMaximumLostCandidates; ++candidate) {
+    EXPECT_EQ(store.campaign(id)->state, CampaignState::kRunning) << candidate;
+    for (int i = 0; i < 3; ++i) {
+      store.begin_suspect(id, {9000 + 6 * candidate, 6});
+      begin();
+    }
+  }
+  const StoredCampaign paused = *store.campaign(id);
+  EXPECT_EQ(paused.state, CampaignState::kPaused);
+  EXPECT_EQ(paused.stop_reason, "WORKER_LOST");
+  EXPECT_THAT(paused.stop_message, HasSubstr("11 candidates"));
+}
+
 /// Two tiles never have a row in common, and none is added to a campaign that has ended.
 TEST_F(CampaignTest, TheStoreTakesEachRowOnce) {
   v1::Campaign limited = campaign_of(1000);
