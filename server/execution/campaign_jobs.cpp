@@ -61,9 +61,11 @@ std::deque<RowRange> missing_candidates(const std::vector<RowRange>& tiles, std:
 
 /// A point of a candidate whose computation no process has survived.
 EvaluatedPoint lost_point() {
-  return {std::nullopt, "WORKER_LOST",
-          "the server ended " + std::to_string(kMaximumLostAttempts) +
-              " times while it computed this candidate"};
+  EvaluatedPoint out;
+  out.refusal_reason = "WORKER_LOST";
+  out.refusal_message = "the server ended " + std::to_string(kMaximumLostAttempts) +
+                        " times while it computed this candidate";
+  return out;
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ figure { margin: 1em 0; } svg { max-width: 100%; height: auto; }
 
 std::string paragraph(const std::string& text) { return "<p>" + xml_escaped(text) + "</p>\n"; }
 
-std::string heading(const std::string& text) { return "<h2>" + xml_escaped(text) + "</h2>\n"; }
+std::string chapter(const std::string& text) { return "<h2>" + xml_escaped(text) + "</h2>\n"; }
 
 /// Returns the lines of a text report in a fixed pitch.
 std::string preformatted(const std::string& text) {
@@ -145,7 +145,7 @@ std::string report_page(const ReportContents& contents) {
       "Losses of the gear mesh of a hypoid axle; bearings, churning and seals are not in "
       "them. " +
       study_text(first) + "; " + inputs_text(first) + ".");
-  out += heading("Which loses less, and how sure that is");
+  out += chapter("Which loses less, and how sure that is");
   out +=
       paragraph("Mean of " + std::to_string(speeds) +
                 " speeds. +/- (inputs): standard uncertainty that the stated uncertainties of the "
@@ -157,7 +157,7 @@ std::string report_page(const ReportContents& contents) {
                 "Inefficiency against speed");
   for (std::size_t i = 0; i < contents.explanations.size(); ++i) {
     const auto& [request, response] = contents.explanations[i];
-    out += heading("Why " + resource_id(response.other_lubricant_revision()) + " differs from " +
+    out += chapter("Why " + resource_id(response.other_lubricant_revision()) + " differs from " +
                    resource_id(response.lubricant_revision()));
     if (response.mean().refusal_reason().empty()) {
       out += figure(explanation_plot(request, response), "why" + std::to_string(i) + "-",
@@ -165,13 +165,13 @@ std::string report_page(const ReportContents& contents) {
     }
     out += preformatted(explanation_report(request, response));
   }
-  out += heading("Speed by speed, and what to measure to know better");
+  out += chapter("Speed by speed, and what to measure to know better");
   out += preformatted(comparison_report(contents.comparison_request, contents.comparison));
-  out += heading("Lubricants: parameters, their uncertainties and where they come from");
+  out += chapter("Lubricants: parameters, their uncertainties and where they come from");
   for (const v1::Lubricant& lubricant : contents.lubricants) {
     out += closed_part(resource_id(lubricant.name()), preformatted(resource_sheet(lubricant)));
   }
-  out += heading("Curves with warnings and assumptions");
+  out += chapter("Curves with warnings and assumptions");
   for (const v1::Simulation& curve : contents.curves) {
     const auto found = contents.uncertainties.find(curve.name());
     out += closed_part(
@@ -179,7 +179,7 @@ std::string report_page(const ReportContents& contents) {
         preformatted(curve_report(
             curve, true, found == contents.uncertainties.end() ? nullptr : &found->second)));
   }
-  out += heading("To compute it again");
+  out += chapter("To compute it again");
   out += paragraph("Model version " + first.result().model_version() + " on " +
                    first.result().platform() + "; " + first.gear_set_revision() + ", " +
                    first.surface_revision() + ", " + first.vehicle_revision() + ".");
