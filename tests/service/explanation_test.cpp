@@ -19,8 +19,8 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr char kFirst[] = "lubricants/paper-fluid-1";
-constexpr char kSecond[] = "lubricants/paper-fluid-2";
+constexpr char kOneFluid[] = "lubricants/paper-fluid-1";
+constexpr char kOtherFluid[] = "lubricants/paper-fluid-2";
 
 v1::ExplainPointsRequest explanation_of(const std::string& a, const std::string& b,
                                         const std::vector<double>& speeds = {50, 100}) {
@@ -84,7 +84,7 @@ double recomputed_inefficiency(const v1::Lubricant& lubricant, double kilometres
 
 /// Lubricants that differ in four groups, two of which neither viscosity nor pressure sets.
 Fluids different_fluids() {
-  auto b = seed<v1::Lubricant>(kSecond);
+  auto b = seed<v1::Lubricant>(kOtherFluid);
   b.set_relaxation_time_seconds(3 * b.relaxation_time_seconds());
   b.set_limiting_shear_stress_coefficient(0.8 * b.limiting_shear_stress_coefficient());
   Fluids out;
@@ -93,7 +93,7 @@ Fluids different_fluids() {
 }
 
 TEST(ExplainPoints, SharesSumToTheDifferenceAtEachConditionAndInTheMean) {
-  auto request = explanation_of(kFirst, "lubricants/b");
+  auto request = explanation_of(kOneFluid, "lubricants/b");
   request.add_condition_weights(3);
   request.add_condition_weights(1);
   const auto out = explain(request, different_fluids());
@@ -118,7 +118,7 @@ TEST(ExplainPoints, SharesSumToTheDifferenceAtEachConditionAndInTheMean) {
 }
 
 TEST(ExplainPoints, EqualGroupsHaveNoShareAtAll) {
-  const auto out = explain(explanation_of(kFirst, kSecond));
+  const auto out = explain(explanation_of(kOneFluid, kOtherFluid));
   for (const v1::DifferenceCause& cause : out.mean().causes()) {
     const bool differs = cause.group() == v1::PARAMETER_GROUP_VISCOSITY ||
                          cause.group() == v1::PARAMETER_GROUP_PRESSURE_RESPONSE;
@@ -139,7 +139,7 @@ TEST(ExplainPoints, AnExchangedGroupHasTheEffectOfANewSimulation) {
     out.ParseFromString(fluids.lookup().find({"lubricants/b", 0})->body);
     return out;
   }();
-  auto first = seed<v1::Lubricant>(kFirst);
+  auto first = seed<v1::Lubricant>(kOneFluid);
   auto swapped = first;
   swapped.set_pressure_viscosity_coefficient_per_pascal(
       b.pressure_viscosity_coefficient_per_pascal());
@@ -148,7 +148,7 @@ TEST(ExplainPoints, AnExchangedGroupHasTheEffectOfANewSimulation) {
   last.set_relaxation_time_seconds(first.relaxation_time_seconds());
   for (const double speed : {50.0, 75.0}) {  // without and with contact loss
     SCOPED_TRACE(speed);
-    const auto out = explain(explanation_of(kFirst, "lubricants/b", {speed}), fluids);
+    const auto out = explain(explanation_of(kOneFluid, "lubricants/b", {speed}), fluids);
     const v1::DifferenceExplanation& point = out.points(0);
     const double before = recomputed_inefficiency(first, speed);
     const double error =
@@ -164,7 +164,7 @@ TEST(ExplainPoints, AnExchangedGroupHasTheEffectOfANewSimulation) {
 }
 
 TEST(ExplainPoints, AnotherSurfaceIsTheShareOfTheBoundaryFilm) {
-  auto request = explanation_of(kFirst, kFirst, {30});
+  auto request = explanation_of(kOneFluid, kOneFluid, {30});
   request.set_other_surface("surfaces/film");
   auto film = seed<v1::Surface>("surfaces/run-in");
   film.set_tribofilm_shear_strength_pascals(2 * film.tribofilm_shear_strength_pascals());
@@ -179,7 +179,7 @@ TEST(ExplainPoints, AnotherSurfaceIsTheShareOfTheBoundaryFilm) {
 }
 
 TEST(ExplainPoints, ALubricantDiffersFromItselfAfterTheShearTestByItsViscosity) {
-  auto oil = seed<v1::Lubricant>(kFirst);
+  auto oil = seed<v1::Lubricant>(kOneFluid);
   oil.mutable_measurements()
       ->set_sheared_kinematic_viscosity_100_celsius_square_millimetres_per_second(14);
   Fluids fluids;
@@ -190,7 +190,7 @@ TEST(ExplainPoints, ALubricantDiffersFromItselfAfterTheShearTestByItsViscosity) 
   EXPECT_GT(std::abs(mean.inefficiency_difference_percent().value()), 1e-3);
   EXPECT_NEAR(share(mean, v1::PARAMETER_GROUP_VISCOSITY).shapley_value().value(),
               mean.inefficiency_difference_percent().value(), 1e-12);
-  request = explanation_of(kFirst, kFirst, {60});
+  request = explanation_of(kOneFluid, kOneFluid, {60});
   request.set_other_sheared_lubricant(true);
   EXPECT_THAT(explanation_violations(request), testing::StartsWith("other_sheared_lubricant: "));
 }
@@ -202,8 +202,8 @@ TEST(ExplainPoints, AnUncertainGroupThatIsEqualHasAShareOfZeroWithAnUncertainty)
     return out;
   };
   Fluids fluids;
-  fluids.add("lubricants/a", with_uncertain_shear(kFirst));
-  fluids.add("lubricants/b", with_uncertain_shear(kSecond));
+  fluids.add("lubricants/a", with_uncertain_shear(kOneFluid));
+  fluids.add("lubricants/b", with_uncertain_shear(kOtherFluid));
   auto request = explanation_of("lubricants/a", "lubricants/b", {60});
   request.set_draws(39);
   const auto out = explain(request, fluids);
@@ -218,7 +218,7 @@ TEST(ExplainPoints, AnUncertainGroupThatIsEqualHasAShareOfZeroWithAnUncertainty)
 }
 
 TEST(ExplainPoints, ErrorsThatBothShareDoNotReachTheShares) {
-  auto request = explanation_of(kFirst, kFirst, {60});
+  auto request = explanation_of(kOneFluid, kOneFluid, {60});
   request.set_inlet_temperature_rise_uncertainty_kelvin(5);
   const v1::DifferenceExplanation mean = explain(request).mean();
   EXPECT_GT(mean.inefficiency_percent().standard_uncertainty(), 0);
@@ -228,40 +228,40 @@ TEST(ExplainPoints, ErrorsThatBothShareDoNotReachTheShares) {
 TEST(ExplainPoints, EqualRequestsHaveEqualAnswers) {
   Fluids fluids;
   fluids.add("lubricants/a", fluid_with_alpha());
-  const auto request = explanation_of("lubricants/a", kSecond, {66});
+  const auto request = explanation_of("lubricants/a", kOtherFluid, {66});
   EXPECT_EQ(explain(request, fluids).SerializeAsString(),
             explain(request, fluids).SerializeAsString());
 }
 
 TEST(ExplainPoints, RefusesWhatItCannotExplainAndNamesTheField) {
-  EXPECT_THAT(explanation_violations(explanation_of(kFirst, "lubricants/no")),
+  EXPECT_THAT(explanation_violations(explanation_of(kOneFluid, "lubricants/no")),
               HasSubstr("other_lubricant: "));
-  EXPECT_THAT(explanation_violations(explanation_of("lubricants/no", kFirst)),
+  EXPECT_THAT(explanation_violations(explanation_of("lubricants/no", kOneFluid)),
               testing::StartsWith("lubricant: "));
-  EXPECT_THAT(explanation_violations(explanation_of(kFirst, kSecond, {})),
+  EXPECT_THAT(explanation_violations(explanation_of(kOneFluid, kOtherFluid, {})),
               HasSubstr("conditions: "));
-  auto request = explanation_of(kFirst, kSecond);
+  auto request = explanation_of(kOneFluid, kOtherFluid);
   request.add_condition_weights(1);
   EXPECT_THAT(explanation_violations(request),
               HasSubstr("condition_weights: 1 weights of 2 conditions"));
   EXPECT_THAT(
-      explanation_violations(explanation_of(kFirst, kSecond, std::vector<double>(51, 50))),
+      explanation_violations(explanation_of(kOneFluid, kOtherFluid, std::vector<double>(51, 50))),
       HasSubstr("64 combinations at 51 conditions with 19 draws are 65280 points; allowed: at most "
                 "64000"));
-  request = explanation_of(kFirst, kSecond);
+  request = explanation_of(kOneFluid, kOtherFluid);
   request.set_other_surface("surfaces/no");
   EXPECT_THAT(explanation_violations(request), testing::StartsWith("other_surface: "));
 }
 
 TEST(ExplainPoints, SaysWhyACombinationIsRefused) {
   // The viscosity of b is infinite at 40 C, where the coefficient of the other one is stated.
-  auto b = seed<v1::Lubricant>(kSecond);
+  auto b = seed<v1::Lubricant>(kOtherFluid);
   b.set_vogel_reference_temperature_kelvin(313.15);
   b.set_vogel_temperature_coefficient_kelvin(100);
   b.set_pressure_viscosity_temperature_kelvin(373.15);
   Fluids fluids;
   fluids.add("lubricants/b", b);
-  auto request = explanation_of(kFirst, "lubricants/b", {50});
+  auto request = explanation_of(kOneFluid, "lubricants/b", {50});
   request.mutable_conditions(0)->set_sump_temperature_celsius(90);
   const auto out = explain(request, fluids);
   EXPECT_NE(out.points(0).refusal_reason(), "");
@@ -273,7 +273,7 @@ TEST(ExplainPoints, SaysWhyACombinationIsRefused) {
 /// The question of the paper: which property of the viscosity modifiers makes the difference?
 TEST(ExplainPoints, TheFluidsOfThePaperDifferByTheirPressureResponse) {
   const v1::DifferenceExplanation second =
-      explain(explanation_of(kFirst, kSecond, {20, 40, 60, 80, 100, 120, 140})).mean();
+      explain(explanation_of(kOneFluid, kOtherFluid, {20, 40, 60, 80, 100, 120, 140})).mean();
   EXPECT_NEAR(second.inefficiency_difference_percent().value(), 0.234, 0.001);
   EXPECT_NEAR(share(second, v1::PARAMETER_GROUP_PRESSURE_RESPONSE).shapley_value().value(), 0.347,
               0.001);
@@ -285,7 +285,7 @@ TEST(ExplainPoints, TheFluidsOfThePaperDifferByTheirPressureResponse) {
 TEST(ExplainPoints, StopsWhenItsCallIsOver) {
   Violations violations;
   const auto explanation =
-      read_explanation(explanation_of(kFirst, kSecond), seed_lookup(), violations);
+      read_explanation(explanation_of(kOneFluid, kOtherFluid), seed_lookup(), violations);
   PreparedGearSets gear_sets;
   int calls = 0;
   EXPECT_THROW(explain_points(*explanation, gear_sets, [&calls] { return ++calls > 3; }),

@@ -167,6 +167,24 @@ test('a refused request names the field', async () => {
   await page.context().close();
 });
 
+test('what is typed stays while lists arrive', async () => {
+  const page = await signedIn();
+  let release;
+  const held = new Promise((resolve) => { release = resolve; });
+  await page.route('**/v1/gearSets*', async (route) => {
+    await held;
+    await route.continue();
+  });
+  await page.goto(server.address + '/curves?f=paper-fluid-1');
+  await page.getByLabel('Sump, °C').fill('90,');
+  release();
+  await page.locator('.panel select option').first().waitFor({ state: 'attached' });
+  assert.equal(await page.getByLabel('Sump, °C').inputValue(), '90,');
+  await page.getByLabel('Sump, °C').blur();
+  assert.equal(await page.getByLabel('Sump, °C').inputValue(), '90');
+  await page.context().close();
+});
+
 test('a server without the files of the dashboard says so in one line and serves everything else', async () => {
   const bare = await new Server('--dashboard', '/no/such/folder').start();
   try {

@@ -1,3 +1,4 @@
+import { useState } from 'preact/hooks';
 import type { GearSet, Lubricant } from '../api/types';
 import type { Violation } from '../api/client';
 import { fluidsOf, shortTitle, type Curve } from '../curve';
@@ -17,6 +18,8 @@ interface ConditionsProps {
 
 /** The form of a curve: fluids, sumps, gear set, speeds, options. */
 export function Conditions({ request, onChange, lubricants, gearSets, violations, shown }: ConditionsProps) {
+  // The text of the field of sumps while it is edited: numbers alone have no comma at their end.
+  const [typed, setTyped] = useState<string | null>(null);
   const titles = titlesOf(lubricants);
   const colored = fluidsOf(shown).map(idOf);
   const schema = useSchema();
@@ -57,12 +60,14 @@ export function Conditions({ request, onChange, lubricants, gearSets, violations
         <legend>Conditions</legend>
         <label>
           Sump, °C
-          <input value={request.sumps.join(', ')} inputMode="decimal" title={`${range('Simulation', 'sump_temperature_celsius')}; several with commas between them`}
+          <input value={typed ?? request.sumps.join(', ')} inputMode="decimal" title={`${range('Simulation', 'sump_temperature_celsius')}; several with commas between them`}
             aria-invalid={problemOf('sump_temperature_celsius') !== undefined}
-            onChange={(event) => {
+            onInput={(event) => {
+              setTyped(event.currentTarget.value);
               const sumps = event.currentTarget.value.split(/[,;]\s*|\s+/).filter((word) => word !== '').map(Number).filter((value) => !Number.isNaN(value));
-              onChange({ ...request, sumps: sumps.length > 0 ? sumps : request.sumps });
-            }} />
+              if (sumps.length > 0) onChange({ ...request, sumps });
+            }}
+            onBlur={() => setTyped(null)} />
           {problemOf('sump_temperature_celsius') && <span class="problem" role="alert">{problemOf('sump_temperature_celsius')}</span>}
         </label>
         <label>
