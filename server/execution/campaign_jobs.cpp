@@ -37,7 +37,7 @@ constexpr auto kStorePause = std::chrono::milliseconds(200);
 /// Largest size of the requests of all campaigns that run, and the share of one principal.
 constexpr std::size_t kMostRunningBytes = 256 << 20;
 constexpr std::size_t kMostRunning = 1000;
-constexpr double kShareOfOne = 0.75;
+constexpr double kShareOfPrincipal = 0.75;
 
 /// Processes that began a campaign, the present one included, from which on it is computed with
 /// care: one tile at a time, each noted before it is computed. If the process is lost then, its
@@ -273,7 +273,7 @@ CampaignJobs::Admitted CampaignJobs::submit(const NewCampaign& campaign, const C
   Admitted out;
   out.has_place = count < kMostRunning && all_bytes + bytes <= kMostRunningBytes &&
                   static_cast<double>(own_bytes + bytes) <=
-                      kShareOfOne * static_cast<double>(kMostRunningBytes);
+                      kShareOfPrincipal * static_cast<double>(kMostRunningBytes);
   if (!out.has_place) return out;
   const std::lock_guard control(control_mutex_);
   out.added = store_.add_campaign(campaign, clock_(), limits);
