@@ -43,8 +43,8 @@ class IncomingCall {
   virtual std::unique_ptr<google::protobuf::io::ZeroCopyInputStream> read_request() = 0;
   /// Frees the serialised request.
   virtual void drop_request() = 0;
-  /// Returns true if the thread that passes the call to the dispatcher may run it, should it be a
-  /// short read: what waits for that thread meanwhile waits for a millisecond.
+  /// Returns true if the thread that passes the call to the dispatcher may run the call itself if
+  /// the call is a short read. Other work of that thread then waits for about a millisecond.
   virtual bool may_run_on_calling_thread() const { return false; }
 
   const Method& method;

@@ -34,7 +34,7 @@ void Allowance::close_stream() {
 std::shared_ptr<void> Allowance::reserve(double seconds, double most,
                                          const std::function<double()>& unfinished) {
   const std::lock_guard lock(mutex_);
-  // Work that is written meanwhile counts twice for a moment, none is left out.
+  // Work that is written before its place is returned counts twice until then. No work is left out.
   if (unfinished() + reserved_seconds_ + seconds > most) return nullptr;
   reserved_seconds_ += seconds;
   return std::shared_ptr<void>(this, [this, seconds](void*) {

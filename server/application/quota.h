@@ -32,9 +32,10 @@ class Allowance {
   bool open_stream(int most);
   void close_stream();
 
-  /// Reserves `seconds` of a processor until the returned place is destroyed, which must not
-  /// outlive the object: when the work is written. `unfinished` returns the time that written work
-  /// still takes [s]. Returns null, and reserves nothing, if all together would exceed `most`.
+  /// Reserves `seconds` of a processor until the returned place is destroyed. The caller destroys
+  /// the place once the work is written, and before this object. `unfinished` returns the time that
+  /// written work still takes [s]. Returns null, and reserves nothing, if all together would exceed
+  /// `most`.
   std::shared_ptr<void> reserve(double seconds, double most,
                                 const std::function<double()>& unfinished);
 

@@ -190,7 +190,8 @@ TEST(Screening, WritesEveryPointAsCsv) {
   const std::vector<CsvLine> lines = read_csv(csv.str());
   ASSERT_EQ(lines.size(), 7U);
   for (const CsvLine& line : lines) EXPECT_EQ(line.cells.size(), lines[0].cells.size());
-  EXPECT_THAT(csv.str(), HasSubstr("candidate,asperity_friction_coefficient,cost,speed_kilometres"));
+  EXPECT_THAT(csv.str(),
+              HasSubstr("candidate,asperity_friction_coefficient,cost,speed_kilometres"));
   EXPECT_THAT(csv.str(), HasSubstr("\na,0.1,\"1,5\",60,0,90,0,1,3,0.3333333333333333,"));
   EXPECT_THAT(csv.str(), HasSubstr("TOO_HOT,\"the contact is too hot, \"\"far\"\" too hot\""));
 }

@@ -282,7 +282,8 @@ TEST_F(QuotaTest, SubmissionsAtTheSameTimeDoNotPassTheProcessorHoursOfAProjectTo
     });
   }
   for (std::thread& each : clients) each.join();
-  EXPECT_LE(accepted, 2);  // fewer if all come before the first is written
+  EXPECT_GE(accepted, 1);  // a place that is still held beside its written row counts twice
+  EXPECT_LE(accepted, 2);
   EXPECT_EQ(accepted + refused, 6);
   EXPECT_LE(bench_.store().unfinished_seconds("default") / 3600, 3.5 * hours);
   *release_ = true;

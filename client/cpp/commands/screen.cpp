@@ -367,7 +367,8 @@ void set_weights(const ScreenFlags& flags, Screening& screening) {
   for (double& weight : screening.weights) weight /= sum;
 }
 
-/// Returns the campaign of the command line, and sets `screening` to what it screens.
+/// Returns the campaign that the command line describes, and writes its candidates and conditions
+/// to `screening`.
 v1::Campaign campaign_to_follow(ScreenFlags& flags, const v1::Schema& schema,
                                 Connection& connection, Screening& screening) {
   if (!flags.campaign.empty()) {
@@ -443,7 +444,7 @@ bool compute(ScreenFlags& flags, const v1::Schema& schema, Connection& connectio
   return is_complete;
 }
 
-/// Writes the files of all points that are asked for.
+/// Writes all points to the files that the command line names.
 void write_point_files(const ScreenFlags& flags, const Screening& screening) {
   if (!flags.csv_path.empty()) {
     write_file(flags.csv_path, [&](std::ostream& file) { write_screening_csv(screening, file); });
@@ -478,7 +479,7 @@ RankingConfidence confidence_of(const ScreenFlags& flags, const Screening& scree
   return out;
 }
 
-/// The Pareto front and the main effects that were asked for.
+/// The Pareto front and the main effects, each if the command line requests it.
 struct Decisions {
   std::optional<ScreeningFront> front;
   std::optional<ScreeningEffects> effects;

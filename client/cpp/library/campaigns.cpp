@@ -9,8 +9,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Pauses between two looks at a campaign: a small one ends after some milliseconds, and a large one
-// is not asked for more often than a person reads.
+// Pauses between two requests for the state of a campaign. The first ones are short, because a
+// small campaign ends after some milliseconds; later ones are as long as a person takes to read.
 constexpr milliseconds kFirstLook(10);
 constexpr milliseconds kLatestLook(500);
 constexpr milliseconds kWhileLost(250);

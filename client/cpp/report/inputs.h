@@ -29,8 +29,8 @@ Differences differences_of(const std::vector<v1::Simulation>& simulations);
 std::string inputs_text(const v1::Simulation& simulation, const char* celsius = "C",
                         const Differences& differences = {});
 
-/// Returns what tells a simulation from the others, e.g. "sump 90 C, isothermal"; empty if nothing
-/// differs.
+/// Returns those inputs of a simulation that differ between simulations, e.g. "sump 90 C,
+/// isothermal"; an empty text if none differs.
 std::string distinction(const v1::Simulation& simulation, const Differences& differences,
                         const char* celsius = "C");
 

@@ -19,8 +19,9 @@ struct Variant {
 /// Returns the variants among curves, in their order. The pointers are into `simulations`.
 std::vector<Variant> variants_of(const std::vector<v1::Simulation>& simulations);
 
-/// Returns for each curve what tells it from the others: of a variant what differs from its base,
-/// e.g. "sump 90 C, isothermal". Empty texts where nothing differs.
+/// Returns a label for each curve: the inputs that differ between the curves; for a variant, the
+/// options that differ from those of its base, e.g. "sump 90 C, isothermal". A label is empty if
+/// nothing differs.
 std::vector<std::string> variant_notes(const std::vector<v1::Simulation>& simulations,
                                        const char* celsius = "C");
 

@@ -14,8 +14,9 @@ std::string state_text(v1::Campaign::State state);
 std::string points_text(const v1::Campaign& campaign);
 
 /// Follows a campaign until it has ended or is paused, with progress on standard error, and returns
-/// it. Throws Failure: kExitInterrupted on Ctrl-C, kExitCannotConnect when the server is lost. The
-/// campaign goes on in both cases; the message contains the commands that continue or end it.
+/// it. Throws Failure: kExitInterrupted on Ctrl-C, kExitCannotConnect when the server is lost. In
+/// both cases the server continues the campaign; the message contains the commands that continue or
+/// cancel it.
 v1::Campaign follow_to_end(Connection& connection, const std::string& name, ProgressForm form);
 
 }  // namespace tribodyn::client

@@ -18,7 +18,7 @@ bool is_utf8(std::string_view text);
 
 /// Returns the value rounded to `decimals` places, never "-0.00"; "-" if it is not finite.
 std::string fixed(double value, int decimals);
-/// The same with '+' before what is above zero as printed.
+/// Returns the same text, with '+' before a value that is positive after rounding.
 std::string signed_fixed(double value, int decimals);
 
 /// Returns the value with `digits` significant digits, e.g. 1.23e+07 or 0.0456; "-" if it is not
