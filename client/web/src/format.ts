@@ -27,8 +27,12 @@ export function rounded(value: number | null | undefined, error?: number): strin
   const magnitude = Math.floor(Math.log10(Math.abs(value)));
   let places = (error === undefined ? 3 : MOST_FIGURES) - 1 - magnitude;
   if (error !== undefined && error > 0) places = Math.min(places, placesOf(error));
-  if (magnitude < -4 || magnitude > 6) return value.toExponential(Math.max(0, Math.min(places + magnitude, 3)));
-  return value.toFixed(Math.max(0, Math.min(places, 8))).replace('-', '−');
+  const bearsFewDigits = error !== undefined && error > 0 && places <= 8;
+  if ((magnitude < -4 && !bearsFewDigits) || magnitude > 6) {
+    return value.toExponential(Math.max(0, Math.min(places + magnitude, 3))).replaceAll('-', '−');
+  }
+  const text = value.toFixed(Math.max(0, Math.min(places, 8)));
+  return Number(text) === 0 ? text.replace('-', '') : text.replace('-', '−');
 }
 
 /** "2 min ago". */

@@ -1,5 +1,5 @@
 import { useEffect, useState } from 'preact/hooks';
-import { get, session, url } from './api/client';
+import { change, get, session, url } from './api/client';
 import type { GearSet, ListGearSetsResponse, ListLubricantsResponse, Lubricant, Schema } from './api/types';
 import { idOf } from './format';
 import { useStore } from './store';
@@ -7,6 +7,7 @@ import { useStore } from './store';
 export interface Loaded<T> {
   value?: T;
   error?: unknown;
+  isStale: boolean; // the value belongs to an earlier key
   reload: () => void;
 }
 
@@ -20,12 +21,16 @@ export function useLoaded<T>(load: (signal: AbortSignal) => Promise<T>, key: str
     const controller = new AbortController();
     load(controller.signal).then(
       (value) => setState({ key, value }),
-      (error) => { if (!controller.signal.aborted) setState((old) => ({ ...old, key, error })); },
+      (error) => { if (!controller.signal.aborted) setState((old) => ({ ...(old.key === key ? old : {}), key, error })); },
     );
     return () => controller.abort();
   }, [key, round, who]);
-  return { ...(state.key === key ? state : { value: state.value }), reload: () => setRound((count) => count + 1) } as Loaded<T>;
+  return { ...(state.key === key ? state : { value: state.value }), isStale: state.key !== key, reload: () => setRound((count) => count + 1) } as Loaded<T>;
 }
+
+/** Asks a method that stores nothing, again whenever the body changes; null asks nothing. */
+export const useAnswer = <T>(method: string, body: unknown | null): Loaded<T | null> =>
+  useLoaded((signal) => (body === null ? Promise.resolve(null) : change<T>('POST', url(method), body, signal)), `${method} ${JSON.stringify(body)}`);
 
 const LUBRICANT_FIELDS = 'name,display_name,characterisation,revision,base_oil_class';
 

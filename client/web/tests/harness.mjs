@@ -74,6 +74,18 @@ export class Server {
     return response.json();
   }
 
+  /** Enters an oil by its data sheet; what it does not state is estimated, with uncertainties. */
+  async newOil(id, name, kv40, kv100, density) {
+    return this.call('POST', `/v1/lubricants?lubricant_id=${id}`, {
+      display_name: name, base_oil_class: 'BASE_OIL_CLASS_POLYALPHAOLEFIN',
+      measurements: {
+        kinematic_viscosity_40_celsius_square_millimetres_per_second: kv40,
+        kinematic_viscosity_100_celsius_square_millimetres_per_second: kv100,
+        density_15_celsius_kilograms_per_cubic_metre: density,
+      },
+    });
+  }
+
   /** Prints a new token for somebody. */
   async newToken(name, ...flags) {
     return (await output(TRIBODYND, ['tokens', 'create', name, '--database', this.database, ...flags])).trim();
@@ -88,7 +100,8 @@ export async function launch() {
 
 /**
  * A browser without cookies that has a page. Requests that leave the server, errors of scripts and
- * violations of the content security policy are recorded in `complaints`.
+ * violations of the content security policy are recorded in `complaints`, numbers of the service's
+ * answers in `answered`.
  */
 export async function newPage(browser, server, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, locale: 'en-GB', ...options });
@@ -98,6 +111,12 @@ export async function newPage(browser, server, options = {}) {
   page.on('pageerror', (error) => page.complaints.push(`error: ${error.message}`));
   page.on('console', (message) => {
     if (/Content Security Policy|Trusted/i.test(message.text())) page.complaints.push(message.text());
+  });
+  page.answered = new Set(); // numbers of all answers
+  page.reading = [];
+  page.on('response', (response) => {
+    if (!/\/v1\//.test(response.url()) || !/json/.test(response.headers()['content-type'] ?? '')) return;
+    page.reading.push(response.json().then((body) => numbersOf(body, page.answered), () => {}));
   });
   page.on('request', (request) => {
     const to = new URL(request.url());
@@ -110,4 +129,28 @@ export async function signIn(page, token) {
   await page.getByLabel('Token').fill(token);
   await page.getByRole('button', { name: 'Sign in' }).click();
   await page.getByRole('dialog').waitFor({ state: 'detached' });
+}
+
+/** All numbers of a JSON value, at any depth. */
+function numbersOf(value, into) {
+  if (typeof value === 'number') into.add(value);
+  else if (value !== null && typeof value === 'object') Object.values(value).forEach((each) => numbersOf(each, into));
+}
+
+/** Numbers shown on the page that no answer of the service held, or whose text is not that number rounded. */
+export async function foreignNumbers(page) {
+  await Promise.all(page.reading);
+  const shown = await page.locator('[data-value]').evaluateAll((all) => all.map((each) => ({ ...each.dataset, text: each.textContent })));
+  if (shown.length === 0) return ['no number is shown'];
+  return shown.flatMap(({ value, factor = '1', offset = '0', text }) => {
+    const digits = text.replace('−', '-').replace('+', '').replace(/e−/, 'e-');
+    const places = /e/.test(digits) ? undefined : (digits.split('.')[1] ?? '').length;
+    const exact = Number(value) * Number(factor) + Number(offset);
+    // Three figures at least, or the last place that is shown.
+    const room = places === undefined ? 0.05 * Math.abs(exact) : Math.max(0.501 * 10 ** -places, 1e-12);
+    const complaints = [];
+    if (!page.answered.has(Number(value))) complaints.push(`no answer holds ${value} (shown as ${text})`);
+    if (!(Math.abs(Number(digits) - exact) <= room)) complaints.push(`${text} is not ${exact}`);
+    return complaints;
+  });
 }

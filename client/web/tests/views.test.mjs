@@ -15,6 +15,8 @@ before(async () => {
   mkdirSync(FOLDER, { recursive: true });
   browser = await launch();
   server = await new Server().start();
+  await server.newOil('my-oil', 'My oil', 103, 15.1, 868);
+  await server.newOil('their-oil', 'Their oil', 95, 12.4, 862);
   const create = (body) => server.call('POST', '/v1/simulations', body);
   for (const fluid of [1, 2, 3]) {
     await create({
@@ -54,6 +56,8 @@ const VIEWS = [
   ['curves', '/curves?r=1,2,3', '.multiple canvas'],
   ['curves-dte', '/curves?r=1,2,3&y=dte', '.multiple canvas'],
   ['curves-form', '/curves?f=paper-fluid-1', '.empty'],
+  ['compare', '/compare?a=my-oil&b=their-oil', '.bars'],
+  ['compare-exact', '/compare?a=paper-fluid-1&b=paper-fluid-2', '.bars'],
   ['fluids', '/fluids', 'tbody tr'],
   ['fluid', '/fluids/paper-fluid-1', '.parameters tbody tr'],
   ['fluid-new', '/fluids/new', '.drop'],

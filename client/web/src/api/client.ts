@@ -121,9 +121,9 @@ export async function getBytes(address: string, signal?: AbortSignal): Promise<A
 }
 
 /** Calls a method that changes something. */
-export async function change<T>(method: 'POST' | 'PATCH' | 'DELETE', address: string, body?: unknown): Promise<T> {
+export async function change<T>(method: 'POST' | 'PATCH' | 'DELETE', address: string, body?: unknown, signal?: AbortSignal): Promise<T> {
   const headers: Record<string, string> = { 'Tribodyn-Csrf': session.value?.csrf_token ?? '' };
   if (body !== undefined) headers['Content-Type'] = 'application/json';
-  const init = { method, headers, body: body === undefined ? null : JSON.stringify(body) };
+  const init = { method, headers, signal: signal ?? null, body: body === undefined ? null : JSON.stringify(body) };
   return (await send(address, init)).json();
 }

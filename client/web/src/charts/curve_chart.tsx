@@ -2,7 +2,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { useColors } from './theme';
-import { colorOf, corners, DASHES, hasMarker, lastOf, MARKERS, rangeOf, spread, type Colors, type Line, type Spec } from './spec';
+import { areasOf, colorOf, corners, DASHES, hasMarker, lastOf, MARKERS, opacityOf, rangeOf, spread, type Colors, type Line, type Spec } from './spec';
 
 const FONT = 'system-ui, sans-serif';
 const WHISKER_PIXELS = 1.5; // a smaller error is thinner than the line
@@ -44,6 +44,26 @@ function drawRegions(u: uPlot, spec: Spec, colors: Colors, isSmall: boolean): vo
   for (const [from, to] of isSmall ? [] : spec.caution) {
     const [left, width] = span(from, to);
     if (width > 0) ctx.fillRect(left, bbox.top - 7 * ratio, width, 5 * ratio);
+  }
+  ctx.restore();
+}
+
+function drawAreas(u: uPlot, spec: Spec, colors: Colors): void {
+  const { ctx, bbox } = u;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  for (const line of spec.lines) {
+    ctx.fillStyle = colorOf(line.series, colors);
+    ctx.globalAlpha = opacityOf(line);
+    for (const area of areasOf(line)) {
+      ctx.beginPath();
+      const corner = (i: number, value: number) => ctx.lineTo(u.valToPos(area.x[i]!, 'x', true), u.valToPos(value, 'y', true));
+      area.high.forEach((value, i) => corner(i, value));
+      for (let i = area.low.length - 1; i >= 0; --i) corner(i, area.low[i]!);
+      ctx.fill();
+    }
   }
   ctx.restore();
 }
@@ -199,7 +219,8 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
         cursor: {
           sync: { key: sync },
           y: false,
-          drag: { x: true, y: false, setScale: onZoom === undefined },
+          // The snapped cursor makes each click look like a drag to uPlot, which would swallow the click.
+          drag: { x: true, y: false, setScale: onZoom === undefined, click: () => {} },
           points: { show: false },
           move: (u, left, top) => {
             const x = u.data[0][u.posToIdx(left)];
@@ -226,6 +247,7 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
         ],
         hooks: {
           drawClear: [(u) => drawRegions(u, spec, colors, isSmall)],
+          drawAxes: [(u) => drawAreas(u, spec, colors)],
           draw: [
             (u) => drawLevels(u, spec, colors, isSmall),
             (u) => drawMarkers(u, spec, colors, isSmall),

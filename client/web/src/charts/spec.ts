@@ -6,7 +6,10 @@ export interface Line {
   x: number[];
   y: (number | null)[]; // null breaks the line
   hollow: boolean[]; // flanks separate here
-  error?: (number | null)[]; // estimated, absolute
+  error?: (number | null)[]; // estimated by the solver, absolute
+  low?: (number | null)[]; // lower end of the interval by the inputs, with `high`
+  high?: (number | null)[];
+  to?: (number | null)[]; // fills the area between the line and these values
 }
 
 export interface Spec {
@@ -69,8 +72,8 @@ export function rangeOf(spec: Spec, from = -Infinity, to = Infinity): [number, n
   for (const line of spec.lines) {
     line.y.forEach((y, i) => {
       if (y === null || line.x[i]! < from || line.x[i]! > to) return;
-      low = Math.min(low, y);
-      high = Math.max(high, y);
+      low = Math.min(low, y, line.low?.[i] ?? y, line.to?.[i] ?? y);
+      high = Math.max(high, y, line.high?.[i] ?? y, line.to?.[i] ?? y);
     });
   }
   if (low > high) return [0, 1];
@@ -85,6 +88,38 @@ export function rangeOf(spec: Spec, from = -Infinity, to = Infinity): [number, n
   const room = 0.07 * (high - low || Math.abs(high) || 1);
   return [spec.fromZero && low === 0 ? 0 : low - room, high + room];
 }
+
+/** An area around or beside a line: its edges, without the points that have none. */
+export interface Area {
+  x: number[];
+  low: number[];
+  high: number[];
+}
+
+/** Areas of intervals or fills of a line, one for each run of points that have both edges. */
+export function areasOf(line: Line): Area[] {
+  const low = line.low ?? (line.to ? line.y : undefined);
+  const high = line.high ?? line.to;
+  if (!low || !high) return [];
+  const areas: Area[] = [];
+  let isOpen = false;
+  line.x.forEach((x, i) => {
+    const [a, b] = [low[i], high[i]];
+    const exists = a !== null && a !== undefined && b !== null && b !== undefined;
+    if (exists) {
+      if (!isOpen) areas.push({ x: [], low: [], high: [] });
+      const area = areas.at(-1)!;
+      area.x.push(x);
+      area.low.push(a);
+      area.high.push(b);
+    }
+    isOpen = exists;
+  });
+  return areas;
+}
+
+/** How opaque an area is: intervals lie over each other, fills of stacked lines do not. */
+export const opacityOf = (line: Line): number => (line.to ? 0.55 : 0.15);
 
 /** Moves labels apart: returns their positions, in the order given, at least `pitch` apart. */
 export function spread(wanted: number[], pitch: number, low: number, high: number): number[] {

@@ -1,4 +1,4 @@
-import { colorOf, corners, DASHES, hasMarker, lastOf, LIGHT, MARKERS, rangeOf, spread, type Line, type Spec } from './spec';
+import { areasOf, colorOf, corners, DASHES, hasMarker, lastOf, LIGHT, MARKERS, opacityOf, rangeOf, spread, type Line, type Spec } from './spec';
 
 const WIDTH = 960;
 const LEFT = 64;
@@ -65,6 +65,12 @@ export function svgOf(spec: Spec, footer: string[]): string {
     if (level.value < low || level.value > high) continue;
     out.push(`<path d="M${LEFT} ${y(level.value).toFixed(1)}H${right}" stroke="${LIGHT.muted}" stroke-dasharray="4 4"/>`);
     text([LEFT + 6, y(level.value) - 4], level.label, `font-size="11.5" fill="${LIGHT.muted}"`);
+  }
+  for (const line of spec.lines) {
+    for (const area of areasOf(line)) {
+      const edge = (values: number[]) => values.map((value, i) => `${x(area.x[i]!).toFixed(1)} ${y(value).toFixed(1)}`);
+      out.push(`<path d="M${[...edge(area.high), ...edge(area.low).reverse()].join('L')}Z" fill="${colorOf(line.series, LIGHT)}" opacity="${opacityOf(line)}"/>`);
+    }
   }
   for (const line of spec.lines) {
     let path = '';

@@ -1,9 +1,8 @@
-import { useState } from 'preact/hooks';
 import { url } from '../api/client';
 import type { Spec } from '../charts/spec';
-import { pngOf, save, svgOf } from '../charts/svg';
 import { remarksOf, type Curve } from '../curve';
 import { idOf, revisionIdOf } from '../format';
+import { TakeAway } from './take_away';
 import { commandsOf, inputsOf, requestOfSimulations } from '../request';
 
 interface CurveExportProps {
@@ -24,31 +23,17 @@ function footerOf(curves: Curve[]): string[] {
   ];
 }
 
-/** Everything that can be taken away from a figure. */
+/** Everything that can be taken away from curves. */
 export function CurveExport({ spec, curves, project }: CurveExportProps) {
-  const [copied, setCopied] = useState('');
-  const copy = async (what: string, text: string) => {
-    await navigator.clipboard.writeText(text);
-    setCopied(what);
-    setTimeout(() => setCopied(''), 2000);
-  };
-  const svg = () => svgOf(spec, footerOf(curves));
-  const request = requestOfSimulations(curves.map((each) => each.simulation));
+  const simulations = curves.map((each) => each.simulation);
   return (
-    <details class="menu">
-      <summary class="button">Take away</summary>
-      <div class="menu-body">
-        <button onClick={() => save('curves.svg', new Blob([svg()], { type: 'image/svg+xml' }))}>Figure as SVG</button>
-        <button onClick={() => void pngOf(svg()).then((png) => save('curves.png', png))}>Figure as PNG</button>
-        {curves.map((curve) => (
-          <a key={curve.simulation.name} class="button" download={`${idOf(curve.simulation.lubricant)}-${idOf(curve.simulation.name)}.csv`}
-            href={url(curve.simulation.name!, { alt: 'csv' })}>All numbers of {idOf(curve.simulation.lubricant)} as CSV</a>
-        ))}
-        <button onClick={() => save('request.json', new Blob([JSON.stringify(curves.map(({ simulation }) => ({ ...inputsOf(simulation), inefficiency_curve: simulation.inefficiency_curve })), null, 2)], { type: 'application/json' }))}>Request as JSON</button>
-        <button onClick={() => void copy('command', commandsOf(request, project).join('\n'))}>{copied === 'command' ? 'Copied' : 'Copy the command line'}</button>
-        <button onClick={() => void copy('link', location.href)}>{copied === 'link' ? 'Copied' : 'Copy a link to this result'}</button>
-        <pre class="command" aria-label="Command line">{commandsOf(request, project).join('\n')}</pre>
-      </div>
-    </details>
+    <TakeAway name="curves" spec={spec} footer={footerOf(curves)}
+      requests={simulations.map((simulation) => ({ ...inputsOf(simulation), inefficiency_curve: simulation.inefficiency_curve }))}
+      commands={commandsOf(requestOfSimulations(simulations), project)}>
+      {simulations.map((simulation) => (
+        <a key={simulation.name} class="button" download={`${idOf(simulation.lubricant)}-${idOf(simulation.name)}.csv`}
+          href={url(simulation.name!, { alt: 'csv' })}>All numbers of {idOf(simulation.lubricant)} as CSV</a>
+      ))}
+    </TakeAway>
   );
 }

@@ -9,10 +9,11 @@ import { Missing } from './missing';
 import { Notice } from './notice';
 import { SignIn } from './sign_in';
 
-const LINKS: [string, string][] = [['/', 'Home'], ['/curves', 'Curves'], ['/fluids', 'Fluids'], ['/jobs', 'Jobs']];
+const LINKS: [string, string][] = [['/', 'Home'], ['/curves', 'Curves'], ['/compare', 'Compare'], ['/fluids', 'Fluids'], ['/jobs', 'Jobs']];
 
 /** Views by the first word of the path; each but the first has its own chunk. */
 const VIEWS: Record<string, () => Promise<ComponentType>> = {
+  compare: async () => (await import('../views/compare')).Compare,
   curves: async () => (await import('../views/curves')).Curves,
   fluids: async () => (await import('../views/fluids')).Fluids,
   jobs: async () => (await import('../views/jobs')).Jobs,

@@ -5,15 +5,10 @@ import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
 import { ago, idOf, rounded, shown } from '../format';
 import { BASE_OILS, constraintOf, DATA_SHEET, PARAMETERS, rangeText, readNumber, unitOf, valueOf, written, type Field } from '../lubricant_fields';
+import { PROVENANCE } from '../provenance';
 import { useLoaded, useLubricants, useSchema } from '../resources';
 import { address, go, place } from '../router';
 import { useStore } from '../store';
-
-const PROVENANCE: Record<string, string> = {
-  PROVENANCE_PUBLISHED: 'published', PROVENANCE_DERIVED: 'derived', PROVENANCE_LITERATURE: 'literature',
-  PROVENANCE_MEASURED: 'measured', PROVENANCE_FITTED: 'fitted', PROVENANCE_ASSUMED: 'assumed',
-  PROVENANCE_CALIBRATED: 'calibrated', PROVENANCE_USER: 'entered',
-};
 
 export function Fluids() {
   const { path } = useStore(place);
@@ -32,6 +27,7 @@ function FluidList() {
       <div class="heading">
         <h1>Fluids</h1>
         <div class="actions">
+          {chosen.length === 2 && <a class="button" href={address('/compare', { a: chosen[0], b: chosen[1] })}>Compare the two</a>}
           {chosen.length > 0 && <a class="button primary" href={address('/curves', { f: chosen.join(',') })}>Curve of {chosen.length}</a>}
           <a class="button" href={address('/fluids/new')}>Enter an oil</a>
         </div>

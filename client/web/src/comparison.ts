@@ -1,0 +1,185 @@
+import type { ComparedLubricant, ComparedPoint, ComparePointsRequest, ExplainPointsRequest, PointCondition, UncertainFigure } from './api/types';
+import type { Line, Spec } from './charts/spec';
+import { finite } from './components/num';
+import { plain, scaled, shown, type Unit } from './format';
+import { PARAMETERS } from './lubricant_fields';
+
+/** What the form of a comparison holds. */
+export interface CompareRequest {
+  a: string; // id, with or without "@revision"
+  b: string;
+  sump: number; // [C]
+  gearSet: string; // id; "": the reference axle
+  first: number; // [km/h]
+  last: number; // [km/h]
+  step: number; // [km/h]
+  options: string[];
+  sumpUncertainty: number; // [K]
+  correlation: number; // of estimates
+}
+
+const USUAL = { sump: 40, first: 20, last: 140, step: 10, sumpUncertainty: 0, correlation: 0.5 };
+const WORDS: Record<keyof typeof USUAL, string> = { sump: 'sump', first: 'from', last: 'to', step: 'step', sumpUncertainty: 'dsump', correlation: 'corr' };
+
+export function compareRequestOf(query: URLSearchParams): CompareRequest {
+  const numbers = Object.fromEntries(Object.entries(WORDS).map(([key, word]) =>
+    [key, query.has(word) ? Number(query.get(word)) : USUAL[key as keyof typeof USUAL]])) as typeof USUAL;
+  return {
+    a: query.get('a') ?? '', b: query.get('b') ?? '', gearSet: query.get('gear') ?? '',
+    options: (query.get('opt') ?? '').split(',').filter((each) => each !== ''), ...numbers,
+  };
+}
+
+export function compareQueryOf(request: CompareRequest): Record<string, string | undefined> {
+  return {
+    a: request.a || undefined, b: request.b || undefined, gear: request.gearSet || undefined,
+    opt: request.options.join(',') || undefined,
+    ...Object.fromEntries(Object.entries(WORDS).map(([key, word]) => {
+      const value = request[key as keyof typeof USUAL];
+      return [word, value === USUAL[key as keyof typeof USUAL] ? undefined : String(value)];
+    })),
+  };
+}
+
+const MOST_SPEEDS = 1000;
+
+/** The speeds of a range, as the server forms those of a curve. */
+export function speedsOf(request: { first: number; last: number; step: number }): number[] {
+  const speeds: number[] = [];
+  if (!(request.step > 0)) return [request.first];
+  for (let i = 0; speeds.length < MOST_SPEEDS; ++i) {
+    const speed = Number((request.first + i * request.step).toPrecision(12));
+    if (speed > request.last) break;
+    speeds.push(speed);
+  }
+  return speeds;
+}
+
+const conditionOf = (request: CompareRequest, speed: number): PointCondition =>
+  ({ speed_kilometres_per_hour: speed, sump_temperature_celsius: request.sump });
+
+const common = (request: CompareRequest) => ({
+  ...(request.gearSet ? { gear_set: `gearSets/${request.gearSet}` } : {}),
+  ...(request.options.length > 0 ? { model_options: Object.fromEntries(request.options.map((each) => [each, true])) } : {}),
+  ...(request.sumpUncertainty !== 0 ? { sump_temperature_uncertainty_kelvin: request.sumpUncertainty } : {}),
+  estimate_correlation: request.correlation,
+});
+
+export const compareBodyOf = (request: CompareRequest): ComparePointsRequest => ({
+  lubricants: [`lubricants/${request.a}`, `lubricants/${request.b}`],
+  ...common(request),
+  conditions: speedsOf(request).map((speed) => conditionOf(request, speed)),
+});
+
+const MOST_POINTS_PER_COMBINATION = 1000; // 64000 points of ExplainPoints over 64 combinations
+const USUAL_DRAWS = 99;
+
+/** Explains the difference at some speeds, with as many draws as the service allows for them. */
+export const explainBodyOf = (request: CompareRequest, speeds: number[]): ExplainPointsRequest => ({
+  lubricant: `lubricants/${request.a}`,
+  other_lubricant: `lubricants/${request.b}`,
+  ...common(request),
+  conditions: speeds.map((speed) => conditionOf(request, speed)),
+  draws: Math.min(USUAL_DRAWS, Math.floor(MOST_POINTS_PER_COMBINATION / speeds.length) - 1),
+});
+
+const flagsOf = (request: CompareRequest, speeds: number[], project: string): string =>
+  [...(project === 'default' ? [] : ['--project', project]), '--speeds', speeds.join(','), '--sump-temperature-celsius', request.sump,
+    ...(request.gearSet ? ['--gear-set', request.gearSet] : []),
+    ...(request.sumpUncertainty !== 0 ? ['--sump-temperature-uncertainty-kelvin', request.sumpUncertainty] : []),
+    '--estimate-correlation', request.correlation,
+    ...request.options.map((each) => `--${each.replaceAll('_', '-')}`)].join(' ');
+
+/** Commands that compute the same figures. */
+export const compareCommandsOf = (request: CompareRequest, explained: number[], project: string): string[] => [
+  `tribodyn compare ${request.a} ${request.b} ${flagsOf(request, speedsOf(request), project)}`,
+  `tribodyn explain ${request.a} ${request.b} ${flagsOf(request, explained, project)}`,
+];
+
+/** A figure of compared points. */
+export interface ComparedQuantity {
+  id: string; // in addresses
+  label: string;
+  unit: Unit;
+  figure: (point: ComparedPoint) => UncertainFigure | undefined;
+}
+
+export const COMPARED: ComparedQuantity[] = [
+  { id: 'inefficiency', label: 'Mesh inefficiency', unit: plain('%'), figure: (point) => point.inefficiency_energy_mean_percent },
+  { id: 'loss', label: 'Mesh loss', unit: plain('W'), figure: (point) => point.mesh_loss_power_watts },
+  { id: 'torque', label: 'Pinion torque', unit: plain('N m'), figure: (point) => point.pinion_torque_newton_metres },
+  { id: 'dte-least', label: 'Least transmission error', unit: scaled('µm', 1e6), figure: (point) => point.dynamic_transmission_error_minimum_metres },
+  { id: 'dte-greatest', label: 'Greatest transmission error', unit: scaled('µm', 1e6), figure: (point) => point.dynamic_transmission_error_maximum_metres },
+];
+
+export const POINTS: Unit = plain('% points');
+
+const mapped = (value: number | string | undefined, unit: Unit): number | null => {
+  const number = finite(value);
+  return number === null ? null : shown(number, unit);
+};
+
+/** A line with the interval of its figures over speeds. */
+export function intervalLine(label: string, series: number, speeds: number[], figures: (UncertainFigure | undefined)[], unit: Unit, hollow: boolean[]): Line {
+  const column = (read: (figure: UncertainFigure) => number | undefined) =>
+    figures.map((figure) => (figure === undefined ? null : mapped(read(figure), unit)));
+  return {
+    label, series, variant: 0, x: speeds, hollow,
+    y: column((figure) => figure.value),
+    low: column((figure) => figure.interval_minimum),
+    high: column((figure) => figure.interval_maximum),
+    error: figures.map((figure) => (figure === undefined ? null : mapped(figure.solver_error, { ...unit, offset: 0 }))),
+  };
+}
+
+/** Figures of lubricants over speeds. */
+export function figuresSpec(lubricants: ComparedLubricant[], titles: string[], speeds: number[], quantity: ComparedQuantity): Spec {
+  return {
+    title: `${quantity.label}, ${quantity.unit.symbol}`, xLabel: 'Vehicle speed, km/h', yLabel: quantity.unit.symbol,
+    lines: lubricants.map((lubricant, k) => {
+      const points = lubricant.points ?? [];
+      return intervalLine(titles[k]!, k, speeds, points.map((point) => (point.refusal_reason ? undefined : quantity.figure(point))),
+        quantity.unit, points.map((point) => point.contact_loss === true));
+    }),
+    parted: [], caution: [], outside: [], levels: [], fromZero: false,
+  };
+}
+
+/** Differences from the first lubricant over speeds: hollow where the two cannot be told apart. */
+export function differenceSpec(lubricants: ComparedLubricant[], titles: string[], speeds: number[], series: number[]): Spec {
+  return {
+    title: `Difference from ${titles[0]}, percentage points`, xLabel: 'Vehicle speed, km/h', yLabel: '% points',
+    lines: lubricants.slice(1).map((lubricant, k) => {
+      const differences = lubricant.differences ?? [];
+      return intervalLine(titles[k + 1]!, series[k + 1]!, speeds, differences.map((each) => each.difference_percent), POINTS,
+        differences.map((each) => each.verdict === 'CANNOT_BE_TOLD_APART'));
+    }),
+    parted: [], caution: [], outside: [], levels: [{ value: 0, label: '' }], fromZero: false,
+  };
+}
+
+const LABELS = new Map(PARAMETERS.map((each) => [`lubricant.${each.path}`, each.label]));
+const INPUTS: Record<string, string> = {
+  sump_temperature_celsius: 'Sump temperature', inlet_temperature_rise_kelvin: 'Rise from the sump to the inlet',
+};
+const UNITS = /_(pascals?|seconds?|kelvin|celsius|metres?|kilograms?|watts|per|cubic|square|squared|pascal)\b.*$/;
+
+/** "Pressure-viscosity coefficient α*" of "lubricant.pressure_viscosity_coefficient_per_pascal". */
+export function inputWords(input: string): string {
+  if (/vogel_viscosity_prefactor.*vogel_temperature_coefficient/.test(input)) return 'Viscosity and its temperature law';
+  return input.split(' ').map((field) => {
+    const known = LABELS.get(field) ?? INPUTS[field];
+    if (known) return known;
+    const words = field.replace(/^\w+\./, '').replace(UNITS, '').replaceAll('_', ' ');
+    return words.charAt(0).toUpperCase() + words.slice(1);
+  }).join(', ');
+}
+
+export const GROUPS: Record<string, string> = {
+  PARAMETER_GROUP_VISCOSITY: 'Viscosity and its temperature law',
+  PARAMETER_GROUP_PRESSURE_RESPONSE: 'Rise of viscosity with pressure',
+  PARAMETER_GROUP_SHEAR_THINNING: 'Shear thinning',
+  PARAMETER_GROUP_LIMITING_STRESS: 'Limiting shear stress',
+  PARAMETER_GROUP_THERMAL_PROPERTIES: 'Conductivity and density',
+  PARAMETER_GROUP_BOUNDARY_FILM: 'Boundary film',
+};

@@ -1,0 +1,45 @@
+import type { ComponentChildren } from 'preact';
+import { useState } from 'preact/hooks';
+import type { Spec } from '../charts/spec';
+import { pngOf, save, svgOf } from '../charts/svg';
+
+interface TakeAwayProps {
+  name: string; // of files, without their ending
+  spec?: Spec;
+  footer?: string[]; // beneath the figure: what a reader needs to repeat it
+  csv?: () => string; // a table of the numbers shown
+  requests: unknown;
+  commands: string[];
+  children?: ComponentChildren; // further downloads
+}
+
+/** Everything that can be taken away from a view: figure, numbers, request, command line, link. */
+export function TakeAway({ name, spec, footer = [], csv, requests, commands, children }: TakeAwayProps) {
+  const [copied, setCopied] = useState('');
+  const copy = async (what: string, text: string) => {
+    await navigator.clipboard.writeText(text);
+    setCopied(what);
+    setTimeout(() => setCopied(''), 2000);
+  };
+  const svg = () => svgOf(spec!, footer);
+  const file = (ending: string, type: string, text: string) => save(`${name}.${ending}`, new Blob([text], { type }));
+  return (
+    <details class="menu">
+      <summary class="button">Take away</summary>
+      <div class="menu-body">
+        {spec && <button onClick={() => file('svg', 'image/svg+xml', svg())}>Figure as SVG</button>}
+        {spec && <button onClick={() => void pngOf(svg()).then((png) => save(`${name}.png`, png))}>Figure as PNG</button>}
+        {csv && <button onClick={() => file('csv', 'text/csv', csv())}>Numbers as CSV</button>}
+        {children}
+        <button onClick={() => save('request.json', new Blob([JSON.stringify(requests, null, 2)], { type: 'application/json' }))}>Request as JSON</button>
+        {commands.length > 0 && <button onClick={() => void copy('command', commands.join('\n'))}>{copied === 'command' ? 'Copied' : 'Copy the command line'}</button>}
+        <button onClick={() => void copy('link', location.href)}>{copied === 'link' ? 'Copied' : 'Copy a link to this page'}</button>
+        {commands.length > 0 && <pre class="command" aria-label="Command line">{commands.join('\n')}</pre>}
+      </div>
+    </details>
+  );
+}
+
+/** A table as CSV, with all digits of the service; an empty cell is no number. */
+export const csvOf = (header: string[], rows: (number | string | null)[][]): string =>
+  [header, ...rows].map((row) => row.map((cell) => cell ?? '').join(',')).join('\n') + '\n';

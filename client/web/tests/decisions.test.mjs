@@ -1,0 +1,91 @@
+// What a formulator decides by: which fluid loses less, how sure that is, and why.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { foreignNumbers, launch, newPage, output, Server, signIn, TRIBODYN } from './harness.mjs';
+
+let browser;
+let server;
+let page;
+before(async () => {
+  browser = await launch();
+  server = await new Server().start();
+  await server.newOil('my-oil', 'My oil', 103, 15.1, 868);
+  await server.newOil('their-oil', 'Their oil', 95, 14.1, 862);
+  page = await newPage(browser, server);
+  await page.goto(server.address);
+  await signIn(page, server.token);
+});
+after(async () => {
+  await browser?.close();
+  await server?.remove();
+});
+
+/** The exact values of a row of bars, by the words of its label. */
+const valuesOf = (region) =>
+  page.getByRole('table', { name: region }).locator('tbody tr').evaluateAll((rows) =>
+    Object.fromEntries(rows.map((row) => [row.querySelector('th').textContent, Number(row.querySelector('[data-value]')?.dataset.value)])));
+
+test('two fluids that their inputs do not tell apart are said to be so, with interval and probability', async () => {
+  await page.goto(`${server.address}/fluids`);
+  await page.getByLabel('Choose My oil').check();
+  await page.getByLabel('Choose Their oil').check();
+  await page.getByRole('link', { name: 'Compare the two' }).click();
+  await page.getByRole('heading', { name: 'My oil and Their oil cannot be told apart' }).waitFor();
+  await page.getByText(/Probability that Their oil loses less: [3-7]\d %/).waitFor();
+  await page.getByText('Every speed').click();
+  const verdicts = await page.getByRole('region', { name: 'Every speed' }).locator('tbody tr td:last-child').allTextContents();
+  assert.deepEqual(verdicts, Array(13).fill('cannot be told apart'));
+  await page.getByRole('heading', { name: /Measure first: Pressure-viscosity coefficient/ }).waitFor();
+  assert.deepEqual(await foreignNumbers(page), []);
+});
+
+test('fluids whose difference is certain are ordered, and inputs that count as exact are named', async () => {
+  await page.goto(`${server.address}/compare?a=paper-fluid-1&b=paper-fluid-2`);
+  await page.getByRole('heading', { name: /Lubricant 2 loses more than Lubricant 1: \+0\.2/ }).waitFor();
+  await page.getByText('No input of the two has a stated uncertainty').click();
+  await page.getByText(/Lubricant 2: Vogel prefactor/).waitFor();
+  await page.getByRole('button', { name: 'Exchange A and B' }).click();
+  await page.getByRole('heading', { name: /Lubricant 1 loses less than Lubricant 2: −0\.2/ }).waitFor();
+  assert.match(new URL(page.url()).search, /a=paper-fluid-2&b=paper-fluid-1/);
+});
+
+test('the bars of an explanation are the shares of the service, which sum to the difference', async () => {
+  await page.goto(`${server.address}/compare?a=paper-fluid-1&b=paper-fluid-2&at=mean`);
+  await page.getByRole('table', { name: 'What each property group adds' }).waitFor();
+  const inefficiency = await valuesOf('What each property group adds');
+  const { 'Together: Lubricant 2 less Lubricant 1': sum, ...shares } = inefficiency;
+  assert.ok(Math.abs(Object.values(shares).reduce((a, b) => a + b) - sum) < 1e-9, JSON.stringify(inefficiency));
+  assert.ok(shares['Rise of viscosity with pressure'] > 0.2 && shares['Viscosity and its temperature law'] < 0);
+  await page.getByText('Before or after the others').click();
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByRole('button', { name: 'Loss, W' }).click();
+  assert.ok((await valuesOf('What each property group adds'))['Rise of viscosity with pressure'] > 5);
+  assert.deepEqual(await foreignNumbers(page), []);
+});
+
+test('a click on a speed explains the difference there, and its commands and table repeat it', async () => {
+  await page.goto(`${server.address}/compare?a=my-oil&b=paper-fluid-3&sump=90&from=40&to=80&step=20&dsump=2`);
+  await page.locator('.bars').first().waitFor();
+  const plot = await page.locator('.u-over').first().boundingBox();
+  await page.mouse.click(plot.x + plot.width - 4, plot.y + 40);
+  await page.waitForURL(/at=80/);
+  await page.waitForFunction(() => document.querySelector('.reasons select')?.value === '80' && !document.querySelector('.stale'));
+  const sum = (await valuesOf('What each property group adds'))['Together: Lubricant 3 less My oil'];
+  await page.getByText('Take away').click();
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Numbers as CSV' }).click()]);
+  const [, ...rows] = readFileSync(await download.path(), 'utf8').trim().split('\n').map((line) => line.split(','));
+  assert.deepEqual(rows.map((row) => row[0]), ['40', '60', '80']);
+  const commands = (await page.getByLabel('Command line').textContent()).split('\n');
+  const run = async (command) => JSON.parse(await output(TRIBODYN, ['--server', `unix:${server.folder}/socket`, ...command.split(' ').slice(1), '-o', 'json']));
+  const compared = await run(commands[0]);
+  assert.equal(compared.lubricants[1].differences[2].difference_percent.value, Number(rows[2][11]));
+  assert.equal((await run(commands[1])).points[0].inefficiency_difference_percent.value, sum);
+  assert.deepEqual(page.complaints, []);
+});
+
+test('a refused comparison names the field', async () => {
+  await page.goto(`${server.address}/compare?a=my-oil&b=their-oil&sump=400`);
+  await page.locator('.panel .problem', { hasText: 'allowed: -70 to 200' }).waitFor();
+  assert.equal(await page.getByLabel('Sump, °C').getAttribute('aria-invalid'), 'true');
+});
