@@ -11,7 +11,7 @@ err_has 'cannot connect to the server at 127.0.0.1:9'
 expect 3 --server "unix:$folder/none" lubricants list
 expect 0 --help
 out_has 'Exit codes'
-for command in point curve compare explain report screen design sensitivities history contact traction film stribeck diff validate \
+for command in point curve compare explain report screen design sensitivities history contact traction film stribeck paper diff validate \
   schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun" "campaigns list" \
@@ -153,6 +153,26 @@ expect 2 stribeck paper-fluid-1 --measured "$folder/rig.csv"
 expect 1 traction paper-fluid-11
 expect 1 traction paper-fluid-1 --slide-roll-ratio 300
 expect 2 traction
+
+# Figures of the paper, by their numbers.
+expect 0 paper 10 --output "$folder/paper"
+out_has '^Figure 10: Inefficiency of lubricant 1, isothermal and thermal$'
+out_has '^  holds: The isothermal prediction lies above the thermal one at every speed$'
+out_has 'Variants tried.*limiting stress'
+for file in index.html figure-10.svg figure-10.csv findings.csv; do
+  [ -s "$folder/paper/$file" ] || fail "tribodyn paper 10: no $file"
+done
+expect 0 paper 9 14 --output csv
+out_has '^figure,statement,verdict,quantity,unit,at,value$'
+out_has '^14,'
+expect 0 paper 9 -o json
+out_is_json
+expect 2 paper 17
+err_has 'must be one of 5\|6'
+expect 1 paper 9 --output "$folder/no/such"
+expect 0 paper --help-all
+out_has '--output, -o <DIR>'
+out_lacks '--output, -o <table'
 
 echo "--- point"
 expect 0 point --lubricant paper-fluid-1 --speed-kilometres-per-hour 72.5 --progress lines

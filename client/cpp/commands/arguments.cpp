@@ -14,8 +14,10 @@ using GivenTexts = std::map<const Flag*, std::vector<std::string>>;
 
 /// CLI11 only splits the line into flags and texts. The texts are read later, so that all
 /// complaints are found.
-void add_flags(CLI::App& app, const FlagList& list, GivenTexts& given) {
+void add_flags(CLI::App& app, const FlagList& list, GivenTexts& given,
+               const FlagList& replacements = {}) {
   for (const Flag& flag : list.flags()) {
+    if (replaces(replacements, flag)) continue;
     if (flag.is_switch) {
       app.add_flag_callback(flag.names, [&given, &flag] { given[&flag] = {"true"}; });
       continue;
@@ -120,7 +122,7 @@ Parsed parse_arguments(const std::vector<std::string>& arguments,
   for (const Command& command : commands) {
     CLI::App& app = add_command(root, command);
     add_flags(app, command.flags, given);
-    add_flags(app, common_flags, given);
+    add_flags(app, common_flags, given, command.flags);
     by_app[&app] = &command;
   }
 

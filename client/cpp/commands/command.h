@@ -68,6 +68,7 @@ Command contact_command();
 Command traction_command();
 Command film_command();
 Command stribeck_command();
+Command paper_command();
 Command compare_command();
 Command screen_command();
 Command design_command();

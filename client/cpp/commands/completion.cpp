@@ -140,8 +140,9 @@ Line read_line(const std::vector<std::string>& words, const std::vector<Command>
       line.awaiting = nullptr;
       continue;
     }
-    std::vector<const FlagList*> lists = {&common_flags};
+    std::vector<const FlagList*> lists;
     if (line.command != nullptr) lists.push_back(&line.command->flags);
+    lists.push_back(&common_flags);
     if (!word.empty() && word[0] == '-') {
       const Flag* flag = find_flag(word, lists);
       if (flag != nullptr && !flag->is_switch) line.awaiting = flag;
@@ -176,7 +177,8 @@ std::vector<std::string> flag_names(const std::vector<const FlagList*>& lists) {
     for (const Flag& flag : list->flags()) {
       if (flag.is_positional() || flag.is_hidden) continue;
       for (const std::string& name : split(flag.names, ',')) {
-        if (name.rfind("--", 0) == 0) names.push_back(name);
+        const bool is_new = std::find(names.begin(), names.end(), name) == names.end();
+        if (name.rfind("--", 0) == 0 && is_new) names.push_back(name);
       }
     }
   }

@@ -194,4 +194,9 @@ void FlagList::toggle(const std::string& names, const std::string& description,
   flags_.push_back(std::move(flag));
 }
 
+bool replaces(const FlagList& own, const Flag& common) {
+  return std::any_of(own.flags().begin(), own.flags().end(),
+                     [&](const Flag& flag) { return flag.first_name() == common.first_name(); });
+}
+
 }  // namespace tribodyn::client

@@ -93,6 +93,9 @@ class FlagList {
   std::vector<Flag> flags_;
 };
 
+/// Whether a flag of the list has the first name of `common`, in place of which the command has it.
+bool replaces(const FlagList& own, const Flag& common);
+
 /// Returns e.g. "--sump-temperature-celsius" for "simulation.sump_temperature_celsius": flags have
 /// the names of the fields that they set.
 std::string flag_of_field(const std::string& field_path);

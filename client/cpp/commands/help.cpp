@@ -202,7 +202,8 @@ std::string help_text(const Command& command, const FlagList& common_flags,
   if (length == HelpLength::kShort) {
     flags = main_flags_of(command);
   } else {
-    const std::vector<const Flag*> common = visible_flags(common_flags);
+    std::vector<const Flag*> common = visible_flags(common_flags);
+    std::erase_if(common, [&](const Flag* flag) { return replaces(command.flags, *flag); });
     flags.insert(flags.end(), common.begin(), common.end());
   }
   text += flags_text(flags, schema);

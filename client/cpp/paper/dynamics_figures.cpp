@@ -1,0 +1,347 @@
+// Figures 6, 7, 8 and 11: transmission error, friction torque, shares of friction, temperature.
+#include <algorithm>
+#include <cmath>
+
+#include "client/cpp/paper/figure.h"
+#include "client/cpp/paper/variants.h"
+#include "client/cpp/plot/curve_plot.h"
+#include "client/cpp/text/units.h"
+
+namespace tribodyn::client {
+namespace {
+
+constexpr char kSpeedAxis[] = "Vehicle speed, km/h";
+constexpr char kPerHour[] = "km/h";
+constexpr char kCalibrationB[] = "reference-axle-loaded-error";
+
+PaperCurve up_sweep() { return {}; }
+PaperCurve down_sweep() { return {1, 40, {}, true}; }
+PaperCurve up_sweep_of_b() { return {1, 40, {}, false, kCalibrationB}; }
+PaperCurve down_sweep_of_b() { return {1, 40, {}, true, kCalibrationB}; }
+
+/// Where a curve loses contact.
+struct LossOfContact {
+  double first_speed = 0, last_speed = 0;    // [km/h]
+  double first_torque = 0, last_torque = 0;  // T_s there [N m]
+  double least_error = 1;                    // DTE [m]
+  bool touches_coast_side = false;
+};
+
+LossOfContact loss_of_contact(const v1::Simulation& curve) {
+  LossOfContact out;
+  for (const v1::CurvePoint& point : curve.result().points()) {
+    const v1::PointResult& result = point.result();
+    if (!result.contact_loss()) continue;
+    if (out.first_speed == 0) {
+      out.first_speed = point.speed_kilometres_per_hour();
+      out.first_torque = result.pinion_torque_newton_metres();
+    }
+    out.last_speed = point.speed_kilometres_per_hour();
+    out.last_torque = result.pinion_torque_newton_metres();
+    out.least_error =
+        std::min(out.least_error, result.dynamic_transmission_error_metres().minimum());
+    out.touches_coast_side = out.touches_coast_side || result.coast_side_contact();
+  }
+  return out;
+}
+
+struct NamedSweep {
+  std::string name;
+  PaperCurve curve;
+};
+const std::vector<NamedSweep>& sweeps() {
+  static const std::vector<NamedSweep> all = {{"gear set A, up", up_sweep()},
+                                              {"gear set A, down", down_sweep()},
+                                              {"gear set B, up", up_sweep_of_b()},
+                                              {"gear set B, down", down_sweep_of_b()}};
+  return all;
+}
+
+std::vector<Finding> findings_of_figure_6(const PaperResults& results) {
+  Finding single{"Single-sided impacts occur: the transmission error falls below half the backlash",
+                 Verdict::kHolds,
+                 "Holds if contact is lost at some speed and the coast flanks never touch.",
+                 {}};
+  Finding suppressed{"Impacts occur below 80 km/h and none above",
+                     Verdict::kPartly,
+                     "Holds if contact is lost at every speed below 80 km/h and at none above; "
+                     "partly if the last speed is within 5 km/h of 80. Impacts end there, but they "
+                     "also begin only near the resonance.",
+                     {}};
+  Finding torque{
+      "The first primary resonance appears at an input torque of about 25 N m",
+      Verdict::kNot,
+      "Holds if contact is lost at 25 N m on both gear sets; partly if it is lost within "
+      "10 % of that on some sweep.",
+      {}};
+  for (const auto& [name, curve] : sweeps()) {
+    const LossOfContact loss = loss_of_contact(results.of(curve));
+    single.evidence.push_back({name, "um", "smallest transmission error", 1e6 * loss.least_error});
+    if (loss.last_speed == 0 || loss.touches_coast_side) single.verdict = Verdict::kNot;
+    suppressed.evidence.push_back({name, kPerHour, "first speed", loss.first_speed});
+    suppressed.evidence.push_back({name, kPerHour, "last speed", loss.last_speed});
+    if (std::abs(loss.last_speed - 80) > 5) suppressed.verdict = Verdict::kNot;
+    torque.evidence.push_back({name, "N m", "least torque", loss.first_torque});
+    torque.evidence.push_back({name, "N m", "greatest torque", loss.last_torque});
+    if (loss.first_torque < 27.5 && loss.last_torque > 22.5) torque.verdict = Verdict::kPartly;
+  }
+  single.evidence.push_back(
+      {"half backlash of gear set A", "um", "", 1e6 * results.half_backlash_metres()});
+  return {single, suppressed, torque};
+}
+
+PaperLine transmission_error(const PaperResults& results, const PaperCurve& curve,
+                             double (v1::Extremes::*value)() const) {
+  return results.line(curve, [value](const v1::PointResult& result) {
+    return 1e6 * (result.dynamic_transmission_error_metres().*value)();
+  });
+}
+
+std::vector<Panel> panels_of_figure_6(const PaperResults& results) {
+  Panel panel = paper_panel("Dynamic transmission error, \xC2\xB5m", kSpeedAxis);
+  panel.bands = contact_loss_bands({results.of(up_sweep()), results.of(down_sweep())});
+  const auto add = [&](const PaperCurve& curve, const char* label, std::size_t look,
+                       double (v1::Extremes::*value)() const) {
+    panel.series.push_back(
+        paper_series(transmission_error(results, curve, value), look, label, curve.is_down_sweep));
+  };
+  add(up_sweep(), "maximum", 0, &v1::Extremes::maximum);
+  add(up_sweep(), "mean", 2, &v1::Extremes::mean);
+  add(up_sweep(), "minimum", 1, &v1::Extremes::minimum);
+  add(down_sweep(), "", 0, &v1::Extremes::maximum);
+  add(down_sweep(), "", 1, &v1::Extremes::minimum);
+  Series half_backlash;
+  half_backlash.label = "half backlash";
+  half_backlash.colour = "#444444";
+  half_backlash.dashes = "2 3";
+  half_backlash.width = 1.4;
+  half_backlash.x = {20, 140};
+  half_backlash.y = {1e6 * results.half_backlash_metres(), 1e6 * results.half_backlash_metres()};
+  panel.series.push_back(half_backlash);
+  return {panel};
+}
+
+PaperLine friction_torque(const PaperResults& results, const PaperCurve& curve,
+                          double (v1::Extremes::*value)() const) {
+  return results.line(curve, [value](const v1::PointResult& result) {
+    return -(result.pinion_friction_torque_newton_metres().*value)() + 0.0;
+  });
+}
+
+std::vector<Finding> findings_of_figure_7(const PaperResults& results) {
+  // Friction brakes: its torque on the pinion is negative.
+  const PaperLine least = friction_torque(results, up_sweep(), &v1::Extremes::maximum);
+  const PaperLine mean = friction_torque(results, up_sweep(), &v1::Extremes::mean);
+  const PaperLine largest = friction_torque(results, up_sweep(), &v1::Extremes::minimum);
+  Finding vanishes{"The minimum friction torque vanishes while contact is lost",
+                   Verdict::kHolds,
+                   "Holds if it is 0 at every speed at which contact is lost.",
+                   {}};
+  for (const v1::CurvePoint& point : results.of(up_sweep()).result().points()) {
+    if (point.result().contact_loss() && least.at(point.speed_kilometres_per_hour()) != 0) {
+      vanishes.verdict = Verdict::kNot;
+    }
+  }
+  add_evidence("minimum", "N m", least, {75, 80}, kPerHour, vanishes.evidence);
+  Finding rises{"The minimum rises rapidly once contact is not lost any more",
+                least.at(90) > 0.25 * mean.at(90) ? Verdict::kHolds : Verdict::kPartly,
+                "Holds if it is above a quarter of the mean 10 km/h beyond 80 km/h.",
+                {}};
+  add_evidence("minimum", "N m", least, {80, 85, 90, 95}, kPerHour, rises.evidence);
+  Finding falls{
+      "The maximum falls with speed afterwards",
+      largest.at(140) < largest.at(80) ? Verdict::kPartly : Verdict::kNot,
+      "Holds if it falls from 80 to 140 km/h; partly if it falls at first and stays below "
+      "its value at 80 km/h.",
+      {}};
+  if (largest.at(140) <= largest.at(95)) falls.verdict = Verdict::kHolds;
+  add_evidence("maximum", "N m", largest, {75, 85, 95, 120, 140}, kPerHour, falls.evidence);
+  const double growth = mean.at(140) / mean.at(20);
+  Finding constant{"The mean stays virtually constant, with a slight increase at higher speeds",
+                   growth < 1.2   ? Verdict::kHolds
+                   : growth < 1.5 ? Verdict::kPartly
+                                  : Verdict::kNot,
+                   "Holds if it grows by less than 20 % from 20 to 140 km/h, partly by less than "
+                   "50 %. The input torque grows more than fourfold over this range.",
+                   {}};
+  add_evidence("mean", "N m", mean, {20, 50, 80, 100, 140}, kPerHour, constant.evidence);
+  constant.evidence.push_back({"mean at 140 over 20 km/h", "", "", growth});
+  return {vanishes, rises, falls, constant};
+}
+
+std::vector<Panel> panels_of_figure_7(const PaperResults& results) {
+  Panel panel = paper_panel("Friction torque on the pinion, N m", kSpeedAxis);
+  panel.bands = contact_loss_bands({results.of(up_sweep())});
+  panel.starts_at_zero = true;
+  panel.series = {
+      paper_series(friction_torque(results, up_sweep(), &v1::Extremes::minimum), 0, "maximum"),
+      paper_series(friction_torque(results, up_sweep(), &v1::Extremes::mean), 2, "mean"),
+      paper_series(friction_torque(results, up_sweep(), &v1::Extremes::maximum), 1, "minimum")};
+  return {panel};
+}
+
+std::vector<Evidence> variants_of_figure_7(const PaperResults& results) {
+  std::vector<Evidence> out;
+  for (const TriedVariant& variant : tried_variants()) {
+    const PaperLine mean = results.line(tried_curve(variant, false), mean_friction_torque);
+    add_evidence(variant.name, "N m", mean, kTriedSpeeds, kPerHour, out);
+  }
+  return out;
+}
+
+std::vector<PaperCurve> curves_of_figure_7() {
+  std::vector<PaperCurve> out{up_sweep()};
+  for (const TriedVariant& variant : tried_variants()) out.push_back(tried_curve(variant, false));
+  return out;
+}
+
+PaperCurve curve_of_fluid(int fluid) { return {fluid}; }
+
+PaperLine friction_ratio(const PaperResults& results, int fluid) {
+  return results.line(curve_of_fluid(fluid), [](const v1::PointResult& result) {
+    return result.boundary_to_viscous_friction_ratio();
+  });
+}
+
+std::vector<Finding> findings_of_figure_8(const PaperResults& results) {
+  const PaperLine lines[] = {friction_ratio(results, 1), friction_ratio(results, 2),
+                             friction_ratio(results, 3)};
+  Finding falls{"Boundary friction matters at low to medium speeds: its ratio falls with speed",
+                Verdict::kHolds,
+                "Holds if the ratio halves or more from 20 to 60 and from 60 to 140 km/h.",
+                {}};
+  Finding lowest{"Lubricants 1 and 3 behave alike; the ratio of 2 is significantly lower",
+                 Verdict::kHolds,
+                 "Holds if at every speed the ratio of 2 is below 0.6 times that of 1 and 3 is "
+                 "nearer to 1 than 2 is.",
+                 {}};
+  for (int fluid = 1; fluid <= 3; ++fluid) {
+    const PaperLine& line = lines[fluid - 1];
+    add_evidence("fluid " + std::to_string(fluid), "", line, {20, 60, 140}, kPerHour,
+                 falls.evidence);
+    if (line.at(60) > 0.5 * line.at(20) || line.at(140) > 0.5 * line.at(60)) {
+      falls.verdict = Verdict::kPartly;
+    }
+  }
+  for (const double speed : {20.0, 60.0}) {
+    const std::string at = speed == 20 ? "20 km/h" : "60 km/h";
+    lowest.evidence.push_back({"fluid 2 over 1", "", at, lines[1].at(speed) / lines[0].at(speed)});
+    lowest.evidence.push_back({"fluid 3 over 1", "", at, lines[2].at(speed) / lines[0].at(speed)});
+  }
+  for (const double speed : lines[0].x) {
+    const double first = lines[0].at(speed), second = lines[1].at(speed);
+    const bool is_alike =
+        std::abs(std::log(lines[2].at(speed) / first)) < std::abs(std::log(second / first));
+    if (second > 0.6 * first || !is_alike) lowest.verdict = Verdict::kPartly;
+  }
+  return {falls, lowest};
+}
+
+std::vector<Panel> panels_of_figure_8(const PaperResults& results) {
+  Panel panel = paper_panel("Boundary over viscous friction, RMS", kSpeedAxis);
+  panel.starts_at_zero = true;
+  panel.bands = contact_loss_bands({results.of(curve_of_fluid(1))});
+  for (int fluid = 1; fluid <= 3; ++fluid) {
+    panel.series.push_back(paper_series(friction_ratio(results, fluid),
+                                        static_cast<std::size_t>(fluid - 1),
+                                        "fluid " + std::to_string(fluid)));
+  }
+  return {panel};
+}
+
+PaperCurve curve_at_sump(double celsius) { return {1, celsius}; }
+constexpr double kSumps[] = {10, 40, 90};  // of figures 11 and 12 [C]
+constexpr double kInletRise = 20;          // of eq 14 [K]
+
+PaperLine temperature_rise(const PaperResults& results, double sump) {
+  return results.line(curve_at_sump(sump), [sump](const v1::PointResult& result) {
+    return result.contact_temperature_kelvin().maximum() - (sump + kInletRise + kZeroCelsius);
+  });
+}
+
+std::vector<Finding> findings_of_figure_11(const PaperResults& results) {
+  Finding grows{
+      "The temperature rise at the centre of the contact grows with speed",
+      Verdict::kHolds,
+      "Rise: hottest contact of the mesh cycle above the inlet. Holds if it never falls "
+      "by more than 5 % of what a lower speed has; partly if it dips more, as it does at 90 C "
+      "where impacts end.",
+      {}};
+  Finding falls{"The rise falls with the temperature of the sump",
+                Verdict::kHolds,
+                "Holds if at every speed it is lower at 40 C than at 10 C, and lower at 90 C.",
+                {}};
+  PaperLine lines[3];
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = "sump " + std::to_string(static_cast<int>(kSumps[i])) + " C";
+    lines[i] = temperature_rise(results, kSumps[i]);
+    add_evidence(name, "K", lines[i], {20, 50, 100, 140}, kPerHour,
+                 i == 1 ? grows.evidence : falls.evidence);
+    double largest = 0, dip = 0;
+    for (const double rise : lines[i].y) {
+      largest = std::max(largest, rise);
+      dip = std::max(dip, 100 * (1 - rise / largest));
+    }
+    grows.evidence.push_back({name + ", largest dip", "%", "", dip});
+    if (dip > 5) grows.verdict = Verdict::kPartly;
+  }
+  for (const double speed : lines[1].x) {
+    const double middle = lines[1].at(speed);
+    if (middle >= lines[0].at(speed) || lines[2].at(speed) >= middle) {
+      falls.verdict = Verdict::kPartly;
+    }
+  }
+  return {grows, falls};
+}
+
+std::vector<Panel> panels_of_figure_11(const PaperResults& results) {
+  Panel panel = paper_panel("Largest rise above the inlet temperature, K", kSpeedAxis);
+  panel.starts_at_zero = true;
+  panel.bands = contact_loss_bands({results.of(curve_at_sump(40))});
+  std::size_t look = 0;
+  for (const double sump : kSumps) {
+    panel.series.push_back(paper_series(temperature_rise(results, sump), look++,
+                                        "sump " + std::to_string(static_cast<int>(sump)) + " C"));
+  }
+  return {panel};
+}
+
+}  // namespace
+
+std::vector<PaperFigure> dynamics_figures() {
+  const std::vector<PaperCurve> by_fluid{curve_of_fluid(1), curve_of_fluid(2), curve_of_fluid(3)};
+  return {
+      {"6",
+       "Maximum and minimum of the dynamic transmission error, lubricant 1",
+       "`tribodyn curve`, sump 40 C: up-sweep solid, down-sweep dashed; shaded: contact lost.",
+       {up_sweep(), down_sweep(), up_sweep_of_b(), down_sweep_of_b()},
+       {},
+       findings_of_figure_6,
+       panels_of_figure_6},
+      {"7",
+       "Maximum, mean and minimum of the friction torque on the pinion, lubricant 1",
+       "`tribodyn curve`, sump 40 C, up-sweep; shaded: contact lost.",
+       curves_of_figure_7(),
+       {},
+       findings_of_figure_7,
+       panels_of_figure_7,
+       "Mean friction torque with other laws and misprints: only the printed eqs 20 and 22 give "
+       "a mean that does not grow",
+       variants_of_figure_7},
+      {"8",
+       "Ratio of boundary to viscous friction of the three lubricants",
+       "`tribodyn curve`, sump 40 C, up-sweep; ratio of RMS forces over the mesh cycle.",
+       by_fluid,
+       {},
+       findings_of_figure_8,
+       panels_of_figure_8},
+      {"11",
+       "Temperature rise at the centre of the contact, lubricant 1, three sump temperatures",
+       "`tribodyn curve --sumps 10,40,90`, up-sweep.",
+       {curve_at_sump(10), curve_at_sump(40), curve_at_sump(90)},
+       {},
+       findings_of_figure_11,
+       panels_of_figure_11}};
+}
+
+}  // namespace tribodyn::client
