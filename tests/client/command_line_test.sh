@@ -11,7 +11,7 @@ err_has 'cannot connect to the server at 127.0.0.1:9'
 expect 3 --server "unix:$folder/none" lubricants list
 expect 0 --help
 out_has 'Exit codes'
-for command in point curve compare explain report screen design sensitivities history contact traction film stribeck paper diff validate \
+for command in point curve compare explain report screen design sensitivities history contact traction film stribeck cycle paper diff validate \
   schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun" "campaigns list" \
@@ -153,6 +153,37 @@ expect 2 stribeck paper-fluid-1 --measured "$folder/rig.csv"
 expect 1 traction paper-fluid-11
 expect 1 traction paper-fluid-1 --slide-roll-ratio 300
 expect 2 traction
+
+# Drive cycles: the energy of the map is within its stated error of the point-by-point integration.
+energy_of() { awk -F, '$1 == "all" { print $5 }' "$folder/out"; }
+expect 0 cycle paper-fluid-1 paper-fluid-2 --plot "$folder/cycle.svg" --csv "$folder/pieces.csv"
+out_has '^all +1180 +11\.028 '
+out_has '^standstill +280 +0\.000 '
+out_has '^paper-fluid-2@1: estimated error of the map [0-9.]+ kJ, [0-9]+ points'
+stated=$(sed -nE 's/^paper-fluid-1@1: estimated error of the map ([0-9.]+) kJ.*/\1/p' "$folder/out")
+[ -s "$folder/cycle.svg" ] && [ "$(wc -l <"$folder/pieces.csv")" -eq 1181 ] || fail "tribodyn cycle: files"
+expect 0 cycle paper-fluid-1 --output csv
+by_map=$(energy_of)
+expect 0 cycle paper-fluid-1 --point-by-point --output csv
+awk -v one="$by_map" -v other="$(energy_of)" -v stated="$stated" \
+  'BEGIN { d = one - other; exit !(other > 0 && d * d <= 1e6 * stated * stated) }' ||
+  fail "tribodyn cycle: $by_map J by the map, $(energy_of) J point by point, stated error $stated kJ"
+printf 'time_seconds,speed_kilometres_per_hour,ascent_angle_degrees\n0,0,0\n5,30,2\n20,30,-1\n25,0,0\n' >"$folder/own.csv"
+expect 0 cycle paper-fluid-1 --cycle "$folder/own.csv" --output json
+out_is_json
+expect 0 cycle paper-fluid-1 --cycle "$folder/own.csv" --point-by-point
+out_has 'point by point, [0-9]+ points'
+printf 'time_seconds,speed_kilometres_per_hour\n0,0\n5,x\n' >"$folder/bad.csv"
+expect 1 cycle paper-fluid-1 --cycle "$folder/bad.csv"
+err_has "bad.csv, line 3, speed_kilometres_per_hour: 'x' is not a number"
+printf 'time_seconds,speed_kilometres_per_hour\n0,0\n5,-10\n' >"$folder/bad.csv"
+expect 1 cycle paper-fluid-1 --cycle "$folder/bad.csv"
+err_has 'place 2 of the cycle: the speed is negative'
+printf 'time_seconds,speed_kilometres_per_hour\n0,0\n1,100\n' >"$folder/bad.csv"
+expect 1 cycle paper-fluid-1 --cycle "$folder/bad.csv"
+err_has 'slope of 45 degrees'
+expect 2 cycle
+expect 2 cycle paper-fluid-1 --map-tolerance 1
 
 # Figures of the paper, by their numbers.
 expect 0 paper 10 --output "$folder/paper"

@@ -69,6 +69,7 @@ Command traction_command();
 Command film_command();
 Command stribeck_command();
 Command paper_command();
+Command cycle_command();
 Command compare_command();
 Command screen_command();
 Command design_command();
