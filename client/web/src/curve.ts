@@ -1,7 +1,7 @@
 import { get, url } from './api/client';
 import type { BranchEnd, RangeWarning, Simulation } from './api/types';
 import { idOf, revisionIdOf } from './format';
-import { CURVE_COLUMNS, warningOf, type Quantity } from './quantities';
+import { CURVE_COLUMNS, QUANTITIES, warningOf, type Quantity } from './quantities';
 import { shown } from './format';
 import type { Line, Spec } from './charts/spec';
 
@@ -48,11 +48,12 @@ export async function readCurve(name: string): Promise<Curve> {
 /** The name of a fluid before its remark: "Lubricant 1" of "Lubricant 1: ester-olefin copolymer". */
 export const shortTitle = (title: string): string => title.split(': ')[0]!;
 
+/** Options of the model that a curve has beside the default ones. */
+export const optionsOf = (simulation: Simulation): string[] =>
+  Object.entries(simulation.model_options ?? {}).filter(([, value]) => value === true).map(([name]) => name);
+
 const modelWords = (simulation: Simulation): string =>
-  Object.entries(simulation.model_options ?? {})
-    .filter(([, value]) => value === true)
-    .map(([name]) => name.replaceAll('_', ' '))
-    .join(', ');
+  optionsOf(simulation).map((name) => name.replaceAll('_', ' ')).join(', ');
 
 /** What differs between curves of one fluid: sump, gear set, model. */
 export function variantOf(simulation: Simulation, all: Simulation[]): string {
@@ -115,6 +116,40 @@ export function fluidsOf(curves: { simulation: Simulation }[]): string[] {
   return [...new Set(curves.map((curve) => curve.simulation.lubricant_revision ?? ''))];
 }
 
+/** Fills the area between curves of another model and those of the full model: the difference, drawn. */
+function fillToBase(lines: Line[], curves: Curve[], columns: number): void {
+  const scene = ({ simulation }: Curve) =>
+    [simulation.lubricant_revision, simulation.gear_set_revision, simulation.sump_temperature_celsius ?? 40].join(' ');
+  curves.forEach((curve, k) => {
+    if (optionsOf(curve.simulation).length === 0) return;
+    const base = curves.findIndex((each) => optionsOf(each.simulation).length === 0 && scene(each) === scene(curve));
+    if (base < 0) return;
+    for (let i = 0; i < columns; ++i) {
+      const line = lines[k * columns + i]!;
+      const other = lines[base * columns + i]!;
+      const values = new Map(other.x.map((x, row) => [x, other.y[row] ?? null]));
+      line.to = line.x.map((x, row) => (line.y[row] === null ? null : values.get(x) ?? null));
+      line.opacity = 0.16;
+    }
+  });
+}
+
+/** The parts of the loss of one curve, stacked: boundary friction beneath viscous friction. */
+export function splitSpecOf(curve: Curve, label: string, series: number, greatest: number, parted: Spec['parted'], outside: Spec['outside']): Spec {
+  const unit = QUANTITIES.find((each) => each.id === 'loss')!.unit;
+  const quantity = { ...QUANTITIES[0]!, unit };
+  const boundary = lineOf(curve, quantity, 'boundary_loss_power_watts', '', series, 1);
+  const total = lineOf(curve, quantity, 'mesh_loss_power_watts', '', series, 0);
+  boundary.to = boundary.y.map((value) => (value === null ? null : 0));
+  total.to = boundary.y;
+  boundary.opacity = 0.55;
+  total.opacity = 0.2;
+  return {
+    title: label, xLabel: 'Vehicle speed, km/h', yLabel: 'W', lines: [total, boundary], parted, caution: [], outside,
+    levels: [], fromZero: true, yRange: [0, 1.07 * greatest], hasErrors: false,
+  };
+}
+
 export function specOf(curves: Curve[], quantity: Quantity, titles: Map<string, string>, halfBacklash?: number): Spec {
   const simulations = curves.map((curve) => curve.simulation);
   const fluids = fluidsOf(curves);
@@ -127,6 +162,7 @@ export function specOf(curves: Curve[], quantity: Quantity, titles: Map<string, 
     return quantity.columns.map((column, k) =>
       lineOf(curve, quantity, column, k === 0 ? label : '', fluids.indexOf(revision), variants.indexOf(variant)));
   });
+  fillToBase(lines, curves, quantity.columns.length);
   const levels = quantity.level ? [quantity.level] : [];
   if (quantity.id === 'dte' && halfBacklash !== undefined) {
     const value = shown(halfBacklash, quantity.unit);

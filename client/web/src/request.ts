@@ -1,4 +1,5 @@
 import type { InefficiencyCurveStudy, Simulation } from './api/types';
+import { optionsOf } from './curve';
 import { revisionIdOf } from './format';
 
 /** What the form of the curves holds. */
@@ -62,7 +63,7 @@ export function requestOfSimulations(simulations: Simulation[]): CurveRequest {
     first: study.first_speed_kilometres_per_hour ?? DEFAULTS.first,
     last: study.last_speed_kilometres_per_hour ?? DEFAULTS.last,
     step: study.speed_step_kilometres_per_hour ?? DEFAULTS.step,
-    options: Object.entries(first.model_options ?? {}).filter(([, value]) => value === true).map(([name]) => name),
+    options: optionsOf(first),
   };
 }
 

@@ -89,3 +89,56 @@ test('a refused comparison names the field', async () => {
   await page.locator('.panel .problem', { hasText: 'allowed: -70 to 200' }).waitFor();
   assert.equal(await page.getByLabel('Sump, °C').getAttribute('aria-invalid'), 'true');
 });
+
+/** Curves of fluids on the page, completely read. */
+async function showCurves(fluids, settings = '') {
+  const jobs = [];
+  for (const fluid of fluids) {
+    jobs.push(await server.call('POST', '/v1/simulations', {
+      lubricant: `lubricants/${fluid}`,
+      inefficiency_curve: { first_speed_kilometres_per_hour: 60, last_speed_kilometres_per_hour: 90, speed_step_kilometres_per_hour: 5 },
+    }));
+  }
+  await page.goto(`${server.address}/curves?r=${jobs.map((job) => job.name.split('/')[1]).join(',')}${settings}`);
+  await page.locator('.read-out').waitFor();
+}
+
+test('curves have the intervals of their inputs and their difference from a reference', async () => {
+  await showCurves(['paper-fluid-1', 'my-oil']);
+  await page.getByRole('link', { name: 'My oil cannot be told apart' }).waitFor();
+  await page.getByText('holds the curve with 95').waitFor();
+  assert.match(await page.locator('.read-out tbody tr').nth(1).textContent(), /\d ± \d/);
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.locator('.differences select').selectOption('my-oil');
+  await page.getByRole('link', { name: 'Lubricant 1 cannot be told apart' }).waitFor();
+  await page.getByLabel('Uncertainty of the inputs').uncheck();
+  await page.getByText('holds the curve with 95').waitFor({ state: 'detached' });
+  assert.doesNotMatch(await page.locator('.read-out tbody tr').nth(1).textContent(), /±/);
+  assert.match(new URL(page.url()).search, /ref=my-oil&u=0/);
+});
+
+test('one click computes the curve of another model beside the full one', async () => {
+  await showCurves(['paper-fluid-1']);
+  await page.getByText('the branch of steady states ends').waitFor();
+  await page.getByRole('button', { name: 'Isothermal', exact: true }).click();
+  await page.getByText('what the model option changes').waitFor();
+  assert.deepEqual(await page.locator('.read-out tbody th').allTextContents(), ['Lubricant 1, full model', 'Lubricant 1, isothermal']);
+  assert.ok(await page.getByRole('button', { name: 'Isothermal', exact: true }).isDisabled());
+  assert.deepEqual(await foreignNumbers(page), []);
+});
+
+test('the loss of each curve is split, and a zoom stands in the address', async () => {
+  await showCurves(['paper-fluid-1', 'paper-fluid-2'], '&y=split');
+  await page.getByText('boundary friction', { exact: true }).waitFor();
+  assert.equal(await page.locator('.histories canvas').count(), 2);
+  const plot = await page.locator('.histories .u-over').first().boundingBox();
+  await page.mouse.move(plot.x + 0.4 * plot.width, plot.y + 50);
+  await page.mouse.down();
+  await page.mouse.move(plot.x + 0.8 * plot.width, plot.y + 50, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForURL(/x=7\d(\.\d+)?-8\d/);
+  await page.reload();
+  await page.getByRole('button', { name: 'Show all speeds' }).click();
+  await page.waitForURL((url) => !url.search.includes('x='));
+  assert.deepEqual(page.complaints, []);
+});

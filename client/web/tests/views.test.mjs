@@ -39,6 +39,10 @@ before(async () => {
     solver_options: { method: 'STEADY_STATE_METHOD_MARCH' },
     inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 60, speed_step_kilometres_per_hour: 1 },
   });
+  await create({
+    lubricant: 'lubricants/my-oil',
+    inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 140, speed_step_kilometres_per_hour: 5 },
+  });
   for (let i = 0; i < 100; ++i) {
     const { simulations } = await server.call('GET', '/v1/simulations?read_mask=state');
     if (simulations.every((each) => each.state === 'SUCCEEDED' || each.state === 'FAILED')) break;
@@ -56,6 +60,8 @@ const VIEWS = [
   ['curves', '/curves?r=1,2,3', '.multiple canvas'],
   ['curves-dte', '/curves?r=1,2,3&y=dte', '.multiple canvas'],
   ['curves-form', '/curves?f=paper-fluid-1', '.empty'],
+  ['curves-bands', '/curves?r=1,6', '.verdicts li'],
+  ['curves-split', '/curves?r=1,2,3&y=split', '.verdicts li'],
   ['compare', '/compare?a=my-oil&b=their-oil', '.bars'],
   ['compare-exact', '/compare?a=paper-fluid-1&b=paper-fluid-2', '.bars'],
   ['fluids', '/fluids', 'tbody tr'],

@@ -2,7 +2,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { useColors } from './theme';
-import { areasOf, colorOf, corners, DASHES, hasMarker, lastOf, MARKERS, opacityOf, rangeOf, spread, type Colors, type Line, type Spec } from './spec';
+import { areasOf, colorOf, corners, DASHES, endsBranch, hasMarker, lastOf, MARKERS, opacityOf, rangeOf, spread, type Colors, type Line, type Spec } from './spec';
 
 const FONT = 'system-ui, sans-serif';
 const WHISKER_PIXELS = 1.5; // a smaller error is thinner than the line
@@ -108,11 +108,19 @@ function drawMarkers(u: uPlot, spec: Spec, colors: Colors, isSmall: boolean): vo
     const step = Math.max(1, Math.ceil((isSmall ? 14 : 10) / pixels));
     line.x.forEach((at, i) => {
       const value = line.y[i];
-      if (value === null || value === undefined || i % step !== 0) return;
+      if (value === null || value === undefined) return;
       const x = u.valToPos(at, 'x', true);
       const y = u.valToPos(value, 'y', true);
+      if (endsBranch(line, i)) {
+        const cap = (isSmall ? 4 : 8) * ratio;
+        ctx.beginPath();
+        ctx.moveTo(x, y - cap);
+        ctx.lineTo(x, y + cap);
+        ctx.stroke();
+      }
+      if (i % step !== 0) return;
       const error = line.error?.[i];
-      if (error && !isSmall) {
+      if (error && !isSmall && spec.hasErrors !== false) {
         const reach = Math.abs(u.valToPos(value + error, 'y', true) - y);
         if (reach > WHISKER_PIXELS * ratio) {
           ctx.beginPath();

@@ -10,6 +10,7 @@ export interface Line {
   low?: (number | null)[]; // lower end of the interval by the inputs, with `high`
   high?: (number | null)[];
   to?: (number | null)[]; // fills the area between the line and these values
+  opacity?: number; // of the area
 }
 
 export interface Spec {
@@ -24,6 +25,8 @@ export interface Spec {
   fromZero: boolean;
   hasMarkers?: boolean; // and labels at the lines; default: true
   xRange?: [number, number]; // default: all
+  yRange?: [number, number]; // default: all values and levels
+  hasErrors?: boolean; // whiskers of the solver's error; default: true
 }
 
 export type Marker = 'circle' | 'square' | 'triangle' | 'diamond' | 'inverted';
@@ -67,6 +70,7 @@ export function corners(marker: Marker, r: number): [number, number][] | null {
 
 /** The range of the vertical axis: all values and levels, with room above and below. */
 export function rangeOf(spec: Spec, from = -Infinity, to = Infinity): [number, number] {
+  if (spec.yRange) return spec.yRange;
   let low = Infinity;
   let high = -Infinity;
   for (const line of spec.lines) {
@@ -119,7 +123,7 @@ export function areasOf(line: Line): Area[] {
 }
 
 /** How opaque an area is: intervals lie over each other, fills of stacked lines do not. */
-export const opacityOf = (line: Line): number => (line.to ? 0.55 : 0.15);
+export const opacityOf = (line: Line): number => line.opacity ?? (line.to ? 0.55 : 0.15);
 
 /** Moves labels apart: returns their positions, in the order given, at least `pitch` apart. */
 export function spread(wanted: number[], pitch: number, low: number, high: number): number[] {
@@ -131,6 +135,10 @@ export function spread(wanted: number[], pitch: number, low: number, high: numbe
   for (const i of [...order].reverse()) next = out[i] = Math.min(out[i]!, next - pitch);
   return out;
 }
+
+/** Whether a line breaks off behind its point i, at the end of a branch of steady states. */
+export const endsBranch = (line: Line, i: number): boolean =>
+  line.y[i] != null && ((i + 1 < line.y.length && line.y[i + 1] == null) || (i > 0 && line.y[i - 1] == null));
 
 /** The last point of a line that has a value. */
 export function lastOf(line: Line): { x: number; y: number } | null {

@@ -1,4 +1,4 @@
-import { areasOf, colorOf, corners, DASHES, hasMarker, lastOf, LIGHT, MARKERS, opacityOf, rangeOf, spread, type Line, type Spec } from './spec';
+import { areasOf, colorOf, corners, DASHES, endsBranch, hasMarker, lastOf, LIGHT, MARKERS, opacityOf, rangeOf, spread, type Line, type Spec } from './spec';
 
 const WIDTH = 960;
 const LEFT = 64;
@@ -82,7 +82,9 @@ export function svgOf(spec: Spec, footer: string[]): string {
     out.push(`<path d="${path}" fill="none" stroke="${colorOf(line.series, LIGHT)}" stroke-width="2" stroke-linejoin="round"${dash ? ` stroke-dasharray="${dash}"` : ''}/>`);
     if (!hasMarker(line.series)) continue;
     line.y.forEach((value, i) => {
-      if (value !== null) out.push(markerText(line, x(line.x[i]!), y(value), line.hollow[i] ?? false));
+      if (value === null) return;
+      if (endsBranch(line, i)) out.push(`<path d="M${x(line.x[i]!).toFixed(1)} ${(y(value) - 8).toFixed(1)}v16" stroke="${colorOf(line.series, LIGHT)}" stroke-width="1.5"/>`);
+      out.push(markerText(line, x(line.x[i]!), y(value), line.hollow[i] ?? false));
     });
   }
   const ends = spec.lines.flatMap((line) => {

@@ -10,10 +10,11 @@ interface NumProps {
   unit: Unit;
   isSigned?: boolean; // of a difference
   withError?: boolean; // "± error" follows
+  data?: Record<string, string | number | undefined>; // attributes for tests
 }
 
 /** A number of the service with its rounded text. Tests compare `data-value` with the answer. */
-export function Num({ value, error, unit, isSigned = false, withError = false }: NumProps) {
+export function Num({ value, error, unit, isSigned = false, withError = false, data = {} }: NumProps) {
   const number = finite(value);
   if (number === null) return <span>–</span>;
   const spread = finite(error);
@@ -22,7 +23,7 @@ export function Num({ value, error, unit, isSigned = false, withError = false }:
   const sign = isSigned && /[1-9]/.test(text) && !text.startsWith('−') ? '+' : '';
   return (
     <span class="num">
-      <span data-value={number} data-unit={unit.symbol} data-factor={unit.factor} data-offset={unit.offset}>{sign}{text}</span>
+      <span data-value={number} data-unit={unit.symbol} data-factor={unit.factor} data-offset={unit.offset} {...data}>{sign}{text}</span>
       {withError && spread !== null && spread > 0 && <span> ± <span data-value={spread} data-factor={Math.abs(unit.factor)} data-offset={0}>{rounded(reach!, reach)}</span></span>}
     </span>
   );

@@ -1,30 +1,31 @@
 import { fluidsOf, shortTitle, variantOf, type Curve } from '../curve';
-import { idOf, revisionIdOf, rounded, shown } from '../format';
+import { idOf, revisionIdOf } from '../format';
 import { QUANTITIES, type Quantity } from '../quantities';
+import { figureOf, type ComparedGroup } from '../uncertainty';
+import { finite, Num } from './num';
 import { Swatch } from './swatch';
 
 interface ReadOutProps {
   curves: Curve[];
   titles: Map<string, string>;
+  groups: ComparedGroup[] | undefined;
   speed: number | null;
   onSpeed: (speed: number) => void;
   onOpen: (curve: Curve, speed: number) => void;
 }
 
-/** A value of the service with its rounded text; tests compare the attributes with the answer. */
-function Num({ curve, row, quantity, column }: { curve: Curve; row: number; quantity: Quantity; column: string }) {
+/** A value of a curve: with the uncertainty of the inputs if there is one, else rounded by the solver's error. */
+function CurveNum({ curve, row, quantity, column, groups }: { curve: Curve; row: number; quantity: Quantity; column: string; groups?: ComparedGroup[] | undefined }) {
   const value = curve.columns[column]![row] ?? null;
   const relative = curve.columns['estimated_relative_error']![row];
-  const error = value === null || relative == null ? undefined : Math.abs(value * relative * quantity.unit.factor);
-  return (
-    <span data-value={value ?? ''} data-column={column} data-simulation={curve.simulation.name} data-row={row}>
-      {value === null ? '–' : rounded(shown(value, quantity.unit), error)}
-    </span>
-  );
+  const spread = finite(figureOf(groups, curve.simulation, column, row)?.standard_uncertainty);
+  const data = { 'data-column': column, 'data-simulation': curve.simulation.name, 'data-row': row };
+  if (spread !== null && spread > 0) return <Num value={value} error={spread} unit={quantity.unit} withError data={data} />;
+  return <Num value={value} error={value === null || relative == null ? undefined : value * relative} unit={quantity.unit} data={data} />;
 }
 
 /** Every number of the plots at one speed. */
-export function ReadOut({ curves, titles, speed, onSpeed, onOpen }: ReadOutProps) {
+export function ReadOut({ curves, titles, groups, speed, onSpeed, onOpen }: ReadOutProps) {
   const speeds = [...new Set(curves.flatMap((curve) => curve.columns['speed_kilometres_per_hour'] as number[]))].sort((a, b) => a - b);
   const at = speed !== null && speeds.includes(speed) ? speed : speeds[Math.floor(speeds.length / 2)]!;
   const index = speeds.indexOf(at);
@@ -68,7 +69,7 @@ export function ReadOut({ curves, titles, speed, onSpeed, onOpen }: ReadOutProps
                     {shortTitle(titles.get(idOf(revision)) ?? revisionIdOf(revision))}{variant && `, ${variant}`}
                   </th>
                   {columns.map(({ quantity, column }) => (
-                    <td key={column} class="number">{row < 0 ? '–' : <Num curve={curve} row={row} quantity={quantity} column={column} />}</td>
+                    <td key={column} class="number">{row < 0 ? '–' : <CurveNum curve={curve} row={row} quantity={quantity} column={column} groups={groups} />}</td>
                   ))}
                   <td class="number"><button onClick={() => onOpen(curve, at)} title="Time histories at this speed">Open<span class="hidden"> the point</span></button></td>
                 </tr>

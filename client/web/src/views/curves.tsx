@@ -3,19 +3,28 @@ import { ApiError, change, session, url } from '../api/client';
 import { watch } from '../api/events';
 import type { Simulation, SimulationEvent } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
+import type { Spec } from '../charts/spec';
 import { Conditions } from '../components/conditions';
 import { CurveExport } from '../components/curve_export';
 import { Failure, Notice } from '../components/notice';
 import { ReadOut } from '../components/read_out';
-import { readCurve, readSimulation, remarksOf, specOf, type Curve } from '../curve';
-import { idOf } from '../format';
-import { QUANTITIES, quantityOf } from '../quantities';
+import { Swatch } from '../components/swatch';
+import { bandsOf, fluidsOf, optionsOf, readCurve, readSimulation, remarksOf, shortTitle, specOf, splitSpecOf, variantOf, type Curve } from '../curve';
+import { idOf, revisionIdOf } from '../format';
+import { QUANTITIES, quantityOf, warningOf } from '../quantities';
 import { bodiesOf, DEFAULTS, inputsOf, queryOf, requestOf, requestOfSimulations, type CurveRequest } from '../request';
 import { HISTORY_COLUMNS, MESH_CYCLES, SAMPLES_PER_MESH_CYCLE } from '../histories';
 import { titlesOf, useGearSets, useLubricants } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
+import { differencesOf, needsContactFigures, specWithIntervals, useUncertainty, type ComparedGroup } from '../uncertainty';
+import { POINTS } from '../comparison';
+import { Num } from '../components/num';
 import { run } from './home';
+
+const COMPARISONS: [string, string][] = [
+  ['isothermal', 'Isothermal'], ['newtonian', 'Newtonian'], ['no_boundary_friction', 'No boundary friction'],
+];
 
 const ENDED = ['SUCCEEDED', 'FAILED', 'CANCELLED'];
 
@@ -124,19 +133,40 @@ export function Curves() {
   const done = useMemo(() => jobs.flatMap((job) => (job.curve ? [job.curve] : [])), [jobs]);
   const quantity = quantityOf(query.get('y'));
   const gearSet = gearSets.value?.find((each) => each.name === done[0]?.simulation.gear_set_revision?.replace(/@.*/, ''));
+  const isSplit = query.get('y') === 'split';
+  const fluids = fluidsOf(done).map(idOf);
+  const reference = fluids.includes(query.get('ref') ?? '') ? query.get('ref')! : fluids[0] ?? '';
+  const hasBands = query.get('u') !== '0';
+  const uncertainty = useUncertainty(done, reference, hasBands && needsContactFigures(quantity.columns), done.length === jobs.length && done.length > 0);
+  const groups = uncertainty.isStale ? undefined : uncertainty.value;
+  const zoom = useMemo<[number, number] | undefined>(() => {
+    const [from, to] = (query.get('x') ?? '').split('-').map(Number);
+    return from !== undefined && to !== undefined && to > from ? [from, to] : undefined;
+  }, [query.get('x')]);
+  const hasErrors = query.get('e') !== '0';
   const specs = useMemo(
-    () => new Map(QUANTITIES.map((each) => [each.id, specOf(done, each, titles, gearSet?.dynamics?.half_backlash_metres)])),
-    [done, titles, gearSet],
+    () => new Map(QUANTITIES.map((each) => [each.id, {
+      ...specOf(done, each, titles, gearSet?.dynamics?.half_backlash_metres), hasErrors, ...(zoom ? { xRange: zoom } : {}),
+    }])),
+    [done, titles, gearSet, hasErrors, zoom],
   );
-  const spec = specs.get(quantity.id)!;
+  const spec = useMemo(
+    () => specWithIntervals(specs.get(quantity.id)!, done, quantity.columns, quantity.unit, hasBands ? groups : undefined),
+    [specs, quantity, groups, hasBands],
+  );
+  const difference = useMemo(() => {
+    const found = differencesOf(groups, fluidsOf(done), titles);
+    return found && { ...found, hasErrors, ...(zoom ? { xRange: zoom } : {}), parted: spec.parted, outside: spec.outside };
+  }, [groups, titles, spec]);
+  const onZoom = (range: [number, number] | null) => set({ x: range ? range.map((each) => Number(each.toFixed(2))).join('-') : undefined });
   const remarks = useMemo(() => remarksOf(done), [done]);
   const failed = jobs.filter((job) => job.simulation.state === 'FAILED' || job.simulation.state === 'CANCELLED');
 
-  const submit = async () => {
+  const submit = async (bodies: Simulation[], shownIds: string[] = []) => {
     setBusy(true);
     setRefusal(null);
     try {
-      await run(bodiesOf(request));
+      await run(bodies, shownIds);
     } catch (problem) {
       setRefusal(problem);
     } finally {
@@ -164,10 +194,27 @@ export function Curves() {
       <aside class="panel" aria-label="Conditions">
         <Conditions request={request} onChange={setRequest} lubricants={lubricants.value ?? []} gearSets={gearSets.value ?? []}
           violations={refusal instanceof ApiError ? refusal.violations : []} shown={done} />
-        <button class="primary wide" disabled={busy || request.fluids.length === 0 || session.value?.scope === 'read'} onClick={() => void submit()}>
+        <button class="primary wide" disabled={busy || request.fluids.length === 0 || session.value?.scope === 'read'} onClick={() => void submit(bodiesOf(request))}>
           {busy ? 'Submitting …' : request.fluids.length * request.sumps.length > 1 ? `Run ${request.fluids.length * request.sumps.length} curves` : 'Run the curve'}
         </button>
         <a class="small" href={address('/curves', queryOf(request))}>Link to this form</a>
+        {done.length > 0 && session.value?.scope !== 'read' && (
+          <fieldset class="comparisons">
+            <legend>The paper's comparisons</legend>
+            {COMPARISONS.map(([option, words]) => {
+              const full = done.filter((each) => optionsOf(each.simulation).length === 0);
+              const isShown = done.some((each) => optionsOf(each.simulation).join() === option);
+              return (
+                <button key={option} disabled={busy || isShown || full.length === 0}
+                  onClick={() => void submit(full.map(({ simulation }) => ({
+                    ...inputsOf(simulation), model_options: { ...simulation.model_options, [option]: true }, inefficiency_curve: simulation.inefficiency_curve!,
+                  })), ids)}>
+                  {words}
+                </button>
+              );
+            })}
+          </fieldset>
+        )}
         {refusal !== null && <Failure error={refusal} />}
       </aside>
       <div>
@@ -188,26 +235,40 @@ export function Curves() {
           <>
             <figure class="figure" aria-labelledby="figure-title">
               <div class="heading">
-                <h1 id="figure-title">{spec.title}{spec.yLabel && spec.yLabel !== '%' ? `, ${spec.yLabel}` : ''}</h1>
-                <CurveExport spec={spec} curves={done} project={project} />
+                <h1 id="figure-title">{isSplit ? 'Mesh loss by viscous and by boundary friction, W' : `${spec.title}${spec.yLabel && spec.yLabel !== '%' ? `, ${spec.yLabel}` : ''}`}</h1>
+                <CurveExport spec={isSplit ? specs.get('loss')! : spec} curves={done} project={project} />
               </div>
               <div class="tabs" role="group" aria-label="Quantity">
                 {QUANTITIES.map((each) => (
-                  <button key={each.id} aria-pressed={each.id === quantity.id} onClick={() => set({ y: each.id === 'inefficiency' ? undefined : each.id })}>
+                  <button key={each.id} aria-pressed={!isSplit && each.id === quantity.id} onClick={() => set({ y: each.id === 'inefficiency' ? undefined : each.id })}>
                     {each.label}
                   </button>
                 ))}
+                <button aria-pressed={isSplit} onClick={() => set({ y: 'split' })}>Loss split</button>
               </div>
-              <CurveChart spec={spec} height={matchMedia('(max-width: 640px)').matches ? 260 : 360} sync="curves" onSpeed={setSpeed}
-                onPick={(at) => set({ v: String(at) })} />
+              {isSplit ? <LossSplit curves={done} titles={titles} xRange={zoom} onSpeed={setSpeed} onZoom={onZoom} /> : (
+                <CurveChart spec={spec} height={matchMedia('(max-width: 640px)').matches ? 260 : 360} sync="curves" onSpeed={setSpeed}
+                  onPick={(at) => set({ v: String(at) })} onZoom={onZoom} />
+              )}
               <p class="axis-title">{spec.xLabel}</p>
-              <Key spec={spec} />
+              <div class="under-chart">
+                <Key spec={spec} hasBands={spec.lines.some((line) => line.low)} isFilled={!isSplit && spec.lines.some((line) => line.to)} hasEnds={done.some((curve) => curve.branchEnds.some((end) => end))} />
+                <div class="switches">
+                  <label class="choice"><input type="checkbox" checked={hasBands} onChange={() => set({ u: hasBands ? '0' : undefined })} /> Uncertainty of the inputs</label>
+                  <label class="choice"><input type="checkbox" checked={hasErrors} onChange={() => set({ e: hasErrors ? '0' : undefined })} /> Error of the solver</label>
+                  {zoom && <button onClick={() => onZoom(null)}>Show all speeds</button>}
+                </div>
+              </div>
             </figure>
-            <ReadOut curves={done} titles={titles} speed={speed} onSpeed={setSpeed} onOpen={(curve, at) => void openPoint(curve, at)} />
+            {uncertainty.error !== undefined && <Failure error={uncertainty.error} onRetry={uncertainty.reload} />}
+            {difference && (
+              <Differences spec={difference} groups={groups!} titles={titles} fluids={fluids} reference={reference} onSpeed={setSpeed} onZoom={onZoom} />
+            )}
+            <ReadOut curves={done} titles={titles} groups={hasBands ? groups : undefined} speed={speed} onSpeed={setSpeed} onOpen={(curve, at) => void openPoint(curve, at)} />
             <Validity remarks={remarks} curves={done} />
             <div class="multiples">
               {QUANTITIES.map((each) => (
-                <button key={each.id} class="multiple" aria-pressed={each.id === quantity.id} onClick={() => set({ y: each.id === 'inefficiency' ? undefined : each.id })}>
+                <button key={each.id} class="multiple" aria-pressed={!isSplit && each.id === quantity.id} onClick={() => set({ y: each.id === 'inefficiency' ? undefined : each.id })}>
                   <span>{each.label}{each.unit.symbol && `, ${each.unit.symbol}`}</span>
                   <CurveChart spec={specs.get(each.id)!} height={132} isSmall sync="curves" />
                 </button>
@@ -221,14 +282,97 @@ export function Curves() {
 }
 
 /** What the marks of a plot mean, of those that it has. */
-function Key({ spec }: { spec: { parted: unknown[]; caution: unknown[]; outside: unknown[] } }) {
-  if (spec.parted.length + spec.caution.length + spec.outside.length === 0) return null;
+function Key({ spec, hasBands, isFilled, hasEnds }: { spec: Spec; hasBands: boolean; isFilled: boolean; hasEnds: boolean }) {
+  if (spec.parted.length + spec.caution.length + spec.outside.length === 0 && !hasBands && !isFilled && !hasEnds) return null;
   return (
     <ul class="key">
       {spec.parted.length > 0 && <li><i class="swatch parted" /> flanks separate (hollow markers)</li>}
       {spec.caution.length > 0 && <li><i class="swatch caution" /> a law leaves its validated range</li>}
       {spec.outside.length > 0 && <li><i class="swatch outside" /> do not rank fluids here</li>}
+      {hasBands && <li><i class="swatch band" /> holds the curve with 95&nbsp;%, as far as the inputs decide</li>}
+      {isFilled && <li><i class="swatch band" /> what the model option changes</li>}
+      {hasEnds && <li><i class="cap" /> the branch of steady states ends, the response jumps</li>}
     </ul>
+  );
+}
+
+const titleOf = (titles: Map<string, string>, revision: string | undefined): string =>
+  shortTitle(titles.get(idOf(revision)) ?? revisionIdOf(revision));
+
+/** The parts of the loss of each curve, on plots of one scale. */
+function LossSplit({ curves, titles, xRange, onSpeed, onZoom }: {
+  curves: Curve[]; titles: Map<string, string>; xRange: [number, number] | undefined;
+  onSpeed: (speed: number) => void; onZoom: (range: [number, number] | null) => void;
+}) {
+  const specs = useMemo(() => {
+    const simulations = curves.map((curve) => curve.simulation);
+    const fluids = fluidsOf(curves);
+    const greatest = Math.max(...curves.flatMap((curve) => curve.columns['mesh_loss_power_watts']!.map((value) => value ?? 0)));
+    return curves.map((curve) => {
+      const revision = curve.simulation.lubricant_revision ?? '';
+      const variant = variantOf(curve.simulation, simulations);
+      const spec = splitSpecOf(curve, titleOf(titles, revision) + (variant && `, ${variant}`), fluids.indexOf(revision), greatest,
+        bandsOf([curve], (each, row) => each.columns['contact_loss']![row] === 1),
+        bandsOf([curve], (each, row) => each.warnings[row]!.some((warning) => warningOf(warning.code ?? '').level === 'outside')));
+      return xRange ? { ...spec, xRange } : spec;
+    });
+  }, [curves, titles, xRange]);
+  return (
+    <>
+      <div class="histories">
+        {specs.map((spec) => (
+          <figure key={spec.title} class="figure">
+            <figcaption>{spec.title}</figcaption>
+            <CurveChart spec={spec} height={220} sync="curves" onSpeed={onSpeed} onZoom={onZoom} />
+          </figure>
+        ))}
+      </div>
+      <ul class="key"><li><i class="swatch viscous" /> viscous friction</li><li><i class="swatch boundary" /> boundary friction</li></ul>
+    </>
+  );
+}
+
+const VERDICTS: Record<string, string> = { LOWER: 'loses less', HIGHER: 'loses more', CANNOT_BE_TOLD_APART: 'cannot be told apart' };
+
+/** Differences from the reference fluid with their intervals; hollow where two cannot be told apart. */
+function Differences({ spec, groups, titles, fluids, reference, onSpeed, onZoom }: {
+  spec: Spec; groups: ComparedGroup[]; titles: Map<string, string>; fluids: string[]; reference: string;
+  onSpeed: (speed: number) => void; onZoom: (range: [number, number] | null) => void;
+}) {
+  const wide = groups.filter((each) => each.curves.length > 1);
+  const simulations = wide.map((each) => each.curves[0]!.simulation);
+  return (
+    <figure class="figure differences" aria-labelledby="difference-title">
+      <div class="heading">
+        <h2 id="difference-title">Difference of the inefficiency, percentage points</h2>
+        <label class="inline">from
+          <select value={reference} onChange={(event) => set({ ref: event.currentTarget.value })}>
+            {fluids.map((each) => <option key={each} value={each}>{titleOf(titles, each)}</option>)}
+          </select>
+        </label>
+      </div>
+      <ul class="verdicts">
+        {wide.flatMap((group, k) => (group.answer.lubricants ?? []).slice(1).map((each) => {
+          const difference = each.mean_difference;
+          if (!difference?.verdict || difference.verdict === 'VERDICT_UNSPECIFIED') return null;
+          const id = idOf(each.lubricant_revision);
+          const variant = variantOf(simulations[k]!, simulations);
+          const figure = difference.difference_percent!;
+          return (
+            <li key={`${k} ${id}`}>
+              <Swatch series={fluids.indexOf(id)} />
+              <a href={address('/compare', { a: revisionIdOf(group.answer.lubricants![0]!.lubricant_revision), b: revisionIdOf(each.lubricant_revision), sump: String(group.curves[0]!.simulation.sump_temperature_celsius ?? 40) })}>
+                {titleOf(titles, each.lubricant_revision)} {VERDICTS[difference.verdict]}
+              </a>{' '}
+              <Num value={figure.value} error={figure.standard_uncertainty || figure.solver_error} unit={POINTS} isSigned withError />
+              {variant && ` (${variant})`}
+            </li>
+          );
+        }))}
+      </ul>
+      <CurveChart spec={spec} height={180} sync="curves" onSpeed={onSpeed} onZoom={onZoom} />
+      <p class="small">Means over the speeds; hollow where the two cannot be told apart. Each speed is solved alone here; a curve follows its branch.</p>
+    </figure>
   );
 }
 

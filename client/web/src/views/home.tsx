@@ -11,12 +11,12 @@ import { address, go } from '../router';
 
 const SHOWN_RUNS = 8;
 
-/** Runs curves and opens them. */
-export async function run(bodies: Simulation[]): Promise<void> {
+/** Runs curves and opens them, beside results that are shown already. */
+export async function run(bodies: Simulation[], beside: string[] = []): Promise<void> {
   const simulations: Simulation[] = [];
   // One after the other, so that numbers have the order of the fluids.
   for (const body of bodies) simulations.push(await change<Simulation>('POST', url('simulations'), body));
-  go(address('/curves', { r: simulations.map((each) => idOf(each.name)).join(',') }));
+  go(address('/curves', { r: [...new Set([...beside, ...simulations.map((each) => idOf(each.name))])].join(',') }));
 }
 
 /** What a simulation computes, in a few words. */
