@@ -461,6 +461,11 @@ expect 0 curve --lubricant paper-fluid-1 --speeds 20,100 --compare isothermal,no
 out_has 'difference %'
 out_has '^ *20 +1\.3[0-9]+ +\+1[0-9]\.[0-9]{2} +-2[0-9]\.[0-9]{2}'
 grep -q 'Difference of the energy mean' "$folder/variants.svg" || fail "the plot has no differences"
+expect 0 curve --lubricant paper-fluid-1 --speeds 20,100 --plot "$folder/panels.svg" \
+  --panels transmission-error,film-ratio
+grep -q 'half backlash' "$folder/panels.svg" || fail "tribodyn curve: no half backlash in the plot"
+expect 2 curve --lubricant paper-fluid-1 --panels film-ratio
+err_has 'add --plot'
 expect 2 curve --lubricant paper-fluid-1 --compare warmer
 err_has "'warmer' must be one of"
 expect 0 curve --lubricant sheet-a --speed 40,60 --no-uncertainty

@@ -216,6 +216,21 @@ v1::Simulation with_warning(v1::Simulation curve, const std::string& code, doubl
   return curve;
 }
 
+TEST(CurvePlot, PanelsOnRequestStandBelowWithTheHalfBacklashLine) {
+  const v1::Simulation curve = sample_curve("1", 1);
+  const std::string plain = curve_plot({curve}, {});
+  const std::string svg = curve_plot({curve}, {}, {},
+                                     {{"transmission-error", "friction-torque", "boundary-ratio",
+                                       "film-ratio", "temperature-rise"},
+                                      75e-6});
+  for (const char* title :
+       {"Transmission error, ", "half backlash", "Friction torque on the pinion",
+        "Boundary over viscous friction", "Film ratio", "rise above the inlet"}) {
+    EXPECT_EQ(plain.find(title), std::string::npos) << title;
+    EXPECT_NE(svg.find(title), std::string::npos) << title;
+  }
+}
+
 TEST(CurvePlot, HatchesWhereALawIsOutsideItsRangeAndNamesItInTheFooter) {
   const std::string plain = curve_plot({sample_curve("1", 1), sample_curve("2", 1.1)}, {});
   EXPECT_EQ(plain.find("hatch"), std::string::npos);

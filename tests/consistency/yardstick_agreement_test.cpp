@@ -19,6 +19,7 @@ struct AgreementPlace {
   bool isothermal = false;
   bool newtonian = false;
   double ascent_angle = 0;  // [rad]; downhill the wheel drives: coast
+  double acceleration = 0;  // [m/s2]; not 0: an instant of a drive cycle
 };
 
 class YardstickAgreement : public testing::TestWithParam<AgreementPlace> {};
@@ -32,6 +33,8 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   OperatingCondition condition;
   condition.vehicle_speed = speed;
   condition.ascent_angle = place.ascent_angle;
+  condition.acceleration = place.acceleration;
+  if (place.acceleration != 0) condition.kind = OperatingCondition::Kind::kDriveCycleSnapshot;
   PointOptions options;
   options.tolerance = 1e-6;
   options.start = place.start;
@@ -39,7 +42,7 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   options.march_settling_tolerance = 1e-7;
   const PointResult ours = solve_operating_point(scene, condition, options);
   ASSERT_TRUE(ours.settled);
-  ASSERT_EQ(ours.pinion_torque < 0, place.ascent_angle < 0);
+  ASSERT_EQ(ours.pinion_torque < 0, place.ascent_angle < 0 || place.acceleration < 0);
 
   const auto worked = yardstick::ReadJsonFile(test_data_file("worked_points.json"));
   const auto gear = yardstick::ReadJsonFile(test_data_file("reference_gear_set.json"));
@@ -48,6 +51,7 @@ TEST_P(YardstickAgreement, TransmissionErrorAndInefficiency) {
   friction.newtonian = place.newtonian;
   yardstick::VehicleParameters vehicle = yardstick::ReadVehicle(gear);
   vehicle.ascent_angle = place.ascent_angle;
+  vehicle.acceleration = place.acceleration;
   const yardstick::GearPairSystem system(
       yardstick::ReadGearPair(gear), vehicle,
       yardstick::ReadOrbitFriction(worked.at("orbit_inputs").at("values"), friction),
@@ -88,7 +92,12 @@ INSTANTIATE_TEST_SUITE_P(
         AgreementPlace{"v100_isothermal", 100, PointStart::kQuasiStatic, true},
         AgreementPlace{"v100_newtonian", 100, PointStart::kQuasiStatic, false, true},
         AgreementPlace{"v72_5_coast", 72.5, PointStart::kQuasiStatic, false, false, -0.05},
-        AgreementPlace{"v100_coast", 100, PointStart::kQuasiStatic, false, false, -0.08}),
+        AgreementPlace{"v100_coast", 100, PointStart::kQuasiStatic, false, false, -0.08},
+        AgreementPlace{"v32_accelerating", 32, PointStart::kQuasiStatic, false, false, 0, 0.94},
+        AgreementPlace{"v50_accelerating_uphill", 50, PointStart::kQuasiStatic, false, false, 0.03,
+                       0.52},
+        AgreementPlace{"v100_braking_uphill", 100, PointStart::kQuasiStatic, false, false, 0.02,
+                       -1.04}),
     [](const auto& place) { return std::string(place.param.name); });
 
 }  // namespace

@@ -36,7 +36,7 @@ double ResistiveTorque(const VehicleParameters& vehicle, double vehicle_speed_me
   const double weight = vehicle.mass * vehicle.gravity;
   return vehicle.wheel_radius *
          (weight * vehicle.rolling_resistance * std::cos(vehicle.ascent_angle) +
-          weight * std::sin(vehicle.ascent_angle) +
+          weight * std::sin(vehicle.ascent_angle) + vehicle.mass * vehicle.acceleration +
           vehicle.drag_coefficient * vehicle.frontal_area * 0.5 * vehicle.air_density *
               vehicle_speed_meters_per_second * vehicle_speed_meters_per_second);
 }

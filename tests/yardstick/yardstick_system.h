@@ -76,9 +76,10 @@ struct VehicleParameters {
   double wheel_radius = 0.0;        ///< r_w, m
   double gravity = 9.81;            ///< g, m/s2
   double ascent_angle = 0.0;        ///< a, rad
+  double acceleration = 0.0;        ///< du_v/dt, m/s2
 };
 
-/// T_w of eq 7, N m.
+/// T_w of eq 7 with the inertia of the vehicle, N m.
 double ResistiveTorque(const VehicleParameters& vehicle, double vehicle_speed_meters_per_second);
 
 /// The eight states. Angles are kept as differences so that the transmission error keeps its

@@ -11,6 +11,7 @@
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/report/curve_report.h"
 #include "client/cpp/report/variant_report.h"
+#include "client/cpp/text/text.h"
 
 namespace tribodyn::client {
 namespace {
@@ -27,6 +28,7 @@ struct CurveFlags {
   std::string csv_path;
   std::string plot_path;
   bool leaves_out_uncertainty = false;
+  std::vector<std::string> panels;  ///< of the plot, on request
 };
 
 void add_curve_flags(FlagList& list, CurveFlags& flags) {
@@ -91,6 +93,24 @@ void add_curve_flags(FlagList& list, CurveFlags& flags) {
                 "Also draw the curves of all lubricants, at most " +
                     std::to_string(kDistinctLooks) + " of them, as SVG.",
                 flags.plot_path);
+  list.choices("--panels", curve_panel_words(),
+               "More panels of the plot, separated by commas: " + curve_panel_words() + ".",
+               [&](const std::string& word) {
+                 const std::vector<std::string> words = split(curve_panel_words(), '|');
+                 if (std::find(words.begin(), words.end(), word) == words.end()) return false;
+                 flags.panels.push_back(word);
+                 return true;
+               });
+}
+
+/// Returns the panels on request, with the half backlash of the gear set, which all curves share.
+CurvePanels panels_of(const CurveFlags& flags, const std::vector<v1::Simulation>& curves,
+                      Connection& connection) {
+  CurvePanels out{flags.panels};
+  if (out.names.empty()) return out;
+  const v1::GearSet gear_set = connection.get<v1::GearSet>(curves.front().gear_set_revision());
+  out.half_backlash_metres = gear_set.dynamics().half_backlash_metres();
+  return out;
 }
 
 int run_curve(CurveFlags& flags, const CommonOptions& options) {
@@ -121,8 +141,8 @@ int run_curve(CurveFlags& flags, const CommonOptions& options) {
     write_file(flags.csv_path, points_csv(succeeded));
   }
   if (!flags.plot_path.empty() && !succeeded.empty()) {
-    write_file(flags.plot_path,
-               curve_plot(succeeded, lubricant_titles(succeeded, connection), uncertainties));
+    write_file(flags.plot_path, curve_plot(succeeded, lubricant_titles(succeeded, connection),
+                                           uncertainties, panels_of(flags, succeeded, connection)));
   }
   return report_failures(ended);
 }
@@ -153,6 +173,9 @@ Command curve_command() {
     if (flags->has_range && flags->study.speeds_kilometres_per_hour_size() > 0) {
       complaints.emplace_back(
           "give either --speed with all speeds, or --first-speed, --last-speed and --speed-step");
+    }
+    if (!flags->panels.empty() && flags->plot_path.empty()) {
+      complaints.emplace_back("--panels are those of a plot: add --plot FILE.svg");
     }
     const std::size_t count = simulations_of(flags->scenario).size();
     if (!flags->plot_path.empty() && count > kDistinctLooks) {

@@ -242,7 +242,90 @@ Hatching hatching_of(const std::vector<v1::Simulation>& simulations) {
   return hatching;
 }
 
+constexpr double kExtraPitch = 275;  // from one row of panels on request to the next
+
+using PointFigure = double (*)(const v1::PointResult&);
+
+/// A panel on request: lines for each curve, the first one solid.
+struct ExtraPanel {
+  const char* name;
+  const char* title;
+  bool starts_at_zero;
+  std::vector<PointFigure> figures;
+};
+
+const std::vector<ExtraPanel>& extra_panels() {
+  static const std::vector<ExtraPanel> panels = {
+      {"transmission-error",
+       "Transmission error, \xC2\xB5m",
+       false,
+       {[](const v1::PointResult& r) { return 1e6 * r.dynamic_transmission_error_metres().mean(); },
+        [](const v1::PointResult& r) {
+          return 1e6 * r.dynamic_transmission_error_metres().minimum();
+        },
+        [](const v1::PointResult& r) {
+          return 1e6 * r.dynamic_transmission_error_metres().maximum();
+        }}},
+      {"friction-torque",
+       "Friction torque on the pinion, N m: mean, extremes",
+       false,
+       {[](const v1::PointResult& r) { return r.pinion_friction_torque_newton_metres().mean(); },
+        [](const v1::PointResult& r) { return r.pinion_friction_torque_newton_metres().minimum(); },
+        [](const v1::PointResult& r) {
+          return r.pinion_friction_torque_newton_metres().maximum();
+        }}},
+      {"boundary-ratio",
+       "Boundary over viscous friction, RMS",
+       true,
+       {[](const v1::PointResult& r) { return r.boundary_to_viscous_friction_ratio(); }}},
+      {"film-ratio",
+       "Film ratio: mean, least",
+       true,
+       {[](const v1::PointResult& r) { return r.film_ratio().mean(); },
+        [](const v1::PointResult& r) { return r.film_ratio().minimum(); }}},
+      {"temperature-rise", "Largest rise above the inlet, K", true, {}}};
+  return panels;
+}
+
+/// Returns a panel on request at its place among them.
+Panel extra_panel(const ExtraPanel& kind, const std::vector<v1::Simulation>& simulations,
+                  Point corner, double half_backlash_metres) {
+  Panel panel =
+      small_panel(simulations, corner, kind.title, [](const v1::PointResult&) { return kNone; });
+  panel.series.clear();
+  panel.starts_at_zero = kind.starts_at_zero;
+  for (std::size_t i = 0; i < simulations.size(); ++i) {
+    const Look look = look_of(i);
+    for (const PointFigure figure : kind.figures) {
+      panel.series.push_back(series_of(simulations[i], look, figure));
+      if (figure == kind.figures.front()) continue;
+      panel.series.back().dashes = look.side_dashes;
+      panel.series.back().width = 1.3;
+    }
+    if (!kind.figures.empty()) continue;
+    const Inputs inputs = inputs_of(simulations[i]);
+    const double inlet =
+        inputs.sump_temperature_celsius + inputs.inlet_temperature_rise_kelvin + kZeroCelsius;
+    panel.series.push_back(series_of(simulations[i], look, [inlet](const v1::PointResult& result) {
+      return result.contact_temperature_kelvin().maximum() - inlet;
+    }));
+  }
+  if (half_backlash_metres > 0 && std::string_view(kind.name) == "transmission-error") {
+    panel.line_at = 1e6 * half_backlash_metres;
+    panel.title += " (dotted: half backlash)";
+  }
+  return panel;
+}
+
 }  // namespace
+
+std::string curve_panel_words() {
+  std::string out;
+  for (const ExtraPanel& each : extra_panels()) {
+    out += (out.empty() ? "" : "|") + std::string(each.name);
+  }
+  return out;
+}
 
 std::vector<std::pair<double, double>> contact_loss_bands(
     const std::vector<v1::Simulation>& simulations) {
@@ -252,14 +335,17 @@ std::vector<std::pair<double, double>> contact_loss_bands(
 
 std::string curve_plot(const std::vector<v1::Simulation>& simulations,
                        const std::map<std::string, std::string>& titles,
-                       const CurveUncertainties& uncertainties) {
+                       const CurveUncertainties& uncertainties, const CurvePanels& extra) {
   const auto bands = contact_loss_bands(simulations);
   const Hatching hatching = hatching_of(simulations);
   const std::vector<std::string> below =
       footer_lines(texts_below(simulations, has_uncertainty(uncertainties)),
                    kCurveWidth - kCurveLeft - kCurveRight);
   const std::vector<Variant> variants = variants_of(simulations);
-  const double footer_top = kFooterTop + (variants.empty() ? 0 : kDifferencesHeight);
+  const double extra_top = 840 + (variants.empty() ? 0 : kDifferencesHeight);
+  const double extra_rows = static_cast<double>((extra.names.size() + 1) / 2);
+  const double footer_top =
+      kFooterTop + (variants.empty() ? 0 : kDifferencesHeight) + kExtraPitch * extra_rows;
   Svg svg(kCurveWidth, footer_top + kFooterPitch * static_cast<double>(below.size()));
   svg.text({kCurveLeft, 40}, "What each fluid costs in the gear mesh",
            {21, "start", "#111", true, 0});
@@ -285,6 +371,17 @@ std::string curve_plot(const std::vector<v1::Simulation>& simulations,
   }
   if (!variants.empty()) {
     Panel panel = difference_panel(variants);
+    panel.bands = bands;
+    draw_panel(panel, svg);
+  }
+  for (std::size_t i = 0; i < extra.names.size(); ++i) {
+    const auto kind =
+        std::find_if(extra_panels().begin(), extra_panels().end(),
+                     [&](const ExtraPanel& each) { return each.name == extra.names[i]; });
+    if (kind == extra_panels().end()) continue;
+    const Point corner{kCurveLeft + (i % 2 == 0 ? 0 : 390 + 75),
+                       extra_top + kExtraPitch * static_cast<double>(i / 2)};
+    Panel panel = extra_panel(*kind, simulations, corner, extra.half_backlash_metres);
     panel.bands = bands;
     draw_panel(panel, svg);
   }
