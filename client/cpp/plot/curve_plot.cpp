@@ -343,9 +343,9 @@ std::string curve_plot(const std::vector<v1::Simulation>& simulations,
                    kCurveWidth - kCurveLeft - kCurveRight);
   const std::vector<Variant> variants = variants_of(simulations);
   const double extra_top = 840 + (variants.empty() ? 0 : kDifferencesHeight);
-  const double extra_rows = static_cast<double>((extra.names.size() + 1) / 2);
-  const double footer_top =
-      kFooterTop + (variants.empty() ? 0 : kDifferencesHeight) + kExtraPitch * extra_rows;
+  const std::size_t extra_rows = (extra.names.size() + 1) / 2;
+  const double footer_top = kFooterTop + (variants.empty() ? 0 : kDifferencesHeight) +
+                            kExtraPitch * static_cast<double>(extra_rows);
   Svg svg(kCurveWidth, footer_top + kFooterPitch * static_cast<double>(below.size()));
   svg.text({kCurveLeft, 40}, "What each fluid costs in the gear mesh",
            {21, "start", "#111", true, 0});
@@ -379,8 +379,9 @@ std::string curve_plot(const std::vector<v1::Simulation>& simulations,
         std::find_if(extra_panels().begin(), extra_panels().end(),
                      [&](const ExtraPanel& each) { return each.name == extra.names[i]; });
     if (kind == extra_panels().end()) continue;
+    const std::size_t row = i / 2;
     const Point corner{kCurveLeft + (i % 2 == 0 ? 0 : 390 + 75),
-                       extra_top + kExtraPitch * static_cast<double>(i / 2)};
+                       extra_top + kExtraPitch * static_cast<double>(row)};
     Panel panel = extra_panel(*kind, simulations, corner, extra.half_backlash_metres);
     panel.bands = bands;
     draw_panel(panel, svg);
