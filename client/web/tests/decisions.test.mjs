@@ -142,3 +142,15 @@ test('the loss of each curve is split, and a zoom stands in the address', async 
   await page.waitForURL((url) => !url.search.includes('x='));
   assert.deepEqual(page.complaints, []);
 });
+
+test('a curve leads to everything that it rests on, with its origin', async () => {
+  await showCurves(['my-oil']);
+  await page.locator('.validity summary').click();
+  await page.getByRole('link', { name: 'assumptions of my-oil@1' }).click();
+  const rows = page.getByRole('region', { name: 'Assumptions' }).locator('tbody tr');
+  await rows.first().waitFor();
+  const { result } = await server.call('GET', `/v1/simulations/${page.url().split('/').pop()}`);
+  assert.equal(await rows.count(), result.assumptions.length);
+  const coefficient = rows.filter({ hasText: 'pressure viscosity coefficient' });
+  assert.match(await coefficient.textContent(), /assumed|literature|derived|fitted/);
+});

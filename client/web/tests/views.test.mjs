@@ -70,6 +70,7 @@ const VIEWS = [
   ['fluid-edit', '/fluids/paper-fluid-1/edit', '.fluid-form'],
   ['jobs', '/jobs', 'tbody tr'],
   ['job', '/jobs/5', '.facts'],
+  ['job-assumptions', '/jobs/1', '.assumptions'],
   ['point', '/point/4', '.histories canvas'],
   ['missing', '/fluids/no-such-oil', '.empty'],
 ];

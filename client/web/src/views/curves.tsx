@@ -397,6 +397,11 @@ function Validity({ remarks, curves }: { remarks: ReturnType<typeof remarksOf>; 
         ))}
         {refusals.map((each) => <li key={each.speed} class="outside">No result at {each.speed} km/h: {each.message}</li>)}
         {[...inputs].map(([code, message]) => <li key={code} class="caution">{message}</li>)}
+        <li class="note">
+          What each result rests on: {curves.map(({ simulation }, k) => (
+            <span key={simulation.name}>{k > 0 && ', '}<a href={address(`/jobs/${idOf(simulation.name)}`)}>assumptions of {revisionIdOf(simulation.lubricant_revision)}</a></span>
+          ))}.
+        </li>
         <li class="note">All losses are mesh losses: bearings, churning and seals are not in them.</li>
       </ul>
     </details>

@@ -1,12 +1,13 @@
 import { useEffect, useState } from 'preact/hooks';
 import { change, get, session, url } from '../api/client';
 import { watch } from '../api/events';
-import type { ListSimulationsResponse, Simulation } from '../api/types';
+import type { Assumption, ListSimulationsResponse, Simulation } from '../api/types';
 import { JobState } from '../components/job_state';
 import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
 import { INPUT_FIELDS, readSimulation } from '../curve';
 import { ago, duration, idOf, revisionIdOf } from '../format';
+import { PROVENANCE } from '../provenance';
 import { inputsOf } from '../request';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
 import { address, go, place, set } from '../router';
@@ -114,9 +115,32 @@ function JobList({ state }: { state: string }) {
   );
 }
 
+/** Everything that a result rests on, with its origin. */
+function Assumptions({ items }: { items: Assumption[] }) {
+  if (items.length === 0) return null;
+  return (
+    <details class="assumptions" open>
+      <summary>What the result rests on: {items.length} assumptions</summary>
+      <div class="scroll" tabIndex={0} role="region" aria-label="Assumptions">
+        <table>
+          <thead><tr><th>Field</th><th>Value</th><th>Origin</th><th>Source</th></tr></thead>
+          <tbody>
+            {items.map((each) => (
+              <tr key={`${each.resource} ${each.field}`}>
+                <th scope="row">{each.field!.replaceAll('_', ' ')}<small>{each.resource}</small></th>
+                <td>{each.value}</td><td>{PROVENANCE[each.provenance ?? ''] ?? ''}</td><td class="muted">{each.source}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </div>
+    </details>
+  );
+}
+
 /** What a job was asked, what became of it, and how to repeat it. */
 function JobPage({ name }: { name: string }) {
-  const { value: job, error, reload } = useLoaded(() => readSimulation(name, `${INPUT_FIELDS},result.model_version,result.platform`), name);
+  const { value: job, error, reload } = useLoaded(() => readSimulation(name, `${INPUT_FIELDS},result.model_version,result.platform,result.assumptions`), name);
   const [problem, setProblem] = useState<unknown>(null);
   const isOpen = job !== undefined && !ENDED.includes(job.state!);
   const [progress, setProgress] = useState<{ fraction: number; stage: string } | null>(null);
@@ -170,6 +194,7 @@ function JobPage({ name }: { name: string }) {
         {job.result?.model_version && <><dt>Model</dt><dd>{job.result.model_version}, {job.result.platform}</dd></>}
         <dt>Hash of the inputs</dt><dd><code>{job.input_hash}</code></dd>
       </dl>
+      <Assumptions items={job.result?.assumptions ?? []} />
       <h2>Request</h2>
       <p class="muted">Sent again, it gives this result, or a new one if the model has changed.</p>
       <pre class="command">{JSON.stringify(inputs, null, 2)}</pre>
