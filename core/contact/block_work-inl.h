@@ -39,7 +39,9 @@ struct alignas(64) Work {
   // The iteration: T - base and the s where tau meets tau_L; eq 23 at that T; tau at that s.
   Lanes start, rise, cut, pending;
   Lanes law_base, law_base_slope, factor, factor_slope;
-  Lanes clipped, e_growth, e_cut, stress, ratio, ratio_slope;
+  Lanes clipped, e_cut, stress, ratio, ratio_slope;
+  Lanes e_growth;                                // of RoelandsGrowth: e^(Z s) there
+  Lanes growth_by_temperature, growth_by_depth;  // of LawGrowth: slopes of ln tau there
   Lanes mean, change, cut_change;
 };
 

@@ -21,6 +21,7 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// Proofs, and what follows from the stress.
+template <class Growth>
 HWY_INLINE void certify(const Tables& t, ContactBlockResults& block, const Work& work, int i) {
   const Pack base = load(work.base + i), rise = load(work.rise + i);
   const Pack change = load(work.change + i), scaled = load(work.scaled_pressure + i);
@@ -35,7 +36,7 @@ HWY_INLINE void certify(const Tables& t, ContactBlockResults& block, const Work&
   Pack share = 0, centre = 0;
   if (t.limited) {
     // One place at most where stress and limit meet, and not within rounding of none.
-    const Pack excess_end = excess_at_end(work, i);
+    const Pack excess_end = excess_at_end<Growth>(t, work, i);
     const Pack excess_rim = load(work.law_base + i) - t.log_limit_at_rim;
     const Mask clipped = excess_end > 0, all_limited = excess_rim > 0;
     solved = solved & (size(excess_rim) > 1e-8) & (size(excess_end) > 1e-8);
@@ -69,10 +70,9 @@ HWY_INLINE void certify(const Tables& t, ContactBlockResults& block, const Work&
   store(as_number(solved), block.solved + i);
 }
 
-}  // namespace
-
-void solve_block(const Tables& tables, int count, const ContactBlockInputs& in,
-                 ContactBlockResults& block) {
+template <class Growth>
+void solve_with(const Tables& tables, int count, const ContactBlockInputs& in,
+                ContactBlockResults& block) {
   Work work;
   const ActiveLanes active(count);
   for (const int i : active) eval_logarithms(in, work, i);
@@ -84,15 +84,16 @@ void solve_block(const Tables& tables, int count, const ContactBlockInputs& in,
   for (const int i : active) finish_load_sharing(tables, in, block, work, i);
   for (const int i : active) eval_thermal_network(tables, in, block, work, i);
   for (const int i : active) {
-    prepare_shear(tables, load(block.sliding_speed + i), load(block.film_thickness + i),
-                  load(block.maximum_pressure + i), block.shear_rate, work, i);
+    prepare_shear<Growth>(tables, load(block.sliding_speed + i), load(block.film_thickness + i),
+                          load(block.maximum_pressure + i), block.shear_rate, work, i);
   }
-  solve_coarse(tables, active, work);
-  solve_fine(tables, active, work);
-  for (const int i : active) certify(tables, block, work, i);
+  solve_coarse<Growth>(tables, active, work);
+  solve_fine<Growth>(tables, active, work);
+  for (const int i : active) certify<Growth>(tables, block, work, i);
 }
 
-void sample_rises(const Tables& tables, const StartSamples& in, double* rise) {
+template <class Growth>
+void sample_with(const Tables& tables, const StartSamples& in, double* rise) {
   Work work;
   alignas(64) ContactLanes ignored;
   const ActiveLanes active(kBlockContacts);
@@ -101,10 +102,34 @@ void sample_rises(const Tables& tables, const StartSamples& in, double* rise) {
     store(tables.inlet_temperature, work.base + i);
     store(0, work.start + i);
     store(load(in.gain + i), work.gain + i);
-    prepare_shear(tables, load(in.shear_rate + i), 1, load(in.pressure + i), ignored, work, i);
+    prepare_shear<Growth>(tables, load(in.shear_rate + i), 1, load(in.pressure + i), ignored, work,
+                          i);
   }
-  solve_coarse(tables, active, work);
+  solve_coarse<Growth>(tables, active, work);
   for (const int i : active) store(load(work.rise + i), rise + i);
+}
+
+bool is_roelands(const Tables& tables) {
+  return tables.shear.lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands;
+}
+
+}  // namespace
+
+void solve_block(const Tables& tables, int count, const ContactBlockInputs& in,
+                 ContactBlockResults& block) {
+  if (is_roelands(tables)) {
+    solve_with<RoelandsGrowth>(tables, count, in, block);
+  } else {
+    solve_with<LawGrowth>(tables, count, in, block);
+  }
+}
+
+void sample_rises(const Tables& tables, const StartSamples& in, double* rise) {
+  if (is_roelands(tables)) {
+    sample_with<RoelandsGrowth>(tables, in, rise);
+  } else {
+    sample_with<LawGrowth>(tables, in, rise);
+  }
 }
 
 void exponentials(const double* x, double* y, std::size_t n) {

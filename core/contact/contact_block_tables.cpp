@@ -6,6 +6,8 @@
 
 #include "core/contact/asperity_functions.h"
 #include "core/contact/ratio_integrals.h"
+#include "core/laws/laws.h"
+#include "core/numerics/bracketed_root.h"
 #include "core/numerics/chebyshev.h"
 #include "core/numerics/gauss_legendre.h"
 
@@ -88,6 +90,27 @@ BivariatePolynomial truncated(const RatioSquare& coefficients, double tolerance)
   return out;
 }
 
+/// The depth ln(1 + c p) of 3 GPa, or of a viscosity 32 e-folds above that at p = 0 and a fold
+/// below eta_g, at the temperature of the greatest L.
+double deepest_of(const ShearLaw<double>& law, double greatest_factor) {
+  constexpr double kDeepest = 2.79, kMostFolds = 32;
+  if (law.lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands) {
+    return std::min(kDeepest, std::log1p(kMostFolds / std::max(greatest_factor, 1e-3)) / law.index);
+  }
+  const double log_viscosity = greatest_factor - laws::kRoelandsLogViscosity;
+  const double temperature =
+      law.glass.reference + law.glass.coefficient / (log_viscosity - law.log_vogel_prefactor);
+  const double folds =
+      std::min(kMostFolds, std::log(law.glass.of_pressure.glass_viscosity) - log_viscosity - 1);
+  const auto excess = [&](double depth) {
+    return laws::improved_yasutomi_growth(law.glass, temperature,
+                                          std::expm1(depth) / laws::kRoelandsPressureCoefficient) -
+           folds;
+  };
+  const double at_end = excess(kDeepest);
+  return at_end <= 0 ? kDeepest : bracketed_root(excess, 0, kDeepest, -folds, at_end);
+}
+
 }  // namespace
 
 bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double greatest_factor,
@@ -98,14 +121,10 @@ bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double 
   tables.factor_offset = -centre / half;
   RatioLanes factor{};
   for (int i = 0; i < kTerms; ++i) factor[i] = centre + half * chebyshev<kTerms>().point[i];
-  // 3 GPa, or a viscosity 32 e-folds above ambient.
-  constexpr double kDeepest = 2.79, kMostFolds = 32;
-  double deepest = std::min(
-      kDeepest, std::log1p(kMostFolds / std::max(greatest_factor, 1e-3)) / tables.shear.index);
+  double deepest = deepest_of(tables.shear, greatest_factor);
   RatioSquare coefficients;
   for (int attempt = 0; attempt < 8; ++attempt, deepest *= 0.85) {
-    ratio_coefficients(instruction_set, ratio_rule(), factor, deepest, tables.shear.index,
-                       coefficients);
+    ratio_coefficients(instruction_set, ratio_rule(), factor, deepest, tables.shear, coefficients);
     if (!converged(coefficients)) continue;
     tables.deepest = deepest;
     tables.deepest_pressure = std::expm1(deepest);

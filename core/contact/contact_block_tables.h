@@ -35,10 +35,11 @@ struct StartFit {
 /// What the vector code needs of one fluid on one surface at one sump temperature. The mean stress
 /// comes from one function of two variables,
 ///
-///   int_0^p exp(L ((1 + c p')^Z - 1)) p' dp' = p^2/2 exp(L ((1 + c p)^Z - 1)) R(L, ln(1 + c p)),
+///   int_0^p e^G(L, p') p' dp' = p^2/2 e^G(L, p) R(L, ln(1 + c p)),
 ///
-/// with L = ln eta_0(T) + 9.67 and c = 5.1e-9 1/Pa (eq 31): R is tabulated once for the fluid's Z,
-/// so that no quadrature remains in the solve.
+/// with the growth G = ln eta(p, T) - ln eta_0(T) of the pressure-viscosity law, which is
+/// L ((1 + c p)^Z - 1) for Roelands's, L = ln eta_0(T) + 9.67 and c = 5.1e-9 1/Pa (eq 31): R is
+/// tabulated once for the fluid, so that no quadrature remains in the solve.
 struct ContactBlockTables {
   double log_film = 0;             ///< see log_film_constant
   double log_thermal_loading = 0;  ///< see log_thermal_loading of laws
@@ -77,8 +78,8 @@ struct ContactBlockTables {
   std::array<double, kAsperityTerms> f2{}, f5_2{};  ///< from the highest power down
 };
 
-/// Fills the polynomials of R for L in [least_factor, greatest_factor]; Z is `index`. Takes as much
-/// depth as 24 terms allow. False when that is nothing.
+/// Fills the polynomials of R for L in [least_factor, greatest_factor]. Takes as much depth as 24
+/// terms allow. Returns false if that is nothing.
 bool tabulate_ratio(InstructionSet instruction_set, double least_factor, double greatest_factor,
                     ContactBlockTables& tables);
 

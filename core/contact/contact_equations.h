@@ -8,6 +8,7 @@
 #include "core/contact/mean_shear_stress.h"
 #include "core/laws/laws.h"
 #include "core/lubricant/lubricant.h"
+#include "core/lubricant/viscosity.h"
 #include "core/model_options.h"
 #include "core/surface/surface.h"
 
@@ -107,17 +108,24 @@ ContactConstants<Real> contact_constants(const ContactParametersOf<Real>& in,
                                         laws::value_of(out.inlet_temperature) /
                                         laws::value_of(heat_density(out.inlet_temperature));
 
-  const Real where_measured =
-      factor_at(log_ambient_viscosity(oil, oil.pressure_viscosity_temperature));
-  const Real at_inlet = factor_at(out.log_inlet_viscosity);
-  if (misprinted || options.pressure_viscosity_index == PressureViscosityIndex::kHoupert) {
-    shear.index = laws::houpert_index(where_measured, oil.pressure_viscosity_coefficient);
+  if (oil.pressure_viscosity_law == PressureViscosityLaw::kImprovedYasutomi) {
+    shear.glass = laws::glass_state(oil, shear.log_vogel_prefactor);
+    shear.index = Real(0.0);
     out.pressure_viscosity_coefficient =
-        shear.index * laws::kRoelandsPressureCoefficient * at_inlet;
+        improved_yasutomi_reciprocal_asymptotic(shear.glass, out.inlet_temperature);
   } else {
-    shear.index = index_of(where_measured, oil.pressure_viscosity_coefficient);
-    out.pressure_viscosity_coefficient =
-        laws::roelands_reciprocal_asymptotic(at_inlet, shear.index);
+    const Real where_measured =
+        factor_at(log_ambient_viscosity(oil, oil.pressure_viscosity_temperature));
+    const Real at_inlet = factor_at(out.log_inlet_viscosity);
+    if (misprinted || options.pressure_viscosity_index == PressureViscosityIndex::kHoupert) {
+      shear.index = laws::houpert_index(where_measured, oil.pressure_viscosity_coefficient);
+      out.pressure_viscosity_coefficient =
+          shear.index * laws::kRoelandsPressureCoefficient * at_inlet;
+    } else {
+      shear.index = index_of(where_measured, oil.pressure_viscosity_coefficient);
+      out.pressure_viscosity_coefficient =
+          laws::roelands_reciprocal_asymptotic(at_inlet, shear.index);
+    }
   }
 
   out.reduced_modulus = reduced_modulus(in.solids);

@@ -76,9 +76,12 @@ bool alike(double x, double y) { return std::abs(x - y) <= 1e-9 * std::abs(y); }
 }  // namespace
 
 struct ContactSensitivityModel::Constants {
+  bool roelands;
   std::array<DualNumber, kContactLevel> contact;
   std::array<DualNumber, kStressLevel> stress;
-  DualNumber index, limit_at_zero_pressure, limit_coefficient;
+  /// What MeanShearStress::by_growth goes by, but for L and T, which depend on temperature too.
+  std::array<DualNumber, kGrowthArguments> growth;
+  DualNumber limit_at_zero_pressure, limit_coefficient;
   ContactParametersOf<ContactNumber> parameters;
   ContactConstants<ContactNumber> constants;
   ShearLaw<StressNumber> shear;
@@ -99,6 +102,7 @@ ContactSensitivityModel::ContactSensitivityModel(const FlankContactModel& model)
   const auto from = contact_inputs(values, no_conditions);
   const auto to = contact_inputs(parameters, conditions);
   for (int i = 0; i < kContactInputs; ++i) *to[i] = DualNumber::variable(*from[i], i);
+  parameters.lubricant.pressure_viscosity_law = values.lubricant.pressure_viscosity_law;
   ModelOptions options = model.options();
   if (values.lubricant.relaxation_time == 0) options.newtonian = true;
   const auto index_of = [&](const DualNumber& factor, const DualNumber& coefficient) {
@@ -124,7 +128,21 @@ ContactSensitivityModel::ContactSensitivityModel(const FlankContactModel& model)
   }
   kept->shear.newtonian = constants.shear.newtonian;
   kept->shear.roelands_misprinted = constants.shear.roelands_misprinted;
-  kept->index = constants.shear.index;
+  const LubricantOf<DualNumber>& oil = parameters.lubricant;
+  kept->roelands = oil.pressure_viscosity_law == PressureViscosityLaw::kRoelands;
+  if (kept->roelands) {
+    kept->growth[1] = constants.shear.index;
+  } else {
+    kept->growth = {DualNumber(0.0),
+                    constants.shear.log_vogel_prefactor,
+                    oil.vogel_temperature_coefficient,
+                    oil.vogel_reference_temperature,
+                    oil.yasutomi.glass_viscosity,
+                    oil.yasutomi.glass_temperature_rise,
+                    oil.yasutomi.glass_pressure_factor,
+                    oil.yasutomi.expansivity_pressure_factor,
+                    oil.yasutomi.expansivity_exponent};
+  }
   kept->limit_at_zero_pressure = parameters.lubricant.limiting_shear_stress_at_zero_pressure;
   kept->limit_coefficient = parameters.lubricant.limiting_shear_stress_coefficient;
   constants_ = std::move(kept);
@@ -194,15 +212,16 @@ ContactSensitivity ContactSensitivityModel::at(const ContactConditions& k, doubl
   const MeanShearStress stress = mean_shear_stress(film, contact_temperature, switch_guess);
   const auto log_stress_there = log_stress(c.shear, StressNumber::variable(contact_temperature, 0),
                                            StressNumber::variable(log_shear_rate.value, 1));
+  const double by_factor = c.roelands ? stress.by_growth[0] : 0;
   const auto by_stress_level = [&](int i) {
     return stress.by_base * log_stress_there.base.slope[i] +
-           stress.by_factor * log_stress_there.factor.slope[i];
+           by_factor * log_stress_there.factor.slope[i];
   };
-  const double by_temperature = by_stress_level(0);
+  const double by_temperature = by_stress_level(0) + (c.roelands ? 0 : stress.by_growth[0]);
   DualNumber explicit_part(stress.log_value);
   add(by_stress_level(1), log_shear_rate, explicit_part);
   for (int i = 0; i < kStressLevel; ++i) add(by_stress_level(2 + i), c.stress[i], explicit_part);
-  add(stress.by_index, c.index, explicit_part);
+  for (int i = 1; i < kGrowthArguments; ++i) add(stress.by_growth[i], c.growth[i], explicit_part);
   add(stress.by_log_pressure / pressure.value, pressure, explicit_part);
   add(stress.by_limit_at_zero_pressure, c.limit_at_zero_pressure, explicit_part);
   add(stress.by_limit_coefficient, c.limit_coefficient, explicit_part);
@@ -253,6 +272,11 @@ const std::array<ContactInputName, kContactInputs>& contact_input_names() {
       {"lubricant.thermal_conductivity", "W/(m K)"},
       {"lubricant.density_at_zero_kelvin", "kg/m3"},
       {"lubricant.density_temperature_slope", "kg/(m3 K)"},
+      {"lubricant.yasutomi.glass_viscosity", "Pa s"},
+      {"lubricant.yasutomi.glass_temperature_rise", "K"},
+      {"lubricant.yasutomi.glass_pressure_factor", "1/Pa"},
+      {"lubricant.yasutomi.expansivity_pressure_factor", "1/Pa"},
+      {"lubricant.yasutomi.expansivity_exponent", "1"},
       {"roughness.asperity_density", "1/m2"},
       {"roughness.asperity_radius", "m"},
       {"roughness.composite_rms_height", "m"},

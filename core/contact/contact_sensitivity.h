@@ -34,6 +34,11 @@ enum class ContactInput {
   kThermalConductivity,
   kDensityAtZeroKelvin,
   kDensityTemperatureSlope,
+  kGlassViscosity,  ///< from here on those of ImprovedYasutomiOf: without effect on Roelands's law
+  kGlassTemperatureRise,
+  kGlassPressureFactor,
+  kExpansivityPressureFactor,
+  kExpansivityExponent,
   kAsperityDensity,
   kAsperityRadius,
   kCompositeRmsHeight,
@@ -59,8 +64,8 @@ enum class ContactInput {
   kVelocity2X,
   kVelocity2Y,
 };
-inline constexpr int kContactParameters = 31;
-inline constexpr int kContactInputs = 38;
+inline constexpr int kContactParameters = 36;
+inline constexpr int kContactInputs = 43;
 
 struct ContactInputName {
   const char* name;  ///< as in the fields of the structures, with the structure before a dot
@@ -91,6 +96,11 @@ std::array<Real*, kContactInputs> contact_inputs(ContactParametersOf<Real>& para
           &oil.thermal_conductivity,
           &oil.density_at_zero_kelvin,
           &oil.density_temperature_slope,
+          &oil.yasutomi.glass_viscosity,
+          &oil.yasutomi.glass_temperature_rise,
+          &oil.yasutomi.glass_pressure_factor,
+          &oil.yasutomi.expansivity_pressure_factor,
+          &oil.yasutomi.expansivity_exponent,
           &surface.asperity_density,
           &surface.asperity_radius,
           &surface.composite_rms_height,

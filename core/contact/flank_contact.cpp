@@ -75,7 +75,10 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const SolidPair
   };
   const double inlet_temperature = bath_temperature + inlet_temperature_rise;
   above_vogel(inlet_temperature, "an inlet temperature");
-  above_vogel(lubricant.pressure_viscosity_temperature, "a pressure-viscosity temperature");
+  const bool roelands = lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands;
+  if (roelands) {
+    above_vogel(lubricant.pressure_viscosity_temperature, "a pressure-viscosity temperature");
+  }
   if (!options.newtonian) {
     above_vogel(lubricant.rheology_reference_temperature, "a rheology reference temperature");
     if (!(density(lubricant, lubricant.rheology_reference_temperature) > 0) ||
@@ -85,12 +88,17 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const SolidPair
           "the density law is not positive at the rheology reference or inlet temperature");
     }
   }
-  for (const double temperature : {lubricant.pressure_viscosity_temperature, inlet_temperature}) {
-    if (!(roelands_factor(tribodyn::log_ambient_viscosity(lubricant, temperature),
-                          options.as_published) > 0)) {
-      throw Refusal("ROELANDS_FACTOR",
-                    "ln eta_0 + 9.67 of eq 31 is not positive: the fluid is too thin for the law");
+  if (roelands) {
+    for (const double temperature : {lubricant.pressure_viscosity_temperature, inlet_temperature}) {
+      if (!(roelands_factor(tribodyn::log_ambient_viscosity(lubricant, temperature),
+                            options.as_published) > 0)) {
+        throw Refusal(
+            "ROELANDS_FACTOR",
+            "ln eta_0 + 9.67 of eq 31 is not positive: the fluid is too thin for the law");
+      }
     }
+  } else {
+    check_glass_transition(lubricant, inlet_temperature);
   }
   constants_ = contact_constants(parameters_, options, index_from_reciprocal_asymptotic);
 }

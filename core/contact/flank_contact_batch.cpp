@@ -42,6 +42,42 @@ double proved_temperature(const Lubricant& oil, bool newtonian) {
   return (b + std::sqrt(b * b - t0 * t0)) * (1 - 1e-9);
 }
 
+/// What is to be known of a law other than eq 31 before the vector code may follow it: its growth
+/// falls with temperature over the whole table, and ln(tau/tau_L) rises inwards, or falls and then
+/// rises, at every temperature. The latter is seen at 8 x 48 temperatures and depths of smooth
+/// functions; sets monotone_factor and falls_then_rises. Returns false if the law is not so.
+bool follows_law(ContactBlockTables& t, double tau_zero, double gamma) {
+  const GlassState<double>& glass = t.shear.glass;
+  const double c = laws::kRoelandsPressureCoefficient;
+  if (!laws::improved_yasutomi_growth_falls(glass, t.inlet_temperature, t.deepest_pressure / c)) {
+    return false;
+  }
+  t.monotone_factor = 0;
+  t.falls_then_rises = true;
+  if (!t.limited || gamma == 0) return true;
+  constexpr int kTemperatures = 8, kDepths = 48;
+  using Number = laws::Dual<double, 1>;
+  double colder_factor = kInfinity;
+  for (int i = 0; i < kTemperatures; ++i) {
+    const double temperature =
+        t.inlet_temperature + (t.hottest - t.inlet_temperature) * i / (kTemperatures - 1);
+    bool rises = false, fell = false;
+    for (int j = 0; j <= kDepths; ++j) {
+      const Number pressure = Number::variable(std::expm1(t.deepest * j / kDepths) / c, 0);
+      const double steepness =
+          laws::improved_yasutomi_growth(glass, Number(temperature), pressure).slope[0];
+      const bool rises_here = steepness * (tau_zero + gamma * pressure.value) > gamma;
+      if (rises && !rises_here) return false;
+      rises = rises_here;
+      fell = fell || !rises_here;
+    }
+    if (fell && t.monotone_factor == 0) t.monotone_factor = colder_factor;
+    colder_factor = laws::roelands_factor(t.shear.log_vogel_prefactor +
+                                          glass.coefficient / (temperature - glass.reference));
+  }
+  return true;
+}
+
 }  // namespace
 
 ContactGeometries::ContactGeometries(double reduced_modulus, const ModelOptions& options,
@@ -119,12 +155,15 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
   t.isothermal = options.isothermal;
   t.limited = !options.no_limiting_shear_stress;
   t.shear = constants.shear;
+  const bool roelands = oil.pressure_viscosity_law == PressureViscosityLaw::kRoelands;
   const double tau_zero = oil.limiting_shear_stress_at_zero_pressure;
   const double gamma = oil.limiting_shear_stress_coefficient;
   if (t.limited) {
-    const double tau_zero_c = tau_zero * laws::kRoelandsPressureCoefficient;
     t.log_limit_at_rim = std::log(tau_zero);
     t.limit_slope = gamma / laws::kRoelandsPressureCoefficient;
+  }
+  if (t.limited && roelands) {
+    const double tau_zero_c = tau_zero * laws::kRoelandsPressureCoefficient;
     t.monotone_factor = gamma / (t.shear.index * least_steepness(t.shear.index, tau_zero_c, gamma));
     if (gamma == 0) t.monotone_factor = 0;
     t.falls_then_rises = t.shear.index >= 1 || tau_zero_c <= gamma;
@@ -151,7 +190,8 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
       (t.shear.newtonian || oil.relaxation_time > 0) && t.hottest > t.inlet_temperature + 1 &&
       std::isfinite(t.log_film) &&
       std::isnormal(std::exp(tribodyn::log_ambient_viscosity(oil, t.inlet_temperature))) &&
-      tabulate_ratio(instruction_set, factor_at(t.hottest), factor_at(t.inlet_temperature), t);
+      tabulate_ratio(instruction_set, factor_at(t.hottest), factor_at(t.inlet_temperature), t) &&
+      (roelands || follows_law(t, tau_zero, gamma));
   tabulate_asperities(t);
   if (t.covered && t.limited && !t.isothermal) fit_start(instruction_set, t);
   tables_ = std::move(tables);

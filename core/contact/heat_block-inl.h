@@ -74,12 +74,12 @@ struct Step {
   Pack per_slope;   // 1/e' where the cut moves
 };
 
-template <Digits kDigits>
+template <class Growth, Digits kDigits>
 HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
   const Pack scaled = load(work.scaled_pressure + i), per_scaled = load(work.per_scaled + i);
   const Pack stress = load(work.stress + i), ratio = load(work.ratio + i);
   const Pack factor_slope = load(work.factor_slope + i), rise = load(work.rise + i);
-  const Pack e_growth = load(work.e_growth + i), e_cut = load(work.e_cut + i);
+  const Pack e_cut = load(work.e_cut + i);
   Mask clipped = nowhere(), all_limited = nowhere();
   if (t.limited) {
     clipped = load(work.clipped + i) > 0;
@@ -91,7 +91,7 @@ HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
   const Pack part = q * per_scaled, part2 = part * part;
   const Pack weighted = stress * part2;
   // d ln tau(s)/dT.
-  const Pack log_slope = fused(factor_slope, e_growth - 1, load(work.law_base_slope + i));
+  const Pack log_slope = Growth::slope_by_temperature(work, i);
   Step step;
   step.change = step.cut_change = 0;
   step.mean = weighted * ratio;
@@ -104,8 +104,7 @@ HWY_INLINE Step halley_step(const Tables& t, const Work& work, int i) {
                                 rim_limit * (1 - part2));
     const Fraction e = alike(stress, limit);
     const Pack e_slope_limit =
-        greatest(less_product(t.limit_slope, e_cut,
-                              load(work.factor + i) * t.shear.index * e_growth * limit),
+        greatest(less_product(t.limit_slope, e_cut, Growth::slope_by_depth(t, work, i) * limit),
                  0.05 * limit);
     const Pack inverse = where(clipped & ~all_limited, -limit / (e.under * e_slope_limit));
     step.cut_change = e.over * inverse;
@@ -191,14 +190,12 @@ HWY_INLINE void start(const Tables& t, Work& work, int i) {
 }
 
 /// ln tau = ln tau_L for s: with tau_L as at the end, then as at that s.
+template <class Growth>
 HWY_INLINE void start_cut(const Tables& t, Work& work, int i) {
   constexpr Digits kHalf = Digits::kHalf;
-  const Pack per_factor = 1 / load(work.factor + i), base = load(work.law_base + i);
   const Pack end = load(work.end + i);
-  const auto meeting = [&](Pack log_limit) HWY_ATTR {
-    const Pack folds = greatest((log_limit - base) * per_factor, 1e-3);
-    return least(logarithm<kHalf>(folds + 1) * (1 / t.shear.index), end);
-  };
+  const auto meeting = [&](Pack log_limit)
+                           HWY_ATTR { return least(Growth::depth_of(t, log_limit, work, i), end); };
   const Pack cut = meeting(load(work.end_log_limit + i));
   const Pack limit = limiting_shear_stress(t.shear.lubricant.limiting_shear_stress_at_zero_pressure,
                                            t.limit_slope, exponential<kHalf>(cut) - 1);
@@ -206,11 +203,12 @@ HWY_INLINE void start_cut(const Tables& t, Work& work, int i) {
 }
 
 /// Takes a step with half of the digits. False when none of the pack needs another.
+template <class Growth>
 HWY_INLINE bool take_coarse_step(const Tables& t, Work& work, int i) {
   constexpr double kClose = 1.5e-3, kCutClose = 4e-3;
   const Pack rise = load(work.rise + i), cut = load(work.cut + i), end = load(work.end + i);
   Mask pending = load(work.pending + i) > 0;
-  const Step step = halley_step<Digits::kHalf>(t, work, i);
+  const Step step = halley_step<Growth, Digits::kHalf>(t, work, i);
   if (!t.isothermal) {
     // e^x nearly: 1 + x + x^2/2 upwards, its inverse with -x downwards.
     const Pack up = fused(size(step.change), fused(size(step.change), 0.5, 1), 1);
@@ -225,12 +223,13 @@ HWY_INLINE bool take_coarse_step(const Tables& t, Work& work, int i) {
 }
 
 /// The same with all digits: contacts whose step is small stay, and it is still to be added.
+template <class Growth>
 HWY_INLINE bool take_fine_step(const Tables& t, Work& work, int i) {
   // Newton's error is the square of the step, times a curvature that grows where stress and limit
   // meet at a small angle.
   constexpr double kSettled = 3e-6, kCutSettled = 3.6e-6;
   const Pack rise = load(work.rise + i), cut = load(work.cut + i);
-  const Step step = halley_step<Digits::kFull>(t, work, i);
+  const Step step = halley_step<Growth, Digits::kFull>(t, work, i);
   const Pack weight = fused(4, step.per_slope, 1);
   const Mask pending =
       (load(work.eligible + i) > 0) &
@@ -247,29 +246,31 @@ HWY_INLINE bool take_fine_step(const Tables& t, Work& work, int i) {
   return true;
 }
 
-template <Digits kDigits>
+template <class Growth, Digits kDigits>
 HWY_NOINLINE void eval_all(const Tables& t, const ActiveLanes& active, bool first, Work& work) {
   for (const int i : active) eval_rheology<kDigits>(t, work, i);
   if (first && t.limited) {
-    for (const int i : active) start_cut(t, work, i);
+    for (const int i : active) start_cut<Growth>(t, work, i);
   }
-  for (const int i : active) eval_stress<kDigits>(t, work, i);
+  for (const int i : active) eval_stress<Growth, kDigits>(t, work, i);
   for (const int i : active) eval_ratio<kDigits>(t, work, i);
 }
 
+template <class Growth>
 HWY_NOINLINE void solve_coarse(const Tables& t, ActiveLanes active, Work& work) {
   for (const int i : active) start(t, work, i);
   constexpr int kMostSteps = 16;
   for (int n = 0; n < kMostSteps && !active.empty(); ++n) {
-    eval_all<Digits::kHalf>(t, active, n == 0, work);
-    active.keep([&](int i) HWY_ATTR { return take_coarse_step(t, work, i); });
+    eval_all<Growth, Digits::kHalf>(t, active, n == 0, work);
+    active.keep([&](int i) HWY_ATTR { return take_coarse_step<Growth>(t, work, i); });
   }
 }
 
+template <class Growth>
 HWY_NOINLINE void solve_fine(const Tables& t, ActiveLanes active, Work& work) {
   for (int n = 0; n < 4 && !active.empty(); ++n) {
-    eval_all<Digits::kFull>(t, active, false, work);
-    active.keep([&](int i) HWY_ATTR { return take_fine_step(t, work, i); });
+    eval_all<Growth, Digits::kFull>(t, active, false, work);
+    active.keep([&](int i) HWY_ATTR { return take_fine_step<Growth>(t, work, i); });
   }
 }
 

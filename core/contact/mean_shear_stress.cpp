@@ -12,80 +12,171 @@ namespace {
 
 constexpr double kC = laws::kRoelandsPressureCoefficient;  // c of the formulas [1/Pa]
 
-/// ln tau(s) = base + factor (e^{Z s} - 1) at one temperature, with slopes in temperature.
-struct Law : laws::LogStress<double> {
-  double index;
+double pressure_at(double s) { return std::expm1(s) / kC; }
+
+// ln tau(s) at one temperature grows from its value at p = 0 as one of the following.
+
+/// L (e^(Z s) - 1).
+struct RoelandsStress {
+  static constexpr int kArguments = 2;  // L, Z
+  double factor, factor_slope, index;
+
+  RoelandsStress(const ShearLaw<double>& law, const laws::LogStress<double>& at, double)
+      : factor(at.factor), factor_slope(at.factor_slope), index(law.index) {}
+
+  double log_stress(double base, double s) const {
+    return laws::log_under_pressure(base, factor, std::expm1(index * s));
+  }
+  double by_depth(double s) const { return factor * index * std::exp(index * s); }
+  /// The greatest slope in s before an end at which ln tau has grown by `growth`.
+  double steepest(double growth) const { return index * std::abs(growth + factor); }
+  double depth_of(double growth) const { return std::log1p(growth / factor) / index; }
+  double temperature_slope(const std::array<double, kGrowthArguments>& by_growth) const {
+    return factor_slope * by_growth[0];
+  }
+};
+
+/// Of the improved Yasutomi law.
+struct YasutomiStress {
+  static constexpr int kArguments = kGrowthArguments;
+  const ShearLaw<double>* law;
+  double temperature;
+
+  YasutomiStress(const ShearLaw<double>& of, const laws::LogStress<double>&, double at)
+      : law(&of), temperature(at) {}
+
+  ValueAndSlope growth(double s) const {
+    using Number = laws::Dual<double, 1>;
+    const Number pressure = laws::exponential_less_one(Number::variable(s, 0)) / kC;
+    const Number out = laws::improved_yasutomi_growth(law->glass, Number(temperature), pressure);
+    return {out.value, out.slope[0]};
+  }
+  double log_stress(double base, double s) const { return base + growth(s).value; }
+  double by_depth(double s) const { return growth(s).slope; }
+  double temperature_slope(const std::array<double, kGrowthArguments>& by_growth) const {
+    return by_growth[0];
+  }
+};
+
+template <class Growth>
+struct Law {
+  Growth growth;
+  double base, base_slope;
   double tau_zero, gamma;  // tau_L = tau_zero + gamma p
   bool all_derivatives;
 
-  double log_stress(double s) const {
-    return laws::log_under_pressure(base, factor, std::expm1(index * s));
+  Law(const ShearedFilm& film, double temperature)
+      : Law(film, temperature, tribodyn::log_stress(*film.law, temperature, film.log_shear_rate)) {}
+  Law(const ShearedFilm& film, double temperature, const laws::LogStress<double>& at)
+      : growth(*film.law, at, temperature),
+        base(at.base),
+        base_slope(at.base_slope),
+        tau_zero(film.law->lubricant.limiting_shear_stress_at_zero_pressure),
+        gamma(film.law->lubricant.limiting_shear_stress_coefficient),
+        all_derivatives(film.all_derivatives) {}
+
+  double log_stress(double s) const { return growth.log_stress(base, s); }
+  double limit(double s) const {
+    return laws::limiting_shear_stress(tau_zero, gamma, pressure_at(s));
   }
-  double pressure(double s) const { return std::expm1(s) / kC; }
-  double limit(double s) const { return laws::limiting_shear_stress(tau_zero, gamma, pressure(s)); }
   /// ln(tau / tau_L): positive where the stress is limited.
   ValueAndSlope excess(double s) const {
-    const double growth = std::exp(index * s), u = std::exp(s);
-    const double limit = tau_zero + gamma * (u - 1) / kC;
-    return {base + factor * (growth - 1) - std::log(limit),
-            factor * index * growth - gamma * u / kC / limit};
+    const double limit_there = limit(s);
+    return {log_stress(s) - std::log(limit_there),
+            growth.by_depth(s) - gamma * std::exp(s) / kC / limit_there};
   }
 };
 
-Law law_at(const ShearedFilm& film, double temperature) {
-  const Lubricant& oil = film.law->lubricant;
-  return {log_stress(*film.law, temperature, film.log_shear_rate), film.law->index,
-          oil.limiting_shear_stress_at_zero_pressure, oil.limiting_shear_stress_coefficient,
-          film.all_derivatives};
-}
-
-/// int tau p dp over [from, to] in s, and the same weighted with d ln tau/d factor and d ln tau/dZ,
-/// all over exp(shift).
+/// int tau p dp over [from, to] in s, and the same weighted with the derivatives of ln tau by the
+/// arguments of its growth, all over exp(shift).
 struct Moment {
-  double shift = 0, value = 0, by_factor = 0, by_index = 0;
+  double shift = 0, value = 0;
+  std::array<double, kGrowthArguments> by_growth{};
 
   void add(double scale, const Moment& part) {
     value += scale * part.value;
-    by_factor += scale * part.by_factor;
-    by_index += scale * part.by_index;
+    for (int k = 0; k < kGrowthArguments; ++k) by_growth[k] += scale * part.by_growth[k];
   }
 };
 
-template <int N>
-void add_panel(const Law& law, double from, double to, Moment& out) {
-  const auto& rule = gauss_legendre<N>();
-  using Array = Eigen::Array<double, N, 1>;
-  const Array s = from + (to - from) * rule.node;
-  const Array u = s.exp();
-  const Array growth = (law.index * s).exp() - 1;
-  // e^s - 1 loses digits only where p is so small that the stress does not depend on it.
-  const Array q = s(N - 1) > 1e-3 ? Array(u - 1) : Array(s * (1 + s * (0.5 + s / 6 * (1 + s / 4))));
-  const Array weighted = (to - from) / (kC * kC) * rule.weight *
-                         (law.base - out.shift + law.factor * growth).exp() * q * u;
-  out.value += weighted.sum();
-  out.by_factor += (weighted * growth).sum();
-  if (law.all_derivatives) out.by_index += law.factor * (weighted * s * (growth + 1)).sum();
+/// e^s - 1 loses digits only where p is so small that the stress does not depend on it.
+template <class Array>
+Array scaled_pressure(const Array& s, const Array& u) {
+  return s(s.size() - 1) > 1e-3 ? Array(u - 1) : Array(s * (1 + s * (0.5 + s / 6 * (1 + s / 4))));
 }
 
-Moment moment(const Law& law, double from, double to) {
+template <int N>
+void add_panel(const Law<RoelandsStress>& law, double from, double to, Moment& out) {
+  const auto& rule = gauss_legendre<N>();
+  using Array = Eigen::Array<double, N, 1>;
+  const double factor = law.growth.factor, index = law.growth.index;
+  const Array s = from + (to - from) * rule.node;
+  const Array u = s.exp();
+  const Array growth = (index * s).exp() - 1;
+  const Array weighted = (to - from) / (kC * kC) * rule.weight *
+                         (law.base - out.shift + factor * growth).exp() * scaled_pressure(s, u) * u;
+  out.value += weighted.sum();
+  out.by_growth[0] += (weighted * growth).sum();
+  if (law.all_derivatives) out.by_growth[1] += factor * (weighted * s * (growth + 1)).sum();
+}
+
+/// The law in dual numbers by all arguments of its growth, or by the temperature alone.
+template <int kCount>
+struct YasutomiNumbers {
+  using Number = laws::Dual<double, kCount>;
+  GlassState<Number> glass;
+  Number temperature;
+
+  YasutomiNumbers(const ShearLaw<double>& law, double at) : temperature(Number::variable(at, 0)) {
+    LubricantOf<Number> oil;
+    const auto number = [](double x, int i) {
+      return i < kCount ? Number::variable(x, i) : Number(x);
+    };
+    const ImprovedYasutomiOf<double>& of = law.lubricant.yasutomi;
+    const Number log_prefactor = number(law.log_vogel_prefactor, 1);
+    oil.vogel_temperature_coefficient = number(law.lubricant.vogel_temperature_coefficient, 2);
+    oil.vogel_reference_temperature = number(law.lubricant.vogel_reference_temperature, 3);
+    oil.yasutomi = {number(of.glass_viscosity, 4), number(of.glass_temperature_rise, 5),
+                    number(of.glass_pressure_factor, 6), number(of.expansivity_pressure_factor, 7),
+                    number(of.expansivity_exponent, 8)};
+    glass = laws::glass_state(oil, log_prefactor);
+  }
+};
+
+template <int N, int kCount>
+void add_nodes(const Law<YasutomiStress>& law, const YasutomiNumbers<kCount>& numbers, double from,
+               double to, Moment& out) {
+  const auto& rule = gauss_legendre<N>();
+  for (int n = 0; n < N; ++n) {
+    const double s = from + (to - from) * rule.node(n), q = std::expm1(s);
+    const auto growth = laws::improved_yasutomi_growth(
+        numbers.glass, numbers.temperature, typename YasutomiNumbers<kCount>::Number(q / kC));
+    const double weighted = (to - from) / (kC * kC) * rule.weight(n) *
+                            std::exp(law.base - out.shift + growth.value) * q * (q + 1);
+    out.value += weighted;
+    for (int k = 0; k < kCount; ++k) out.by_growth[k] += weighted * growth.slope[k];
+  }
+}
+
+/// Panels of at most 20 e-folds, laid out evenly in ln tau.
+Moment moment(const Law<RoelandsStress>& law, double from, double to) {
   Moment out;
   const double start = law.log_stress(from), end = law.log_stress(to);
   out.shift = std::max(start, end);
   // E-folds of the integrand if it grew all along as it does at its end, where it is steepest:
   // d ln tau/ds there, and two per unit of s from p dp.
-  const double steepest = law.index * std::abs(end - law.base + law.factor) + 2;
+  const double steepest = law.growth.steepest(end - law.base) + 2;
   const double folds = steepest * (to - from);
   if (folds <= 7.5) {
     add_panel<12>(law, from, to, out);
   } else if (folds <= 15) {
     add_panel<16>(law, from, to, out);
   } else {
-    // Panels of at most 20 such e-folds, laid out evenly in ln tau.
     const int panels = static_cast<int>(std::min(64.0, std::ceil(folds / 20)));
     double left = from;
     for (int i = 1; i <= panels; ++i) {
-      const double growth = ((i * end + (panels - i) * start) / panels - law.base) / law.factor;
-      const double right = i == panels ? to : std::clamp(std::log1p(growth) / law.index, left, to);
+      const double growth = (i * end + (panels - i) * start) / panels - law.base;
+      const double right = i == panels ? to : std::clamp(law.growth.depth_of(growth), left, to);
       add_panel<20>(law, left, right, out);
       left = right;
     }
@@ -93,34 +184,84 @@ Moment moment(const Law& law, double from, double to) {
   return out;
 }
 
-/// Points of [0, end] in s between which ln(tau/tau_L) is monotone. Its slope has the sign of
-/// psi(u) = L Z ((tau_0 c - gamma) u^{Z-1} + gamma u^Z) - gamma, u = e^s, which has one extremum.
-int monotone_pieces(const Law& law, double end, std::array<double, 5>& points) {
-  const auto psi = [&](double s) {
-    const double power = std::exp((law.index - 1) * s), u = std::exp(s);
-    return law.factor * law.index * power * ((law.tau_zero * kC - law.gamma) + law.gamma * u) -
-           law.gamma;
+/// Panels of at most 6 e-folds and 0.5 in s, of equal length in s.
+Moment moment(const Law<YasutomiStress>& law, double from, double to) {
+  constexpr double kFolds = 6, kLongest = 0.5;
+  Moment out;
+  const double start = law.log_stress(from), end = law.log_stress(to);
+  out.shift = std::max(start, end);
+  const double folds = std::abs(end - start) + 2 * (to - from);
+  const int panels = static_cast<int>(
+      std::clamp(std::ceil(std::max(folds / kFolds, (to - from) / kLongest)), 1.0, 64.0));
+  const auto add_all = [&](const auto& numbers) {
+    for (int i = 0; i < panels; ++i) {
+      const double step = (to - from) / panels;
+      add_nodes<16>(law, numbers, from + i * step, from + (i + 1) * step, out);
+    }
   };
+  if (law.all_derivatives) {
+    add_all(YasutomiNumbers<kGrowthArguments>(*law.growth.law, law.growth.temperature));
+  } else {
+    add_all(YasutomiNumbers<1>(*law.growth.law, law.growth.temperature));
+  }
+  return out;
+}
+
+/// Points of [0, end] in s between which ln(tau/tau_L) is monotone, in rising order.
+struct Pieces {
+  std::array<double, 5> point;
   int count = 0;
-  points[count++] = 0;
+
+  void add(double s) { point[count++] = s; }
+};
+
+/// The slope of ln(tau/tau_L) has the sign of
+/// psi(u) = L Z ((tau_0 c - gamma) u^{Z-1} + gamma u^Z) - gamma, u = e^s, which has one extremum.
+Pieces monotone_pieces(const Law<RoelandsStress>& law, double end) {
+  const double factor = law.growth.factor, index = law.growth.index;
+  const auto psi = [&](double s) {
+    const double power = std::exp((index - 1) * s), u = std::exp(s);
+    return factor * index * power * ((law.tau_zero * kC - law.gamma) + law.gamma * u) - law.gamma;
+  };
+  Pieces pieces;
+  pieces.add(0);
   double turn = -1;
   if (law.gamma > 0) {
-    const double u = (1 - law.index) * (law.tau_zero * kC - law.gamma) / (law.index * law.gamma);
+    const double u = (1 - index) * (law.tau_zero * kC - law.gamma) / (index * law.gamma);
     if (u > 1) turn = std::log(u);
   }
   double left = 0, psi_left = psi(0);
   const auto visit = [&](double right) {
     const double psi_right = psi(right);
     if ((psi_left < 0 && psi_right > 0) || (psi_left > 0 && psi_right < 0)) {
-      points[count++] = bracketed_root(psi, left, right, psi_left, psi_right);
+      pieces.add(bracketed_root(psi, left, right, psi_left, psi_right));
     }
     left = right;
     psi_left = psi_right;
   };
   if (turn > 0 && turn < end) visit(turn);
   visit(end);
-  points[count++] = end;
-  return count;
+  pieces.add(end);
+  return pieces;
+}
+
+/// Up to three changes of sign of the slope of ln(tau/tau_L) over 32 equal parts of [0, end].
+Pieces monotone_pieces(const Law<YasutomiStress>& law, double end) {
+  constexpr int kParts = 32, kMostTurns = 3;
+  const auto slope = [&](double s) { return law.excess(s).slope; };
+  Pieces pieces;
+  pieces.add(0);
+  double slope_left = slope(0);
+  for (int i = 0; i < kParts && pieces.count <= kMostTurns; ++i) {
+    const double left = end * i / kParts, right = end * (i + 1) / kParts;
+    const double slope_right = slope(right);
+    if ((slope_left < 0 && slope_right > 0) || (slope_left > 0 && slope_right < 0)) {
+      pieces.add(bracketed_root(slope, left, right, slope_left, slope_right));
+    }
+    slope_left = slope_right;
+  }
+  pieces.add(end);
+  return pieces;
 }
 
 /// int tau_L p dp over what sits on the limit, by tau_L0 and by gamma_L.
@@ -128,47 +269,45 @@ struct OnLimit {
   double by_zero = 0, by_coefficient = 0;
 };
 
-MeanShearStress mean_of(const Law& law, double pressure, const Moment& sheared, const OnLimit& on,
-                        bool limited_at_centre) {
+template <class Growth>
+MeanShearStress mean_of(const Law<Growth>& law, double pressure, const Moment& sheared,
+                        const OnLimit& on, bool limited_at_centre) {
   const double integral = sheared.value + law.tau_zero * on.by_zero + law.gamma * on.by_coefficient;
   MeanShearStress out{};
   out.log_value = std::log(2.0) - 2 * std::log(pressure) + sheared.shift + std::log(integral);
   out.by_base = sheared.value / integral;
-  out.by_factor = sheared.by_factor / integral;
-  out.slope = law.base_slope * out.by_base + law.factor_slope * out.by_factor;
+  for (int k = 0; k < kGrowthArguments; ++k) out.by_growth[k] = sheared.by_growth[k] / integral;
+  out.slope = law.base_slope * out.by_base + law.growth.temperature_slope(out.by_growth);
   out.limited_area_share = std::min(1.0, 2 * on.by_zero / (pressure * pressure));
   out.limited_at_centre = limited_at_centre;
   if (!law.all_derivatives) return out;
   const double centre = std::log1p(kC * pressure);
   const double log_stress =
       limited_at_centre ? std::log(law.limit(centre)) : law.log_stress(centre);
-  out.by_index = sheared.by_index / integral;
   out.by_log_pressure = 2 * std::exp(log_stress - out.log_value) - 2;
   out.by_limit_at_zero_pressure = on.by_zero / integral;
   out.by_limit_coefficient = on.by_coefficient / integral;
   return out;
 }
 
-}  // namespace
-
-MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
-                                  double& switch_guess) {
-  const Law law = law_at(film, temperature);
+template <class Growth>
+MeanShearStress mean_with(const ShearedFilm& film, double temperature, double& switch_guess) {
+  const Law<Growth> law(film, temperature);
   const double end = std::log1p(kC * film.maximum_pressure);
   const auto unlimited = [&] {
     return mean_of(law, film.maximum_pressure, moment(law, 0, end), {}, false);
   };
   if (!film.limited) return unlimited();
 
-  std::array<double, 5> pieces{};
-  const int points = monotone_pieces(law, end, pieces);
+  const Pieces monotone = monotone_pieces(law, end);
+  const std::array<double, 5>& pieces = monotone.point;
   std::array<double, 6> cuts{};
   int cut_count = 0;
   cuts[cut_count++] = 0;
   double excess_left = law.excess(0).value;
   bool limited = excess_left > 0;
   const bool limited_at_rim = limited;
-  for (int i = 1; i < points; ++i) {
+  for (int i = 1; i < monotone.count; ++i) {
     const double excess_right = law.excess(pieces[i]).value;
     if ((excess_left > 0) != (excess_right > 0)) {
       const bool rising = excess_right > 0;
@@ -197,8 +336,8 @@ MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
   bool on_limit = limited_at_rim;
   for (int i = 0; i < cut_count; ++i, on_limit = !on_limit) {
     if (on_limit) {
-      const double p0 = law.pressure(cuts[i]);
-      const double p1 = i == switches ? film.maximum_pressure : law.pressure(cuts[i + 1]);
+      const double p0 = pressure_at(cuts[i]);
+      const double p1 = i == switches ? film.maximum_pressure : pressure_at(cuts[i + 1]);
       on.by_zero += 0.5 * (p1 - p0) * (p1 + p0);
       on.by_coefficient += (p1 - p0) * (p1 * p1 + p1 * p0 + p0 * p0) / 3;
     } else {
@@ -209,6 +348,15 @@ MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
   MeanShearStress out = mean_of(law, film.maximum_pressure, sheared, on, limited);
   out.switches = switches;
   return out;
+}
+
+}  // namespace
+
+MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
+                                  double& switch_guess) {
+  return film.law->lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands
+             ? mean_with<RoelandsStress>(film, temperature, switch_guess)
+             : mean_with<YasutomiStress>(film, temperature, switch_guess);
 }
 
 }  // namespace tribodyn

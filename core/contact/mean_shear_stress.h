@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "core/laws/laws.h"
 
 namespace tribodyn {
@@ -26,6 +28,8 @@ laws::LogStress<Real> log_stress(const ShearLaw<Real>& law, Real temperature, Re
   return out;
 }
 
+inline constexpr int kGrowthArguments = 9;
+
 /// The area mean of eq 23 and how it came about.
 struct MeanShearStress {
   double log_value;           ///< ln tau_bar, Pa
@@ -33,10 +37,14 @@ struct MeanShearStress {
   double limited_area_share;  ///< share of the area on tau_L [-]
   int switches;               ///< radii at which eq 23 meets tau_L
   bool limited_at_centre;
-  // If all_derivatives: those of ln tau_bar by base and factor of LogStress, Z, ln p_max, tau_L0
-  // and gamma_L. The places where eq 23 meets tau_L do not enter: there the integrand is
-  // continuous.
-  double by_base, by_factor, by_index, by_log_pressure;
+  double by_base;  ///< d ln tau_bar/d base of LogStress
+  /// Derivatives of ln tau_bar by what the growth with pressure depends on: L and Z of Roelands's
+  /// law; T, ln eta_ref, A_1 and T_0 of eq 34, then the members of ImprovedYasutomiOf, of the
+  /// improved Yasutomi law. Only the first one unless all_derivatives.
+  std::array<double, kGrowthArguments> by_growth;
+  // If all_derivatives: those of ln tau_bar by ln p_max, tau_L0 and gamma_L. The places where eq 23
+  // meets tau_L do not enter: there the integrand is continuous.
+  double by_log_pressure;
   double by_limit_at_zero_pressure;  ///< [1/Pa]
   double by_limit_coefficient;
 };
@@ -44,8 +52,9 @@ struct MeanShearStress {
 /// tau_bar(T) = 2 int_0^1 min(tau(p_max xi), tau_L(p_max xi)) xi dxi: position enters only through
 /// p = p_max xi. Integrated in s = ln(1 + 5.1e-9 p), in which eq 31 is entire, by Gauss-Legendre
 /// between the points where eq 23 meets tau_L (found as bracketed roots; the integral on tau_L is
-/// in closed form). Relative error below 1e-13. temperature [K] above T_0,ref. `switch_guess`
-/// speeds up repeated calls for one film: start with 0, do not touch.
+/// in closed form). Relative error below 1e-13; of the improved Yasutomi law, whose logarithms end
+/// at negative pressures, below 1e-11. temperature [K] above T_0,ref. `switch_guess` speeds up
+/// repeated calls for one film: start with 0, do not touch.
 MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
                                   double& switch_guess);
 

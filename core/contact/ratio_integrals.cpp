@@ -7,6 +7,7 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "core/laws/viscosity-inl.h"
 #include "core/numerics/dispatch.h"
 #include "core/numerics/pack-inl.h"
 // NOLINTEND(bugprone-suspicious-include,misc-redundant-expression)
@@ -21,43 +22,84 @@ namespace {
 
 constexpr int kNodes = RatioRule::kNodes;
 
-/// At the ends of the intervals and at the nodes between.
-struct alignas(64) Integrand {
-  RatioLanes end_growth;                            // (1 + c p)^Z - 1
-  RatioLanes per_square;                            // 2/(c p)^2
-  std::array<double, kRatioTerms * kNodes> growth;  // (1 + c p)^Z - 1
-  std::array<double, kRatioTerms * kNodes> weight;  // c^2 p dp/ds times that of the rule
+using NodeNumbers = std::array<double, kRatioTerms * kNodes>;
+
+/// What the integrals have in common for every law.
+struct alignas(64) Rule {
+  RatioLanes per_square;  // 2/(c p)^2 at the ends of the intervals
+  NodeNumbers weight;     // c^2 p dp/ds times that of the rule, at the nodes between
 };
 
-void prepare(const RatioRule& rule, double deepest, double index, Integrand& out) {
+void prepare(const RatioRule& rule, double deepest, Rule& out) {
   static_assert(kRatioTerms * kNodes % kColumnLanes == 0);
   for (std::size_t i = 0; i < rule.end.size(); i += pack_lanes()) {
     const Pack s = deepest * load_any(rule.end.data() + i);
-    store(exponential_less_one(index * s), out.end_growth.data() + i);
     store(2 / square(exponential_less_one(s)), out.per_square.data() + i);
   }
   for (std::size_t i = 0; i < rule.node.size(); i += pack_lanes()) {
-    const Pack s = deepest * load_any(rule.node.data() + i);
-    const Pack q = exponential_less_one(s);
-    store(exponential_less_one(index * s), out.growth.data() + i);
+    const Pack q = exponential_less_one(deepest * load_any(rule.node.data() + i));
     store(deepest * load_any(rule.weight.data() + i) * fused(q, q, q), out.weight.data() + i);
   }
 }
 
-void integrate(const Integrand& integrand, const RatioLanes& factor, RatioSquare& values) {
-  for (std::size_t lane = 0; lane < factor.size(); lane += pack_lanes()) {
-    const Pack l = load_any(factor.data() + lane);
+/// x(s) at the ends of the intervals and at the nodes between.
+struct alignas(64) AtDepths {
+  RatioLanes end;
+  NodeNumbers node;
+
+  template <class Function>
+  AtDepths(const RatioRule& rule, double deepest, Function&& x) {
+    for (std::size_t i = 0; i < end.size(); i += pack_lanes()) {
+      store(x(deepest * load_any(rule.end.data() + i)), end.data() + i);
+    }
+    for (std::size_t i = 0; i < node.size(); i += pack_lanes()) {
+      store(x(deepest * load_any(rule.node.data() + i)), node.data() + i);
+    }
+  }
+};
+
+/// Growths of ln eta in a pack of lanes, from one depth to another.
+struct RoelandsFolds {
+  const AtDepths& growth;  // (1 + c p)^Z - 1
+  Pack factor;
+  double end = 0;
+
+  HWY_INLINE Pack next_end(int j) {
+    const double before = end;
+    end = growth.end[j];
+    return factor * (before - end);
+  }
+  HWY_INLINE Pack node(int n) const { return factor * (growth.node[n] - end); }
+};
+
+struct LawFolds {
+  const AtDepths& pressure;  // [Pa]
+  const GlassState<double>& glass;
+  Pack temperature;
+  Pack end = 0;
+
+  HWY_INLINE Pack next_end(int j) {
+    const Pack before = end;
+    end = improved_yasutomi_growth(glass, temperature, Pack(pressure.end[j]));
+    return before - end;
+  }
+  HWY_INLINE Pack node(int n) const {
+    return improved_yasutomi_growth(glass, temperature, Pack(pressure.node[n])) - end;
+  }
+};
+
+/// folds_at(lane) gives the growths in the pack that begins there.
+template <class FoldsAt>
+void integrate(const Rule& rule, FoldsAt&& folds_at, RatioSquare& values) {
+  for (std::size_t lane = 0; lane < values[0].size(); lane += pack_lanes()) {
+    auto folds = folds_at(lane);
     Pack integral = 0;
-    double before = 0;
     for (int j = 0; j < kRatioTerms; ++j) {
-      const double end = integrand.end_growth[j];
-      integral = integral * exponential(l * (before - end));
+      integral = integral * exponential(folds.next_end(j));
       for (int n = j * kNodes; n < (j + 1) * kNodes; ++n) {
-        integral =
-            fused(integrand.weight[n], exponential(l * (integrand.growth[n] - end)), integral);
+        integral = fused(rule.weight[n], exponential(folds.node(n)), integral);
       }
-      store_any(integrand.per_square[j] * integral, values[j].data() + lane);
-      before = end;
+      store_any(rule.per_square[j] * integral, values[j].data() + lane);
     }
   }
 }
@@ -81,11 +123,34 @@ void multiply(const RatioSquare& left, const RatioSquare& right, RatioSquare& pr
 }  // namespace
 
 void take_coefficients(const RatioRule& rule, const RatioLanes& factor, double deepest,
-                       double index, RatioSquare& coefficients) {
-  Integrand integrand;
-  prepare(rule, deepest, index, integrand);
+                       const ShearLaw<double>& law, RatioSquare& coefficients) {
+  Rule prepared;
+  prepare(rule, deepest, prepared);
   alignas(64) RatioSquare values, in_s;
-  integrate(integrand, factor, values);
+  if (law.lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands) {
+    const AtDepths growth(rule, deepest,
+                          [&](Pack s) HWY_ATTR { return exponential_less_one(law.index * s); });
+    integrate(
+        prepared,
+        [&](std::size_t lane) HWY_ATTR {
+          return RoelandsFolds{growth, load_any(factor.data() + lane)};
+        },
+        values);
+  } else {
+    const AtDepths pressure(rule, deepest, [](Pack s) HWY_ATTR {
+      return exponential_less_one(s) * (1 / kRoelandsPressureCoefficient);
+    });
+    const double at_zero_factor = kRoelandsLogViscosity + law.log_vogel_prefactor;
+    integrate(
+        prepared,
+        [&](std::size_t lane) HWY_ATTR {
+          const Pack temperature =
+              law.glass.coefficient / (load_any(factor.data() + lane) - at_zero_factor) +
+              law.glass.reference;
+          return LawFolds{pressure, law.glass, temperature};
+        },
+        values);
+  }
   multiply(values, rule.transposed, in_s);
   multiply(rule.to_coefficients, in_s, coefficients);
 }
@@ -98,10 +163,9 @@ HWY_AFTER_NAMESPACE();
 namespace tribodyn {
 
 void ratio_coefficients(InstructionSet instruction_set, const RatioRule& rule,
-                        const RatioLanes& factor, double deepest, double index,
+                        const RatioLanes& factor, double deepest, const ShearLaw<double>& law,
                         RatioSquare& coefficients) {
-  TRIBODYN_RETURN_WITH(instruction_set, take_coefficients, rule, factor, deepest, index,
-                       coefficients)
+  TRIBODYN_RETURN_WITH(instruction_set, take_coefficients, rule, factor, deepest, law, coefficients)
 }
 
 }  // namespace tribodyn

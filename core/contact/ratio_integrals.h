@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/laws/shear_law.h"
 #include "core/numerics/instruction_set.h"
 
 namespace tribodyn {
@@ -23,10 +24,10 @@ struct RatioRule {
 };
 
 /// Coefficients of T_j in s and T_i in L, from R at the points of s in [0, deepest] and at the
-/// Chebyshev points `factor` of L. R is good to 1e-13 while L times the growth of (1 + c p)^Z from
-/// one point to the next stays below 5.
+/// Chebyshev points `factor` of L. R is good to 1e-13 while ln eta grows by less than 5 from one
+/// point to the next.
 void ratio_coefficients(InstructionSet instruction_set, const RatioRule& rule,
-                        const RatioLanes& factor, double deepest, double index,
+                        const RatioLanes& factor, double deepest, const ShearLaw<double>& law,
                         RatioSquare& coefficients);
 
 }  // namespace tribodyn

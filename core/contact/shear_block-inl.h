@@ -9,7 +9,7 @@
 
 #include <hwy/highway.h>
 
-#include "core/contact/block_work-inl.h"
+#include "core/contact/growth_block-inl.h"
 #include "core/laws/film-inl.h"
 #include "core/laws/shear-inl.h"
 
@@ -19,6 +19,7 @@ namespace HWY_NAMESPACE {
 namespace {
 
 /// The shear rate, and logarithms and powers that stay while the temperature is sought.
+template <class Growth>
 HWY_INLINE void prepare_shear(const Tables& t, Pack slide, Pack film, Pack pressure,
                               double* shear_rate, Work& work, int i) {
   const double rim_limit = t.shear.lubricant.limiting_shear_stress_at_zero_pressure;
@@ -32,7 +33,7 @@ HWY_INLINE void prepare_shear(const Tables& t, Pack slide, Pack film, Pack press
   store(logarithm(rate), work.log_shear_rate + i);
   store(scaled, work.scaled_pressure + i);
   store(end, work.end + i);
-  store(exponential(t.shear.index * end) - 1, work.end_growth + i);
+  Growth::prepare_end(t, end, work, i);
   if (t.limited) {
     store(logarithm(limiting_shear_stress(rim_limit, t.limit_slope, end_pressure)),
           work.end_log_limit + i);
@@ -40,7 +41,7 @@ HWY_INLINE void prepare_shear(const Tables& t, Pack slide, Pack film, Pack press
   }
 }
 
-/// ln tau = law_base + factor (e^{Z s} - 1) at T = base + rise, with slopes in temperature.
+/// ln tau at p = 0 and L, at T = base + rise, with slopes in temperature.
 template <Digits kDigits>
 HWY_INLINE void eval_rheology(const Tables& t, Work& work, int i) {
   const LogStress<Pack> law = log_stress<kDigits>(
@@ -51,27 +52,23 @@ HWY_INLINE void eval_rheology(const Tables& t, Work& work, int i) {
   store(law.base_slope, work.law_base_slope + i);
 }
 
-HWY_INLINE Pack excess_at_end(const Work& work, int i) {
-  return log_under_pressure(load(work.law_base + i), load(work.factor + i),
-                            load(work.end_growth + i)) -
-         load(work.end_log_limit + i);
+template <class Growth>
+HWY_INLINE Pack excess_at_end(const Tables& t, const Work& work, int i) {
+  return Growth::log_stress_at_end(t, work, i) - load(work.end_log_limit + i);
 }
 
 /// The stress where it is cut off, at the place where it met tau_L or at the centre.
-template <Digits kDigits>
+template <class Growth, Digits kDigits>
 HWY_INLINE void eval_stress(const Tables& t, Work& work, int i) {
   Pack cut = load(work.end + i);
   if (t.limited) {
-    const Mask clipped = excess_at_end(work, i) > 0;
+    const Mask clipped = excess_at_end<Growth>(t, work, i) > 0;
     cut = select(clipped, load(work.cut + i), cut);
     store(cut, work.cut + i);
     store(as_number(clipped), work.clipped + i);
   }
-  const Pack e_growth = exponential<kDigits>(t.shear.index * cut);
-  store(e_growth, work.e_growth + i);
+  const Pack log_value = Growth::template log_stress_at_cut<kDigits>(t, cut, work, i);
   store(exponential<kDigits>(cut), work.e_cut + i);
-  const Pack log_value =
-      log_under_pressure(load(work.law_base + i), load(work.factor + i), e_growth - 1);
   store(exponential<kDigits>(clamped(log_value, -600, 100)), work.stress + i);
 }
 

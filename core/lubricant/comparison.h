@@ -15,13 +15,13 @@ struct LubricantFigures {
   struct AtTemperature {
     double temperature;                     ///< [K]
     double viscosity;                       ///< eq 34 [Pa s]
-    double viscosity_at_gigapascal;         ///< eq 31 at 1 GPa [Pa s]
+    double viscosity_at_gigapascal;         ///< at 1 GPa [Pa s]
     double pressure_viscosity_coefficient;  ///< alpha* of eq 33 [1/Pa]
   };
   std::vector<AtTemperature> at;  ///< 40, 70, 100 C; only where the laws hold
 };
 
-/// Throws Refusal PRESSURE_VISCOSITY_INDEX when the lubricant has no Roelands index.
+/// Throws Refusal PRESSURE_VISCOSITY_INDEX if Roelands's law is to be used and has no index.
 LubricantFigures lubricant_figures(const Lubricant& lubricant, const ModelOptions& options);
 
 }  // namespace tribodyn

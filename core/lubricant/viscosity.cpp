@@ -3,7 +3,9 @@
 #include <cmath>
 #include <string>
 
+#include "core/celsius.h"
 #include "core/laws/laws.h"
+#include "core/number_text.h"
 #include "core/numerics/bracketed_root.h"
 #include "core/refusal.h"
 
@@ -62,6 +64,17 @@ double index_from_reciprocal_asymptotic(double factor, double coefficient) {
 
 double index_from_houpert(double factor, double coefficient) {
   return laws::houpert_index(factor, coefficient);
+}
+
+void check_glass_transition(const Lubricant& lubricant, double temperature) {
+  constexpr double kLeastFolds = 16;
+  const double glass = lubricant.yasutomi.glass_viscosity;
+  if (std::log(glass) - log_ambient_viscosity(lubricant, temperature) >= kLeastFolds) return;
+  throw Refusal("GLASS_TRANSITION",
+                "the improved Yasutomi law is too near its glass transition: the viscosity of " +
+                    number_text(ambient_viscosity(lubricant, temperature)) + " Pa s at " +
+                    number_text(temperature - kZeroCelsius) +
+                    " C must be at least e^16 times below eta_g, " + number_text(glass) + " Pa s");
 }
 
 }  // namespace tribodyn

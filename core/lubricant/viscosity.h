@@ -1,7 +1,9 @@
 #pragma once
 
+#include "core/laws/laws.h"
 #include "core/lubricant/lubricant.h"
 #include "core/model_options.h"
+#include "core/numerics/gauss_legendre.h"
 
 namespace tribodyn {
 
@@ -34,5 +36,38 @@ double index_from_reciprocal_asymptotic(double factor, double coefficient);
 
 /// Z of eq 32 (Houpert 1985): alpha* / (5.1e-9 L).
 double index_from_houpert(double factor, double coefficient);
+
+/// Throws Refusal GLASS_TRANSITION if the viscosity of an improved Yasutomi law at a temperature
+/// [K] is above eta_g/e^16: its growth with pressure then ends at the glass transition before
+/// alpha* has four digits.
+void check_glass_transition(const Lubricant& lubricant, double temperature);
+
+/// alpha* [1/Pa], the inverse of int_0^inf eta(0)/eta(p) dp, of the improved Yasutomi law at a
+/// temperature [K] that check_glass_transition accepts. By Gauss's rule of 16 points over
+/// panels in which the integrand falls by at most 4 e-folds, until it has fallen by 40 or the
+/// pressure has reached the glass transition; relative error below 1e-11.
+template <class Real>
+Real improved_yasutomi_reciprocal_asymptotic(const GlassState<Real>& glass,
+                                             const Real& temperature) {
+  constexpr int kNodes = 16;
+  constexpr double kFoldsPerPanel = 4, kMostFolds = 40, kSmallPressure = 1e6;
+  const auto& rule = gauss_legendre<kNodes>();
+  const auto growth = [&](double pressure) {
+    return laws::improved_yasutomi_growth(glass, temperature, Real(pressure));
+  };
+  const double panel = kFoldsPerPanel * kSmallPressure / laws::value_of(growth(kSmallPressure));
+  Real integral = 0.0;
+  double folds = 0;
+  for (double from = 0; folds < kMostFolds; from += panel) {
+    for (int n = 0; n < kNodes; ++n) {
+      integral = integral +
+                 panel * rule.weight(n) * laws::exponential(-growth(from + panel * rule.node(n)));
+    }
+    const double before = folds;
+    folds = laws::value_of(growth(from + panel));
+    if (!(folds > before + 1e-3)) break;
+  }
+  return 1 / integral;
+}
 
 }  // namespace tribodyn

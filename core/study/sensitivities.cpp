@@ -16,10 +16,43 @@ struct SceneParameter {
   std::vector<ContactInput> inputs;
 };
 
+/// Parameters of the pressure-viscosity law that the lubricant follows.
+std::vector<SceneParameter> of_pressure_response(const Lubricant& l) {
+  using enum ContactInput;
+  if (l.pressure_viscosity_law == PressureViscosityLaw::kRoelands) {
+    return {{"lubricant.pressure_viscosity_coefficient",
+             "1/Pa",
+             l.pressure_viscosity_coefficient,
+             {kPressureViscosityCoefficient}},
+            {"lubricant.pressure_viscosity_temperature",
+             "K",
+             l.pressure_viscosity_temperature,
+             {kPressureViscosityTemperature}}};
+  }
+  const ImprovedYasutomiOf<double>& law = l.yasutomi;
+  return {{"lubricant.yasutomi.glass_viscosity", "Pa s", law.glass_viscosity, {kGlassViscosity}},
+          {"lubricant.yasutomi.glass_temperature_rise",
+           "K",
+           law.glass_temperature_rise,
+           {kGlassTemperatureRise}},
+          {"lubricant.yasutomi.glass_pressure_factor",
+           "1/Pa",
+           law.glass_pressure_factor,
+           {kGlassPressureFactor}},
+          {"lubricant.yasutomi.expansivity_pressure_factor",
+           "1/Pa",
+           law.expansivity_pressure_factor,
+           {kExpansivityPressureFactor}},
+          {"lubricant.yasutomi.expansivity_exponent",
+           "1",
+           law.expansivity_exponent,
+           {kExpansivityExponent}}};
+}
+
 std::vector<SceneParameter> scene_parameters(const Scene& s) {
   using enum ContactInput;
   const Lubricant& l = s.lubricant;
-  return {
+  std::vector<SceneParameter> out = {
       {"lubricant.vogel_viscosity_prefactor",
        "Pa s",
        l.vogel_viscosity_prefactor,
@@ -32,14 +65,6 @@ std::vector<SceneParameter> scene_parameters(const Scene& s) {
        "K",
        l.vogel_reference_temperature,
        {kVogelReferenceTemperature}},
-      {"lubricant.pressure_viscosity_coefficient",
-       "1/Pa",
-       l.pressure_viscosity_coefficient,
-       {kPressureViscosityCoefficient}},
-      {"lubricant.pressure_viscosity_temperature",
-       "K",
-       l.pressure_viscosity_temperature,
-       {kPressureViscosityTemperature}},
       {"lubricant.relaxation_time", "s", l.relaxation_time, {kRelaxationTime}},
       {"lubricant.havriliak_negami_alpha", "1", l.havriliak_negami_alpha, {kHavriliakNegamiAlpha}},
       {"lubricant.havriliak_negami_beta", "1", l.havriliak_negami_beta, {kHavriliakNegamiBeta}},
@@ -97,6 +122,9 @@ std::vector<SceneParameter> scene_parameters(const Scene& s) {
        {kBody1SpecificHeatCapacity, kBody2SpecificHeatCapacity}},
       {"sump_temperature", "K", s.sump_temperature, {kBathTemperature}},
       {"inlet_temperature_rise", "K", s.inlet_temperature_rise, {kInletTemperatureRise}}};
+  const std::vector<SceneParameter> pressure_response = of_pressure_response(l);
+  out.insert(out.begin() + 3, pressure_response.begin(), pressure_response.end());
+  return out;
 }
 
 /// dT_w/du_v of eq 7 [N m s/m]. T_w is a parabola in u_v, so the difference is exact.

@@ -11,6 +11,7 @@
 #include "core/contact/flank_contact_batch.h"
 #include "tests/consistency/contact_case.h"
 #include "tests/support/contact_batch.h"
+#include "tests/support/improved_yasutomi.h"
 
 namespace tribodyn {
 namespace {
@@ -161,6 +162,24 @@ TEST(ContactSensitivity, AgreesWithCentralDifferencesInTheGear) {
       c.conditions.load = load;
       c.sump_temperature = sump;
       expect_like_differences(Contact(c), std::to_string(load) + " N", comparison);
+    }
+  }
+  EXPECT_LT(comparison.inconclusive, 0.1 * comparison.compared);
+}
+
+TEST(ContactSensitivity, AgreesWithCentralDifferencesUnderTheImprovedYasutomiLaw) {
+  Comparison comparison;
+  for (const double load : {50.0, 500.0, 3000.0}) {
+    for (const double sump : {293.15, 313.15, 363.15}) {
+      ContactCase c;
+      set_yasutomi(gear_oil_80w90(), c.lubricant);
+      c.conditions.load = load;
+      c.sump_temperature = sump;
+      expect_like_differences(
+          Contact(c), std::to_string(load) + " N, " + std::to_string(sump) + " K", comparison);
+      const ContactSensitivity s = Contact(c).sensitivity();
+      EXPECT_NE(s.friction.by_input(ContactInput::kExpansivityExponent), 0);
+      EXPECT_EQ(s.friction.by_input(ContactInput::kPressureViscosityCoefficient), 0);
     }
   }
   EXPECT_LT(comparison.inconclusive, 0.1 * comparison.compared);

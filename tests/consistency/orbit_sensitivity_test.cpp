@@ -52,17 +52,20 @@ std::vector<PlacedParameter> parameters_of(DifferentiatedPlace& place) {
         &l.pressure_viscosity_temperature, &l.relaxation_time, &l.havriliak_negami_alpha,
         &l.havriliak_negami_beta, &l.rheology_reference_temperature,
         &l.limiting_shear_stress_at_zero_pressure, &l.limiting_shear_stress_coefficient,
-        &l.thermal_conductivity, &l.density_at_zero_kelvin, &l.density_temperature_slope,
-        &s.roughness.asperity_density, &s.roughness.asperity_radius,
-        &s.roughness.composite_rms_height, &s.boundary.tribofilm_shear_strength,
-        &s.boundary.asperity_friction_coefficient}) {
+        &l.thermal_conductivity, &l.density_at_zero_kelvin, &l.density_temperature_slope}) {
     out.push_back({at, {static_cast<int>(out.size())}});
+  }
+  int column = static_cast<int>(ContactInput::kAsperityDensity);
+  for (double* at : {&s.roughness.asperity_density, &s.roughness.asperity_radius,
+                     &s.roughness.composite_rms_height, &s.boundary.tribofilm_shear_strength,
+                     &s.boundary.asperity_friction_coefficient}) {
+    out.push_back({at, {column++}});
   }
   for (double* at :
        {&s.solid.youngs_modulus, &s.solid.poissons_ratio, &s.solid.thermal_conductivity,
         &s.solid.density, &s.solid.specific_heat_capacity}) {
-    const int column = static_cast<int>(out.size());
     out.push_back({at, {column, column + 5}});  // of both bodies
+    ++column;
   }
   const int bath = static_cast<int>(ContactInput::kBathTemperature);
   out.push_back({&s.sump_temperature, {bath}});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/consistency/contact_case.h"
+#include "tests/support/improved_yasutomi.h"
 
 /// The paper's equations written down once more, as plainly as they read, for the tests to hold the
 /// model against. Nothing here calls core/contact or core/lubricant.
@@ -114,18 +115,24 @@ inline double log_shear_thinning(const Lubricant& oil, double shear_rate, double
 /// What the shear stress of eq 23 depends on besides pressure.
 struct Shear {
   const ContactCase& contact;
-  double index;  ///< Z
+  double index;  ///< Z; of Roelands's law only
   double shear_rate, temperature;
 
   /// ln of eq 23 with eq 31, without the limit.
   double log_unlimited(double pressure) const {
-    const double log_eta = plain::log_viscosity(contact.lubricant, temperature);
-    const double factor = plain::roelands_factor(log_eta, contact.options.as_published);
     const double thinning = contact.options.newtonian
                                 ? 0
                                 : log_shear_thinning(contact.lubricant, shear_rate, temperature);
-    return log_eta + factor * (std::pow(1 + kRoelands * pressure, index) - 1) +
-           std::log(shear_rate) - thinning;
+    return log_viscosity_at(pressure) + std::log(shear_rate) - thinning;
+  }
+  double log_viscosity_at(double pressure) const {
+    const Lubricant& oil = contact.lubricant;
+    if (oil.pressure_viscosity_law == PressureViscosityLaw::kImprovedYasutomi) {
+      return printed_yasutomi(oil).log_viscosity(pressure, temperature);
+    }
+    const double log_eta = plain::log_viscosity(oil, temperature);
+    const double factor = plain::roelands_factor(log_eta, contact.options.as_published);
+    return log_eta + factor * (std::pow(1 + kRoelands * pressure, index) - 1);
   }
   double limit(double pressure) const {
     return contact.lubricant.limiting_shear_stress_at_zero_pressure +

@@ -28,11 +28,11 @@ double relative_error(double value, long double exact) {
 
 // An independent method: with t = u^2 the integrand of F_n is entire, and Gauss-Legendre panels in
 // extended precision are exact to it.
-struct GaussLegendre {
+struct LongRule {
   static constexpr int kPoints = 20;
   std::array<long double, kPoints> node{};
   std::array<long double, kPoints> weight{};
-  GaussLegendre() {
+  LongRule() {
     for (int i = 0; i < kPoints; ++i) {
       long double x = std::cos(std::numbers::pi_v<long double> * (i + 0.75L) / (kPoints + 0.5L));
       long double slope = 0;
@@ -53,13 +53,13 @@ struct GaussLegendre {
 };
 
 long double quadrature(long double order, long double film_ratio) {
-  static const GaussLegendre rule;
+  static const LongRule rule;
   constexpr int kPanels = 16;
   const long double last_t = std::sqrt(film_ratio * film_ratio + 2 * 60) - film_ratio;
   const long double half = std::sqrt(last_t) / kPanels / 2;
   long double sum = 0;
   for (int panel = 0; panel < kPanels; ++panel) {
-    for (int i = 0; i < GaussLegendre::kPoints; ++i) {
+    for (int i = 0; i < LongRule::kPoints; ++i) {
       const long double u = (2 * panel + 1 + rule.node[i]) * half;
       const long double t = u * u;
       sum += rule.weight[i] * half * 2 * std::pow(u, 2 * order + 1) *
