@@ -231,7 +231,22 @@ ContactStatus FlankContactModel::heat(const ContactConditions& k,
     out.flash_temperature_rise = heated.flash_resistance * out.heat_rate;
   }
   out.friction_coefficient = out.friction / k.load;
+  out.specific_sliding = specific_sliding(k);
   return ContactStatus::kOk;
+}
+
+void FlankContactModel::complete(const ContactConditions& k, ContactFigures& figures) const {
+  figures.friction_coefficient = figures.friction / k.load;
+  figures.specific_sliding = specific_sliding(k);
+  figures.flash_temperature_rise = 0;
+  if (options_.isothermal) return;
+  const double slide = std::hypot(k.velocity_1_x - k.velocity_2_x, k.velocity_1_y - k.velocity_2_y);
+  const double oil_rise = figures.mean_shear_stress *
+                          laws::oil_rise_per_stress(slide, figures.central_film_thickness,
+                                                    parameters_.lubricant.thermal_conductivity);
+  // What eq 38 adds to the inlet's temperature beside the rise of the oil.
+  figures.flash_temperature_rise =
+      std::max(0.0, figures.contact_temperature - constants_.inlet_temperature - oil_rise);
 }
 
 const char* contact_status_name(ContactStatus status) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/contact/contact_equations.h"
+#include "core/contact/specific_sliding.h"
 #include "core/model_options.h"
 
 namespace tribodyn {
@@ -43,6 +44,10 @@ struct ContactFigures {
   double friction = 0;                    ///< F_fr, eq 28 [N]
   double limiting_stress_area_share = 0;  ///< share of A_EHL that sits on tau_L [-]
   bool limiting_stress_at_centre = false;
+  double mean_shear_stress = 0;       ///< tau_bar, area mean of eq 23 under the limit [Pa]
+  double flash_temperature_rise = 0;  ///< (dT_f)_av, eq 39 [K]
+  double friction_coefficient = 0;    ///< F_fr / W [-]
+  SpecificSliding specific_sliding;
 };
 
 /// Everything about one contact.
@@ -62,7 +67,6 @@ struct ContactSolution : ContactFigures {
   double inlet_pressure_viscosity_coefficient = 0;  ///< alpha*(T_in), eq 33 [1/Pa]
   double pressure_viscosity_index = 0;              ///< Z [-]
   double reduced_modulus = 0;                       ///< E', eq 13 [Pa]
-  double flash_temperature_rise = 0;                ///< (dT_f)_av, eq 39 [K]
   double oil_temperature_rise = 0;                  ///< (dT_oil)_av, eq 39 [K]
   double active_length_1 = 0;                       ///< l_p, eq 36 [m]
   double active_length_2 = 0;                       ///< l_g, eq 36 [m]
@@ -70,9 +74,7 @@ struct ContactSolution : ContactFigures {
   double thermal_resistance_1 = 0;   ///< R_fp, eq 35 [K/W]; infinite for a surface at rest
   double thermal_resistance_2 = 0;   ///< R_fg, eq 35 [K/W]; infinite for a surface at rest
   double heat_partition = 0;         ///< a_h, eq 37 [-]
-  double mean_shear_stress = 0;      ///< tau_bar, area mean of eq 23 under the limit [Pa]
   double heat_rate = 0;              ///< q_dot = F_fr V_s [W]
-  double friction_coefficient = 0;   ///< F_fr / W [-]
   int limiting_stress_switches = 0;  ///< radii at which the stress meets tau_L
   int thermal_roots = 1;             ///< thermal equilibria found; above 1 the coldest is returned
 };
@@ -94,6 +96,10 @@ class FlankContactModel {
   /// Solves load sharing (eqs 12, 20, 41) and the thermal network (eqs 23-39) by bracketed roots.
   /// Any finite input gives a finite answer (but for the infinities documented above) or a refusal.
   ContactSolution solve(const ContactConditions& conditions) const;
+
+  /// Fills in the figures of a contact under load that follow from its friction, temperature, film
+  /// and mean shear stress: those that FlankContactBatch has no columns for.
+  void complete(const ContactConditions& conditions, ContactFigures& figures) const;
 
   double inlet_temperature() const { return constants_.inlet_temperature; }
   double pressure_viscosity_index() const { return constants_.shear.index; }

@@ -89,7 +89,7 @@ void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPa
     if (out.load[k] > 0) geometries_->set(k, c.radius_x, c.radius_y);
   }
   using Column = std::array<double, kFlankPairs>;
-  Column friction, viscous, boundary, temperature, film, ratio, pressure, rate, share;
+  Column friction, viscous, boundary, temperature, film, ratio, pressure, rate, stress, share;
   std::array<bool, kFlankPairs> at_centre;
   std::array<ContactStatus, kFlankPairs> status;
   FlankContactBatchResults results;
@@ -101,6 +101,7 @@ void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPa
   results.film_ratio = ratio.data();
   results.maximum_pressure = pressure.data();
   results.shear_rate = rate.data();
+  results.mean_shear_stress = stress.data();
   results.limiting_stress_area_share = share.data();
   results.limiting_stress_at_centre = at_centre.data();
   results.status = status.data();
@@ -122,6 +123,8 @@ void GearPairSystem::solve_contacts(const std::array<ContactConditions, kFlankPa
     contact.shear_rate = rate[k];
     contact.limiting_stress_area_share = share[k];
     contact.limiting_stress_at_centre = at_centre[k];
+    contact.mean_shear_stress = stress[k];
+    contact_.complete(conditions[k], contact);
   }
 }
 
@@ -174,12 +177,17 @@ void GearPairSystem::derivative(const double* y, const Instant& at, bool record,
       boundary += c.boundary_friction;
       dy[kFlankViscousWork0 + k] = at.motion[k].sliding_speed * c.viscous_friction;
       dy[kFlankBoundaryWork0 + k] = at.motion[k].sliding_speed * c.boundary_friction;
+      dy[kFlankLoadTime0 + k] = at.load[k];
+      dy[kFlankFrictionTime0 + k] = c.friction;
       dy[kLoadTime] += at.load[k];
       dy[kFilmLoadTime] += at.load[k] * c.central_film_thickness;
       dy[kFilmRatioLoadTime] += at.load[k] * c.film_ratio;
       dy[kTemperatureLoadTime] += at.load[k] * c.contact_temperature;
       dy[kPressureLoadTime] += at.load[k] * c.maximum_pressure;
       dy[kShearRateLoadTime] += at.load[k] * std::min(c.shear_rate, 1e300);
+      dy[kFlashLoadTime] += at.load[k] * c.flash_temperature_rise;
+      dy[kPinionSlidingLoadTime] += at.load[k] * std::min(c.specific_sliding.surface_1, 1e300);
+      dy[kGearSlidingLoadTime] += at.load[k] * std::min(c.specific_sliding.surface_2, 1e300);
       dy[kLimitedAreaLoadTime] += at.load[k] * c.limiting_stress_area_share;
       limited_centre = limited_centre || c.limiting_stress_at_centre;
     }

@@ -36,7 +36,9 @@ using MarchState = std::array<double, kMarchComponents>;
 enum RecordComponent {
   kFlankViscousWork0 = kMarchComponents,  ///< one per slot [J]
   kFlankBoundaryWork0 = kFlankViscousWork0 + kFlankPairs,
-  kViscousForceSquared = kFlankBoundaryWork0 + kFlankPairs,  ///< [N2 s]
+  kFlankLoadTime0 = kFlankBoundaryWork0 + kFlankPairs,       ///< one per slot: int W dt [N s]
+  kFlankFrictionTime0 = kFlankLoadTime0 + kFlankPairs,       ///< one per slot: int F_fr dt [N s]
+  kViscousForceSquared = kFlankFrictionTime0 + kFlankPairs,  ///< [N2 s]
   kBoundaryForceSquared,
   kTransmissionErrorTime,  ///< int x dt
   kMeshForceTime,
@@ -48,6 +50,9 @@ enum RecordComponent {
   kTemperatureLoadTime,
   kPressureLoadTime,
   kShearRateLoadTime,
+  kFlashLoadTime,
+  kPinionSlidingLoadTime,
+  kGearSlidingLoadTime,
   kLimitedAreaLoadTime,
   kLimitedCentreTime,
   kGapTime,

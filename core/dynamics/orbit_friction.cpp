@@ -98,6 +98,7 @@ constexpr SolvedRow kSolvedRows[] = {
     {&FlankContactBatchResults::film_ratio, &ContactFigures::film_ratio},
     {&FlankContactBatchResults::maximum_pressure, &ContactFigures::maximum_pressure},
     {&FlankContactBatchResults::shear_rate, &ContactFigures::shear_rate},
+    {&FlankContactBatchResults::mean_shear_stress, &ContactFigures::mean_shear_stress},
     {&FlankContactBatchResults::limiting_stress_area_share,
      &ContactFigures::limiting_stress_area_share}};
 
@@ -143,9 +144,10 @@ SolvedPieces solved_pieces(GearPairSystem& system, const MeshGrid& grid,
     for (int part = n - out.first[i]; part < 3; ++part, ++n) {
       Instant& at = out.instants[n];
       see_flanks(system, grid, pieces[i], part, at,
-                 [&](int k, const FlankKinematics&, const ContactConditions&) {
+                 [&](int k, const FlankKinematics&, const ContactConditions& conditions) {
                    ContactFigures& solution = at.contact[k];
                    contacts.copy(contact++, solution);
+                   system.contact_model().complete(conditions, solution);
                    at.pinion_friction_torque +=
                        at.motion[k].pinion_friction_arm * solution.friction;
                    at.gear_friction_torque += at.motion[k].gear_friction_arm * solution.friction;

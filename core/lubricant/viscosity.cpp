@@ -70,7 +70,7 @@ void check_glass_transition(const Lubricant& lubricant, double temperature) {
   constexpr double kLeastFolds = 16;
   const double glass = lubricant.yasutomi.glass_viscosity;
   if (std::log(glass) - log_ambient_viscosity(lubricant, temperature) >= kLeastFolds) return;
-  throw Refusal("GLASS_TRANSITION",
+  throw Refusal("PARAMETER_OUT_OF_RANGE",
                 "the improved Yasutomi law is too near its glass transition: the viscosity of " +
                     number_text(ambient_viscosity(lubricant, temperature)) + " Pa s at " +
                     number_text(temperature - kZeroCelsius) +

@@ -56,6 +56,14 @@ std::string_view history_column_name(HistoryColumn column) {
       return "flank_shear_rate_per_second";
     case HistoryColumn::kFlankSlidingSpeed:
       return "flank_sliding_speed_metres_per_second";
+    case HistoryColumn::kFlankFrictionCoefficient:
+      return "flank_friction_coefficient";
+    case HistoryColumn::kFlankFlashTemperatureRise:
+      return "flank_flash_temperature_rise_kelvin";
+    case HistoryColumn::kFlankPinionSpecificSliding:
+      return "flank_pinion_specific_sliding";
+    case HistoryColumn::kFlankGearSpecificSliding:
+      return "flank_gear_specific_sliding";
   }
   return "";
 }

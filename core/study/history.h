@@ -33,9 +33,14 @@ enum class HistoryColumn {
   kFlankMaximumPressure,              ///< [Pa]
   kFlankShearRate,                    ///< [1/s]
   kFlankSlidingSpeed,                 ///< [m/s]
+  kFlankFrictionCoefficient,          ///< F_fr/W [-]
+  kFlankFlashTemperatureRise,         ///< (dT_f)_av, eq 39 [K]
+  kFlankPinionSpecificSliding,        ///< [-]
+  kFlankGearSpecificSliding,          ///< [-]
 };
 
-inline constexpr int kHistoryColumns = static_cast<int>(HistoryColumn::kFlankSlidingSpeed) + 1;
+inline constexpr int kHistoryColumns =
+    static_cast<int>(HistoryColumn::kFlankGearSpecificSliding) + 1;
 
 bool is_per_flank(HistoryColumn column);
 /// e.g. "dynamic_transmission_error_metres", "flank_load_newtons"; unit suffix included.

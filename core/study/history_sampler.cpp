@@ -75,6 +75,14 @@ double flank_value(HistoryColumn column, int k, const Instant& at) {
       return c.shear_rate;
     case HistoryColumn::kFlankSlidingSpeed:
       return at.motion[k].sliding_speed;
+    case HistoryColumn::kFlankFrictionCoefficient:
+      return c.friction_coefficient;
+    case HistoryColumn::kFlankFlashTemperatureRise:
+      return c.flash_temperature_rise;
+    case HistoryColumn::kFlankPinionSpecificSliding:
+      return c.specific_sliding.surface_1;
+    case HistoryColumn::kFlankGearSpecificSliding:
+      return c.specific_sliding.surface_2;
     default:
       return 0;
   }

@@ -100,9 +100,11 @@ struct ContactLoss {
   double duration = 0;          ///< [s]
 };
 
-/// Viscous and boundary loss of one flank slot, time means [W].
+/// Loss of one flank slot.
 struct FlankLoss {
-  double viscous = 0, boundary = 0;
+  double viscous = 0, boundary = 0;  ///< time means [W]
+  /// int F_fr dt/int W dt: the mean of F_fr/W, weighted with the load; 0 without load [-]
+  double friction_coefficient = 0;
 };
 
 struct SolverStatistics {
@@ -179,11 +181,16 @@ struct PointResult {
   double contact_loss_time_share = 0;  ///< [-]
   std::vector<ContactLoss> contact_losses;
 
-  Extremes central_film_thickness;        ///< over loaded flanks; means are load-time weighted [m]
-  Extremes film_ratio;                    ///< lambda_s [-]
-  Extremes contact_temperature;           ///< T_c [K]
-  Extremes maximum_pressure;              ///< p_max [Pa]
-  Extremes shear_rate;                    ///< [1/s]
+  Extremes central_film_thickness;  ///< over loaded flanks; means are load-time weighted [m]
+  Extremes film_ratio;              ///< lambda_s [-]
+  Extremes contact_temperature;     ///< T_c [K]
+  Extremes maximum_pressure;        ///< p_max [Pa]
+  Extremes shear_rate;              ///< [1/s]
+  Extremes flash_temperature_rise;  ///< (dT_f)_av, eq 39 [K]
+  /// F_fr/W [-]. Its mean is the friction coefficient of the mesh: int sum F_fr dt/int sum W dt.
+  Extremes friction_coefficient;
+  Extremes pinion_specific_sliding;       ///< see SpecificSliding [-]
+  Extremes gear_specific_sliding;         ///< likewise
   double limiting_stress_time_share = 0;  ///< share of time with a contact centre on tau_L [-]
   double limiting_stress_area_share = 0;  ///< load-time mean of the area share on tau_L [-]
 

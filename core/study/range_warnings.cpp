@@ -5,6 +5,7 @@
 
 #include "core/celsius.h"
 #include "core/number_text.h"
+#include "core/study/figure_limits.h"
 #include "core/surface/roughness_product.h"
 
 namespace tribodyn {
@@ -32,7 +33,8 @@ std::string viscosity_sentence(const FluidGrounds& grounds, double inlet, double
 }
 
 std::string pressure_sentence(double gigapascals) {
-  constexpr double kLowest = 0.85, kHighest = 1.35;
+  constexpr double kLowest = 1e-9 * kLowestComparedPressure;
+  constexpr double kHighest = 1e-9 * kHighestComparedPressure;
   if (gigapascals >= kLowest && gigapascals <= kHighest) return {};
   return "the largest contact pressure is " + short_text(gigapascals) + " GPa, " +
          (gigapascals < kLowest ? "below" : "above") + " the " +
@@ -87,11 +89,10 @@ std::vector<RangeWarning> range_warnings(const Scene& scene, const PointResult& 
                                "such limit)");
     }
   }
-  if (r.film_ratio.minimum < 0.5 && r.film_ratio.maximum > 0) {
-    warn("FILM_RATIO",
-         "the film ratio falls to " + short_text(r.film_ratio.minimum) +
-             "; below about 0.5 asperities overlap, which Greenwood and Tripp take to "
-             "be sparse");
+  if (r.film_ratio.minimum < kSparseAsperities && r.film_ratio.maximum > 0) {
+    warn("FILM_RATIO", "the film ratio falls to " + short_text(r.film_ratio.minimum) +
+                           "; below about " + short_text(kSparseAsperities) +
+                           " asperities overlap, which Greenwood and Tripp take to be sparse");
   }
   const double product = roughness_product(scene.roughness);
   if (product < kLeastRoughnessProduct || product > kMostRoughnessProduct) {

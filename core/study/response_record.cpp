@@ -40,6 +40,32 @@ Extremes ResponseRecord::Range::with_mean(double mean) const {
   return low <= high ? Extremes{low, mean, high} : Extremes{0, mean, 0};
 }
 
+double ResponseRecord::value_of(const ContactFigures& contact, ContactFigure figure) {
+  switch (figure) {
+    case kFilm:
+      return contact.central_film_thickness;
+    case kFilmRatio:
+      return contact.film_ratio;
+    case kTemperature:
+      return contact.contact_temperature;
+    case kPressure:
+      return contact.maximum_pressure;
+    case kShearRate:
+      return contact.shear_rate;
+    case kFlash:
+      return contact.flash_temperature_rise;
+    case kFrictionCoefficient:
+      return contact.friction_coefficient;
+    case kPinionSliding:
+      return contact.specific_sliding.surface_1;
+    case kGearSliding:
+      return contact.specific_sliding.surface_2;
+    case kContactFigures:
+      break;
+  }
+  return 0;
+}
+
 template <std::size_t kCount>
 void ResponseRecord::add(std::span<const Instant, kCount> instants) {
   const auto add_to = [&](Range& range, double Mechanics::*member) {
@@ -62,7 +88,8 @@ void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k)
   if (counted == kCount) {
     for (int c = 0; c < kContactFigures; ++c) {
       std::array<double, kCount> v;
-      for (std::size_t n = 0; n < kCount; ++n) v[n] = instants[n].contact[k].*kContactMembers[c];
+      for (std::size_t n = 0; n < kCount; ++n)
+        v[n] = value_of(instants[n].contact[k], static_cast<ContactFigure>(c));
       contact_[c].add(v);
     }
     return;
@@ -71,7 +98,7 @@ void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k)
     const Instant& i = instants[n];
     if (counts(i, k)) {
       for (int c = 0; c < kContactFigures; ++c) {
-        contact_[c].add(i.contact[k].*kContactMembers[c]);
+        contact_[c].add(value_of(i.contact[k], static_cast<ContactFigure>(c)));
       }
     }
     if (n == 0 || counts(i, k) == counts(instants[n - 1], k)) continue;
@@ -81,8 +108,8 @@ void ResponseRecord::add_flank(std::span<const Instant, kCount> instants, int k)
     // Film, pressure and temperature go like powers of a small load.
     const double t = std::log(load_floor_ / before.load[k]) / std::log(i.load[k] / before.load[k]);
     for (int c = 0; c < kContactFigures; ++c) {
-      const double a = before.contact[k].*kContactMembers[c];
-      const double b = i.contact[k].*kContactMembers[c];
+      const double a = value_of(before.contact[k], static_cast<ContactFigure>(c));
+      const double b = value_of(i.contact[k], static_cast<ContactFigure>(c));
       contact_[c].add(a > 0 && b > 0 ? a * std::pow(b / a, t) : a + t * (b - a));
     }
   }
@@ -107,6 +134,10 @@ void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
   out.mesh_loss_power = y[kLossWork] / time;
   for (int k = 0; k < kFlankPairs; ++k) {
     out.flank_losses[k] = {y[kFlankViscousWork0 + k] / time, y[kFlankBoundaryWork0 + k] / time};
+    if (y[kFlankLoadTime0 + k] > 0) {
+      out.flank_losses[k].friction_coefficient =
+          y[kFlankFrictionTime0 + k] / y[kFlankLoadTime0 + k];
+    }
     out.viscous_loss_power += out.flank_losses[k].viscous;
     out.boundary_loss_power += out.flank_losses[k].boundary;
   }
@@ -131,6 +162,14 @@ void ResponseRecord::fill(const Torques& torques, double cycles, bool periodic,
     out.contact_temperature = contact_[kTemperature].with_mean(y[kTemperatureLoadTime] / load_time);
     out.maximum_pressure = contact_[kPressure].with_mean(y[kPressureLoadTime] / load_time);
     out.shear_rate = contact_[kShearRate].with_mean(y[kShearRateLoadTime] / load_time);
+    out.flash_temperature_rise = contact_[kFlash].with_mean(y[kFlashLoadTime] / load_time);
+    double friction_time = 0;
+    for (int k = 0; k < kFlankPairs; ++k) friction_time += y[kFlankFrictionTime0 + k];
+    out.friction_coefficient = contact_[kFrictionCoefficient].with_mean(friction_time / load_time);
+    out.pinion_specific_sliding =
+        contact_[kPinionSliding].with_mean(y[kPinionSlidingLoadTime] / load_time);
+    out.gear_specific_sliding =
+        contact_[kGearSliding].with_mean(y[kGearSlidingLoadTime] / load_time);
     out.limiting_stress_area_share = y[kLimitedAreaLoadTime] / load_time;
   }
   out.limiting_stress_time_share = y[kLimitedCentreTime] / time;

@@ -18,8 +18,8 @@ class ResponseRecord {
   static constexpr int kSamples = 5;  ///< per step, equidistant: extremes are refined by parabolas
   using Integrals = std::array<double, kRecordComponents>;
 
-  /// Film, temperature, pressure and shear rate count towards extremes on flanks that carry at
-  /// least 1 % of `reference_force` [N].
+  /// Figures of a contact count towards extremes on flanks that carry at least 1 % of
+  /// `reference_force` [N].
   explicit ResponseRecord(double reference_force) : load_floor_(0.01 * reference_force) {}
 
   void add_step(std::span<const Instant, kSamples> instants) { add(instants); }
@@ -46,11 +46,19 @@ class ResponseRecord {
     Extremes with_mean(double mean) const;
   };
   /// What counts on loaded flanks only.
-  enum ContactFigure { kFilm, kFilmRatio, kTemperature, kPressure, kShearRate, kContactFigures };
-  static constexpr double ContactFigures::*kContactMembers[kContactFigures] = {
-      &ContactFigures::central_film_thickness, &ContactFigures::film_ratio,
-      &ContactFigures::contact_temperature, &ContactFigures::maximum_pressure,
-      &ContactFigures::shear_rate};
+  enum ContactFigure {
+    kFilm,
+    kFilmRatio,
+    kTemperature,
+    kPressure,
+    kShearRate,
+    kFlash,
+    kFrictionCoefficient,
+    kPinionSliding,
+    kGearSliding,
+    kContactFigures
+  };
+  static double value_of(const ContactFigures& contact, ContactFigure figure);
   template <std::size_t kCount>
   void add(std::span<const Instant, kCount> instants);
   template <std::size_t kCount>

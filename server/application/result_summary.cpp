@@ -25,6 +25,7 @@ void summarise(v1::SimulationResult& result) {
     point.clear_result();
   }
   result.clear_assumptions();
+  result.clear_limits();
 }
 
 }  // namespace tribodyn::server

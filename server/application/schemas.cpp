@@ -82,6 +82,18 @@ void add_column(const std::string& table, const std::string& name, const std::st
   added->set_description(description);
 }
 
+/// Adds the figures of the flank slots, in the spelling of a CSV of points.
+void add_flank_columns(const ContractComments& comments, v1::Schema& out) {
+  const auto& loss = *v1::FlankLoss::descriptor();
+  for (int slot = 0; slot < kFlankPairs; ++slot) {
+    for (int i = 0; i < loss.field_count(); ++i) {
+      add_column(v1::PointResult::descriptor()->name(),
+                 fmt::format("flank_losses_{}_{}", slot, loss.field(i)->name()),
+                 comments.of(loss.field(i)->full_name()), out);
+    }
+  }
+}
+
 /// Adds the figures of a point, with the comments of the contract, and the columns of histories.
 void add_columns(v1::Schema& out) {
   static const ContractComments kComments;
@@ -89,6 +101,10 @@ void add_columns(v1::Schema& out) {
   for (int i = 0; i < point.field_count(); ++i) {
     const auto* field = point.field(i);
     const bool is_extremes = field->message_type() == v1::Extremes::descriptor();
+    if (field->message_type() == v1::FlankLoss::descriptor()) {
+      add_flank_columns(kComments, out);
+      continue;
+    }
     if (field->is_repeated() || (field->message_type() != nullptr && !is_extremes)) continue;
     add_column(point.name(), field->name(), kComments.of(field->full_name()), out);
   }

@@ -166,7 +166,8 @@ void check_repeated(const Message& message, const Reflection& reflection, const 
 }
 
 bool may_be_infinite(std::string_view field) {
-  return field == "shear_rate_per_second" || field == "pinion_thermal_resistance_kelvin_per_watt" ||
+  return field == "shear_rate_per_second" || field == "pinion_specific_sliding" ||
+         field == "gear_specific_sliding" || field == "pinion_thermal_resistance_kelvin_per_watt" ||
          field == "gear_thermal_resistance_kelvin_per_watt";
 }
 

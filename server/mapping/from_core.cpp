@@ -85,6 +85,7 @@ void set_losses(v1::PointResult* out, const PointResult& result) {
     v1::FlankLoss* added = out->add_flank_losses();
     added->set_viscous_watts(loss.viscous);
     added->set_boundary_watts(loss.boundary);
+    added->set_friction_coefficient(loss.friction_coefficient);
   }
   out->set_boundary_to_viscous_friction_ratio(result.boundary_to_viscous_friction_ratio);
 }
@@ -109,6 +110,22 @@ const char* name_of(OrbitFigure figure) {
       return "dynamic_transmission_error_metres.minimum";
     case OrbitFigure::kTransmissionErrorMaximum:
       return "dynamic_transmission_error_metres.maximum";
+  }
+  return "";
+}
+
+const char* name_of(LimitedFigure figure) {
+  switch (figure) {
+    case LimitedFigure::kFilmRatioMinimum:
+      return "film_ratio.minimum";
+    case LimitedFigure::kPressureMaximum:
+      return "maximum_pressure_pascals.maximum";
+    case LimitedFigure::kContactTemperatureMinimum:
+      return "contact_temperature_kelvin.minimum";
+    case LimitedFigure::kContactTemperatureMaximum:
+      return "contact_temperature_kelvin.maximum";
+    case LimitedFigure::kFlashTemperatureMaximum:
+      return "flash_temperature_rise_kelvin.maximum";
   }
   return "";
 }
@@ -198,11 +215,22 @@ v1::EvaluateContactResponse to_message(const ContactSolution& s) {
   out.set_friction_newtons(s.friction);
   out.set_heat_rate_watts(s.heat_rate);
   out.set_friction_coefficient(s.friction_coefficient);
+  out.set_pinion_specific_sliding(s.specific_sliding.surface_1);
+  out.set_gear_specific_sliding(s.specific_sliding.surface_2);
   out.set_limiting_stress_area_share(s.limiting_stress_area_share);
   out.set_limiting_stress_switches(s.limiting_stress_switches);
   out.set_limiting_stress_at_centre(s.limiting_stress_at_centre);
   out.set_thermal_roots(s.thermal_roots);
   out.set_model_version(kModelVersion);
+  return out;
+}
+
+v1::FigureLimit to_message(const FigureLimit& limit) {
+  v1::FigureLimit out;
+  out.set_figure(name_of(limit.figure));
+  if (limit.minimum) out.set_minimum(*limit.minimum);
+  if (limit.maximum) out.set_maximum(*limit.maximum);
+  out.set_source(limit.source);
   return out;
 }
 
@@ -237,6 +265,10 @@ v1::PointResult to_message(const PointResult& result, int maximum_contact_losses
   set(out.mutable_contact_temperature_kelvin(), result.contact_temperature);
   set(out.mutable_maximum_pressure_pascals(), result.maximum_pressure);
   set(out.mutable_shear_rate_per_second(), result.shear_rate);
+  set(out.mutable_flash_temperature_rise_kelvin(), result.flash_temperature_rise);
+  set(out.mutable_friction_coefficient(), result.friction_coefficient);
+  set(out.mutable_pinion_specific_sliding(), result.pinion_specific_sliding);
+  set(out.mutable_gear_specific_sliding(), result.gear_specific_sliding);
   out.set_limiting_stress_time_share(result.limiting_stress_time_share);
   out.set_limiting_stress_area_share(result.limiting_stress_area_share);
   set_solver(&out, result);

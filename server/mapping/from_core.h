@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/contact/flank_contact.h"
+#include "core/study/figure_limits.h"
 #include "core/study/operating_point.h"
 #include "core/study/speed_sweep.h"
 #include "tribodyn/v1/contacts.pb.h"
@@ -10,6 +11,9 @@ namespace tribodyn::server {
 
 /// Converts every field of a solved contact and adds the model version.
 v1::EvaluateContactResponse to_message(const ContactSolution& solution);
+
+/// Converts a limit and the name of its figure.
+v1::FigureLimit to_message(const FigureLimit& limit);
 
 /// Converts the name of a model.
 v1::PointModel to_message(PointModel model);

@@ -71,6 +71,14 @@ std::string_view history_column_description(HistoryColumn column) {
       return "shear rate of the film of the flank, eq 18";
     case HistoryColumn::kFlankSlidingSpeed:
       return "sliding speed V_s of the flank";
+    case HistoryColumn::kFlankFrictionCoefficient:
+      return "friction coefficient of the flank: friction over normal load";
+    case HistoryColumn::kFlankFlashTemperatureRise:
+      return "flash temperature rise of the flank: of its surfaces above the inlet, eq 39";
+    case HistoryColumn::kFlankPinionSpecificSliding:
+      return "specific sliding of the pinion: sliding speed over the speed of its surface";
+    case HistoryColumn::kFlankGearSpecificSliding:
+      return "specific sliding of the gear: sliding speed over the speed of its surface";
   }
   return "";
 }

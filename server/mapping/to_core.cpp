@@ -1,6 +1,7 @@
 #include "server/mapping/to_core.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace tribodyn::server {
 namespace {
@@ -181,6 +182,19 @@ Solid solid(const v1::EvaluateContactRequest& message) {
       .thermal_conductivity = message.solid_thermal_conductivity_watts_per_metre_kelvin(),
       .density = message.solid_density_kilograms_per_cubic_metre(),
       .specific_heat_capacity = message.solid_specific_heat_capacity_joules_per_kilogram_kelvin()};
+}
+
+StatedLimits to_core(const v1::StatedLimits& message) {
+  const auto unless_zero = [](double value, double offset = 0) -> std::optional<double> {
+    if (value == 0) return std::nullopt;
+    return value + offset;
+  };
+  return {.film_ratio_minimum = unless_zero(message.minimum_film_ratio()),
+          .pressure_maximum = unless_zero(message.pressure_limit_pascals()),
+          .contact_temperature_maximum =
+              unless_zero(message.contact_temperature_limit_celsius(), kZeroCelsius),
+          .flash_temperature_maximum = unless_zero(message.flash_temperature_rise_limit_kelvin()),
+          .source = message.limit_source()};
 }
 
 }  // namespace tribodyn::server

@@ -5,12 +5,14 @@
 #include "core/gear/gear_set.h"
 #include "core/lubricant/lubricant.h"
 #include "core/model_options.h"
+#include "core/study/figure_limits.h"
 #include "core/surface/surface.h"
 #include "core/vehicle/vehicle.h"
 #include "tribodyn/v1/contacts.pb.h"
 #include "tribodyn/v1/gear_sets.pb.h"
 #include "tribodyn/v1/lubricants.pb.h"
 #include "tribodyn/v1/model_options.pb.h"
+#include "tribodyn/v1/simulations.pb.h"
 #include "tribodyn/v1/surfaces.pb.h"
 #include "tribodyn/v1/vehicles.pb.h"
 
@@ -24,6 +26,7 @@ BoundaryFriction boundary_friction(const v1::Surface& message);
 Solid solid(const v1::GearSet& message);
 Vehicle to_core(const v1::Vehicle& message);
 ModelOptions to_core(const v1::ModelOptions& message);
+StatedLimits to_core(const v1::StatedLimits& message);
 
 /// Converts the first three slots only; the core's check() refuses any other number.
 GearSet to_core(const v1::GearSet& message);

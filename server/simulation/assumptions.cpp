@@ -7,9 +7,12 @@
 
 #include "server/contract/constraints.h"
 #include "server/contract/output_only.h"
+#include "server/mapping/from_core.h"
+#include "server/mapping/to_core.h"
 #include "server/resources/imports/import_surface.h"
 #include "server/resources/lubricant_parameters.h"
 #include "server/resources/provenance.h"
+#include "server/simulation/fluid_grounds.h"
 #include "server/simulation/solver_defaults.h"
 #include "server/support/lru_cache.h"
 
@@ -115,6 +118,15 @@ void add_resources(Assumptions& out, const SimulationInputs& inputs) {
   add_all(*inputs.vehicle);
 }
 
+std::string serialised_limits(const SimulationInputs& inputs) {
+  v1::SimulationResult out;
+  for (const FigureLimit& each :
+       figure_limits(fluid_grounds(*inputs.lubricant), to_core(inputs.effective.stated_limits()))) {
+    *out.add_limits() = to_message(each);
+  }
+  return out.SerializeAsString();
+}
+
 std::string serialised(Assumptions assumptions, std::vector<v1::RangeWarning> warnings) {
   v1::SimulationResult out;
   for (v1::Assumption& each : assumptions) *out.add_assumptions() = std::move(each);
@@ -143,7 +155,7 @@ std::string serialised_assumptions(const SimulationInputs& inputs) {
   Assumptions of_request;
   add_request(of_request, inputs);
   // Concatenated serialised messages parse as one merged message.
-  return serialised(std::move(of_request), {}) +
+  return serialised(std::move(of_request), {}) + serialised_limits(inputs) +
          cache.get({resources(inputs), load_dependent}, [&inputs] {
            Assumptions of_resources;
            add_resources(of_resources, inputs);

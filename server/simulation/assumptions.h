@@ -16,8 +16,8 @@ std::vector<v1::Assumption> assumptions(const SimulationInputs& inputs);
 /// Returns warnings about lubricant and surface that concern every result of these inputs.
 std::vector<v1::RangeWarning> input_warnings(const SimulationInputs& inputs);
 
-/// Returns assumptions and input warnings as a serialised v1::SimulationResult without other
-/// fields.
+/// Returns assumptions, input warnings and limits as a serialised v1::SimulationResult without
+/// other fields.
 std::string serialised_assumptions(const SimulationInputs& inputs);
 
 }  // namespace tribodyn::server

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <iterator>
 #include <new>
 #include <string_view>
 
@@ -17,7 +19,9 @@
 namespace tribodyn::server {
 namespace {
 
-constexpr std::string_view kShearRate = "flank_shear_rate_per_second";
+/// Columns of a history that are infinite without a film, or for a surface at rest.
+constexpr std::string_view kMayBeInfinite[] = {
+    "flank_shear_rate_per_second", "flank_pinion_specific_sliding", "flank_gear_specific_sliding"};
 
 std::string stage_of(const OperatingCondition& condition) {
   if (condition.kind == OperatingCondition::Kind::kPrescribedTorque) {
@@ -27,11 +31,12 @@ std::string stage_of(const OperatingCondition& condition) {
   return fmt::format("settling at {} km/h", kilometres_per_hour(condition.vehicle_speed));
 }
 
-/// Throws Refusal if a number of a history is not finite. A shear rate may be infinite (sliding
-/// without a film).
+/// Throws Refusal if a number of a history is not finite and may not be infinite.
 void check_finite(const History& history) {
   for (std::size_t c = 0; c < history.values.size(); ++c) {
-    const bool infinite_allowed = history.names[c].starts_with(kShearRate);
+    const bool infinite_allowed =
+        std::any_of(std::begin(kMayBeInfinite), std::end(kMayBeInfinite),
+                    [&](std::string_view name) { return history.names[c].starts_with(name); });
     for (const double value : history.values[c]) {
       if (std::isnan(value) || (std::isinf(value) && !infinite_allowed)) {
         throw Refusal("RESULT_NOT_FINITE", "history column " + history.names[c] +

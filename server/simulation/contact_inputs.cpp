@@ -9,6 +9,7 @@
 #include "server/mapping/from_core.h"
 #include "server/mapping/to_core.h"
 #include "server/resources/lubricant_parameters.h"
+#include "server/simulation/contact_uncertainty.h"
 #include "server/simulation/study_checks.h"
 
 namespace tribodyn::server {
@@ -38,8 +39,11 @@ std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& requ
   return lubricant;
 }
 
-v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request,
-                                             const v1::Lubricant& lubricant) {
+namespace {
+
+/// Returns the figures of the contact alone. Throws as evaluate_contact() does.
+v1::EvaluateContactResponse solve_contact(const v1::EvaluateContactRequest& request,
+                                          const v1::Lubricant& lubricant) {
   const FlankContactModel model(
       to_core(lubricant), solid(request), roughness(request), boundary_friction(request),
       request.sump_temperature_celsius() + kZeroCelsius, request.inlet_temperature_rise_kelvin(),
@@ -56,11 +60,25 @@ v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& r
                               solution.contact_temperature, kHottestContact));
   }
   v1::EvaluateContactResponse response = to_message(solution);
+  const std::string bad = first_not_finite(response);
+  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " is not finite");
+  return response;
+}
+
+}  // namespace
+
+v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request,
+                                             const v1::Lubricant& lubricant) {
+  v1::EvaluateContactResponse response = solve_contact(request, lubricant);
   for (v1::RangeWarning& each : fluid_warnings(lubricant)) {
     *response.add_input_warnings() = std::move(each);
   }
-  const std::string bad = first_not_finite(response);
-  if (!bad.empty()) throw Refusal("RESULT_NOT_FINITE", bad + " is not finite");
+  if (request.draws() > 0) {
+    const auto solve = [&request](const v1::Lubricant& drawn) {
+      return solve_contact(request, drawn);
+    };
+    add_uncertainties(lubricant, request.draws(), solve, response);
+  }
   return response;
 }
 

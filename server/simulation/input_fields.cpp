@@ -82,7 +82,8 @@ constexpr InputFields kInputFields[] = {
      "sump_temperature_celsius inlet_temperature_rise_kelvin model_options "
      "solver_options operating_point inefficiency_curve state progress_fraction",
      "display_name lubricant gear_set surface vehicle deadline_seconds labels "
-     "sheared_lubricant"},  // the parameters of the lubricant hold its effect
+     "sheared_lubricant "  // the parameters of the lubricant hold its effect
+     "stated_limits"},     // they change no figure
     {"ModelOptions",
      "isothermal newtonian no_limiting_shear_stress no_boundary_friction "
      "damping_in_contact_only energy_consistent subtract_contact_point_motion "

@@ -33,8 +33,11 @@ enum Figure {
   kPinionTorque,
   kDteMinimum,
   kDteMaximum,
-  kFilmRatio,           // NaN unless contact figures are asked for
-  kContactTemperature,  // likewise
+  kFilmRatio,  // NaN unless contact figures are asked for, as are the next ones
+  kContactTemperature,
+  kFrictionCoefficient,
+  kPressure,
+  kFlashTemperature,
   kFigures
 };
 struct ComparedFigures {
@@ -75,19 +78,23 @@ std::optional<ComparedFigures> figures_of(const EvaluatedPoint& point) {
   }
   const PointFigures& f = *point.figures;
   ComparedFigures out{{*f.inefficiency_energy_mean, *f.inefficiency_rms, f.mesh_loss_power,
-                       f.pinion_torque, f.dte_minimum, f.dte_maximum, kNoNumber, kNoNumber},
+                       f.pinion_torque, f.dte_minimum, f.dte_maximum},
                       {},
                       f.contact_loss};
+  std::fill(out.value.begin() + kFilmRatio, out.value.end(), kNoNumber);
   if (point.contact) {
     out.value[kFilmRatio] = point.contact->film_ratio_minimum;
     out.value[kContactTemperature] = point.contact->contact_temperature_maximum;
+    out.value[kFrictionCoefficient] = point.contact->friction_coefficient_mean;
+    out.value[kPressure] = point.contact->pressure_maximum;
+    out.value[kFlashTemperature] = point.contact->flash_temperature_maximum;
   }
   const double relative_error = f.estimated_relative_error.value_or(0);
   for (int i = 0; i < kFigures; ++i) out.solver_error[i] = relative_error * std::abs(out.value[i]);
   // The estimate is relative to the largest transmission error, and there is none of the contact.
   out.solver_error[kDteMinimum] = out.solver_error[kDteMaximum] =
       relative_error * std::max(std::abs(f.dte_minimum), std::abs(f.dte_maximum));
-  out.solver_error[kFilmRatio] = out.solver_error[kContactTemperature] = kNoNumber;
+  std::fill(out.solver_error.begin() + kFilmRatio, out.solver_error.end(), kNoNumber);
   return out;
 }
 
@@ -351,6 +358,11 @@ v1::ComparedPoint point_message(const ComputedFluid& fluid, std::size_t conditio
     *out.mutable_film_ratio_minimum() = figure_message(fluid, condition, kFilmRatio);
     *out.mutable_contact_temperature_maximum_kelvin() =
         figure_message(fluid, condition, kContactTemperature);
+    *out.mutable_mesh_friction_coefficient() =
+        figure_message(fluid, condition, kFrictionCoefficient);
+    *out.mutable_maximum_pressure_maximum_pascals() = figure_message(fluid, condition, kPressure);
+    *out.mutable_flash_temperature_rise_maximum_kelvin() =
+        figure_message(fluid, condition, kFlashTemperature);
   }
   out.set_contact_loss(fluid.stated[condition]->contact_loss);
   for (const FiguresByCondition& draw : fluid.drawn) {
@@ -379,6 +391,58 @@ v1::ComparedLubricant lubricant_message(const ComputedFluid& fluid, const Comput
     out.add_inputs_without_uncertainty(each);
   }
   return out;
+}
+
+/// Returns the mean inefficiency of a fluid in a draw. Of a fluid without errors nothing is drawn:
+/// each draw is what is stated.
+std::optional<double> drawn_mean(const ComputedFluid& fluid, std::size_t draw) {
+  const std::optional<ComparedFigures>& figures =
+      fluid.drawn.empty() ? fluid.stated.back() : fluid.drawn[draw].back();
+  if (!figures) return std::nullopt;
+  return figures->value[kEnergyMean];
+}
+
+/// Returns for each fluid the share of draws in which its mean is the least of all; equal ones
+/// share a draw. Draws in which a fluid has no mean are left out.
+std::vector<double> best_probabilities(const std::vector<ComputedFluid>& fluids) {
+  std::vector<double> out(fluids.size(), 0.0);
+  std::size_t draws = 1;
+  for (const ComputedFluid& fluid : fluids) draws = std::max(draws, fluid.drawn.size());
+  double counted = 0;
+  for (std::size_t n = 0; n < draws; ++n) {
+    std::vector<double> means;
+    for (const ComputedFluid& fluid : fluids) {
+      if (const auto mean = drawn_mean(fluid, n)) means.push_back(*mean);
+    }
+    if (means.size() < fluids.size()) continue;
+    ++counted;
+    const double least = *std::min_element(means.begin(), means.end());
+    const auto equal = static_cast<double>(std::count(means.begin(), means.end(), least));
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      if (means[i] == least) out[i] += 1 / equal;
+    }
+  }
+  for (double& share : out) share = counted > 0 ? share / counted : kNoNumber;
+  return out;
+}
+
+/// Adds what each mean differs by from the least, and how probable it is the least.
+void add_ranking(const std::vector<ComputedFluid>& fluids, v1::ComparePointsResponse& out) {
+  const ComputedFluid* best = nullptr;
+  const auto mean = [](const ComputedFluid& fluid) {
+    return fluid.stated.back()->value[kEnergyMean];
+  };
+  for (const ComputedFluid& fluid : fluids) {
+    if (fluid.stated.back() && (best == nullptr || mean(fluid) < mean(*best))) best = &fluid;
+  }
+  const std::vector<double> probabilities = best_probabilities(fluids);
+  for (std::size_t i = 0; i < fluids.size(); ++i) {
+    v1::ComparedLubricant& lubricant = *out.mutable_lubricants(static_cast<int>(i));
+    lubricant.set_best_probability(probabilities[i]);
+    if (best == nullptr || best == &fluids[i]) continue;
+    *lubricant.mutable_mean_difference_from_best() =
+        difference(fluids[i], *best, best->stated.size() - 1);
+  }
 }
 
 /// Returns the request for the points of one lubricant.
@@ -493,6 +557,7 @@ v1::ComparePointsResponse compare_points(const PointComparison& comparison,
     *out.add_lubricants() =
         lubricant_message(fluids[i], fluids.front(), comparison.fluids[i].errors);
   }
+  add_ranking(fluids, out);
   out.set_draws(comparison.draws);
   out.set_estimate_correlation(comparison.estimate_correlation);
   for (const std::string& each : comparison.scene_errors.without_uncertainty) {

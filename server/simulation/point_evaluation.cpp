@@ -230,7 +230,9 @@ void compute_group(const Scene& scene, const PointEvaluation::Group& group, bool
       if (with_contact) {
         const PointResult result = solve_prepared_point(*prepared, condition, options);
         at(position).figures = main_figures(result);
-        at(position).contact = {result.film_ratio.minimum, result.contact_temperature.maximum};
+        at(position).contact = {result.film_ratio.minimum, result.contact_temperature.maximum,
+                                result.friction_coefficient.mean, result.maximum_pressure.maximum,
+                                result.flash_temperature_rise.maximum};
       } else {
         at(position).figures = screen_point(*prepared, condition, options);
       }

@@ -40,10 +40,13 @@ struct PointEvaluation {
   bool with_contact = false;  ///< points have ContactExtremes, for some six times the work
 };
 
-/// Extremes over the loaded flanks and the steady state.
+/// Extremes over the loaded flanks and the steady state, and the friction coefficient of the mesh.
 struct ContactExtremes {
   double film_ratio_minimum;           ///< lambda_s [-]
   double contact_temperature_maximum;  ///< T_c [K]
+  double friction_coefficient_mean;    ///< weighted with the load [-]
+  double pressure_maximum;             ///< p_max [Pa]
+  double flash_temperature_maximum;    ///< (dT_f)_av [K]
 };
 
 /// The figures of one point, or why it has none.

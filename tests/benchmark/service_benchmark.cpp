@@ -1,8 +1,8 @@
 // The server under load: what it adds to an empty gRPC method, a bare commit, an empty stream and
 // the core's own time. Figures that are compared are of one run on one machine. usage:
 // service_benchmark [RESULTS.json [PART...]]      default: build/benchmark/results.json, all parts:
-// requests, lists, histories, watchers, overload, refusals, interactive, screening, campaigns,
-// estimates
+// requests, lists, histories, watchers, overload, refusals, interactive, screening, bands,
+// campaigns, estimates
 #include <SQLiteCpp/Database.h>
 #include <fmt/format.h>
 #include <grpcpp/generic/generic_stub.h>
@@ -902,6 +902,58 @@ void check_status(const grpc::Status& status) {
   if (!status.ok()) throw std::runtime_error(status.error_message());
 }
 
+/// An oil of which nothing but the numbers of its data sheet is known.
+v1::Lubricant data_sheet_oil() {
+  v1::Lubricant out;
+  out.set_name("lubricants/sheet");
+  out.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_POLYALPHAOLEFIN);
+  auto& measured = *out.mutable_measurements();
+  measured.set_kinematic_viscosity_40_celsius_square_millimetres_per_second(103);
+  measured.set_kinematic_viscosity_100_celsius_square_millimetres_per_second(15.1);
+  measured.set_density_15_celsius_kilograms_per_cubic_metre(868);
+  return out;
+}
+
+/// What bands add to a curve: the curve that `tribodyn curve` asks for by default, and the request
+/// with which it finds the uncertainty at each speed. In time of the server's processor.
+void measure_bands(std::vector<Measurement>& out) {
+  constexpr int kBandDraws = 99;  // as `tribodyn curve` has them
+  const Server server;
+  create_lubricants(server, {data_sheet_oil()});
+  v1::Simulation simulation;
+  simulation.set_lubricant("lubricants/sheet");
+  v1::InefficiencyCurveStudy& study = *simulation.mutable_inefficiency_curve();
+  study.set_first_speed_kilometres_per_hour(20);
+  study.set_last_speed_kilometres_per_hour(140);
+  study.set_speed_step_kilometres_per_hour(5);
+  v1::ComparePointsRequest request;
+  request.add_lubricants("lubricants/sheet");
+  request.set_draws(kBandDraws);
+  for (int speed = 20; speed <= 140; speed += 5) {
+    request.add_conditions()->set_speed_kilometres_per_hour(speed);
+  }
+  const auto stub = v1::SimulationService::NewStub(server.another_channel());
+  const auto points = v1::PointService::NewStub(server.another_channel());
+  const auto processor = [&server] { return process_figures(server.id()).processor_seconds; };
+  std::vector<double> curves, bands;
+  for (int run = 0; run < kRuns; ++run) {
+    const double begin = processor();
+    if (wait_for(*stub, create(*stub, simulation, true).name()) != v1::Simulation::SUCCEEDED) {
+      throw std::runtime_error("the curve failed");
+    }
+    const double middle = processor();
+    grpc::ClientContext context;
+    v1::ComparePointsResponse response;
+    check_status(points->ComparePoints(&context, request, &response));
+    curves.push_back(middle - begin);
+    bands.push_back(processor() - middle);
+  }
+  const double curve = median(curves), band = median(bands);
+  out.push_back({"curve_of_25_speeds", 1e3 * curve, "ms", {}});
+  out.push_back({"bands_of_a_curve_of_25_speeds", 1e3 * band, "ms", {}});
+  out.push_back({"curve_with_bands_over_one_without", (curve + band) / curve, "-", 4});
+}
+
 v1::CreateCampaignRequest campaign_request(std::span<const v1::Lubricant> fluids) {
   const v1::EvaluatePointsRequest points = evaluation(fluids);
   v1::CreateCampaignRequest out;
@@ -1163,12 +1215,17 @@ void measure_estimates(std::vector<Measurement>& out) {
 int main(int argc, char** argv) {
   using namespace tribodyn::server;
   using Measure = void (*)(std::vector<tribodyn::Measurement>&);
-  const std::vector<std::pair<std::string, Measure>> parts = {
-      {"requests", measure_requests},       {"lists", measure_lists},
-      {"histories", measure_histories},     {"watchers", measure_watchers},
-      {"overload", measure_overload},       {"refusals", measure_refusals},
-      {"interactive", measure_interactive}, {"screening", measure_screening},
-      {"campaigns", measure_campaigns},     {"estimates", measure_estimates}};
+  const std::vector<std::pair<std::string, Measure>> parts = {{"requests", measure_requests},
+                                                              {"lists", measure_lists},
+                                                              {"histories", measure_histories},
+                                                              {"watchers", measure_watchers},
+                                                              {"overload", measure_overload},
+                                                              {"refusals", measure_refusals},
+                                                              {"interactive", measure_interactive},
+                                                              {"screening", measure_screening},
+                                                              {"bands", measure_bands},
+                                                              {"campaigns", measure_campaigns},
+                                                              {"estimates", measure_estimates}};
   const std::string path = argc > 1 ? argv[1] : "build/benchmark/results.json";
   const std::vector<std::string> wanted(argv + std::min(argc, 2), argv + argc);
   for (const auto& [name, measure] : parts) {

@@ -127,6 +127,9 @@ out_lines 2
 echo "--- contact"
 expect 0 contact
 out_has 'central film thickness +h_cen +[0-9.]+ +um +12'
+out_has 'specific sliding, pinion +V_s/\|U_p\| +[0-9.]+'
+out_has 'Taken as exact, because no uncertainty is stated: '
+out_has '(^|, | )relaxation time(,|$)'
 expect 0 contact --lubricant paper-fluid-2 --newtonian --output csv
 out_is_csv
 out_lines 2
@@ -224,6 +227,16 @@ out_has ',mesh_loss_power_watts,'
 expect 0 point --lubricant paper-fluid-1 --speed 50 --model quasi-static --output json
 out_is_json
 out_has '"inefficiency_energy_mean_percent": [0-9]'
+expect 0 point --lubricant paper-fluid-1 --speed 50 --pressure-limit 1.8GPa --flash-temperature-limit 5 \
+  --limit-source 'FZG A/8.3/90'
+for part in 'mesh friction coefficient +0\.0[0-9]+' 'flank slot 1 .*; friction coefficient 0\.0' \
+  'specific sliding, gear' 'film ratio lambda, smallest +[0-9.]+ +>= 1 ' \
+  'pressure, greatest +GPa +0\.[0-9]+ +<= 1\.8 +yes +stated: FZG A/8\.3/90' \
+  'flash temperature rise, greatest +K +[0-9.]+ +<= 5 +no +stated: FZG'; do
+  out_has "$part"
+done
+expect 1 point --lubricant paper-fluid-1 --speed 50 --pressure-limit 1
+err_has '--pressure-limit.* allowed: '
 expect 0 point --lubricant paper-fluid-1 --speed 72.5 --model quasi-static
 out_has 'relative solver error +not estimated'
 expect 0 point --lubricant paper-fluid-1 --speed 1
@@ -284,6 +297,12 @@ out_has 'lubricant after the shear test'
 out_has 'viscosities times 0\.9007'
 out_has 'film ratio lambda, minimum: [0-9.]+ .*\(inputs\), 95 %'
 out_has 'contact temperature, maximum: [0-9.]+ C'
+out_has 'mesh friction coefficient: 0\.0[0-9]+ \+/- 0\.0[0-9]+ \(inputs\), 95 %'
+expect 0 contact --lubricant sheet-c
+out_has 'friction coefficient +mu +0\.[0-9]+ +0\.[0-9]+'
+out_has 'measure first: '
+expect 0 contact --lubricant sheet-c --output csv
+out_has ',friction_coefficient_standard_uncertainty'
 expect 0 explain sheet-c sheet-c --other-condition sheared --draws 19
 out_has '^viscosity and its temperature law +-?[0-9.]+ '
 expect 1 point --lubricant sheet-a --speed 60 --condition sheared
@@ -293,6 +312,7 @@ out_has '^Columns of results'
 expect 0 schema
 out_has '^mesh_loss_power_watts +W +mean loss power of the mesh'
 out_has '^flank_sliding_speed_metres_per_second +m/s +sliding speed'
+out_has '^flank_losses_0_friction_coefficient +'
 echo "--- report"
 expect 0 report sheet-a sheet-b --speeds 40,100 --html "$folder/report.html"
 out_has 'report\.html'

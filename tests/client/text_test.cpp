@@ -15,6 +15,7 @@
 #include "client/cpp/report/contact_report.h"
 #include "client/cpp/report/curve_report.h"
 #include "client/cpp/report/history_report.h"
+#include "client/cpp/report/limits_report.h"
 #include "client/cpp/report/point_report.h"
 #include "client/cpp/report/precision.h"
 #include "client/cpp/report/results.h"
@@ -180,6 +181,65 @@ TEST(PointReport, NamesTheLossModelErrorHashAndWarnings) {
   EXPECT_EQ(text.find("axle loss"), std::string::npos);
   EXPECT_TRUE(
       holds(point_report(sample_point(), true), "asperity_radius_metres = 4e-05 m (inside"));
+}
+
+TEST(PointReport, NamesTheFiguresThatFormulatorsThinkIn) {
+  v1::Simulation simulation = sample_point();
+  v1::PointResult& result = *simulation.mutable_result()->mutable_points(0)->mutable_result();
+  result.mutable_friction_coefficient()->set_mean(0.0412);
+  result.mutable_flank_losses(1)->set_friction_coefficient(0.0387);
+  result.mutable_pinion_specific_sliding()->set_maximum(1.375);
+  result.mutable_flash_temperature_rise_kelvin()->set_maximum(61.25);
+  const std::string text = squeezed(point_report(simulation, false));
+  EXPECT_TRUE(holds(text, "mesh friction coefficient 0.0412"));
+  EXPECT_TRUE(holds(text, "boundary; friction coefficient 0.0387"));
+  EXPECT_TRUE(holds(text, "specific sliding, pinion"));
+  EXPECT_TRUE(holds(text, "flash temperature rise K"));
+}
+
+v1::FigureLimit limit_of(const std::string& figure, double minimum, double maximum,
+                         const std::string& source) {
+  v1::FigureLimit out;
+  out.set_figure(figure);
+  if (minimum != 0) out.set_minimum(minimum);
+  if (maximum != 0) out.set_maximum(maximum);
+  out.set_source(source);
+  return out;
+}
+
+TEST(LimitsReport, SetsEachFigureBesideItsLimitAndSaysWhetherItIsKept) {
+  v1::Simulation simulation = sample_point();
+  v1::SimulationResult& result = *simulation.mutable_result();
+  EXPECT_EQ(limits_report(result), "") << "an older server states none";
+  v1::PointResult& point = *result.mutable_points(0)->mutable_result();
+  point.mutable_film_ratio()->set_minimum(0.7);
+  point.mutable_maximum_pressure_pascals()->set_maximum(1.2e9);
+  point.mutable_flash_temperature_rise_kelvin()->set_maximum(61);
+  *result.add_limits() = limit_of("film_ratio.minimum", 0.5, 0, "sparse asperities");
+  *result.add_limits() = limit_of("film_ratio.minimum", 1, 0, "boundary lubrication below");
+  *result.add_limits() =
+      limit_of("maximum_pressure_pascals.maximum", 0.85e9, 1.35e9, "friction model compared");
+  *result.add_limits() = limit_of("figure.of_a_newer_server", 1, 2, "unknown");
+  const std::string text = squeezed(limits_report(result));
+  EXPECT_TRUE(holds(text, "film ratio lambda, smallest 0.7 >= 0.5 yes sparse asperities"));
+  EXPECT_TRUE(holds(text, "film ratio lambda, smallest 0.7 >= 1 no boundary lubrication below"));
+  EXPECT_TRUE(holds(text, "pressure, greatest GPa 1.2 0.85 to 1.35 yes friction model compared"));
+  EXPECT_TRUE(holds(text, "flash temperature rise, greatest K 61 none stated - the fluid's"));
+  EXPECT_FALSE(holds(text, "unknown"));
+  *result.add_limits() = limit_of("flash_temperature_rise_kelvin.maximum", 0, 60, "stated: FZG");
+  EXPECT_TRUE(holds(squeezed(limits_report(result)), "greatest K 61 <= 60 no stated: FZG"));
+  EXPECT_FALSE(holds(limits_report(result), "none stated"));
+}
+
+TEST(LimitsReport, OfACurveCountsTheSpeedsAtWhichALimitIsNotKept) {
+  v1::Simulation curve = sample_curve("1", 1);
+  v1::SimulationResult& result = *curve.mutable_result();
+  for (int i = 0; i < result.points_size(); ++i) {
+    result.mutable_points(i)->mutable_result()->mutable_film_ratio()->set_minimum(i < 3 ? 0.4 : 2);
+  }
+  *result.add_limits() = limit_of("film_ratio.minimum", 1, 0, "stated");
+  EXPECT_TRUE(holds(squeezed(limits_report(result)),
+                    "film ratio lambda, smallest 0.4 >= 1 not at 3 of 25 speeds stated"));
 }
 
 TEST(PointReport, NamesTheShaftOfTheInputPower) {

@@ -135,7 +135,7 @@ TEST(ImprovedYasutomi, RefusesATemperatureNearItsGlassTransition) {
     c.model();
     FAIL() << "was accepted";
   } catch (const Refusal& refusal) {
-    EXPECT_EQ(refusal.reason(), "GLASS_TRANSITION");
+    EXPECT_EQ(refusal.reason(), "PARAMETER_OUT_OF_RANGE");
     EXPECT_NE(std::string(refusal.what()).find("-50 C"), std::string::npos) << refusal.what();
   }
 }

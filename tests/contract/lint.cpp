@@ -33,8 +33,9 @@ const std::set<std::string_view> kPureNumbers = {
     "alpha",       "beta",      "coefficient",  "correlation", "cosine",    "defect",
     "derivatives", "effect",    "elasticities", "error",       "fraction",  "index",
     "maximum",     "mean",      "minimum",      "multiplier",  "partition", "phase",
-    "probability", "ratio",     "residual",     "share",       "sine",      "slope",
-    "solutions",   "tolerance", "uncertainty",  "value",       "values",    "weights"};
+    "probability", "ratio",     "residual",     "share",       "sliding",   "sine",
+    "slope",       "solutions", "tolerance",    "uncertainty", "value",     "values",
+    "weights"};
 /// Other spellings of units, and abbreviations.
 const std::regex kOtherSpellings(
     "(^|_)((kilo|milli|micro|nano|centi)?meters?|litres?|liters?|kelvins|centigrade|deg|rad|hz|kg|"

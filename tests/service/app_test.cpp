@@ -78,16 +78,60 @@ TEST_F(AppTest, EveryErrorHasAReasonInErrorInfo) {
 TEST_F(AppTest, TheSchemaDescribesEveryColumnOfResults) {
   const auto schema = get_schema(app_, {}, {});
   ASSERT_TRUE(schema.ok());
-  int figures = 0, columns = 0;
+  int figures = 0, columns = 0, known = 0;
   for (const v1::ColumnDescription& column : schema.message().columns()) {
     EXPECT_NE(column.description(), "") << column.name();
     (column.table() == "PointResult" ? figures : columns) += 1;
-    if (column.name() == "mesh_loss_power_watts") {
+    if (column.name() == "mesh_loss_power_watts" ||
+        column.name() == "flank_losses_2_viscous_watts") {
       EXPECT_EQ(column.unit(), "W");
+      ++known;
+    }
+    if (column.name() == "flank_losses_0_friction_coefficient" ||
+        column.name() == "pinion_specific_sliding") {
+      EXPECT_EQ(column.unit(), "");
+      ++known;
     }
   }
   EXPECT_GT(figures, 30);
   EXPECT_EQ(columns, kHistoryColumns);
+  EXPECT_EQ(known, 5);
+}
+
+TEST_F(AppTest, ResultsNameTheLimitsOfTheirFiguresAndThoseThatAreStated) {
+  v1::Simulation simulation = point_simulation();
+  const std::string plain = finished(simulation);
+  v1::StatedLimits& stated = *simulation.mutable_stated_limits();
+  stated.set_pressure_limit_pascals(1.8e9);
+  stated.set_contact_temperature_limit_celsius(180);
+  stated.set_limit_source("FZG A/8.3/90");
+  const std::string limited = finished(simulation);
+  const auto limits = [&](const std::string& name) {
+    std::map<std::string, std::vector<v1::FigureLimit>> out;
+    const v1::Simulation ended = bench_.get(name);
+    for (const auto& each : ended.result().limits()) out[each.figure()].push_back(each);
+    return out;
+  };
+  EXPECT_EQ(limits(plain)["film_ratio.minimum"].size(), 2U);
+  EXPECT_EQ(limits(plain)["maximum_pressure_pascals.maximum"].size(), 1U);
+  const auto pressure = limits(limited)["maximum_pressure_pascals.maximum"];
+  ASSERT_EQ(pressure.size(), 2U);
+  EXPECT_EQ(pressure[1].maximum(), 1.8e9);
+  EXPECT_FALSE(pressure[1].has_minimum());
+  EXPECT_EQ(pressure[1].source(), "stated: FZG A/8.3/90");
+  EXPECT_EQ(limits(limited)["contact_temperature_kelvin.maximum"].back().maximum(), 453.15);
+  EXPECT_EQ(bench_.get(limited).result().input_hash(), bench_.get(plain).result().input_hash())
+      << "limits change no figure";
+}
+
+TEST_F(AppTest, AStatedLimitOutsideItsRangeIsRefused) {
+  v1::CreateSimulationRequest request;
+  *request.mutable_simulation() = point_simulation();
+  request.mutable_simulation()->mutable_stated_limits()->set_pressure_limit_pascals(-1);
+  const auto status = create_simulation(app_, request).error();
+  EXPECT_EQ(status.code(), google::rpc::INVALID_ARGUMENT);
+  EXPECT_EQ(detail<google::rpc::BadRequest>(status)->field_violations(0).field(),
+            "simulation.stated_limits.pressure_limit_pascals");
 }
 
 TEST_F(AppTest, MetadataHasTheVariablesOfAMessage) {

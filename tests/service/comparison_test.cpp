@@ -15,6 +15,7 @@
 #include "server/resources/lubricant_parameters.h"
 #include "server/resources/sheared_lubricant.h"
 #include "server/resources/viscosity_fit.h"
+#include "server/simulation/contact_inputs.h"
 #include "server/simulation/input_hash.h"
 #include "server/simulation/point_comparison.h"
 #include "tests/service/support.h"
@@ -118,6 +119,30 @@ TEST(ComparePoints, SaysWhichLubricantLosesLessOnlyIfTheInputsBearIt) {
   EXPECT_EQ(open.verdict(), v1::ComparedDifference::CANNOT_BE_TOLD_APART);
   EXPECT_GT(open.lower_probability(), 0.5);
   EXPECT_LT(open.lower_probability(), 0.7);
+}
+
+TEST(ComparePoints, RanksAllLubricantsWhicheverComesFirst) {
+  Fluids fluids;
+  fluids.add("lubricants/good", fluid_with_alpha(0.8, 0.02));
+  fluids.add("lubricants/near", fluid_with_alpha(0.805, 0.02));
+  fluids.add("lubricants/bad", fluid_with_alpha(1.2, 0.02));
+  const auto out = compare(
+      request_at({50, 90}, {"lubricants/bad", "lubricants/near", "lubricants/good"}), fluids);
+  const v1::ComparedLubricant &bad = out.lubricants(0), &near = out.lubricants(1),
+                              &good = out.lubricants(2);
+  EXPECT_FALSE(good.has_mean_difference_from_best());
+  EXPECT_EQ(bad.mean_difference_from_best().verdict(), v1::ComparedDifference::HIGHER);
+  EXPECT_EQ(near.mean_difference_from_best().verdict(),
+            v1::ComparedDifference::CANNOT_BE_TOLD_APART);
+  EXPECT_EQ(bad.mean_difference_from_best().difference_percent().value(),
+            -good.mean_difference().difference_percent().value());
+  EXPECT_EQ(bad.best_probability(), 0);
+  EXPECT_GT(good.best_probability(), near.best_probability());
+  EXPECT_NEAR(good.best_probability() + near.best_probability(), 1, 1e-12);
+  const auto alone = compare(request_at({50}, {"lubricants/good"}), fluids);
+  EXPECT_EQ(alone.lubricants(0).best_probability(), 1);
+  const auto twice = compare(request_at({50}, {"lubricants/good", "lubricants/good"}), fluids);
+  EXPECT_EQ(twice.lubricants(1).best_probability(), 0.5);
 }
 
 TEST(ComparePoints, MeasuredValuesAreIndependentAndEstimatesShareTheirErrorAsStated) {
@@ -235,15 +260,58 @@ TEST(ComparePoints, ExtremesOfHistoriesAndOfContactsHaveTheUncertaintyOfARecompu
   };
   check(a.film_ratio_minimum(), plus.film_ratio_minimum());
   check(a.contact_temperature_maximum_kelvin(), plus.contact_temperature_maximum_kelvin());
+  check(a.mesh_friction_coefficient(), plus.mesh_friction_coefficient());
+  check(a.flash_temperature_rise_maximum_kelvin(), plus.flash_temperature_rise_maximum_kelvin());
   check(a.dynamic_transmission_error_maximum_metres(),
         plus.dynamic_transmission_error_maximum_metres());
   EXPECT_TRUE(std::isnan(a.film_ratio_minimum().solver_error())) << "nobody estimates it";
   const auto found = simulated(fluid_with_alpha(), 60);
   EXPECT_NEAR(a.film_ratio_minimum().value(), found.film_ratio.minimum,
               1e-3 * found.film_ratio.minimum);
+  EXPECT_NEAR(a.mesh_friction_coefficient().value(), found.friction_coefficient.mean,
+              1e-3 * found.friction_coefficient.mean);
+  EXPECT_NEAR(a.maximum_pressure_maximum_pascals().value(), found.maximum_pressure.maximum,
+              1e-3 * found.maximum_pressure.maximum);
   EXPECT_NEAR(a.dynamic_transmission_error_minimum_metres().value(),
               found.dynamic_transmission_error.minimum,
               2 * a.dynamic_transmission_error_minimum_metres().solver_error());
+}
+
+TEST(ContactUncertainty, IsThatOfARecomputationWithTheMovedInput) {
+  v1::EvaluateContactRequest request = contact_request();
+  const auto stated = fluid_with_alpha();
+  EXPECT_EQ(evaluate_contact(request, stated).uncertainties_size(), 0) << "nobody asked for them";
+  const auto plus =
+      evaluate_contact(request, fluid_with_alpha(std::exp(std::sqrt(std::log1p(0.05 * 0.05))), 0));
+  request.set_draws(199);
+  const auto out = evaluate_contact(request, stated);
+  ASSERT_EQ(out.friction_shares_size(), 1);
+  EXPECT_EQ(out.friction_shares(0).input(), "lubricant.pressure_viscosity_coefficient_per_pascal");
+  EXPECT_EQ(out.friction_shares(0).variance_share(), 1);
+  EXPECT_GT(out.inputs_without_uncertainty_size(), 3);
+  int found = 0;
+  for (const v1::UncertainContactFigure& each : out.uncertainties()) {
+    const auto* field = out.GetDescriptor()->FindFieldByName(each.figure());
+    const double value = out.GetReflection()->GetDouble(out, field);
+    const double change = std::abs(plus.GetReflection()->GetDouble(plus, field) - value);
+    EXPECT_EQ(each.value().value(), value);
+    if (each.figure() != "friction_coefficient" &&
+        each.figure() != "central_film_thickness_metres" &&
+        each.figure() != "contact_temperature_kelvin") {
+      continue;
+    }
+    ++found;
+    SCOPED_TRACE(each.figure());
+    EXPECT_NEAR(each.value().linear_standard_uncertainty(), change, 0.1 * change);
+    EXPECT_NEAR(each.value().standard_uncertainty(), change, 0.15 * change);
+    EXPECT_LT(each.value().interval_minimum(), value);
+    EXPECT_GT(each.value().interval_maximum(), value);
+  }
+  EXPECT_EQ(found, 3);
+  const auto without = evaluate_contact(request, seed<v1::Lubricant>("lubricants/paper-fluid-1"));
+  EXPECT_EQ(without.uncertainties_size(), 0);
+  EXPECT_THAT(without.inputs_without_uncertainty(),
+              testing::Contains("lubricant.relaxation_time_seconds"));
 }
 
 /// The data sheet of an oil whose viscosity at 100 C the shear test lowers by a tenth.
@@ -328,7 +396,12 @@ TEST(ComparePoints, EqualRequestsHaveEqualAnswersWhicheverLubricantsComeWithThem
   const auto again = compare(request_at({66}, {"lubricants/a", "lubricants/b"}), fluids);
   EXPECT_EQ(once.SerializeAsString(), again.SerializeAsString());
   const auto alone = compare(request_at({66}, {"lubricants/a"}), fluids);
-  EXPECT_EQ(alone.lubricants(0).SerializeAsString(), once.lubricants(0).SerializeAsString());
+  const auto without_rank = [](v1::ComparedLubricant lubricant) {
+    lubricant.clear_mean_difference_from_best();
+    lubricant.clear_best_probability();
+    return lubricant.SerializeAsString();
+  };
+  EXPECT_EQ(without_rank(alone.lubricants(0)), without_rank(once.lubricants(0)));
 }
 
 TEST(ComparePoints, RefusesWhatItCannotCompareAndNamesTheField) {
@@ -403,7 +476,8 @@ struct SpeedRange {
 
 /// How many intervals hold the truth.
 struct Coverage {
-  int point = 0, mean = 0, difference = 0, film_ratio = 0, transmission_error = 0;
+  int point = 0, mean = 0, difference = 0, film_ratio = 0, transmission_error = 0,
+      friction_coefficient = 0;
 };
 
 class IntervalCoverage : public testing::TestWithParam<SpeedRange> {
@@ -438,6 +512,8 @@ class IntervalCoverage : public testing::TestWithParam<SpeedRange> {
     coverage_.film_ratio += holds(contact.film_ratio_minimum(), truth.film_ratio.minimum);
     coverage_.transmission_error += holds(contact.dynamic_transmission_error_maximum_metres(),
                                           truth.dynamic_transmission_error.maximum);
+    coverage_.friction_coefficient +=
+        holds(contact.mesh_friction_coefficient(), truth.friction_coefficient.mean);
   }
 
   std::mt19937_64 random_{19};
@@ -455,7 +531,8 @@ TEST_P(IntervalCoverage, IsNinetyFivePercent) {
       {"point", coverage_.point}, {"mean", coverage_.mean}, {"difference", coverage_.difference}};
   if (full_run()) {
     counts.insert(counts.end(), {{"film_ratio", coverage_.film_ratio},
-                                 {"transmission_error", coverage_.transmission_error}});
+                                 {"transmission_error", coverage_.transmission_error},
+                                 {"friction_coefficient", coverage_.friction_coefficient}});
   }
   for (const auto& [name, count] : counts) {
     SCOPED_TRACE(name);

@@ -151,6 +151,8 @@ struct Subject {
       use(rig.mutable_conditions(0), "conditions[0].");
     } else if (name == "Simulation") {
       use(&simulation, "simulation.");
+    } else if (name == "StatedLimits") {
+      use(simulation.mutable_stated_limits(), "simulation.stated_limits.");
     } else if (name == "Cruise") {
       use(point->mutable_cruise(), "simulation.operating_point.cruise.");
     } else if (name == "DriveCycleSnapshot") {

@@ -333,7 +333,11 @@ TEST(Assumptions, AreSerialisedIdenticallyWithAndWithoutTheCache) {
     v1::SimulationResult expected;
     for (const v1::Assumption& entry : assumptions(inputs)) *expected.add_assumptions() = entry;
     for (const auto& warning : input_warnings(inputs)) *expected.add_input_warnings() = warning;
-    EXPECT_EQ(serialised_assumptions(inputs), expected.SerializeAsString());
+    v1::SimulationResult serialised;
+    ASSERT_TRUE(serialised.ParseFromString(serialised_assumptions(inputs)));
+    EXPECT_GT(serialised.limits_size(), 0);
+    serialised.clear_limits();
+    EXPECT_EQ(serialised.SerializeAsString(), expected.SerializeAsString());
   }
 }
 

@@ -1,7 +1,9 @@
 #include <iostream>
 #include <memory>
 
+#include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
+#include "client/cpp/plot/comparison_plot.h"
 #include "client/cpp/report/comparison_report.h"
 #include "client/cpp/text/text.h"
 #include "tribodyn/v1/points.pb.h"
@@ -14,6 +16,7 @@ struct CompareFlags {
   v1::ComparePointsRequest request;
   std::vector<double> speeds;
   v1::PointCondition common;
+  std::string plot_path;
 };
 
 void add_compare_flags(FlagList& list, CompareFlags& flags) {
@@ -81,6 +84,9 @@ void add_compare_flags(FlagList& list, CompareFlags& flags) {
               "Target of the relative solver error of every point",
               [&request](double value) { request.set_tolerance(value); });
   add_model_flags(list, *request.mutable_model_options());
+  list.group("Output");
+  add_plot_flag(list, "Also draw the lubricants and their differences over speed as SVG.",
+                flags.plot_path);
 }
 
 int run_compare(CompareFlags& flags, const CommonOptions& options) {
@@ -102,6 +108,9 @@ int run_compare(CompareFlags& flags, const CommonOptions& options) {
     case OutputFormat::kJson:
       std::cout << json_text(response);
   }
+  if (!flags.plot_path.empty()) {
+    write_file(flags.plot_path, comparison_plot(request, response));
+  }
   return kExitOk;
 }
 
@@ -118,6 +127,7 @@ Command compare_command() {
       "is stored.",
       {"tribodyn compare paper-fluid-1 my-oil --speed 20,60,100 --sump 90",
        "tribodyn compare my-oil --speed 60",
+       "tribodyn compare oil-a oil-b oil-c --speed 20,60,100,140 --plot compared.svg",
        "tribodyn compare my-oil their-oil --speed 30,60,120 --weights 1,2,1 "
        "--estimate-correlation 0.8 --output csv"},
       {},
@@ -136,7 +146,8 @@ Command compare_command() {
     }
   };
   command.main_flags = {"--speed",    "--weights", "--ascent",  "--sump",
-                        "--gear-set", "--surface", "--vehicle", "--estimate-correlation"};
+                        "--gear-set", "--surface", "--vehicle", "--estimate-correlation",
+                        "--plot"};
   command.run = [flags](const CommonOptions& options) { return run_compare(*flags, options); };
   return command;
 }

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <iostream>
+#include <map>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "client/cpp/commands/scenario.h"
@@ -58,6 +60,9 @@ constexpr std::array kInputs = {
     ContactInput{"asperity_friction_coefficient", "-", "0 to 10", 0.17, "zeta of eq 40"},
 };
 
+/// The 95 % interval ends at the fifth draw from either end.
+constexpr int kContactDraws = 199;
+
 void set_number(v1::EvaluateContactRequest& request, const char* field, double value) {
   request.GetReflection()->SetDouble(
       &request, v1::EvaluateContactRequest::descriptor()->FindFieldByName(field), value);
@@ -79,7 +84,30 @@ void add_contact_flags(FlagList& list, v1::EvaluateContactRequest& request) {
         {input.unit, input.range, significant(input.standard)}, input.description,
         [&request, field = input.field](double value) { set_number(request, field, value); });
   }
+  list.group("Uncertainty");
+  request.set_draws(kContactDraws);
+  list.whole_number("--draws", {"-", "0, or 19 to 1999", significant(kContactDraws)},
+                    "Draws of the lubricant's parameters for the uncertainties of the figures; 0: "
+                    "none",
+                    [&request](int value) { request.set_draws(value); });
   add_model_flags(list, *request.mutable_model_options());
+}
+
+/// Adds a cell for each figure, whether it has an uncertainty or not: equal commands have equal
+/// headers.
+void append_uncertainties(const v1::EvaluateContactResponse& contact, CsvRow& row) {
+  std::map<std::string, double> uncertainties;
+  for (const v1::UncertainContactFigure& each : contact.uncertainties()) {
+    uncertainties[each.figure()] = each.value().standard_uncertainty();
+  }
+  const auto& descriptor = *contact.GetDescriptor();
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const auto* field = descriptor.field(i);
+    if (field->cpp_type() != google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) continue;
+    const auto found = uncertainties.find(field->name());
+    row.emplace_back(field->name() + "_standard_uncertainty",
+                     found == uncertainties.end() ? "" : shortest(found->second));
+  }
 }
 
 int run_contact(const v1::EvaluateContactRequest& request, const CommonOptions& options) {
@@ -90,7 +118,12 @@ int run_contact(const v1::EvaluateContactRequest& request, const CommonOptions& 
       break;
     case OutputFormat::kCsv: {
       CsvRow row;
-      append_fields(contact, "", row);
+      v1::EvaluateContactResponse figures = contact;
+      figures.clear_friction_shares();
+      figures.clear_inputs_without_uncertainty();
+      figures.clear_uncertainties();
+      append_fields(figures, "", row);
+      append_uncertainties(contact, row);
       std::cout << csv_text({row});
       break;
     }
@@ -107,9 +140,9 @@ Command contact_command() {
   Command command{
       "contact",
       "one flank contact from explicit inputs, with every intermediate quantity",
-      "Solves one lubricated flank contact and prints every quantity with symbol and equation. x "
-      "is "
-      "the direction of radius x, y that of radius y. The defaults are a typical hypoid flank.",
+      "Solves one lubricated flank contact and prints every quantity with symbol and equation, and "
+      "with the standard uncertainty that the stated uncertainties of the lubricant make. x is the "
+      "direction of radius x, y that of radius y. The defaults are a typical hypoid flank.",
       {"tribodyn contact --lubricant paper-fluid-1 --load-newtons 2000",
        "tribodyn contact --lubricant paper-fluid-2 --gear-velocity-y-metres-per-second 0 "
        "--newtonian "

@@ -78,7 +78,13 @@ figure of the result.
   inefficiency_rms_percent           eq 30 over the power that comes in, root mean square over time
   viscous_loss_power_watts, boundary_loss_power_watts   the two parts of mesh_loss_power_watts
   minimum_, mean_, maximum_ before film_ratio, contact_temperature_kelvin, maximum_pressure_pascals,
-    dynamic_transmission_error_metres, ...   over the steady state; of contacts over loaded flanks
+    dynamic_transmission_error_metres, ...   over the steady state; of contacts over loaded flanks,
+                                     means weighted with the load
+  mean_friction_coefficient          of the mesh: friction over normal load of all flanks
+  flank_losses_0_friction_coefficient to flank_losses_2_   the same of one flank slot
+  minimum_, mean_, maximum_ before pinion_specific_sliding, gear_specific_sliding   sliding speed
+                                     over the speed of the surface, without sign
+  ... before flash_temperature_rise_kelvin   rise of the flanks' surfaces above the inlet
   limiting_stress_area_share         mean share of the contact area at the limiting shear stress
   estimated_relative_error           of inefficiencies, torque and transmission error, by the solver
 Histories (--columns): one row for each sample. Names that begin with flank_ have a column for each

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <utility>
 
 #include "client/cpp/commands/result_files.h"
 #include "client/cpp/commands/scenario.h"
@@ -96,6 +97,14 @@ std::string command_text(const ReportContents& contents) {
     out += " --sump " + shortest(first.sump_temperature_celsius());
   }
   if (first.sheared_lubricant()) out += " --condition sheared";
+  const v1::StatedLimits& limits = first.stated_limits();
+  for (const auto& [flag, value] :
+       {std::pair{" --minimum-film-ratio ", limits.minimum_film_ratio()},
+        std::pair{" --pressure-limit ", limits.pressure_limit_pascals()},
+        std::pair{" --contact-temperature-limit ", limits.contact_temperature_limit_celsius()},
+        std::pair{" --flash-temperature-limit ", limits.flash_temperature_rise_limit_kelvin()}}) {
+    if (value != 0) out += flag + shortest(value);
+  }
   return out + " --gear-set " + resource_id(first.gear_set_revision()) + " --surface " +
          resource_id(first.surface_revision()) + " --vehicle " +
          resource_id(first.vehicle_revision()) + " --html FILE.html";

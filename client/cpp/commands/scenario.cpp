@@ -60,6 +60,26 @@ std::string failure_text(const v1::Simulation& simulation) {
   return text;
 }
 
+/// Adds the flags of limits that results name beside their figures.
+void add_limit_flags(FlagList& flags, v1::StatedLimits& limits) {
+  flags.group("Limits to name beside the figures; they change no figure");
+  flags.number("--minimum-film-ratio,--film-ratio-limit", {"-", "1e-3 to 1e3", "none"},
+               "Smallest film ratio",
+               [&limits](double value) { limits.set_minimum_film_ratio(value); });
+  flags.number("--pressure-limit-pascals,--pressure-limit", {"Pa", "1e6 to 1e11", "none"},
+               "Greatest contact pressure, e.g. 1.8GPa",
+               [&limits](double value) { limits.set_pressure_limit_pascals(value); });
+  flags.number("--contact-temperature-limit-celsius,--contact-temperature-limit",
+               {"C", "1 to 1500", "none"}, "Greatest mean temperature of the film",
+               [&limits](double value) { limits.set_contact_temperature_limit_celsius(value); });
+  flags.number("--flash-temperature-rise-limit-kelvin,--flash-temperature-limit",
+               {"K", "0.1 to 1500", "none"},
+               "Greatest rise of the flanks' surfaces above the inlet",
+               [&limits](double value) { limits.set_flash_temperature_rise_limit_kelvin(value); });
+  flags.text("--limit-source", "TEXT", "Where the limits come from, e.g. 'FZG A/8.3/90'.",
+             [&limits](const std::string& text) { limits.set_limit_source(text); });
+}
+
 /// Cancels the submitted simulations and throws Failure: one rejected lubricant rejects all.
 [[noreturn]] void withdraw(const std::vector<v1::Simulation>& submitted, const Complaints& refusals,
                            Connection& connection) {
@@ -111,6 +131,7 @@ void add_scenario_flags(FlagList& flags, Scenario& scenario) {
               "KV100 after it (--kv100-sheared of the lubricant). Default: fresh.",
               [&](int index) { simulation.set_sheared_lubricant(index == 1); })
       .field = "sheared_lubricant";
+  add_limit_flags(flags, *simulation.mutable_stated_limits());
   add_model_flags(flags, *simulation.mutable_model_options());
   add_solver_flags(flags, simulation);
   flags.group("Job");
@@ -176,6 +197,7 @@ std::vector<v1::Simulation> simulations_of(const Scenario& scenario) {
   };
   for (const std::string& lubricant : scenario.lubricants) {
     v1::Simulation simulation = scenario.simulation;
+    if (simulation.stated_limits().ByteSizeLong() == 0) simulation.clear_stated_limits();
     simulation.set_lubricant(resource_name("lubricants", lubricant));
     if (scenario.surfaces.empty()) add_sumps(simulation);
     for (const std::string& surface : scenario.surfaces) {

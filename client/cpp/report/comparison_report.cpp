@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "client/cpp/text/csv.h"
-#include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
 #include "client/cpp/text/units.h"
 
@@ -193,6 +193,103 @@ std::string table_of(const v1::ComparePointsRequest& request, const v1::Compared
   return table.text();
 }
 
+/// Returns the lubricants with a mean, least first.
+std::vector<const v1::ComparedLubricant*> ranked(const v1::ComparePointsResponse& response) {
+  std::vector<const v1::ComparedLubricant*> out;
+  for (const v1::ComparedLubricant& each : response.lubricants()) {
+    if (each.has_mean_inefficiency_percent()) out.push_back(&each);
+  }
+  std::stable_sort(
+      out.begin(), out.end(), [](const v1::ComparedLubricant* a, const v1::ComparedLubricant* b) {
+        return a->mean_inefficiency_percent().value() < b->mean_inefficiency_percent().value();
+      });
+  return out;
+}
+
+/// Returns which lubricant loses least, and which ones cannot be told apart from it.
+std::string best_sentence(const std::vector<const v1::ComparedLubricant*>& ranked) {
+  std::vector<std::string> apart, ties;
+  for (const v1::ComparedLubricant* each : ranked) {
+    if (!each->has_mean_difference_from_best()) continue;
+    const bool is_apart =
+        each->mean_difference_from_best().verdict() == v1::ComparedDifference::HIGHER;
+    (is_apart ? apart : ties).push_back(lubricant_id(*each));
+  }
+  const std::string best = lubricant_id(*ranked.front());
+  return best + " loses least; probability that it is the best of all " +
+         std::to_string(ranked.size()) + ": " + share_text(ranked.front()->best_probability()) +
+         "." + (ties.empty() ? "" : " " + joined(ties, ", ") + " cannot be told apart from it.") +
+         (apart.empty()
+              ? ""
+              : " " + joined(apart, ", ") + (apart.size() == 1 ? " loses more." : " lose more."));
+}
+
+std::string ranking_table(const std::vector<const v1::ComparedLubricant*>& ranked) {
+  using Align = Table::Align;
+  Table table({{"rank", "", Align::kRight},
+               {"lubricant", "", Align::kLeft},
+               {"mean", "%", Align::kDecimal},
+               {"+/- inputs", "%", Align::kDecimal},
+               {"P(best)", "", Align::kRight},
+               {"more than the best", "% points", Align::kDecimal},
+               {"95 % interval", "% points", Align::kRight},
+               {"against the best", "", Align::kLeft}});
+  int rank = 0;
+  for (const v1::ComparedLubricant* each : ranked) {
+    const v1::UncertainFigure& mean = each->mean_inefficiency_percent();
+    const v1::ComparedDifference& difference = each->mean_difference_from_best();
+    const bool has_difference = difference.has_difference_percent();
+    table.add_row({std::to_string(++rank), lubricant_id(*each), value_text(mean), spread_text(mean),
+                   share_text(each->best_probability()),
+                   has_difference ? value_text(difference.difference_percent()) : "",
+                   has_difference ? interval_text(difference.difference_percent()) : "",
+                   !each->has_mean_difference_from_best() ? "the best"
+                   : difference.verdict() == v1::ComparedDifference::HIGHER
+                       ? "loses more"
+                       : verdict_text(difference.verdict())});
+  }
+  return table.text();
+}
+
+/// Returns the flags of the scene and the conditions of a request.
+std::string scene_flags(const v1::ComparePointsRequest& request) {
+  std::vector<std::string> speeds, weights;
+  for (const v1::PointCondition& each : request.conditions()) {
+    speeds.push_back(shortest(each.speed_kilometres_per_hour()));
+  }
+  for (const double each : request.condition_weights()) weights.push_back(shortest(each));
+  std::string out = " --speed " + joined(speeds, ",");
+  if (!weights.empty()) out += " --weights " + joined(weights, ",");
+  const v1::PointCondition& first = request.conditions(0);
+  if (first.has_sump_temperature_celsius()) {
+    out += " --sump " + shortest(first.sump_temperature_celsius());
+  }
+  if (first.ascent_angle_degrees() != 0) {
+    out += " --ascent " + shortest(first.ascent_angle_degrees());
+  }
+  for (const auto& [flag, name] :
+       {std::pair{" --gear-set ", request.gear_set()}, std::pair{" --surface ", request.surface()},
+        std::pair{" --vehicle ", request.vehicle()}}) {
+    if (!name.empty()) out += flag + resource_id(name);
+  }
+  return out;
+}
+
+/// Returns the commands that go on from a comparison.
+std::string next_commands(const v1::ComparePointsRequest& request,
+                          const std::vector<const v1::ComparedLubricant*>& ranked) {
+  if (ranked.size() < 2) return "";
+  const std::string condition = request.sheared_lubricant() ? " --condition sheared" : "";
+  std::string all;
+  for (const std::string& each : request.lubricants()) all += " " + resource_id(each);
+  const std::string flags = scene_flags(request);
+  return "Why they differ:\n  tribodyn explain " + lubricant_id(*ranked[0]) + " " +
+         lubricant_id(*ranked[1]) + flags + condition +
+         (condition.empty() ? "" : " --other-condition sheared") +
+         "\nAll of it on one page, with plots:\n  tribodyn report" + all + condition +
+         " --html report.html\n";
+}
+
 /// Returns the figure times `factor`, plus `offset`.
 v1::UncertainFigure scaled(v1::UncertainFigure figure, double factor, double offset) {
   figure.set_value(factor * figure.value() + offset);
@@ -204,21 +301,23 @@ v1::UncertainFigure scaled(v1::UncertainFigure figure, double factor, double off
   return figure;
 }
 
+template <class Inputs>
+std::string inputs_text_of(const Inputs& inputs) {
+  std::vector<std::string> labels;
+  for (const std::string& input : inputs) labels.push_back(input_text(input));
+  return joined(labels, ", ");
+}
+
 /// Adds the fields that count as exact.
 void add_exact_inputs(const v1::ComparePointsResponse& response, Sheet& sheet) {
-  const auto list = [](const auto& inputs) {
-    std::vector<std::string> labels;
-    for (const std::string& input : inputs) labels.push_back(input_text(input));
-    return joined(labels, ", ");
-  };
   for (const v1::ComparedLubricant& lubricant : response.lubricants()) {
     if (lubricant.inputs_without_uncertainty().empty()) continue;
     sheet.remark("Taken as exact, because no uncertainty is stated, of " + lubricant_id(lubricant) +
-                 ": " + list(lubricant.inputs_without_uncertainty()) + ".");
+                 ": " + inputs_text_of(lubricant.inputs_without_uncertainty()) + ".");
   }
   if (!response.inputs_without_uncertainty().empty()) {
     sheet.remark("Taken as exact, because no uncertainty is stated, of the scene: " +
-                 list(response.inputs_without_uncertainty()) + ".");
+                 inputs_text_of(response.inputs_without_uncertainty()) + ".");
   }
 }
 
@@ -259,6 +358,16 @@ std::string comparison_report(const v1::ComparePointsRequest& request,
       sheet.remark(advice_text(first.mean_shares()));
     }
   }
+  const std::vector<const v1::ComparedLubricant*> order = ranked(response);
+  if (order.size() > 2) {
+    out += title("Ranking by the mean inefficiency, energy mean" +
+                 (conditions == 1 ? std::string()
+                                  : ", of " + std::to_string(conditions) + " conditions")) +
+           ranking_table(order) + "\n";
+    Sheet best;
+    best.remark(best_sentence(order));
+    out += best.text() + "\n";
+  }
   for (int i = 1; i < response.lubricants_size(); ++i) {
     const v1::ComparedLubricant& other = response.lubricants(i);
     out += title("Inefficiency, energy mean: " + lubricant_id(other) + " less " +
@@ -280,7 +389,8 @@ std::string comparison_report(const v1::ComparePointsRequest& request,
       " (assumed; --estimate-correlation sets it). Intervals of differences include the solver's "
       "error.");
   add_exact_inputs(response, sheet);
-  return out + sheet.text();
+  const std::string next = next_commands(request, order);
+  return out + sheet.text() + (next.empty() ? "" : "\n" + next);
 }
 
 std::string comparison_csv(const v1::ComparePointsRequest& request,
@@ -302,6 +412,21 @@ std::string comparison_csv(const v1::ComparePointsRequest& request,
     }
   }
   return csv_text(rows);
+}
+
+void add_contact_uncertainty(const v1::EvaluateContactResponse& contact, Sheet& sheet) {
+  if (contact.uncertainties().empty() && contact.inputs_without_uncertainty().empty()) return;
+  sheet.heading("Uncertainty");
+  for (const v1::UncertainContactFigure& each : contact.uncertainties()) {
+    if (each.figure() != "friction_coefficient") continue;
+    sheet.remark("friction coefficient: " + with_errors(each.value(), "") +
+                 ", 95 %: " + interval_text(each.value()));
+    sheet.remark(advice_text(contact.friction_shares()));
+  }
+  if (!contact.inputs_without_uncertainty().empty()) {
+    sheet.remark("Taken as exact, because no uncertainty is stated: " +
+                 inputs_text_of(contact.inputs_without_uncertainty()) + ".");
+  }
 }
 
 std::string uncertainty_report(const v1::ComparePointsResponse& response) {
@@ -327,6 +452,9 @@ std::string uncertainty_report(const v1::ComparePointsResponse& response) {
     line("film ratio lambda, minimum", point.film_ratio_minimum(), "");
     line("contact temperature, maximum",
          scaled(point.contact_temperature_maximum_kelvin(), 1, -kZeroCelsius), "C");
+    line("flash temperature rise, maximum", point.flash_temperature_rise_maximum_kelvin(), "K");
+    line("pressure, maximum", scaled(point.maximum_pressure_maximum_pascals(), 1e-9, 0), "GPa");
+    line("mesh friction coefficient", point.mesh_friction_coefficient(), "");
   }
   sheet.remark(linearity_text(point.inefficiency_energy_mean_percent(), response.draws()));
   sheet.remark(advice_text(point.shares()));

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "client/cpp/text/table.h"
+#include "tribodyn/v1/contacts.pb.h"
 #include "tribodyn/v1/points.pb.h"
 
 namespace tribodyn::client {
@@ -14,6 +16,10 @@ std::string comparison_report(const v1::ComparePointsRequest& request,
 /// Returns a CSV line for every lubricant at every condition.
 std::string comparison_csv(const v1::ComparePointsRequest& request,
                            const v1::ComparePointsResponse& response);
+
+/// Adds the friction coefficient of a contact with its uncertainty, what makes it, and the fields
+/// that count as exact.
+void add_contact_uncertainty(const v1::EvaluateContactResponse& contact, Sheet& sheet);
 
 /// Returns the figures of one lubricant at one condition with the uncertainty of its inputs.
 std::string uncertainty_report(const v1::ComparePointsResponse& response);

@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 
+#include "client/cpp/report/comparison_report.h"
 #include "client/cpp/report/inputs.h"
 #include "client/cpp/text/table.h"
 #include "client/cpp/text/text.h"
@@ -42,6 +43,8 @@ constexpr std::array kQuantities = {
     Quantity{"entrainment_speed_metres_per_second", "entrainment speed", "U_eff", "m/s", 1, 0,
              "17"},
     Quantity{"sliding_speed_metres_per_second", "sliding speed", "V_s", "m/s", 1, 0, ""},
+    Quantity{"pinion_specific_sliding", "specific sliding, pinion", "V_s/|U_p|", "", 1, 0, ""},
+    Quantity{"gear_specific_sliding", "specific sliding, gear", "V_s/|U_g|", "", 1, 0, ""},
     Quantity{"inlet_viscosity_pascal_seconds", "inlet viscosity", "eta_0", "mPa s", 1e3, 0, "34"},
     Quantity{"inlet_pressure_viscosity_coefficient_per_pascal",
              "inlet pressure-viscosity coefficient", "alpha*", "1/GPa", 1e9, 0, "33"},
@@ -72,23 +75,35 @@ constexpr std::array kQuantities = {
     Quantity{"friction_coefficient", "friction coefficient", "mu", "", 1, 0, ""},
 };
 
+/// Returns the standard uncertainty of a quantity; empty if no stated uncertainty moves it.
+std::string input_error(const v1::EvaluateContactResponse& contact, const Quantity& quantity) {
+  for (const v1::UncertainContactFigure& each : contact.uncertainties()) {
+    if (each.figure() == quantity.field) {
+      return significant(quantity.factor * each.value().standard_uncertainty(), 2);
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string contact_report(const v1::EvaluateContactResponse& contact) {
   Table table({{"Quantity", "", Table::Align::kLeft},
                {"Symbol", "", Table::Align::kLeft},
                {"Value", ""},
+               {"+/- inputs", ""},
                {"Unit", "", Table::Align::kLeft},
                {"Eq", ""}});
   for (const Quantity& quantity : kQuantities) {
     const auto* field = contact.GetDescriptor()->FindFieldByName(quantity.field);
     const double value = contact.GetReflection()->GetDouble(contact, field);
     table.add_row({quantity.label, quantity.symbol,
-                   significant(quantity.factor * value + quantity.offset, 6), quantity.unit,
-                   quantity.equation});
+                   significant(quantity.factor * value + quantity.offset, 6),
+                   input_error(contact, quantity), quantity.unit, quantity.equation});
   }
   std::string text = table.text();
   Sheet sheet;
+  add_contact_uncertainty(contact, sheet);
   add_input_warnings(contact.input_warnings(), sheet);
   text +=
       std::string("\nstatus ") +

@@ -8,6 +8,7 @@
 
 #include "client/cpp/report/comparison_report.h"
 #include "client/cpp/report/inputs.h"
+#include "client/cpp/report/limits_report.h"
 #include "client/cpp/report/precision.h"
 #include "client/cpp/report/warnings.h"
 #include "client/cpp/text/csv.h"
@@ -179,7 +180,9 @@ std::string curve_report(const v1::Simulation& simulation, bool shows_assumption
   }
   add_provenance(result, shows_assumptions, notes);
   add_input_warnings(result.input_warnings(), notes);
-  return head.text() + "\n" + curve_table(simulation, uncertainty).text() + "\n" + notes.text();
+  const std::string limits = limits_report(result);
+  return head.text() + "\n" + curve_table(simulation, uncertainty).text() + "\n" +
+         (limits.empty() ? "" : limits + "\n") + notes.text();
 }
 
 std::string points_csv(const std::vector<v1::Simulation>& simulations) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "client/cpp/report/inputs.h"
+#include "client/cpp/report/limits_report.h"
 #include "client/cpp/report/precision.h"
 #include "client/cpp/report/warnings.h"
 #include "client/cpp/text/table.h"
@@ -64,11 +65,14 @@ void add_losses(const v1::PointResult& result, const Precision& precision, Sheet
              share_of(result.boundary_loss_power_watts(), loss));
   for (int slot = 0; slot < result.flank_losses_size(); ++slot) {
     const auto& flank = result.flank_losses(slot);
-    sheet.line(
-        "  flank slot " + std::to_string(slot),
-        power(flank.viscous_watts() + flank.boundary_watts()), unit_text,
-        power(flank.viscous_watts()) + " viscous + " + power(flank.boundary_watts()) + " boundary");
+    sheet.line("  flank slot " + std::to_string(slot),
+               power(flank.viscous_watts() + flank.boundary_watts()), unit_text,
+               power(flank.viscous_watts()) + " viscous + " + power(flank.boundary_watts()) +
+                   " boundary; friction coefficient " +
+                   precision.other(flank.friction_coefficient(), 5));
   }
+  sheet.line("mesh friction coefficient", precision.other(result.friction_coefficient().mean(), 5),
+             "", "friction / normal load, load-weighted mean of all flanks");
   sheet.line("mesh loss torque", precision.estimated(result.mesh_loss_torque_newton_metres(), 4),
              "N m", "at the pinion");
   sheet.line("boundary / viscous friction",
@@ -116,6 +120,10 @@ std::string cycle_table(const v1::PointResult& result, const Precision& precisio
   add("contact temperature", "C", result.contact_temperature_kelvin(), 1, -kZeroCelsius, 2);
   add("maximum pressure", "GPa", result.maximum_pressure_pascals(), 1e-9, 0, 4);
   add("shear rate", "1e6/s", result.shear_rate_per_second(), 1e-6, 0, 3);
+  add("flash temperature rise", "K", result.flash_temperature_rise_kelvin(), 1, 0, 2);
+  add("friction coefficient", "", result.friction_coefficient(), 1, 0, 5);
+  add("specific sliding, pinion", "", result.pinion_specific_sliding(), 1, 0, 3);
+  add("specific sliding, gear", "", result.gear_specific_sliding(), 1, 0, 3);
   const v1::Extremes& error = result.dynamic_transmission_error_metres();
   const double largest = std::max(std::abs(error.minimum()), std::abs(error.maximum()));
   add_extremes(
@@ -263,8 +271,9 @@ std::string point_report(const v1::Simulation& simulation, bool shows_assumption
   add_provenance(simulation.result(), shows_assumptions, rest);
   add_input_warnings(simulation.result().input_warnings(), rest);
   add_warnings(simulation, rest);
+  const std::string limits = limits_report(simulation.result());
   return head.text() + "\n" + losses.text() + "\n" + cycle_table(result, precision) + "\n" +
-         rest.text();
+         (limits.empty() ? "" : limits + "\n") + rest.text();
 }
 
 }  // namespace tribodyn::client

@@ -1,3 +1,4 @@
+import asyncio
 import json
 import os
 import subprocess
@@ -8,6 +9,7 @@ import pandas
 import pytest
 
 import tribodyn
+from tribodyn import aio
 
 FLUID = "paper-fluid-1"
 
@@ -82,6 +84,70 @@ def test_a_refused_lubricant_refuses_a_comparison(client):
     with pytest.raises(tribodyn.TribodynError) as caught:
         client.compare([FLUID, "nothing"], speeds_kilometres_per_hour=[33, 34])
     assert caught.value.violations[0].field == "simulation.lubricant"
+
+
+def test_lubricants_are_compared_with_the_uncertainty_of_their_inputs(client):
+    client.lubricants.create("sheet", kv40=103, kv100=15.1, density15=868, base_oil_class="pao")
+    found = client.compare_points(
+        [FLUID, "sheet"],
+        speeds_kilometres_per_hour=[40, "20 m/s"],
+        sump_temperatures_celsius=[40, 90],
+        speed_weights=[3, 1],
+        draws=39,
+        contact_figures=True,
+    )
+    assert list(found["lubricant"]) == [f"lubricants/{FLUID}@1"] * 4 + ["lubricants/sheet@1"] * 4
+    assert list(found["speed_kilometres_per_hour"][:4]) == [40, 72, 40, 72]
+    assert list(found["sump_temperature_celsius"][:4]) == [40, 40, 90, 90]
+    assert set(found["status"]) == {"OK"} and list(found["verdict"][:4]) == [""] * 4
+    figure = "inefficiency_energy_mean_percent"
+    assert (found[f"{figure}_standard_uncertainty"][4:] > 0).all()
+    assert (found["mesh_friction_coefficient_value"] > 0).all()
+    assert set(found["verdict"][4:]) <= {"lower", "higher", "cannot-be-told-apart"}
+    values = found[f"{figure}_value"]
+    difference = found["difference_percent_value"]
+    assert difference[4] == pytest.approx(values[4] - values[0], rel=1e-9)
+    mean = found.attrs["mean"]
+    weighted = [(3 * v[0] + v[1] + 3 * v[2] + v[3]) / 8 for v in (values[:4], list(values[4:]))]
+    assert list(mean["mean_inefficiency_percent_value"]) == pytest.approx(weighted, rel=1e-9)
+    assert "pressure_viscosity_coefficient" in mean["measure_first"][1]
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.compare_points([FLUID], speeds_kilometres_per_hour=["fast"], speed_weights=[1, 2])
+    assert len(caught.value.violations) == 2
+
+
+def test_a_difference_is_explained_by_groups_of_parameters(client):
+    speeds = [40, 100]
+    why = client.explain("paper-fluid-1", "paper-fluid-2", speeds_kilometres_per_hour=speeds)
+    assert len(why) == 12 and set(why["status"]) == {"OK"}
+    assert list(why["group"][:6]) == [
+        "viscosity",
+        "pressure-response",
+        "shear-thinning",
+        "limiting-stress",
+        "thermal-properties",
+        "boundary-film",
+    ]
+    share = "inefficiency_percent_shapley_value_value"
+    near = client.evaluate(
+        {"lubricant": ["paper-fluid-1", "paper-fluid-2"]}, speed_kilometres_per_hour=40
+    )
+    values = near["inefficiency_energy_mean_percent"]
+    assert sum(why[share][:6]) == pytest.approx(values[1] - values[0], abs=1e-3)
+    mean = why.attrs["mean"]
+    assert sum(mean[share]) == pytest.approx(why.attrs["inefficiency_difference_percent"], abs=1e-9)
+    assert len(why.attrs["interactions"]) == 15 and why.attrs["model_version"]
+    with pytest.raises(tribodyn.TribodynError) as caught:
+        client.explain(FLUID, "nothing")
+    assert caught.value.violations[0].field.startswith("other_lubricant")
+
+
+def test_a_difference_is_explained_asynchronously(server):
+    async def why():
+        async with aio.Client(server.address) as client:
+            return await client.explain("paper-fluid-1", "paper-fluid-2")
+
+    assert len(asyncio.run(why())) == 6
 
 
 def test_histories_have_units_in_their_columns(client):

@@ -117,6 +117,18 @@ def _fields(message: Message, prefix: str, row: dict[str, Any], present: bool) -
             row[name] = value if present else _EMPTY[type(value)]
 
 
+def message_cells(message: Message, prefix: str = "", present: bool = True) -> dict[str, Any]:
+    """Returns the fields of a message as cells, without its lists; all NaN if it is not present."""
+    row: dict[str, Any] = {}
+    _fields(message, prefix, row, present)
+    lists = [
+        f"{prefix}{field.name}_count"
+        for field in message.DESCRIPTOR.fields
+        if field.label == field.LABEL_REPEATED
+    ]
+    return {name: value for name, value in row.items() if name not in lists}
+
+
 def enum_word(kind: Any, number: int) -> str:
     """Returns e.g. "quasi-static" for POINT_MODEL_QUASI_STATIC; "" for the unspecified value."""
     prefix = "".join("_" + each if each.isupper() else each.upper() for each in kind.name)[1:] + "_"

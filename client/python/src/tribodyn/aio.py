@@ -7,7 +7,7 @@ import os
 from types import TracebackType
 from typing import Any, Callable, Mapping, Sequence
 
-from tribodyn import _points, _studies
+from tribodyn import _points, _studies, _uncertainty
 from tribodyn._campaigns import AsyncCampaign, start_campaign
 from tribodyn._columns import read_columns
 from tribodyn._csv import rows_of
@@ -32,6 +32,7 @@ from tribodyn.units import Quantity
 from tribodyn.v1.campaigns_pb2 import Campaign, ListCampaignsRequest
 from tribodyn.v1.gear_sets_pb2 import GearSet
 from tribodyn.v1.lubricants_pb2 import Lubricant
+from tribodyn.v1.points_pb2 import ComparePointsRequest, ExplainPointsRequest
 from tribodyn.v1.schemas_pb2 import GetSchemaRequest, Schema
 from tribodyn.v1 import simulations_pb2 as pb
 from tribodyn.v1.surfaces_pb2 import Surface
@@ -344,6 +345,111 @@ class Client:
         evaluation = Evaluation(self._transport, model_options or {})
         cells = await evaluation.run(rows, self._settings.progress)
         return _joined(table, given, cells, evaluation.attrs)
+
+    async def compare_points(
+        self,
+        lubricants: Sequence[str],
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
+        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        speed_weights: Sequence[float] | None = None,
+        sump_weights: Sequence[float] | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        sump_temperature_uncertainty_kelvin: float | None = None,
+        inlet_temperature_rise_uncertainty_kelvin: float | None = None,
+        estimate_correlation: float | None = None,
+        draws: int | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        tolerance: float | None = None,
+        model_options: Mapping[str, Any] | None = None,
+        sheared: bool = False,
+        contact_figures: bool = False,
+    ) -> Frame:
+        arguments = Arguments()
+        named = [lubricants] if isinstance(lubricants, str) else lubricants
+        request = ComparePointsRequest(
+            lubricants=[full_name("lubricants", each) for each in named],
+            sheared_lubricant=sheared,
+            contact_figures=contact_figures,
+        )
+        _uncertainty.scene(
+            arguments,
+            request,
+            speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+            sump_temperatures_celsius=sump_temperatures_celsius,
+            speed_weights=speed_weights,
+            sump_weights=sump_weights,
+            ascent_angle_degrees=ascent_angle_degrees,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            sump_temperature_uncertainty_kelvin=sump_temperature_uncertainty_kelvin,
+            inlet_temperature_rise_uncertainty_kelvin=inlet_temperature_rise_uncertainty_kelvin,
+            estimate_correlation=estimate_correlation,
+            draws=draws,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            tolerance=tolerance,
+            model_options=model_options,
+        )
+        arguments.check()
+        return await _uncertainty.compared(self._transport, request)
+
+    async def explain(
+        self,
+        lubricant: str,
+        other_lubricant: str,
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
+        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        speed_weights: Sequence[float] | None = None,
+        sump_weights: Sequence[float] | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        sump_temperature_uncertainty_kelvin: float | None = None,
+        inlet_temperature_rise_uncertainty_kelvin: float | None = None,
+        estimate_correlation: float | None = None,
+        draws: int | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        tolerance: float | None = None,
+        model_options: Mapping[str, Any] | None = None,
+        other_surface: str | None = None,
+        sheared: bool = False,
+        other_sheared: bool = False,
+    ) -> Frame:
+        arguments = Arguments()
+        request = ExplainPointsRequest(
+            lubricant=full_name("lubricants", lubricant),
+            other_lubricant=full_name("lubricants", other_lubricant),
+            other_surface=full_name("surfaces", other_surface or ""),
+            sheared_lubricant=sheared,
+            other_sheared_lubricant=other_sheared,
+        )
+        _uncertainty.scene(
+            arguments,
+            request,
+            speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+            sump_temperatures_celsius=sump_temperatures_celsius,
+            speed_weights=speed_weights,
+            sump_weights=sump_weights,
+            ascent_angle_degrees=ascent_angle_degrees,
+            inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+            sump_temperature_uncertainty_kelvin=sump_temperature_uncertainty_kelvin,
+            inlet_temperature_rise_uncertainty_kelvin=inlet_temperature_rise_uncertainty_kelvin,
+            estimate_correlation=estimate_correlation,
+            draws=draws,
+            gear_set=gear_set,
+            surface=surface,
+            vehicle=vehicle,
+            tolerance=tolerance,
+            model_options=model_options,
+        )
+        arguments.check()
+        return await _uncertainty.explained(self._transport, request)
 
     async def screen(
         self,

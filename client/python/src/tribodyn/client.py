@@ -592,6 +592,123 @@ class Client:
         """
         return _LOOP.run(self._client.evaluate(table, model_options=model_options, **parameters))
 
+    def compare_points(
+        self,
+        lubricants: Sequence[str],
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
+        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        speed_weights: Sequence[float] | None = None,
+        sump_weights: Sequence[float] | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        sump_temperature_uncertainty_kelvin: float | None = None,
+        inlet_temperature_rise_uncertainty_kelvin: float | None = None,
+        estimate_correlation: float | None = None,
+        draws: int | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        tolerance: float | None = None,
+        model_options: Mapping[str, Any] | None = None,
+        sheared: bool = False,
+        contact_figures: bool = False,
+    ) -> Frame:
+        """Returns one to eight lubricants at every speed and sump temperature with the uncertainty
+        of their inputs, one row for each lubricant and condition, and what each loses more than the
+        first: `difference_percent_value` with its 95 % interval, `lower_probability` and `verdict`
+        ("lower", "higher", "cannot-be-told-apart").
+
+        Columns FIGURE_standard_uncertainty come from ``draws`` draws of the inputs (None: 199),
+        FIGURE_solver_error is the solver's. Uncertainties of temperatures are standard ones, in K.
+        ``estimate_correlation`` (0 to 1; None: 0.5) is that of estimates that one estimator made for
+        two lubricants. ``sheared``: the lubricants after the shear test. ``contact_figures``: also
+        film ratio, friction coefficient, pressure and temperatures. ``attrs["mean"]`` is a table of
+        the weighted means, with the probability of the least and the input to measure first. Weights as of screen(); nothing is kept.
+        """
+        return _LOOP.run(
+            self._client.compare_points(
+                lubricants,
+                speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+                sump_temperatures_celsius=sump_temperatures_celsius,
+                speed_weights=speed_weights,
+                sump_weights=sump_weights,
+                ascent_angle_degrees=ascent_angle_degrees,
+                inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+                sump_temperature_uncertainty_kelvin=sump_temperature_uncertainty_kelvin,
+                inlet_temperature_rise_uncertainty_kelvin=inlet_temperature_rise_uncertainty_kelvin,
+                estimate_correlation=estimate_correlation,
+                draws=draws,
+                gear_set=gear_set,
+                surface=surface,
+                vehicle=vehicle,
+                tolerance=tolerance,
+                model_options=model_options,
+                sheared=sheared,
+                contact_figures=contact_figures,
+            )
+        )
+
+    def explain(
+        self,
+        lubricant: str,
+        other_lubricant: str,
+        *,
+        speeds_kilometres_per_hour: Sequence[Quantity] = (60,),
+        sump_temperatures_celsius: Sequence[Quantity] = (40,),
+        speed_weights: Sequence[float] | None = None,
+        sump_weights: Sequence[float] | None = None,
+        ascent_angle_degrees: Quantity | None = None,
+        inlet_temperature_rise_kelvin: Quantity | None = None,
+        sump_temperature_uncertainty_kelvin: float | None = None,
+        inlet_temperature_rise_uncertainty_kelvin: float | None = None,
+        estimate_correlation: float | None = None,
+        draws: int | None = None,
+        gear_set: str | None = None,
+        surface: str | None = None,
+        vehicle: str | None = None,
+        tolerance: float | None = None,
+        model_options: Mapping[str, Any] | None = None,
+        other_surface: str | None = None,
+        sheared: bool = False,
+        other_sheared: bool = False,
+    ) -> Frame:
+        """Returns why ``other_lubricant`` loses more or less than ``lubricant``: the share of each
+        of six groups of parameters in the difference, one row for each condition and group.
+
+        ``inefficiency_percent_shapley_value_value`` is the share in percentage points, with its
+        uncertainty in the columns beside it; the shares of all groups sum to the difference.
+        ``..._first_effect`` and ``..._last_effect`` are what the group adds if it is exchanged before
+        and after all others. ``attrs["mean"]`` is the same table for the weighted mean,
+        ``attrs["interactions"]`` what pairs of groups add beyond what each adds alone.
+        ``draws``: None: 99. ``other_surface``: of the other lubricant, with the boundary film that
+        it makes. Other arguments as of compare_points().
+        """
+        return _LOOP.run(
+            self._client.explain(
+                lubricant,
+                other_lubricant,
+                speeds_kilometres_per_hour=speeds_kilometres_per_hour,
+                sump_temperatures_celsius=sump_temperatures_celsius,
+                speed_weights=speed_weights,
+                sump_weights=sump_weights,
+                ascent_angle_degrees=ascent_angle_degrees,
+                inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
+                sump_temperature_uncertainty_kelvin=sump_temperature_uncertainty_kelvin,
+                inlet_temperature_rise_uncertainty_kelvin=inlet_temperature_rise_uncertainty_kelvin,
+                estimate_correlation=estimate_correlation,
+                draws=draws,
+                gear_set=gear_set,
+                surface=surface,
+                vehicle=vehicle,
+                tolerance=tolerance,
+                model_options=model_options,
+                other_surface=other_surface,
+                sheared=sheared,
+                other_sheared=other_sheared,
+            )
+        )
+
     def screen(
         self,
         table: Any,
