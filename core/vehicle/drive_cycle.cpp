@@ -29,14 +29,15 @@ constexpr Operation kExtraUrban[] = {
     {336, 120}, {346, 120}, {362, 80}, {370, 50}, {380, 0},  {400, 0}};
 
 [[noreturn]] void refuse(std::size_t place, const std::string& why) {
-  throw Refusal("CYCLE_INVALID", "place " + std::to_string(place + 1) + " of the cycle: " + why);
+  throw Refusal("PARAMETER_OUT_OF_RANGE",
+                "place " + std::to_string(place + 1) + " of the cycle: " + why);
 }
 
 }  // namespace
 
 std::vector<CyclePiece> pieces_of(const DriveCycle& cycle, double longest) {
   const auto& places = cycle.places;
-  if (places.size() < 2) throw Refusal("CYCLE_INVALID", "a cycle has two places or more");
+  if (places.size() < 2) throw Refusal("PARAMETER_OUT_OF_RANGE", "a cycle has two places or more");
   std::vector<CyclePiece> out;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const CyclePlace& to = places[i];

@@ -32,9 +32,9 @@ struct CyclePiece {
 };
 
 /// Returns the pieces between consecutive places, those longer than `longest` [s] cut into equal
-/// parts. Throws Refusal CYCLE_INVALID, naming the place (from 1), if there are less than two
-/// places, time does not rise, a number is not finite, a speed is negative, or there are more than
-/// 1,000,000 pieces.
+/// parts. Throws Refusal PARAMETER_OUT_OF_RANGE, naming the place (from 1), if there are less than
+/// two places, time does not rise, a number is not finite, a speed is negative, or there are more
+/// than 1,000,000 pieces.
 std::vector<CyclePiece> pieces_of(const DriveCycle& cycle, double longest = 1);
 
 /// The New European Driving Cycle: four times the urban part of 195 s and once the extra-urban part

@@ -183,7 +183,7 @@ std::string cycle_pieces_csv(const CycleRun& run) {
 }
 
 std::string cycle_plot(const CycleRun& run) {
-  constexpr double kWidth = 1000, kLeft = 70, kTop = 84, kPanelWidth = 740, kPitch = 300;
+  constexpr double kWidth = 1000, kLeft = 70, kFirstTop = 84, kPanelWidth = 740, kPitch = 300;
   Panel speed, loss;
   speed.title = "Vehicle speed, km/h";
   loss.title = "Mesh loss, W";
@@ -213,10 +213,10 @@ std::string cycle_plot(const CycleRun& run) {
        " C; model version " + run.fluids.front().model_version +
        ". Loss at the tooth contact only; it excludes bearings, churning and seals."},
       kWidth - 2 * kLeft);
-  const double footer_top = kTop + kPitch + 220 + 66;
+  const double footer_top = kFirstTop + kPitch + 220 + 66;
   Svg svg(kWidth, footer_top + kFooterPitch * static_cast<double>(below.size()));
   svg.text({kLeft, 36}, "Drive cycle: " + run.name, {17, "start", "#111", true, 0});
-  double top = kTop;
+  double top = kFirstTop;
   for (Panel* panel : {&speed, &loss}) {
     panel->corner = {kLeft, top};
     panel->width = kPanelWidth;
