@@ -33,7 +33,7 @@ enum Figure {
   kPinionTorque,
   kDteMinimum,
   kDteMaximum,
-  kFilmRatio,  // NaN unless contact figures are asked for, as are the next ones
+  kFilmRatio,  // NaN unless the request has contact_figures, as are the next ones
   kContactTemperature,
   kFrictionCoefficient,
   kPressure,

@@ -914,7 +914,7 @@ v1::Lubricant data_sheet_oil() {
   return out;
 }
 
-/// What bands add to a curve: the curve that `tribodyn curve` asks for by default, and the request
+/// What bands add to a curve: the curve that `tribodyn curve` requests by default, and the request
 /// with which it finds the uncertainty at each speed. In time of the server's processor.
 void measure_bands(std::vector<Measurement>& out) {
   constexpr int kBandDraws = 99;  // as `tribodyn curve` has them

@@ -10,7 +10,7 @@
 
 namespace tribodyn::client {
 
-/// A curve over speed that a figure of the paper needs: cruise on a level road with run-in flanks
+/// A curve over speed of a figure of the paper: cruise on a level road with run-in flanks
 /// and the passenger car.
 struct PaperCurve {
   int fluid = 1;  ///< of the paper, 1 to 3

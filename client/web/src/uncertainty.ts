@@ -58,7 +58,7 @@ export function groupsOf(curves: Curve[], reference: string, withContact: boolea
   });
 }
 
-/** Asks for the uncertainties of curves, group by group. */
+/** Requests the uncertainties of curves, group by group. */
 export function useUncertainty(curves: Curve[], reference: string, withContact: boolean, isOn: boolean): Loaded<ComparedGroup[]> {
   const groups = useMemo(() => (isOn ? groupsOf(curves, reference, withContact) : []), [curves, reference, withContact, isOn]);
   return useLoaded((signal) => Promise.all(groups.map(async (group) =>
