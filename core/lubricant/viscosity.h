@@ -37,9 +37,9 @@ double index_from_reciprocal_asymptotic(double factor, double coefficient);
 /// Z of eq 32 (Houpert 1985): alpha* / (5.1e-9 L).
 double index_from_houpert(double factor, double coefficient);
 
-/// Throws Refusal PARAMETER_OUT_OF_RANGE if the viscosity of an improved Yasutomi law at a temperature
-/// [K] is above eta_g/e^16: its growth with pressure then ends at the glass transition before
-/// alpha* has four digits.
+/// Throws Refusal PARAMETER_OUT_OF_RANGE if the viscosity of an improved Yasutomi law at a
+/// temperature [K] is above eta_g/e^16: its growth with pressure then ends at the glass transition
+/// before alpha* has four digits.
 void check_glass_transition(const Lubricant& lubricant, double temperature);
 
 /// alpha* [1/Pa], the inverse of int_0^inf eta(0)/eta(p) dp, of the improved Yasutomi law at a
