@@ -79,7 +79,8 @@ struct ContactSensitivityModel::Constants {
   bool roelands;
   std::array<DualNumber, kContactLevel> contact;
   std::array<DualNumber, kStressLevel> stress;
-  /// What MeanShearStress::by_growth goes by, but for L and T, which depend on temperature too.
+  /// The arguments of MeanShearStress::by_growth by all inputs, from the second one on: the first
+  /// one, L or T, depends on the contact temperature too.
   std::array<DualNumber, kGrowthArguments> growth;
   DualNumber limit_at_zero_pressure, limit_coefficient;
   ContactParametersOf<ContactNumber> parameters;

@@ -42,11 +42,11 @@ double proved_temperature(const Lubricant& oil, bool newtonian) {
   return (b + std::sqrt(b * b - t0 * t0)) * (1 - 1e-9);
 }
 
-/// What is to be known of a law other than eq 31 before the vector code may follow it: its growth
-/// falls with temperature over the whole table, and ln(tau/tau_L) rises inwards, or falls and then
-/// rises, at every temperature. The latter is seen at 8 x 48 temperatures and depths of smooth
-/// functions; sets monotone_factor and falls_then_rises. Returns false if the law is not so.
-bool follows_law(ContactBlockTables& t, double tau_zero, double gamma) {
+/// Returns whether the vector code covers the growth of viscosity with pressure of a law other than
+/// eq 31: the growth falls with temperature over the whole table, and at every temperature
+/// ln(tau/tau_L) rises inwards, or falls and then rises. The first is proved, the second is checked
+/// at 8 x 48 temperatures and depths. Sets monotone_factor and falls_then_rises.
+bool has_covered_growth(ContactBlockTables& t, double tau_zero, double gamma) {
   const GlassState<double>& glass = t.shear.glass;
   const double c = laws::kRoelandsPressureCoefficient;
   if (!laws::improved_yasutomi_growth_falls(glass, t.inlet_temperature, t.deepest_pressure / c)) {
@@ -191,7 +191,7 @@ FlankContactBatch::FlankContactBatch(const FlankContactModel& model, Instruction
       std::isfinite(t.log_film) &&
       std::isnormal(std::exp(tribodyn::log_ambient_viscosity(oil, t.inlet_temperature))) &&
       tabulate_ratio(instruction_set, factor_at(t.hottest), factor_at(t.inlet_temperature), t) &&
-      (roelands || follows_law(t, tau_zero, gamma));
+      (roelands || has_covered_growth(t, tau_zero, gamma));
   tabulate_asperities(t);
   if (t.covered && t.limited && !t.isothermal) fit_start(instruction_set, t);
   tables_ = std::move(tables);

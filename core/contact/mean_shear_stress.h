@@ -53,7 +53,7 @@ struct MeanShearStress {
 /// p = p_max xi. Integrated in s = ln(1 + 5.1e-9 p), in which eq 31 is entire, by Gauss-Legendre
 /// between the points where eq 23 meets tau_L (found as bracketed roots; the integral on tau_L is
 /// in closed form). Relative error below 1e-13; of the improved Yasutomi law, whose logarithms end
-/// at negative pressures, below 1e-11. temperature [K] above T_0,ref. `switch_guess` speeds up
+/// at negative pressures, below 1e-10. temperature [K] above T_0,ref. `switch_guess` speeds up
 /// repeated calls for one film: start with 0, do not touch.
 MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
                                   double& switch_guess);

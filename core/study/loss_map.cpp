@@ -154,8 +154,8 @@ LossMap::LossMap(const std::vector<MapReading>& readings, const LossForces& loss
     fresh.clear();
     sum(boxes, readings);
     const double wanted = options.tolerance * std::abs(energy_);
-    if (error_ <= wanted || points() >= options.most_points) return;
-    // Halves the boxes whose errors make up the most of what is too much.
+    if (!(error_ > wanted) || points() >= options.most_points) return;  // also if NaN
+    // Halves the boxes with the largest errors until the others' errors add up to half of `wanted`.
     const auto contribution = [&](const Box& box) {
       double distance = 0;
       for (const std::size_t i : box.readings) distance += readings[i].distance;

@@ -42,7 +42,7 @@ class LossMap {
 
   /// Returns the loss force [N] at a reading.
   double at(std::size_t reading) const { return values_[reading]; }
-  /// Returns the sum of losses over all readings [J].
+  /// Returns the sum of losses over all readings [J]; NaN if a loss force is NaN.
   double energy() const { return energy_; }
   /// Returns the estimated error of energy() [J].
   double estimated_error() const { return error_; }

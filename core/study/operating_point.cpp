@@ -240,7 +240,7 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactB
   return quasi_static_result(system, grids, target, options, *answer);
 }
 
-/// Why a point whose sensitivities were asked for has none.
+/// Returns the reason why a point has no sensitivities although its options include them.
 std::string why_no_sensitivities(const Scene& scene, const PointResult& result) {
   if (result.contact_loss) {
     return "the flanks part: figures of responses with impacts are not differentiated";

@@ -315,7 +315,7 @@ v1::ComparedDifference difference(const ComputedFluid& fluid, const ComputedFlui
   const std::size_t draws = std::max(fluid.drawn.size(), first.drawn.size());
   std::vector<double> drawn;
   for (std::size_t n = 0; n < draws; ++n) {
-    // Of a fluid without errors nothing is drawn: each draw is what is stated.
+    // A fluid without errors has no draws: its stated values stand for each of them.
     const auto& of_fluid =
         fluid.drawn.empty() ? fluid.stated[condition] : fluid.drawn[n][condition];
     const auto& of_first =
@@ -393,8 +393,8 @@ v1::ComparedLubricant lubricant_message(const ComputedFluid& fluid, const Comput
   return out;
 }
 
-/// Returns the mean inefficiency of a fluid in a draw. Of a fluid without errors nothing is drawn:
-/// each draw is what is stated.
+/// Returns the mean inefficiency of a fluid in a draw. A fluid without errors has no draws: its
+/// stated values stand for each of them.
 std::optional<double> drawn_mean(const ComputedFluid& fluid, std::size_t draw) {
   const std::optional<ComparedFigures>& figures =
       fluid.drawn.empty() ? fluid.stated.back() : fluid.drawn[draw].back();

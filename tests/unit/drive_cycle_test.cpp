@@ -116,5 +116,13 @@ TEST(LossMap, ReadingsOfOnePlaceAreExact) {
   EXPECT_EQ(LossMap({}, {}).energy(), 0);
 }
 
+TEST(LossMap, EndsWithoutANumberWhereAForceIsNone) {
+  const std::vector<MapReading> readings{{{10, 100, 313}, 5}, {{20, 200, 313}, 5}};
+  const LossMap map(readings, [](const std::vector<MapPlace>& places) {
+    return std::vector<double>(places.size(), std::nan(""));
+  });
+  EXPECT_TRUE(std::isnan(map.energy()));
+}
+
 }  // namespace
 }  // namespace tribodyn

@@ -37,7 +37,7 @@ struct Finding {
 struct PaperFigure {
   std::string name;     ///< "10"; "conclusions" for the statements of section 4
   std::string title;    ///< what the figure shows
-  std::string studied;  ///< what is computed, with its conditions
+  std::string studied;  ///< the computed quantities and their conditions
   std::vector<PaperCurve> curves;
   std::vector<PaperRig> rigs;
   std::vector<Finding> (*findings)(const PaperResults& results);

@@ -39,7 +39,7 @@ struct PaperRig {
 /// varies fastest.
 v1::EvaluateRigRequest request_of(const PaperRig& rig);
 
-/// Figures against what is swept, in ascending order.
+/// A figure y of the points of a study over the swept quantity x, in ascending order of x.
 struct PaperLine {
   std::vector<double> x, y;
   /// Returns y at a place of x. Throws std::out_of_range, naming x, if there is none.

@@ -206,7 +206,8 @@ std::vector<const v1::ComparedLubricant*> ranked(const v1::ComparePointsResponse
   return out;
 }
 
-/// Returns which lubricant loses least, and which ones cannot be told apart from it.
+/// Returns the sentence that names the lubricant with the least mean loss, and those whose
+/// differences from it have the verdict CANNOT_BE_TOLD_APART.
 std::string best_sentence(const std::vector<const v1::ComparedLubricant*>& ranked) {
   std::vector<std::string> apart, ties;
   for (const v1::ComparedLubricant* each : ranked) {
