@@ -410,6 +410,23 @@ PointFigures figures_of(const GearPairSystem& system, const PeriodicOrbit& orbit
   return out;
 }
 
+std::optional<ContactSummary> contact_summary(const PointResult& r) {
+  if (r.film_ratio.maximum == 0) return std::nullopt;
+  return ContactSummary{
+      r.film_ratio.minimum,        r.film_ratio.mean,          r.contact_temperature.maximum,
+      r.contact_temperature.mean,  r.viscous_loss_power,       r.boundary_loss_power,
+      r.friction_coefficient.mean, r.maximum_pressure.maximum, r.flash_temperature_rise.maximum};
+}
+
+/// The contact summary of a response on the grid of `steps` steps.
+std::optional<ContactSummary> contact_summary_of(GearPairSystem& system, MeshGrids& grids,
+                                                 const PeriodicOrbit& orbit, int steps,
+                                                 const OperatingTarget& target) {
+  PointResult record = empty_result(target, PointModel::kFull);
+  fill_from_orbit(system, grids, orbit, steps, target.mean_pinion_speed, record);
+  return contact_summary(record);
+}
+
 enum class StepErrors { kByShorterSteps, kByReference };
 
 PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condition,
@@ -430,6 +447,11 @@ PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condi
       PointFigures figures =
           figures_of(system, chosen->solution.orbit, chosen->estimated_error, target);
       figures.model = PointModel::kQuasiStatic;
+      if (options.contact_summary) {
+        const QuasiStatic& solution = chosen->solution;
+        figures.contact = contact_summary_of(system, gear_set.grids(), solution.orbit,
+                                             solution.steps_per_mesh_cycle, target);
+      }
       return figures;
     }
     if (options.model == PointModel::kAutomatic)
@@ -448,7 +470,24 @@ PointFigures figures_at(PreparedScene& prepared, const OperatingCondition& condi
       std::optional<Rattle> rattle;
       found = refine_orbit(system, contacts, gear_set.grids(), *search, statistics, cycles, rattle);
     }
-    if (found) return figures_of(system, found->orbit, found->estimated_error, target);
+    if (found) {
+      const PeriodicOrbit& orbit = found->orbit;
+      const int steps = found->steps_per_mesh_cycle;
+      PointFigures figures = figures_of(system, orbit, found->estimated_error, target);
+      if (options.contact_summary) {
+        figures.contact = contact_summary_of(system, gear_set.grids(), orbit, steps, target);
+      }
+      if (options.sensitivities) {
+        const auto sensitivity = orbit_sensitivity(
+            system, gear_set.grids().with_steps(steps), ContactSensitivityModel(contacts.model()),
+            orbit, target.mean_pinion_speed, target.solve_wheel_torque);
+        if (sensitivity) {
+          figures.sensitivities =
+              point_sensitivities(scene, condition, orbit.torques, *sensitivity);
+        }
+      }
+      return figures;
+    }
   }
   return main_figures(solve_prepared_point(prepared, condition, plain));
 }
@@ -468,7 +507,9 @@ PointFigures main_figures(const PointResult& r) {
           r.period_in_mesh_cycles,
           r.estimated_relative_error,
           r.statistics.contact_solutions,
-          r.model};
+          r.model,
+          contact_summary(r),
+          r.sensitivities};
 }
 
 PointFigures solve_point_figures(PreparedScene& prepared, const OperatingCondition& condition,

@@ -85,6 +85,9 @@ struct PointOptions {
   /// full model answers then; a point that is not found by shooting or loses contact has none and
   /// says so (NO_SENSITIVITIES).
   bool sensitivities = false;
+  /// screen_point() and solve_point_figures(): also PointFigures::contact, for some 12 us
+  /// (measured). A PointResult has it all.
+  bool contact_summary = false;
   /// Called between mesh cycles with the fraction done in [0, 1]; false cancels (throws Cancelled).
   std::function<bool(double)> progress;
 };
@@ -226,7 +229,20 @@ PointResult solve_operating_point(const Scene& scene, const OperatingCondition& 
 PointResult solve_prepared_point(PreparedScene& scene, const OperatingCondition& condition,
                                  const PointOptions& options);
 
-/// The figures of a point that PointOptions::tolerance speaks of, and no others.
+/// How the loaded flanks fare over the steady state.
+struct ContactSummary {
+  double film_ratio_minimum;              ///< lambda_s [-]
+  double film_ratio_mean;                 ///< weighted with load and time [-]
+  double contact_temperature_maximum;     ///< T_c [K]
+  double contact_temperature_mean;        ///< weighted with load and time [K]
+  double viscous_loss_power;              ///< mean [W]
+  double boundary_loss_power;             ///< mean [W]
+  double friction_coefficient_mean;       ///< as PointResult::friction_coefficient [-]
+  double pressure_maximum;                ///< p_max [Pa]
+  double flash_temperature_rise_maximum;  ///< (dT_f)_av [K]
+};
+
+/// The figures of a point that PointOptions::tolerance speaks of, and others on request.
 struct PointFigures {
   double pinion_torque = 0;                        ///< T_s [N m]
   double wheel_torque = 0;                         ///< T_w [N m]
@@ -240,9 +256,13 @@ struct PointFigures {
   std::optional<double> estimated_relative_error;  ///< absent: not estimated
   long contact_solutions = 0;
   PointModel model = PointModel::kFull;  ///< used
+  /// By PointOptions::contact_summary. Absent where no flank carries a load.
+  std::optional<ContactSummary> contact;
+  /// By PointOptions::sensitivities, on the grid of the figures.
+  std::optional<PointSensitivities> sensitivities;
 };
 
-/// The main figures of a result.
+/// The main figures of a result, with its contact summary and sensitivities.
 PointFigures main_figures(const PointResult& result);
 
 /// As solve_prepared_point from PointOptions::start, to within the tolerance, but faster. Histories

@@ -59,7 +59,10 @@ class CampaignSource final : public ColumnSource<v1::ReadCampaignResponse> {
     for (const TableColumn& each : window_.columns) {
       v1::HistorySchema::Column* column = out.add_columns();
       column->set_name(each.name);
-      column->set_unit(std::string(history_column_unit(each.name)));
+      // The end of an elasticity's name is the unit of its parameter.
+      if (!each.name.starts_with("elasticity.")) {
+        column->set_unit(std::string(history_column_unit(each.name)));
+      }
     }
     out.set_start_row(window_.start_row);
     out.set_row_count(rows_);
@@ -135,11 +138,11 @@ class TableColumns {
     request_.ParseFromString(stored.request);
   }
 
-  static std::vector<TableColumn> figures() {
+  std::vector<TableColumn> figures() const {
     std::vector<TableColumn> out;
-    for (std::size_t i = 0; i < kCampaignColumns.size(); ++i) {
-      out.push_back(
-          {std::string(kCampaignColumns[i]), TableColumn::Kind::kStored, static_cast<int>(i)});
+    for (std::string& name : campaign_columns(request_)) {
+      const int number = static_cast<int>(out.size());
+      out.push_back({std::move(name), TableColumn::Kind::kStored, number});
     }
     return out;
   }
@@ -164,7 +167,7 @@ class TableColumns {
   }
 
   std::vector<std::string> names() {
-    std::vector<std::string> out(kCampaignColumns.begin(), kCampaignColumns.end());
+    std::vector<std::string> out = campaign_columns(request_);
     out.insert(out.end(), {"candidate", "condition"});
     for (const TableColumn& each : condition_columns(request_)) out.push_back(each.name);
     for (const v1::CandidateColumn& each : table().candidate_columns()) out.push_back(each.path());
@@ -210,7 +213,7 @@ std::optional<TableWindow> table_window(Application& application, const StoredCa
     }
     out.columns.push_back(std::move(*found));
   }
-  if (request.columns().empty()) out.columns = TableColumns::figures();
+  if (request.columns().empty()) out.columns = columns.figures();
   const std::int64_t rows = stored.points();
   if (request.start_row() < 0 || request.start_row() > rows) {
     violations.push_back(

@@ -13,8 +13,12 @@ Outcome<v1::EvaluatePointsResponse> evaluate_points(Application& application,
                                                     const v1::EvaluatePointsRequest& request,
                                                     const CallContext& call) {
   Violations violations;
-  const auto evaluation = read_points(
-      request, resource_lookup(application.store, call.project, call.limits), violations);
+  const auto lookup = resource_lookup(application.store, call.project, call.limits);
+  const auto evaluation =
+      request.elasticity_parameters().empty()
+          ? read_points(request, lookup, violations)
+          : read_points(request, lookup, violations, kMaximumDifferentiatedPoints,
+                        "with elasticities in one request; send several");
   if (!evaluation) return invalid(violations);
   try {
     return evaluate_points(*evaluation, *application.gear_sets,

@@ -485,7 +485,7 @@ bool CampaignJobs::take_tile(Running& running, Part& part) {
     Tile& tile = part.tile.emplace(*candidates);
     const auto conditions = static_cast<std::size_t>(running.inputs->points.conditions);
     tile.points.resize(conditions);
-    tile.columns.resize(kCampaignColumns.size());
+    tile.columns.resize(running.inputs->columns);
     for (auto& each : tile.columns) {
       each.reserve(static_cast<std::size_t>(tile.candidates.count) * conditions);
     }
@@ -571,8 +571,8 @@ void CampaignJobs::compute_unit(Running& running, Part& part,
 /// Adds the rows of the present candidate to the columns.
 void CampaignJobs::add_rows(Running& running, Tile& tile) {
   for (const EvaluatedPoint& point : tile.points) {
-    const auto row = campaign_row(point, refusal_number(running, point, tile));
-    for (std::size_t i = 0; i < row.size(); ++i) tile.columns[i].push_back(row[i]);
+    const int refusal = refusal_number(running, point, tile);
+    add_campaign_row(running.inputs->points, point, refusal, tile.columns);
   }
 }
 

@@ -1,13 +1,16 @@
 #include "server/simulation/campaign_columns.h"
 
 #include <limits>
+#include <span>
 
 #include "server/mapping/from_core.h"
 
 namespace tribodyn::server {
+namespace {
 
-std::array<double, kCampaignColumns.size()> campaign_row(const EvaluatedPoint& point, int refusal) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::array<double, kCampaignColumns.size()> figures_of(const EvaluatedPoint& point, int refusal) {
   std::array<double, kCampaignColumns.size()> out;
   out.fill(kNone);
   out[0] = refusal;
@@ -26,6 +29,56 @@ std::array<double, kCampaignColumns.size()> campaign_row(const EvaluatedPoint& p
           static_cast<double>(figures.period_in_mesh_cycles),
           figures.estimated_relative_error.value_or(kNone),
           static_cast<double>(to_message(figures.model))};
+}
+
+std::array<double, kContactFigureColumns.size()> contact_figures_of(const EvaluatedPoint& point) {
+  std::array<double, kContactFigureColumns.size()> out;
+  out.fill(kNone);
+  if (!point.figures || !point.figures->contact) return out;
+  const ContactSummary& contact = *point.figures->contact;
+  return {contact.film_ratio_minimum,
+          contact.film_ratio_mean,
+          contact.contact_temperature_maximum,
+          contact.contact_temperature_mean,
+          contact.viscous_loss_power,
+          contact.boundary_loss_power,
+          contact.friction_coefficient_mean,
+          contact.pressure_maximum,
+          contact.flash_temperature_rise_maximum};
+}
+
+}  // namespace
+
+std::vector<std::string> campaign_columns(const v1::Campaign& campaign) {
+  std::vector<std::string> out(kCampaignColumns.begin(), kCampaignColumns.end());
+  if (campaign.contact_figures()) {
+    out.insert(out.end(), kContactFigureColumns.begin(), kContactFigureColumns.end());
+  }
+  if (campaign.elasticity_parameters().empty()) return out;
+  out.emplace_back("elasticities_one_sided");
+  std::vector<std::string> figures(campaign.elasticity_figures().begin(),
+                                   campaign.elasticity_figures().end());
+  if (figures.empty()) figures.emplace_back(kDefaultElasticityFigure);
+  for (const std::string& figure : figures) {
+    for (const std::string& parameter : campaign.elasticity_parameters()) {
+      out.push_back("elasticity." + figure + "." + parameter);
+    }
+  }
+  return out;
+}
+
+void add_campaign_row(const PointEvaluation& evaluation, const EvaluatedPoint& point, int refusal,
+                      std::vector<std::vector<double>>& columns) {
+  std::size_t next = 0;
+  const auto add = [&](std::span<const double> values) {
+    for (const double value : values) columns[next++].push_back(value);
+  };
+  add(figures_of(point, refusal));
+  if (evaluation.with_contact) add(contact_figures_of(point));
+  if (evaluation.elasticities.empty()) return;
+  columns[next++].push_back(point.figures ? (point.is_one_sided ? 1.0 : 0.0) : kNone);
+  if (point.figures) return add(point.elasticities);
+  for (; next < columns.size(); ++next) columns[next].push_back(kNone);
 }
 
 }  // namespace tribodyn::server

@@ -21,6 +21,7 @@ namespace {
 /// Largest number of conditions that share a prepared scene, and so are computed between two looks
 /// at the clock: some 20 ms.
 constexpr std::size_t kMaximumGroup = 256;
+constexpr std::size_t kMaximumDifferentiatedGroup = 16;  // the same with elasticities: some 15 ms
 constexpr std::size_t kMaximumAttributeName = 63;
 
 /// Moves the columns of candidates out of a campaign.
@@ -41,6 +42,9 @@ v1::EvaluatePointsRequest points_request(const v1::Campaign& requested, v1::Camp
   out.set_tolerance(requested.tolerance());
   out.mutable_candidate_columns()->Swap(table.mutable_candidate_columns());
   *out.mutable_conditions() = requested.conditions();
+  out.set_contact_figures(requested.contact_figures());
+  *out.mutable_elasticity_parameters() = requested.elasticity_parameters();
+  *out.mutable_elasticity_figures() = requested.elasticity_figures();
   return out;
 }
 
@@ -53,17 +57,18 @@ bool is_column_name(std::string_view name) {
 }
 
 /// Names that an attribute may not have, as other columns have them.
-std::set<std::string, std::less<>> taken_names() {
+std::set<std::string, std::less<>> taken_names(const v1::Campaign& requested) {
   std::set<std::string, std::less<>> out{"candidate", "condition"};
-  out.insert(kCampaignColumns.begin(), kCampaignColumns.end());
+  for (std::string& each : campaign_columns(requested)) out.insert(std::move(each));
   for (std::string& each : candidate_parameter_names()) out.insert(std::move(each));
   const auto& condition = *v1::PointCondition::descriptor();
   for (int i = 0; i < condition.field_count(); ++i) out.insert(condition.field(i)->name());
   return out;
 }
 
-void check_attributes(const v1::Campaign& table, Violations& violations) {
-  auto taken = taken_names();
+void check_attributes(const v1::Campaign& requested, const v1::Campaign& table,
+                      Violations& violations) {
+  auto taken = taken_names(requested);
   const int candidates =
       table.candidate_columns().empty() ? 1 : table.candidate_columns(0).values_size();
   for (int i = 0; i < table.candidate_attributes_size(); ++i) {
@@ -107,13 +112,15 @@ void check_rest(const v1::Campaign& requested, const v1::Campaign& table, Violat
   check_message(rest, "", violations);
 }
 
-/// Divides groups of conditions beyond kMaximumGroup.
+/// Divides groups of more conditions than a unit of work has.
 void divide_groups(PointEvaluation& points) {
+  const std::size_t most =
+      points.elasticities.empty() ? kMaximumGroup : kMaximumDifferentiatedGroup;
   std::vector<PointEvaluation::Group> out;
   for (PointEvaluation::Group& group : points.groups) {
-    for (std::size_t i = 0; i < group.conditions.size(); i += kMaximumGroup) {
+    for (std::size_t i = 0; i < group.conditions.size(); i += most) {
       const auto begin = group.conditions.begin() + static_cast<std::ptrdiff_t>(i);
-      const std::size_t count = std::min(kMaximumGroup, group.conditions.size() - i);
+      const std::size_t count = std::min(most, group.conditions.size() - i);
       out.push_back({group.sump_temperature_celsius,
                      group.inlet_temperature_rise_kelvin,
                      {begin, begin + static_cast<std::ptrdiff_t>(count)}});
@@ -145,6 +152,10 @@ std::string hash_of(const PointEvaluation& points) {
       }
     }
   }
+  if (points.with_contact) hash.add("contact figures\n");
+  for (const Elasticity& each : points.elasticities) {
+    hash.add("elasticity of " + each.figure + " by " + each.parameter + "\n");
+  }
   return hash.finish();
 }
 
@@ -156,7 +167,7 @@ std::optional<CampaignInputs> check_campaign(v1::Campaign request, const Resourc
   CampaignInputs out;
   out.table = take_table(request);
   out.requested = std::move(request);
-  check_attributes(out.table, found);
+  check_attributes(out.requested, out.table, found);
   check_weights(out.requested, found);
   check_rest(out.requested, out.table, found);
   v1::EvaluatePointsRequest points = points_request(out.requested, out.table);
@@ -168,6 +179,7 @@ std::optional<CampaignInputs> check_campaign(v1::Campaign request, const Resourc
   }
   if (!read || !found.empty()) return std::nullopt;
   out.points = std::move(*read);
+  out.columns = campaign_columns(out.requested).size();
   divide_groups(out.points);
   return out;
 }
@@ -207,7 +219,9 @@ v1::CostEstimate estimate_cost(const CampaignInputs& inputs) {
   for (const v1::PointCondition& each : inputs.requested.conditions()) {
     speeds.push_back(each.speed_kilometres_per_hour());
   }
-  return estimate_screening_cost(inputs.points.base.effective, inputs.points.candidates, speeds);
+  return estimate_screening_cost(
+      inputs.points.base.effective, inputs.points.candidates, speeds,
+      {.contact = inputs.points.with_contact, .elasticities = !inputs.points.elasticities.empty()});
 }
 
 }  // namespace tribodyn::server

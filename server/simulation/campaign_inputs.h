@@ -20,7 +20,8 @@ struct CampaignInputs {
   v1::Campaign requested;  ///< what the client set, without its columns of candidates
   v1::Campaign table;      ///< its columns of candidates, and nothing else
   PointEvaluation points;
-  std::string input_hash;  ///< SHA-256, 64 hex digits
+  std::size_t columns = 0;  ///< number of the columns that the store keeps
+  std::string input_hash;   ///< SHA-256, 64 hex digits
 };
 
 /// Checks the request, finds its resources and fills in defaults. Returns nullopt and adds all

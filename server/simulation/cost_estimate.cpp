@@ -14,6 +14,8 @@ struct Work {
 
 constexpr double kPreparationSeconds = 0.26e-3;  // [s] for each scene
 constexpr double kSensitivitySeconds = 4e-3;     // [s] for each point, at the usual tolerance
+constexpr double kContactFiguresFactor = 1.4;    // of a screened point (measured)
+constexpr double kElasticitySeconds = 0.9e-3;    // [s] for each screened point (measured)
 constexpr double kUsualTolerance = 1e-3;
 constexpr Work kQuasiStaticPoint{340, 0.25e-6};  // at the usual tolerance
 constexpr double kQuasiStaticOrder = 0.4;        // exponent of their growth with 1 / tolerance
@@ -141,11 +143,18 @@ v1::CostEstimate estimate_cost(const v1::Simulation& effective) {
 }
 
 v1::CostEstimate estimate_screening_cost(const v1::Simulation& effective, int candidates,
-                                         const std::vector<double>& speeds_kilometres_per_hour) {
+                                         const std::vector<double>& speeds_kilometres_per_hour,
+                                         const ScreenedExtras& extras) {
   v1::CostEstimate out;
   for (const double speed : speeds_kilometres_per_hour) {
     add_shot_point(speed, effective.solver_options(), out);
   }
+  double seconds = out.processor_seconds();
+  if (extras.contact) seconds *= kContactFiguresFactor;
+  if (extras.elasticities) {
+    seconds += kElasticitySeconds * static_cast<double>(speeds_kilometres_per_hour.size());
+  }
+  out.set_processor_seconds(seconds);
   out.set_contact_solutions(candidates * out.contact_solutions());
   out.set_processor_seconds(rounded(candidates * out.processor_seconds()));
   return out;

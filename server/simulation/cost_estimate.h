@@ -12,9 +12,16 @@ namespace tribodyn::server {
 /// shooting finds no attracting response and the march takes over.
 v1::CostEstimate estimate_cost(const v1::Simulation& effective);
 
+/// Figures of screened points beside the usual ones.
+struct ScreenedExtras {
+  bool contact = false;
+  bool elasticities = false;
+};
+
 /// Estimates the cost of points by screen_point() at these vehicle speeds [km/h], each for all
 /// candidates. `effective` has the solver options. Right within a factor of three.
 v1::CostEstimate estimate_screening_cost(const v1::Simulation& effective, int candidates,
-                                         const std::vector<double>& speeds_kilometres_per_hour);
+                                         const std::vector<double>& speeds_kilometres_per_hour,
+                                         const ScreenedExtras& extras);
 
 }  // namespace tribodyn::server

@@ -82,12 +82,12 @@ std::optional<ComparedFigures> figures_of(const EvaluatedPoint& point) {
                       {},
                       f.contact_loss};
   std::fill(out.value.begin() + kFilmRatio, out.value.end(), kNoNumber);
-  if (point.contact) {
-    out.value[kFilmRatio] = point.contact->film_ratio_minimum;
-    out.value[kContactTemperature] = point.contact->contact_temperature_maximum;
-    out.value[kFrictionCoefficient] = point.contact->friction_coefficient_mean;
-    out.value[kPressure] = point.contact->pressure_maximum;
-    out.value[kFlashTemperature] = point.contact->flash_temperature_maximum;
+  if (f.contact) {
+    out.value[kFilmRatio] = f.contact->film_ratio_minimum;
+    out.value[kContactTemperature] = f.contact->contact_temperature_maximum;
+    out.value[kFrictionCoefficient] = f.contact->friction_coefficient_mean;
+    out.value[kPressure] = f.contact->pressure_maximum;
+    out.value[kFlashTemperature] = f.contact->flash_temperature_rise_maximum;
   }
   const double relative_error = f.estimated_relative_error.value_or(0);
   for (int i = 0; i < kFigures; ++i) out.solver_error[i] = relative_error * std::abs(out.value[i]);
@@ -126,7 +126,7 @@ class FluidPoints {
         evaluation_(evaluation),
         gear_set_(gear_set),
         physical_(scene(evaluation.base)),
-        options_(std::get<PointStudy>(study(evaluation.base)).options) {
+        options_(point_options(evaluation)) {
     options_.progress = [&is_over](double) { return !is_over(); };
     inputs_.lubricant = *evaluation.base.lubricant;
     inputs_.lubricant.clear_measurements();
@@ -354,7 +354,7 @@ v1::ComparedPoint point_message(const ComputedFluid& fluid, std::size_t conditio
       figure_message(fluid, condition, kDteMinimum);
   *out.mutable_dynamic_transmission_error_maximum_metres() =
       figure_message(fluid, condition, kDteMaximum);
-  if (fluid.points[condition].contact) {
+  if (fluid.points[condition].figures->contact) {
     *out.mutable_film_ratio_minimum() = figure_message(fluid, condition, kFilmRatio);
     *out.mutable_contact_temperature_maximum_kelvin() =
         figure_message(fluid, condition, kContactTemperature);

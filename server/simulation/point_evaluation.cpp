@@ -142,10 +142,32 @@ std::vector<PointEvaluation::Group> groups_of(const v1::EvaluatePointsRequest& r
   return out;
 }
 
+using MutableColumn = google::protobuf::RepeatedField<double>* (v1::EvaluatePointsResponse::*)();
+
+/// The columns that contact_figures adds.
+constexpr std::pair<MutableColumn, double ContactSummary::*> kContactColumns[] = {
+    {&v1::EvaluatePointsResponse::mutable_film_ratio_minimum, &ContactSummary::film_ratio_minimum},
+    {&v1::EvaluatePointsResponse::mutable_film_ratio_mean, &ContactSummary::film_ratio_mean},
+    {&v1::EvaluatePointsResponse::mutable_contact_temperature_maximum_kelvin,
+     &ContactSummary::contact_temperature_maximum},
+    {&v1::EvaluatePointsResponse::mutable_contact_temperature_mean_kelvin,
+     &ContactSummary::contact_temperature_mean},
+    {&v1::EvaluatePointsResponse::mutable_viscous_loss_power_watts,
+     &ContactSummary::viscous_loss_power},
+    {&v1::EvaluatePointsResponse::mutable_boundary_loss_power_watts,
+     &ContactSummary::boundary_loss_power},
+    {&v1::EvaluatePointsResponse::mutable_mean_friction_coefficient,
+     &ContactSummary::friction_coefficient_mean},
+    {&v1::EvaluatePointsResponse::mutable_maximum_pressure_maximum_pascals,
+     &ContactSummary::pressure_maximum},
+    {&v1::EvaluatePointsResponse::mutable_flash_temperature_rise_maximum_kelvin,
+     &ContactSummary::flash_temperature_rise_maximum}};
+
 /// The rows of the answer.
 class Rows {
  public:
-  explicit Rows(int rows) {
+  explicit Rows(const PointEvaluation& evaluation) {
+    const int rows = evaluation.candidates * evaluation.conditions;
     for (auto* column :
          {out_.mutable_pinion_torque_newton_metres(), out_.mutable_wheel_torque_newton_metres(),
           out_.mutable_inefficiency_rms_percent(), out_.mutable_inefficiency_energy_mean_percent(),
@@ -160,6 +182,20 @@ class Rows {
     out_.mutable_settled()->Resize(rows, false);
     out_.mutable_period_in_mesh_cycles()->Resize(rows, 0);
     out_.mutable_model()->Resize(rows, v1::POINT_MODEL_UNSPECIFIED);
+    if (evaluation.with_contact) {
+      for (const auto& [mutable_column, member] : kContactColumns) {
+        (out_.*mutable_column)()->Resize(rows, kAbsent);
+      }
+    }
+    for (const Elasticity& each : evaluation.elasticities) {
+      v1::ElasticityColumn& column = *out_.add_elasticities();
+      column.set_figure(each.figure);
+      column.set_parameter(each.parameter);
+      column.mutable_values()->Resize(rows, kAbsent);
+    }
+    if (!evaluation.elasticities.empty()) {
+      out_.mutable_elasticities_one_sided()->Resize(rows, false);
+    }
   }
 
   void set(int row, const EvaluatedPoint& point) {
@@ -178,6 +214,15 @@ class Rows {
     out_.set_period_in_mesh_cycles(row, figures.period_in_mesh_cycles);
     out_.set_estimated_relative_error(row, figures.estimated_relative_error.value_or(kAbsent));
     out_.set_model(row, to_message(figures.model));
+    if (figures.contact && !out_.film_ratio_mean().empty()) {
+      for (const auto& [mutable_column, member] : kContactColumns) {
+        (out_.*mutable_column)()->Set(row, (*figures.contact).*member);
+      }
+    }
+    for (std::size_t i = 0; i < point.elasticities.size(); ++i) {
+      out_.mutable_elasticities(static_cast<int>(i))->set_values(row, point.elasticities[i]);
+    }
+    if (point.is_one_sided) out_.set_elasticities_one_sided(row, true);
   }
 
   void refuse(int row, const std::string& reason, const std::string& message) {
@@ -208,9 +253,33 @@ bool is_finite(const PointFigures& figures) {
   return true;
 }
 
+EvaluatedPoint refused_point(std::string reason, std::string message) {
+  EvaluatedPoint out;
+  out.refusal_reason = std::move(reason);
+  out.refusal_message = std::move(message);
+  return out;
+}
+
+EvaluatedPoint computed_point(PreparedScene& prepared, const OperatingCondition& condition,
+                              const PointOptions& options,
+                              const std::vector<Elasticity>& elasticities) {
+  EvaluatedPoint out;
+  out.figures = screen_point(prepared, condition, options);
+  if (!is_finite(*out.figures)) {
+    return refused_point("RESULT_NOT_FINITE", "a figure of the point is not finite");
+  }
+  if (elasticities.empty()) return out;
+  const auto& sensitivities = out.figures->sensitivities;
+  out.elasticities = elasticity_values(sensitivities, elasticities);
+  out.is_one_sided = sensitivities && sensitivities->one_sided;
+  out.figures->sensitivities.reset();
+  return out;
+}
+
 /// Computes the points of a scene at one group of conditions.
-void compute_group(const Scene& scene, const PointEvaluation::Group& group, bool with_contact,
-                   const PointOptions& options, const std::shared_ptr<PreparedGearSet>& gear_set,
+void compute_group(const Scene& scene, const PointEvaluation::Group& group,
+                   const std::vector<Elasticity>& elasticities, const PointOptions& options,
+                   const std::shared_ptr<PreparedGearSet>& gear_set,
                    std::vector<EvaluatedPoint>& out) {
   const auto at = [&out](int position) -> EvaluatedPoint& {
     return out[static_cast<std::size_t>(position)];
@@ -220,30 +289,42 @@ void compute_group(const Scene& scene, const PointEvaluation::Group& group, bool
     prepared.emplace(scene, gear_set);
   } catch (const Refusal& refusal) {
     for (const auto& [position, condition] : group.conditions) {
-      at(position) = {std::nullopt, {}, refusal.reason(), refusal.what()};
+      at(position) = refused_point(refusal.reason(), refusal.what());
     }
     return;
   }
   for (const auto& [position, condition] : group.conditions) {
     if (!options.progress(0)) throw Cancelled();
     try {
-      if (with_contact) {
-        const PointResult result = solve_prepared_point(*prepared, condition, options);
-        at(position).figures = main_figures(result);
-        at(position).contact = {result.film_ratio.minimum, result.contact_temperature.maximum,
-                                result.friction_coefficient.mean, result.maximum_pressure.maximum,
-                                result.flash_temperature_rise.maximum};
-      } else {
-        at(position).figures = screen_point(*prepared, condition, options);
-      }
-      if (!is_finite(*at(position).figures)) {
-        at(position) = {
-            std::nullopt, {}, "RESULT_NOT_FINITE", "a figure of the point is not finite"};
-      }
+      at(position) = computed_point(*prepared, condition, options, elasticities);
     } catch (const Refusal& refusal) {
-      at(position) = {std::nullopt, {}, refusal.reason(), refusal.what()};
+      at(position) = refused_point(refusal.reason(), refusal.what());
     }
   }
+}
+
+/// Computes the points of a lubricant at one group of conditions, and writes them to their
+/// positions in `out`. `physical` is the scene, whose lubricant must be this one and whose
+/// temperatures are set here. Throws Cancelled as soon as `options.progress` returns false.
+void evaluate_group(const PointEvaluation::Group& group,
+                    const std::vector<Elasticity>& elasticities, const v1::Lubricant& lubricant,
+                    Scene& physical, const TemperatureErrors& errors, const PointOptions& options,
+                    const std::shared_ptr<PreparedGearSet>& gear_set,
+                    std::vector<EvaluatedPoint>& out) {
+  const double sump = group.sump_temperature_celsius + errors.sump_kelvin;
+  const double rise = std::max(0.0, group.inlet_temperature_rise_kelvin + errors.inlet_rise_kelvin);
+  Violations inlet;
+  check_fluid_at_inlet(lubricant, sump, rise, "lubricant", inlet);
+  if (!inlet.empty()) {
+    for (const auto& [position, condition] : group.conditions) {
+      out[static_cast<std::size_t>(position)] =
+          refused_point("INVALID_AT_INLET", inlet.front().description);
+    }
+    return;
+  }
+  physical.sump_temperature = sump + kZeroCelsius;
+  physical.inlet_temperature_rise = rise;
+  compute_group(physical, group, elasticities, options, gear_set, out);
 }
 
 }  // namespace
@@ -261,6 +342,8 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
   check_message(request, "", violations);
   PointEvaluation out;
   out.columns = read_columns(request, violations);
+  out.with_contact = request.contact_figures();
+  out.elasticities = read_elasticities(request, violations);
   if (!out.columns.empty()) out.candidates = static_cast<int>(out.columns.front().values.size());
   out.conditions = request.conditions_size();
   if (out.conditions == 0) {
@@ -287,25 +370,11 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
   return out;
 }
 
-void evaluate_group(const PointEvaluation::Group& group, bool with_contact,
-                    const v1::Lubricant& lubricant, Scene& physical,
-                    const TemperatureErrors& errors, const PointOptions& options,
-                    const std::shared_ptr<PreparedGearSet>& gear_set,
-                    std::vector<EvaluatedPoint>& out) {
-  const double sump = group.sump_temperature_celsius + errors.sump_kelvin;
-  const double rise = std::max(0.0, group.inlet_temperature_rise_kelvin + errors.inlet_rise_kelvin);
-  Violations inlet;
-  check_fluid_at_inlet(lubricant, sump, rise, "lubricant", inlet);
-  if (!inlet.empty()) {
-    for (const auto& [position, condition] : group.conditions) {
-      out[static_cast<std::size_t>(position)] = {
-          std::nullopt, {}, "INVALID_AT_INLET", inlet.front().description};
-    }
-    return;
-  }
-  physical.sump_temperature = sump + kZeroCelsius;
-  physical.inlet_temperature_rise = rise;
-  compute_group(physical, group, with_contact, options, gear_set, out);
+PointOptions point_options(const PointEvaluation& evaluation) {
+  PointOptions out = std::get<PointStudy>(study(evaluation.base)).options;
+  out.contact_summary = evaluation.with_contact;
+  out.sensitivities = !evaluation.elasticities.empty();
+  return out;
 }
 
 std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluation,
@@ -316,7 +385,7 @@ std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluatio
   std::vector<EvaluatedPoint> out(static_cast<std::size_t>(evaluation.conditions));
   physical.lubricant = to_core(lubricant);
   for (const PointEvaluation::Group& group : evaluation.groups) {
-    evaluate_group(group, evaluation.with_contact, lubricant, physical, errors, options, gear_set,
+    evaluate_group(group, evaluation.elasticities, lubricant, physical, errors, options, gear_set,
                    out);
   }
   return out;
@@ -324,7 +393,7 @@ std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluatio
 
 CandidateScene::CandidateScene(const PointEvaluation& evaluation, std::function<bool()> goes_on)
     : evaluation_(evaluation),
-      options_(std::get<PointStudy>(study(evaluation.base)).options),
+      options_(point_options(evaluation)),
       physical_(server::scene(evaluation.base)),
       lubricant_(*evaluation.base.lubricant),
       surface_(*evaluation.base.surface) {
@@ -348,14 +417,14 @@ void CandidateScene::set_candidate(int candidate) {
 void CandidateScene::evaluate(const PointEvaluation::Group& group,
                               const std::shared_ptr<PreparedGearSet>& gear_set,
                               std::vector<EvaluatedPoint>& out) {
-  evaluate_group(group, evaluation_.with_contact, lubricant_, physical_, {}, options_, gear_set,
+  evaluate_group(group, evaluation_.elasticities, lubricant_, physical_, {}, options_, gear_set,
                  out);
 }
 
 v1::EvaluatePointsResponse evaluate_points(const PointEvaluation& evaluation,
                                            PreparedGearSets& gear_sets,
                                            const std::function<bool()>& is_over) {
-  Rows rows(evaluation.candidates * evaluation.conditions);
+  Rows rows(evaluation);
   CandidateScene candidate(evaluation, [&is_over] { return !is_over(); });
   const std::shared_ptr<PreparedGearSet> gear_set =
       gear_sets.take(evaluation.base.gear_set, candidate.scene());

@@ -9,6 +9,7 @@
 
 #include "server/contract/resource_names.h"
 #include "server/contract/violations.h"
+#include "server/simulation/point_elasticities.h"
 #include "server/simulation/prepared_gear_sets.h"
 #include "server/simulation/simulation_inputs.h"
 #include "tribodyn/v1/points.pb.h"
@@ -17,6 +18,8 @@ namespace tribodyn::server {
 
 /// Largest number of points of one request: candidates times conditions. They take 0.1 to 1 s.
 inline constexpr int kMaximumEvaluatedPoints = 2000;
+/// The same with elasticities. They take about 0.5 s.
+inline constexpr int kMaximumDifferentiatedPoints = 500;
 
 /// Points to evaluate: every candidate at every condition.
 struct PointEvaluation {
@@ -37,23 +40,17 @@ struct PointEvaluation {
   std::vector<Group> groups;
   int candidates = 1;
   int conditions = 0;
-  bool with_contact = false;  ///< points have ContactExtremes, for some six times the work
-};
-
-/// Extremes over the loaded flanks and the steady state, and the friction coefficient of the mesh.
-struct ContactExtremes {
-  double film_ratio_minimum;           ///< lambda_s [-]
-  double contact_temperature_maximum;  ///< T_c [K]
-  double friction_coefficient_mean;    ///< weighted with the load [-]
-  double pressure_maximum;             ///< p_max [Pa]
-  double flash_temperature_maximum;    ///< (dT_f)_av [K]
+  bool with_contact = false;             ///< figures have PointFigures::contact
+  std::vector<Elasticity> elasticities;  ///< that each point has
 };
 
 /// The figures of one point, or why it has none.
 struct EvaluatedPoint {
-  std::optional<PointFigures> figures;
-  std::optional<ContactExtremes> contact;  ///< if the evaluation is with_contact
-  std::string refusal_reason;              ///< UPPER_SNAKE_CASE; empty if there are figures
+  std::optional<PointFigures> figures;  ///< without sensitivities
+  /// Those of the evaluation; NaN where the point has none. Empty if there are no figures.
+  std::vector<double> elasticities;
+  bool is_one_sided = false;   ///< as PointSensitivities::one_sided
+  std::string refusal_reason;  ///< UPPER_SNAKE_CASE; empty if there are figures
   std::string refusal_message;
 };
 
@@ -74,19 +71,12 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
 /// differ, sorted.
 std::vector<std::string> candidate_parameter_names();
 
-/// Computes the points of a lubricant at one group of conditions by screen_point(), those
-/// `with_contact` by solve_prepared_point(), and writes them to their positions in `out`.
-/// `physical` is the scene, whose lubricant must be this one and whose temperatures are set here;
-/// `options.progress` must be set. Throws Cancelled as soon as it returns false.
-void evaluate_group(const PointEvaluation::Group& group, bool with_contact,
-                    const v1::Lubricant& lubricant, Scene& physical,
-                    const TemperatureErrors& errors, const PointOptions& options,
-                    const std::shared_ptr<PreparedGearSet>& gear_set,
-                    std::vector<EvaluatedPoint>& out);
+/// Returns the options of all points of an evaluation, without progress.
+PointOptions point_options(const PointEvaluation& evaluation);
 
 /// Computes the points of a lubricant at all conditions of the evaluation by screen_point().
-/// `physical` is the scene, whose lubricant and temperatures are set here; `options.progress` must
-/// be set. Throws Cancelled as soon as it returns false.
+/// `physical` is the scene, whose lubricant and temperatures are set here; `options` are its
+/// point_options() with progress set. Throws Cancelled as soon as that returns false.
 std::vector<EvaluatedPoint> evaluate_conditions(const PointEvaluation& evaluation,
                                                 const v1::Lubricant& lubricant, Scene& physical,
                                                 const TemperatureErrors& errors,

@@ -200,7 +200,7 @@ class CombinationPoints {
       : explanation_(explanation),
         gear_set_(gear_set),
         physical_(scene(explanation.first.evaluation.base)),
-        options_(std::get<PointStudy>(study(explanation.first.evaluation.base)).options) {
+        options_(point_options(explanation.first.evaluation)) {
     options_.progress = [&is_over](double) { return !is_over(); };
   }
 

@@ -184,6 +184,31 @@ TEST(Screening, RanksByTheWeightedMean) {
   EXPECT_THAT(csv, HasSubstr("\n2,a,0.1,\"1,5\","));
 }
 
+TEST(Screening, ContactFiguresAreTheLeastFilmTheHighestTemperatureAndMeans) {
+  Screening screening = sample_screening();
+  EXPECT_THROW(check_front_column(screening, "film_ratio_minimum"), Failure);
+  screening.request.set_contact_figures(true);
+  screening.points[2].contact = {0.9, 1.2, 400, 380, 30, 8, 0.02, 1e9, 40};
+  screening.points[3].contact = {0.8, 1.0, 390, 370, 10, 4, 0.06, 2e9, 30};
+  const std::vector<CandidateFigures> ranking = ranked(screening);
+  EXPECT_THAT(ranking[0].contact,
+              testing::ElementsAre(0.8, 1.15, 400, 377.5, 25, 7, 0.03, 2e9, 40));
+  const std::string report = screening_report(screening, ranking, {}, 1, OutputFormat::kTable);
+  EXPECT_THAT(report, HasSubstr("least film ratio"));
+  EXPECT_THAT(report, HasSubstr("127"));  // 400 K in degrees Celsius
+  EXPECT_THAT(screening_report(screening, ranking, {}, 1, OutputFormat::kJson),
+              HasSubstr("\"film_ratio_minimum\": 0.8, \"film_ratio_mean\": 1.15"));
+  const std::vector<CsvLine> lines =
+      read_csv(screening_report(screening, ranking, {}, 1, OutputFormat::kCsv));
+  EXPECT_EQ(lines[0].cells.size(), lines[1].cells.size());
+  EXPECT_EQ(lines[0].cells.size(), lines[3].cells.size());
+  const ScreeningFront front = screening_front(screening, ranking, "film_ratio_minimum", true);
+  EXPECT_EQ(front.values[1], 0.8);
+  std::ostringstream csv;
+  write_screening_csv(screening, csv);
+  EXPECT_THAT(csv.str(), HasSubstr(",0.001,0.9,1.2,400,380,30,8,0.02,1e+09,40,false,"));
+}
+
 TEST(Screening, WritesEveryPointAsCsv) {
   std::ostringstream csv;
   write_screening_csv(sample_screening(), csv);
@@ -198,7 +223,7 @@ TEST(Screening, WritesEveryPointAsCsv) {
 
 TEST(Screening, PointsThatAreNotComputedSaySo) {
   Screening screening = sample_screening();
-  std::vector<std::vector<double>> columns(screened_columns().size(), {std::nan("")});
+  std::vector<std::vector<double>> columns(screened_columns(false).size(), {std::nan("")});
   columns.back()[0] = -1;
   screening.points[0] = screened_point(columns, 0);
   EXPECT_EQ(refusal_of(screening, 0, 0).reason(), "NOT_COMPUTED");

@@ -205,6 +205,74 @@ TEST_F(CampaignTest, HasTheBitsOfEvaluatePoints) {
   expect_column("model", figures.model());
 }
 
+TEST_F(CampaignTest, ColumnsOnRequestHaveTheBitsOfEvaluatePoints) {
+  v1::Campaign campaign = campaign_of(10);
+  campaign.set_contact_figures(true);
+  campaign.add_elasticity_parameters("lubricant.relaxation_time_seconds");
+  campaign.add_elasticity_parameters("surface.asperity_friction_coefficient");
+  campaign.add_elasticity_figures("inefficiency_energy_mean_percent");
+  campaign.add_elasticity_figures("film_ratio_mean");
+  const std::string name = create(campaign);
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  v1::EvaluatePointsRequest points;
+  points.set_lubricant(campaign.lubricant());
+  *points.mutable_candidate_columns() = campaign.candidate_columns();
+  *points.mutable_conditions() = campaign.conditions();
+  points.set_contact_figures(true);
+  *points.mutable_elasticity_parameters() = campaign.elasticity_parameters();
+  *points.mutable_elasticity_figures() = campaign.elasticity_figures();
+  Application application = bench_.application();
+  const auto expected = evaluate_points(application, points);
+  ASSERT_TRUE(expected.ok());
+  const Table table = read(name);
+  EXPECT_EQ(table.size(), kCampaignColumns.size() + kContactFigureColumns.size() + 5);
+  const v1::EvaluatePointsResponse& figures = expected.message();
+  const auto expect_column = [&](const std::string& column, const auto& values) {
+    EXPECT_TRUE(have_equal_bits(table.at(column), {values.begin(), values.end()})) << column;
+  };
+  expect_column("mesh_loss_power_watts", figures.mesh_loss_power_watts());
+  expect_column("film_ratio_minimum", figures.film_ratio_minimum());
+  expect_column("film_ratio_mean", figures.film_ratio_mean());
+  expect_column("contact_temperature_maximum_kelvin", figures.contact_temperature_maximum_kelvin());
+  expect_column("contact_temperature_mean_kelvin", figures.contact_temperature_mean_kelvin());
+  expect_column("viscous_loss_power_watts", figures.viscous_loss_power_watts());
+  expect_column("boundary_loss_power_watts", figures.boundary_loss_power_watts());
+  expect_column("mean_friction_coefficient", figures.mean_friction_coefficient());
+  expect_column("maximum_pressure_maximum_pascals", figures.maximum_pressure_maximum_pascals());
+  expect_column("flash_temperature_rise_maximum_kelvin",
+                figures.flash_temperature_rise_maximum_kelvin());
+  expect_column("elasticities_one_sided", figures.elasticities_one_sided());
+  ASSERT_EQ(figures.elasticities_size(), 4);
+  for (const v1::ElasticityColumn& each : figures.elasticities()) {
+    expect_column("elasticity." + each.figure() + "." + each.parameter(), each.values());
+  }
+}
+
+TEST_F(CampaignTest, ARefusedRowHasNaNInColumnsOnRequest) {
+  v1::Campaign campaign = campaign_of(1);
+  campaign.set_contact_figures(true);
+  campaign.add_elasticity_parameters("lubricant.relaxation_time_seconds");
+  v1::CandidateColumn& column = *campaign.add_candidate_columns();
+  column.set_path("lubricant.vogel_reference_temperature_kelvin");
+  column.add_values(350);
+  const std::string name = create(campaign);
+  ASSERT_TRUE(reaches(name, v1::Campaign::SUCCEEDED));
+  for (const auto& [column_name, values] : read(name)) {
+    if (column_name == "refusal_number") continue;
+    for (const double value : values) EXPECT_TRUE(std::isnan(value)) << column_name;
+  }
+}
+
+TEST_F(CampaignTest, ItsHashDependsOnTheColumnsOnRequest) {
+  const v1::Campaign plain = campaign_of(1);
+  v1::Campaign with_contact = plain, with_elasticities = plain;
+  with_contact.set_contact_figures(true);
+  with_elasticities.add_elasticity_parameters("lubricant.relaxation_time_seconds");
+  const std::string hash = get(create(plain)).input_hash();
+  EXPECT_NE(get(create(with_contact)).input_hash(), hash);
+  EXPECT_NE(get(create(with_elasticities)).input_hash(), hash);
+}
+
 TEST_F(CampaignTest, TellsItsProgressAndWhatItRestsOn) {
   const std::string name = create(campaign_of(50));
   EXPECT_EQ(name, "campaigns/1");

@@ -133,6 +133,122 @@ TEST(EvaluatePoints, WithoutColumnsTheBaseIsTheOnlyCandidate) {
   EXPECT_EQ(out.lubricant_revision(), "lubricants/paper-fluid-1@1");
 }
 
+TEST(EvaluatePoints, ContactFiguresAgreeWithSimulationsAndChangeNoBitOfTheOthers) {
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  const v1::EvaluatePointsResponse without = evaluate(request);
+  EXPECT_EQ(without.film_ratio_minimum_size(), 0);
+  request.set_contact_figures(true);
+  const v1::EvaluatePointsResponse out = evaluate(request);
+  ASSERT_EQ(out.mean_friction_coefficient_size(), 18);
+  for (int row = 0; row < 18; ++row) {
+    SCOPED_TRACE(row);
+    EXPECT_EQ(out.mesh_loss_power_watts(row), without.mesh_loss_power_watts(row));
+    const PointResult alone = simulated(request, row / 6, row % 6);
+    const auto agrees = [](double screened, double simulated_value, double error) {
+      EXPECT_NEAR(screened, simulated_value, error * std::abs(simulated_value));
+    };
+    // Means are as exact as losses; extremes lie between the steps of a grid.
+    agrees(out.film_ratio_mean(row), alone.film_ratio.mean, 2e-3);
+    agrees(out.contact_temperature_mean_kelvin(row), alone.contact_temperature.mean, 2e-4);
+    agrees(out.viscous_loss_power_watts(row), alone.viscous_loss_power, 3e-3);
+    agrees(out.boundary_loss_power_watts(row), alone.boundary_loss_power, 1e-2);
+    agrees(out.mean_friction_coefficient(row), alone.friction_coefficient.mean, 3e-3);
+    agrees(out.film_ratio_minimum(row), alone.film_ratio.minimum, 2e-2);
+    agrees(out.contact_temperature_maximum_kelvin(row), alone.contact_temperature.maximum, 5e-3);
+    agrees(out.maximum_pressure_maximum_pascals(row), alone.maximum_pressure.maximum, 5e-3);
+    agrees(out.flash_temperature_rise_maximum_kelvin(row), alone.flash_temperature_rise.maximum,
+           2e-2);
+    EXPECT_NEAR(out.viscous_loss_power_watts(row) + out.boundary_loss_power_watts(row),
+                out.mesh_loss_power_watts(row), 3e-3 * out.mesh_loss_power_watts(row));
+    EXPECT_GT(out.mean_friction_coefficient(row), 0.005);
+    EXPECT_LT(out.mean_friction_coefficient(row), 0.1);
+  }
+}
+
+TEST(EvaluatePoints, ElasticitiesAreTheExponentsOfSmallChanges) {
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  request.clear_candidate_columns();
+  request.clear_conditions();
+  request.add_conditions()->set_speed_kilometres_per_hour(30);
+  request.add_elasticity_figures("inefficiency_energy_mean_percent");
+  request.add_elasticity_figures("film_ratio_mean");
+  request.add_elasticity_parameters("lubricant.pressure_viscosity_coefficient_per_pascal");
+  request.add_elasticity_parameters("surface.asperity_friction_coefficient");
+  const v1::EvaluatePointsResponse at = evaluate(request);
+  ASSERT_EQ(at.elasticities_size(), 4);
+  EXPECT_EQ(at.elasticities_one_sided_size(), 1);
+  EXPECT_EQ(at.model(0), v1::POINT_MODEL_FULL);
+  EXPECT_EQ(at.elasticities(2).figure(), "film_ratio_mean");
+  EXPECT_EQ(at.elasticities(3).parameter(), "surface.asperity_friction_coefficient");
+  constexpr double kStep = 1e-3;
+  for (int i = 0; i < 4; ++i) {
+    SCOPED_TRACE(at.elasticities(i).figure() + " by " + at.elasticities(i).parameter());
+    v1::EvaluatePointsRequest moved = request;
+    const std::string& path = at.elasticities(i).parameter();
+    const double usual =
+        path.starts_with("surface")
+            ? seed<v1::Surface>("surfaces/run-in").asperity_friction_coefficient()
+            : seed<v1::Lubricant>(request.lubricant()).pressure_viscosity_coefficient_per_pascal();
+    add_column(moved, path, {usual * std::exp(-kStep), usual * std::exp(kStep)});
+    moved.set_contact_figures(true);
+    const v1::EvaluatePointsResponse beside = evaluate(moved);
+    const auto& values =
+        i < 2 ? beside.inefficiency_energy_mean_percent() : beside.film_ratio_mean();
+    const double difference = std::log(values[1] / values[0]) / (2 * kStep);
+    EXPECT_NEAR(at.elasticities(i).values(0), difference, 2e-3);
+  }
+}
+
+TEST(EvaluatePoints, EveryParameterOfACandidateHasElasticities) {
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  request.clear_candidate_columns();
+  request.mutable_conditions()->DeleteSubrange(1, 5);
+  for (const std::string& each : candidate_parameter_names()) {
+    request.add_elasticity_parameters(each);
+  }
+  const v1::EvaluatePointsResponse out = evaluate(request);
+  ASSERT_EQ(out.elasticities_size(), request.elasticity_parameters_size());
+  for (const v1::ElasticityColumn& each : out.elasticities()) {
+    EXPECT_TRUE(std::isfinite(each.values(0)) && each.values(0) != 0) << each.parameter();
+  }
+}
+
+// There is no derivative across impacts: the point has its figures all the same.
+TEST(EvaluatePoints, ElasticitiesOfPointsThatLoseContactAreNaN) {
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  request.clear_candidate_columns();
+  request.clear_conditions();
+  for (const double speed : {40.0, 72.0, 76.0, 80.0}) {
+    request.add_conditions()->set_speed_kilometres_per_hour(speed);
+  }
+  request.add_elasticity_parameters("lubricant.relaxation_time_seconds");
+  const v1::EvaluatePointsResponse out = evaluate(request);
+  int lost = 0;
+  for (int k = 0; k < 4; ++k) {
+    lost += out.contact_loss(k) ? 1 : 0;
+    EXPECT_EQ(std::isnan(out.elasticities(0).values(k)), out.contact_loss(k)) << k;
+    EXPECT_GT(out.mesh_loss_power_watts(k), 0);
+  }
+  EXPECT_GT(lost, 0);
+}
+
+TEST(EvaluatePoints, ElasticitiesThatDoNotExistAreRefusedByName) {
+  v1::EvaluatePointsRequest request = request_of_candidates();
+  request.add_elasticity_figures("film_ratio_minimum");
+  EXPECT_THAT(violations_of(request),
+              testing::AllOf(HasSubstr("elasticity_figures[0]: \"film_ratio_minimum\" is no figure "
+                                       "that is differentiated"),
+                             HasSubstr("elasticity_parameters: not set; allowed: at least one")));
+  request.set_elasticity_figures(0, "film_ratio_mean");
+  request.add_elasticity_parameters("lubricant.relaxation_time_second");
+  request.add_elasticity_parameters("lubricant.relaxation_time_seconds");
+  request.add_elasticity_parameters("lubricant.relaxation_time_seconds");
+  EXPECT_THAT(violations_of(request),
+              testing::AllOf(HasSubstr("did you mean \"lubricant.relaxation_time_seconds\"?"),
+                             HasSubstr("elasticity_parameters[2]: "
+                                       "\"lubricant.relaxation_time_seconds\" is listed twice")));
+}
+
 // A candidate that solidifies at the inlet says nothing about the others.
 TEST(EvaluatePoints, ARefusedRowHasItsReasonAndNoFigures) {
   v1::EvaluatePointsRequest request = request_of_candidates();
@@ -187,6 +303,13 @@ TEST(EvaluatePoints, TheBasesAreThoseOfTheStore) {
   ASSERT_TRUE(out.ok());
   EXPECT_EQ(out.message().inefficiency_rms_percent(4),
             evaluate(request).inefficiency_rms_percent(4));
+  v1::EvaluatePointsRequest many = request_of_candidates();
+  many.clear_candidate_columns();
+  add_column(many, "lubricant.havriliak_negami_beta", std::vector<double>(84, 0.5));
+  many.add_elasticity_parameters("lubricant.havriliak_negami_beta");
+  EXPECT_THAT(complaints(evaluate_points(application, many).error()),
+              HasSubstr("84 candidates at 6 conditions are 504 points; allowed: at most 500 with "
+                        "elasticities in one request"));
   request.set_surface("surfaces/run-im");
   EXPECT_THAT(complaints(evaluate_points(application, request).error()),
               HasSubstr("did you mean \"surfaces/run-in\"?"));

@@ -171,7 +171,7 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
               [&flags] { flags.leaves_out_uncertainty = true; });
   list.text("--pareto", "COLUMN",
             "Also print the Pareto front of least inefficiency and least COLUMN, a column of the "
-            "table, e.g. cost.",
+            "table, e.g. cost, or of --contact-figures, e.g. film_ratio_minimum.",
             [&flags](const std::string& column) { flags.pareto_column = column; });
   list.toggle("--pareto-most", "In the Pareto front more of the column is better.",
               [&flags] { flags.wants_most = true; });
@@ -181,6 +181,10 @@ void add_screen_flags(FlagList& list, ScreenFlags& flags) {
               [&flags] { flags.wants_effects = true; });
   add_plot_flag(list, "Also draw what --pareto and --effects compute, as SVG.", flags.plot_path);
   list.group("Results");
+  list.toggle("--contact-figures",
+              "Also compute film ratio, pressure and temperatures of the contacts, viscous and "
+              "boundary loss and the friction coefficient; takes two fifths longer.",
+              [&request] { request.set_contact_figures(true); });
   list.whole_number("--top", {"candidates", "1 to 1000000", "20"},
                     "Candidates that the table shows, the best first; --output csv and json have "
                     "all of them",
@@ -226,6 +230,7 @@ void check_campaign_flags(const ScreenFlags& flags, Complaints& complaints) {
       {"--surface", !request.surface().empty()},
       {"--vehicle", !request.vehicle().empty()},
       {"--tolerance", request.tolerance() != 0},
+      {"--contact-figures", request.contact_figures()},
       {"options of the model", request.model_options().ByteSizeLong() > 0}};
   for (const auto& [flag, is_given] : given) {
     if (!is_given) continue;
@@ -328,7 +333,7 @@ Screening prepared_screening(ScreenFlags& flags, const v1::Schema& schema, Conne
       base_of_rows(connection, kind_of(*v1::Lubricant::descriptor()), out.request.lubricant());
   base.stated = dynamic_cast<const v1::Lubricant&>(*stated);
   out.table = read_candidates(text, flags.path, base, flags.carried);
-  if (!flags.pareto_column.empty()) front_column(out.table, flags.pareto_column);
+  if (!flags.pareto_column.empty()) check_front_column(out, flags.pareto_column);
   if (!out.table.note.empty()) std::cerr << "tribodyn: " << printable(out.table.note) << "\n";
   characterise_candidates(connection, base, out.table);
   check_candidate_ranges(schema, out.table);
@@ -555,6 +560,8 @@ Command screen_command() {
        "tribodyn screen candidates.csv --like my-oil --speeds 20,60 --weights 1,2 --csv all.csv",
        "tribodyn screen oils.csv --like my-oil --uncertainty pressure-viscosity=3% --pareto cost",
        "tribodyn screen oils.csv --like my-oil --effects --plot screening.svg",
+       "tribodyn screen oils.csv --like my-oil --contact-figures --pareto film_ratio_minimum "
+       "--pareto-most",
        "tribodyn screen candidates.csv --like my-oil --output csv",
        "tribodyn screen --campaign 12 --weights 2,1,1"},
       {},

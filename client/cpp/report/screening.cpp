@@ -55,10 +55,14 @@ Cells condition_cells(const v1::PointCondition& condition) {
   return out;
 }
 
-Cells figure_cells(const ScreenedPoint& point, const v1::PointRefusal& refusal) {
+Cells figure_cells(const ScreenedPoint& point, bool has_contact_figures,
+                   const v1::PointRefusal& refusal) {
   Cells out;
   for (std::size_t i = 0; i < point.figures.size(); ++i) {
     out.push_back(number_cell(screened_figures()[i], point.figures[i]));
+  }
+  for (std::size_t i = 0; has_contact_figures && i < point.contact.size(); ++i) {
+    out.push_back(number_cell(contact_figures_of_points()[i], point.contact[i]));
   }
   out.push_back({kStateColumns[0], point.contact_loss ? "true" : "false", false});
   out.push_back({kStateColumns[1], point.settled ? "true" : "false", false});
@@ -121,7 +125,9 @@ void write_points(const Screening& screening, std::string (*part)(const Cells&),
     const std::string candidate = begin + part(candidate_cells(screening, i));
     for (std::size_t k = 0; k < screening.conditions(); ++k) {
       out << candidate << conditions[k]
-          << part(figure_cells(screening.point(i, k), refusal_of(screening, i, k))) << origin;
+          << part(figure_cells(screening.point(i, k), screening.has_contact_figures(),
+                               refusal_of(screening, i, k)))
+          << origin;
     }
   }
 }
@@ -141,6 +147,20 @@ const std::array<const char*, ScreenedPoint::kFigures>& screened_figures() {
   return kNames;
 }
 
+const std::array<const char*, ScreenedPoint::kContactFigures>& contact_figures_of_points() {
+  static constexpr std::array<const char*, ScreenedPoint::kContactFigures> kNames = {
+      "film_ratio_minimum",
+      "film_ratio_mean",
+      "contact_temperature_maximum_kelvin",
+      "contact_temperature_mean_kelvin",
+      "viscous_loss_power_watts",
+      "boundary_loss_power_watts",
+      "mean_friction_coefficient",
+      "maximum_pressure_maximum_pascals",
+      "flash_temperature_rise_maximum_kelvin"};
+  return kNames;
+}
+
 ScreenedPoint screened_point(const v1::EvaluatePointsResponse& answer, int row) {
   ScreenedPoint out;
   out.figures = {answer.pinion_torque_newton_metres(row),
@@ -151,6 +171,17 @@ ScreenedPoint screened_point(const v1::EvaluatePointsResponse& answer, int row) 
                  answer.dynamic_transmission_error_minimum_metres(row),
                  answer.dynamic_transmission_error_maximum_metres(row),
                  answer.estimated_relative_error(row)};
+  if (!answer.film_ratio_mean().empty()) {
+    out.contact = {answer.film_ratio_minimum(row),
+                   answer.film_ratio_mean(row),
+                   answer.contact_temperature_maximum_kelvin(row),
+                   answer.contact_temperature_mean_kelvin(row),
+                   answer.viscous_loss_power_watts(row),
+                   answer.boundary_loss_power_watts(row),
+                   answer.mean_friction_coefficient(row),
+                   answer.maximum_pressure_maximum_pascals(row),
+                   answer.flash_temperature_rise_maximum_kelvin(row)};
+  }
   out.contact_loss = answer.contact_loss(row);
   out.settled = answer.settled(row);
   out.period_in_mesh_cycles = answer.period_in_mesh_cycles(row);
@@ -159,10 +190,13 @@ ScreenedPoint screened_point(const v1::EvaluatePointsResponse& answer, int row) 
   return out;
 }
 
-std::vector<std::string> screened_columns() {
+std::vector<std::string> screened_columns(bool has_contact_figures) {
   std::vector<std::string> out(screened_figures().begin(), screened_figures().end());
   out.insert(out.end(),
              {"contact_loss", "settled", "period_in_mesh_cycles", "model", "refusal_number"});
+  if (has_contact_figures) {
+    out.insert(out.end(), contact_figures_of_points().begin(), contact_figures_of_points().end());
+  }
   return out;
 }
 
@@ -180,6 +214,7 @@ ScreenedPoint screened_point(const std::vector<std::vector<double>>& columns, st
   out.period_in_mesh_cycles = next();
   out.model = static_cast<v1::PointModel>(next());
   out.refusal_number = next();
+  for (std::size_t i = 0; column < columns.size(); ++i) out.contact[i] = columns[column++][row];
   return out;
 }
 
@@ -203,7 +238,8 @@ v1::PointRefusal refusal_of(const Screening& screening, std::size_t candidate,
 
 void write_screening_csv(const Screening& screening, std::ostream& out) {
   out << csv_header_part(candidate_cells(screening, 0)) << ","
-      << csv_header_part(condition_cells({})) << "," << csv_header_part(figure_cells({}, {})) << ","
+      << csv_header_part(condition_cells({})) << ","
+      << csv_header_part(figure_cells({}, screening.has_contact_figures(), {})) << ","
       << csv_header_part(origin_cells(screening.base)) << "\n";
   write_points(screening, csv_part, "", ",", "", out);
 }

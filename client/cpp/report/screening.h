@@ -17,6 +17,20 @@ struct ScreenedPoint {
   static constexpr std::size_t kFigures = 8;
   enum Figure { kPinionTorque, kWheelTorque, kRms, kEnergyMean, kLossPower, kLeast, kMost, kError };
   std::array<double, kFigures> figures = {};
+  /// Numbers of the columns that contact_figures adds, in the order of contact_figures_of_points().
+  static constexpr std::size_t kContactFigures = 9;
+  enum ContactFigure {
+    kLeastFilmRatio,
+    kMeanFilmRatio,
+    kHighestTemperature,
+    kMeanTemperature,
+    kViscousLoss,
+    kBoundaryLoss,
+    kFriction,
+    kHighestPressure,
+    kHighestFlashTemperature
+  };
+  std::array<double, kContactFigures> contact = {};
   bool contact_loss = false;
   bool settled = false;
   int period_in_mesh_cycles = 0;
@@ -27,12 +41,13 @@ struct ScreenedPoint {
 
 /// Returns the names of the figures, which end in their units.
 const std::array<const char*, ScreenedPoint::kFigures>& screened_figures();
+const std::array<const char*, ScreenedPoint::kContactFigures>& contact_figures_of_points();
 
 /// Returns row `row` of an answer.
 ScreenedPoint screened_point(const v1::EvaluatePointsResponse& answer, int row);
 
-/// Returns the columns of a campaign that hold its points.
-std::vector<std::string> screened_columns();
+/// Returns the columns of a campaign that hold its points, those of contact_figures last.
+std::vector<std::string> screened_columns(bool has_contact_figures);
 /// Returns row `row` of these columns.
 ScreenedPoint screened_point(const std::vector<std::vector<double>>& columns, std::size_t row);
 
@@ -50,6 +65,7 @@ struct Screening {
   std::vector<v1::PointRefusal> refusals;
 
   std::size_t conditions() const { return weights.size(); }
+  bool has_contact_figures() const { return request.contact_figures(); }
   const ScreenedPoint& point(std::size_t candidate, std::size_t condition) const {
     return points[candidate * conditions() + condition];
   }

@@ -123,6 +123,26 @@ std::string plus_text(double value, int places) {
   return (value > 0 ? "+" : "") + fixed(value, places);
 }
 
+/// Returns the numbers of a column of the table, or else of a contact figure, by candidate.
+std::vector<double> front_values(const Screening& screening,
+                                 const std::vector<CandidateFigures>& ranking,
+                                 const std::string& column) {
+  check_front_column(screening, column);
+  const CandidateTable& table = screening.table;
+  const auto found = std::find(table.headers.begin(), table.headers.end(), column);
+  if (found != table.headers.end()) {
+    return numbers_of_column(table, static_cast<std::size_t>(found - table.headers.begin()));
+  }
+  const auto& figures = contact_figures_of_points();
+  const auto figure =
+      static_cast<std::size_t>(std::find(figures.begin(), figures.end(), column) - figures.begin());
+  std::vector<double> out(table.size(), kNoValue);
+  for (const CandidateFigures& each : ranking) {
+    if (each.refusal.empty()) out[each.candidate] = each.contact[figure];
+  }
+  return out;
+}
+
 }  // namespace
 
 RankingConfidence ranking_confidence(const std::vector<CandidateFigures>& ranking,
@@ -170,15 +190,21 @@ RankingConfidence ranking_confidence(const std::vector<CandidateFigures>& rankin
   return out;
 }
 
-std::size_t front_column(const CandidateTable& table, const std::string& column) {
-  const auto found = std::find(table.headers.begin(), table.headers.end(), column);
-  if (found != table.headers.end()) {
-    return static_cast<std::size_t>(found - table.headers.begin());
+void check_front_column(const Screening& screening, const std::string& column) {
+  std::vector<std::string> names = screening.table.headers;
+  if (screening.has_contact_figures()) {
+    names.insert(names.end(), contact_figures_of_points().begin(),
+                 contact_figures_of_points().end());
   }
-  const std::string meant = nearest(column, table.headers);
-  throw Failure(kExitUsage, "--pareto: the table has no column '" + printable(column) + "'" +
-                                (meant.empty() ? "; it has " + joined(table.headers, ", ")
-                                               : " (is " + meant + " meant?)"));
+  if (std::find(names.begin(), names.end(), column) != names.end()) return;
+  const auto& figures = contact_figures_of_points();
+  const bool is_figure = std::find(figures.begin(), figures.end(), column) != figures.end();
+  const std::string meant = nearest(column, names);
+  throw Failure(kExitUsage,
+                "--pareto: the table has no column '" + printable(column) + "'" +
+                    (is_figure       ? "; --contact-figures computes it"
+                     : meant.empty() ? "; it has " + joined(screening.table.headers, ", ")
+                                     : " (is " + meant + " meant?)"));
 }
 
 ScreeningFront screening_front(const Screening& screening,
@@ -187,7 +213,7 @@ ScreeningFront screening_front(const Screening& screening,
   ScreeningFront out;
   out.column = column;
   out.wants_most = wants_most;
-  out.values = numbers_of_column(screening.table, front_column(screening.table, column));
+  out.values = front_values(screening, ranking, column);
   std::vector<double> inefficiencies, values;
   for (const CandidateFigures& each : ranking) {
     const double value = each.refusal.empty() ? out.values[each.candidate] : kNoValue;

@@ -19,18 +19,17 @@ RankingConfidence ranking_confidence(const std::vector<CandidateFigures>& rankin
 
 /// The front of least inefficiency and least or most of a column.
 struct ScreeningFront {
-  std::string column;              ///< as typed in the table
+  std::string column;              ///< as typed in the table, or a contact figure
   bool wants_most = false;         ///< more of the column is better
   std::vector<double> values;      ///< by candidate; NaN without a number
   std::vector<std::size_t> front;  ///< candidates, by ascending inefficiency
 };
 
-/// Returns the index of a column. Throws Failure (kExitUsage), naming --pareto, if the table has no
-/// such column.
-std::size_t front_column(const CandidateTable& table, const std::string& column);
+/// Throws Failure (kExitUsage), naming --pareto, if the column is neither one of the table nor a
+/// contact figure of the screening.
+void check_front_column(const Screening& screening, const std::string& column);
 
-/// Returns the front. Throws Failure (kExitUsage), naming --pareto, if the table has no such column
-/// or if it has no numbers.
+/// Returns the front. Throws as check_front_column(), and if the column has no numbers.
 ScreeningFront screening_front(const Screening& screening,
                                const std::vector<CandidateFigures>& ranking,
                                const std::string& column, bool wants_most);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <map>
 
 #include "client/cpp/text/csv.h"
@@ -34,6 +36,7 @@ template <class PointOf, class MessageOf>
 CandidateFigures weighted_figures(const Screening& screening, const PointOf& point_of,
                                   const MessageOf& message_of) {
   CandidateFigures out;
+  out.contact[ScreenedPoint::kLeastFilmRatio] = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < screening.conditions(); ++k) {
     const ScreenedPoint point = point_of(k);
     const double energy_mean = point.figures[ScreenedPoint::kEnergyMean];
@@ -52,6 +55,21 @@ CandidateFigures weighted_figures(const Screening& screening, const PointOf& poi
     out.solver_error += weight * std::abs(energy_mean) * (std::isfinite(error) ? error : 0);
     out.loss_power += weight * point.figures[ScreenedPoint::kLossPower];
     out.contact_loss = out.contact_loss || point.contact_loss;
+    for (std::size_t i = 0; i < point.contact.size(); ++i) {
+      double& figure = out.contact[i];
+      switch (i) {
+        case ScreenedPoint::kLeastFilmRatio:
+          figure = std::min(figure, point.contact[i]);
+          break;
+        case ScreenedPoint::kHighestTemperature:
+        case ScreenedPoint::kHighestPressure:
+        case ScreenedPoint::kHighestFlashTemperature:
+          figure = std::max(figure, point.contact[i]);
+          break;
+        default:
+          figure += weight * point.contact[i];
+      }
+    }
   }
   return out;
 }
@@ -148,6 +166,15 @@ std::string verdict_of(const CandidateConfidence* confidence, std::size_t positi
   return (confidence->is_tied ? "tie, " : "worse, ") + probability;
 }
 
+/// Returns the contact figures that the ranking shows on a terminal.
+std::vector<std::string> contact_cells(const CandidateFigures& figures) {
+  constexpr double kZeroCelsius = 273.15;  // [K]
+  return {significant(figures.contact[ScreenedPoint::kBoundaryLoss], 3),
+          fixed(figures.contact[ScreenedPoint::kLeastFilmRatio], 2),
+          fixed(figures.contact[ScreenedPoint::kHighestTemperature] - kZeroCelsius, 0),
+          fixed(figures.contact[ScreenedPoint::kFriction], 4)};
+}
+
 std::string ranking_table(const Screening& screening, const std::vector<CandidateFigures>& ranking,
                           const RankingConfidence& confidence, std::size_t top) {
   using Align = Table::Align;
@@ -162,6 +189,13 @@ std::string ranking_table(const Screening& screening, const std::vector<Candidat
   const bool is_sure = !confidence.of.empty();
   if (is_sure) columns.insert(columns.begin() + 3, {"+/- inputs", "%", Align::kDecimal});
   if (is_sure) columns.push_back({"to the best", "", Align::kLeft});
+  const bool has_contact = screening.has_contact_figures();
+  if (has_contact) {
+    columns.insert(columns.end(), {{"boundary loss", "W", Align::kDecimal},
+                                   {"least film ratio", "-", Align::kDecimal},
+                                   {"hottest contact", "C", Align::kDecimal},
+                                   {"friction", "-", Align::kDecimal}});
+  }
   const std::vector<std::size_t> shown = shown_columns(candidates);
   for (const std::size_t each : shown) {
     columns.push_back({shortened(candidates.headers[each]), "", Align::kDecimal});
@@ -186,6 +220,9 @@ std::string ranking_table(const Screening& screening, const std::vector<Candidat
     out.push_back(fixed(each.loss_power,
                         places_for(each.loss_power * each.solver_error / each.inefficiency)));
     if (is_sure) out.push_back(position ? verdict_of(sure, *position) : "");
+    if (has_contact) {
+      for (const std::string& cell : contact_cells(each)) out.push_back(cell);
+    }
     for (const std::size_t k : shown) out.push_back(cells == nullptr ? "" : (*cells)[k]);
     if (has_contact_loss) out.emplace_back(each.contact_loss ? "yes" : "no");
     table.add_row(out);
@@ -289,10 +326,15 @@ std::string ranking_csv(const Screening& screening, const std::vector<CandidateF
   const CandidateFigures base = base_figures(screening);
   std::vector<std::string> header = {"rank", "candidate"};
   header.insert(header.end(), screening.table.headers.begin(), screening.table.headers.end());
-  header.insert(header.end(), {"inefficiency_energy_mean_percent", "standard_uncertainty_percent",
-                               "solver_error_percent", "higher_probability", "is_tied_with_best",
-                               "difference_from_base_percent_of_base", "mesh_loss_power_watts",
-                               "contact_loss", "refusal"});
+  header.insert(header.end(),
+                {"inefficiency_energy_mean_percent", "standard_uncertainty_percent",
+                 "solver_error_percent", "higher_probability", "is_tied_with_best",
+                 "difference_from_base_percent_of_base", "mesh_loss_power_watts", "contact_loss"});
+  if (screening.has_contact_figures()) {
+    header.insert(header.end(), contact_figures_of_points().begin(),
+                  contact_figures_of_points().end());
+  }
+  header.emplace_back("refusal");
   std::string out = csv_line(header);
   for (std::size_t i = 0; i < ranking.size(); ++i) {
     const CandidateFigures& each = ranking[i];
@@ -309,7 +351,11 @@ std::string ranking_csv(const Screening& screening, const std::vector<CandidateF
          number(each.solver_error), sure == nullptr ? "" : shortest(sure->higher_probability),
          sure == nullptr ? "" : (sure->is_tied ? "true" : "false"),
          number(relative_difference(each, base)), number(each.loss_power),
-         has_figures ? (each.contact_loss ? "true" : "false") : "", each.refusal});
+         has_figures ? (each.contact_loss ? "true" : "false") : ""});
+    if (screening.has_contact_figures()) {
+      std::transform(each.contact.begin(), each.contact.end(), std::back_inserter(cells), number);
+    }
+    cells.push_back(each.refusal);
     out += csv_line(cells);
   }
   return out;
@@ -319,11 +365,16 @@ std::string ranking_json(const Screening& screening, const std::vector<Candidate
                          const RankingConfidence& confidence,
                          const std::map<std::string, std::string>& members) {
   const CandidateFigures base = base_figures(screening);
-  const auto figures = [](const CandidateFigures& each) {
-    return "\"inefficiency_energy_mean_percent\": " + json_number(each.inefficiency) +
-           ", \"solver_error_percent\": " + json_number(each.solver_error) +
-           ", \"mesh_loss_power_watts\": " + json_number(each.loss_power) +
-           ", \"contact_loss\": " + (each.contact_loss ? "true" : "false");
+  const auto figures = [&screening](const CandidateFigures& each) {
+    std::string text = "\"inefficiency_energy_mean_percent\": " + json_number(each.inefficiency) +
+                       ", \"solver_error_percent\": " + json_number(each.solver_error) +
+                       ", \"mesh_loss_power_watts\": " + json_number(each.loss_power) +
+                       ", \"contact_loss\": " + (each.contact_loss ? "true" : "false");
+    for (std::size_t i = 0; screening.has_contact_figures() && i < each.contact.size(); ++i) {
+      text +=
+          ", " + json_quoted(contact_figures_of_points()[i]) + ": " + json_number(each.contact[i]);
+    }
+    return text;
   };
   const auto refusal = [](const CandidateFigures& each) {
     return "\"refusal\": " + json_quoted(each.refusal);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -18,7 +19,10 @@ struct CandidateFigures {
   double solver_error = 0;    ///< of that mean [%]
   double loss_power = 0;      ///< weighted mean of mesh_loss_power [W]
   bool contact_loss = false;  ///< at one condition or more
-  std::string refusal;        ///< why there are no figures; empty if there are
+  /// By ScreenedPoint::ContactFigure: extremes over the conditions of the figures that are
+  /// extremes, and weighted means of the others.
+  std::array<double, ScreenedPoint::kContactFigures> contact = {};
+  std::string refusal;  ///< why there are no figures; empty if there are
 };
 
 /// Returns the figures of a candidate.

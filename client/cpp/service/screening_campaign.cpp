@@ -62,7 +62,7 @@ std::vector<std::size_t> accepted_candidates(const CandidateTable& table) {
 }
 
 std::set<std::string> names_of_other_columns(const v1::Campaign& campaign) {
-  const std::vector<std::string> figures = screened_columns();
+  const std::vector<std::string> figures = screened_columns(true);
   std::set<std::string> out(figures.begin(), figures.end());
   out.insert({"candidate", "condition", kNames});
   for (const FieldDescriptor* field : candidate_parameters()) {
@@ -221,6 +221,7 @@ v1::Campaign campaign_of(const Screening& screening, const std::string& title) {
   out.set_vehicle(base.vehicle());
   if (base.has_model_options()) *out.mutable_model_options() = base.model_options();
   out.set_tolerance(base.tolerance());
+  out.set_contact_figures(base.contact_figures());
   *out.mutable_conditions() = base.conditions();
   const auto& weights = screening.weights;
   if (std::any_of(weights.begin(), weights.end(),
@@ -253,6 +254,7 @@ Screening screening_of(Connection& connection, const v1::Campaign& campaign) {
   out.request.set_vehicle(campaign.vehicle_revision());
   if (campaign.has_model_options()) *out.request.mutable_model_options() = campaign.model_options();
   out.request.set_tolerance(campaign.tolerance());
+  out.request.set_contact_figures(campaign.contact_figures());
   for (v1::PointCondition condition : campaign.conditions()) {
     if (!condition.has_sump_temperature_celsius()) {
       condition.set_sump_temperature_celsius(kDefaultSumpCelsius);
@@ -277,7 +279,7 @@ void read_points(Connection& connection, const v1::Campaign& campaign, Screening
   const std::vector<std::size_t> candidates = accepted_candidates(screening.table);
   const std::size_t conditions = screening.conditions();
   CampaignRowsOptions options;
-  options.columns = screened_columns();
+  options.columns = screened_columns(screening.has_contact_figures());
   connection.stream_campaign(
       campaign.name(), options, [](const v1::HistorySchema&) {},
       [&](const HistoryRows& rows) {

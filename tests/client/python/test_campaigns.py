@@ -66,6 +66,27 @@ def test_a_campaign_is_a_table_of_candidates_at_conditions(client):
         campaign.frame(["mesh_loss"])
 
 
+def test_a_campaign_has_contact_figures_and_elasticities_on_request(client):
+    campaign = client.screen(
+        variants(4),
+        FLUID,
+        speeds_kilometres_per_hour=[30],
+        contact_figures=True,
+        elasticities=["lubricant.relaxation_time"],
+        elasticity_figures=["inefficiency_energy_mean_percent", "film_ratio_mean"],
+    )
+    campaign.wait()
+    points = campaign.frame()
+    assert (points["film_ratio_minimum"] < points["film_ratio_mean"]).all()
+    name = "elasticity.inefficiency_energy_mean_percent.lubricant.relaxation_time_seconds"
+    times, losses = 100 + np.arange(3), np.log(points["inefficiency_energy_mean_percent"][:3])
+    exponents = np.diff(losses) / np.diff(np.log(times))
+    assert list(points[name][:2]) == pytest.approx(list(exponents), abs=2e-3)
+    assert points["elasticities_one_sided"].dtype == bool
+    only = campaign.frame(["elasticity.film_ratio_mean.lubricant.relaxation_time_seconds"])
+    assert len(only) == 4
+
+
 def test_the_same_call_again_finds_its_campaign(client):
     first = client.screen(variants(3), FLUID)
     again = client.screen(variants(3), FLUID, budget_points=0)

@@ -276,6 +276,32 @@ def test_a_variant_is_the_lubricant_with_that_parameter(client):
     assert list(found["mesh_loss_power_watts"]) == list(kept["mesh_loss_power_watts"])
 
 
+def test_variants_have_contact_figures_and_gradients_on_request(client):
+    alpha = "lubricant.pressure_viscosity_coefficient_per_pascal"
+    table = {"speed_kilometres_per_hour": [30, 30, -30], "lubricant.alpha": ["15/GPa", "18/GPa", None]}
+    found = client.evaluate(
+        table,
+        lubricant=FLUID,
+        contact_figures=True,
+        elasticities=["lubricant.alpha", "surface.asperity_friction_coefficient"],
+        elasticity_figures=["film_ratio_mean", "mesh_loss_power_watts"],
+    )
+    films = np.asarray(found["film_ratio_mean"])
+    assert 0 < found["film_ratio_minimum"][0] < films[0] < films[1] and np.isnan(films[2])
+    losses = found["viscous_loss_power_watts"] + found["boundary_loss_power_watts"]
+    assert losses[0] == pytest.approx(found["mesh_loss_power_watts"][0], rel=3e-3)
+    assert 300 < found["contact_temperature_mean_kelvin"][0] < 500
+    assert 0.005 < found["mean_friction_coefficient"][1] < 0.1
+    exponent = np.log(films[1] / films[0]) / np.log(18 / 15)
+    slopes = np.asarray(found[f"elasticity.film_ratio_mean.{alpha}"])
+    assert min(slopes[:2]) - 0.01 < exponent < max(slopes[:2]) + 0.01
+    assert not found["elasticities_one_sided"][0]
+    friction = "elasticity.mesh_loss_power_watts.surface.asperity_friction_coefficient"
+    assert 0 < found[friction][0] < 1
+    with pytest.raises(tribodyn.TribodynError, match="alfa is no parameter"):
+        client.evaluate(table, lubricant=FLUID, elasticities="lubricant.alfa")
+
+
 def test_a_refused_variant_leaves_the_others(client):
     alpha = "lubricant.havriliak_negami_alpha"
     found = client.evaluate(

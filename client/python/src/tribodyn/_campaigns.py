@@ -10,7 +10,7 @@ from typing import Any, AsyncGenerator, Mapping, Sequence
 import numpy as np
 
 from tribodyn._columns import read_columns
-from tribodyn._evaluate import CONDITION, FIGURES, read_varied
+from tribodyn._evaluate import CONDITION, Extras, read_varied
 from tribodyn._frames import Frame, enum_word, frame
 from tribodyn._progress import Progress
 from tribodyn._studies import Arguments, full_name, set_switches
@@ -85,14 +85,15 @@ class AsyncCampaign:
             self._details = await self._get(pb.CAMPAIGN_VIEW_FULL)
         own = _OwnColumns(self._details)
         names = [columns] if isinstance(columns, str) else list(columns)
-        names = names or [*own.names(), *FIGURES, *_STATUS]
+        figures = Extras.of(self._details).columns()
+        names = names or [*own.names(), *figures, *_STATUS]
         arguments = Arguments()
-        known = {*own.names(), *FIGURES, *_STATUS, "candidate", "condition"}
+        known = {*own.names(), *figures, *_STATUS, "candidate", "condition"}
         for name in names:
             if name not in known:
                 arguments.wrong("columns", f"{name} is no column of {self.name}")
         arguments.check()
-        stored = [name for name in names if name in FIGURES] + ["refusal_number"]
+        stored = [name for name in names if name in figures] + ["refusal_number"]
         schema, values = await read_columns(
             self._transport,
             _SERVICE,
@@ -253,7 +254,7 @@ def _tight(name: str, values: np.ndarray) -> np.ndarray:
         return np.array(words, dtype=object)[np.nan_to_num(values).astype(int)]
     if np.isnan(values).any():
         return values
-    if name in ("contact_loss", "settled"):
+    if name in ("contact_loss", "settled", "elasticities_one_sided"):
         return values.astype(bool)
     return values.astype(int) if name == "period_in_mesh_cycles" else values
 
@@ -272,6 +273,9 @@ async def start_campaign(
     inlet_temperature_rise_kelvin: Quantity | None,
     tolerance: float | None,
     model_options: Mapping[str, Any],
+    contact_figures: bool,
+    elasticities: Sequence[str],
+    elasticity_figures: Sequence[str],
     budget_points: int | None,
     budget_processor_seconds: float | None,
     display_name: str,
@@ -282,6 +286,7 @@ async def start_campaign(
     arguments = Arguments()
     campaign = pb.Campaign(display_name=display_name, tolerance=tolerance or 0.0)
     set_switches(arguments, "model_options", model_options, campaign.model_options)
+    Extras.read(arguments, contact_figures, elasticities, elasticity_figures).set(campaign)
     for sump in sumps:
         for speed in speeds:
             condition = campaign.conditions.add()

@@ -31,18 +31,91 @@ _VARIED = {"lubricant": Lubricant, "surface": Surface}
 # The server takes 2000. Smaller requests share its threads, and end within its time limit.
 _MOST_POINTS = 500
 _CALLS_AT_A_TIME = 4
-# Fields of the answer that are no figures of points.
-_OF_THE_WHOLE = {"candidates", "conditions", "refusal_numbers", "refusals"}
-_FIGURES = [
-    each
-    for each in points_pb2.EvaluatePointsResponse.DESCRIPTOR.fields
-    if each.label == each.LABEL_REPEATED and each.name not in _OF_THE_WHOLE
+# Columns of the answer that every point has.
+FIGURES = [
+    "pinion_torque_newton_metres",
+    "wheel_torque_newton_metres",
+    "inefficiency_rms_percent",
+    "inefficiency_energy_mean_percent",
+    "mesh_loss_power_watts",
+    "dynamic_transmission_error_minimum_metres",
+    "dynamic_transmission_error_maximum_metres",
+    "contact_loss",
+    "settled",
+    "period_in_mesh_cycles",
+    "estimated_relative_error",
+    "model",
 ]
+CONTACT_FIGURES = [
+    "film_ratio_minimum",
+    "film_ratio_mean",
+    "contact_temperature_maximum_kelvin",
+    "contact_temperature_mean_kelvin",
+    "viscous_loss_power_watts",
+    "boundary_loss_power_watts",
+    "mean_friction_coefficient",
+    "maximum_pressure_maximum_pascals",
+    "flash_temperature_rise_maximum_kelvin",
+]
+_DEFAULT_ELASTICITY = "inefficiency_energy_mean_percent"
+_ONE_SIDED = "elasticities_one_sided"
 
 Values = tuple[float | None, ...]
 
 
-FIGURES = [each.name for each in _FIGURES]  # names of the columns of figures
+@dataclass(frozen=True)
+class Extras:
+    """Figures of points beside the usual ones."""
+
+    contact_figures: bool = False
+    elasticity_parameters: tuple[str, ...] = ()
+    elasticity_figures: tuple[str, ...] = ()
+
+    @staticmethod
+    def read(
+        arguments: Arguments,
+        contact_figures: bool,
+        elasticities: Sequence[str],
+        elasticity_figures: Sequence[str],
+    ) -> Extras:
+        parameters = [elasticities] if isinstance(elasticities, str) else elasticities
+        figures = [elasticity_figures] if isinstance(elasticity_figures, str) else elasticity_figures
+        paths = (_path(arguments, name) for name in parameters)
+        return Extras(contact_figures, tuple(dict.fromkeys(paths)), tuple(figures))
+
+    @staticmethod
+    def of(message: Any) -> Extras:
+        """Returns those of a request or campaign."""
+        return Extras(
+            message.contact_figures,
+            tuple(message.elasticity_parameters),
+            tuple(message.elasticity_figures),
+        )
+
+    def set(self, message: Any) -> None:
+        """Writes them to a request or campaign."""
+        message.contact_figures = self.contact_figures
+        message.elasticity_parameters.extend(self.elasticity_parameters)
+        message.elasticity_figures.extend(self.elasticity_figures)
+
+    def columns(self) -> list[str]:
+        """Returns the names of all columns of figures."""
+        out = [*FIGURES, *(CONTACT_FIGURES if self.contact_figures else [])]
+        if self.elasticity_parameters:
+            out.append(_ONE_SIDED)
+        for figure in self.elasticity_figures or (_DEFAULT_ELASTICITY,):
+            out += [f"elasticity.{figure}.{each}" for each in self.elasticity_parameters]
+        return out
+
+
+def _path(arguments: Arguments, name: str) -> str:
+    """Returns the path of a parameter, "lubricant.alpha" for one."""
+    owner, _, parameter = name.partition(".")
+    column = find_column(_VARIED[owner], parameter) if owner in _VARIED else None
+    if column is None or column.kind != "field" or column.block is not None:
+        arguments.wrong("elasticities", f"{name} is no parameter of a lubricant or surface")
+        return name
+    return f"{owner}.{column.field.name}"
 
 
 def is_parameter(name: str) -> bool:
@@ -78,11 +151,19 @@ class _Request:
 class Evaluation:
     """Evaluates the rows of one table."""
 
-    def __init__(self, transport: Transport, model_options: Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        transport: Transport,
+        model_options: Mapping[str, Any],
+        contact_figures: bool,
+        elasticities: Sequence[str],
+        elasticity_figures: Sequence[str],
+    ) -> None:
         self._transport = transport
         self._model_options = points_pb2.EvaluatePointsRequest().model_options
         arguments = Arguments()
         set_switches(arguments, "model_options", model_options, self._model_options)
+        self._extras = Extras.read(arguments, contact_figures, elasticities, elasticity_figures)
         arguments.check()
         self._calls = asyncio.Semaphore(_CALLS_AT_A_TIME)
         self._cells: dict[int, dict[str, Any]] = {}
@@ -144,6 +225,7 @@ class Evaluation:
             model_options=self._model_options,
             tolerance=tolerance or 0.0,
         )
+        self._extras.set(out)
         for i, path in enumerate(group.paths):
             out.candidate_columns.add(path=path, values=[each[i] for each in candidates])
         for values in conditions:
@@ -169,7 +251,14 @@ class Evaluation:
                     )
 
     def _place(self, request: _Request, answer: points_pb2.EvaluatePointsResponse) -> None:
-        columns = {each.name: getattr(answer, each.name) for each in _FIGURES}
+        elasticities = {
+            f"elasticity.{each.figure}.{each.parameter}": each.values
+            for each in answer.elasticities
+        }
+        columns = {
+            name: elasticities[name] if name in elasticities else getattr(answer, name)
+            for name in self._extras.columns()
+        }
         self.attrs["model_version"] = answer.model_version
         for kind in ("lubricant", "gear_set", "surface", "vehicle"):
             revision = getattr(answer, kind + "_revision")
@@ -218,7 +307,7 @@ class Evaluation:
         violations: Sequence[Violation],
         message: str = "",
     ) -> None:
-        empty: dict[str, Any] = {each.name: float("nan") for each in _FIGURES}
+        empty: dict[str, Any] = {name: float("nan") for name in self._extras.columns()}
         text = "; ".join(each.description for each in violations) or message
         for index in indices:
             self._cells[index] = {**empty, "model": "", "status": reason, "status_message": text}

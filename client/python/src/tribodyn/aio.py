@@ -339,10 +339,23 @@ class Client:
         return _joined(table, given, await _points.solve_rows(rows, options, run), {})
 
     async def evaluate(
-        self, table: Any, *, model_options: Mapping[str, Any] | None = None, **parameters: Any
+        self,
+        table: Any,
+        *,
+        model_options: Mapping[str, Any] | None = None,
+        contact_figures: bool = False,
+        elasticities: Sequence[str] = (),
+        elasticity_figures: Sequence[str] = (),
+        **parameters: Any,
     ) -> Frame:
         given, rows = _rows(table, parameters, is_parameter)
-        evaluation = Evaluation(self._transport, model_options or {})
+        evaluation = Evaluation(
+            self._transport,
+            model_options or {},
+            contact_figures,
+            elasticities,
+            elasticity_figures,
+        )
         cells = await evaluation.run(rows, self._settings.progress)
         return _joined(table, given, cells, evaluation.attrs)
 
@@ -467,6 +480,9 @@ class Client:
         vehicle: str | None = None,
         tolerance: float | None = None,
         model_options: Mapping[str, Any] | None = None,
+        contact_figures: bool = False,
+        elasticities: Sequence[str] = (),
+        elasticity_figures: Sequence[str] = (),
         budget_points: int | None = None,
         budget_processor_seconds: float | None = None,
         display_name: str = "",
@@ -491,6 +507,9 @@ class Client:
             inlet_temperature_rise_kelvin=inlet_temperature_rise_kelvin,
             tolerance=tolerance,
             model_options=model_options or {},
+            contact_figures=contact_figures,
+            elasticities=elasticities,
+            elasticity_figures=elasticity_figures,
             budget_points=budget_points,
             budget_processor_seconds=budget_processor_seconds,
             display_name=display_name,
