@@ -91,7 +91,7 @@ BivariatePolynomial truncated(const RatioSquare& coefficients, double tolerance)
 }
 
 /// The depth ln(1 + c p) of 3 GPa, or of a viscosity 32 e-folds above that at p = 0 and a fold
-/// below eta_g, at the temperature of the greatest L.
+/// below the greatest one, at the temperature of the greatest L.
 double deepest_of(const ShearLaw<double>& law, double greatest_factor) {
   constexpr double kDeepest = 2.79, kMostFolds = 32;
   if (law.lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands) {
@@ -99,12 +99,13 @@ double deepest_of(const ShearLaw<double>& law, double greatest_factor) {
   }
   const double log_viscosity = greatest_factor - laws::kRoelandsLogViscosity;
   const double temperature =
-      law.glass.reference + law.glass.coefficient / (log_viscosity - law.log_vogel_prefactor);
+      law.growth.vogel_reference +
+      law.growth.vogel_coefficient / (log_viscosity - law.log_vogel_prefactor);
   const double folds =
-      std::min(kMostFolds, std::log(law.glass.of_pressure.glass_viscosity) - log_viscosity - 1);
+      std::min(kMostFolds, laws::log_greatest_viscosity(law.lubricant) - log_viscosity - 1);
   const auto excess = [&](double depth) {
-    return laws::improved_yasutomi_growth(law.glass, temperature,
-                                          std::expm1(depth) / laws::kRoelandsPressureCoefficient) -
+    return laws::pressure_growth(law.growth, temperature,
+                                 std::expm1(depth) / laws::kRoelandsPressureCoefficient) -
            folds;
   };
   const double at_end = excess(kDeepest);

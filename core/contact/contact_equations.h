@@ -108,11 +108,11 @@ ContactConstants<Real> contact_constants(const ContactParametersOf<Real>& in,
                                         laws::value_of(out.inlet_temperature) /
                                         laws::value_of(heat_density(out.inlet_temperature));
 
-  if (oil.pressure_viscosity_law == PressureViscosityLaw::kImprovedYasutomi) {
-    shear.glass = laws::glass_state(oil, shear.log_vogel_prefactor);
+  if (oil.pressure_viscosity_law != PressureViscosityLaw::kRoelands) {
+    shear.growth = laws::growth_law(oil, shear.log_vogel_prefactor);
     shear.index = Real(0.0);
     out.pressure_viscosity_coefficient =
-        improved_yasutomi_reciprocal_asymptotic(shear.glass, out.inlet_temperature);
+        reciprocal_asymptotic_of_growth(shear.growth, out.inlet_temperature);
   } else {
     const Real where_measured =
         factor_at(log_ambient_viscosity(oil, oil.pressure_viscosity_temperature));

@@ -134,15 +134,9 @@ ContactSensitivityModel::ContactSensitivityModel(const FlankContactModel& model)
   if (kept->roelands) {
     kept->growth[1] = constants.shear.index;
   } else {
-    kept->growth = {DualNumber(0.0),
-                    constants.shear.log_vogel_prefactor,
-                    oil.vogel_temperature_coefficient,
-                    oil.vogel_reference_temperature,
-                    oil.yasutomi.glass_viscosity,
-                    oil.yasutomi.glass_temperature_rise,
-                    oil.yasutomi.glass_pressure_factor,
-                    oil.yasutomi.expansivity_pressure_factor,
-                    oil.yasutomi.expansivity_exponent};
+    kept->growth = {DualNumber(0.0), constants.shear.log_vogel_prefactor,
+                    oil.vogel_temperature_coefficient, oil.vogel_reference_temperature};
+    std::copy(oil.law_parameters.begin(), oil.law_parameters.end(), kept->growth.begin() + 4);
   }
   kept->limit_at_zero_pressure = parameters.lubricant.limiting_shear_stress_at_zero_pressure;
   kept->limit_coefficient = parameters.lubricant.limiting_shear_stress_coefficient;
@@ -273,11 +267,11 @@ const std::array<ContactInputName, kContactInputs>& contact_input_names() {
       {"lubricant.thermal_conductivity", "W/(m K)"},
       {"lubricant.density_at_zero_kelvin", "kg/m3"},
       {"lubricant.density_temperature_slope", "kg/(m3 K)"},
-      {"lubricant.yasutomi.glass_viscosity", "Pa s"},
-      {"lubricant.yasutomi.glass_temperature_rise", "K"},
-      {"lubricant.yasutomi.glass_pressure_factor", "1/Pa"},
-      {"lubricant.yasutomi.expansivity_pressure_factor", "1/Pa"},
-      {"lubricant.yasutomi.expansivity_exponent", "1"},
+      {"lubricant.law_parameters[0]", "by law"},
+      {"lubricant.law_parameters[1]", "by law"},
+      {"lubricant.law_parameters[2]", "by law"},
+      {"lubricant.law_parameters[3]", "by law"},
+      {"lubricant.law_parameters[4]", "by law"},
       {"roughness.asperity_density", "1/m2"},
       {"roughness.asperity_radius", "m"},
       {"roughness.composite_rms_height", "m"},

@@ -34,12 +34,8 @@ enum class ContactInput {
   kThermalConductivity,
   kDensityAtZeroKelvin,
   kDensityTemperatureSlope,
-  kGlassViscosity,  ///< from here on those of ImprovedYasutomiOf: without effect on Roelands's law
-  kGlassTemperatureRise,
-  kGlassPressureFactor,
-  kExpansivityPressureFactor,
-  kExpansivityExponent,
-  kAsperityDensity,
+  kLawParameters,  ///< the first of LubricantOf::law_parameters: without effect on Roelands's law
+  kAsperityDensity = kLawParameters + kMostLawParameters,
   kAsperityRadius,
   kCompositeRmsHeight,
   kTribofilmShearStrength,
@@ -64,12 +60,12 @@ enum class ContactInput {
   kVelocity2X,
   kVelocity2Y,
 };
-inline constexpr int kContactParameters = 36;
-inline constexpr int kContactInputs = 43;
+inline constexpr int kContactParameters = static_cast<int>(ContactInput::kLoad);
+inline constexpr int kContactInputs = static_cast<int>(ContactInput::kVelocity2Y) + 1;
 
 struct ContactInputName {
   const char* name;  ///< as in the fields of the structures, with the structure before a dot
-  const char* unit;  ///< SI; "1" for none
+  const char* unit;  ///< SI; "1" for none; "by law" as kLawDescriptions says
 };
 
 /// By ContactInput.
@@ -96,11 +92,11 @@ std::array<Real*, kContactInputs> contact_inputs(ContactParametersOf<Real>& para
           &oil.thermal_conductivity,
           &oil.density_at_zero_kelvin,
           &oil.density_temperature_slope,
-          &oil.yasutomi.glass_viscosity,
-          &oil.yasutomi.glass_temperature_rise,
-          &oil.yasutomi.glass_pressure_factor,
-          &oil.yasutomi.expansivity_pressure_factor,
-          &oil.yasutomi.expansivity_exponent,
+          &oil.law_parameters[0],
+          &oil.law_parameters[1],
+          &oil.law_parameters[2],
+          &oil.law_parameters[3],
+          &oil.law_parameters[4],
           &surface.asperity_density,
           &surface.asperity_radius,
           &surface.composite_rms_height,

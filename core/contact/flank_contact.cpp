@@ -98,7 +98,7 @@ FlankContactModel::FlankContactModel(const Lubricant& lubricant, const SolidPair
       }
     }
   } else {
-    check_glass_transition(lubricant, inlet_temperature);
+    check_greatest_viscosity(lubricant, inlet_temperature);
   }
   constants_ = contact_constants(parameters_, options, index_from_reciprocal_asymptotic);
 }

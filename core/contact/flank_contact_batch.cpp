@@ -47,9 +47,9 @@ double proved_temperature(const Lubricant& oil, bool newtonian) {
 /// ln(tau/tau_L) rises inwards, or falls and then rises. The first is proved, the second is checked
 /// at 8 x 48 temperatures and depths. Sets monotone_factor and falls_then_rises.
 bool has_covered_growth(ContactBlockTables& t, double tau_zero, double gamma) {
-  const GlassState<double>& glass = t.shear.glass;
+  const GrowthLaw<double>& law = t.shear.growth;
   const double c = laws::kRoelandsPressureCoefficient;
-  if (!laws::improved_yasutomi_growth_falls(glass, t.inlet_temperature, t.deepest_pressure / c)) {
+  if (!laws::pressure_growth_falls(law, t.inlet_temperature, t.deepest_pressure / c)) {
     return false;
   }
   t.monotone_factor = 0;
@@ -64,16 +64,15 @@ bool has_covered_growth(ContactBlockTables& t, double tau_zero, double gamma) {
     bool rises = false, fell = false;
     for (int j = 0; j <= kDepths; ++j) {
       const Number pressure = Number::variable(std::expm1(t.deepest * j / kDepths) / c, 0);
-      const double steepness =
-          laws::improved_yasutomi_growth(glass, Number(temperature), pressure).slope[0];
+      const double steepness = laws::pressure_growth(law, Number(temperature), pressure).slope[0];
       const bool rises_here = steepness * (tau_zero + gamma * pressure.value) > gamma;
       if (rises && !rises_here) return false;
       rises = rises_here;
       fell = fell || !rises_here;
     }
     if (fell && t.monotone_factor == 0) t.monotone_factor = colder_factor;
-    colder_factor = laws::roelands_factor(t.shear.log_vogel_prefactor +
-                                          glass.coefficient / (temperature - glass.reference));
+    colder_factor = laws::roelands_factor(
+        t.shear.log_vogel_prefactor + law.vogel_coefficient / (temperature - law.vogel_reference));
   }
   return true;
 }

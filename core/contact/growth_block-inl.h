@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "core/contact/block_work-inl.h"
+#include "core/laws/pressure_growth-inl.h"
 #include "core/laws/viscosity-inl.h"
 #include "core/numerics/dual-inl.h"
 
@@ -63,7 +64,7 @@ struct LawGrowth {
     const Number temperature = Number::variable(load(work.base + i) + load(work.rise + i), 0);
     const Number pressure =
         exponential_less_one(Number::variable(depth, 1)) * (1 / kRoelandsPressureCoefficient);
-    return improved_yasutomi_growth(t.shear.glass, temperature, pressure);
+    return pressure_growth(t.shear.growth, temperature, pressure);
   }
   static HWY_INLINE void prepare_end(const Tables&, Pack, Work&, int) {}
   static HWY_INLINE Pack log_stress_at_end(const Tables& t, const Work& work, int i) {

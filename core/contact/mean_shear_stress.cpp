@@ -36,19 +36,19 @@ struct RoelandsStress {
   }
 };
 
-/// Of the improved Yasutomi law.
-struct YasutomiStress {
+/// Of any other law.
+struct LawStress {
   static constexpr int kArguments = kGrowthArguments;
   const ShearLaw<double>* law;
   double temperature;
 
-  YasutomiStress(const ShearLaw<double>& of, const laws::LogStress<double>&, double at)
+  LawStress(const ShearLaw<double>& of, const laws::LogStress<double>&, double at)
       : law(&of), temperature(at) {}
 
   ValueAndSlope growth(double s) const {
     using Number = laws::Dual<double, 1>;
     const Number pressure = laws::exponential_less_one(Number::variable(s, 0)) / kC;
-    const Number out = laws::improved_yasutomi_growth(law->glass, Number(temperature), pressure);
+    const Number out = laws::pressure_growth(law->growth, Number(temperature), pressure);
     return {out.value, out.slope[0]};
   }
   double log_stress(double base, double s) const { return base + growth(s).value; }
@@ -122,35 +122,35 @@ void add_panel(const Law<RoelandsStress>& law, double from, double to, Moment& o
 
 /// The law in dual numbers by all arguments of its growth, or by the temperature alone.
 template <int kCount>
-struct YasutomiNumbers {
+struct LawNumbers {
   using Number = laws::Dual<double, kCount>;
-  GlassState<Number> glass;
+  GrowthLaw<Number> law;
   Number temperature;
 
-  YasutomiNumbers(const ShearLaw<double>& law, double at) : temperature(Number::variable(at, 0)) {
+  LawNumbers(const ShearLaw<double>& of, double at) : temperature(Number::variable(at, 0)) {
     LubricantOf<Number> oil;
     const auto number = [](double x, int i) {
       return i < kCount ? Number::variable(x, i) : Number(x);
     };
-    const ImprovedYasutomiOf<double>& of = law.lubricant.yasutomi;
-    const Number log_prefactor = number(law.log_vogel_prefactor, 1);
-    oil.vogel_temperature_coefficient = number(law.lubricant.vogel_temperature_coefficient, 2);
-    oil.vogel_reference_temperature = number(law.lubricant.vogel_reference_temperature, 3);
-    oil.yasutomi = {number(of.glass_viscosity, 4), number(of.glass_temperature_rise, 5),
-                    number(of.glass_pressure_factor, 6), number(of.expansivity_pressure_factor, 7),
-                    number(of.expansivity_exponent, 8)};
-    glass = laws::glass_state(oil, log_prefactor);
+    const Number log_prefactor = number(of.log_vogel_prefactor, 1);
+    oil.vogel_temperature_coefficient = number(of.lubricant.vogel_temperature_coefficient, 2);
+    oil.vogel_reference_temperature = number(of.lubricant.vogel_reference_temperature, 3);
+    oil.pressure_viscosity_law = of.lubricant.pressure_viscosity_law;
+    for (int k = 0; k < kMostLawParameters; ++k) {
+      oil.law_parameters[k] = number(of.lubricant.law_parameters[k], 4 + k);
+    }
+    law = laws::growth_law(oil, log_prefactor);
   }
 };
 
 template <int N, int kCount>
-void add_nodes(const Law<YasutomiStress>& law, const YasutomiNumbers<kCount>& numbers, double from,
-               double to, Moment& out) {
+void add_nodes(const Law<LawStress>& law, const LawNumbers<kCount>& numbers, double from, double to,
+               Moment& out) {
   const auto& rule = gauss_legendre<N>();
   for (int n = 0; n < N; ++n) {
     const double s = from + (to - from) * rule.node(n), q = std::expm1(s);
-    const auto growth = laws::improved_yasutomi_growth(
-        numbers.glass, numbers.temperature, typename YasutomiNumbers<kCount>::Number(q / kC));
+    const auto growth = laws::pressure_growth(numbers.law, numbers.temperature,
+                                              typename LawNumbers<kCount>::Number(q / kC));
     const double weighted = (to - from) / (kC * kC) * rule.weight(n) *
                             std::exp(law.base - out.shift + growth.value) * q * (q + 1);
     out.value += weighted;
@@ -185,7 +185,7 @@ Moment moment(const Law<RoelandsStress>& law, double from, double to) {
 }
 
 /// Panels of at most 6 e-folds and 0.5 in s, of equal length in s.
-Moment moment(const Law<YasutomiStress>& law, double from, double to) {
+Moment moment(const Law<LawStress>& law, double from, double to) {
   constexpr double kFolds = 6, kLongest = 0.5;
   Moment out;
   const double start = law.log_stress(from), end = law.log_stress(to);
@@ -200,9 +200,9 @@ Moment moment(const Law<YasutomiStress>& law, double from, double to) {
     }
   };
   if (law.all_derivatives) {
-    add_all(YasutomiNumbers<kGrowthArguments>(*law.growth.law, law.growth.temperature));
+    add_all(LawNumbers<kGrowthArguments>(*law.growth.law, law.growth.temperature));
   } else {
-    add_all(YasutomiNumbers<1>(*law.growth.law, law.growth.temperature));
+    add_all(LawNumbers<1>(*law.growth.law, law.growth.temperature));
   }
   return out;
 }
@@ -246,7 +246,7 @@ Pieces monotone_pieces(const Law<RoelandsStress>& law, double end) {
 }
 
 /// Up to three changes of sign of the slope of ln(tau/tau_L) over 32 equal parts of [0, end].
-Pieces monotone_pieces(const Law<YasutomiStress>& law, double end) {
+Pieces monotone_pieces(const Law<LawStress>& law, double end) {
   constexpr int kParts = 32, kMostTurns = 3;
   const auto slope = [&](double s) { return law.excess(s).slope; };
   Pieces pieces;
@@ -356,7 +356,7 @@ MeanShearStress mean_shear_stress(const ShearedFilm& film, double temperature,
                                   double& switch_guess) {
   return film.law->lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands
              ? mean_with<RoelandsStress>(film, temperature, switch_guess)
-             : mean_with<YasutomiStress>(film, temperature, switch_guess);
+             : mean_with<LawStress>(film, temperature, switch_guess);
 }
 
 }  // namespace tribodyn

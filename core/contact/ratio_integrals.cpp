@@ -7,6 +7,7 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#include "core/laws/pressure_growth-inl.h"
 #include "core/laws/viscosity-inl.h"
 #include "core/numerics/dispatch.h"
 #include "core/numerics/pack-inl.h"
@@ -74,17 +75,17 @@ struct RoelandsFolds {
 
 struct LawFolds {
   const AtDepths& pressure;  // [Pa]
-  const GlassState<double>& glass;
+  const GrowthLaw<double>& law;
   Pack temperature;
   Pack end = 0;
 
   HWY_INLINE Pack next_end(int j) {
     const Pack before = end;
-    end = improved_yasutomi_growth(glass, temperature, Pack(pressure.end[j]));
+    end = pressure_growth(law, temperature, Pack(pressure.end[j]));
     return before - end;
   }
   HWY_INLINE Pack node(int n) const {
-    return improved_yasutomi_growth(glass, temperature, Pack(pressure.node[n])) - end;
+    return pressure_growth(law, temperature, Pack(pressure.node[n])) - end;
   }
 };
 
@@ -145,9 +146,9 @@ void take_coefficients(const RatioRule& rule, const RatioLanes& factor, double d
         prepared,
         [&](std::size_t lane) HWY_ATTR {
           const Pack temperature =
-              law.glass.coefficient / (load_any(factor.data() + lane) - at_zero_factor) +
-              law.glass.reference;
-          return LawFolds{pressure, law.glass, temperature};
+              law.growth.vogel_coefficient / (load_any(factor.data() + lane) - at_zero_factor) +
+              law.growth.vogel_reference;
+          return LawFolds{pressure, law.growth, temperature};
         },
         values);
   }

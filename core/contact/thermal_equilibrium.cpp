@@ -12,14 +12,11 @@ namespace {
 
 /// Whether ln tau falls with temperature at every pressure between two temperatures, from
 /// d ln tau/dT <= -(1 - alpha beta) A1/(T - T0)^2 + alpha beta max(0, 1/T + rho'/rho), if the
-/// growth of viscosity with pressure falls with temperature, as that of eq 31 always does. Both
+/// growth of viscosity with pressure falls with temperature. Both
 /// terms fall in size with temperature: over a short span the one at its hot end and the other at
 /// its cold end are a proof.
 bool provably_falling(const ShearedFilm& film, double cold, double hot) {
-  if (film.law->lubricant.pressure_viscosity_law == PressureViscosityLaw::kImprovedYasutomi &&
-      !laws::improved_yasutomi_growth_falls(film.law->glass, cold, film.maximum_pressure)) {
-    return false;
-  }
+  if (!laws::pressure_growth_falls(film.law->growth, cold, film.maximum_pressure)) return false;
   if (film.law->newtonian) return true;
   const Lubricant& oil = film.law->lubricant;
   const double product = oil.havriliak_negami_alpha * oil.havriliak_negami_beta;

@@ -4,6 +4,7 @@
 #include "core/laws/film-inl.h"
 #include "core/laws/heat-inl.h"
 #include "core/laws/hertz-inl.h"
+#include "core/laws/pressure_growth-inl.h"
 #include "core/laws/shear-inl.h"
 #include "core/laws/viscosity-inl.h"
 #include "core/numerics/dual-inl.h"

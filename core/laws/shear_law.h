@@ -1,20 +1,19 @@
 #pragma once
 
+#include <array>
+
 #include "core/lubricant/lubricant.h"
 
 namespace tribodyn {
 
-/// The improved Yasutomi law in terms of eq 34: with the glass transition temperature T_g [K] and
-/// the factor F [-] of the pressure,
-///   ln eta = ln eta_ref + A_V/(C_2 + (T - T_g) F),
-/// A_V and T_0 being A_1 and T_0 of eq 34, C_2 = A_V/ln(eta_g/eta_ref) and T_g = T_0 + C_2 at p =
-/// 0.
+/// A law of growth with pressure, ready to be evaluated: core/laws/pressure_growth-inl.h.
 template <class Parameter>
-struct GlassState {
-  Parameter coefficient;  ///< A_V [K]
-  Parameter reference;    ///< T_0 [K]
-  Parameter width;        ///< C_2 [K]
-  ImprovedYasutomiOf<Parameter> of_pressure;
+struct GrowthLaw {
+  PressureViscosityLaw law = PressureViscosityLaw::kRoelands;
+  Parameter vogel_coefficient;  ///< A_1 of eq 34 [K]
+  Parameter vogel_reference;    ///< T_0 of eq 34 [K]
+  Parameter width;              ///< C_2 of the improved Yasutomi law [K]
+  std::array<Parameter, kMostLawParameters> parameters;
 };
 
 /// What the stress of one lubricant depends on besides temperature, shear rate and pressure.
@@ -28,7 +27,7 @@ struct ShearLaw {
   Parameter index;            ///< Z; of Roelands's law only
   /// About d ln(T rho)/dT [1/K], for steps with half of the digits.
   double coarse_heat_density_slope;
-  GlassState<Parameter> glass{};  ///< of the improved Yasutomi law only
+  GrowthLaw<Parameter> growth{};  ///< of laws other than eq 31
   bool newtonian;                 ///< F = 1
   bool roelands_misprinted;       ///< L as published; not for packs
 };

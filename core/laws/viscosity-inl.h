@@ -91,52 +91,6 @@ Real roelands_reciprocal_asymptotic(Real factor, Real index) {
          scaled_incomplete_gamma(factor, 1 / index);  // (eq 33)
 }
 
-/// The state of the improved Yasutomi law from eq 34 and its own parameters.
-template <class Parameter>
-HWY_INLINE GlassState<Parameter> glass_state(const LubricantOf<Parameter>& oil,
-                                             Parameter log_prefactor) {
-  const Parameter span = logarithm(oil.yasutomi.glass_viscosity) - log_prefactor;
-  return {oil.vogel_temperature_coefficient, oil.vogel_reference_temperature,
-          oil.vogel_temperature_coefficient / span, oil.yasutomi};
-}
-
-/// ln eta(p, T) - ln eta_0(T) of the improved Yasutomi law (S. Bair, C. Mary, N. Bouscharain and
-/// P. Vergne, Proc. IMechE J: J. Engineering Tribology 227 (2013) 1056-1060),
-///   T_g = T_g(0) + A_1 ln(1 + A_2 p),  F = (1 + b_1 p)^b_2,
-///   lg(eta/eta_g) = -C_1 (T - T_g) F/(C_2 + (T - T_g) F),
-/// of the temperature T [K] and the pressure p [Pa] >= 0. At p = 0 the law is eq 34 with
-/// T_0 = T_g(0) - C_2, A_1 = ln(10) C_1 C_2 and ln eta_ref = ln eta_g - ln(10) C_1, so that the
-/// parameters of eq 34 stand for T_g(0), C_1 and C_2. The law holds above the glass transition:
-/// where T < T_g the viscosity stays eta_g.
-template <class Parameter, class Real>
-HWY_INLINE Real improved_yasutomi_growth(const GlassState<Parameter>& glass, Real temperature,
-                                         Real pressure) {
-  const ImprovedYasutomiOf<Parameter>& law = glass.of_pressure;
-  const Real rise =
-      law.glass_temperature_rise * logarithm(law.glass_pressure_factor * pressure + 1);
-  const Real factor = exponential(law.expansivity_exponent *
-                                  logarithm(law.expansivity_pressure_factor * pressure + 1));
-  const Real above_vogel = temperature - glass.reference;
-  const Real above_glass = greatest(above_vogel - glass.width - rise, 0);
-  return glass.coefficient / (above_glass * factor + glass.width) - glass.coefficient / above_vogel;
-}
-
-/// True if improved_yasutomi_growth falls with temperature at every pressure up to `pressure` and
-/// every temperature from `temperature` on. Above the glass transition its slope is
-/// A_V (1/(T - T_0)^2 - F/D^2), D = C_2 + (T - T_g) F, and D <= F (T - T_0) + (1 - F) C_2: negative
-/// if T - T_0 > C_2 (1 + F^-1/2), which holds at the lower pressures if at the highest. These
-/// conditions are sufficient, not necessary.
-HWY_INLINE bool improved_yasutomi_growth_falls(const GlassState<double>& glass, double temperature,
-                                               double pressure) {
-  const ImprovedYasutomiOf<double>& law = glass.of_pressure;
-  const double per_root =
-      std::pow(1 + law.expansivity_pressure_factor * pressure, -0.5 * law.expansivity_exponent);
-  const double glass_rise =
-      law.glass_temperature_rise * std::log1p(law.glass_pressure_factor * pressure);
-  const double above_vogel = temperature - glass.reference;
-  return above_vogel > glass.width + glass_rise && above_vogel > glass.width * (1 + per_root);
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace tribodyn
 HWY_AFTER_NAMESPACE();

@@ -43,12 +43,12 @@ PressureResponse roelands_response(const Lubricant& lubricant, const ModelOption
   };
 }
 
-PressureResponse improved_yasutomi_response(const Lubricant& lubricant) {
-  const GlassState<double> glass =
-      laws::glass_state(lubricant, std::log(lubricant.vogel_viscosity_prefactor));
+PressureResponse response_of_growth(const Lubricant& lubricant) {
+  const GrowthLaw<double> law =
+      laws::growth_law(lubricant, std::log(lubricant.vogel_viscosity_prefactor));
   return [=](double temperature, double) -> std::optional<PressureResponseAt> {
-    return PressureResponseAt{laws::improved_yasutomi_growth(glass, temperature, kGigapascal),
-                              improved_yasutomi_reciprocal_asymptotic(glass, temperature)};
+    return PressureResponseAt{laws::pressure_growth(law, temperature, kGigapascal),
+                              reciprocal_asymptotic_of_growth(law, temperature)};
   };
 }
 
@@ -67,7 +67,7 @@ LubricantFigures lubricant_figures(const Lubricant& lubricant, const ModelOption
   const PressureResponse response =
       lubricant.pressure_viscosity_law == PressureViscosityLaw::kRoelands
           ? roelands_response(lubricant, options)
-          : improved_yasutomi_response(lubricant);
+          : response_of_growth(lubricant);
   for (const double temperature : {kFortyCelsius, kSeventyCelsius, kHundredCelsius}) {
     if (temperature <= lubricant.vogel_reference_temperature) continue;
     const double log_eta = log_ambient_viscosity(lubricant, temperature);

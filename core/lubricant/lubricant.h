@@ -1,22 +1,50 @@
 #pragma once
 
+#include <array>
+
 namespace tribodyn {
 
-/// How viscosity grows with pressure.
+/// How viscosity grows with pressure. The formulas of all but the first:
+/// core/laws/pressure_growth-inl.h.
 enum class PressureViscosityLaw {
   kRoelands,          ///< eq 31, its index Z from alpha* by eq 33 or eq 32
-  kImprovedYasutomi,  ///< from the five parameters below; alpha* follows from the law
+  kImprovedYasutomi,  ///< of the five parameters below; alpha* follows from the law
 };
 
-/// Parameters of the improved Yasutomi law beside those of eq 34 (improved_yasutomi_growth of
-/// core/laws). SI units.
-template <class Real>
-struct ImprovedYasutomiOf {
-  Real glass_viscosity = 0.0;              ///< eta_g [Pa s], by convention 1e12
-  Real glass_temperature_rise = 0.0;       ///< A_1 [K]
-  Real glass_pressure_factor = 0.0;        ///< A_2 [1/Pa]
-  Real expansivity_pressure_factor = 0.0;  ///< b_1 [1/Pa]
-  Real expansivity_exponent = 0.0;         ///< b_2 [-], negative
+/// A parameter of a law beside those of eq 34.
+struct LawParameter {
+  const char* name;
+  const char* unit;  ///< SI; "1" for none
+};
+
+/// Indices of the parameters of the improved Yasutomi law.
+enum ImprovedYasutomiParameter {
+  kGlassViscosity,             ///< eta_g [Pa s], by convention 1e12
+  kGlassTemperatureRise,       ///< A_1 [K]
+  kGlassPressureFactor,        ///< A_2 [1/Pa]
+  kExpansivityPressureFactor,  ///< b_1 [1/Pa]
+  kExpansivityExponent,        ///< b_2 [-], negative
+};
+
+/// The greatest number of parameters that a law has.
+inline constexpr int kMostLawParameters = 5;
+
+/// A law and its parameters, by index; those of Roelands's law are members of LubricantOf.
+struct LawDescription {
+  PressureViscosityLaw law;
+  const char* name;
+  std::array<LawParameter, kMostLawParameters> parameters;
+};
+
+inline constexpr std::array kLawDescriptions{
+    LawDescription{PressureViscosityLaw::kRoelands, "roelands", {}},
+    LawDescription{PressureViscosityLaw::kImprovedYasutomi,
+                   "improved_yasutomi",
+                   {{{"glass_viscosity", "Pa s"},
+                     {"glass_temperature_rise", "K"},
+                     {"glass_pressure_factor", "1/Pa"},
+                     {"expansivity_pressure_factor", "1/Pa"},
+                     {"expansivity_exponent", "1"}}}},
 };
 
 /// The properties of a fluid that enter the model. SI units. Laws: core/laws.
@@ -37,7 +65,7 @@ struct LubricantOf {
   Real density_at_zero_kelvin;                  ///< intercept of eq 26 [kg/m3]
   Real density_temperature_slope;               ///< slope of eq 26 [kg/(m3 K)]
   PressureViscosityLaw pressure_viscosity_law = PressureViscosityLaw::kRoelands;
-  ImprovedYasutomiOf<Real> yasutomi{};  ///< of kImprovedYasutomi only
+  std::array<Real, kMostLawParameters> law_parameters{};  ///< as kLawDescriptions names them; SI
 };
 
 using Lubricant = LubricantOf<double>;

@@ -66,15 +66,16 @@ double index_from_houpert(double factor, double coefficient) {
   return laws::houpert_index(factor, coefficient);
 }
 
-void check_glass_transition(const Lubricant& lubricant, double temperature) {
+void check_greatest_viscosity(const Lubricant& lubricant, double temperature) {
   constexpr double kLeastFolds = 16;
-  const double glass = lubricant.yasutomi.glass_viscosity;
-  if (std::log(glass) - log_ambient_viscosity(lubricant, temperature) >= kLeastFolds) return;
+  const double greatest = laws::log_greatest_viscosity(lubricant);
+  if (greatest - log_ambient_viscosity(lubricant, temperature) >= kLeastFolds) return;
   throw Refusal("PARAMETER_OUT_OF_RANGE",
-                "the improved Yasutomi law is too near its glass transition: the viscosity of " +
+                "the pressure-viscosity law is too near its glass transition: the viscosity of " +
                     number_text(ambient_viscosity(lubricant, temperature)) + " Pa s at " +
                     number_text(temperature - kZeroCelsius) +
-                    " C must be at least e^16 times below eta_g, " + number_text(glass) + " Pa s");
+                    " C must be at least e^16 times below the greatest one, " +
+                    number_text(std::exp(greatest)) + " Pa s");
 }
 
 }  // namespace tribodyn

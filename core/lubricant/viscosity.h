@@ -37,24 +37,23 @@ double index_from_reciprocal_asymptotic(double factor, double coefficient);
 /// Z of eq 32 (Houpert 1985): alpha* / (5.1e-9 L).
 double index_from_houpert(double factor, double coefficient);
 
-/// Throws Refusal PARAMETER_OUT_OF_RANGE if the viscosity of an improved Yasutomi law at a
-/// temperature [K] is above eta_g/e^16: its growth with pressure then ends at the glass transition
-/// before alpha* has four digits.
-void check_glass_transition(const Lubricant& lubricant, double temperature);
+/// Throws Refusal PARAMETER_OUT_OF_RANGE if the viscosity at a temperature [K] is less than e^16
+/// times below the greatest one of its law, such as that of the glass transition: the growth with
+/// pressure then ends before alpha* has four digits.
+void check_greatest_viscosity(const Lubricant& lubricant, double temperature);
 
-/// alpha* [1/Pa], the inverse of int_0^inf eta(0)/eta(p) dp, of the improved Yasutomi law at a
-/// temperature [K] that check_glass_transition accepts. By Gauss's rule of 16 points over
+/// alpha* [1/Pa], the inverse of int_0^inf eta(0)/eta(p) dp, of a law other than eq 31 at a
+/// temperature [K] that check_greatest_viscosity accepts. By Gauss's rule of 16 points over
 /// panels in which the integrand falls by at most 4 e-folds, until it has fallen by 40 or the
-/// pressure has reached the glass transition; what lies beyond is left out, where the integrand is
+/// pressure has reached the end of the growth; what lies beyond is left out, where the integrand is
 /// below e^-16. Relative error of the rest below 1e-9.
 template <class Real>
-Real improved_yasutomi_reciprocal_asymptotic(const GlassState<Real>& glass,
-                                             const Real& temperature) {
+Real reciprocal_asymptotic_of_growth(const GrowthLaw<Real>& law, const Real& temperature) {
   constexpr int kNodes = 16;
   constexpr double kFoldsPerPanel = 4, kMostFolds = 40, kSmallPressure = 1e6;
   const auto& rule = gauss_legendre<kNodes>();
   const auto growth = [&](double pressure) {
-    return laws::improved_yasutomi_growth(glass, temperature, Real(pressure));
+    return laws::pressure_growth(law, temperature, Real(pressure));
   };
   const double panel = kFoldsPerPanel * kSmallPressure / laws::value_of(growth(kSmallPressure));
   Real integral = 0.0;

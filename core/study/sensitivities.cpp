@@ -1,5 +1,7 @@
 #include "core/study/sensitivities.h"
 
+#include <string>
+
 #include "core/study/operating_point.h"
 #include "core/vehicle/vehicle.h"
 
@@ -10,7 +12,7 @@ using Figures = std::array<double, kOrbitFigures>;
 
 /// A parameter of the scene, and the inputs of a contact that it is.
 struct SceneParameter {
-  const char* name;
+  std::string name;
   const char* unit;
   double value;
   std::vector<ContactInput> inputs;
@@ -29,24 +31,17 @@ std::vector<SceneParameter> of_pressure_response(const Lubricant& l) {
              l.pressure_viscosity_temperature,
              {kPressureViscosityTemperature}}};
   }
-  const ImprovedYasutomiOf<double>& law = l.yasutomi;
-  return {{"lubricant.yasutomi.glass_viscosity", "Pa s", law.glass_viscosity, {kGlassViscosity}},
-          {"lubricant.yasutomi.glass_temperature_rise",
-           "K",
-           law.glass_temperature_rise,
-           {kGlassTemperatureRise}},
-          {"lubricant.yasutomi.glass_pressure_factor",
-           "1/Pa",
-           law.glass_pressure_factor,
-           {kGlassPressureFactor}},
-          {"lubricant.yasutomi.expansivity_pressure_factor",
-           "1/Pa",
-           law.expansivity_pressure_factor,
-           {kExpansivityPressureFactor}},
-          {"lubricant.yasutomi.expansivity_exponent",
-           "1",
-           law.expansivity_exponent,
-           {kExpansivityExponent}}};
+  std::vector<SceneParameter> out;
+  for (const LawDescription& each : kLawDescriptions) {
+    if (each.law != l.pressure_viscosity_law) continue;
+    for (std::size_t k = 0; k < each.parameters.size() && each.parameters[k].name; ++k) {
+      out.push_back({std::string("lubricant.") + each.name + "." + each.parameters[k].name,
+                     each.parameters[k].unit,
+                     l.law_parameters[k],
+                     {static_cast<ContactInput>(static_cast<int>(kLawParameters) + k)}});
+    }
+  }
+  return out;
 }
 
 std::vector<SceneParameter> scene_parameters(const Scene& s) {

@@ -146,8 +146,8 @@ TEST(ContactBatch, RandomStatesUnderTheImprovedYasutomiLaw) {
     SCOPED_TRACE("case " + std::to_string(n));
     ContactCase c = random_contact_case(draw);
     set_yasutomi(gear_oil_80w90(), c.lubricant);
-    c.lubricant.yasutomi.glass_temperature_rise *= draw.between(0.8, 1.2);
-    c.lubricant.yasutomi.expansivity_exponent *= draw.between(0.8, 1.2);
+    c.lubricant.law_parameters[kGlassTemperatureRise] *= draw.between(0.8, 1.2);
+    c.lubricant.law_parameters[kExpansivityExponent] *= draw.between(0.8, 1.2);
     c.sump_temperature = draw.between(273.15, 403.15);
     c.options.newtonian = n % 8 == 1;
     c.options.isothermal = n % 8 == 2;

@@ -20,8 +20,8 @@ ContactCase gear_oil_case() {
   return c;
 }
 
-GlassState<double> glass_of(const Lubricant& oil) {
-  return laws::glass_state(oil, std::log(oil.vogel_viscosity_prefactor));
+GrowthLaw<double> law_of(const Lubricant& oil) {
+  return laws::growth_law(oil, std::log(oil.vogel_viscosity_prefactor));
 }
 
 TEST(ImprovedYasutomi, HasTheAmbientViscositiesAndGradeThatArePrintedForAGearOil) {
@@ -47,8 +47,8 @@ TEST(ImprovedYasutomi, IsThePrintedFormAtEveryPressureAndTemperature) {
     const double temperature = kZeroCelsius + celsius;
     for (double pressure = 0; pressure <= 2e9; pressure += 0.05e9) {
       const double log_viscosity = printed.log_viscosity(pressure, temperature);
-      if (log_viscosity > std::log(printed.of_pressure.glass_viscosity)) break;
-      const double growth = laws::improved_yasutomi_growth(glass_of(oil), temperature, pressure);
+      if (log_viscosity > std::log(printed.of_pressure[kGlassViscosity])) break;
+      const double growth = laws::pressure_growth(law_of(oil), temperature, pressure);
       EXPECT_NEAR(log_ambient_viscosity(oil, temperature) + growth, log_viscosity, 1e-12)
           << celsius << " C, " << pressure << " Pa";
     }
@@ -60,7 +60,7 @@ TEST(ImprovedYasutomi, StaysAtTheViscosityOfTheGlassBelowTheTransition) {
   const double temperature = 300;
   for (const double pressure : {2.5e9, 4e9, 1e10}) {
     EXPECT_NEAR(log_ambient_viscosity(oil, temperature) +
-                    laws::improved_yasutomi_growth(glass_of(oil), temperature, pressure),
+                    laws::pressure_growth(law_of(oil), temperature, pressure),
                 std::log(1e12), 1e-12);
   }
 }
@@ -77,8 +77,7 @@ TEST(ImprovedYasutomi, HasTheReciprocalAsymptoticCoefficientOfItsIntegral) {
     while (growth(end) < 38 && growth(end + 1e7) > growth(end)) end += 1e7;
     const double integral =
         plain::integral([&](double pressure) { return std::exp(-growth(pressure)); }, 0, end);
-    EXPECT_NEAR(integral * improved_yasutomi_reciprocal_asymptotic(glass_of(oil), temperature), 1,
-                1e-9)
+    EXPECT_NEAR(integral * reciprocal_asymptotic_of_growth(law_of(oil), temperature), 1, 1e-9)
         << celsius << " C";
   }
   // The order of size of gear oils at 40 C.
@@ -91,15 +90,14 @@ TEST(ImprovedYasutomi, HasTheReciprocalAsymptoticCoefficientOfItsIntegral) {
 
 TEST(ImprovedYasutomi, FallsWithTemperatureWhereItIsProvedTo) {
   using Number = laws::Dual<double, 1>;
-  const GlassState<double> glass = glass_of(gear_oil_case().lubricant);
+  const GrowthLaw<double> law = law_of(gear_oil_case().lubricant);
   int proved = 0;
   for (double temperature = 250; temperature < 480; temperature += 10) {
     for (double pressure = 0.05e9; pressure < 3e9; pressure += 0.05e9) {
-      if (!laws::improved_yasutomi_growth_falls(glass, temperature, pressure)) continue;
+      if (!laws::pressure_growth_falls(law, temperature, pressure)) continue;
       ++proved;
       EXPECT_LE(
-          laws::improved_yasutomi_growth(glass, Number::variable(temperature, 0), Number(pressure))
-              .slope[0],
+          laws::pressure_growth(law, Number::variable(temperature, 0), Number(pressure)).slope[0],
           0)
           << temperature << " K, " << pressure << " Pa";
     }
