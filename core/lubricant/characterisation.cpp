@@ -36,12 +36,12 @@ class Assembly {
     check_stated_parameters(fluid_.stated);
     settle_density();
     settle_viscosity();
-    out_.lubricant = values_of(out_.parameters);
+    take_values();
     check_law();
     settle_pressure_viscosity();
     settle_rheology();
     settle_rest();
-    out_.lubricant = values_of(out_.parameters);
+    take_values();
     warn_of_unspecified_base_oil();
     describe();
     out_.gross_errors = gross_errors(fluid_, out_);
@@ -49,6 +49,12 @@ class Assembly {
   }
 
  private:
+  void take_values() {
+    out_.lubricant = values_of(out_.parameters);
+    out_.lubricant.pressure_viscosity_law = fluid_.pressure_viscosity_law;
+    out_.lubricant.law_parameters = fluid_.law_parameters;
+  }
+
   void warn(const char* code, const char* parameter, const std::string& sentence) {
     out_.warnings.push_back({code, parameter, sentence});
   }
@@ -363,7 +369,24 @@ class Assembly {
     }
   }
 
+  // alpha* of a law that determines it.
+  void settle_pressure_viscosity_by_law() {
+    check_greatest_viscosity(out_.lubricant, kFortyCelsius);
+    const GrowthLaw<double> law =
+        laws::growth_law(out_.lubricant, std::log(out_.lubricant.vogel_viscosity_prefactor));
+    constexpr char kSource[] = "of the pressure-viscosity law at 40 C";
+    out_.parameters.pressure_viscosity_temperature = {kFortyCelsius, std::nullopt,
+                                                      Provenance::kDerived, kSource};
+    out_.parameters.pressure_viscosity_coefficient = {
+        reciprocal_asymptotic_of_growth(law, kFortyCelsius), std::nullopt, Provenance::kDerived,
+        kSource};
+  }
+
   void settle_pressure_viscosity() {
+    if (fluid_.pressure_viscosity_law != PressureViscosityLaw::kRoelands) {
+      settle_pressure_viscosity_by_law();
+      return;
+    }
     settle_temperature(&Stated::pressure_viscosity_temperature,
                        &Known::pressure_viscosity_temperature, "pressure_viscosity_temperature",
                        fluid_.stated.pressure_viscosity_coefficient.has_value(), kFortyCelsius);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +27,9 @@ struct FluidMeasurements {
   std::vector<DensityPoint> densities;           ///< others; two temperatures give the slope
   std::vector<ViscosityPoint> viscosities;       ///< dynamic
   std::vector<ViscosityPoint> cold_viscosities;  ///< Brookfield, ASTM D2983: joined to the fit
+  /// A law other than Roelands's determines alpha* at 40 C, whatever is stated.
+  PressureViscosityLaw pressure_viscosity_law = PressureViscosityLaw::kRoelands;
+  std::array<double, kMostLawParameters> law_parameters{};
   /// Parameters stated outright: they win over everything above. The Vogel parameters and the two
   /// of the density law count only as a set; alpha* wants its temperature (else 40 C is taken).
   LubricantParameters<std::optional<KnownParameter>> stated;

@@ -9,6 +9,7 @@
 #include "server/contract/constraints.h"
 #include "server/contract/output_only.h"
 #include "tribodyn/v1/limits.pb.h"
+#include "tribodyn/v1/lubricants.pb.h"
 
 namespace tribodyn::server {
 namespace {
@@ -84,11 +85,21 @@ void check_text(const FieldCheck& check, const std::string& value) {
                                                       value.size(), longest)});
 }
 
+/// Returns true for alpha* and its temperature in a lubricant with a pressure-viscosity law, which
+/// determines both.
+bool is_determined(const Message& message, const FieldDescriptor& field) {
+  if (message.GetDescriptor() != v1::Lubricant::descriptor()) return false;
+  return (field.number() == v1::Lubricant::kPressureViscosityCoefficientPerPascalFieldNumber ||
+          field.number() == v1::Lubricant::kPressureViscosityTemperatureKelvinFieldNumber) &&
+         message.GetReflection()->HasOneof(
+             message, v1::Lubricant::descriptor()->FindOneofByName("pressure_viscosity_law"));
+}
+
 /// Adds a violation if an unset field is required.
-void check_missing(const FieldCheck& check) {
+void check_missing(const Message& message, const FieldCheck& check) {
   const Constraint* row =
       find_constraint(check.field.containing_type()->name(), check.field.name());
-  if (row == nullptr || !is_required(*row)) return;
+  if (row == nullptr || !is_required(*row) || is_determined(message, check.field)) return;
   check.violations.push_back({check.path, not_set_text(*row)});
 }
 
@@ -220,7 +231,7 @@ void check_message(const Message& message, const std::string& path, Violations& 
     } else if (!field.has_presence() || reflection.HasField(message, &field)) {
       check_singular(message, reflection, check);
     } else if (missing == Missing::kViolation) {
-      check_missing(check);
+      check_missing(message, check);
     }
   }
 }

@@ -28,6 +28,15 @@ constexpr Constraint kConstraints[] = {
      ""},
     {"Lubricant", "density_slope_kilograms_per_cubic_metre_kelvin", "kg/(m3 K)", -100, 100, "eq 26",
      ""},
+    {"ImprovedYasutomi", "glass_viscosity_pascal_seconds", "Pa s", 1e9, 1e16,
+     "improved Yasutomi, eta_g", ""},
+    {"ImprovedYasutomi", "glass_temperature_rise_kelvin", "K", 0, 2000, "improved Yasutomi, A_1",
+     ""},
+    {"ImprovedYasutomi", "glass_pressure_factor_per_pascal", "1/Pa", 0, 1e-7,
+     "improved Yasutomi, A_2", ""},
+    {"ImprovedYasutomi", "expansivity_pressure_factor_per_pascal", "1/Pa", 0, 1e-6,
+     "improved Yasutomi, b_1", ""},
+    {"ImprovedYasutomi", "expansivity_exponent", "", -1, 0, "improved Yasutomi, b_2", ""},
     {"LubricantMeasurements", "kinematic_viscosity_40_celsius_square_millimetres_per_second",
      "mm2/s", 1, 1e5, "eq 34, KV40", "ASTM D341 and D2270 begin at 2 mm2/s", Zero::kUnset},
     {"LubricantMeasurements", "kinematic_viscosity_100_celsius_square_millimetres_per_second",
@@ -287,6 +296,8 @@ constexpr UnitSlip kUnitSlips[] = {
     // Brookfield viscosities are 3000 to 300 000 mPa s.
     {"", "mPa s", "Pa s", 1e3, 0, 1, 1e6},
     {"", "mPa s", "uPa s", 1e-3, 0, 1, 1e6},
+    // Factors of the pressure in the improved Yasutomi law are 0.1 to 20 1/GPa.
+    {"ImprovedYasutomi", "1/Pa", "1/GPa", 1e-9, 0, 1e-11, 1e-7},
     // alpha* of oils is 8 to 40 1/GPa.
     {"", "1/Pa", "1/GPa", 1e-9, 0, 4e-9, 1e-7},
     {"", "1/Pa", "mm2/N", 1e-6, 0, 4e-9, 1e-7},
@@ -320,8 +331,9 @@ std::string allowed_text(const Constraint& row) {
 std::span<const Constraint> constraints() { return kConstraints; }
 
 bool is_required(const Constraint& row) {
-  return row.message == "Lubricant" || row.message == "GearSet" ||
-         row.message == "DrivelineDynamics" || row.message == "Surface" || row.message == "Vehicle";
+  return row.message == "Lubricant" || row.message == "ImprovedYasutomi" ||
+         row.message == "GearSet" || row.message == "DrivelineDynamics" ||
+         row.message == "Surface" || row.message == "Vehicle";
 }
 
 const Constraint* find_constraint(std::string_view message, std::string_view field) {

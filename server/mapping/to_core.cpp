@@ -1,6 +1,7 @@
 #include "server/mapping/to_core.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 namespace tribodyn::server {
@@ -57,6 +58,19 @@ DrivelineDynamics dynamics(const v1::DrivelineDynamics& message) {
           .half_backlash = message.half_backlash_metres()};
 }
 
+PressureViscosityLaw law_of(const v1::Lubricant& message) {
+  return message.has_improved_yasutomi() ? PressureViscosityLaw::kImprovedYasutomi
+                                         : PressureViscosityLaw::kRoelands;
+}
+
+std::array<double, kMostLawParameters> law_parameters_of(const v1::Lubricant& message) {
+  if (!message.has_improved_yasutomi()) return {};
+  const v1::ImprovedYasutomi& law = message.improved_yasutomi();
+  return {law.glass_viscosity_pascal_seconds(), law.glass_temperature_rise_kelvin(),
+          law.glass_pressure_factor_per_pascal(), law.expansivity_pressure_factor_per_pascal(),
+          law.expansivity_exponent()};
+}
+
 }  // namespace
 
 Lubricant to_core(const v1::Lubricant& message) {
@@ -74,7 +88,9 @@ Lubricant to_core(const v1::Lubricant& message) {
           .limiting_shear_stress_coefficient = message.limiting_shear_stress_coefficient(),
           .thermal_conductivity = message.thermal_conductivity_watts_per_metre_kelvin(),
           .density_at_zero_kelvin = message.density_at_zero_kelvin_kilograms_per_cubic_metre(),
-          .density_temperature_slope = message.density_slope_kilograms_per_cubic_metre_kelvin()};
+          .density_temperature_slope = message.density_slope_kilograms_per_cubic_metre_kelvin(),
+          .pressure_viscosity_law = law_of(message),
+          .law_parameters = law_parameters_of(message)};
 }
 
 Roughness roughness(const v1::Surface& message) {

@@ -115,17 +115,20 @@ Resource finalize(Resource out) {
 }
 
 /// Returns true if an update changes an input of the computed parameters: measurements, base oil
-/// class or a parameter that the client set.
+/// class, the pressure-viscosity law or a parameter that the client set.
 bool changes_inputs_of_computed(const v1::Lubricant& stated, const v1::Lubricant& present) {
   const auto inputs = [](v1::Lubricant lubricant) {
     clear_computed_parameters(lubricant);
     v1::Lubricant out;
     *out.mutable_measurements() = lubricant.measurements();
     out.set_base_oil_class(lubricant.base_oil_class());
+    if (lubricant.has_improved_yasutomi()) {
+      *out.mutable_improved_yasutomi() = lubricant.improved_yasutomi();
+    }
     const auto& reflection = *lubricant.GetReflection();
     for (const std::string& field : parameter_paths(*v1::Lubricant::descriptor()).numbers) {
-      const auto* descriptor = v1::Lubricant::descriptor()->FindFieldByName(field);
-      if (!reflection.HasField(lubricant, descriptor)) continue;
+      const auto* descriptor = lubricant_parameter(field);
+      if (descriptor == nullptr || !reflection.HasField(lubricant, descriptor)) continue;
       reflection.SetDouble(&out, descriptor, reflection.GetDouble(lubricant, descriptor));
     }
     return out;
@@ -159,8 +162,8 @@ void unmark_changed_parameters(v1::Lubricant& lubricant, const v1::Lubricant& pr
   const auto& reflection = *lubricant.GetReflection();
   auto& entries = *lubricant.mutable_provenance();
   for (int i = entries.size() - 1; i >= 0; --i) {
-    const auto* field = v1::Lubricant::descriptor()->FindFieldByName(entries.Get(i).field());
-    if (!entries.Get(i).computed() || field == nullptr || !field->has_presence()) continue;
+    const auto* field = lubricant_parameter(entries.Get(i).field());
+    if (!entries.Get(i).computed() || field == nullptr) continue;
     const bool changed =
         reflection.HasField(lubricant, field) && reflection.HasField(present, field) &&
         reflection.GetDouble(lubricant, field) != reflection.GetDouble(present, field);
@@ -188,8 +191,8 @@ void check_provenance_of_computed(const v1::Lubricant& lubricant, const v1::Lubr
   const auto& reflection = *lubricant.GetReflection();
   for (int i = 0; i < lubricant.provenance_size(); ++i) {
     const v1::ParameterProvenance& entry = lubricant.provenance(i);
-    const auto* field = v1::Lubricant::descriptor()->FindFieldByName(entry.field());
-    if (field == nullptr || !field->has_presence()) continue;
+    const auto* field = lubricant_parameter(entry.field());
+    if (field == nullptr) continue;
     const v1::ParameterProvenance* before = nullptr;
     if (present != nullptr) {
       for (const v1::ParameterProvenance& each : present->provenance()) {
@@ -228,6 +231,11 @@ std::optional<v1::Lubricant> accept(const v1::Lubricant& stated, const v1::Lubri
   if (present == nullptr || changes_inputs_of_computed(out, *present)) {
     clear_computed_parameters(out);
   }
+  check_law_of_pressure(out, path, violations);
+  if (out.has_improved_yasutomi()) {  // without all of its parameters the law determines nothing
+    check_message(out.improved_yasutomi(), join_path(path, "improved_yasutomi"), violations);
+  }
+  if (violations.size() > before) return std::nullopt;
   complete_parameters(out, path, violations);
   if (violations.size() > before) return std::nullopt;
   check_message(out, path, violations);

@@ -236,6 +236,9 @@ Entered entered(const v1::Lubricant& lubricant) {
     }
     out.stated.*member.stated = known;
   }
+  const Lubricant laws = server::to_core(lubricant);
+  out.pressure_viscosity_law = laws.pressure_viscosity_law;
+  out.law_parameters = laws.law_parameters;
   std::optional<DensityLaw> law;
   for (int i = 0; i < measured.viscosities_size(); ++i) {
     const v1::ViscosityMeasurement& row = measured.viscosities(i);
@@ -383,6 +386,31 @@ std::vector<v1::RangeWarning> make_fluid_warnings(const v1::Lubricant& lubricant
 
 }  // namespace
 
+const FieldDescriptor* lubricant_parameter(const std::string& name) {
+  const FieldDescriptor* field = v1::Lubricant::descriptor()->FindFieldByName(name);
+  const bool is_number = field != nullptr && !field->is_repeated() && field->has_presence() &&
+                         field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;
+  return is_number ? field : nullptr;
+}
+
+void check_law_of_pressure(const v1::Lubricant& lubricant, const std::string& path,
+                           Violations& violations) {
+  if (!lubricant.has_improved_yasutomi()) return;
+  const auto check = [&](const char* field, bool is_set) {
+    const v1::ParameterProvenance* entry = find_provenance(lubricant.provenance(), field);
+    const bool is_computed = entry != nullptr && entry->field() == field && entry->computed();
+    if (!is_set || is_computed) return;
+    violations.push_back({join_path(path, field),
+                          fmt::format("{} is stated beside improved_yasutomi, which determines it; "
+                                      "allowed: unset",
+                                      field)});
+  };
+  check("pressure_viscosity_coefficient_per_pascal",
+        lubricant.has_pressure_viscosity_coefficient_per_pascal());
+  check("pressure_viscosity_temperature_kelvin",
+        lubricant.has_pressure_viscosity_temperature_kelvin());
+}
+
 void complete_parameters(v1::Lubricant& lubricant, const std::string& path,
                          Violations& violations) {
   bool complete = true;
@@ -409,8 +437,8 @@ void clear_computed_parameters(v1::Lubricant& lubricant) {
   auto& entries = *lubricant.mutable_provenance();
   for (int i = entries.size() - 1; i >= 0; --i) {
     if (!entries.Get(i).computed()) continue;
-    const auto* field = v1::Lubricant::descriptor()->FindFieldByName(entries.Get(i).field());
-    if (field == nullptr || !field->has_presence()) continue;
+    const FieldDescriptor* field = lubricant_parameter(entries.Get(i).field());
+    if (field == nullptr) continue;
     lubricant.GetReflection()->ClearField(&lubricant, field);
     entries.DeleteSubrange(i, 1);
   }

@@ -24,6 +24,13 @@ bool is_block(const FieldDescriptor& field) {
          !kOther.contains(field.name());
 }
 
+bool has_tables(const Descriptor& resource) {
+  for (int i = 0; i < resource.field_count(); ++i) {
+    if (is_block(*resource.field(i)) && resource.field(i)->is_repeated()) return true;
+  }
+  return false;
+}
+
 bool is_parameter(const FieldDescriptor& field) {
   return !field.is_repeated() && !is_output_only(field) &&
          find_constraint(field.containing_type()->name(), field.name()) != nullptr;
@@ -139,9 +146,11 @@ void complete_provenance(const google::protobuf::Message& resource, Provenances&
     entry->set_provenance(v1::PROVENANCE_USER);
     entry->set_source(kSourceOfUser);
   }
-  if (!paths.blocks.empty()) return;
+  if (has_tables(*resource.GetDescriptor())) return;
+  std::vector<std::string> order = paths.numbers;
+  order.insert(order.end(), paths.blocks.begin(), paths.blocks.end());
   const auto place = [&](const v1::ParameterProvenance& entry) {
-    return std::find(paths.numbers.begin(), paths.numbers.end(), entry.field());
+    return std::find(order.begin(), order.end(), entry.field());
   };
   std::stable_sort(all.pointer_begin(), all.pointer_end(),
                    [&](const auto* a, const auto* b) { return place(*a) < place(*b); });

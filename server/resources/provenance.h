@@ -36,8 +36,8 @@ void clear_units(Provenances& all);
 void fill_units(const google::protobuf::Descriptor& resource, Provenances& all);
 
 /// Adds an entry PROVENANCE_USER for every number and every set block that has none. Sorts the
-/// entries of a resource without blocks by the order of its fields, so that equal resources have
-/// equal entries.
+/// entries of a resource without tables, numbers by the order of their fields and then blocks, so
+/// that equal resources have equal entries.
 void complete_provenance(const google::protobuf::Message& resource, Provenances& all);
 
 }  // namespace tribodyn::server

@@ -113,6 +113,10 @@ void add_resources(Assumptions& out, const SimulationInputs& inputs) {
     add_numbers(out, resource.name(), resource.provenance(), resource, "");
   };
   add_all(*inputs.lubricant);
+  if (inputs.lubricant->has_improved_yasutomi()) {
+    add_numbers(out, inputs.lubricant->name(), inputs.lubricant->provenance(),
+                inputs.lubricant->improved_yasutomi(), "improved_yasutomi.");
+  }
   add_gear_set(out, *inputs.gear_set, inputs.effective.model_options().load_dependent_mesh_data());
   add_all(*inputs.surface);
   add_all(*inputs.vehicle);

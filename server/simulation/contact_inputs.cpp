@@ -23,6 +23,7 @@ std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& requ
   std::string path = "lubricant_parameters";
   if (request.has_lubricant_parameters()) {
     lubricant = request.lubricant_parameters();
+    check_law_of_pressure(*lubricant, path, violations);
   } else if (request.fluid_case() == v1::EvaluateContactRequest::kLubricant) {
     path = "lubricant";
     auto found =
@@ -32,6 +33,7 @@ std::optional<v1::Lubricant> read_contact(const v1::EvaluateContactRequest& requ
     violations.push_back({"fluid", "not set; allowed: lubricant or lubricant_parameters"});
   }
   if (lubricant) {
+    check_law_options(*lubricant, request.model_options(), "model_options", violations);
     check_fluid_at_inlet(*lubricant, request.sump_temperature_celsius(),
                          request.inlet_temperature_rise_kelvin(), path, violations);
   }

@@ -52,12 +52,14 @@ bool is_computed(const v1::Lubricant& lubricant, const char* field) {
   return entry != nullptr && entry->computed();
 }
 
-/// Adds the error of each parameter of a resource that states an uncertainty, but of those in
-/// `done`. `resource_of` returns the resource in the inputs.
+/// Adds the error of each parameter of a resource or of a message in it that states an uncertainty,
+/// but of those in `done`. `prefix` is the path of the resource or message, e.g. "lubricant.";
+/// `resource_of` returns it in the inputs.
 void add_stated(const Message& resource, const Provenances& provenance, const std::string& prefix,
                 const std::set<std::string>& done, InputError::Sharing sharing,
                 const std::string& base_oil, Message& (*resource_of)(UncertainInputs&),
                 InputErrors& out) {
+  const std::string block = prefix.substr(prefix.find('.') + 1);
   const auto& type = *resource.GetDescriptor();
   for (int i = 0; i < type.field_count(); ++i) {
     const FieldDescriptor* field = type.field(i);
@@ -67,7 +69,7 @@ void add_stated(const Message& resource, const Provenances& provenance, const st
     }
     const std::string input = prefix + field->name();
     if (done.contains(input)) continue;
-    const v1::ParameterProvenance* entry = entry_of(provenance, field->name());
+    const v1::ParameterProvenance* entry = entry_of(provenance, block + field->name());
     const double uncertainty = entry == nullptr ? 0 : entry->standard_uncertainty();
     if (!(uncertainty > 0)) {
       out.without_uncertainty.push_back(input);
@@ -160,6 +162,16 @@ InputErrors lubricant_errors(const v1::Lubricant& lubricant) {
   if (is_computed(lubricant, "density_at_zero_kelvin_kilograms_per_cubic_metre")) {
     out.errors.push_back(density_error(lubricant));
     insert_words(kDensityInputs, done);
+  }
+  if (lubricant.has_improved_yasutomi()) {
+    add_stated(
+        lubricant.improved_yasutomi(), lubricant.provenance(), "lubricant.improved_yasutomi.", done,
+        InputError::Sharing::kOwn, "",
+        [](UncertainInputs& inputs) -> Message& {
+          return *inputs.lubricant.mutable_improved_yasutomi();
+        },
+        out);
+    done.emplace("lubricant.pressure_viscosity_coefficient_per_pascal");  // without effect
   }
   add_stated(
       lubricant, lubricant.provenance(), "lubricant.", done, InputError::Sharing::kOwn,

@@ -30,9 +30,14 @@ constexpr InputFields kInputFields[] = {
      "limiting_shear_stress_at_zero_pressure_pascals limiting_shear_stress_coefficient "
      "thermal_conductivity_watts_per_metre_kelvin "
      "density_at_zero_kelvin_kilograms_per_cubic_metre "
-     "density_slope_kilograms_per_cubic_metre_kelvin",
+     "density_slope_kilograms_per_cubic_metre_kelvin improved_yasutomi",
      "name display_name description provenance base_oil_class measurements condition "
      "derived_from external_sample_id lims_id labels"},
+    {"ImprovedYasutomi",
+     "glass_viscosity_pascal_seconds glass_temperature_rise_kelvin "
+     "glass_pressure_factor_per_pascal expansivity_pressure_factor_per_pascal "
+     "expansivity_exponent",
+     ""},
     {"GearSet",
      "pinion_teeth gear_teeth series flank_slots dynamics series_by_torque "
      "load_share_by_torque youngs_modulus_pascals poissons_ratio "

@@ -1,6 +1,7 @@
 #include "server/simulation/point_explanation.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/util/message_differencer.h>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +23,7 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
+using google::protobuf::util::MessageDifferencer;
 
 constexpr std::uint64_t kExplanationSeed = 1;  // any: equal requests give equal answers
 
@@ -42,7 +44,8 @@ const std::array<Group, kGroups>& groups() {
          "vogel_reference_temperature_kelvin"},
         {}},
        {v1::PARAMETER_GROUP_PRESSURE_RESPONSE,
-        {"pressure_viscosity_coefficient_per_pascal", "pressure_viscosity_temperature_kelvin"},
+        {"pressure_viscosity_coefficient_per_pascal", "pressure_viscosity_temperature_kelvin",
+         "improved_yasutomi"},
         {}},
        {v1::PARAMETER_GROUP_SHEAR_THINNING,
         {"relaxation_time_seconds", "havriliak_negami_alpha", "havriliak_negami_beta",
@@ -64,17 +67,32 @@ const std::array<Group, kGroups>& groups() {
   return kAll;
 }
 
+bool is_message(const FieldDescriptor& field) {
+  return field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+}
+
 void copy_fields(const Message& from, const std::vector<const char*>& fields, Message& to) {
   for (const char* name : fields) {
     const FieldDescriptor* field = to.GetDescriptor()->FindFieldByName(name);
-    to.GetReflection()->SetDouble(&to, field, from.GetReflection()->GetDouble(from, field));
+    if (!is_message(*field)) {
+      to.GetReflection()->SetDouble(&to, field, from.GetReflection()->GetDouble(from, field));
+      continue;
+    }
+    to.GetReflection()->ClearField(&to, field);
+    if (!from.GetReflection()->HasField(from, field)) continue;
+    to.GetReflection()
+        ->MutableMessage(&to, field)
+        ->CopyFrom(from.GetReflection()->GetMessage(from, field));
   }
 }
 
 bool are_equal(const Message& a, const Message& b, const std::vector<const char*>& fields) {
   return std::all_of(fields.begin(), fields.end(), [&](const char* name) {
     const FieldDescriptor* field = a.GetDescriptor()->FindFieldByName(name);
-    return a.GetReflection()->GetDouble(a, field) == b.GetReflection()->GetDouble(b, field);
+    const auto &of_a = *a.GetReflection(), &of_b = *b.GetReflection();
+    if (!is_message(*field)) return of_a.GetDouble(a, field) == of_b.GetDouble(b, field);
+    return of_a.HasField(a, field) == of_b.HasField(b, field) &&
+           MessageDifferencer::Equals(of_a.GetMessage(a, field), of_b.GetMessage(b, field));
   });
 }
 

@@ -91,6 +91,9 @@ std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
                           "set without a surface; allowed: 0, which means smooth specimens, or a "
                           "surface whose height it replaces"});
   }
+  if (lubricant) {
+    check_law_options(*lubricant->resource, request.model_options(), "model_options", violations);
+  }
   if (!lubricant || violations.size() > before) return std::nullopt;
   out.lubricant = lubricant->resource;
   out.lubricant_revision = lubricant->revision_name;

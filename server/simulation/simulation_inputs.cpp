@@ -244,6 +244,8 @@ std::optional<SimulationInputs> read_simulation(const v1::Simulation& request,
     const double rise = asked.has_inlet_temperature_rise_kelvin()
                             ? asked.inlet_temperature_rise_kelvin()
                             : kDefaultInletTemperatureRiseKelvin;
+    check_law_options(*inputs.lubricant, asked.model_options(), join_path(path, "model_options"),
+                      violations);
     check_fluid_at_inlet(*inputs.lubricant, sump, rise, join_path(path, "lubricant"), violations);
   }
   if (!gear_set.empty()) {

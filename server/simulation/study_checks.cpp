@@ -109,7 +109,7 @@ void check_fluid_at_inlet(const v1::Lubricant& lubricant, double sump_temperatur
         {path, fmt::format("T_0,ref = {} K; allowed: below the inlet temperature, {:.6g} K (eq 34)",
                            reference, inlet)});
   }
-  if (measured <= reference) {
+  if (!lubricant.has_improved_yasutomi() && measured <= reference) {
     violations.push_back(
         {path, fmt::format("T_0,ref = {} K; allowed: below the temperature of alpha*, {} K (eq 33)",
                            reference, measured)});
@@ -198,6 +198,23 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
         {path, fmt::format("{} points of up to {} mesh cycles; allowed: a product of at most {} "
                            "(work limit)",
                            points, cycles, kMaximumCurveMeshCycles)});
+  }
+}
+
+void check_law_options(const v1::Lubricant& lubricant, const v1::ModelOptions& options,
+                       const std::string& path, Violations& violations) {
+  if (!lubricant.has_improved_yasutomi()) return;
+  const auto refuse = [&](const char* field, const char* text) {
+    violations.push_back(
+        {join_path(path, field),
+         fmt::format("{}, as {} follows improved_yasutomi and neither eq 31 nor eq 32", text,
+                     lubricant.name().empty() ? "the lubricant" : lubricant.name())});
+  };
+  if (options.as_published().eq31_32_logarithm()) {
+    refuse("as_published.eq31_32_logarithm", "true; allowed: false");
+  }
+  if (options.pressure_viscosity_index() == v1::ModelOptions::PRESSURE_VISCOSITY_INDEX_HOUPERT) {
+    refuse("pressure_viscosity_index", "PRESSURE_VISCOSITY_INDEX_HOUPERT; allowed: unset");
   }
 }
 

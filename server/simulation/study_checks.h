@@ -34,6 +34,11 @@ void check_curve(const v1::InefficiencyCurveStudy& study, const v1::SolverOption
 void check_march_tolerances(const v1::SolverOptions& options, v1::PointModel model,
                             const std::string& path, Violations& violations);
 
+/// Refuses what concerns eqs 31 to 33 alone if the lubricant follows another law of viscosity under
+/// pressure.
+void check_law_options(const v1::Lubricant& lubricant, const v1::ModelOptions& options,
+                       const std::string& path, Violations& violations);
+
 /// Refuses switches that have no effect in a contact.
 void check_model_options(const v1::ModelOptions& options, const std::string& path,
                          Violations& violations);

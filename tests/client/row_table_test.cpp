@@ -194,6 +194,32 @@ TEST(RowTable, RestoresStatedAndMeasuredValues) {
   EXPECT_NE(text.find("150000 mPa s at -40 C; "), std::string::npos) << text;
 }
 
+TEST(RowTable, GivesALawOnlyToTheRowsThatStateOne) {
+  const RowTable table = read_row_table(
+      "name,kv40,kv100,glass viscosity [Pa s],glass_temperature_rise [K],glass pressure factor "
+      "[1/GPa],"
+      "expansivity_pressure_factor [1/GPa],expansivity_exponent\n"
+      "law,140,14.5,1e12,210.6,0.455,7.606,-0.4193\n"
+      "plain,140,14.5,,,,,\n",
+      "t.csv", oil_kind());
+  const v1::Lubricant& law = as_lubricant(table.resources.at(0));
+  EXPECT_EQ(law.improved_yasutomi().glass_viscosity_pascal_seconds(), 1e12);
+  EXPECT_DOUBLE_EQ(law.improved_yasutomi().glass_pressure_factor_per_pascal(), 0.455e-9);
+  EXPECT_EQ(law.improved_yasutomi().expansivity_exponent(), -0.4193);
+  const v1::Lubricant& plain = as_lubricant(table.resources.at(1));
+  EXPECT_FALSE(plain.has_improved_yasutomi());
+  std::vector<ResourcePointer> oils;
+  for (const FileResource& each : table.resources) {
+    oils.push_back(std::make_unique<v1::Lubricant>(as_lubricant(each)));
+  }
+  std::string lost;
+  const std::string text = row_table(oil_kind(), oils, lost);
+  const RowTable again = read_row_table(text, "t.csv", oil_kind());
+  EXPECT_EQ(as_lubricant(again.resources.at(0)).improved_yasutomi().SerializeAsString(),
+            law.improved_yasutomi().SerializeAsString());
+  EXPECT_FALSE(as_lubricant(again.resources.at(1)).has_improved_yasutomi());
+}
+
 TEST(RowTable, TakesMissingValuesFromTheBase) {
   v1::Lubricant like;
   like.set_base_oil_class(v1::Lubricant::BASE_OIL_CLASS_ESTER);

@@ -107,6 +107,8 @@ struct Subject {
       use(contact.mutable_lubricant_parameters(), "lubricant_parameters.");
     } else if (name == "ParameterProvenance") {
       use(lubricant.mutable_provenance(0), "provenance[0].");
+    } else if (name == "ImprovedYasutomi") {
+      use(lubricant.mutable_improved_yasutomi(), "improved_yasutomi.");
     } else if (name == "LubricantMeasurements") {
       use(lubricant.mutable_measurements(), "measurements.");
     } else if (name == "BrookfieldViscosity") {
@@ -301,7 +303,8 @@ class ConstraintRow : public testing::TestWithParam<Constraint> {
   }
   double above() const {
     const double maximum = GetParam().maximum;
-    return is_integer() ? maximum + 1 : maximum + 1e-6 * std::abs(maximum);
+    if (is_integer()) return maximum + 1;
+    return maximum == 0 ? 1e-9 : maximum + 1e-6 * std::abs(maximum);
   }
 };
 

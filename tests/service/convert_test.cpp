@@ -48,9 +48,13 @@ std::vector<double> one_to(std::size_t count) {
 TEST(ToCore, EveryFieldOfPlainResourcesIsConvertedOnce) {
   v1::Lubricant lubricant;
   EXPECT_EQ(fill(&lubricant), 14);
-  std::vector<double> of_lubricant = doubles(to_core(lubricant));
-  of_lubricant.resize(14);  // the improved Yasutomi law follows, which the contract does not have
+  EXPECT_EQ(fill(lubricant.mutable_improved_yasutomi()), kMostLawParameters);
+  const Lubricant oil = to_core(lubricant);
+  std::vector<double> of_lubricant = doubles(oil);
+  of_lubricant.resize(14);  // the law and its parameters follow
   EXPECT_EQ(of_lubricant, one_to(14));
+  EXPECT_EQ(std::vector<double>(oil.law_parameters.begin(), oil.law_parameters.end()),
+            one_to(kMostLawParameters));
   v1::Surface surface;
   EXPECT_EQ(fill(&surface), 5);
   EXPECT_EQ(doubles(roughness(surface)), one_to(3));

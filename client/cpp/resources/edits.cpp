@@ -46,6 +46,14 @@ const std::map<std::string, Wording>& wordings() {
        {"", "", "eta_ref of Vogel's law, e.g. 0.155 mPa s"}},
       {"vogel_temperature_coefficient_kelvin", {"", "", "A_1 of Vogel's law, e.g. 944.8 K"}},
       {"vogel_reference_temperature_kelvin", {"", "", "T_0 of Vogel's law, e.g. 159 K"}},
+      {"glass_viscosity_pascal_seconds",
+       {"", "", "eta_g of the improved Yasutomi law, by convention 1e12 Pa s"}},
+      {"glass_temperature_rise_kelvin", {"", "", "A_1 of the improved Yasutomi law, e.g. 210.6 K"}},
+      {"glass_pressure_factor_per_pascal",
+       {"", "", "A_2 of the improved Yasutomi law, e.g. 0.455/GPa"}},
+      {"expansivity_pressure_factor_per_pascal",
+       {"", "", "b_1 of the improved Yasutomi law, e.g. 7.606/GPa"}},
+      {"expansivity_exponent", {"", "", "b_2 of the improved Yasutomi law, e.g. -0.4193"}},
       {"relaxation_time_seconds", {"", "", "lambda of shear thinning, e.g. 450 ns"}},
       {"havriliak_negami_alpha", {"", "", "Exponent alpha of shear thinning"}},
       {"havriliak_negami_beta", {"", "", "Exponent beta of shear thinning; 0 is Newtonian"}},
@@ -245,11 +253,20 @@ std::vector<const FieldDescriptor*> numbers_of(const google::protobuf::Descripto
   return numbers;
 }
 
-/// Whether flags set the fields of a nested message: measurements, the driveline.
+/// Whether flags set the fields of a nested message: measurements, a law, the driveline.
 bool is_flag_block(const FieldDescriptor& field) {
   return !field.is_repeated() && field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE &&
          (field.message_type() == v1::LubricantMeasurements::descriptor() ||
+          field.message_type() == v1::ImprovedYasutomi::descriptor() ||
           field.message_type() == v1::DrivelineDynamics::descriptor());
+}
+
+const char* group_of(const FieldDescriptor& block) {
+  if (block.message_type() == v1::LubricantMeasurements::descriptor()) return "Measured";
+  if (block.message_type() == v1::ImprovedYasutomi::descriptor()) {
+    return "Improved Yasutomi law of viscosity under pressure (all five, in place of alpha*)";
+  }
+  return "Driveline";
 }
 
 }  // namespace
@@ -294,7 +311,7 @@ void add_edit_flags(FlagList& flags, const ResourceKind& kind, ResourceEdits& ed
     const FieldDescriptor& block = *type.field(i);
     if (!is_flag_block(block)) continue;
     const bool measured = block.message_type() == v1::LubricantMeasurements::descriptor();
-    flags.group(measured ? "Measured" : "Driveline");
+    flags.group(group_of(block));
     for (const FieldDescriptor* field : numbers_of(*block.message_type())) {
       add_number_flags(flags, {&block, field}, edits);
     }

@@ -481,8 +481,13 @@ void clear_cell(const RowColumn& column, Message& resource) {
   if (column.kind == Kind::kColdViscosity) {
     return remove_cold_viscosity(column.temperature_celsius, mutable_parent_of(column, resource));
   }
+  const auto& reflection = *resource.GetReflection();
+  if (column.block != nullptr && !reflection.HasField(resource, column.block)) return;
   Message& parent = mutable_parent_of(column, resource);
   parent.GetReflection()->ClearField(&parent, column.field);
+  if (column.block != nullptr && parent.ByteSizeLong() == 0) {
+    reflection.ClearField(&resource, column.block);
+  }
   if (column.block == nullptr && column.kind == Kind::kNumber) {
     drop_provenance(resource, column.field->name());
   }

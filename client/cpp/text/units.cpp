@@ -473,6 +473,7 @@ std::string trade_unit_of_field(std::string_view field) {
   if (unit == "K" && is_temperature_field(field) && !field.starts_with("vogel")) return "C";
   if (field == "relaxation_time_seconds") return "us";
   if (field == "youngs_modulus_pascals") return "GPa";
+  if (field == "glass_viscosity_pascal_seconds") return "Pa s";
   for (const char* small_length :
        {"asperity_radius_metres", "composite_rms_height_metres", "half_backlash_metres"}) {
     if (field == small_length) return "um";
