@@ -1,7 +1,7 @@
 import type { ComparedLubricant, ComparedPoint, ComparePointsRequest, ExplainPointsRequest, PointCondition, UncertainFigure } from './api/types';
 import type { Line, Spec } from './charts/spec';
 import { finite } from './components/num';
-import { plain, scaled, shown, type Unit } from './format';
+import { metres, plain, shown, watts, type Unit } from './units';
 import { PARAMETERS } from './lubricant_fields';
 
 /** What the form of a comparison holds. */
@@ -106,10 +106,10 @@ export interface ComparedQuantity {
 
 export const COMPARED: ComparedQuantity[] = [
   { id: 'inefficiency', label: 'Mesh inefficiency', unit: plain('%'), figure: (point) => point.inefficiency_energy_mean_percent },
-  { id: 'loss', label: 'Mesh loss', unit: plain('W'), figure: (point) => point.mesh_loss_power_watts },
+  { id: 'loss', label: 'Mesh loss', unit: watts, figure: (point) => point.mesh_loss_power_watts },
   { id: 'torque', label: 'Pinion torque', unit: plain('N m'), figure: (point) => point.pinion_torque_newton_metres },
-  { id: 'dte-least', label: 'Least transmission error', unit: scaled('µm', 1e6), figure: (point) => point.dynamic_transmission_error_minimum_metres },
-  { id: 'dte-greatest', label: 'Greatest transmission error', unit: scaled('µm', 1e6), figure: (point) => point.dynamic_transmission_error_maximum_metres },
+  { id: 'dte-least', label: 'Least transmission error', unit: metres, figure: (point) => point.dynamic_transmission_error_minimum_metres },
+  { id: 'dte-greatest', label: 'Greatest transmission error', unit: metres, figure: (point) => point.dynamic_transmission_error_maximum_metres },
 ];
 
 export const POINTS: Unit = plain('% points');

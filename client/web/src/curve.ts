@@ -1,9 +1,10 @@
 import { get, url } from './api/client';
 import type { BranchEnd, RangeWarning, Simulation } from './api/types';
 import { idOf, revisionIdOf } from './format';
-import { CURVE_COLUMNS, QUANTITIES, warningOf, type Quantity } from './quantities';
-import { shown } from './format';
+import { shown, sumpText } from './units';
+import { CURVE_COLUMNS, QUANTITIES, type Quantity } from './quantities';
 import type { Line, Spec } from './charts/spec';
+import { remarkOf, warningOf, type Remark } from './validity';
 
 /** A curve as the service answers it. */
 export interface Curve {
@@ -55,13 +56,14 @@ export const optionsOf = (simulation: Simulation): string[] =>
 const modelWords = (simulation: Simulation): string =>
   optionsOf(simulation).map((name) => name.replaceAll('_', ' ')).join(', ');
 
-/** What differs between curves of one fluid: sump, gear set, model. */
+/** What differs between curves of one fluid: sump, gear set, model, direction of the speed. */
 export function variantOf(simulation: Simulation, all: Simulation[]): string {
   const differs = (key: (each: Simulation) => string) => new Set(all.map(key)).size > 1;
-  const sump = (each: Simulation) => `${each.sump_temperature_celsius ?? 40} °C`;
+  const sump = (each: Simulation) => sumpText(each.sump_temperature_celsius);
   const gears = (each: Simulation) => idOf(each.gear_set_revision);
   const model = (each: Simulation) => modelWords(each) || 'full model';
-  return [sump, gears, model].filter(differs).map((key) => key(simulation)).join(', ');
+  const sweep = (each: Simulation) => (each.inefficiency_curve?.direction === 'SWEEP_DIRECTION_DOWN' ? 'falling speed' : 'rising speed');
+  return [sump, gears, model, sweep].filter(differs).map((key) => key(simulation)).join(', ');
 }
 
 /** Speeds with a property, as bands that reach half-way to the neighbours. */
@@ -145,8 +147,8 @@ export function splitSpecOf(curve: Curve, label: string, series: number, greates
   boundary.opacity = 0.55;
   total.opacity = 0.2;
   return {
-    title: label, xLabel: 'Vehicle speed, km/h', yLabel: 'W', lines: [total, boundary], parted, caution: [], outside,
-    levels: [], fromZero: true, yRange: [0, 1.07 * greatest], hasErrors: false,
+    title: label, xLabel: 'Vehicle speed, km/h', yLabel: unit.symbol, lines: [total, boundary], parted, caution: [], outside,
+    levels: [], fromZero: true, yRange: [0, 1.07 * shown(greatest, unit)], hasErrors: false,
   };
 }
 
@@ -206,26 +208,16 @@ function speedsText(curves: Curve[], has: (curve: Curve, row: number) => boolean
   return `${runs.map((run) => (run.length === 1 ? `${run[0]}` : `${run[0]} to ${run.at(-1)}`)).join(', ')} km/h`;
 }
 
-export interface Remark {
-  code: string;
-  words: string;
-  level: 'caution' | 'outside' | 'note';
-  speeds: string;
-  message: string; // of the first speed
-}
-
-/** Warnings of all points, each once, with the speeds that it holds for. */
+/** Warnings of all points and inputs, each once, with the speeds that it holds for. */
 export function remarksOf(curves: Curve[]): Remark[] {
-  const messages = new Map<string, string>();
-  for (const curve of curves) {
-    for (const warning of curve.warnings.flat()) {
-      if (!messages.has(warning.code!)) messages.set(warning.code!, warning.message ?? '');
-    }
+  const warnings = new Map<string, RangeWarning>();
+  for (const warning of curves.flatMap((curve) => curve.warnings.flat())) {
+    if (!warnings.has(warning.code!)) warnings.set(warning.code!, warning);
   }
-  return [...messages].map(([code, message]) => ({
-    code,
-    message,
-    ...warningOf(code),
-    speeds: speedsText(curves, (curve, row) => curve.warnings[row]!.some((each) => each.code === code)),
-  }));
+  const inputs = new Map(curves.flatMap((curve) => (curve.simulation.result?.input_warnings ?? []).map((each) => [`${each.code} ${each.message}`, each] as const)));
+  return [
+    ...[...warnings].map(([code, warning]) =>
+      remarkOf(warning, speedsText(curves, (curve, row) => curve.warnings[row]!.some((each) => each.code === code)))),
+    ...[...inputs.values()].map((each) => remarkOf(each)),
+  ];
 }

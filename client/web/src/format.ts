@@ -1,16 +1,3 @@
-/** A unit in which a quantity is shown: value * factor + offset. Only constants stand here. */
-export interface Unit {
-  symbol: string;
-  factor: number;
-  offset: number;
-}
-
-export const plain = (symbol: string): Unit => ({ symbol, factor: 1, offset: 0 });
-export const scaled = (symbol: string, factor: number): Unit => ({ symbol, factor, offset: 0 });
-export const celsius: Unit = { symbol: '°C', factor: 1, offset: -273.15 };
-
-export const shown = (value: number, unit: Unit): number => value * unit.factor + unit.offset;
-
 const MOST_FIGURES = 4;
 
 /** Returns how many decimal places an error leaves: its first digit, the second if that is a 1. */

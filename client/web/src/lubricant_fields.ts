@@ -1,5 +1,5 @@
 import type { Constraint, Lubricant, LubricantMeasurements } from './api/types';
-import { plain, scaled, type Unit } from './format';
+import { kelvin, perPascal, plain, scaled, written, type Unit } from './units';
 
 /** A number of a lubricant that the form shows; the range comes from the schema. */
 export interface Field {
@@ -23,15 +23,15 @@ export const DATA_SHEET: Field[] = [
 ];
 
 export const PARAMETERS: Field[] = [
-  parameter('pressure_viscosity_coefficient_per_pascal', 'Pressure-viscosity coefficient α*', scaled('1/GPa', 1e9)),
-  parameter('pressure_viscosity_temperature_kelvin', 'Temperature of α*'),
+  parameter('pressure_viscosity_coefficient_per_pascal', 'Pressure-viscosity coefficient α*', perPascal),
+  parameter('pressure_viscosity_temperature_kelvin', 'Temperature of α*', kelvin),
   parameter('vogel_viscosity_prefactor_pascal_seconds', 'Vogel prefactor', scaled('mPa s', 1e3)),
   parameter('vogel_temperature_coefficient_kelvin', 'Vogel coefficient A₁'),
   parameter('vogel_reference_temperature_kelvin', 'Vogel reference temperature'),
   parameter('relaxation_time_seconds', 'Relaxation time', scaled('µs', 1e6)),
   parameter('havriliak_negami_alpha', 'Havriliak-Negami α'),
   parameter('havriliak_negami_beta', 'Havriliak-Negami β'),
-  parameter('rheology_reference_temperature_kelvin', 'Reference temperature of rheology'),
+  parameter('rheology_reference_temperature_kelvin', 'Reference temperature of rheology', kelvin),
   parameter('limiting_shear_stress_at_zero_pressure_pascals', 'Limiting shear stress at zero pressure', scaled('MPa', 1e-6)),
   parameter('limiting_shear_stress_coefficient', 'Limiting shear stress coefficient'),
   parameter('thermal_conductivity_watts_per_metre_kelvin', 'Thermal conductivity'),
@@ -63,14 +63,6 @@ export const constraintOf = (field: Field, constraints: Constraint[] | undefined
 const UNITS: Record<string, string> = { 'mm2/s': 'mm²/s', 'kg/m3': 'kg/m³', 'kg/(m3 K)': 'kg/(m³ K)' };
 export const unitOf = (field: Field, constraint: Constraint | undefined): Unit =>
   field.unit ?? plain(UNITS[constraint?.unit ?? ''] ?? constraint?.unit ?? '');
-
-/** A number as people write it, with all digits that it has in this unit. */
-export const written = (value: number | undefined, unit: Unit): string =>
-  value === undefined ? '' : String(Number((value * unit.factor).toPrecision(12)));
-
-/** The number that a text states; NaN if it states none. */
-export const readNumber = (text: string, unit: Unit): number =>
-  Number((Number(text.trim().replace(',', '.')) / unit.factor).toPrecision(15));
 
 export function rangeText(constraint: Constraint | undefined, unit: Unit): string {
   if (!constraint) return '';

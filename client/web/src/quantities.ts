@@ -1,4 +1,4 @@
-import { celsius, plain, scaled, type Unit } from './format';
+import { kelvin, metres, plain, watts, type Unit } from './units';
 
 /** A quantity of a curve and the columns of the answer that show it. */
 export interface Quantity {
@@ -14,20 +14,20 @@ export interface Quantity {
 export const QUANTITIES: Quantity[] = [
   { id: 'inefficiency', label: 'Inefficiency', title: 'Mesh inefficiency, % of the power that comes in',
     columns: ['inefficiency_energy_mean_percent'], unit: plain('%') },
-  { id: 'loss', label: 'Loss', title: 'Mesh loss', columns: ['mesh_loss_power_watts'], unit: plain('W'), fromZero: true },
+  { id: 'loss', label: 'Loss', title: 'Mesh loss', columns: ['mesh_loss_power_watts'], unit: watts, fromZero: true },
   { id: 'film', label: 'Film ratio', title: 'Least film ratio over the mesh cycle',
     columns: ['minimum_film_ratio'], unit: plain(''), level: { value: 1, label: 'film as high as the roughness' }, fromZero: true },
   { id: 'temperature', label: 'Temperature', title: 'Hottest contact over the mesh cycle',
-    columns: ['maximum_contact_temperature_kelvin'], unit: celsius },
+    columns: ['maximum_contact_temperature_kelvin'], unit: kelvin },
   { id: 'torque', label: 'Friction torque', title: 'Mean friction torque on the pinion',
     columns: ['mean_pinion_friction_torque_newton_metres'], unit: plain('N m') },
   { id: 'dte', label: 'Transmission error', title: 'Dynamic transmission error, least and greatest',
     columns: ['minimum_dynamic_transmission_error_metres', 'maximum_dynamic_transmission_error_metres'],
-    unit: scaled('µm', 1e6) },
+    unit: metres },
   { id: 'boundary', label: 'Boundary friction', title: 'Boundary over viscous friction force (RMS)',
     columns: ['boundary_to_viscous_friction_ratio'], unit: plain(''), fromZero: true },
   { id: 'boundary-loss', label: 'Boundary loss', title: 'Loss by boundary friction',
-    columns: ['boundary_loss_power_watts'], unit: plain('W'), fromZero: true },
+    columns: ['boundary_loss_power_watts'], unit: watts, fromZero: true },
 ];
 
 export const quantityOf = (id: string | null): Quantity =>
@@ -38,21 +38,3 @@ export const CURVE_COLUMNS = [
   'speed_kilometres_per_hour', 'contact_loss', 'estimated_relative_error',
   ...QUANTITIES.flatMap((each) => each.columns),
 ];
-
-/** What a warning of a point means for the reader. */
-export const WARNINGS: Record<string, { words: string; level: 'caution' | 'outside' | 'note' }> = {
-  COLD_INLET: { words: 'cold inlet: do not rank oils here', level: 'outside' },
-  FILM_RATIO: { words: 'film thinner than the asperity model holds for', level: 'caution' },
-  LIMITING_STRESS: { words: 'most of the loaded area at the limiting shear stress', level: 'caution' },
-  PRESSURE: { words: 'pressure outside the range in which friction was measured', level: 'caution' },
-  RADIUS_RATIO: { words: 'contact ellipse slimmer than the fits hold for', level: 'caution' },
-  ROUGHNESS_PRODUCT: { words: 'roughness outside the range of the asperity model', level: 'caution' },
-  VISCOSITY_TEMPERATURE: { words: 'temperature outside the range in which viscosity was measured', level: 'caution' },
-  ISOTHERMAL: { words: 'isothermal model', level: 'note' },
-  NOT_SETTLED: { words: 'no steady period: averages over a record', level: 'note' },
-  PERIOD: { words: 'response with a period of several mesh cycles', level: 'note' },
-  QUASI_STATIC: { words: 'quasi-static model', level: 'note' },
-};
-
-export const warningOf = (code: string): { words: string; level: 'caution' | 'outside' | 'note' } =>
-  WARNINGS[code] ?? { words: code.toLowerCase().replaceAll('_', ' '), level: 'caution' };

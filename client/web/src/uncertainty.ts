@@ -5,7 +5,8 @@ import type { Line, Spec } from './charts/spec';
 import { differenceSpec } from './comparison';
 import { finite } from './components/num';
 import { shortTitle, variantOf, type Curve } from './curve';
-import { idOf, revisionIdOf, shown, type Unit } from './format';
+import { idOf, revisionIdOf } from './format';
+import { shown, type Unit } from './units';
 import { inputsOf } from './request';
 import { useLoaded, type Loaded } from './resources';
 

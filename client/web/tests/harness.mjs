@@ -132,6 +132,20 @@ export async function signIn(page, token) {
   await page.getByRole('dialog').waitFor({ state: 'detached' });
 }
 
+/** A campaign of candidates that differ in a parameter, words and a cost, at six conditions. */
+export const campaignOf = (candidates) => ({
+  display_name: `${candidates} candidates`, lubricant: 'lubricants/paper-fluid-1',
+  candidate_columns: [
+    { path: 'lubricant.pressure_viscosity_coefficient_per_pascal', values: Array.from({ length: candidates }, (_, i) => 1.2e-8 + (1e-8 * i) / candidates) },
+    { path: 'surface.asperity_friction_coefficient', values: Array.from({ length: candidates }, (_, i) => 0.08 + (0.04 * (i % 7)) / 7) },
+  ],
+  candidate_attributes: [
+    { name: 'additive', texts: Array.from({ length: candidates }, (_, i) => `additive ${'ABC'[i % 3]}`) },
+    { name: 'cost_euros_per_kilogram', values: Array.from({ length: candidates }, (_, i) => 2 + i) },
+  ],
+  conditions: [40, 90].flatMap((sump) => [30, 70, 110].map((speed) => ({ speed_kilometres_per_hour: speed, sump_temperature_celsius: sump }))),
+});
+
 /** All numbers of a JSON value, at any depth. */
 function numbersOf(value, into) {
   if (typeof value === 'number') into.add(value);

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { mkdirSync, readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { after, before, test } from 'node:test';
-import { launch, newPage, Server, signIn } from './harness.mjs';
+import { campaignOf, launch, newPage, Server, signIn } from './harness.mjs';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const FOLDER = 'screenshots';
@@ -43,6 +43,7 @@ before(async () => {
     lubricant: 'lubricants/my-oil',
     inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 140, speed_step_kilometres_per_hour: 5 },
   });
+  await server.call('POST', '/v1/campaigns', campaignOf(60));
   for (let i = 0; i < 100; ++i) {
     const { simulations } = await server.call('GET', '/v1/simulations?read_mask=state');
     if (simulations.every((each) => each.state === 'SUCCEEDED' || each.state === 'FAILED')) break;
@@ -72,6 +73,14 @@ const VIEWS = [
   ['job', '/jobs/5', '.facts'],
   ['job-assumptions', '/jobs/1', '.assumptions'],
   ['point', '/point/4', '.histories canvas'],
+  ['campaigns', '/campaigns', 'tbody tr'],
+  ['campaign', '/campaigns/1?order=mesh_loss_power_watts&c=7', '.rows tbody tr'],
+  ['campaign-plot', '/campaigns/1?view=plot&x=cost_euros_per_kilogram&color=additive', '.scatter canvas'],
+  ['campaign-parallel', '/campaigns/1?view=parallel&b=mesh_loss_power_watts:12..20', '.parallel-axis'],
+  ['rigs', '/rigs', '.read-out'],
+  ['rigs-film', '/rigs?kind=film', '.read-out'],
+  ['paper', '/paper', '.places'],
+  ['more', '/more', '.places'],
   ['missing', '/fluids/no-such-oil', '.empty'],
 ];
 
@@ -86,6 +95,7 @@ for (const colorScheme of ['light', 'dark']) {
       for (const [name, path, mark] of VIEWS) {
         await page.goto(server.address + path);
         await page.locator(mark).first().waitFor();
+        await page.waitForFunction(() => !document.querySelector('.stale'));
         await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
         await page.screenshot({ path: `${FOLDER}/${name}-${colorScheme}-${width}.png`, fullPage: true });
         const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);

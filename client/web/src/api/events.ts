@@ -1,24 +1,23 @@
-import type { SimulationEvent } from './types';
+import type { CampaignEvent, SimulationEvent } from './types';
 import { awaySince, readSession, url } from './client';
 
 const RETRY_MILLISECONDS = 1500;
 
+export interface Stream {
+  close: () => void;
+}
+
 /**
- * Follows the events of simulations in one stream: those with the names, or all that are created
- * after `afterEvent`. The stream is opened again until close() is called or the server has ended it;
- * `onReopen` is called before events that may repeat what is shown already.
+ * Follows a stream of events from the one with the number `first` on. The stream is opened again
+ * until close() is called or the server has ended it; `onReopen` is called before events that may
+ * repeat what is shown already.
  */
-export function watch(
-  which: { names: string[] } | { afterEvent: string },
-  onEvent: (event: SimulationEvent) => void,
-  onReopen: () => void = () => {},
-): { close: () => void } {
+function follow<Message>(addressAfter: (last: string) => string, first: string, onEvent: (event: Message) => void, onReopen: () => void): Stream {
   let source: EventSource | undefined;
   let timer: number | undefined;
-  let last = 'afterEvent' in which ? which.afterEvent : '0';
+  let last = first;
   const open = () => {
-    const names = 'names' in which ? { names: which.names } : {};
-    source = new EventSource(url('simulations:watch', { ...names, after_event_number: last }));
+    source = new EventSource(addressAfter(last));
     source.onmessage = (message) => {
       if (message.lastEventId !== '') last = message.lastEventId;
       onEvent(JSON.parse(message.data));
@@ -52,3 +51,18 @@ export function watch(
   open();
   return { close };
 }
+
+/** Follows simulations in one stream: those with the names, or all that are created after `afterEvent`. */
+export function watch(
+  which: { names: string[] } | { afterEvent: string },
+  onEvent: (event: SimulationEvent) => void,
+  onReopen: () => void = () => {},
+): Stream {
+  const names = 'names' in which ? { names: which.names } : {};
+  return follow((last) => url('simulations:watch', { ...names, after_event_number: last }),
+    'afterEvent' in which ? which.afterEvent : '0', onEvent, onReopen);
+}
+
+/** Follows a campaign until it ends or is deleted. */
+export const watchCampaign = (name: string, onEvent: (event: CampaignEvent) => void): Stream =>
+  follow((last) => url(`${name}:watch`, { after_version: last }), '0', onEvent, () => {});

@@ -236,8 +236,8 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
           },
         },
         scales: {
-          x: { time: false, ...(spec.xRange ? { range: spec.xRange } : {}) },
-          y: { range: (u) => rangeOf(spec, u.scales['x']!.min ?? -Infinity, u.scales['x']!.max ?? Infinity) },
+          x: { time: false, ...(spec.xIsLogarithmic ? { distr: 3 as const } : {}), ...(spec.xRange ? { range: spec.xRange } : {}) },
+          y: { ...(spec.yIsLogarithmic ? { distr: 3 as const } : {}), range: (u) => rangeOf(spec, u.scales['x']!.min ?? -Infinity, u.scales['x']!.max ?? Infinity) },
         },
         axes: [
           { ...axis, size: isSmall ? 24 : 30, space: isSmall ? 45 : 60 },

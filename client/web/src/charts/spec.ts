@@ -26,6 +26,8 @@ export interface Spec {
   hasMarkers?: boolean; // and labels at the lines; default: true
   xRange?: [number, number]; // default: all
   yRange?: [number, number]; // default: all values and levels
+  xIsLogarithmic?: boolean;
+  yIsLogarithmic?: boolean; // values are above 0
   hasErrors?: boolean; // whiskers of the solver's error; default: true
 }
 
@@ -68,6 +70,8 @@ export function corners(marker: Marker, r: number): [number, number][] | null {
   }
 }
 
+const LOGARITHMIC_ROOM = 1.2; // above and below, as a ratio
+
 /** The range of the vertical axis: all values and levels, with room above and below. */
 export function rangeOf(spec: Spec, from = -Infinity, to = Infinity): [number, number] {
   if (spec.yRange) return spec.yRange;
@@ -80,7 +84,8 @@ export function rangeOf(spec: Spec, from = -Infinity, to = Infinity): [number, n
       high = Math.max(high, y, line.high?.[i] ?? y, line.to?.[i] ?? y);
     });
   }
-  if (low > high) return [0, 1];
+  if (low > high) return spec.yIsLogarithmic ? [1, 10] : [0, 1];
+  if (spec.yIsLogarithmic) return [low / LOGARITHMIC_ROOM, high * LOGARITHMIC_ROOM];
   for (const level of spec.levels) {
     // A level far away would flatten the lines.
     if (level.value > low - 2 * (high - low) && level.value < high + 2 * (high - low)) {

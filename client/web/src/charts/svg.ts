@@ -1,3 +1,4 @@
+import { logarithmicTicks, placeOf, tickText, ticks } from './ticks';
 import { areasOf, colorOf, corners, DASHES, endsBranch, hasMarker, lastOf, LIGHT, MARKERS, opacityOf, rangeOf, spread, type Line, type Spec } from './spec';
 
 const WIDTH = 960;
@@ -8,18 +9,6 @@ const LINE_PITCH = 16;
 
 const escaped = (text: string): string =>
   text.replace(/[&<>"]/g, (each) => `&#${each.charCodeAt(0)};`);
-
-/** Round numbers that divide a range into about `count` parts. */
-export function ticks(low: number, high: number, count: number): number[] {
-  const raw = (high - low) / count;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = power * ([1, 2, 2.5, 5, 10].find((each) => each * power >= raw) ?? 10);
-  const out: number[] = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) out.push(k * step);
-  return out;
-}
-
-const tickText = (value: number): string => String(Number(value.toPrecision(6))).replace('-', '−');
 
 function markerText(line: Line, x: number, y: number, hollow: boolean): string {
   const color = colorOf(line.series, LIGHT);
@@ -37,8 +26,8 @@ export function svgOf(spec: Spec, footer: string[]): string {
   const all = spec.lines.flatMap((line) => line.x);
   const [first, last] = [Math.min(...all), Math.max(...all)];
   const [low, high] = rangeOf(spec);
-  const x = (value: number) => LEFT + ((value - first) / (last - first || 1)) * (right - LEFT);
-  const y = (value: number) => TOP + HEIGHT - ((value - low) / (high - low)) * HEIGHT;
+  const x = placeOf(first, last, LEFT, right, spec.xIsLogarithmic);
+  const y = placeOf(low, high, TOP + HEIGHT, TOP, spec.yIsLogarithmic);
   const out: string[] = [];
   const text = (at: [number, number], words: string, look: string) =>
     out.push(`<text x="${at[0].toFixed(1)}" y="${at[1].toFixed(1)}" ${look}>${escaped(words)}</text>`);
@@ -52,11 +41,11 @@ export function svgOf(spec: Spec, footer: string[]): string {
   region(spec.caution, TOP - 8, 6, 'url(#caution)');
   text([LEFT, 32], spec.title, `font-size="18" font-weight="600" fill="${LIGHT.text}"`);
   text([LEFT, 54], spec.yLabel, `font-size="12" fill="${LIGHT.muted}"`);
-  for (const each of ticks(low, high, 6)) {
+  for (const each of (spec.yIsLogarithmic ? logarithmicTicks(low, high) : ticks(low, high, 6))) {
     out.push(`<path d="M${LEFT} ${y(each).toFixed(1)}H${right}" stroke="${LIGHT.grid}"/>`);
     text([LEFT - 8, y(each) + 4], tickText(each), `font-size="12" text-anchor="end" fill="${LIGHT.muted}"`);
   }
-  for (const each of ticks(first, last, 8)) {
+  for (const each of (spec.xIsLogarithmic ? logarithmicTicks(first, last) : ticks(first, last, 8))) {
     text([x(each), TOP + HEIGHT + 18], tickText(each), `font-size="12" text-anchor="middle" fill="${LIGHT.muted}"`);
   }
   out.push(`<path d="M${LEFT} ${TOP + HEIGHT}H${right}" stroke="${LIGHT.axis}"/>`);

@@ -5,6 +5,7 @@ import { fluidsOf, shortTitle, type Curve } from '../curve';
 import { idOf } from '../format';
 import { OPTIONS, type CurveRequest } from '../request';
 import { titlesOf, useSchema } from '../resources';
+import { celsius, readNumber, written } from '../units';
 import { Swatch } from './swatch';
 
 interface ConditionsProps {
@@ -59,12 +60,12 @@ export function Conditions({ request, onChange, lubricants, gearSets, violations
       <fieldset>
         <legend>Conditions</legend>
         <label>
-          Sump, °C
-          <input value={typed ?? request.sumps.join(', ')} inputMode="decimal" title={`${range('Simulation', 'sump_temperature_celsius')}; several with commas between them`}
+          Sump, {celsius.symbol}
+          <input value={typed ?? request.sumps.map((each) => written(each, celsius)).join(', ')} inputMode="decimal" title={`${range('Simulation', 'sump_temperature_celsius')}; several with commas between them`}
             aria-invalid={problemOf('sump_temperature_celsius') !== undefined}
             onInput={(event) => {
               setTyped(event.currentTarget.value);
-              const sumps = event.currentTarget.value.split(/[,;]\s*|\s+/).filter((word) => word !== '').map(Number).filter((value) => !Number.isNaN(value));
+              const sumps = event.currentTarget.value.split(/[,;]\s*|\s+/).filter((word) => word !== '').map((word) => readNumber(word, celsius)).filter((value) => !Number.isNaN(value));
               if (sumps.length > 0) onChange({ ...request, sumps });
             }}
             onBlur={() => setTyped(null)} />

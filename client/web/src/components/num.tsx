@@ -1,4 +1,5 @@
-import { rounded, shown, type Unit } from '../format';
+import { rounded } from '../format';
+import { shown, type Unit } from '../units';
 
 /** protobuf's JSON writes what is no number as a text. */
 export const finite = (value: number | string | null | undefined): number | null =>

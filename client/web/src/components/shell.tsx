@@ -4,20 +4,31 @@ import { awaySince, readSession, session, signOut } from '../api/client';
 import { theme, type Theme } from '../charts/theme';
 import { address, follow, go, place } from '../router';
 import { useStore } from '../store';
+import { units } from '../units';
 import { Home } from '../views/home';
 import { Missing } from './missing';
 import { Notice } from './notice';
 import { SignIn } from './sign_in';
+import { UnitChoices } from './unit_choices';
 
-const LINKS: [string, string][] = [['/', 'Home'], ['/curves', 'Curves'], ['/compare', 'Compare'], ['/fluids', 'Fluids'], ['/jobs', 'Jobs']];
+/** Views of the bar; the minor ones stand behind "More" where the bar is narrow. */
+const LINKS: { path: string; word: string; isMinor?: boolean }[] = [
+  { path: '/', word: 'Home' }, { path: '/curves', word: 'Curves' }, { path: '/compare', word: 'Compare', isMinor: true },
+  { path: '/fluids', word: 'Fluids' }, { path: '/jobs', word: 'Jobs' }, { path: '/campaigns', word: 'Campaigns', isMinor: true },
+  { path: '/rigs', word: 'Rigs', isMinor: true }, { path: '/paper', word: 'The paper', isMinor: true }, { path: '/more', word: 'More' },
+];
 
 /** Views by the first word of the path; each but the first has its own chunk. */
 const VIEWS: Record<string, () => Promise<ComponentType>> = {
+  campaigns: async () => (await import('../views/campaigns')).Campaigns,
   compare: async () => (await import('../views/compare')).Compare,
   curves: async () => (await import('../views/curves')).Curves,
   fluids: async () => (await import('../views/fluids')).Fluids,
+  more: async () => (await import('../views/more')).More,
   jobs: async () => (await import('../views/jobs')).Jobs,
+  paper: async () => (await import('../views/paper')).Paper,
   point: async () => (await import('../views/point')).Point,
+  rigs: async () => (await import('../views/rigs')).Rigs,
 };
 
 function useView(path: string): ComponentType | 'loading' | 'missing' {
@@ -47,6 +58,7 @@ function Account() {
           {projects.map((each) => <option key={each}>{each}</option>)}
         </select>
       )}
+      <UnitChoices />
       <button class="quiet" onClick={() => theme.set(next[chosen])} title="Colors: system, light, dark">
         {{ system: 'Auto', light: 'Light', dark: 'Dark' }[chosen]}
       </button>
@@ -60,6 +72,7 @@ export function Shell() {
   const { path, project } = useStore(place);
   const who = useStore(session);
   const away = useStore(awaySince);
+  useStore(units);
   const View = useView(path);
   // A session that ends leaves the page as it is: the dialog lies over it.
   const [hasBegun, setBegun] = useState(false);
@@ -82,8 +95,8 @@ export function Shell() {
       <header class="bar">
         <a class="brand" href={address('/')}>Tribodyn</a>
         <nav aria-label="Views">
-          {LINKS.map(([link, word]) => (
-            <a key={link} href={address(link)} aria-current={current(link) ? 'page' : undefined}>{word}</a>
+          {LINKS.map(({ path: link, word, isMinor }) => (
+            <a key={link} class={isMinor ? 'minor' : link === '/more' ? 'more' : ''} href={address(link)} aria-current={current(link) ? 'page' : undefined}>{word}</a>
           ))}
         </nav>
         <Account />

@@ -34,7 +34,7 @@ export function TakeAway({ name, spec, footer = [], csv, requests, commands, chi
         <button onClick={() => save('request.json', new Blob([JSON.stringify(requests, null, 2)], { type: 'application/json' }))}>Request as JSON</button>
         {commands.length > 0 && <button onClick={() => void copy('command', commands.join('\n'))}>{copied === 'command' ? 'Copied' : 'Copy the command line'}</button>}
         <button onClick={() => void copy('link', location.href)}>{copied === 'link' ? 'Copied' : 'Copy a link to this page'}</button>
-        {commands.length > 0 && <pre class="command" aria-label="Command line">{commands.join('\n')}</pre>}
+        {commands.length > 0 && <pre class="command" tabIndex={0} aria-label="Command line">{commands.join('\n')}</pre>}
       </div>
     </details>
   );

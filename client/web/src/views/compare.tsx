@@ -15,7 +15,8 @@ import {
   inputWords, POINTS, speedsOf, type CompareRequest,
 } from '../comparison';
 import { shortTitle } from '../curve';
-import { idOf, plain, revisionIdOf, rounded, shown, type Unit } from '../format';
+import { idOf, revisionIdOf } from '../format';
+import { celsius, plain, readNumber, shown, sumpText, units, watts, written, type Unit } from '../units';
 import { constraintOf, DATA_SHEET, PARAMETERS, unitOf, valueOf } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
 import { OPTIONS } from '../request';
@@ -29,6 +30,7 @@ const PERCENT: Unit = { symbol: '%', factor: 100, offset: 0 };
 /** Two fluids side by side: who loses less, how sure that is, why, and what to measure next. */
 export function Compare() {
   const { query, project } = useStore(place);
+  const inUnits = useStore(units);
   const lubricants = useLubricants();
   const titles = useMemo(() => titlesOf(lubricants.value), [lubricants.value]);
   const stated = compareRequestOf(query);
@@ -51,7 +53,7 @@ export function Compare() {
   const quantity = COMPARED.find((each) => each.id === query.get('y')) ?? COMPARED[0]!;
   const specs = useMemo(() => (lines.length === 2
     ? { figures: figuresSpec(lines, names, speeds, quantity), difference: differenceSpec(lines, names, speeds, [0, 1]) } : null),
-  [answer.value, quantity, titles]);
+  [answer.value, quantity, titles, inUnits]);
   const row = at === null ? -1 : speeds.indexOf(at);
   const other = lines[1];
   const difference = other && (row < 0 ? other.mean_difference : other.differences?.[row]);
@@ -144,11 +146,14 @@ function Form({ request, onChange, lubricants, violations }: FormProps) {
       </label>
     );
   };
-  const number = (key: 'sump' | 'first' | 'last' | 'step' | 'sumpUncertainty' | 'correlation', words: string, field: string) => (
+  const number = (key: 'sump' | 'first' | 'last' | 'step' | 'sumpUncertainty' | 'correlation', words: string, field: string, unit: Unit = plain('')) => (
     <label>
       {words}
-      <input type="number" step="any" value={request[key]} aria-invalid={problemOf(field) !== undefined}
-        onChange={(event) => Number.isFinite(event.currentTarget.valueAsNumber) && onChange({ ...request, [key]: event.currentTarget.valueAsNumber })} />
+      <input type="number" step="any" value={written(request[key], unit)} aria-invalid={problemOf(field) !== undefined}
+        onChange={(event) => {
+          const value = readNumber(event.currentTarget.value, unit);
+          if (Number.isFinite(value)) onChange({ ...request, [key]: value });
+        }} />
       {problemOf(field) && <span class="problem" role="alert">{problemOf(field)}</span>}
     </label>
   );
@@ -162,7 +167,7 @@ function Form({ request, onChange, lubricants, violations }: FormProps) {
       </fieldset>
       <fieldset>
         <legend>Conditions</legend>
-        {number('sump', 'Sump, °C', 'sump_temperature_celsius')}
+        {number('sump', `Sump, ${celsius.symbol}`, 'sump_temperature_celsius', celsius)}
         <label>
           Gear set
           <select value={idOf(request.gearSet) || 'reference-axle'} onChange={(event) => onChange({ ...request, gearSet: event.currentTarget.value })}>
@@ -275,7 +280,7 @@ function Reasons({ explanation, names }: { explanation: DifferenceExplanation | 
   if (!explanation) return null;
   if (explanation.refusal_reason) return <Notice kind="error">{explanation.refusal_message}</Notice>;
   const [a, b] = names;
-  const unit = inWatts ? plain('W') : POINTS;
+  const unit = inWatts ? watts : POINTS;
   const shapley = (cause: DifferenceCause) => (inWatts ? cause.mesh_loss_power_watts : cause.inefficiency_percent);
   const causes = [...(explanation.causes ?? [])].sort((x, y) =>
     Number(x.is_equal ?? false) - Number(y.is_equal ?? false) ||
@@ -291,7 +296,7 @@ function Reasons({ explanation, names }: { explanation: DifferenceExplanation | 
     <>
       <div class="tabs" role="group" aria-label="Figure">
         <button aria-pressed={!inWatts} onClick={() => setWatts(false)}>Inefficiency, percentage points</button>
-        <button aria-pressed={inWatts} onClick={() => setWatts(true)}>Loss, W</button>
+        <button aria-pressed={inWatts} onClick={() => setWatts(true)}>Loss, {watts.symbol}</button>
       </div>
       <Bars bars={bars} label="What each property group adds" less={`${b} loses less`} more={`${b} loses more`} />
       <p class="small">Each bar is what {b}'s values of that group change, averaged over all orders of exchange (Shapley value); whiskers hold 95&nbsp;%.</p>
@@ -429,7 +434,7 @@ function Inputs({ a, b, names }: { a: string; b: string; names: string[] }) {
 function footerOf(answer: ComparePointsResponse, request: CompareRequest): string[] {
   return [
     `Less ${revisionIdOf(answer.lubricants?.[0]?.lubricant_revision)}: ${revisionIdOf(answer.lubricants?.[1]?.lubricant_revision)}. Bands hold 95 % by ${answer.draws} draws of the inputs; hollow: cannot be told apart.`,
-    `Gear set ${revisionIdOf(answer.gear_set_revision)}, surface ${revisionIdOf(answer.surface_revision)}, vehicle ${revisionIdOf(answer.vehicle_revision)}, sump ${rounded(request.sump)} °C. Loss of the tooth contact only.`,
+    `Gear set ${revisionIdOf(answer.gear_set_revision)}, surface ${revisionIdOf(answer.surface_revision)}, vehicle ${revisionIdOf(answer.vehicle_revision)}, sump ${sumpText(request.sump)}. Loss of the tooth contact only.`,
     `${answer.model_version ?? ''}; correlation of estimates ${request.correlation}, uncertainty of the sump ${request.sumpUncertainty} K`,
   ];
 }

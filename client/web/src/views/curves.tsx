@@ -9,14 +9,17 @@ import { CurveExport } from '../components/curve_export';
 import { Failure, Notice } from '../components/notice';
 import { ReadOut } from '../components/read_out';
 import { Swatch } from '../components/swatch';
+import { Validity } from '../components/validity';
 import { bandsOf, fluidsOf, optionsOf, readCurve, readSimulation, remarksOf, shortTitle, specOf, splitSpecOf, variantOf, type Curve } from '../curve';
 import { idOf, revisionIdOf } from '../format';
-import { QUANTITIES, quantityOf, warningOf } from '../quantities';
+import { QUANTITIES, quantityOf } from '../quantities';
+import { warningOf } from '../validity';
 import { bodiesOf, DEFAULTS, inputsOf, queryOf, requestOf, requestOfSimulations, type CurveRequest } from '../request';
 import { HISTORY_COLUMNS, MESH_CYCLES, SAMPLES_PER_MESH_CYCLE } from '../histories';
 import { titlesOf, useGearSets, useLubricants } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
+import { units, watts } from '../units';
 import { differencesOf, needsContactFigures, specWithIntervals, useUncertainty, type ComparedGroup } from '../uncertainty';
 import { POINTS } from '../comparison';
 import { Num } from '../components/num';
@@ -106,6 +109,7 @@ function Progress({ jobs, titles }: { jobs: Job[]; titles: Map<string, string> }
 /** The curves of fluids over speed, and the form that runs them. */
 export function Curves() {
   const { query, project } = useStore(place);
+  const inUnits = useStore(units);
   const lubricants = useLubricants();
   const gearSets = useGearSets();
   const titles = useMemo(() => titlesOf(lubricants.value), [lubricants.value]);
@@ -148,7 +152,7 @@ export function Curves() {
     () => new Map(QUANTITIES.map((each) => [each.id, {
       ...specOf(done, each, titles, gearSet?.dynamics?.half_backlash_metres), hasErrors, ...(zoom ? { xRange: zoom } : {}),
     }])),
-    [done, titles, gearSet, hasErrors, zoom],
+    [done, titles, gearSet, hasErrors, zoom, inUnits],
   );
   const spec = useMemo(
     () => specWithIntervals(specs.get(quantity.id)!, done, quantity.columns, quantity.unit, hasBands ? groups : undefined),
@@ -159,7 +163,6 @@ export function Curves() {
     return found && { ...found, hasErrors, ...(zoom ? { xRange: zoom } : {}), parted: spec.parted, outside: spec.outside };
   }, [groups, titles, spec]);
   const onZoom = (range: [number, number] | null) => set({ x: range ? range.map((each) => Number(each.toFixed(2))).join('-') : undefined });
-  const remarks = useMemo(() => remarksOf(done), [done]);
   const failed = jobs.filter((job) => job.simulation.state === 'FAILED' || job.simulation.state === 'CANCELLED');
 
   const submit = async (bodies: Simulation[], shownIds: string[] = []) => {
@@ -235,7 +238,7 @@ export function Curves() {
           <>
             <figure class="figure" aria-labelledby="figure-title">
               <div class="heading">
-                <h1 id="figure-title">{isSplit ? 'Mesh loss by viscous and by boundary friction, W' : `${spec.title}${spec.yLabel && spec.yLabel !== '%' ? `, ${spec.yLabel}` : ''}`}</h1>
+                <h1 id="figure-title">{isSplit ? 'Mesh loss by viscous and by boundary friction, ' + watts.symbol : `${spec.title}${spec.yLabel && spec.yLabel !== '%' ? `, ${spec.yLabel}` : ''}`}</h1>
                 <CurveExport spec={isSplit ? specs.get('loss')! : spec} curves={done} project={project} />
               </div>
               <div class="tabs" role="group" aria-label="Quantity">
@@ -265,7 +268,7 @@ export function Curves() {
               <Differences spec={difference} groups={groups!} titles={titles} fluids={fluids} reference={reference} onSpeed={setSpeed} onZoom={onZoom} />
             )}
             <ReadOut curves={done} titles={titles} groups={hasBands ? groups : undefined} speed={speed} onSpeed={setSpeed} onOpen={(curve, at) => void openPoint(curve, at)} />
-            <Validity remarks={remarks} curves={done} />
+            <CurveValidity curves={done} />
             <div class="multiples">
               {QUANTITIES.map((each) => (
                 <button key={each.id} class="multiple" aria-pressed={!isSplit && each.id === quantity.id} onClick={() => set({ y: each.id === 'inefficiency' ? undefined : each.id })}>
@@ -304,6 +307,7 @@ function LossSplit({ curves, titles, xRange, onSpeed, onZoom }: {
   curves: Curve[]; titles: Map<string, string>; xRange: [number, number] | undefined;
   onSpeed: (speed: number) => void; onZoom: (range: [number, number] | null) => void;
 }) {
+  const inUnits = useStore(units);
   const specs = useMemo(() => {
     const simulations = curves.map((curve) => curve.simulation);
     const fluids = fluidsOf(curves);
@@ -316,7 +320,7 @@ function LossSplit({ curves, titles, xRange, onSpeed, onZoom }: {
         bandsOf([curve], (each, row) => each.warnings[row]!.some((warning) => warningOf(warning.code ?? '').level === 'outside')));
       return xRange ? { ...spec, xRange } : spec;
     });
-  }, [curves, titles, xRange]);
+  }, [curves, titles, xRange, inUnits]);
   return (
     <>
       <div class="histories">
@@ -376,34 +380,23 @@ function Differences({ spec, groups, titles, fluids, reference, onSpeed, onZoom 
   );
 }
 
-function Validity({ remarks, curves }: { remarks: ReturnType<typeof remarksOf>; curves: Curve[] }) {
+/** What restricts the curves, beside the light: ends of branches, refusals, what they rest on. */
+function CurveValidity({ curves }: { curves: Curve[] }) {
+  const remarks = useMemo(() => remarksOf(curves), [curves]);
   const ends = curves.flatMap((curve) => curve.branchEnds.filter((end) => end !== undefined));
   const refusals = curves.flatMap((curve) => curve.refusals);
-  const inputs = new Map(curves.flatMap((curve) => (curve.simulation.result?.input_warnings ?? []).map((each) => [each.code!, each.message!] as const)));
-  const symbols = { note: '●', caution: '▲', outside: '■' };
   return (
-    <details class="validity" open={remarks.some((each) => each.level === 'outside') || refusals.length > 0}>
-      <summary>
-        Validity: {remarks.length === 0 ? 'within the validated range' : remarks.map((each) => each.words).join('; ')}
-      </summary>
-      <ul>
-        {remarks.map((each) => (
-          <li key={each.code} class={each.level}>
-            <span aria-hidden="true">{symbols[each.level]}</span> {each.words}, at {each.speeds}. {each.message}
-          </li>
-        ))}
-        {ends.map((end, i) => (
-          <li key={i} class="note">The branch of steady states was followed to {end!.followed_to_kilometres_per_hour} km/h and is gone at {end!.gone_at_kilometres_per_hour} km/h: the response jumps there, and the line breaks.</li>
-        ))}
-        {refusals.map((each) => <li key={each.speed} class="outside">No result at {each.speed} km/h: {each.message}</li>)}
-        {[...inputs].map(([code, message]) => <li key={code} class="caution">{message}</li>)}
-        <li class="note">
-          What each result rests on: {curves.map(({ simulation }, k) => (
-            <span key={simulation.name}>{k > 0 && ', '}<a href={address(`/jobs/${idOf(simulation.name)}`)}>assumptions of {revisionIdOf(simulation.lubricant_revision)}</a></span>
-          ))}.
-        </li>
-        <li class="note">All losses are mesh losses: bearings, churning and seals are not in them.</li>
-      </ul>
-    </details>
+    <Validity remarks={remarks} isOpen={refusals.length > 0}>
+      {ends.map((end, i) => (
+        <li key={i} class="note">The branch of steady states was followed to {end!.followed_to_kilometres_per_hour} km/h and is gone at {end!.gone_at_kilometres_per_hour} km/h: the response jumps there, and the line breaks.</li>
+      ))}
+      {refusals.map((each) => <li key={each.speed} class="outside">No result at {each.speed} km/h: {each.message}</li>)}
+      <li class="note">
+        What each result rests on: {curves.map(({ simulation }, k) => (
+          <span key={simulation.name}>{k > 0 && ', '}<a href={address(`/jobs/${idOf(simulation.name)}`)}>assumptions of {revisionIdOf(simulation.lubricant_revision)}</a></span>
+        ))}.
+      </li>
+      <li class="note">All losses are mesh losses: bearings, churning and seals are not in them.</li>
+    </Validity>
   );
 }

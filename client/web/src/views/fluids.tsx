@@ -2,9 +2,12 @@ import { useEffect, useRef, useState } from 'preact/hooks';
 import { ApiError, change, get, session, url, type Violation } from '../api/client';
 import type { Lubricant } from '../api/types';
 import { Missing } from '../components/missing';
-import { Failure, Notice } from '../components/notice';
-import { ago, idOf, rounded, shown } from '../format';
-import { BASE_OILS, constraintOf, DATA_SHEET, PARAMETERS, rangeText, readNumber, unitOf, valueOf, written, type Field } from '../lubricant_fields';
+import { Failure } from '../components/notice';
+import { Validity } from '../components/validity';
+import { remarkOf } from '../validity';
+import { ago, idOf, rounded } from '../format';
+import { readNumber, shown, written } from '../units';
+import { BASE_OILS, constraintOf, DATA_SHEET, PARAMETERS, rangeText, unitOf, valueOf, type Field } from '../lubricant_fields';
 import { PROVENANCE } from '../provenance';
 import { useLoaded, useLubricants, useSchema } from '../resources';
 import { address, go, place } from '../router';
@@ -113,9 +116,7 @@ function FluidPage({ id }: { id: string }) {
         <li><span>SAE J306</span><strong>{figures.sae_j306_grade || '–'}</strong></li>
       </ul>
       {figures.sae_j306_grade_note && <p class="muted small">{figures.sae_j306_grade_note}</p>}
-      {(figures.warnings ?? []).length > 0 && (
-        <Notice kind="caution"><ul>{figures.warnings!.map((each) => <li key={each.field + each.code!}>{each.sentence}</li>)}</ul></Notice>
-      )}
+      <Validity remarks={(figures.warnings ?? []).map((each) => remarkOf(each))} />
       <div class="scroll" tabIndex={0} role="region" aria-label="Parameters">
         <table class="parameters">
           <thead><tr><th>Quantity</th><th class="number">Value</th><th>Unit</th><th>Origin</th><th>Source</th></tr></thead>

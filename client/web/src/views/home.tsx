@@ -8,15 +8,16 @@ import { ago, idOf, rounded } from '../format';
 import { bodiesOf, DEFAULTS } from '../request';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
 import { address, go } from '../router';
+import { sumpText } from '../units';
 
 const SHOWN_RUNS = 8;
 
 /** Runs curves and opens them, beside results that are shown already. */
-export async function run(bodies: Simulation[], beside: string[] = []): Promise<void> {
+export async function run(bodies: Simulation[], beside: string[] = [], quantity?: string): Promise<void> {
   const simulations: Simulation[] = [];
   // One after the other, so that numbers have the order of the fluids.
   for (const body of bodies) simulations.push(await change<Simulation>('POST', url('simulations'), body));
-  go(address('/curves', { r: [...new Set([...beside, ...simulations.map((each) => idOf(each.name))])].join(',') }));
+  go(address('/curves', { r: [...new Set([...beside, ...simulations.map((each) => idOf(each.name))])].join(','), y: quantity }));
 }
 
 /** What a simulation computes, in a few words. */
@@ -111,7 +112,7 @@ export function Home() {
               <li key={each.name}>
                 <a href={pageOf(each)}>
                   <strong>{each.display_name || shortTitle(titles.get(idOf(each.lubricant)) ?? idOf(each.lubricant))}</strong>
-                  <span>{subject(each)}, sump {each.sump_temperature_celsius ?? 40} °C</span>
+                  <span>{subject(each)}, sump {sumpText(each.sump_temperature_celsius)}</span>
                 </a>
                 <JobState simulation={each} />
                 <time dateTime={each.create_time}>{ago(each.create_time)}</time>

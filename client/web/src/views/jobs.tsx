@@ -5,6 +5,8 @@ import type { Assumption, ListSimulationsResponse, Simulation } from '../api/typ
 import { JobState } from '../components/job_state';
 import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
+import { Validity } from '../components/validity';
+import { remarksOnce } from '../validity';
 import { INPUT_FIELDS, readSimulation } from '../curve';
 import { ago, duration, idOf, revisionIdOf } from '../format';
 import { PROVENANCE } from '../provenance';
@@ -12,6 +14,7 @@ import { inputsOf } from '../request';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
+import { sumpText } from '../units';
 import { pageOf, subject } from './home';
 
 const PAGE = 100;
@@ -88,14 +91,14 @@ function JobList({ state }: { state: string }) {
       {jobs && jobs.length > 0 && (
         <div class="scroll" tabIndex={0} role="region" aria-label="Jobs">
           <table class="jobs">
-            <thead><tr><th>Job</th><th>Fluid</th><th>Computes</th><th class="number">Sump °C</th><th>State</th><th class="number">Time</th><th class="number">Created</th><th><span class="hidden">Actions</span></th></tr></thead>
+            <thead><tr><th>Job</th><th>Fluid</th><th>Computes</th><th class="number">Sump</th><th>State</th><th class="number">Time</th><th class="number">Created</th><th><span class="hidden">Actions</span></th></tr></thead>
             <tbody>
               {jobs.map((job) => (
                 <tr key={job.name}>
                   <td><a href={address(`/jobs/${idOf(job.name)}`)}>{idOf(job.name)}</a></td>
                   <td>{titles.get(idOf(job.lubricant)) ?? idOf(job.lubricant)}</td>
                   <td>{job.display_name && <strong>{job.display_name}: </strong>}{subject(job)}{job.state === 'FAILED' && <small class="problem">{job.error?.message}</small>}</td>
-                  <td class="number">{job.sump_temperature_celsius ?? 40}</td>
+                  <td class="number">{sumpText(job.sump_temperature_celsius)}</td>
                   <td><JobState simulation={job} /></td>
                   <td class="number">{job.cache_hit ? 'stored' : duration(job.start_time, job.end_time)}</td>
                   <td class="number">{ago(job.create_time)}</td>
@@ -140,7 +143,7 @@ function Assumptions({ items }: { items: Assumption[] }) {
 
 /** What a job was asked, what became of it, and how to repeat it. */
 function JobPage({ name }: { name: string }) {
-  const { value: job, error, reload } = useLoaded(() => readSimulation(name, `${INPUT_FIELDS},result.model_version,result.platform,result.assumptions`), name);
+  const { value: job, error, reload } = useLoaded(() => readSimulation(name, `${INPUT_FIELDS},result.model_version,result.platform,result.assumptions,result.input_warnings,result.points.result.warnings`), name);
   const [problem, setProblem] = useState<unknown>(null);
   const isOpen = job !== undefined && !ENDED.includes(job.state!);
   const [progress, setProgress] = useState<{ fraction: number; stage: string } | null>(null);
@@ -190,10 +193,11 @@ function JobPage({ name }: { name: string }) {
         <dt>Gear set</dt><dd>{revisionIdOf(job.gear_set_revision)}</dd>
         <dt>Surface</dt><dd>{revisionIdOf(job.surface_revision)}</dd>
         <dt>Vehicle</dt><dd>{revisionIdOf(job.vehicle_revision)}</dd>
-        <dt>Sump</dt><dd>{job.sump_temperature_celsius ?? 40} °C</dd>
+        <dt>Sump</dt><dd>{sumpText(job.sump_temperature_celsius)}</dd>
         {job.result?.model_version && <><dt>Model</dt><dd>{job.result.model_version}, {job.result.platform}</dd></>}
         <dt>Hash of the inputs</dt><dd><code>{job.input_hash}</code></dd>
       </dl>
+      {job.result && <Validity remarks={remarksOnce([...(job.result.points ?? []).flatMap((each) => each.result?.warnings ?? []), ...(job.result.input_warnings ?? [])])} />}
       <Assumptions items={job.result?.assumptions ?? []} />
       <h2>Request</h2>
       <p class="muted">Sent again, it gives this result, or a new one if the model has changed.</p>

@@ -1,17 +1,19 @@
 import { useEffect, useMemo, useState } from 'preact/hooks';
 import { ApiError, get, session, url } from '../api/client';
 import { watch } from '../api/events';
-import type { GearSet, PointResult, Simulation } from '../api/types';
+import type { GearSet, PointResult, RangeWarning, Simulation } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
 import type { Line, Spec } from '../charts/spec';
 import { JobState } from '../components/job_state';
 import { Missing } from '../components/missing';
 import { Failure, Notice } from '../components/notice';
 import { Swatch } from '../components/swatch';
+import { Validity } from '../components/validity';
+import { remarksOnce } from '../validity';
 import { INPUT_FIELDS, readSimulation, shortTitle } from '../curve';
 import { MESH_CYCLES, PHASE } from '../histories';
-import { celsius, idOf, plain, revisionIdOf, rounded, scaled, shown, type Unit } from '../format';
-import { warningOf } from '../quantities';
+import { idOf, revisionIdOf, rounded } from '../format';
+import { kelvin, metres, pascals, plain, shown, sumpText, units, watts, type Unit } from '../units';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
 import { address, place, set } from '../router';
 import { useStore } from '../store';
@@ -35,11 +37,11 @@ interface Panel {
 const flanks = (column: string) => [0, 1, 2].map((k) => ({ label: `flank ${k + 1}`, column: `${column}_flank_${k}` }));
 
 const PANELS: Panel[] = [
-  { title: 'Dynamic transmission error', unit: scaled('µm', 1e6), lines: [{ label: '', column: 'dynamic_transmission_error_metres' }], hasBacklash: true },
+  { title: 'Dynamic transmission error', unit: metres, lines: [{ label: '', column: 'dynamic_transmission_error_metres' }], hasBacklash: true },
   { title: 'Mesh force', unit: plain('N'), lines: [{ label: '', column: 'mesh_force_newtons' }] },
   { title: 'Load of each flank', unit: plain('N'), lines: flanks('flank_load_newtons') },
   { title: 'Film ratio', unit: plain(''), lines: flanks('flank_film_ratio'), emptyIsZero: true },
-  { title: 'Contact temperature', unit: celsius, lines: flanks('flank_contact_temperature_kelvin'), emptyIsZero: true },
+  { title: 'Contact temperature', unit: kelvin, lines: flanks('flank_contact_temperature_kelvin'), emptyIsZero: true },
   { title: 'Friction torque on the pinion', unit: plain('N m'), lines: [{ label: '', column: 'pinion_friction_torque_newton_metres' }] },
 ];
 
@@ -47,12 +49,12 @@ const ZOOM_DELAY_MILLISECONDS = 120;
 
 const FIGURES: { label: string; unit: Unit; value: (result: PointResult) => number | undefined }[] = [
   { label: 'Mesh inefficiency', unit: plain('%'), value: (result) => result.inefficiency_energy_mean_percent },
-  { label: 'Mesh loss', unit: plain('W'), value: (result) => result.mesh_loss_power_watts },
-  { label: 'of it viscous', unit: plain('W'), value: (result) => result.viscous_loss_power_watts },
-  { label: 'of it boundary', unit: plain('W'), value: (result) => result.boundary_loss_power_watts },
+  { label: 'Mesh loss', unit: watts, value: (result) => result.mesh_loss_power_watts },
+  { label: 'of it viscous', unit: watts, value: (result) => result.viscous_loss_power_watts },
+  { label: 'of it boundary', unit: watts, value: (result) => result.boundary_loss_power_watts },
   { label: 'Least film ratio', unit: plain(''), value: (result) => result.film_ratio?.minimum },
-  { label: 'Hottest contact', unit: celsius, value: (result) => result.contact_temperature_kelvin?.maximum },
-  { label: 'Greatest pressure', unit: scaled('GPa', 1e-9), value: (result) => result.maximum_pressure_pascals?.maximum },
+  { label: 'Hottest contact', unit: kelvin, value: (result) => result.contact_temperature_kelvin?.maximum },
+  { label: 'Greatest pressure', unit: pascals, value: (result) => result.maximum_pressure_pascals?.maximum },
   { label: 'Pinion torque', unit: plain('N m'), value: (result) => result.pinion_torque_newton_metres },
 ];
 
@@ -66,7 +68,7 @@ export function Point() {
 }
 
 function PointPage({ name }: { name: string }) {
-  const { value: job, error, reload } = useLoaded(() => readSimulation(name, `${INPUT_FIELDS},result.points,result.history_columns,result.history_rows,result.model_version`), name);
+  const { value: job, error, reload } = useLoaded(() => readSimulation(name, `${INPUT_FIELDS},result.points,result.history_columns,result.history_rows,result.model_version,result.input_warnings`), name);
   const titles = titlesOf(useLubricants().value);
   const isOpen = job !== undefined && !ENDED.includes(job.state!);
   useEffect(() => {
@@ -84,21 +86,21 @@ function PointPage({ name }: { name: string }) {
       <div class="heading">
         <div>
           <h1>{shortTitle(title)}{speed !== undefined && ` at ${Number(speed.toPrecision(6))} km/h`}</h1>
-          <p class="muted">{revisionIdOf(job.gear_set_revision)}, sump {job.sump_temperature_celsius ?? 40} °C{result?.contact_loss ? '; the flanks separate' : result ? '; the flanks stay in contact' : ''}</p>
+          <p class="muted">{revisionIdOf(job.gear_set_revision)}, sump {sumpText(job.sump_temperature_celsius)}{result?.contact_loss ? '; the flanks separate' : result ? '; the flanks stay in contact' : ''}</p>
         </div>
         <a class="button" href={address(`/jobs/${idOf(name)}`)}>Job {idOf(name)}</a>
       </div>
       {isOpen && <p><JobState simulation={job} /></p>}
       {job.state === 'FAILED' && <Notice kind="error">{job.error?.message}</Notice>}
       {job.state === 'CANCELLED' && <Notice kind="caution">The job was cancelled.</Notice>}
-      {result && <Figures result={result} />}
+      {result && <Figures result={result} inputs={job.result?.input_warnings ?? []} />}
       {result && (job.result?.history_columns?.length ?? 0) > 0 && <Histories job={job} result={result} />}
       {result && (job.result?.history_columns?.length ?? 0) === 0 && <p class="muted">This job kept no time histories. Open a point from a curve to see them.</p>}
     </>
   );
 }
 
-function Figures({ result }: { result: PointResult }) {
+function Figures({ result, inputs }: { result: PointResult; inputs: RangeWarning[] }) {
   const relative = result.estimated_relative_error;
   return (
     <>
@@ -109,9 +111,7 @@ function Figures({ result }: { result: PointResult }) {
           return <li key={label}><span>{label}</span><strong>{number === undefined ? '–' : rounded(shown(number, unit), error)}</strong> {unit.symbol}</li>;
         })}
       </ul>
-      {(result.warnings ?? []).map((each) => (
-        <Notice key={each.code} kind="caution">{warningOf(each.code ?? '').words}: {each.message}</Notice>
-      ))}
+      <Validity remarks={remarksOnce([...(result.warnings ?? []), ...inputs])} />
     </>
   );
 }
@@ -158,6 +158,7 @@ function lineOf(history: History, panel: Panel, label: string, column: string, s
 
 function Histories({ job, result }: { job: Simulation; result: PointResult }) {
   const { query } = useStore(place);
+  const inUnits = useStore(units);
   const zoom = useMemo<[number, number] | null>(() => {
     const [from, to] = (query.get('t') ?? '').split('-').map(Number);
     return from !== undefined && to !== undefined && to > from ? [from, to] : null;
@@ -180,7 +181,7 @@ function Histories({ job, result }: { job: Simulation; result: PointResult }) {
       xRange: zoom ?? [0, MESH_CYCLES],
       levels: panel.hasBacklash && halfBacklash !== undefined ? [{ value: shown(halfBacklash, panel.unit), label: 'half backlash' }] : [],
     }));
-  }, [history, zoom, halfBacklash]);
+  }, [history, zoom, halfBacklash, inUnits]);
   const onZoom = (range: [number, number] | null) =>
     set({ t: range ? range.map((each) => Math.min(MESH_CYCLES, Math.max(0, each)).toFixed(4)).join('-') : undefined });
   if (error !== null) return <Failure error={error} />;

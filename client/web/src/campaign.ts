@@ -1,0 +1,163 @@
+import { get, url } from './api/client';
+import type { Campaign } from './api/types';
+import { inputWords } from './comparison';
+import { celsius, kelvin, metres, pascals, perPascal, plain, scaled, watts, type Unit } from './units';
+
+/** What a column is to the reader: chosen by whoever made the campaign, or computed. */
+export type ColumnKind = 'candidate' | 'condition' | 'figure';
+
+/** A column of the rows that are shown. */
+export interface Column {
+  name: string; // of the service
+  label: string;
+  unit: Unit;
+  kind: ColumnKind;
+  values: (number | null)[]; // one for each row
+}
+
+/** Rows of a campaign: candidates at conditions. */
+export interface Rows {
+  candidates: number[]; // counted from 0
+  conditions: number[];
+  refusals: number[]; // 0: the row has figures; -1: not computed yet
+  columns: Column[];
+  texts: { name: string; values: string[] }[]; // attributes in words, one for each candidate
+  isCut: boolean; // the campaign has more rows
+}
+
+/** The answer of ReadCampaign as columns. */
+interface Table {
+  units: Record<string, string>;
+  columns: Record<string, (number | null)[]>;
+}
+
+export const MOST_ROWS = 12_000;
+export const MOST_CANDIDATES = 5_000; // with their parameters: some 3 MB
+
+/** Figures with names for people, in the order in which they are shown. */
+const FIGURES: Record<string, string> = {
+  inefficiency_energy_mean_percent: 'Mesh inefficiency',
+  mesh_loss_power_watts: 'Mesh loss',
+  pinion_torque_newton_metres: 'Pinion torque',
+  wheel_torque_newton_metres: 'Wheel torque',
+  dynamic_transmission_error_minimum_metres: 'Least transmission error',
+  dynamic_transmission_error_maximum_metres: 'Greatest transmission error',
+  contact_loss: 'Flanks separate (1)',
+  film_ratio_minimum: 'Least film ratio',
+  contact_temperature_maximum_kelvin: 'Hottest contact',
+  inefficiency_rms_percent: 'Mesh inefficiency, RMS',
+  estimated_relative_error: 'Solver error, relative',
+};
+/** Columns about the computation itself. */
+const ABOUT = ['refusal_number', 'settled', 'period_in_mesh_cycles', 'model', 'candidate', 'condition'];
+
+/** Units by the ends of names, which carry them; the first that fits. */
+const UNITS: [RegExp, Unit][] = [
+  [/_per_pascal$/, perPascal], [/_pascal_seconds$/, scaled('mPa s', 1e3)], [/_pascals$/, pascals], [/_seconds$/, scaled('µs', 1e6)],
+  [/_(rise|coefficient)_kelvin$/, plain('K')], [/_kelvin$/, kelvin], [/_celsius$/, celsius], [/_kilometres_per_hour$/, plain('km/h')],
+  [/_newton_metres$/, plain('N m')], [/_metres$/, metres], [/_watts$/, watts], [/_percent$/, plain('%')], [/_degrees$/, plain('°')],
+];
+
+/** The unit in which a column is shown. */
+const unitOf = (name: string, symbol: string): Unit => UNITS.find(([end]) => end.test(name))?.[1] ?? plain(symbol);
+
+const CONDITIONS: Record<string, string> = {
+  speed_kilometres_per_hour: 'Speed', sump_temperature_celsius: 'Sump', ascent_angle_degrees: 'Ascent',
+  inlet_temperature_rise_kelvin: 'Rise to the inlet',
+};
+
+export const labelOf = (name: string): string => {
+  if (FIGURES[name]) return FIGURES[name]!;
+  if (CONDITIONS[name]) return CONDITIONS[name]!;
+  if (name.includes('.')) return inputWords(name);
+  const words = name.replaceAll('_', ' ');
+  return words.charAt(0).toUpperCase() + words.slice(1);
+};
+
+/** Reads the rows of a campaign that are shown: its first ones, finished or not. */
+export async function readRows(campaign: Campaign, signal: AbortSignal): Promise<Rows> {
+  const factors = (campaign.candidate_columns ?? []).map((each) => each.path!);
+  const attributes = (campaign.candidate_attributes ?? []).filter((each) => (each.values ?? []).length > 0).map((each) => each.name!);
+  const states = Object.keys(CONDITIONS).filter((name) => new Set((campaign.conditions ?? []).map((each) => each[name as keyof typeof each])).size > 1);
+  const read = (columns: string[]) => get<Table>(url(`${campaign.name}:read`, { alt: 'columns', columns, row_count: MOST_ROWS }), signal);
+  const [figures, inputs] = await Promise.all([read([]), read(['candidate', 'condition', ...states, ...factors, ...attributes])]);
+  const columnsOf = (table: Table, names: string[], kind: ColumnKind): Column[] =>
+    names.map((name) => ({ name, kind, label: labelOf(name), unit: unitOf(name, table.units[name] ?? ''), values: table.columns[name] ?? [] }));
+  return {
+    candidates: inputs.columns['candidate'] as number[],
+    conditions: inputs.columns['condition'] as number[],
+    refusals: figures.columns['refusal_number'] as number[],
+    columns: [
+      ...columnsOf(inputs, [...factors, ...attributes], 'candidate'),
+      ...columnsOf(inputs, states, 'condition'),
+      ...columnsOf(figures, [...Object.keys(FIGURES), ...Object.keys(figures.columns).filter((name) => !FIGURES[name])].filter((name) => figures.columns[name] && !ABOUT.includes(name)), 'figure'),
+    ],
+    texts: (campaign.candidate_attributes ?? []).filter((each) => (each.texts ?? []).length > 0).map((each) => ({ name: each.name!, values: each.texts! })),
+    isCut: (campaign.points ?? 0) > MOST_ROWS,
+  };
+}
+
+/** A range of a column to which rows are restricted, in the unit of the service. */
+export interface Range {
+  column: string;
+  low: number;
+  high: number;
+}
+
+/** Ranges of an address: "mesh_loss_power_watts:20..30,cost:..5". */
+export const rangesOf = (text: string | null): Range[] =>
+  (text ?? '').split(',').flatMap((word) => {
+    const match = /^(.+):(.*)\.\.(.*)$/.exec(word);
+    if (!match) return [];
+    const [low, high] = [match[2] === '' ? -Infinity : Number(match[2]), match[3] === '' ? Infinity : Number(match[3])];
+    return Number.isNaN(low) || Number.isNaN(high) ? [] : [{ column: match[1]!, low, high }];
+  });
+
+const RANGE_FIGURES = 4; // of the ends of a range that is drawn with the pointer
+
+export const rangesText = (ranges: Range[]): string | undefined => {
+  const end = (value: number) => (Number.isFinite(value) ? String(Number(value.toPrecision(RANGE_FIGURES))) : '');
+  return ranges.map((each) => `${each.column}:${end(each.low)}..${end(each.high)}`).join(',') || undefined;
+};
+
+/** The rows at a condition (null: at all of them) in an order; rows without a value come last. */
+export function orderedRows(rows: Rows, condition: number | null, order: Column | undefined, isDescending: boolean): number[] {
+  const out = rows.candidates.map((_, row) => row).filter((row) => condition === null || rows.conditions[row] === condition);
+  if (!order) return out;
+  const sign = isDescending ? -1 : 1;
+  return out.sort((a, b) => {
+    const [x, y] = [order.values[a] ?? null, order.values[b] ?? null];
+    if (x === null || y === null) return Number(x === null) - Number(y === null);
+    return sign * (x - y) || a - b;
+  });
+}
+
+/** Whether a row lies within all ranges. */
+export const isWithin = (rows: Rows, ranges: Range[]): ((row: number) => boolean) => {
+  const found = ranges.flatMap((range) => {
+    const column = rows.columns.find((each) => each.name === range.column);
+    return column ? [{ ...range, values: column.values }] : [];
+  });
+  return (row) => found.every(({ values, low, high }) => {
+    const value = values[row];
+    return value !== null && value !== undefined && value >= low && value <= high;
+  });
+};
+
+/** Whether a column says something about the rows: it has two values at least. */
+export const varies = (column: Column, rows: number[]): boolean => {
+  const first = rows.map((row) => column.values[row]).find((value) => value != null);
+  return rows.some((row) => column.values[row] != null && column.values[row] !== first);
+};
+
+/** The least and the greatest value of a column in its shown unit; null without values. */
+export function extentOf(values: (number | null | undefined)[]): [number, number] | null {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const value of values) {
+    if (value == null) continue;
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  }
+  return low > high ? null : [low, high];
+}

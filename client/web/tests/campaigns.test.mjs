@@ -1,0 +1,117 @@
+// Campaigns: what is followed and stopped, and how a reader finds candidates among many.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { campaignOf, foreignNumbers, launch, newPage, output, Server, signIn, TRIBODYN } from './harness.mjs';
+
+let browser;
+let server;
+let page;
+before(async () => {
+  browser = await launch();
+  server = await new Server().start();
+  page = await newPage(browser, server);
+  await page.goto(server.address);
+  await signIn(page, server.token);
+});
+after(async () => {
+  await browser?.close();
+  await server?.remove();
+});
+
+/** A campaign of some seconds. */
+const slowCampaign = {
+  display_name: 'slow', lubricant: 'lubricants/paper-fluid-1', tolerance: 1e-5,
+  candidate_columns: [{ path: 'lubricant.pressure_viscosity_coefficient_per_pascal', values: Array.from({ length: 30_000 }, (_, i) => 1.2e-8 + 3e-13 * i) }],
+  conditions: [{ speed_kilometres_per_hour: 72 }],
+};
+
+test('a campaign is followed, paused, resumed and cancelled in the list', async () => {
+  const { name } = await server.call('POST', '/v1/campaigns', slowCampaign);
+  await page.goto(`${server.address}/campaigns`);
+  const state = page.locator('.state');
+  const stateOf = async () => (await server.call('GET', `/v1/${name}`)).state;
+  await page.waitForFunction(() => document.querySelector('.state progress')?.value > 0);
+  await page.getByRole('button', { name: 'Pause campaign 1' }).click();
+  await page.locator('.state.paused').waitFor();
+  assert.equal(await stateOf(), 'PAUSED');
+  const done = await state.locator('progress').evaluate((element) => element.value);
+  await page.getByRole('button', { name: 'Resume campaign 1' }).click();
+  await page.waitForFunction((before) => document.querySelector('.state progress')?.value > before, done);
+  await page.getByRole('button', { name: 'Cancel campaign 1' }).click();
+  await page.locator('.state.cancelled').waitFor();
+  assert.equal(await stateOf(), 'CANCELLED');
+});
+
+test('a campaign whose budget is spent says so and goes on without it', async () => {
+  const { name } = await server.call('POST', '/v1/campaigns', { ...campaignOf(1500), budget: { points: 10 } });
+  await page.goto(`${server.address}/${name}`);
+  await page.locator('.notice.caution').waitFor();
+  assert.equal((await server.call('GET', `/v1/${name}`)).stop.reason, 'BUDGET_SPENT');
+  await page.getByRole('button', { name: 'Resume without a budget' }).click();
+  await page.waitForFunction(() => /(\d+) of \1 rows are computed/.test(document.querySelector('.campaign-progress').textContent));
+  assert.equal((await server.call('GET', `/v1/${name}`)).state, 'SUCCEEDED');
+});
+
+test('rows are ordered by a column, and every number is one of the service', async () => {
+  const { name } = await server.call('POST', '/v1/campaigns', campaignOf(30));
+  await page.goto(`${server.address}/${name}`);
+  await page.getByText('180 of 180 rows are computed').waitFor();
+  await page.getByRole('button', { name: 'Mesh loss', exact: true }).click();
+  await page.waitForURL(/order=mesh_loss_power_watts/);
+  const losses = () => page.locator('.rows tbody tr').evaluateAll((rows) => rows.map((row) => Number(row.querySelectorAll('[data-unit="W"]')[0].dataset.value)));
+  const ascending = await losses();
+  assert.equal(ascending.length, 30);
+  assert.deepEqual(ascending, [...ascending].sort((a, b) => a - b));
+  await page.getByLabel('Condition').selectOption({ label: '110 km/h, 90 °C' });
+  await page.waitForURL(/at=5/);
+  assert.notDeepEqual(await losses(), ascending);
+  const read = await server.call('GET', `/v1/${name}:read?alt=columns&columns=mesh_loss_power_watts`);
+  const last = read.columns.mesh_loss_power_watts.filter((_, row) => row % 6 === 5);
+  assert.deepEqual(await losses(), last.sort((a, b) => a - b));
+  assert.deepEqual(await foreignNumbers(page), []);
+});
+
+test('a stroke along an axis keeps the rows that pass there, and the address keeps the range', async () => {
+  const { name } = await server.call('POST', '/v1/campaigns', campaignOf(30));
+  await page.goto(`${server.address}/${name}?view=parallel`);
+  const axis = page.locator('[data-axis="cost_euros_per_kilogram"] .handle');
+  await axis.waitFor();
+  const box = await axis.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + 0.5 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height - 2, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForURL(/b=cost_euros_per_kilogram/);
+  await page.getByText('15 of 30 rows are within the ranges').waitFor();
+  await page.reload();
+  await page.getByText('15 of 30 rows are within the ranges').waitFor();
+  await page.getByLabel('Cost euros per kilogram, greatest').fill('5.5');
+  await page.getByLabel('Cost euros per kilogram, greatest').press('Enter');
+  await page.getByText('4 of 30 rows are within the ranges').waitFor();
+  await page.getByRole('button', { name: 'Table' }).click();
+  await page.waitForFunction(() => document.querySelectorAll('.rows tbody tr').length === 4);
+  await page.getByRole('button', { name: 'Show all rows' }).click();
+  await page.waitForFunction(() => document.querySelectorAll('.rows tbody tr').length === 30);
+});
+
+test('a click on a dot opens its candidate, and the rows can be taken away', async () => {
+  const { name } = await server.call('POST', '/v1/campaigns', campaignOf(30));
+  await page.goto(`${server.address}/${name}?view=plot&x=cost_euros_per_kilogram&y=mesh_loss_power_watts&color=additive`);
+  await page.getByText('180 of 180 rows are computed').waitFor();
+  const plot = await page.locator('.scatter').boundingBox();
+  // Candidate 0 is the leftmost dot, a twentieth of the span from the axis: the pointer goes up there.
+  const left = plot.x + 56 + ((plot.width - 70) * 0.05) / 1.1;
+  for (let top = plot.y + plot.height - 50; top > plot.y && !page.url().includes('c='); top -= 8) await page.mouse.click(left, top);
+  await page.getByRole('heading', { name: 'Candidate 0' }).waitFor();
+  await page.getByText('additive A').last().waitFor();
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByText('Take away').click();
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByText('All rows as CSV').click()]);
+  const lines = readFileSync(await file.path(), 'utf8').trim().split('\n');
+  assert.equal(lines.length, 181);
+  const command = await page.getByLabel('Command line').textContent();
+  const printed = await output(TRIBODYN, ['--server', `unix:${server.folder}/socket`, ...command.split(' ').slice(1)]);
+  assert.equal(printed.trim().split('\n').length, 181);
+  assert.deepEqual(page.complaints, []);
+});
