@@ -1,6 +1,7 @@
 import { get, url } from './api/client';
 import type { Campaign } from './api/types';
 import { inputWords } from './comparison';
+import { FIGURES, figureWords } from './figures';
 import { celsius, kelvin, metres, pascals, perPascal, plain, scaled, watts, type Unit } from './units';
 
 /** What a column is to the reader: chosen by whoever made the campaign, or computed. */
@@ -34,45 +35,37 @@ interface Table {
 export const MOST_ROWS = 12_000;
 export const MOST_CANDIDATES = 5_000; // with their parameters: some 3 MB
 
-/** Figures with names for people, in the order in which they are shown. */
-const FIGURES: Record<string, string> = {
-  inefficiency_energy_mean_percent: 'Mesh inefficiency',
-  mesh_loss_power_watts: 'Mesh loss',
-  pinion_torque_newton_metres: 'Pinion torque',
-  wheel_torque_newton_metres: 'Wheel torque',
-  dynamic_transmission_error_minimum_metres: 'Least transmission error',
-  dynamic_transmission_error_maximum_metres: 'Greatest transmission error',
-  contact_loss: 'Flanks separate (1)',
-  film_ratio_minimum: 'Least film ratio',
-  contact_temperature_maximum_kelvin: 'Hottest contact',
-  inefficiency_rms_percent: 'Mesh inefficiency, RMS',
-  estimated_relative_error: 'Solver error, relative',
-};
 /** Columns about the computation itself. */
 const ABOUT = ['refusal_number', 'settled', 'period_in_mesh_cycles', 'model', 'candidate', 'condition'];
 
 /** Units by the ends of names, which carry them; the first that fits. */
 const UNITS: [RegExp, Unit][] = [
   [/_per_pascal$/, perPascal], [/_pascal_seconds$/, scaled('mPa s', 1e3)], [/_pascals$/, pascals], [/_seconds$/, scaled('µs', 1e6)],
-  [/_(rise|coefficient)_kelvin$/, plain('K')], [/_kelvin$/, kelvin], [/_celsius$/, celsius], [/_kilometres_per_hour$/, plain('km/h')],
+  [/_(rise|rise_maximum|coefficient)_kelvin$/, plain('K')], [/_kelvin$/, kelvin], [/_celsius$/, celsius], [/_kilometres_per_hour$/, plain('km/h')],
   [/_newton_metres$/, plain('N m')], [/_metres$/, metres], [/_watts$/, watts], [/_percent$/, plain('%')], [/_degrees$/, plain('°')],
 ];
 
+const ELASTICITY = 'elasticity.'; // then the figure, '.' and the parameter
+
 /** The unit in which a column is shown. */
-const unitOf = (name: string, symbol: string): Unit => UNITS.find(([end]) => end.test(name))?.[1] ?? plain(symbol);
+const unitOf = (name: string, symbol: string): Unit => (name.startsWith(ELASTICITY) ? plain('') : UNITS.find(([end]) => end.test(name))?.[1] ?? plain(symbol));
 
 const CONDITIONS: Record<string, string> = {
   speed_kilometres_per_hour: 'Speed', sump_temperature_celsius: 'Sump', ascent_angle_degrees: 'Ascent',
   inlet_temperature_rise_kelvin: 'Rise to the inlet',
 };
 
-export const labelOf = (name: string): string => {
-  if (FIGURES[name]) return FIGURES[name]!;
+function labelOf(name: string, kind: ColumnKind): string {
   if (CONDITIONS[name]) return CONDITIONS[name]!;
-  if (name.includes('.')) return inputWords(name);
+  if (name.startsWith(ELASTICITY)) {
+    const [, figure, ...parameter] = name.split('.');
+    return `${figureWords(figure!)} by ${inputWords(parameter.join('.')).toLowerCase()}, elasticity`;
+  }
+  if (kind === 'figure') return figureWords(name);
+  if (/^(lubricant|surface)\./.test(name)) return inputWords(name);
   const words = name.replaceAll('_', ' ');
   return words.charAt(0).toUpperCase() + words.slice(1);
-};
+}
 
 /** Reads the rows of a campaign that are shown: its first ones, finished or not. */
 export async function readRows(campaign: Campaign, signal: AbortSignal): Promise<Rows> {
@@ -82,7 +75,7 @@ export async function readRows(campaign: Campaign, signal: AbortSignal): Promise
   const read = (columns: string[]) => get<Table>(url(`${campaign.name}:read`, { alt: 'columns', columns, row_count: MOST_ROWS }), signal);
   const [figures, inputs] = await Promise.all([read([]), read(['candidate', 'condition', ...states, ...factors, ...attributes])]);
   const columnsOf = (table: Table, names: string[], kind: ColumnKind): Column[] =>
-    names.map((name) => ({ name, kind, label: labelOf(name), unit: unitOf(name, table.units[name] ?? ''), values: table.columns[name] ?? [] }));
+    names.map((name) => ({ name, kind, label: labelOf(name, kind), unit: unitOf(name, table.units[name] ?? ''), values: table.columns[name] ?? [] }));
   return {
     candidates: inputs.columns['candidate'] as number[],
     conditions: inputs.columns['condition'] as number[],

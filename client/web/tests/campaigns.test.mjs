@@ -44,7 +44,7 @@ test('a campaign is followed, paused, resumed and cancelled in the list', async 
 });
 
 test('a campaign whose budget is spent says so and goes on without it', async () => {
-  const { name } = await server.call('POST', '/v1/campaigns', { ...campaignOf(1500), budget: { points: 10 } });
+  const { name } = await server.call('POST', '/v1/campaigns', campaignOf(1500, { budget: { points: 10 } }));
   await page.goto(`${server.address}/${name}`);
   await page.locator('.notice.caution').waitFor();
   assert.equal((await server.call('GET', `/v1/${name}`)).stop.reason, 'BUDGET_SPENT');
@@ -53,10 +53,17 @@ test('a campaign whose budget is spent says so and goes on without it', async ()
   assert.equal((await server.call('GET', `/v1/${name}`)).state, 'SUCCEEDED');
 });
 
+/** Waits until a campaign has ended and shows the page anew, which then has all rows. */
+async function complete(name) {
+  while ((await server.call('GET', `/v1/${name}`)).state === 'RUNNING') await new Promise((done) => setTimeout(done, 50));
+  await page.reload();
+  await page.getByText('180 of 180 rows are computed').waitFor();
+}
+
 test('rows are ordered by a column, and every number is one of the service', async () => {
   const { name } = await server.call('POST', '/v1/campaigns', campaignOf(30));
   await page.goto(`${server.address}/${name}`);
-  await page.getByText('180 of 180 rows are computed').waitFor();
+  await complete(name);
   await page.getByRole('button', { name: 'Mesh loss', exact: true }).click();
   await page.waitForURL(/order=mesh_loss_power_watts/);
   const losses = () => page.locator('.rows tbody tr').evaluateAll((rows) => rows.map((row) => Number(row.querySelectorAll('[data-unit="W"]')[0].dataset.value)));
@@ -75,6 +82,7 @@ test('rows are ordered by a column, and every number is one of the service', asy
 test('a stroke along an axis keeps the rows that pass there, and the address keeps the range', async () => {
   const { name } = await server.call('POST', '/v1/campaigns', campaignOf(30));
   await page.goto(`${server.address}/${name}?view=parallel`);
+  await complete(name);
   const axis = page.locator('[data-axis="cost_euros_per_kilogram"] .handle');
   await axis.waitFor();
   const box = await axis.boundingBox();
@@ -98,7 +106,7 @@ test('a stroke along an axis keeps the rows that pass there, and the address kee
 test('a click on a dot opens its candidate, and the rows can be taken away', async () => {
   const { name } = await server.call('POST', '/v1/campaigns', campaignOf(30));
   await page.goto(`${server.address}/${name}?view=plot&x=cost_euros_per_kilogram&y=mesh_loss_power_watts&color=additive`);
-  await page.getByText('180 of 180 rows are computed').waitFor();
+  await complete(name);
   const plot = await page.locator('.scatter').boundingBox();
   // Candidate 0 is the leftmost dot, a twentieth of the span from the axis: the pointer goes up there.
   const left = plot.x + 56 + ((plot.width - 70) * 0.05) / 1.1;

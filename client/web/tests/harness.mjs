@@ -133,7 +133,7 @@ export async function signIn(page, token) {
 }
 
 /** A campaign of candidates that differ in a parameter, words and a cost, at six conditions. */
-export const campaignOf = (candidates) => ({
+export const campaignOf = (candidates, more = {}) => ({
   display_name: `${candidates} candidates`, lubricant: 'lubricants/paper-fluid-1',
   candidate_columns: [
     { path: 'lubricant.pressure_viscosity_coefficient_per_pascal', values: Array.from({ length: candidates }, (_, i) => 1.2e-8 + (1e-8 * i) / candidates) },
@@ -144,6 +144,7 @@ export const campaignOf = (candidates) => ({
     { name: 'cost_euros_per_kilogram', values: Array.from({ length: candidates }, (_, i) => 2 + i) },
   ],
   conditions: [40, 90].flatMap((sump) => [30, 70, 110].map((speed) => ({ speed_kilometres_per_hour: speed, sump_temperature_celsius: sump }))),
+  ...more,
 });
 
 /** All numbers of a JSON value, at any depth. */

@@ -43,7 +43,7 @@ before(async () => {
     lubricant: 'lubricants/my-oil',
     inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 140, speed_step_kilometres_per_hour: 5 },
   });
-  await server.call('POST', '/v1/campaigns', campaignOf(60));
+  await server.call('POST', '/v1/campaigns', campaignOf(60, { contact_figures: true }));
   for (let i = 0; i < 100; ++i) {
     const { simulations } = await server.call('GET', '/v1/simulations?read_mask=state');
     if (simulations.every((each) => each.state === 'SUCCEEDED' || each.state === 'FAILED')) break;

@@ -1,8 +1,8 @@
 import { useRef, useState } from 'preact/hooks';
-import { FONT, useCanvas, useWidth } from './canvas';
-import { corners, colorOf, MARKERS, type Colors } from './spec';
+import { useCanvas, useWidth } from './canvas';
+import { drawAxes, frameOf } from './frame';
+import { corners, colorOf, MARKERS } from './spec';
 import { useColors } from './theme';
-import { tickText, ticks } from './ticks';
 
 /** A point of a scatter plot, in shown units. */
 export interface Dot {
@@ -25,71 +25,8 @@ interface ScatterProps {
   words: (key: number) => string; // of a dot under the pointer
 }
 
-const LEFT = 56;
-const RIGHT = 14;
-const TOP = 10;
-const BOTTOM = 42;
 const REACH = 14; // [px] from the pointer to a dot
 const MANY = 1500; // dots that need smaller markers
-
-interface Frame {
-  x: (value: number) => number;
-  y: (value: number) => number;
-  xRange: [number, number];
-  yRange: [number, number];
-}
-
-function rangeOf(values: number[]): [number, number] {
-  let low = Infinity;
-  let high = -Infinity;
-  for (const each of values) {
-    low = Math.min(low, each);
-    high = Math.max(high, each);
-  }
-  if (low > high) return [0, 1];
-  const room = 0.05 * (high - low || Math.abs(high) || 1);
-  return [low - room, high + room];
-}
-
-function frameOf(dots: Dot[], width: number, height: number): Frame {
-  const xRange = rangeOf(dots.map((each) => each.x));
-  const yRange = rangeOf(dots.flatMap((each) => (each.low === undefined ? [each.y] : [each.low, each.high!])));
-  return {
-    xRange, yRange,
-    x: (value) => LEFT + ((value - xRange[0]) / (xRange[1] - xRange[0])) * (width - LEFT - RIGHT),
-    y: (value) => height - BOTTOM - ((value - yRange[0]) / (yRange[1] - yRange[0])) * (height - TOP - BOTTOM),
-  };
-}
-
-function drawAxes(context: CanvasRenderingContext2D, frame: Frame, width: number, height: number, colors: Colors, xLabel: string, yLabel: string): void {
-  context.font = `12px ${FONT}`;
-  context.fillStyle = colors.muted;
-  context.strokeStyle = colors.grid;
-  context.lineWidth = 1;
-  const rule = (x1: number, y1: number, x2: number, y2: number) => {
-    context.beginPath();
-    context.moveTo(Math.round(x1) + 0.5, Math.round(y1) + 0.5);
-    context.lineTo(Math.round(x2) + 0.5, Math.round(y2) + 0.5);
-    context.stroke();
-  };
-  context.textAlign = 'center';
-  for (const each of ticks(...frame.xRange, Math.max(3, width / 110))) {
-    rule(frame.x(each), TOP, frame.x(each), height - BOTTOM);
-    context.fillText(tickText(each), frame.x(each), height - BOTTOM + 16);
-  }
-  context.textAlign = 'right';
-  for (const each of ticks(...frame.yRange, Math.max(3, height / 60))) {
-    rule(LEFT, frame.y(each), width - RIGHT, frame.y(each));
-    context.fillText(tickText(each), LEFT - 8, frame.y(each) + 4);
-  }
-  context.textAlign = 'center';
-  context.fillText(xLabel, (LEFT + width - RIGHT) / 2, height - 6);
-  context.save();
-  context.translate(11, (TOP + height - BOTTOM) / 2);
-  context.rotate(-Math.PI / 2);
-  context.fillText(yLabel, 0, 0);
-  context.restore();
-}
 
 function drawDot(context: CanvasRenderingContext2D, x: number, y: number, series: number, radius: number): void {
   const shape = series < 0 ? null : corners(MARKERS[series] ?? 'circle', radius);
@@ -105,9 +42,9 @@ export function Scatter({ dots, xLabel, yLabel, height, chosen, steps = [], onCh
   const width = useWidth(box);
   const colors = useColors();
   const [under, setUnder] = useState<Dot | null>(null);
-  const frame = frameOf(dots, width, height);
+  const frame = frameOf(dots.map((each) => each.x), dots.flatMap((each) => (each.low === undefined ? [each.y] : [each.low, each.high!])), width, height);
   const canvas = useCanvas(width, height, (context) => {
-    drawAxes(context, frame, width, height, colors, xLabel, yLabel);
+    drawAxes(context, frame, colors, xLabel, yLabel);
     const radius = dots.length > MANY ? 2.2 : 3.6;
     const behindFirst = [...dots].sort((a, b) => Number(a.series >= 0) - Number(b.series >= 0));
     for (const dot of behindFirst) {

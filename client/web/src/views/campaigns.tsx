@@ -142,11 +142,15 @@ function CampaignPage({ name }: { name: string }) {
       if (event.kind === 'DELETED') setDeleted(true);
       if (event.kind === 'HEARTBEAT') return;
       setCampaign((old) => old && updated(old, event));
-      // Rows are read now and then, and once more at the end.
-      timer ??= window.setTimeout(() => {
-        timer = undefined;
-        setVersion((count) => count + 1);
-      }, RELOAD_MILLISECONDS);
+      // Rows are read now and then, and at once when there will be no more of them.
+      const isLast = ENDED.includes(event.state!);
+      if (isLast) clearTimeout(timer);
+      if (isLast || timer === undefined) {
+        timer = window.setTimeout(() => {
+          timer = undefined;
+          setVersion((count) => count + 1);
+        }, isLast ? 0 : RELOAD_MILLISECONDS);
+      }
     });
     return () => {
       stream.close();

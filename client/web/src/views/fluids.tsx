@@ -116,7 +116,7 @@ function FluidPage({ id }: { id: string }) {
         <li><span>SAE J306</span><strong>{figures.sae_j306_grade || '–'}</strong></li>
       </ul>
       {figures.sae_j306_grade_note && <p class="muted small">{figures.sae_j306_grade_note}</p>}
-      <Validity remarks={(figures.warnings ?? []).map((each) => remarkOf(each))} />
+      {(figures.warnings ?? []).length > 0 && <Validity remarks={figures.warnings!.map((each) => remarkOf(each))} isChecked={false} />}
       <div class="scroll" tabIndex={0} role="region" aria-label="Parameters">
         <table class="parameters">
           <thead><tr><th>Quantity</th><th class="number">Value</th><th>Unit</th><th>Origin</th><th>Source</th></tr></thead>
