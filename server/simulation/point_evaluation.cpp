@@ -42,6 +42,7 @@ const std::map<std::string, const FieldDescriptor*>& candidate_parameters() {
       }
     };
     add("lubricant.", *v1::Lubricant::descriptor());
+    add("lubricant.improved_yasutomi.", *v1::ImprovedYasutomi::descriptor());
     add("surface.", *v1::Surface::descriptor());
     return all;
   }();
@@ -95,6 +96,23 @@ std::vector<PointEvaluation::Column> read_columns(const v1::EvaluatePointsReques
     out.push_back({found->second, {column.values().begin(), column.values().end()}});
   }
   return out;
+}
+
+/// Adds a violation for each column that has no effect under the pressure-viscosity law of the
+/// base.
+void check_law_columns(const v1::EvaluatePointsRequest& request, const v1::Lubricant& base,
+                       Violations& violations) {
+  for (int i = 0; i < request.candidate_columns_size(); ++i) {
+    const std::string& path = request.candidate_columns(i).path();
+    const bool is_of_law = path.starts_with("lubricant.improved_yasutomi.");
+    const bool is_of_roelands = path.starts_with("lubricant.pressure_viscosity_");
+    const bool follows_law = base.has_improved_yasutomi();
+    if (!(follows_law ? is_of_roelands : is_of_law)) continue;
+    violations.push_back(
+        {fmt::format("candidate_columns[{}].path", i),
+         fmt::format("\"{}\" has no effect: {} {} improved_yasutomi", path, request.lubricant(),
+                     follows_law ? "follows" : "does not follow")});
+  }
 }
 
 double sump_temperature(const v1::PointCondition& condition) {
@@ -364,6 +382,7 @@ std::optional<PointEvaluation> read_points(const v1::EvaluatePointsRequest& requ
   const bool is_valid = violations.size() == before;
   auto base = read_simulation(simulation_of(request, is_valid ? request.conditions(0) : usual),
                               lookup, "", violations);
+  if (base) check_law_columns(request, *base->lubricant, violations);
   if (!base || violations.size() > before) return std::nullopt;
   out.base = std::move(*base);
   out.groups = groups_of(request, out.base);
@@ -400,14 +419,17 @@ CandidateScene::CandidateScene(const PointEvaluation& evaluation, std::function<
   options_.progress = [keep = std::move(goes_on)](double) { return keep(); };
 }
 
+google::protobuf::Message& CandidateScene::holder_of(const FieldDescriptor& field) {
+  if (field.containing_type() == v1::Lubricant::descriptor()) return lubricant_;
+  if (field.containing_type() == v1::Surface::descriptor()) return surface_;
+  return *lubricant_.mutable_improved_yasutomi();
+}
+
 void CandidateScene::set_candidate(int candidate) {
   for (const PointEvaluation::Column& column : evaluation_.columns) {
-    google::protobuf::Message& resource =
-        column.field->containing_type() == v1::Lubricant::descriptor()
-            ? static_cast<google::protobuf::Message&>(lubricant_)
-            : surface_;
-    resource.GetReflection()->SetDouble(&resource, column.field,
-                                        column.values[static_cast<std::size_t>(candidate)]);
+    google::protobuf::Message& holder = holder_of(*column.field);
+    holder.GetReflection()->SetDouble(&holder, column.field,
+                                      column.values[static_cast<std::size_t>(candidate)]);
   }
   physical_.lubricant = to_core(lubricant_);
   physical_.roughness = roughness(surface_);

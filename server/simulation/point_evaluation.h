@@ -100,6 +100,8 @@ class CandidateScene {
   const Scene& scene() const { return physical_; }
 
  private:
+  google::protobuf::Message& holder_of(const google::protobuf::FieldDescriptor& field);
+
   const PointEvaluation& evaluation_;
   PointOptions options_;
   Scene physical_;

@@ -14,6 +14,7 @@
 #include "server/simulation/contact_inputs.h"
 #include "server/simulation/input_errors.h"
 #include "server/simulation/input_hash.h"
+#include "server/simulation/point_evaluation.h"
 #include "server/simulation/point_explanation.h"
 #include "tests/service/resource_calls.h"
 #include "tests/service/support.h"
@@ -298,6 +299,69 @@ TEST_F(PressureLawTest, AnUncertainParameterOfTheLawIsAnErrorOfItsOwn) {
               AllOf(testing::Contains("lubricant.improved_yasutomi.expansivity_exponent"),
                     Not(testing::Contains(std::string("lubricant.") + kAlpha)),
                     Not(testing::Contains(std::string("lubricant.") + kAlphaTemperature))));
+}
+
+v1::EvaluatePointsRequest points_of_law(
+    const std::vector<std::pair<std::string, double>>& columns) {
+  v1::EvaluatePointsRequest out;
+  out.set_lubricant("lubricants/oil");
+  out.set_tolerance(1e-6);
+  out.add_conditions()->set_speed_kilometres_per_hour(60);
+  for (const auto& [path, value] : columns) {
+    auto& column = *out.add_candidate_columns();
+    column.set_path(path);
+    column.add_values(value);
+  }
+  return out;
+}
+
+TEST_F(PressureLawTest, CandidatesDifferInParametersOfTheLawAsTheElasticitiesSay) {
+  Fluids fluids;
+  const v1::Lubricant oil = created(gear_oil_with_law());
+  fluids.add("lubricants/oil", oil);
+  const auto evaluate = [&](const v1::EvaluatePointsRequest& request) {
+    Violations violations;
+    const auto points = read_points(request, fluids.lookup(), violations);
+    if (!points) throw std::runtime_error(violations.front().description);
+    PreparedGearSets gear_sets;
+    return evaluate_points(*points, gear_sets, [] { return false; });
+  };
+  const auto* type = v1::ImprovedYasutomi::descriptor();
+  for (int i = 0; i < type->field_count(); ++i) {
+    const std::string path = "lubricant.improved_yasutomi." + type->field(i)->name();
+    const auto& law = oil.improved_yasutomi();
+    const double value = law.GetReflection()->GetDouble(law, type->field(i));
+    const double step = i == 0 ? 0.1 : 0.01;  // the glass viscosity has hardly any effect
+    const double above =
+        evaluate(points_of_law({{path, (1 + step) * value}})).inefficiency_energy_mean_percent(0);
+    const double below =
+        evaluate(points_of_law({{path, (1 - step) * value}})).inefficiency_energy_mean_percent(0);
+    v1::EvaluatePointsRequest request = points_of_law({});
+    request.add_elasticity_parameters(path);
+    const double elasticity = evaluate(request).elasticities(0).values(0);
+    EXPECT_NE(elasticity, 0) << path;
+    EXPECT_NEAR(elasticity, std::log(above / below) / std::log((1 + step) / (1 - step)), 2e-3)
+        << path;
+  }
+}
+
+TEST_F(PressureLawTest, RefusesColumnsWithoutEffectUnderTheLawOfTheBase) {
+  Fluids fluids;
+  fluids.add("lubricants/oil", created(gear_oil_with_law()));
+  const auto refused_column = [&](const std::string& base, const std::string& path, double value) {
+    v1::EvaluatePointsRequest request = points_of_law({{path, value}});
+    request.set_lubricant(base);
+    Violations violations;
+    EXPECT_FALSE(read_points(request, fluids.lookup(), violations));
+    return violations.empty() ? "" : violations.front().field + violations.front().description;
+  };
+  EXPECT_THAT(
+      refused_column("lubricants/oil", "lubricant.pressure_viscosity_coefficient_per_pascal", 2e-8),
+      AllOf(HasSubstr("candidate_columns[0].path"),
+            HasSubstr("has no effect: lubricants/oil follows improved_yasutomi")));
+  EXPECT_THAT(refused_column("lubricants/paper-fluid-1",
+                             "lubricant.improved_yasutomi.expansivity_exponent", -0.4),
+              HasSubstr("lubricants/paper-fluid-1 does not follow improved_yasutomi"));
 }
 
 TEST_F(PressureLawTest, ADifferenceOfTheLawAloneIsOneOfThePressureResponse) {
