@@ -62,6 +62,18 @@ TEST(Candidates, OverrideParametersOfLubricantAndSurfaceInTheirUnits) {
   EXPECT_TRUE(table.lubricants.empty());
 }
 
+TEST(Candidates, MayDifferInParametersOfThePressureViscosityLaw) {
+  CandidateBase base = base_of_tests();
+  base.lubricant.mutable_improved_yasutomi()->set_glass_temperature_rise_kelvin(210);
+  const std::string text = "candidate,glass temperature rise [K]\na,220\nb,\n";
+  const CandidateTable table = read_candidates(text, "c.csv", base, {});
+  ASSERT_EQ(table.parameters.size(), 1U);
+  EXPECT_EQ(table.parameters[0].path(),
+            "lubricant.improved_yasutomi.glass_temperature_rise_kelvin");
+  EXPECT_THAT(table.parameters[0].values, ElementsAre(220, 210));
+  EXPECT_THAT(candidates_error(text), HasSubstr("the base has no value"));
+}
+
 TEST(Candidates, WithoutNamesHaveTheNumbersOfTheirRows) {
   EXPECT_THAT(candidates("relaxation_time_seconds\n1e-7\n2e-7\n").names, ElementsAre("1", "2"));
   EXPECT_THAT(candidates_error("id,relaxation_time_seconds\na,1e-7\na,2e-7\n"),

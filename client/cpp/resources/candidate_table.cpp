@@ -31,9 +31,14 @@ const Descriptor* resource_of(const RowColumn& column) {
                                  : column.field->containing_type();
 }
 
+/// Whether a field is a parameter of a pressure-viscosity law.
+bool is_of_law(const FieldDescriptor& field) {
+  return field.containing_type() == v1::ImprovedYasutomi::descriptor();
+}
+
 /// Whether a column is a number that the model uses, if the server accepts its field.
 bool is_parameter(const RowColumn& column) {
-  return column.kind == Kind::kNumber && column.block == nullptr &&
+  return column.kind == Kind::kNumber && (column.block == nullptr || is_of_law(*column.field)) &&
          column.field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;
 }
 
@@ -46,7 +51,7 @@ bool is_uncertainty(const RowColumn& column) {
 bool is_measurement(const RowColumn& column) {
   if (column.field == nullptr || resource_of(column) != v1::Lubricant::descriptor()) return false;
   return column.kind == Kind::kMeasurements || column.kind == Kind::kColdViscosity ||
-         (column.kind == Kind::kNumber && column.block != nullptr) ||
+         (column.kind == Kind::kNumber && column.block != nullptr && !is_of_law(*column.field)) ||
          (column.kind == Kind::kClass && column.field->name() == "base_oil_class");
 }
 
@@ -116,6 +121,20 @@ double number_of(const Message& resource, const FieldDescriptor& field) {
     return std::numeric_limits<double>::quiet_NaN();
   }
   return resource.GetReflection()->GetDouble(resource, &field);
+}
+
+/// Returns the field of the lubricant, of its pressure-viscosity law or of the surface; NaN if it
+/// is not set.
+double number_in(const v1::Lubricant& lubricant, const v1::Surface& surface,
+                 const FieldDescriptor& field) {
+  if (field.containing_type() == v1::Surface::descriptor()) return number_of(surface, field);
+  return is_of_law(field) ? number_of(lubricant.improved_yasutomi(), field)
+                          : number_of(lubricant, field);
+}
+
+/// Returns the path of a field of a lubricant within it.
+std::string path_in_lubricant(const FieldDescriptor& field) {
+  return (is_of_law(field) ? "improved_yasutomi." : "") + field.name();
 }
 
 /// Returns "0.5" for "0,5": in a table whose cells commas do not separate, that is a number.
@@ -257,9 +276,7 @@ class CandidateReader {
       if (!wrong.empty()) add_wrong_cell(line, k, wrong);
     }
     for (CandidateParameter& parameter : out_.parameters) {
-      const bool is_of_surface = parameter.field->containing_type() == v1::Surface::descriptor();
-      parameter.values.push_back(number_of(
-          is_of_surface ? static_cast<const Message&>(surface) : lubricant, *parameter.field));
+      parameter.values.push_back(number_in(lubricant, surface, *parameter.field));
       if (std::isnan(parameter.values.back())) {
         wrong_.add("column " + out_.headers[*parameter.column] + " has an empty cell in " +
                    RowCells::row_text(line) + ", and the base has no value");
@@ -327,7 +344,9 @@ std::vector<v1::Lubricant> characterised(Connection& connection,
   std::vector<v1::Lubricant> out(table.size());
   BatchOptions options;
   options.validate_only = true;
-  for (const FieldDescriptor* field : fields) options.read_mask.push_back(field->name());
+  for (const FieldDescriptor* field : fields) {
+    options.read_mask.push_back(path_in_lubricant(*field));
+  }
   // Names that no lubricant has: nothing is written under them.
   const std::string prefix = "lubricants/candidate-of-a-screening-";
   for (std::size_t first = 0; first < table.size(); first += kCharacterisedAtOnce) {
@@ -365,8 +384,9 @@ std::vector<const FieldDescriptor*> numbers_of_lubricants() {
 }  // namespace
 
 std::string CandidateParameter::path() const {
-  return (field->containing_type() == v1::Surface::descriptor() ? "surface." : "lubricant.") +
-         field->name();
+  return field->containing_type() == v1::Surface::descriptor()
+             ? "surface." + field->name()
+             : "lubricant." + path_in_lubricant(*field);
 }
 
 std::vector<const FieldDescriptor*> candidate_parameters() {
@@ -378,8 +398,7 @@ std::vector<const FieldDescriptor*> candidate_parameters() {
 }
 
 double base_value(const CandidateBase& base, const FieldDescriptor& field) {
-  return field.containing_type() == v1::Surface::descriptor() ? number_of(base.surface, field)
-                                                              : number_of(base.lubricant, field);
+  return number_in(base.lubricant, base.surface, field);
 }
 
 double stated_uncertainty(const CandidateBase& base, const FieldDescriptor& field) {
@@ -388,7 +407,9 @@ double stated_uncertainty(const CandidateBase& base, const FieldDescriptor& fiel
   const bool is_of_surface = field.containing_type() == v1::Surface::descriptor();
   for (const v1::ParameterProvenance& entry :
        is_of_surface ? base.surface.provenance() : base.lubricant.provenance()) {
-    if (entry.field() == field.name()) return entry.standard_uncertainty();
+    if (entry.field() == (is_of_surface ? field.name() : path_in_lubricant(field))) {
+      return entry.standard_uncertainty();
+    }
   }
   return 0;
 }
@@ -404,11 +425,16 @@ void characterise_candidates(Connection& connection, const CandidateBase& base,
   const std::vector<const FieldDescriptor*> fields = numbers_of_lubricants();
   const std::vector<v1::Lubricant> lubricants = characterised(connection, fields, table);
   for (const FieldDescriptor* field : fields) {
-    const double usual = number_of(base.lubricant, *field);
+    // The law of the base determines alpha*, so that a column of it has no effect.
+    const bool is_determined =
+        base.lubricant.has_improved_yasutomi() && field->name().starts_with("pressure_viscosity_");
+    if (is_determined) continue;
+    const double usual = base_value(base, *field);
     CandidateParameter parameter{field, {}};
     bool differs = false;
     for (std::size_t i = 0; i < table.size(); ++i) {
-      double value = table.refusals[i].empty() ? number_of(lubricants[i], *field) : usual;
+      double value =
+          table.refusals[i].empty() ? number_in(lubricants[i], base.surface, *field) : usual;
       if (std::isnan(value)) value = usual;
       differs = differs || (!std::isnan(value) && value != usual);
       parameter.values.push_back(value);
