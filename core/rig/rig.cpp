@@ -17,6 +17,14 @@ Roughness roughness_of(const RigScene& scene) {
 
 }  // namespace
 
+double load_of_mean_pressure(const SolidPair& solids, const EffectiveRadii& radii,
+                             double mean_pressure) {
+  const UnitLoadEllipse unit = unit_load_ellipse(exact_ellipticity(radii.x, radii.y), radii.x,
+                                                 radii.y, reduced_modulus(solids), {});
+  const double root = 1.5 * mean_pressure / unit.maximum_pressure;
+  return root * root * root;
+}
+
 Rig::Rig(const RigScene& scene, double supply_temperature)
     : radii_(scene.radii),
       is_smooth_(scene.roughness.asperity_density == 0),

@@ -45,6 +45,11 @@ struct RigPoint {
 /// no such factor. Assumed: 1 % of the sliding at a slide-roll ratio of 1 % and 1 m/s.
 inline constexpr double kBoundaryCreepSpeed = 1e-4;
 
+/// Returns the load [N] under which the mean pressure of the dry contact by exact Hertz, 2/3 of its
+/// greatest, is `mean_pressure` [Pa] > 0.
+double load_of_mean_pressure(const SolidPair& solids, const EffectiveRadii& radii,
+                             double mean_pressure);
+
 /// A rig whose inlet has one temperature. Immutable, safe for concurrent use.
 class Rig {
  public:

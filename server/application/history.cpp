@@ -8,10 +8,9 @@
 
 #include "server/application/column_source.h"
 #include "server/application/errors.h"
-#include "server/application/simulation_lookup.h"
+#include "server/application/stored_history.h"
 #include "server/application/streams.h"
 #include "server/contract/constraints.h"
-#include "server/contract/resource_names.h"
 #include "server/mapping/history_columns.h"
 #include "server/storage/history/pyramid.h"
 #include "server/support/sha256.h"
@@ -29,11 +28,6 @@ struct Window {
   std::int64_t end_row = 0;
   std::int64_t maximum_points = 0;  // 0: all
 };
-
-constexpr char kHistoryType[] = "tribodyn.v1.History";
-
-/// What ResourceInfo calls the history of a simulation.
-std::string history_name(const std::string& simulation) { return simulation + "/history"; }
 
 /// The rows of a history, or of an overview of it.
 class HistorySource final : public ColumnSource<v1::ReadHistoryResponse> {
@@ -85,9 +79,7 @@ class HistorySource final : public ColumnSource<v1::ReadHistoryResponse> {
     const auto level = [&](int which, std::int64_t start, std::int64_t length) {
       std::vector<double> values(static_cast<std::size_t>(length));
       if (!store_.read_history(column, which, start, values, limits_)) {
-        error_ = not_found(kHistoryType, history_name(name_),
-                           "the history of " + name_ + " has been evicted",
-                           v1::ERROR_REASON_HISTORY_EVICTED);
+        error_ = history_evicted(name_);
       }
       return values;
     };
@@ -105,37 +97,10 @@ class HistorySource final : public ColumnSource<v1::ReadHistoryResponse> {
   std::optional<Overview> overview_;
 };
 
-/// Places of the stored names that a request means: "flank_load_newtons" stands for its three
-/// flanks.
-std::vector<std::size_t> expand(const std::string& asked, const std::vector<std::string>& stored) {
-  std::vector<std::size_t> out;
-  for (std::size_t i = 0; i < stored.size(); ++i) {
-    if (stored[i] == asked || stored[i].starts_with(asked + "_flank_")) out.push_back(i);
-  }
-  return out;
-}
-
 std::optional<Window> window(const v1::ReadHistoryRequest& request, const HistoryShape& shape,
                              Violations& violations) {
   Window out;
-  const int asked = std::min(request.columns_size(), kMaximumHistoryColumns);
-  for (int i = 0; i < asked; ++i) {
-    const std::vector<std::size_t> meant = expand(request.columns(i), shape.names);
-    if (meant.empty()) {
-      violations.push_back(
-          {fmt::format("columns[{}]", i),
-           fmt::format("no such column here{}", meant_text(request.columns(i), shape.names))});
-    }
-    for (const std::size_t place : meant) {
-      if (std::find(out.columns.begin(), out.columns.end(), place) == out.columns.end()) {
-        out.columns.push_back(place);
-      }
-    }
-  }
-  if (request.columns_size() > kMaximumHistoryColumns) {
-    violations.push_back({"columns", fmt::format("{} columns; allowed: at most {}",
-                                                 request.columns_size(), kMaximumHistoryColumns)});
-  }
+  out.columns = history_places(request.columns(), shape, violations);
   if (request.columns().empty()) {
     out.columns.resize(shape.names.size());
     std::iota(out.columns.begin(), out.columns.end(), 0);
@@ -171,20 +136,9 @@ StreamOutcome<v1::ReadHistoryResponse> read_history(Application& application,
                                                     const v1::ReadHistoryRequest& request,
                                                     const CallContext& call) {
   using Source = std::shared_ptr<MessageSource<v1::ReadHistoryResponse>>;
-  const auto found = find_simulation(application, request.name(), call);
+  auto found = find_history(application, request.name(), call);
   if (!found.ok()) return found.error();
-  const StoredSimulation& stored = found.message();
-  if (stored.state != StoredState::kSucceeded) {
-    return not_possible(
-        v1::ERROR_REASON_NO_RESULT_YET, "tribodyn.v1.Simulation", request.name(),
-        request.name() + " has not succeeded, so it has no history",
-        {{"state", v1::Simulation::State_Name(static_cast<v1::Simulation::State>(stored.state))}});
-  }
-  HistoryShape shape = application.store.history_shape(stored.id, call.limits);
-  if (shape.names.empty()) {
-    return not_found(kHistoryType, history_name(request.name()),
-                     request.name() + " was run without history", v1::ERROR_REASON_NO_HISTORY);
-  }
+  auto& [stored, shape] = found.message();
   Violations violations;
   auto rows = window(request, shape, violations);
   if (!rows) return invalid(violations);

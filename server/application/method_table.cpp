@@ -14,7 +14,9 @@
 #include "server/application/rigs.h"
 #include "server/application/schemas.h"
 #include "server/application/simulations.h"
+#include "server/application/spectra.h"
 #include "server/application/streams.h"
+#include "server/application/viscosities.h"
 
 namespace tribodyn::server {
 namespace {
@@ -163,6 +165,8 @@ std::vector<Method> rows() {
       unary<v1::EvaluatePointsRequest, v1::EvaluatePointsResponse>(Scope::kRead, kCompute,
                                                                    evaluate_points),
       unary<v1::EvaluateRigRequest, v1::EvaluateRigResponse>(Scope::kRead, kCompute, evaluate_rig),
+      unary<v1::EvaluateViscosityRequest, v1::EvaluateViscosityResponse>(Scope::kRead, kSearch,
+                                                                         evaluate_viscosity),
       unary<v1::ComparePointsRequest, v1::ComparePointsResponse>(Scope::kRead, kCompute,
                                                                  compare_points),
       unary<v1::ExplainPointsRequest, v1::ExplainPointsResponse>(Scope::kRead, kCompute,
@@ -179,6 +183,7 @@ std::vector<Method> rows() {
       stream(Scope::kRead, watch_simulation),
       stream(Scope::kRead, watch_simulations),
       stream(Scope::kRead, read_history),
+      unary(Scope::kRead, kSearch, read_spectrum),
 
       unary(Scope::kWrite, kWrite, create_campaign),
       unary(Scope::kRead, kRead, get_campaign),

@@ -227,6 +227,18 @@ constexpr Constraint kConstraints[] = {
     {"RigCondition", "slide_roll_ratio_percent", "%", -200, 200, "eq 18",
      "beyond it the surfaces move against each other"},
     {"RigCondition", "supply_temperature_celsius", "C", -70, 200, "eq 14, T_in", ""},
+    {"RigGrid", "supply_temperatures_celsius", "C", -70, 200, "eq 14, T_in", ""},
+    {"RigGrid", "loads_newtons", "N", 1e-6, 1e6, "eq 41, W", ""},
+    {"RigGrid", "mean_pressures_pascals", "Pa", 1e4, 1e11, "eq 19", "2/3 of p_max"},
+    {"RigGrid", "entrainment_speeds_metres_per_second", "m/s", 1e-6, 1e3, "eq 17, U", ""},
+    {"RigGrid", "slide_roll_ratios_percent", "%", -200, 200, "eq 18",
+     "beyond it the surfaces move against each other"},
+
+    {"EvaluateViscosityRequest", "temperatures_celsius", "C", -100, 400, "eq 34", ""},
+    {"EvaluateViscosityRequest", "pressures_pascals", "Pa", 0, 1e10, "eq 31", "above ambient"},
+
+    {"ReadSpectrumRequest", "maximum_order", "", 0.001, 50000, "half the samples of a mesh cycle",
+     "an order is a multiple of the mesh frequency", Zero::kUnset},
 
     {"ComparePointsRequest", "tolerance", "", 1e-8, 1e-2, "eq 30",
      "what shooting can estimate and keep", Zero::kUnset},

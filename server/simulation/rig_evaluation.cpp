@@ -1,15 +1,19 @@
 #include "server/simulation/rig_evaluation.h"
 
+#include <fmt/format.h>
+
 #include <limits>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/refusal.h"
 #include "core/version.h"
 #include "server/contract/check_message.h"
 #include "server/mapping/to_core.h"
 #include "server/resources/lubricant_parameters.h"
+#include "server/simulation/refused_rows.h"
 #include "server/simulation/study_checks.h"
 #include "tribodyn/v1/surfaces.pb.h"
 
@@ -63,6 +67,77 @@ constexpr RigColumn kRigColumns[] = {
      &RigPoint::limiting_stress_area_share},
 };
 
+constexpr int kMaximumRigConditions = 5000;
+constexpr double kLeastRigLoad = 1e-6, kMostRigLoad = 1e6;  // [N], of RigCondition
+
+/// Returns the loads of a grid: as stated, or under which the dry contact has its mean pressures.
+std::vector<double> grid_loads(const v1::RigGrid& grid, const RigScene& scene) {
+  std::vector<double> out(grid.loads_newtons().begin(), grid.loads_newtons().end());
+  for (const double pressure : grid.mean_pressures_pascals()) {
+    out.push_back(load_of_mean_pressure(scene.solids, scene.radii, pressure));
+  }
+  return out;
+}
+
+/// Adds a violation for each list that is missing or too much, and for too many combinations.
+void check_grid(const v1::RigGrid& grid, Violations& violations) {
+  const double loads = grid.loads_newtons_size() + grid.mean_pressures_pascals_size();
+  double combinations = loads;
+  if (grid.loads_newtons().empty() == grid.mean_pressures_pascals().empty()) {
+    violations.push_back({"grid.loads_newtons",
+                          fmt::format("{}; allowed: either loads or mean pressures",
+                                      loads == 0 ? "not set, nor are mean_pressures_pascals"
+                                                 : "set together with mean_pressures_pascals")});
+  }
+  const auto count = [&](const char* field, int values) {
+    combinations *= values;
+    if (values == 0) {
+      violations.push_back({std::string("grid.") + field, "not set; allowed: at least one value"});
+    }
+  };
+  count("supply_temperatures_celsius", grid.supply_temperatures_celsius_size());
+  count("entrainment_speeds_metres_per_second", grid.entrainment_speeds_metres_per_second_size());
+  count("slide_roll_ratios_percent", grid.slide_roll_ratios_percent_size());
+  if (combinations > kMaximumRigConditions) {
+    violations.push_back({"grid", fmt::format("{} combinations; allowed: at most {}", combinations,
+                                              kMaximumRigConditions)});
+  }
+}
+
+void check_grid_loads(const v1::RigGrid& grid, const RigScene& scene, Violations& violations) {
+  const std::vector<double> loads = grid_loads(grid, scene);
+  for (int i = 0; i < grid.mean_pressures_pascals_size(); ++i) {
+    const double load = loads[static_cast<std::size_t>(grid.loads_newtons_size() + i)];
+    if (load >= kLeastRigLoad && load <= kMostRigLoad) continue;
+    violations.push_back(
+        {fmt::format("grid.mean_pressures_pascals[{}]", i),
+         fmt::format("{} Pa needs a load of {:.4g} N; allowed: {} to {} N",
+                     grid.mean_pressures_pascals(i), load, kLeastRigLoad, kMostRigLoad)});
+  }
+}
+
+/// The conditions of the request, those of a grid in the order of nested loops.
+std::vector<v1::RigCondition> conditions_of(const v1::EvaluateRigRequest& request,
+                                            const RigScene& scene) {
+  std::vector<v1::RigCondition> out(request.conditions().begin(), request.conditions().end());
+  if (!request.has_grid()) return out;
+  const v1::RigGrid& grid = request.grid();
+  for (const double temperature : grid.supply_temperatures_celsius()) {
+    for (const double load : grid_loads(grid, scene)) {
+      for (const double speed : grid.entrainment_speeds_metres_per_second()) {
+        for (const double slide : grid.slide_roll_ratios_percent()) {
+          v1::RigCondition& condition = out.emplace_back();
+          condition.set_supply_temperature_celsius(temperature);
+          condition.set_load_newtons(load);
+          condition.set_entrainment_speed_metres_per_second(speed);
+          condition.set_slide_roll_ratio_percent(slide);
+        }
+      }
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
@@ -70,7 +145,12 @@ std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
   const std::size_t before = violations.size();
   check_message(request, "", violations);
   check_model_options(request.model_options(), "model_options", violations);
-  if (request.conditions().empty()) {
+  if (request.has_grid()) {
+    check_grid(request.grid(), violations);
+    if (!request.conditions().empty()) {
+      violations.push_back({"conditions", "set together with grid; allowed: one of the two"});
+    }
+  } else if (request.conditions().empty()) {
     violations.push_back({"conditions", "not set; allowed: at least one"});
   }
   RigEvaluation out{};  // zeros: smooth specimens
@@ -104,6 +184,8 @@ std::optional<RigEvaluation> read_rig(const v1::EvaluateRigRequest& request,
   scene.radii = {request.radius_x_metres(), radius_y == 0 ? request.radius_x_metres() : radius_y};
   scene.options = to_core(request.model_options());
   scene.options.hertz_solution = HertzSolution::kExact;
+  check_grid_loads(request.grid(), scene, violations);
+  if (violations.size() > before) return std::nullopt;
   return out;
 }
 
@@ -111,26 +193,17 @@ v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
                                      const RigEvaluation& evaluation,
                                      const std::function<bool()>& is_over) {
   v1::EvaluateRigResponse out;
-  const int rows = request.conditions_size();
+  const std::vector<v1::RigCondition> conditions = conditions_of(request, evaluation.scene);
+  const int rows = static_cast<int>(conditions.size());
   for (const RigColumn& each : kRigColumns) {
     (out.*each.column)()->Resize(rows, std::numeric_limits<double>::quiet_NaN());
   }
-  out.mutable_refusal_numbers()->Resize(rows, 0);
-  std::map<std::pair<std::string, std::string>, int> refusal_numbers;  // from 1
-  std::map<double, Rig> rigs;                                          // by supply temperature
-  const auto refuse = [&](int row, const std::string& reason, const std::string& message) {
-    const auto [at, is_new] =
-        refusal_numbers.emplace(std::pair(reason, message), out.refusals_size() + 1);
-    if (is_new) {
-      v1::PointRefusal& refusal = *out.add_refusals();
-      refusal.set_reason(reason);
-      refusal.set_message(message);
-    }
-    out.set_refusal_numbers(row, at->second);
-  };
+  RefusedRows refused(rows, *out.mutable_refusal_numbers(), *out.mutable_refusals());
+  std::map<double, Rig> rigs;  // by supply temperature
   for (int i = 0; i < rows; ++i) {
     if (is_over()) throw Cancelled();
-    const v1::RigCondition& condition = request.conditions(i);
+    const v1::RigCondition& condition = conditions[static_cast<std::size_t>(i)];
+    out.add_load_newtons(condition.load_newtons());
     const double celsius = condition.supply_temperature_celsius();
     try {
       auto rig = rigs.find(celsius);
@@ -138,7 +211,7 @@ v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
         Violations at_inlet;
         check_fluid_at_inlet(*evaluation.lubricant, celsius, 0, "lubricant", at_inlet);
         if (!at_inlet.empty()) {
-          refuse(i, "INVALID_AT_INLET", at_inlet.front().description);
+          refused.add(i, "INVALID_AT_INLET", at_inlet.front().description);
           continue;
         }
         rig = rigs.emplace(celsius, Rig(evaluation.scene, celsius + kZeroCelsius)).first;
@@ -150,7 +223,7 @@ v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request,
         (out.*each.column)()->Set(i, point.*each.figure);
       }
     } catch (const Refusal& refusal) {
-      refuse(i, refusal.reason(), refusal.what());
+      refused.add(i, refusal.reason(), refusal.what());
     }
   }
   out.set_lubricant_revision(evaluation.lubricant_revision);

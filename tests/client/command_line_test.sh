@@ -11,7 +11,7 @@ err_has 'cannot connect to the server at 127.0.0.1:9'
 expect 3 --server "unix:$folder/none" lubricants list
 expect 0 --help
 out_has 'Exit codes'
-for command in point curve compare explain report screen design sensitivities history contact traction film stribeck cycle paper diff validate \
+for command in point curve compare explain report screen design sensitivities history spectrum contact viscosity traction film stribeck cycle paper diff validate \
   schema completion help "lubricants list" \
   "lubricants get" "lubricants create" "gear-sets update" "surfaces import" "vehicles export" \
   "jobs list" "jobs get" "jobs watch" "jobs wait" "jobs cancel" "jobs rerun" "campaigns list" \
@@ -156,6 +156,40 @@ expect 2 stribeck paper-fluid-1 --measured "$folder/rig.csv"
 expect 1 traction paper-fluid-11
 expect 1 traction paper-fluid-1 --slide-roll-ratio 300
 expect 2 traction
+
+expect 0 traction paper-fluid-1 paper-fluid-2 --map slide-roll-ratio,pressure --plot "$folder/map.svg"
+out_has '^paper-fluid-1@1: Traction coefficient$'
+out_has '^across: Slide-roll ratio, % of the mean speed; down: Mean pressure, GPa$'
+out_has '^ +1\.5 +0 '
+[ -s "$folder/map.svg" ] || fail "traction draws no map"
+expect 0 film paper-fluid-1 --map temperature,speed --temperature 40,60,90 --speed 0.1,1 --output csv
+out_lines 7
+expect 2 traction paper-fluid-1 --map load,pressure
+err_has 'two different settings, not load and pressure together'
+expect 2 traction paper-fluid-1 --map speed,viscosity
+err_has "unknown setting 'viscosity'; allowed: two of slide-roll-ratio, temperature, speed, load, pressure"
+expect 0 traction paper-fluid-1 --pressure 0.8GPa --srr 10 --output csv
+out_lines 2
+
+echo "--- viscosities and spectra"
+expect 0 viscosity paper-fluid-1 shell-t9 --plot "$folder/viscosity.svg"
+out_has '^oil +density +kinematic +dynamic +alpha\* +ambient +0\.5 GPa +1 GPa$'
+out_has '^ *40 +818\.1 +[0-9.]+ +[0-9.]+ +16\.09 '
+[ -s "$folder/viscosity.svg" ] || fail "viscosity draws nothing"
+expect 0 viscosity paper-fluid-1 --temperature 40,100 --pressure 0,1GPa --output csv
+out_is_csv
+out_lines 5
+expect 0 viscosity paper-fluid-1 --output json
+out_is_json
+expect 2 viscosity
+expect 1 viscosity paper-fluid-11
+expect 0 spectrum --lubricant paper-fluid-1 --speed 65 --plot "$folder/spectrum.svg"
+out_has '^Order 1 is the mesh frequency, [0-9.]+ Hz\. Amplitudes from zero to peak, over 1 mesh cycle of 192'
+[ -s "$folder/spectrum.svg" ] || fail "spectrum draws nothing"
+expect 0 spectrum --lubricant paper-fluid-1 --speed 65 --maximum-order 4 --output csv
+out_is_csv
+out_lines 5
+out_has '^order,amplitude_dynamic_transmission_error_metres,phase_angle_radians_dynamic_transmission_error_metres,'
 
 # Drive cycles: the energy of the map is within its stated error of the point-by-point integration.
 energy_of() { awk -F, '$1 == "all" { print $5 }' "$folder/out"; }

@@ -15,10 +15,13 @@
 #include "client/cpp/failure.h"
 #include "client/cpp/plot/curve_plot.h"
 #include "client/cpp/plot/history_plot.h"
+#include "client/cpp/plot/map_plot.h"
 #include "client/cpp/plot/panel.h"
 #include "client/cpp/plot/svg.h"
 #include "client/cpp/report/rig_rows.h"
+#include "client/cpp/report/spectrum_report.h"
 #include "client/cpp/report/variant_report.h"
+#include "client/cpp/report/viscosity_report.h"
 #include "client/cpp/text/text.h"
 #include "tests/client/sample_simulations.h"
 
@@ -92,6 +95,8 @@ TEST(Ticks, OfLogarithmicAxesAreOneTwoAndFiveTimesPowersOfTen) {
   EXPECT_EQ(logarithmic_tick_labels(logarithmic_ticks(-3, 2)),
             (std::vector<std::string>{"0.001", "0.01", "0.1", "1", "10", "100"}));
   EXPECT_EQ(logarithmic_tick_labels(logarithmic_ticks(0, 0)), (std::vector<std::string>{"1", "2"}));
+  EXPECT_EQ(logarithmic_tick_labels({5, 6, 7 + std::log10(2)}),
+            (std::vector<std::string>{"100000", "1e6", "2e7"}));
 }
 
 RigRow rig_row(double speed, double traction, bool is_isothermal) {
@@ -125,6 +130,64 @@ TEST(RigPlot, DrawsLinesDashedWhereIsothermalAndMeasuredPointsHollow) {
   EXPECT_NE(svg.find("isothermal"), std::string::npos);
   EXPECT_NE(svg.find("model-x"), std::string::npos);
   EXPECT_NE(svg.find("<circle"), std::string::npos);
+}
+
+TEST(MapPlot, DrawsACellAtEachFigureAndContourLinesThroughExactPlaces) {
+  MapPicture picture;
+  picture.title = "Map";
+  picture.figure_title = "x + y";
+  picture.x = {"Speed, m/s", {1, 2, 3}, false};
+  picture.y = {"Temperature", {10, 20}, false};
+  picture.maps = {{"x@1", {0, 1, 2, 10, 11, std::nan("")}}};
+  picture.footer = "model-x";
+  const std::string svg = map_plot(picture);
+  keep("map.svg", svg);
+  EXPECT_TRUE(is_well_formed(svg));
+  for (const char* text : {"x + y", "Speed, m/s", "x@1: Temperature", "model-x"}) {
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  }
+  std::size_t cells = 0;
+  for (std::size_t at = 0; (at = svg.find("<rect", at)) != std::string::npos; ++at) ++cells;
+  EXPECT_EQ(cells, 1 + 5 + 64U) << "background, figures, scale of colours";
+}
+
+TEST(SpectrumPlot, DrawsALineForEachOrderAndStatesItsNormalisation) {
+  v1::ReadSpectrumResponse spectrum;
+  for (int k = 1; k <= 4; ++k) spectrum.add_orders(0.5 * k);
+  v1::OrderSpectrum& column = *spectrum.add_columns();
+  column.set_name("mesh_force_newtons");
+  for (const double amplitude : {1.0, 5.0, 0.5, 2.0}) column.add_amplitudes(amplitude);
+  for (int k = 0; k < 4; ++k) column.add_phase_angles_radians(0.1 * k);
+  spectrum.set_mesh_cycles(2);
+  spectrum.set_samples_per_mesh_cycle(192);
+  spectrum.set_is_periodic(true);
+  spectrum.set_mesh_frequency_hertz(500);
+  const v1::Simulation simulation = sample_curve("1", 1);
+  const std::string svg = spectrum_plot(simulation, spectrum);
+  keep("spectrum.svg", svg);
+  EXPECT_TRUE(is_well_formed(svg));
+  EXPECT_NE(svg.find("Mesh force, N"), std::string::npos);
+  EXPECT_NE(svg.find("Order of the mesh frequency"), std::string::npos);
+  EXPECT_NE(svg.find("one period of the response"), std::string::npos);
+  const std::string csv = spectrum_text(simulation, spectrum, OutputFormat::kCsv);
+  EXPECT_NE(csv.find("\n1,5,0.1\n"), std::string::npos) << csv;
+}
+
+TEST(ViscosityPlot, DrawsALineForEachLubricantAndPressure) {
+  ViscosityAnswer answer;
+  for (const double celsius : {40.0, 100.0}) answer.request.add_temperatures_celsius(celsius);
+  for (const double pressure : {0.0, 1e9}) answer.request.add_pressures_pascals(pressure);
+  for (const double viscosity : {0.1, 300.0, 0.015, 4.0}) {
+    answer.answer.add_dynamic_viscosity_pascal_seconds(viscosity);
+  }
+  answer.answer.set_lubricant_revision("lubricants/x@2");
+  answer.answer.set_model_version("model-x");
+  const std::string svg = viscosity_plot({answer});
+  keep("viscosity.svg", svg);
+  EXPECT_TRUE(is_well_formed(svg));
+  for (const char* text : {"x@2, ambient", "x@2, 1 GPa", "model-x", "Dynamic viscosity, mPa s"}) {
+    EXPECT_NE(svg.find(text), std::string::npos) << text;
+  }
 }
 
 TEST(RigText, StatesResidualsOfMeasuredPointsAndRefusals) {

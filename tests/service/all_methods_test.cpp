@@ -162,7 +162,8 @@ TEST_P(EveryMethod, SuggestsTheNearestNameForAnUnknownOne) {
       set("message", "Lubricnt");
       return expect_refused(*message, "did you mean \"Lubricant\"?");
     }
-    if (method == "EvaluateContact" || method == "EvaluatePoints" || method == "EvaluateRig") {
+    if (method == "EvaluateContact" || method == "EvaluatePoints" || method == "EvaluateRig" ||
+        method == "EvaluateViscosity") {
       set("lubricant", "lubricants/paper-fluid-11");
       return expect_refused(*message, "did you mean \"lubricants/paper-fluid-1\"?");
     }

@@ -22,8 +22,10 @@
 #include "server/simulation/point_explanation.h"
 #include "server/simulation/rig_evaluation.h"
 #include "server/simulation/simulation_inputs.h"
+#include "server/simulation/viscosity_evaluation.h"
 #include "tests/service/support.h"
 #include "tribodyn/v1/schemas.pb.h"
+#include "tribodyn/v1/spectra.pb.h"
 
 namespace tribodyn::server {
 namespace {
@@ -93,6 +95,8 @@ struct Subject {
   v1::GearSet gear_set = seed<v1::GearSet>("gearSets/reference-axle");
   v1::EvaluatePointsRequest points = one_point();
   v1::EvaluateRigRequest rig = one_rig();
+  v1::EvaluateViscosityRequest viscosity;
+  v1::ReadSpectrumRequest spectrum;
   v1::ComparePointsRequest comparison;
   v1::ExplainPointsRequest explanation;
   v1::Campaign campaign;
@@ -151,6 +155,21 @@ struct Subject {
       use(rig.mutable_body_1(), "body_1.");
     } else if (name == "RigCondition") {
       use(rig.mutable_conditions(0), "conditions[0].");
+    } else if (name == "RigGrid") {
+      rig.clear_conditions();
+      v1::RigGrid& grid = *rig.mutable_grid();
+      grid.add_supply_temperatures_celsius(40);
+      grid.add_loads_newtons(38);
+      grid.add_entrainment_speeds_metres_per_second(2);
+      grid.add_slide_roll_ratios_percent(10);
+      use(&grid, "grid.");
+    } else if (name == "EvaluateViscosityRequest") {
+      viscosity.set_lubricant(points.lubricant());
+      viscosity.add_temperatures_celsius(40);
+      viscosity.add_pressures_pascals(1e9);
+      use(&viscosity, "");
+    } else if (name == "ReadSpectrumRequest") {
+      use(&spectrum, "");
     } else if (name == "Simulation") {
       use(&simulation, "simulation.");
     } else if (name == "StatedLimits") {
@@ -209,7 +228,12 @@ struct Subject {
     if (path.starts_with("simulation.")) return server::check(simulation);
     if (path == "lubricant_parameters." || message == &contact) return server::check(contact);
     Violations violations;
-    if (message == &rig || message == &rig.body_1() || message == &rig.conditions(0)) {
+    if (message == &viscosity) {
+      read_viscosity(viscosity, seed_lookup(), violations);
+      return violations;
+    }
+    if (message == &rig || message == &rig.body_1() || path == "grid." ||
+        (!rig.conditions().empty() && message == &rig.conditions(0))) {
       read_rig(rig, seed_lookup(), violations);
       return violations;
     }
@@ -238,8 +262,8 @@ struct Subject {
       return violations;
     }
     check_gear_set(gear_set, "", violations);
-    for (const Message* whole :
-         std::initializer_list<const Message*>{&lubricant, &surface, &vehicle, &gear_set}) {
+    for (const Message* whole : std::initializer_list<const Message*>{
+             &lubricant, &surface, &vehicle, &gear_set, &spectrum}) {
       check_message(*whole, "", violations);
     }
     return violations;

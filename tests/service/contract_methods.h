@@ -13,8 +13,10 @@
 #include "tribodyn/v1/rigs.pb.h"
 #include "tribodyn/v1/schemas.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
+#include "tribodyn/v1/spectra.pb.h"
 #include "tribodyn/v1/surfaces.pb.h"
 #include "tribodyn/v1/vehicles.pb.h"
+#include "tribodyn/v1/viscosities.pb.h"
 
 namespace tribodyn::server {
 
@@ -27,7 +29,9 @@ inline std::vector<const google::protobuf::MethodDescriptor*> all_methods() {
         v1::Simulation::descriptor()->file(), v1::Schema::descriptor()->file(),
         v1::EvaluateContactRequest::descriptor()->file(),
         v1::EvaluatePointsRequest::descriptor()->file(),
-        v1::EvaluateRigRequest::descriptor()->file(), v1::Campaign::descriptor()->file()}) {
+        v1::EvaluateRigRequest::descriptor()->file(),
+        v1::EvaluateViscosityRequest::descriptor()->file(),
+        v1::ReadSpectrumRequest::descriptor()->file(), v1::Campaign::descriptor()->file()}) {
     for (int i = 0; i < file->service_count(); ++i) {
       for (int k = 0; k < file->service(i)->method_count(); ++k) {
         out.push_back(file->service(i)->method(k));

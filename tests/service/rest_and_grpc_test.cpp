@@ -456,6 +456,10 @@ void RestAndGrpc::check_simulations() {
     check(name, "name: 'simulations/1'");
     check(name, "name: 'simulations/9'", Code::NOT_FOUND);
   }
+  check("ReadSpectrum", "name: 'simulations/1'");
+  check("ReadSpectrum", "name: 'projects/acme/simulations/1'", Code::NOT_FOUND);
+  check("ReadSpectrum", "name: 'simulations/1' columns: 'mesh_force_newtons' maximum_order: 3");
+  check("ReadSpectrum", "name: 'simulations/1' columns: 'mesh_force'", Code::INVALID_ARGUMENT);
   check("WatchSimulation", "name: 'simulations/1'");
   check("WatchSimulation", "name: 'simulations/1' after_sequence: 2");
   check("WatchSimulation", "name: 'simulations/9'", Code::NOT_FOUND);
@@ -540,8 +544,18 @@ TEST_F(RestAndGrpc, EveryMethodGivesTheSameAnswers) {
         R"(lubricant: "lubricants/paper-fluid-1" surface: "surfaces/run-in" radius_x_metres: 0.0127
       conditions { load_newtons: 38 entrainment_speed_metres_per_second: 2
                    slide_roll_ratio_percent: 10 supply_temperature_celsius: 40 })");
+  check("EvaluateRig", R"(lubricant: "lubricants/paper-fluid-1" radius_x_metres: 0.0127
+      grid { supply_temperatures_celsius: 40 supply_temperatures_celsius: 90
+             mean_pressures_pascals: 8e8 entrainment_speeds_metres_per_second: 2
+             slide_roll_ratios_percent: 0 slide_roll_ratios_percent: 20 })");
   check("EvaluateRig", "lubricant: 'lubricants/none' radius_x_metres: 1",
         google::rpc::INVALID_ARGUMENT);
+  check("EvaluateViscosity", R"(lubricant: "lubricants/paper-fluid-1" temperatures_celsius: -150
+      temperatures_celsius: 40 temperatures_celsius: 100 pressures_pascals: 0
+      pressures_pascals: 1e9)",
+        google::rpc::INVALID_ARGUMENT);
+  check("EvaluateViscosity", R"(lubricant: "lubricants/paper-fluid-1" temperatures_celsius: 40
+      temperatures_celsius: 100 pressures_pascals: 0 pressures_pascals: 1e9)");
   check("ComparePoints",
         R"(lubricants: "lubricants/paper-fluid-1" lubricants: "lubricants/paper-fluid-2"
       conditions { speed_kilometres_per_hour: 110 } draws: 19)");

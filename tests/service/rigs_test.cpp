@@ -119,6 +119,68 @@ TEST(EvaluateRig, ARefusedConditionIsARefusedRowBesideOthers) {
   EXPECT_EQ(out.refusals(0).reason(), "INVALID_AT_INLET");
 }
 
+v1::EvaluateRigRequest grid_request() {
+  v1::EvaluateRigRequest out = rig_request();
+  out.clear_conditions();
+  v1::RigGrid& grid = *out.mutable_grid();
+  for (const double celsius : {40.0, 90.0}) grid.add_supply_temperatures_celsius(celsius);
+  for (const double load : {20.0, 38.0, 154.0}) grid.add_loads_newtons(load);
+  grid.add_entrainment_speeds_metres_per_second(2);
+  for (const double percent : {0.0, 10.0}) grid.add_slide_roll_ratios_percent(percent);
+  return out;
+}
+
+TEST(EvaluateRig, AGridIsTheListOfItsCombinationsInTheOrderOfNestedLoops) {
+  v1::EvaluateRigRequest listed = rig_request();
+  listed.clear_conditions();
+  for (const double celsius : {40.0, 90.0}) {
+    for (const double load : {20.0, 38.0, 154.0}) {
+      for (const double percent : {0.0, 10.0}) add_rig_condition(listed, load, percent, celsius);
+    }
+  }
+  EXPECT_EQ(run_rig(grid_request()).SerializeAsString(), run_rig(listed).SerializeAsString());
+}
+
+TEST(EvaluateRig, AMeanPressureOfAGridIsThatOfTheContact) {
+  v1::EvaluateRigRequest request = grid_request();
+  request.set_radius_y_metres(0.05);
+  request.mutable_grid()->clear_loads_newtons();
+  request.mutable_grid()->add_mean_pressures_pascals(6e8);
+  request.mutable_grid()->add_mean_pressures_pascals(9e8);
+  const v1::EvaluateRigResponse out = run_rig(request);
+  ASSERT_EQ(out.mean_pressure_pascals_size(), 8);
+  for (int i = 0; i < 8; ++i) {
+    const double wanted = i / 2 % 2 == 0 ? 6e8 : 9e8;
+    EXPECT_NEAR(out.mean_pressure_pascals(i) / wanted, 1, 1e-12);  // smooth: W is W_EHL
+  }
+  EXPECT_NEAR(out.load_newtons(2) / out.load_newtons(0), 1.5 * 1.5 * 1.5, 1e-12);
+}
+
+TEST(EvaluateRig, NamesAllThatIsWrongWithAGrid) {
+  v1::EvaluateRigRequest request = grid_request();
+  request.mutable_grid()->add_mean_pressures_pascals(1e9);
+  request.mutable_grid()->clear_slide_roll_ratios_percent();
+  add_rig_condition(request, 38, 10);
+  const std::string wrong = rig_violations(request);
+  EXPECT_THAT(wrong, HasSubstr("grid.loads_newtons: set together with mean_pressures_pascals; "
+                               "allowed: either loads or mean pressures"));
+  EXPECT_THAT(wrong, HasSubstr("grid.slide_roll_ratios_percent: not set; allowed: at least one"));
+  EXPECT_THAT(wrong, HasSubstr("conditions: set together with grid; allowed: one of the two"));
+
+  request = grid_request();
+  request.mutable_grid()->clear_loads_newtons();
+  EXPECT_THAT(rig_violations(request), HasSubstr("nor are mean_pressures_pascals"));
+  request.mutable_grid()->add_mean_pressures_pascals(9e10);
+  EXPECT_THAT(rig_violations(request),
+              HasSubstr("grid.mean_pressures_pascals[0]: 90000000000 Pa needs a load of"));
+
+  request = grid_request();
+  while (request.grid().slide_roll_ratios_percent_size() < 1000) {
+    request.mutable_grid()->add_slide_roll_ratios_percent(1);
+  }
+  EXPECT_THAT(rig_violations(request), HasSubstr("grid: 6000 combinations; allowed: at most 5000"));
+}
+
 TEST(EvaluateRig, NamesAllThatIsWrong) {
   v1::EvaluateRigRequest request;
   request.set_lubricant("lubricants/paper-fluid-11");

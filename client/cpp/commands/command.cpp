@@ -72,7 +72,9 @@ std::vector<Command> all_commands() {
   commands.push_back(design_command());
   commands.push_back(sensitivities_command());
   commands.push_back(history_command());
+  commands.push_back(spectrum_command());
   commands.push_back(contact_command());
+  commands.push_back(viscosity_command());
   commands.push_back(traction_command());
   commands.push_back(film_command());
   commands.push_back(stribeck_command());

@@ -1,4 +1,4 @@
-#include <cmath>
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/cpp/commands/result_files.h"
+#include "client/cpp/commands/rig_map.h"
 #include "client/cpp/commands/scenario.h"
 #include "client/cpp/report/rig_rows.h"
 #include "client/cpp/resources/json_input.h"
@@ -14,16 +15,12 @@
 namespace tribodyn::client {
 namespace {
 
-/// What the machine sets if the flags do not: lists of which every combination is a condition.
-struct RigSettings {
-  std::vector<double> loads, speeds, slide_roll_ratios, temperatures;
-};
-
 struct RigFlags {
   std::vector<std::string> fluids;
   v1::EvaluateRigRequest request;
   RigSettings given;  ///< empty lists: the command's
   std::string plot_path, measured_path;
+  std::vector<std::string> map;  ///< words of the settings across and up; empty: no map
 };
 
 /// A rig command: what it shows, and what its machine is and does by default.
@@ -39,13 +36,6 @@ struct RigCommand {
   RigSettings settings;
   const char *speeds_text, *slides_text;  ///< the default lists in words
 };
-
-std::vector<double> powers(double first, double last, int per_decade) {
-  std::vector<double> out;
-  const int steps = static_cast<int>(std::lround(per_decade * std::log10(last / first)));
-  for (int i = 0; i <= steps; ++i) out.push_back(first * std::pow(last / first, 1.0 * i / steps));
-  return out;
-}
 
 void set_disc(const std::string& material, v1::EvaluateRigRequest& request) {
   request.clear_body_2();
@@ -73,6 +63,9 @@ void add_rig_flags(FlagList& list, RigFlags& flags, const RigCommand& rig) {
   };
   const std::string load = significant(rig.settings.loads.front(), 4);
   numbers("--load-newtons,--load", {"N", "1e-6 to 1e6", load}, "Normal loads", &RigSettings::loads);
+  numbers("--mean-pressure-pascals,--pressure", {"Pa", "1e4 to 1e11", "none"},
+          "Mean pressures of the dry contact by Hertz, in place of loads, e.g. 0.8GPa",
+          &RigSettings::mean_pressures);
   numbers("--entrainment-speed-metres-per-second,--speed", {"m/s", "1e-6 to 1e3", rig.speeds_text},
           "Mean speeds of both surfaces", &RigSettings::speeds);
   numbers("--slide-roll-ratio-percent,--slide-roll-ratio,--srr",
@@ -111,6 +104,12 @@ void add_rig_flags(FlagList& list, RigFlags& flags, const RigCommand& rig) {
       "Height sigma_G of the specimens in place of that of the surface, e.g. 20nm; 0: that of "
       "the surface",
       [&request](double value) { request.set_composite_rms_height_metres(value); });
+  list.group("Map");
+  list.texts("--map", "X,Y",
+             "Map over two of slide-roll-ratio, temperature, speed, load and pressure, whose flags "
+             "may list their values; each other setting has its first value.",
+             [&flags](const std::string& word) { flags.map.push_back(word); })
+      .field = "grid";
   list.group("Files");
   list.text("--measured", "FILE",
             std::string("CSV with columns ") + rig.view.x + " and " + rig.view.y +
@@ -123,10 +122,19 @@ void add_rig_flags(FlagList& list, RigFlags& flags, const RigCommand& rig) {
 
 RigSettings settings_of(const RigFlags& flags, const RigCommand& rig) {
   RigSettings out = rig.settings;
-  for (const auto values : {&RigSettings::loads, &RigSettings::speeds,
-                            &RigSettings::slide_roll_ratios, &RigSettings::temperatures}) {
-    if (!(flags.given.*values).empty()) out.*values = flags.given.*values;
+  for (const RigAxis& axis : rig_axes()) {
+    std::vector<double>& values = out.*axis.values;
+    if (!(flags.given.*axis.values).empty()) values = flags.given.*axis.values;
+    if (flags.map.empty()) continue;
+    if (std::find(flags.map.begin(), flags.map.end(), axis.word) == flags.map.end()) {
+      values.resize(std::min<std::size_t>(values.size(), 1));
+    } else if (values.size() < 2 || (flags.given.*axis.values).empty()) {
+      values = axis.standard;
+    } else {
+      std::sort(values.begin(), values.end());
+    }
   }
+  if (!out.mean_pressures.empty()) out.loads.clear();
   return out;
 }
 
@@ -139,47 +147,109 @@ v1::RigCondition rig_condition(double load, double speed, double slide, double t
   return out;
 }
 
-int run_rig(const RigFlags& flags, const RigCommand& rig, const CommonOptions& options) {
-  v1::EvaluateRigRequest request = flags.request;
-  const RigSettings settings = settings_of(flags, rig);
+/// Evaluates every combination of the settings, and lists the conditions in the request.
+v1::EvaluateRigResponse evaluate_grid(const RigSettings& settings, Connection& connection,
+                                      v1::EvaluateRigRequest& request) {
+  v1::RigGrid& grid = *request.mutable_grid();
+  const auto set = [](const std::vector<double>& values, auto& list) {
+    list = {values.begin(), values.end()};
+  };
+  set(settings.temperatures, *grid.mutable_supply_temperatures_celsius());
+  set(settings.loads, *grid.mutable_loads_newtons());
+  set(settings.mean_pressures, *grid.mutable_mean_pressures_pascals());
+  set(settings.speeds, *grid.mutable_entrainment_speeds_metres_per_second());
+  set(settings.slide_roll_ratios, *grid.mutable_slide_roll_ratios_percent());
+  request.clear_conditions();
+  v1::EvaluateRigResponse answer = connection.evaluate_rig(request);
+  const std::size_t loads = settings.loads.size() + settings.mean_pressures.size();
   for (const double temperature : settings.temperatures) {
-    for (const double load : settings.loads) {
+    for (std::size_t i = 0; i < loads; ++i) {
       for (const double speed : settings.speeds) {
         for (const double slide : settings.slide_roll_ratios) {
+          const double load = answer.load_newtons(request.conditions_size());
           *request.add_conditions() = rig_condition(load, speed, slide, temperature);
         }
       }
     }
   }
-  std::vector<std::optional<double>> measured(static_cast<std::size_t>(request.conditions_size()));
+  request.clear_grid();
+  return answer;
+}
+
+int run_rig(const RigFlags& flags, const RigCommand& rig, const CommonOptions& options) {
+  const RigSettings settings = settings_of(flags, rig);
+  std::vector<MeasuredPoint> points;
   if (!flags.measured_path.empty()) {
     const v1::RigCondition usual =
-        rig_condition(settings.loads.front(), settings.speeds.front(),
+        rig_condition(settings.loads.empty() ? 0 : settings.loads.front(), settings.speeds.front(),
                       settings.slide_roll_ratios.front(), settings.temperatures.front());
-    for (MeasuredPoint& point :
-         read_measured(read_file(flags.measured_path), flags.measured_path, rig.view, usual)) {
-      *request.add_conditions() = std::move(point.condition);
-      measured.emplace_back(point.value);
-    }
+    points = read_measured(read_file(flags.measured_path), flags.measured_path, rig.view, usual);
   }
   // Isothermal figures stand beside the thermal ones.
+  v1::EvaluateRigRequest request = flags.request;
   std::vector<bool> models{false};
   if (request.model_options().isothermal()) models.push_back(true);
   Connection connection = options.connect();
   std::vector<RigRow> rows;
   std::string version;
+  const auto add = [&](const v1::EvaluateRigResponse& answer,
+                       const std::vector<std::optional<double>>& measured) {
+    for (RigRow& row : rig_rows(request, answer, measured)) rows.push_back(std::move(row));
+    version = answer.model_version();
+  };
   for (const std::string& fluid : flags.fluids) {
     for (const bool is_isothermal : models) {
       request.set_lubricant(fluid);
       request.mutable_model_options()->set_isothermal(is_isothermal);
-      const v1::EvaluateRigResponse answer = connection.evaluate_rig(request);
-      for (RigRow& row : rig_rows(request, answer, measured)) rows.push_back(std::move(row));
-      version = answer.model_version();
+      add(evaluate_grid(settings, connection, request), {});
+      if (points.empty()) continue;
+      request.clear_conditions();
+      std::vector<std::optional<double>> measured;
+      for (const MeasuredPoint& point : points) {
+        *request.add_conditions() = point.condition;
+        measured.emplace_back(point.value);
+      }
+      add(connection.evaluate_rig(request), measured);
     }
   }
-  std::cout << rig_text(rows, rig.view, options.output_format);
-  if (!flags.plot_path.empty()) write_file(flags.plot_path, rig_plot(rows, rig.view, version));
+  if (flags.map.empty()) {
+    std::cout << rig_text(rows, rig.view, options.output_format);
+    if (!flags.plot_path.empty()) write_file(flags.plot_path, rig_plot(rows, rig.view, version));
+    return kExitOk;
+  }
+  const MapPicture picture =
+      map_of(rows, rig.view, *rig_axis(flags.map[0]), *rig_axis(flags.map[1]), settings, version);
+  std::cout << (options.output_format == OutputFormat::kTable
+                    ? map_table(picture)
+                    : rig_text(rows, rig.view, options.output_format));
+  if (!flags.plot_path.empty()) write_file(flags.plot_path, map_plot(picture));
   return kExitOk;
+}
+
+void check_map(const RigFlags& flags, Complaints& complaints) {
+  if (flags.map.empty()) return;
+  std::vector<std::string> words;
+  for (const RigAxis& axis : rig_axes()) words.emplace_back(axis.word);
+  for (const std::string& word : flags.map) {
+    if (rig_axis(word) == nullptr) {
+      complaints.push_back("--map: unknown setting '" + printable(word) + "'; allowed: two of " +
+                           joined(words, ", "));
+    }
+  }
+  const bool are_two = flags.map.size() == 2 && flags.map[0] != flags.map[1];
+  const auto has = [&flags](const char* word) {
+    return std::find(flags.map.begin(), flags.map.end(), word) != flags.map.end();
+  };
+  if (!are_two || (has("load") && has("pressure"))) {
+    complaints.push_back("--map: " + joined(flags.map, ",") +
+                         "; allowed: two different settings, not load and pressure together");
+  }
+  if (has("load") && !flags.given.mean_pressures.empty()) {
+    complaints.emplace_back("--map over load and --pressure exclude each other");
+  }
+  if (!flags.measured_path.empty()) {
+    complaints.emplace_back("--map and --measured exclude each other");
+  }
 }
 
 Command rig_command(const RigCommand& rig) {
@@ -187,12 +257,17 @@ Command rig_command(const RigCommand& rig) {
   Command command{rig.view.command, rig.summary, rig.about, rig.examples, {}, {}, {}};
   add_rig_flags(command.flags, *flags, rig);
   command.check = [flags, name = std::string(rig.view.command)](Complaints& complaints) {
+    check_map(*flags, complaints);
+    if (!flags->given.loads.empty() && !flags->given.mean_pressures.empty()) {
+      complaints.emplace_back("--load and --pressure exclude each other");
+    }
     if (flags->fluids.empty()) {
       complaints.push_back("give a lubricant: tribodyn " + name + " paper-fluid-1");
     }
   };
-  command.main_flags = {"fluid",    "--load", "--speed",     "--srr",      "--temperature",
-                        "--radius", "--disc", "--roughness", "--measured", "--plot"};
+  command.main_flags = {"fluid",         "--load",     "--speed", "--srr",
+                        "--temperature", "--radius",   "--disc",  "--roughness",
+                        "--map",         "--measured", "--plot"};
   command.run = [flags, rig](const CommonOptions& options) {
     return run_rig(*flags, rig, options);
   };

@@ -120,6 +120,8 @@ Connection::Connection(std::string address, std::chrono::duration<double> timeou
   services_->points = v1::PointService::NewStub(services_->channel);
   services_->contacts = v1::ContactService::NewStub(services_->channel);
   services_->rigs = v1::RigService::NewStub(services_->channel);
+  services_->spectra = v1::SpectrumService::NewStub(services_->channel);
+  services_->viscosities = v1::ViscosityService::NewStub(services_->channel);
   services_->schemas = v1::SchemaService::NewStub(services_->channel);
 }
 
@@ -144,6 +146,16 @@ v1::EvaluateContactResponse Connection::evaluate_contact(
 
 v1::EvaluateRigResponse Connection::evaluate_rig(const v1::EvaluateRigRequest& request) {
   return services_->call(*services_->rigs, &v1::RigService::Stub::EvaluateRig, request);
+}
+
+v1::EvaluateViscosityResponse Connection::evaluate_viscosity(
+    const v1::EvaluateViscosityRequest& request) {
+  return services_->call(*services_->viscosities, &v1::ViscosityService::Stub::EvaluateViscosity,
+                         request);
+}
+
+v1::ReadSpectrumResponse Connection::read_spectrum(const v1::ReadSpectrumRequest& request) {
+  return services_->call(*services_->spectra, &v1::SpectrumService::Stub::ReadSpectrum, request);
 }
 
 v1::EvaluatePointsResponse Connection::evaluate_points(const v1::EvaluatePointsRequest& request) {

@@ -21,8 +21,10 @@
 #include "tribodyn/v1/rigs.grpc.pb.h"
 #include "tribodyn/v1/schemas.grpc.pb.h"
 #include "tribodyn/v1/simulations.grpc.pb.h"
+#include "tribodyn/v1/spectra.grpc.pb.h"
 #include "tribodyn/v1/surfaces.grpc.pb.h"
 #include "tribodyn/v1/vehicles.grpc.pb.h"
+#include "tribodyn/v1/viscosities.grpc.pb.h"
 
 namespace tribodyn::client {
 
@@ -47,6 +49,8 @@ struct Connection::Services {
   std::unique_ptr<v1::ContactService::Stub> contacts;
   std::unique_ptr<v1::RigService::Stub> rigs;
   std::unique_ptr<v1::PointService::Stub> points;
+  std::unique_ptr<v1::SpectrumService::Stub> spectra;
+  std::unique_ptr<v1::ViscosityService::Stub> viscosities;
   std::unique_ptr<v1::SchemaService::Stub> schemas;
 
   /// Adds what every call carries.

@@ -137,7 +137,7 @@ PaperLine logarithms(PaperLine line) {
 
 std::vector<Panel> panels_of_figure_9(const PaperResults& results) {
   Panel panel = paper_panel("Central film thickness, nm", "Entrainment speed, m/s");
-  panel.is_logarithmic = true;
+  panel.is_logarithmic_x = panel.is_logarithmic_y = true;
   for (int fluid = 1; fluid <= 3; ++fluid) {
     panel.series.push_back(paper_series(logarithms(in_nanometres(results.film(film_rig(fluid)))),
                                         static_cast<std::size_t>(fluid - 1), fluid_name(fluid)));

@@ -45,10 +45,13 @@ struct Scale {
 void draw_grid(const Panel& panel, const Scale& scale, const std::vector<double>& x_ticks,
                const std::vector<double>& y_ticks, Svg& svg) {
   const double bottom = panel.corner.y + panel.height;
-  const auto labels = panel.is_logarithmic ? logarithmic_tick_labels : tick_labels;
-  const auto x_labels = labels(x_ticks);
-  const auto y_labels = labels(y_ticks);
+  const auto labels = [](bool is_logarithmic) {
+    return is_logarithmic ? logarithmic_tick_labels : tick_labels;
+  };
+  const auto x_labels = labels(panel.is_logarithmic_x)(x_ticks);
+  const auto y_labels = labels(panel.is_logarithmic_y)(y_ticks);
   for (std::size_t i = 0; i < y_ticks.size(); ++i) {
+    if (y_ticks[i] < scale.y.low - 1e-9 || y_ticks[i] > scale.y.high + 1e-9) continue;
     const double y = scale.at_y(y_ticks[i]);
     svg.line({panel.corner.x, y}, {panel.corner.x + panel.width, y}, {kGridColour, 1, ""});
     svg.text({panel.corner.x - 8, y + 4}, y_labels[i], {kLabelSize, "end", kInkColour, false, 0});
@@ -72,7 +75,7 @@ void draw_axis(const Panel& panel, const Scale& scale, Svg& svg) {
   const double x = panel.corner.x;
   const double top = panel.corner.y;
   const double bottom = top + panel.height;
-  const bool has_no_zero = panel.has_arbitrary_zero || panel.is_logarithmic;
+  const bool has_no_zero = panel.has_arbitrary_zero || panel.is_logarithmic_y;
   const bool cut_below = scale.y.low > 0 && !has_no_zero;
   const bool cut_above = scale.y.high < 0 && !has_no_zero;
   std::vector<Point> axis = {{x, bottom}};
@@ -118,6 +121,17 @@ void draw_marker(Marker marker, Point at, bool hollow, const std::string& colour
                           {at.x - 1.4 * r, at.y}},
                          fill, stroke);
   }
+}
+
+void draw_cells(const Panel& panel, const Scale& scale, Svg& svg) {
+  constexpr double kOverlap = 0.6;  // hides the seams that smoothed edges leave [pixels]
+  svg.begin_clip(panel.corner, panel.width, panel.height);
+  for (const MapCell& cell : panel.cells) {
+    const double left = scale.at_x(cell.left), top = scale.at_y(cell.high);
+    svg.rectangle({left, top}, scale.at_x(cell.right) - left + kOverlap,
+                  scale.at_y(cell.low) - top + kOverlap, cell.colour);
+  }
+  svg.end_clip();
 }
 
 void draw_series_band(const Series& series, const Scale& scale, Svg& svg) {
@@ -305,23 +319,29 @@ void draw_panel(const Panel& panel, Svg& svg) {
       for (const double value : *values) scale.y.include(value);
     }
   }
+  for (const MapCell& cell : panel.cells) {
+    for (const double value : {cell.left, cell.right}) scale.x.include(value);
+    for (const double value : {cell.low, cell.high}) scale.y.include(value);
+  }
   if (panel.line_at) scale.y.include(*panel.line_at);
   if (panel.starts_at_zero) scale.y.include(0);
   if (scale.x.empty()) scale.x = {0, 1};
   if (scale.y.empty()) scale.y = {0, 1};
   if (scale.x.low == scale.x.high) scale.x = {scale.x.low - 1, scale.x.high + 1};
-  const auto ticks = [&panel](const Range& range, int count) {
-    return panel.is_logarithmic ? logarithmic_ticks(range.low, range.high)
-                                : nice_ticks(range.low, range.high, count);
+  const auto ticks = [](bool is_logarithmic, const Range& range, int count) {
+    return is_logarithmic ? logarithmic_ticks(range.low, range.high)
+                          : nice_ticks(range.low, range.high, count);
   };
-  const auto x_ticks = ticks(scale.x, static_cast<int>(panel.width / 60));
-  const auto y_ticks = ticks(scale.y, std::max(4, static_cast<int>(panel.height / 45)));
-  scale.y = {y_ticks.front(), y_ticks.back()};
+  const auto x_ticks = ticks(panel.is_logarithmic_x, scale.x, static_cast<int>(panel.width / 60));
+  const auto y_ticks =
+      ticks(panel.is_logarithmic_y, scale.y, std::max(4, static_cast<int>(panel.height / 45)));
+  if (panel.cells.empty()) scale.y = {y_ticks.front(), y_ticks.back()};
 
   const double bottom = panel.corner.y + panel.height;
   svg.text({panel.corner.x, panel.corner.y - 10}, panel.title, {13, "start", "#222", true, 0});
   draw_bands(panel, scale, svg);
   draw_grid(panel, scale, x_ticks, y_ticks, svg);
+  draw_cells(panel, scale, svg);
   draw_axis(panel, scale, svg);
   draw_strips(panel, scale, svg);
   if (panel.line_at) {

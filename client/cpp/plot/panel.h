@@ -46,6 +46,12 @@ struct Strip {
   std::vector<std::pair<double, double>> ranges;
 };
 
+/// A filled rectangle of a map, in the coordinates of the axes.
+struct MapCell {
+  double left, right, low, high;
+  std::string colour;
+};
+
 /// A chart: axes, grid, shaded ranges of x, lines.
 struct Panel {
   Point corner;  ///< top left corner of the frame
@@ -57,8 +63,8 @@ struct Panel {
   /// Set where the zero of the axis has no meaning, e.g. for degrees Celsius. Otherwise an axis
   /// that omits zero has a break mark.
   bool has_arbitrary_zero = false;
-  /// Both axes: x and y of the series are then common logarithms, and labels show the powers.
-  bool is_logarithmic = false;
+  /// The coordinates of the series are then common logarithms, and labels show the powers.
+  bool is_logarithmic_x = false, is_logarithmic_y = false;
   std::vector<std::pair<double, double>> bands;    ///< shaded
   std::vector<std::pair<double, double>> hatched;  ///< hatched from foot to head
   std::vector<Strip> strips;                       ///< drawn one above another
@@ -66,6 +72,8 @@ struct Panel {
   std::pair<double, double> hatch_note_range;
   bool shows_samples = false;     ///< draws a piece of each line in front of its label
   std::optional<double> line_at;  ///< a thin horizontal reference line
+  /// Drawn below the lines. The axes of a panel with cells end at the outermost of them.
+  std::vector<MapCell> cells;
   std::vector<Series> series;
 };
 

@@ -62,7 +62,7 @@ std::string rig_plot(const std::vector<RigRow>& rows, const RigView& view,
   panel.height = kRigPanelHeight;
   panel.title = view.y_title;
   panel.x_title = view.x_title;
-  panel.is_logarithmic = view.is_logarithmic;
+  panel.is_logarithmic_x = panel.is_logarithmic_y = view.is_logarithmic;
   panel.shows_samples = true;
   std::vector<std::string> looks;  // names in the order of their colours
   for (const RigLine& line : lines_of(rows, view)) {

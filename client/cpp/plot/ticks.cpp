@@ -59,10 +59,15 @@ std::vector<double> logarithmic_ticks(double low, double high) {
 }
 
 std::vector<std::string> logarithmic_tick_labels(const std::vector<double>& ticks) {
+  constexpr int kLeastPowerWithExponent = 6;
   std::vector<std::string> labels;
   for (const double tick : ticks) {
     const int power = static_cast<int>(std::floor(tick + 1e-9));
-    labels.push_back(fixed(std::pow(10, tick), std::max(0, -power)));
+    if (power < kLeastPowerWithExponent) {
+      labels.push_back(fixed(std::pow(10, tick), std::max(0, -power)));
+    } else {
+      labels.push_back(fixed(std::pow(10, tick - power), 0) + "e" + std::to_string(power));
+    }
   }
   return labels;
 }

@@ -134,7 +134,8 @@ const std::vector<std::string>& rig_columns() {
     const auto& descriptor = *v1::EvaluateRigResponse::descriptor();
     for (int i = 0; i < descriptor.field_count(); ++i) {
       const FieldDescriptor& field = *descriptor.field(i);
-      if (field.is_repeated() && field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
+      if (field.is_repeated() && field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE &&
+          field.name() != "load_newtons") {  // of the condition
         out.push_back(field.name());
       }
     }

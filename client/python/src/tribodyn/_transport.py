@@ -22,8 +22,10 @@ from tribodyn.v1 import (
     rigs_pb2,
     schemas_pb2,
     simulations_pb2,
+    spectra_pb2,
     surfaces_pb2,
     vehicles_pb2,
+    viscosities_pb2,
 )
 
 _FILES = (
@@ -35,8 +37,10 @@ _FILES = (
     rigs_pb2,
     schemas_pb2,
     simulations_pb2,
+    spectra_pb2,
     surfaces_pb2,
     vehicles_pb2,
+    viscosities_pb2,
 )
 _SERVICES = {
     name: service for file in _FILES for name, service in file.DESCRIPTOR.services_by_name.items()

@@ -7,7 +7,7 @@ import os
 from types import TracebackType
 from typing import Any, Callable, Mapping, Sequence
 
-from tribodyn import _points, _studies, _uncertainty
+from tribodyn import _maps, _points, _studies, _uncertainty
 from tribodyn._campaigns import AsyncCampaign, start_campaign
 from tribodyn._columns import read_columns
 from tribodyn._csv import rows_of
@@ -33,6 +33,7 @@ from tribodyn.v1.campaigns_pb2 import Campaign, ListCampaignsRequest
 from tribodyn.v1.gear_sets_pb2 import GearSet
 from tribodyn.v1.lubricants_pb2 import Lubricant
 from tribodyn.v1.points_pb2 import ComparePointsRequest, ExplainPointsRequest
+from tribodyn.v1.rigs_pb2 import EvaluateRigRequest, RigBody
 from tribodyn.v1.schemas_pb2 import GetSchemaRequest, Schema
 from tribodyn.v1 import simulations_pb2 as pb
 from tribodyn.v1.surfaces_pb2 import Surface
@@ -329,6 +330,66 @@ class Client:
             "input_warnings": {each.code: each.message for each in schema.input_warnings},
         }
         return frame({each.name: column for each, column in zip(schema.columns, values)}, attrs)
+
+    async def read_spectrum(
+        self, simulation: str, *, columns: Sequence[str] = (), maximum_order: float = 0
+    ) -> Frame:
+        return await _maps.spectrum(self._transport, simulation, columns, maximum_order)
+
+    async def viscosity(
+        self,
+        lubricant: str,
+        *,
+        temperatures_celsius: Sequence[Quantity],
+        pressures_pascals: Sequence[Quantity] = (0,),
+        model_options: Mapping[str, Any] | None = None,
+    ) -> Frame:
+        return await _maps.viscosity(
+            self._transport,
+            lubricant,
+            temperatures_celsius,
+            pressures_pascals,
+            model_options or {},
+        )
+
+    async def rig(
+        self,
+        lubricant: str,
+        *,
+        radius_x_metres: Quantity,
+        radius_y_metres: Quantity = 0,
+        loads_newtons: Quantity | Sequence[Quantity] | None = None,
+        mean_pressures_pascals: Quantity | Sequence[Quantity] | None = None,
+        entrainment_speeds_metres_per_second: Quantity | Sequence[Quantity],
+        slide_roll_ratios_percent: Quantity | Sequence[Quantity] = 0,
+        supply_temperatures_celsius: Quantity | Sequence[Quantity] = 40,
+        surface: str | None = None,
+        composite_rms_height_metres: Quantity = 0,
+        body_1: Mapping[str, float] | None = None,
+        body_2: Mapping[str, float] | None = None,
+        model_options: Mapping[str, Any] | None = None,
+    ) -> Frame:
+        arguments = Arguments()
+        request = EvaluateRigRequest(
+            lubricant=full_name("lubricants", lubricant),
+            surface=full_name("surfaces", surface or ""),
+            radius_x_metres=arguments.number("radius_x_metres", radius_x_metres),
+            radius_y_metres=arguments.number("radius_y_metres", radius_y_metres),
+            composite_rms_height_metres=arguments.number(
+                "composite_rms_height_metres", composite_rms_height_metres
+            ),
+            body_1=None if body_1 is None else RigBody(**body_1),
+            body_2=None if body_2 is None else RigBody(**body_2),
+        )
+        arguments.check()
+        settings = {
+            "loads_newtons": loads_newtons,
+            "mean_pressures_pascals": mean_pressures_pascals,
+            "entrainment_speeds_metres_per_second": entrainment_speeds_metres_per_second,
+            "slide_roll_ratios_percent": slide_roll_ratios_percent,
+            "supply_temperatures_celsius": supply_temperatures_celsius,
+        }
+        return await _maps.rig(self._transport, request, settings, model_options or {})
 
     async def points(self, table: Any, *, options: Options = Options(), **parameters: Any) -> Frame:
         given, rows = _rows(table, parameters, lambda name: name in _points.PARAMETERS)

@@ -562,6 +562,81 @@ class Client:
             )
         )
 
+    def read_spectrum(
+        self, simulation: str, *, columns: Sequence[str] = (), maximum_order: float = 0
+    ) -> Frame:
+        """Returns the spectra of the history of a simulation: amplitudes (zero to peak) and phase
+        angles by order of the mesh frequency, up to ``maximum_order`` (0: 20); ``columns`` empty:
+        all but time and mesh phase. A column is mean + sum of amplitude cos(2 pi order phase + phase
+        angle), phase in mesh cycles. ``attrs`` holds units, means, root mean squares, and whether the
+        response is periodic."""
+        return _LOOP.run(
+            self._client.read_spectrum(simulation, columns=columns, maximum_order=maximum_order)
+        )
+
+    def viscosity(
+        self,
+        lubricant: str,
+        *,
+        temperatures_celsius: Sequence[Quantity],
+        pressures_pascals: Sequence[Quantity] = (0,),
+        model_options: Mapping[str, Any] | None = None,
+    ) -> Frame:
+        """Returns the viscosity of a lubricant at each combination of temperatures (-100 to 400 C)
+        and pressures above ambient (0 to 1e10 Pa), at most 100,000, with density, kinematic viscosity
+        and alpha* at ambient pressure. A temperature at which a law does not hold has NaN, and the
+        reason in ``status``."""
+        return _LOOP.run(
+            self._client.viscosity(
+                lubricant,
+                temperatures_celsius=temperatures_celsius,
+                pressures_pascals=pressures_pascals,
+                model_options=model_options,
+            )
+        )
+
+    def rig(
+        self,
+        lubricant: str,
+        *,
+        radius_x_metres: Quantity,
+        radius_y_metres: Quantity = 0,
+        loads_newtons: Quantity | Sequence[Quantity] | None = None,
+        mean_pressures_pascals: Quantity | Sequence[Quantity] | None = None,
+        entrainment_speeds_metres_per_second: Quantity | Sequence[Quantity],
+        slide_roll_ratios_percent: Quantity | Sequence[Quantity] = 0,
+        supply_temperatures_celsius: Quantity | Sequence[Quantity] = 40,
+        surface: str | None = None,
+        composite_rms_height_metres: Quantity = 0,
+        body_1: Mapping[str, float] | None = None,
+        body_2: Mapping[str, float] | None = None,
+        model_options: Mapping[str, Any] | None = None,
+    ) -> Frame:
+        """Returns traction, film, pressures and temperatures of a ball or barrelled ring on a disc at
+        every combination of its settings, at most 5000: a map if two of them have many values.
+
+        Either loads or mean pressures (of the dry contact by Hertz) are stated. ``radius_y_metres``
+        0: a ball. ``surface`` None: smooth specimens. ``body_1`` (ball or ring) and ``body_2`` (disc)
+        are the fields of RigBody; None: steel of 210 GPa. A refused row has NaN, and the reason in
+        ``status``."""
+        return _LOOP.run(
+            self._client.rig(
+                lubricant,
+                radius_x_metres=radius_x_metres,
+                radius_y_metres=radius_y_metres,
+                loads_newtons=loads_newtons,
+                mean_pressures_pascals=mean_pressures_pascals,
+                entrainment_speeds_metres_per_second=entrainment_speeds_metres_per_second,
+                slide_roll_ratios_percent=slide_roll_ratios_percent,
+                supply_temperatures_celsius=supply_temperatures_celsius,
+                surface=surface,
+                composite_rms_height_metres=composite_rms_height_metres,
+                body_1=body_1,
+                body_2=body_2,
+                model_options=model_options,
+            )
+        )
+
     def points(self, table: Any, *, options: Options = Options(), **parameters: Any) -> Frame:
         """Returns the whole record of many operating points: rows in, rows out, in their order.
 

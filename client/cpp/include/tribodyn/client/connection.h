@@ -20,8 +20,10 @@
 #include "tribodyn/v1/rigs.pb.h"
 #include "tribodyn/v1/schemas.pb.h"
 #include "tribodyn/v1/simulations.pb.h"
+#include "tribodyn/v1/spectra.pb.h"
 #include "tribodyn/v1/surfaces.pb.h"
 #include "tribodyn/v1/vehicles.pb.h"
+#include "tribodyn/v1/viscosities.pb.h"
 
 namespace tribodyn::client {
 
@@ -278,6 +280,10 @@ class Connection {
   v1::EvaluateContactResponse evaluate_contact(const v1::EvaluateContactRequest& request);
 
   v1::EvaluateRigResponse evaluate_rig(const v1::EvaluateRigRequest& request);
+  /// Evaluates the viscosity of a lubricant over temperature and pressure.
+  v1::EvaluateViscosityResponse evaluate_viscosity(const v1::EvaluateViscosityRequest& request);
+  /// Returns order spectra of the history of a simulation.
+  v1::ReadSpectrumResponse read_spectrum(const v1::ReadSpectrumRequest& request);
   /// Evaluates up to 2000 points of candidates and stores nothing.
   v1::EvaluatePointsResponse evaluate_points(const v1::EvaluatePointsRequest& request);
   /// Compares lubricants at conditions with the uncertainty of their inputs.
