@@ -34,6 +34,7 @@ constexpr int kColumns = kFirstParameter + kContactParameters;
 /// Derivatives by the states at the section, T_s, T_w and the contacts' parameters.
 template <int kRows>
 using ByAll = Eigen::Matrix<double, kRows, kColumns>;
+using ByColumns = Eigen::Matrix<double, 1, kColumns>;
 template <int kRows>
 using ByParameters = Eigen::Matrix<double, kRows, kContactParameters>;
 
@@ -88,6 +89,7 @@ class OrbitDifferentiator {
     state_.setZero();
     for (int i = 0; i < kSectionStates; ++i) state_(i + 1, i) = 1;
     for (std::size_t i = 0; i < orbit_.pieces.size(); ++i) {
+      if (i > 0) cross_event(orbit_.pieces[i - 1], orbit_.pieces[i]);
       shares_contacts_ = i > 0 && goes_on(orbit_.pieces[i - 1], orbit_.pieces[i]);
       if (!add_piece(i)) return std::nullopt;
     }
@@ -96,6 +98,8 @@ class OrbitDifferentiator {
 
  private:
   static constexpr double kLightShare = 1e-3;  // of the mean force: see Shooting::light_load()
+  /// Of the light load: what an event's location leaves of the force there.
+  static constexpr double kNoLoad = 1e-3;
 
   /// Whether a piece starts with the contacts that the one before ends with: pairs hand over their
   /// slots from cycle to cycle.
@@ -363,7 +367,12 @@ class OrbitDifferentiator {
     middle.template middleCols<2>(kPinionTorqueColumn) += middle_by_torques;
     middle.template rightCols<kContactParameters>() += middle_by_parameter;
 
-    add_integrals(p, at, contacts, {&state_, &middle, &next});
+    const bool begins = index > 0 && is_event(index - 1);
+    const bool ends = index + 1 < orbit_.pieces.size() && is_event(index);
+    const ByColumns begin_change = begins ? event_change_ : ByColumns::Zero();
+    event_change_.setZero();
+    if (ends) event_change_ = phase_change_of_event(index, at, next);
+    add_integrals(p, at, contacts, {&state_, &middle, &next}, begin_change, begins, ends);
     for (Extreme* extreme : {&minimum_, &maximum_}) {
       if (extreme->piece == index) {
         differentiate_extreme(p, at, {&state_, &middle, &next}, *extreme);
@@ -372,6 +381,52 @@ class OrbitDifferentiator {
     state_ = next;
     last_contacts_ = contacts[2];
     return true;
+  }
+
+  /// Takes the derivatives across the place where flanks part or meet: at a fixed phase the state
+  /// changes by (f- - f+) dphi, dphi the phase change of the place.
+  void cross_event(const OrbitPiece& before, const OrbitPiece& after) {
+    if (before.regime.side == after.regime.side) return;
+    Instantaneous left, right;
+    system_.regime = before.regime;
+    evaluate_part(before, 2, left);
+    system_.regime = after.regime;
+    evaluate_part(after, 0, right);
+    const double speed = std::abs(left.at.transmission_velocity.value);
+    least_touch_speed_ = std::min(least_touch_speed_, speed);
+    greatest_touch_speed_ = std::max(greatest_touch_speed_, speed);
+    Eigen::Matrix<double, kRates, 1> rate_jump;
+    for (int i = 0; i < kRates; ++i) rate_jump(i) = left.rate[i].value - right.rate[i].value;
+    state_.noalias() += rate_jump * event_change_;
+  }
+
+  /// Whether flanks part or meet, or their load begins or ends, between a piece and the next one.
+  bool is_event(std::size_t index) const {
+    const ContactRegime &before = orbit_.pieces[index].regime,
+                        &after = orbit_.pieces[index + 1].regime;
+    return before.side != after.side || before.loaded != after.loaded;
+  }
+
+  /// Slope over phase of the mesh force at the start, middle or end of a piece, by the parabola
+  /// through its values there.
+  static double force_slope(const OrbitPiece& p, const Instantaneous* at, int part) {
+    const auto force = [&](int i) { return at[i].at.mesh_force.value; };
+    const double rise = force(2) - force(0), bend = 2 * (force(0) - 2 * force(1) + force(2));
+    return (rise + (part - 1) * bend) / p.length;
+  }
+
+  /// Of the event at the end of a piece: there the transmission error is that of touching flanks,
+  /// or the mesh force is 0. `end`: the state there at a fixed phase.
+  ByColumns phase_change_of_event(std::size_t index, const Instantaneous* at,
+                                  const ByAll<kRates>& end) const {
+    const OrbitPiece& p = orbit_.pieces[index];
+    const bool touch = p.regime.side != orbit_.pieces[index + 1].regime.side;
+    const PieceNumber& zero = touch ? at[2].at.transmission_error : at[2].at.mesh_force;
+    const double slope = touch ? at[2].at.transmission_velocity.value * at[2].rate[kTime].value
+                               : force_slope(p, at, 2);
+    Eigen::Matrix<double, 1, kSectionStates> by_state;
+    for (int i = 0; i < kSectionStates; ++i) by_state(i) = zero.slope[i];
+    return -(by_state * end.bottomRows<kSectionStates>()) / slope;
   }
 
   double input_speed(const MarchState& y) const {
@@ -387,7 +442,7 @@ class OrbitDifferentiator {
 
   /// Integrands over phase, the sums and the square of eq 30, and their derivatives.
   struct Integrands {
-    Eigen::Matrix<double, kSums + 1, 1> value;
+    Eigen::Matrix<double, kSums + 1, 1> value, by_force;
     Eigen::Matrix<double, kSums + 1, kSectionStates> by_state;
     ByParameters<kSums + 1> by_parameter;
   };
@@ -403,6 +458,8 @@ class OrbitDifferentiator {
     out.by_state.row(kSums) =
         2 * share / speed * (out.by_state.row(kLoss) - share * input_speed_by_state());
     out.by_parameter.row(kSums) = 2 * share / speed * out.by_parameter.row(kLoss);
+    out.by_force << c.sum_by_motion.col(kForce), 2 * share / speed * c.sum_by_motion(kLoss, kForce);
+    out.by_force *= per_phase;
     out.by_state.col(kPinionSpeed - 1) -= out.value / y[kPinionSpeed];
     out.value *= per_phase;
     out.by_state *= per_phase;
@@ -410,16 +467,35 @@ class OrbitDifferentiator {
     return out;
   }
 
+  /// By Simpson's rule. An end of the piece that is an event moves with it, and the middle half as
+  /// far: `begin_change` and event_change_ are the phase changes of start and end. Where the load
+  /// begins or ends, the integrands stay 0; at a fixed phase they would have infinite derivatives,
+  /// because they rise there like a power below 1 of the force. Elsewhere their change with phase
+  /// is that with the force; all else changes little within a piece.
   void add_integrals(const OrbitPiece& p, const Instantaneous* at, const Contacts* contacts,
-                     const std::array<const ByAll<kRates>*, 3>& states) {
+                     const std::array<const ByAll<kRates>*, 3>& states,
+                     const ByColumns& begin_change, bool begins, bool ends) {
+    const double sixth = p.length / 6;
+    const auto presses = [&](int part) {
+      return p.regime.load(at[part].at.mesh_force.value) > kNoLoad * light_load_;
+    };
+    Eigen::Matrix<double, kSums + 1, 1> sum = decltype(sum)::Zero();
     for (int part = 0; part < 3; ++part) {
-      if (!(p.regime.load(at[part].at.mesh_force.value) > 0)) continue;
+      const bool moves = part == 0 ? begins : part == 2 ? ends : begins || ends;
+      if (!presses(part)) continue;
       const Integrands here = integrands(state_of(p, part), at[part], contacts[part]);
-      const double weight = p.length * (part == 1 ? 4 : 1) / 6;  // Simpson's
-      integral_ += weight * here.value;
+      const double weight = sixth * (part == 1 ? 4 : 1);
+      sum += weight * here.value;
       integral_by_all_.noalias() +=
           (weight * here.by_state) * states[part]->template bottomRows<kSectionStates>();
       integral_by_all_.template rightCols<kContactParameters>() += weight * here.by_parameter;
+      if (!moves) continue;
+      const ByColumns change = (1 - 0.5 * part) * begin_change + 0.5 * part * event_change_;
+      integral_by_all_.noalias() += (weight * force_slope(p, at, part) * here.by_force) * change;
+    }
+    integral_ += sum;
+    if (begins || ends) {
+      integral_by_all_.noalias() += sum / p.length * (event_change_ - begin_change);
     }
   }
 
@@ -550,7 +626,9 @@ class OrbitDifferentiator {
     set_figure(OrbitFigure::kTransmissionErrorMaximum, maximum_.value, total(maximum_.by_all));
     Eigen::Map<ByOrbitParameters>(out.unknown_torque.data()) = change.row(kSectionStates);
     constexpr double kLittleForce = 0.01;  // of the mean force
-    out.one_sided = one_sided_ || orbit_.least_pressing_force < kLittleForce;
+    constexpr double kLittleSpeed = 0.01;  // of the greatest one
+    out.one_sided = one_sided_ || least_touch_speed_ < kLittleSpeed * greatest_touch_speed_ ||
+                    (!orbit_.contact_loss && orbit_.least_pressing_force < kLittleForce);
     return out;
   }
 
@@ -567,9 +645,11 @@ class OrbitDifferentiator {
   Contacts last_contacts_;
   bool shares_contacts_ = false;
   bool one_sided_ = false;
+  ByColumns event_change_ = ByColumns::Zero();  ///< of the phase of the event at a piece's end
   Eigen::Matrix<double, kSums + 1, 1> integral_ = decltype(integral_)::Zero();
   ByAll<kSums + 1> integral_by_all_ = ByAll<kSums + 1>::Zero();
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double least_touch_speed_ = kInfinity, greatest_touch_speed_ = 0;  ///< [m/s]
   Extreme minimum_{kInfinity}, maximum_{-kInfinity};
 };
 
@@ -580,7 +660,6 @@ std::optional<OrbitSensitivity> orbit_sensitivity(GearPairSystem& system, const 
                                                   const PeriodicOrbit& orbit,
                                                   double mean_pinion_speed,
                                                   bool solve_wheel_torque) {
-  if (orbit.contact_loss) return std::nullopt;
   return OrbitDifferentiator(system, grid, contacts, orbit, mean_pinion_speed, solve_wheel_torque)
       .run();
 }

@@ -18,14 +18,17 @@
 // coupling of friction and motion is in B, L and r, so nothing is iterated. Chained over the
 // period, the pieces give the Jacobian of the shooting equations X_N = X_0, t_N = the period's
 // time, and its right-hand sides: one solution of 8 equations for all parameters. Extremes are
-// differentiated at fixed phase. Flanks must stay together: orbits that lose contact are not
-// differentiated. (R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed., 2010,
-// section 7.4.)
+// differentiated at fixed phase. Where flanks part or meet the rates f jump, and the states at a
+// fixed phase change by (f- - f+) dphi, dphi the phase change of the event (saltation); ends of
+// pieces that are events move with them in the integrals. (R. Seydel, Practical Bifurcation and
+// Stability Analysis, 3rd ed., 2010, section 7.4; R. I. Leine and H. Nijmeijer, Dynamics and
+// Bifurcations of Non-Smooth Mechanical Systems, 2004, section 7.4.)
 //
 // Measured against central differences on the same grid, extrapolated from relative steps of 1e-4
 // and 5e-5: at 200 random smooth points all elasticities agree within 4.4e-6. (Steps of 4e-4 pass
-// kinks of the response at six of them, and the differences then err by up to 4e-5.) All
-// derivatives together take 16 to 28 times the point.
+// kinks of the response at six of them, and the differences then err by up to 4e-5.) At 100 random
+// points with impacts, on 96 steps a cycle, they agree within 7.1e-4, all but those by the mean
+// speed within 2.7e-5. All derivatives together take 16 to 28 times the point.
 
 namespace tribodyn {
 
@@ -56,15 +59,16 @@ struct OrbitSensitivity {
   /// By OrbitFigure and parameter: the figure's unit over the parameter's.
   std::array<std::array<double, kOrbitParameters>, kOrbitFigures> derivative{};
   std::array<double, kOrbitParameters> unknown_torque{};  ///< of T_s, or of T_w [N m over ...]
-  /// Derivatives are those of one side: of some contact (ContactSensitivity::one_sided), or of
-  /// flanks that press with less than 1 % of the mean force.
+  /// Derivatives are those of one side: of some contact (ContactSensitivity::one_sided), of flanks
+  /// that never part and press with less than 1 % of the mean force at some instant, or of flanks
+  /// that part or meet at less than 1 % of the greatest speed at which they do.
   bool one_sided = false;
 };
 
 /// `grid`: what the orbit's pieces are of. The orbit must have been solved for, with its friction
-/// and figures. Returns nullopt if flanks part, if a contact has no derivatives (no sliding, no
-/// entrainment) or if the shooting equations are singular to rounding (a fold). Changes the
-/// system's regime and torques.
+/// and figures. Returns nullopt if a contact has no derivatives (no sliding, no entrainment) or if
+/// the shooting equations are singular to rounding (a fold). Changes the system's regime and
+/// torques.
 std::optional<OrbitSensitivity> orbit_sensitivity(GearPairSystem& system, const MeshGrid& grid,
                                                   const ContactSensitivityModel& contacts,
                                                   const PeriodicOrbit& orbit,

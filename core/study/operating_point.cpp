@@ -242,9 +242,6 @@ PointResult solve_quasi_static_point(GearPairSystem& system, const FlankContactB
 
 /// Returns the reason why a point has no sensitivities although its options include them.
 std::string why_no_sensitivities(const Scene& scene, const PointResult& result) {
-  if (result.contact_loss) {
-    return "the flanks part: figures of responses with impacts are not differentiated";
-  }
   if (scene.options.load_dependent_mesh_data) {
     return "figures are not differentiated with mesh data that depend on the torque";
   }

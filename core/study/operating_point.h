@@ -82,8 +82,8 @@ struct PointOptions {
   int recorded_mesh_cycles = 50;   ///< averaged when no period is found (the paper's 50)
   HistoryRequest history;          ///< empty: none computed
   /// Also differentiates the figures by all scalar parameters (PointResult::sensitivities). The
-  /// full model answers then; a point that is not found by shooting or loses contact has none and
-  /// says so (NO_SENSITIVITIES).
+  /// full model answers then; a point that is not found by shooting has none and says so
+  /// (NO_SENSITIVITIES).
   bool sensitivities = false;
   /// screen_point() and solve_point_figures(): also PointFigures::contact, for some 12 us
   /// (measured). A PointResult has it all.

@@ -215,8 +215,7 @@ TEST(EvaluatePoints, EveryParameterOfACandidateHasElasticities) {
   }
 }
 
-// There is no derivative across impacts: the point has its figures all the same.
-TEST(EvaluatePoints, ElasticitiesOfPointsThatLoseContactAreNaN) {
+TEST(EvaluatePoints, PointsThatLoseContactHaveElasticities) {
   v1::EvaluatePointsRequest request = request_of_candidates();
   request.clear_candidate_columns();
   request.clear_conditions();
@@ -228,7 +227,7 @@ TEST(EvaluatePoints, ElasticitiesOfPointsThatLoseContactAreNaN) {
   int lost = 0;
   for (int k = 0; k < 4; ++k) {
     lost += out.contact_loss(k) ? 1 : 0;
-    EXPECT_EQ(std::isnan(out.elasticities(0).values(k)), out.contact_loss(k)) << k;
+    EXPECT_TRUE(std::isfinite(out.elasticities(0).values(k))) << k;
     EXPECT_GT(out.mesh_loss_power_watts(k), 0);
   }
   EXPECT_GT(lost, 0);

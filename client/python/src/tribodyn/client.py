@@ -388,7 +388,7 @@ class Client:
         "elasticity.FIGURE", relative change over relative change. ``attrs``, besides those of
         point(), holds ``figures``, the values of the figures by their names, e.g. "film_ratio.mean",
         and ``one_sided``: the response is at the edge of an event, so that the derivatives hold on
-        one side. Costs 16 to 28 times the point. The table is empty where flanks part.
+        one side. Costs 16 to 28 times the point. The table is empty at a fold.
         """
         return _LOOP.run(
             self._client.sensitivities(
@@ -679,7 +679,7 @@ class Client:
         fifths of the time. ``elasticities`` names parameters, e.g.
         "lubricant.relaxation_time_seconds", and adds a column "elasticity.FIGURE.PARAMETER" for each
         of ``elasticity_figures`` (none: inefficiency_energy_mean_percent): the relative change of the
-        figure over that of the parameter, exact to rounding; NaN where flanks part. That takes some
+        figure over that of the parameter, exact to rounding; NaN at a fold. That takes some
         0.9 ms a point.
         """
         return _LOOP.run(
