@@ -160,6 +160,10 @@ export function differenceSpec(lubricants: ComparedLubricant[], titles: string[]
 
 const LABELS = new Map(PARAMETERS.map((each) => [`lubricant.${each.path}`, each.label]));
 const INPUTS: Record<string, string> = {
+  'lubricant.pressure_viscosity_coefficient': 'Pressure-viscosity coefficient α*', 'lubricant.pressure_viscosity_temperature': 'Temperature of α*',
+  'solid.youngs_modulus': "Young's modulus of the flanks", 'solid.poissons_ratio': "Poisson's ratio of the flanks",
+  'solid.thermal_conductivity': 'Thermal conductivity of the flanks', 'solid.density': 'Density of the flanks',
+  'solid.specific_heat_capacity': 'Heat capacity of the flanks', 'roughness.composite_rms_height': 'Roughness σ', sump_temperature: 'Sump temperature',
   sump_temperature_celsius: 'Sump temperature', inlet_temperature_rise_kelvin: 'Rise from the sump to the inlet',
 };
 const UNITS = /_(pascals?|seconds?|kelvin|celsius|metres?|kilograms?|watts|per|cubic|square|squared|pascal)\b.*$/;

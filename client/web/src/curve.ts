@@ -1,7 +1,7 @@
 import { get, url } from './api/client';
 import type { BranchEnd, RangeWarning, Simulation } from './api/types';
-import { idOf, revisionIdOf } from './format';
-import { shown, sumpText } from './units';
+import { idOf, revisionIdOf, rounded } from './format';
+import { isInRpm, plain, RPM, scaled, shown, sumpText, type Unit } from './units';
 import { CURVE_COLUMNS, QUANTITIES, type Quantity } from './quantities';
 import type { Line, Spec } from './charts/spec';
 import { remarkOf, warningOf, type Remark } from './validity';
@@ -66,11 +66,40 @@ export function variantOf(simulation: Simulation, all: Simulation[]): string {
   return [sump, gears, model, sweep].filter(differs).map((key) => key(simulation)).join(', ');
 }
 
+/** The unit of the axis of speeds of a curve: those of its pinion are proportional to those of the vehicle. */
+export function speedUnitOf(curve: Curve | undefined): Unit {
+  if (!curve || !isInRpm()) return plain('km/h');
+  const pinion = curve.columns['mean_pinion_speed_radians_per_second']!;
+  const row = pinion.findIndex((value) => value !== null);
+  return row < 0 ? plain('km/h') : scaled(RPM.symbol, (RPM.factor * pinion[row]!) / curve.columns['speed_kilometres_per_hour']![row]!);
+}
+
+/** The speeds of a curve as its axis shows them. */
+export const axisOf = (curve: Curve): number[] => {
+  const unit = speedUnitOf(curve);
+  return (curve.columns['speed_kilometres_per_hour'] as number[]).map((speed) => shown(speed, unit));
+};
+
+/** The speed [km/h] of a curve that is nearest to a place on the axis. */
+export function speedNear(curves: Curve[], place: number): number | null {
+  let best: number | null = null;
+  let least = Infinity;
+  for (const curve of curves) {
+    axisOf(curve).forEach((x, row) => {
+      if (Math.abs(x - place) < least) [best, least] = [curve.columns['speed_kilometres_per_hour']![row]!, Math.abs(x - place)];
+    });
+  }
+  return best;
+}
+
+export const axisLabelOf = (curve: Curve | undefined): string =>
+  (speedUnitOf(curve).symbol === RPM.symbol ? 'Mean speed of the pinion, rpm' : 'Vehicle speed, km/h');
+
 /** Speeds with a property, as bands that reach half-way to the neighbours. */
 export function bandsOf(curves: Curve[], has: (curve: Curve, row: number) => boolean): [number, number][] {
   const bands: [number, number][] = [];
   for (const curve of curves) {
-    const speeds = curve.columns['speed_kilometres_per_hour'] as number[];
+    const speeds = axisOf(curve);
     speeds.forEach((speed, row) => {
       if (!has(curve, row)) return;
       const before = row > 0 ? (speed + speeds[row - 1]!) / 2 : speed;
@@ -89,13 +118,13 @@ export function bandsOf(curves: Curve[], has: (curve: Curve, row: number) => boo
 }
 
 function lineOf(curve: Curve, quantity: Quantity, column: string, label: string, series: number, variant: number): Line {
-  const speeds = curve.columns['speed_kilometres_per_hour'] as number[];
+  const speeds = axisOf(curve);
   const line: Line = { label, series, variant, x: [], y: [], hollow: [], error: [] };
   const isDown = curve.simulation.result?.direction === 'SWEEP_DIRECTION_DOWN';
   speeds.forEach((speed, row) => {
     const end = curve.branchEnds[row];
     const gap = () => {
-      line.x.push(end!.followed_to_kilometres_per_hour!);
+      line.x.push(shown(end!.followed_to_kilometres_per_hour!, speedUnitOf(curve)));
       line.y.push(null);
       line.hollow.push(false);
       line.error!.push(null);
@@ -147,7 +176,7 @@ export function splitSpecOf(curve: Curve, label: string, series: number, greates
   boundary.opacity = 0.55;
   total.opacity = 0.2;
   return {
-    title: label, xLabel: 'Vehicle speed, km/h', yLabel: unit.symbol, lines: [total, boundary], parted, caution: [], outside,
+    title: label, xLabel: axisLabelOf(curve), yLabel: unit.symbol, lines: [total, boundary], parted, caution: [], outside,
     levels: [], fromZero: true, yRange: [0, 1.07 * shown(greatest, unit)], hasErrors: false,
   };
 }
@@ -174,7 +203,7 @@ export function specOf(curves: Curve[], quantity: Quantity, titles: Map<string, 
     curve.warnings[row]!.some((warning) => warningOf(warning.code ?? '').level === level);
   return {
     title: quantity.title,
-    xLabel: 'Vehicle speed, km/h',
+    xLabel: axisLabelOf(curves[0]),
     yLabel: quantity.unit.symbol,
     lines,
     parted: bandsOf(curves, (curve, row) => curve.columns['contact_loss']![row] === 1),
@@ -196,6 +225,8 @@ function speedsText(curves: Curve[], has: (curve: Curve, row: number) => boolean
     });
   }
   if (affected.size === all.size) return 'all speeds';
+  const unit = speedUnitOf(curves[0]);
+  const text = (speed: number | undefined) => (unit.factor === 1 ? `${speed}` : rounded(shown(speed!, unit), 1));
   const runs: number[][] = [];
   let isOpen = false;
   for (const speed of [...all].sort((a, b) => a - b)) {
@@ -205,7 +236,7 @@ function speedsText(curves: Curve[], has: (curve: Curve, row: number) => boolean
     }
     isOpen = affected.has(speed);
   }
-  return `${runs.map((run) => (run.length === 1 ? `${run[0]}` : `${run[0]} to ${run.at(-1)}`)).join(', ')} km/h`;
+  return `${runs.map((run) => (run.length === 1 ? text(run[0]) : `${text(run[0])} to ${text(run.at(-1))}`)).join(', ')} ${unit.symbol}`;
 }
 
 /** Warnings of all points and inputs, each once, with the speeds that it holds for. */

@@ -35,6 +35,6 @@ export const quantityOf = (id: string | null): Quantity =>
 
 /** Columns that every plot of a curve needs. */
 export const CURVE_COLUMNS = [
-  'speed_kilometres_per_hour', 'contact_loss', 'estimated_relative_error',
+  'speed_kilometres_per_hour', 'contact_loss', 'estimated_relative_error', 'mean_pinion_speed_radians_per_second', 'pinion_torque_newton_metres',
   ...QUANTITIES.flatMap((each) => each.columns),
 ];

@@ -4,7 +4,7 @@ import { change, url } from './api/client';
 import type { Line, Spec } from './charts/spec';
 import { differenceSpec } from './comparison';
 import { finite } from './components/num';
-import { shortTitle, variantOf, type Curve } from './curve';
+import { axisLabelOf, axisOf, shortTitle, variantOf, type Curve } from './curve';
 import { idOf, revisionIdOf } from './format';
 import { shown, type Unit } from './units';
 import { inputsOf } from './request';
@@ -13,6 +13,8 @@ import { useLoaded, type Loaded } from './resources';
 // Limits of ComparePoints.
 const MOST_LUBRICANTS = 8;
 const MOST_POINTS = 10_000;
+/** Curves on a plot whose uncertainty is asked for: more of them have thin lines, which bands would hide. */
+const MOST_CURVES = 12;
 const LEAST_DRAWS = 19;
 const USUAL_DRAWS = 199;
 
@@ -61,7 +63,7 @@ export function groupsOf(curves: Curve[], reference: string, withContact: boolea
 
 /** Requests the uncertainties of curves, group by group. */
 export function useUncertainty(curves: Curve[], reference: string, withContact: boolean, isOn: boolean): Loaded<ComparedGroup[]> {
-  const groups = useMemo(() => (isOn ? groupsOf(curves, reference, withContact) : []), [curves, reference, withContact, isOn]);
+  const groups = useMemo(() => (isOn && curves.length <= MOST_CURVES ? groupsOf(curves, reference, withContact) : []), [curves, reference, withContact, isOn]);
   return useLoaded((signal) => Promise.all(groups.map(async (group) =>
     ({ ...group, answer: await change<ComparePointsResponse>('POST', url('points:compare'), group.body, signal) }))),
   JSON.stringify(groups.map((each) => each.body)));
@@ -92,7 +94,7 @@ export function figureOf(groups: ComparedGroup[] | undefined, simulation: Simula
 
 /** Adds the intervals of the service to the line of a column. */
 export function withIntervals(line: Line, curve: Curve, column: string, unit: Unit, groups: ComparedGroup[] | undefined): Line {
-  const rows = new Map((curve.columns['speed_kilometres_per_hour'] as number[]).map((speed, row) => [speed, row]));
+  const rows = new Map(axisOf(curve).map((speed, row) => [speed, row]));
   let hasOne = false;
   const edge = (read: (figure: UncertainFigure) => number | undefined) => line.x.map((speed, i) => {
     const row = rows.get(speed);
@@ -115,7 +117,7 @@ export function differencesOf(groups: ComparedGroup[] | undefined, fluids: strin
     const revisions = group.curves.map((each) => each.simulation.lubricant_revision!);
     const names = revisions.map((each) => shortTitle(titles.get(idOf(each)) ?? revisionIdOf(each)));
     const variant = variantOf(simulations[k]!, simulations);
-    const spec = differenceSpec(group.answer.lubricants ?? [], names, group.curves[0]!.columns['speed_kilometres_per_hour'] as number[],
+    const spec = differenceSpec(group.answer.lubricants ?? [], names, axisOf(group.curves[0]!),
       revisions.map((each) => fluids.indexOf(each)));
     spec.lines.forEach((line) => {
       line.variant = k;
@@ -125,7 +127,7 @@ export function differencesOf(groups: ComparedGroup[] | undefined, fluids: strin
     });
     return spec;
   });
-  return { ...specs[0]!, lines: specs.flatMap((each) => each.lines) };
+  return { ...specs[0]!, xLabel: axisLabelOf(wide[0]!.curves[0]), lines: specs.flatMap((each) => each.lines) };
 }
 
 /** Adds the intervals of the service to all lines of a quantity. */

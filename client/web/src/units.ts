@@ -17,6 +17,7 @@ export const UNIT_CHOICES = {
   power: { label: 'Loss', units: [plain('W'), scaled('kW', 1e-3)] },
   pressure: { label: 'Pressure', units: [scaled('GPa', 1e-9), scaled('MPa', 1e-6)] },
   pressureCoefficient: { label: 'Pressure-viscosity coefficient', units: [scaled('1/GPa', 1e9), scaled('mm²/N', 1e6)] },
+  speed: { label: 'Speed of curves', units: [plain('km/h'), scaled('rpm', 30 / Math.PI)] },
 } satisfies Record<string, { label: string; units: Unit[] }>;
 export type UnitKind = keyof typeof UNIT_CHOICES;
 
@@ -57,6 +58,10 @@ export const celsius: Unit = {
   factor: 1,
   get offset() { return inUse('temperature').symbol === 'K' ? 273.15 : 0; },
 };
+
+/** Whether speeds are those of the pinion, in rpm. */
+export const isInRpm = (): boolean => inUse('speed').symbol === 'rpm';
+export const RPM: Unit = UNIT_CHOICES.speed.units[1]!; // of values in rad/s
 
 export const shown = (value: number, unit: Unit): number => value * unit.factor + unit.offset;
 

@@ -84,6 +84,38 @@ test('a click on a speed explains the difference there, and its commands and tab
   assert.deepEqual(page.complaints, []);
 });
 
+test('a stranger enters an oil, compares, explains, finds the worst speed and hands over a link, by what the pages say', async () => {
+  await page.goto(server.address);
+  await page.getByRole('link', { name: 'Enter an oil' }).click();
+  await page.getByLabel('Name').fill('Trial oil 75W-90');
+  await page.getByLabel('Viscosity at 40 °C').fill('110');
+  await page.getByLabel('Viscosity at 100 °C').fill('15.6');
+  await page.getByLabel('Density at 15 °C').fill('870');
+  await page.getByRole('button', { name: 'Save' }).click();
+  await page.waitForURL(/\/fluids\/trial-oil-75w-90$/);
+  await page.locator('main').getByRole('link', { name: 'Compare' }).click();
+  await page.getByRole('heading', { name: /Trial oil 75W-90.*Lubricant 1|Lubricant 1.*Trial oil 75W-90/ }).waitFor();
+  await page.getByRole('table', { name: 'What each property group adds' }).waitFor();
+  await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+  await page.getByText('Take away').click();
+  await page.getByRole('button', { name: 'Copy a link to this page' }).click();
+  const link = await page.evaluate(() => navigator.clipboard.readText());
+  assert.match(link, /a=paper-fluid-1@1&b=trial-oil-75w-90@1/);
+  const headline = await page.getByRole('heading', { level: 1 }).textContent();
+  await server.call('PATCH', '/v1/lubricants/trial-oil-75w-90?update_mask=pressure_viscosity_coefficient_per_pascal', { pressure_viscosity_coefficient_per_pascal: 3e-8 });
+  await page.goto(link);
+  await page.getByRole('table', { name: 'What each property group adds' }).waitFor();
+  assert.equal(await page.getByRole('heading', { level: 1 }).textContent(), headline, 'the link shows the same after an edit');
+  await page.goto(`${server.address}/fluids/trial-oil-75w-90`);
+  await page.getByRole('link', { name: 'Run a curve' }).click();
+  await page.getByRole('button', { name: 'Run the curve' }).click();
+  await page.locator('.read-out').waitFor();
+  await page.getByRole('button', { name: 'To the greatest inefficiency' }).click();
+  const { columns } = await server.call('GET', `/v1/simulations/${new URL(page.url()).searchParams.get('r')}?alt=columns&columns=speed_kilometres_per_hour,inefficiency_energy_mean_percent`);
+  const worst = columns.inefficiency_energy_mean_percent.indexOf(Math.max(...columns.inefficiency_energy_mean_percent.filter((each) => each !== null)));
+  await page.getByRole('heading', { name: `At ${columns.speed_kilometres_per_hour[worst]} km/h` }).waitFor();
+});
+
 test('a refused comparison names the field', async () => {
   await page.goto(`${server.address}/compare?a=my-oil&b=their-oil&sump=400`);
   await page.locator('.panel .problem', { hasText: 'allowed: -70 to 200' }).waitFor();

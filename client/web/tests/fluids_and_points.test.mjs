@@ -1,7 +1,7 @@
 // Fluids, jobs and points: what is entered, what is refused, what is followed.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { launch, newPage, Server, signIn } from './harness.mjs';
+import { foreignNumbers, launch, newPage, Server, signIn } from './harness.mjs';
 
 let browser;
 let server;
@@ -21,9 +21,10 @@ after(async () => {
 test('an oil is entered from its data sheet by the keyboard alone', async () => {
   await page.goto(`${server.address}/fluids`);
   await page.getByRole('link', { name: 'Enter an oil' }).press('Enter');
-  await page.getByLabel('Id').focus();
+  await page.getByLabel('Name').focus();
   const { keyboard } = page;
-  for (const word of ['my-oil', 'My oil', '', '103', '15.1', '868']) {
+  // The id follows from the name.
+  for (const word of ['My oil', '', '', '103', '15.1', '868']) {
     if (word !== '') await keyboard.type(word);
     await keyboard.press('Tab');
   }
@@ -131,6 +132,34 @@ test('a speed of a curve opens its histories, and a zoom fetches their rows', as
   await page.locator('.histories[data-rows-per-pair="0"]').waitFor();
   await page.getByRole('button', { name: 'Show both cycles' }).click();
   await page.waitForFunction(() => Number(document.querySelector('.histories')?.dataset.rowsPerPair) > 0);
+});
+
+test('a point has its phase portrait and what moves it', async () => {
+  const curve = await server.call('POST', '/v1/simulations', {
+    lubricant: 'lubricants/paper-fluid-1',
+    inefficiency_curve: { first_speed_kilometres_per_hour: 50, last_speed_kilometres_per_hour: 60, speed_step_kilometres_per_hour: 5 },
+  });
+  await page.goto(`${server.address}/curves?r=${curve.name.split('/')[1]}`);
+  await page.getByRole('button', { name: 'Open the point' }).click();
+  await page.getByText('Phase portrait').waitFor();
+  const bars = page.getByRole('table', { name: 'Sensitivities of Mesh inefficiency', exact: true });
+  await bars.waitFor();
+  assert.deepEqual(await foreignNumbers(page), []);
+  const name = `simulations/${page.url().split('/').pop().split('?')[0]}`;
+  const { result } = await server.call('GET', `/v1/${name}?read_mask=result.points.result.sensitivities`);
+  const given = result.points[0].result.sensitivities;
+  const figure = given.figures.indexOf('inefficiency_energy_mean_percent');
+  const largest = Math.max(...given.parameters.map((each) => Math.abs(each.elasticities[figure])));
+  assert.equal(Math.abs(Number(await bars.locator('[data-value]').first().getAttribute('data-value'))), largest);
+  await page.getByLabel('Figure whose sensitivities').selectOption({ label: 'Film ratio, mean' });
+  await page.getByRole('table', { name: 'Sensitivities of Film ratio, mean' }).waitFor();
+});
+
+test('a point that kept little is computed again with everything that its page shows', async () => {
+  const { name } = await server.call('POST', '/v1/simulations', { lubricant: 'lubricants/paper-fluid-1', operating_point: { cruise: { speed_kilometres_per_hour: 55 } } });
+  await page.goto(`${server.address}/point/${name.split('/')[1]}`);
+  await page.getByRole('button', { name: 'Compute the point with histories and sensitivities' }).click();
+  await page.getByText('Phase portrait').waitFor();
 });
 
 test('what another project has is not found, in the words of what does not exist', async () => {

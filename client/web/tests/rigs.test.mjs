@@ -59,6 +59,27 @@ test('a figure of the paper opens as its curves, or as its rig', async () => {
   assert.deepEqual(page.complaints, []);
 });
 
+test('speeds of curves are those of the pinion if the reader wants so, and addresses stay the same', async () => {
+  const curve = await server.call('POST', '/v1/simulations', {
+    lubricant: 'lubricants/paper-fluid-1',
+    inefficiency_curve: { first_speed_kilometres_per_hour: 60, last_speed_kilometres_per_hour: 90, speed_step_kilometres_per_hour: 5 },
+  });
+  await page.goto(`${server.address}/curves?r=${curve.name.split('/')[1]}&x=65-85`);
+  await page.getByRole('heading', { name: 'At 75 km/h' }).waitFor();
+  await page.getByText('Units', { exact: true }).click();
+  await page.getByLabel('Unit: Speed of curves').selectOption('rpm');
+  const { columns } = await server.call('GET', `/v1/${curve.name}?alt=columns&columns=mean_pinion_speed_radians_per_second`);
+  const speed = (30 / Math.PI) * columns.mean_pinion_speed_radians_per_second[3];
+  await page.getByRole('heading', { name: `At ${speed.toFixed(0)} rpm` }).waitFor();
+  await page.getByText('Mean speed of the pinion, rpm').first().waitFor();
+  const plot = await page.locator('.figure .u-over').first().boundingBox();
+  await page.mouse.click(plot.x + plot.width / 2, plot.y + 60);
+  await page.waitForURL(/x=65-85&v=75/);
+  assert.deepEqual(await foreignNumbers(page), []);
+  await page.getByLabel('Unit: Speed of curves').selectOption('km/h');
+  await page.getByRole('heading', { name: 'At 75 km/h' }).waitFor();
+});
+
 test('units are chosen in one place for every view, and a form reads what it shows', async () => {
   const curve = await server.call('POST', '/v1/simulations', {
     lubricant: 'lubricants/paper-fluid-1', sump_temperature_celsius: 90,

@@ -24,16 +24,17 @@ before(async () => {
       inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 140, speed_step_kilometres_per_hour: 5 },
     });
   }
-  await create({
+  const point = (speed) => ({
     lubricant: 'lubricants/paper-fluid-1',
     operating_point: {
-      cruise: { speed_kilometres_per_hour: 75 },
+      cruise: { speed_kilometres_per_hour: speed }, sensitivities: true,
       history: {
-        columns: ['mesh_phase_cycles', 'dynamic_transmission_error_metres', 'mesh_force_newtons', 'pinion_friction_torque_newton_metres', 'flank_load_newtons', 'flank_film_ratio', 'flank_contact_temperature_kelvin'],
+        columns: ['mesh_phase_cycles', 'dynamic_transmission_error_metres', 'dynamic_transmission_error_velocity_metres_per_second', 'mesh_force_newtons', 'pinion_friction_torque_newton_metres', 'flank_load_newtons', 'flank_film_ratio', 'flank_contact_temperature_kelvin'],
         mesh_cycles: 2, samples_per_mesh_cycle: 960,
       },
     },
   });
+  await create(point(75));
   await create({
     lubricant: 'lubricants/paper-fluid-2', sump_temperature_celsius: 90, deadline_seconds: 0.01,
     solver_options: { method: 'STEADY_STATE_METHOD_MARCH' },
@@ -43,6 +44,7 @@ before(async () => {
     lubricant: 'lubricants/my-oil',
     inefficiency_curve: { first_speed_kilometres_per_hour: 20, last_speed_kilometres_per_hour: 140, speed_step_kilometres_per_hour: 5 },
   });
+  await create(point(60));
   await server.call('POST', '/v1/campaigns', campaignOf(60, { contact_figures: true }));
   for (let i = 0; i < 100; ++i) {
     const { simulations } = await server.call('GET', '/v1/simulations?read_mask=state');
@@ -72,7 +74,8 @@ const VIEWS = [
   ['jobs', '/jobs', 'tbody tr'],
   ['job', '/jobs/5', '.facts'],
   ['job-assumptions', '/jobs/1', '.assumptions'],
-  ['point', '/point/4', '.histories canvas'],
+  ['point', '/point/4', '.pair canvas'],
+  ['point-smooth', '/point/7', '.bars'],
   ['campaigns', '/campaigns', 'tbody tr'],
   ['campaign', '/campaigns/1?order=mesh_loss_power_watts&c=7', '.rows tbody tr'],
   ['campaign-plot', '/campaigns/1?view=plot&x=cost_euros_per_kilogram&color=additive', '.scatter canvas'],

@@ -2,9 +2,21 @@ import { useEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
 import { useColors } from './theme';
+import { tickText } from './ticks';
 import { areasOf, colorOf, corners, DASHES, endsBranch, hasMarker, lastOf, MARKERS, opacityOf, rangeOf, spread, type Colors, type Line, type Spec } from './spec';
 
 const FONT = 'system-ui, sans-serif';
+const MOST_PLAIN = 10_000; // greater numbers are written as powers
+const SUPERSCRIPTS = '⁰¹²³⁴⁵⁶⁷⁸⁹';
+
+/** The text at a tick of a logarithmic axis; null has none. */
+function logarithmicText(value: number | null): string {
+  if (value === null || value <= MOST_PLAIN) return value === null ? '' : tickText(value);
+  const exponent = Math.floor(Math.log10(value) + 1e-9);
+  const factor = Math.round(value / 10 ** exponent);
+  return `${factor === 1 ? '' : `${factor}·`}10${[...String(exponent)].map((each) => SUPERSCRIPTS[Number(each)]).join('')}`;
+}
+
 const WHISKER_PIXELS = 1.5; // a smaller error is thinner than the line
 
 function hatch(context: CanvasRenderingContext2D, color: string, ratio: number): CanvasPattern | string {
@@ -141,12 +153,14 @@ function drawMarkers(u: uPlot, spec: Spec, colors: Colors, isSmall: boolean): vo
   ctx.restore();
 }
 
+const MOST_LABELS = 12; // more lines have names only where they have a color
+
 function drawLabels(u: uPlot, spec: Spec, colors: Colors): void {
   const { ctx, bbox } = u;
   const ratio = devicePixelRatio;
   const right = u.scales['x']!.max!;
   const ends = spec.lines.flatMap((line) => {
-    const end = line.label === '' ? null : lastOf(line);
+    const end = line.label === '' || (spec.lines.length > MOST_LABELS && !hasMarker(line.series)) ? null : lastOf(line);
     return end !== null && end.x <= right ? [{ line, y: u.valToPos(end.y, 'y', true) }] : [];
   });
   const places = spread(ends.map((each) => each.y), 17 * ratio, bbox.top + 6 * ratio, bbox.top + bbox.height - 6 * ratio);
@@ -189,6 +203,47 @@ function aligned(spec: Spec): uPlot.AlignedData {
   return [speeds, ...columns] as uPlot.AlignedData;
 }
 
+const WHEEL_ZOOM = 1.002; // change of the span by one unit of a wheel
+const SETTLING_MILLISECONDS = 250; // after the last turn of a wheel
+
+/** Moves a plot while it is dragged with Shift, zooms it with Ctrl and the wheel; `onEnd` gets the new range. */
+function addMoves(u: uPlot, onEnd: (range: [number, number]) => void): void {
+  const all: [number, number] = [u.data[0][0] ?? 0, u.data[0].at(-1) ?? 1];
+  const show = (from: number, to: number) => {
+    const span = Math.min(to - from, all[1] - all[0]);
+    const min = Math.min(Math.max(from, all[0]), all[1] - span);
+    u.setScale('x', { min, max: min + span });
+  };
+  const present = (): [number, number] => [u.scales['x']!.min!, u.scales['x']!.max!];
+  let start: { x: number; min: number; max: number } | null = null;
+  u.over.addEventListener('pointerdown', (event) => {
+    if (!event.shiftKey || event.button !== 0) return;
+    u.over.setPointerCapture(event.pointerId);
+    const [min, max] = present();
+    start = { x: event.clientX, min, max };
+  });
+  u.over.addEventListener('pointermove', (event) => {
+    if (!start) return;
+    const distance = ((event.clientX - start.x) / u.over.clientWidth) * (start.max - start.min);
+    show(start.min - distance, start.max - distance);
+  });
+  u.over.addEventListener('pointerup', () => {
+    if (start) onEnd(present());
+    start = null;
+  });
+  let timer: number | undefined;
+  u.over.addEventListener('wheel', (event) => {
+    if (!event.ctrlKey) return;
+    event.preventDefault();
+    const [min, max] = present();
+    const at = u.posToVal(event.offsetX, 'x');
+    const factor = WHEEL_ZOOM ** event.deltaY;
+    show(at - (at - min) * factor, at + (max - at) * factor);
+    clearTimeout(timer);
+    timer = window.setTimeout(() => onEnd(present()), SETTLING_MILLISECONDS);
+  }, { passive: false });
+}
+
 export interface CurveChartProps {
   spec: Spec;
   height: number;
@@ -200,7 +255,7 @@ export interface CurveChartProps {
   onZoom?: (range: [number, number] | null) => void;
 }
 
-/** A plot of curves over speed: drag zooms, a double click goes back, the cursor snaps to speeds. */
+/** A plot of curves over speed: a drag zooms, with Shift it moves; a double click goes back; the cursor snaps to speeds. */
 export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPick, onZoom }: CurveChartProps) {
   const box = useRef<HTMLDivElement>(null);
   const colors = useColors();
@@ -229,6 +284,11 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
           y: false,
           // The snapped cursor makes each click look like a drag to uPlot, which would swallow the click.
           drag: { x: true, y: false, setScale: onZoom === undefined, click: () => {} },
+          // With Shift a drag moves the plot: see addMoves().
+          bind: {
+            mousedown: (_u, _target, handler) => (event) => { if (!event.shiftKey) handler(event); return null; },
+            mousemove: (_u, _target, handler) => (event) => { if (!event.shiftKey || event.buttons === 0) handler(event); return null; },
+          },
           points: { show: false },
           move: (u, left, top) => {
             const x = u.data[0][u.posToIdx(left)];
@@ -236,12 +296,12 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
           },
         },
         scales: {
-          x: { time: false, ...(spec.xIsLogarithmic ? { distr: 3 as const } : {}), ...(spec.xRange ? { range: spec.xRange } : {}) },
+          x: { time: false, ...(spec.xIsLogarithmic ? { distr: 3 as const } : {}) },
           y: { ...(spec.yIsLogarithmic ? { distr: 3 as const } : {}), range: (u) => rangeOf(spec, u.scales['x']!.min ?? -Infinity, u.scales['x']!.max ?? Infinity) },
         },
         axes: [
           { ...axis, size: isSmall ? 24 : 30, space: isSmall ? 45 : 60 },
-          { ...axis, size: isSmall ? 44 : 52, space: isSmall ? 26 : 36 },
+          { ...axis, size: isSmall ? 44 : 52, space: isSmall ? 26 : 36, ...(spec.yIsLogarithmic ? { values: (_u: uPlot, all: (number | null)[]) => all.map(logarithmicText) } : {}) },
         ],
         series: [
           {},
@@ -250,6 +310,7 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
             width: isSmall ? 1.5 : hasMarker(line.series) ? 2 : 1.2,
             dash: DASHES[line.variant % DASHES.length]!,
             points: { show: false },
+            ...(line.isMarksOnly ? { paths: () => null } : {}),
             gaps: (u: uPlot) => gapsOf(u, line),
           })),
         ],
@@ -275,6 +336,7 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
           ],
           ready: [
             (u) => {
+              if (!isSmall) addMoves(u, (range) => handlers.current.onZoom?.(range));
               u.over.addEventListener('dblclick', () => handlers.current.onZoom?.(null));
               let down = 0;
               u.over.addEventListener('mousedown', (event) => (down = event.clientX));
@@ -289,6 +351,7 @@ export function CurveChart({ spec, height, isSmall = false, sync, onSpeed, onPic
       data,
       box.current!,
     );
+    if (spec.xRange) plot.setScale('x', { min: spec.xRange[0], max: spec.xRange[1] });
     const observer = new ResizeObserver(() => {
       const next = box.current?.clientWidth ?? 0;
       if (next > 0 && next !== plot.width) plot.setSize({ width: next, height });

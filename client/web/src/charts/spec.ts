@@ -11,6 +11,7 @@ export interface Line {
   high?: (number | null)[];
   to?: (number | null)[]; // fills the area between the line and these values
   opacity?: number; // of the area
+  isMarksOnly?: boolean; // without a line between the markers
 }
 
 export interface Spec {

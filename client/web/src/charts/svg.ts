@@ -68,7 +68,7 @@ export function svgOf(spec: Spec, footer: string[]): string {
       path += `${i === 0 || line.y[i - 1] === null ? 'M' : 'L'}${x(line.x[i]!).toFixed(1)} ${y(value).toFixed(1)}`;
     });
     const dash = DASHES[line.variant % DASHES.length]!.join(' ');
-    out.push(`<path d="${path}" fill="none" stroke="${colorOf(line.series, LIGHT)}" stroke-width="2" stroke-linejoin="round"${dash ? ` stroke-dasharray="${dash}"` : ''}/>`);
+    if (!line.isMarksOnly) out.push(`<path d="${path}" fill="none" stroke="${colorOf(line.series, LIGHT)}" stroke-width="2" stroke-linejoin="round"${dash ? ` stroke-dasharray="${dash}"` : ''}/>`);
     if (!hasMarker(line.series)) continue;
     line.y.forEach((value, i) => {
       if (value === null) return;

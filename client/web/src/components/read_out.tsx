@@ -1,5 +1,6 @@
-import { fluidsOf, shortTitle, variantOf, type Curve } from '../curve';
-import { idOf, revisionIdOf } from '../format';
+import { fluidsOf, shortTitle, speedUnitOf, variantOf, type Curve } from '../curve';
+import { idOf, revisionIdOf, rounded } from '../format';
+import { isInRpm, shown } from '../units';
 import { QUANTITIES, type Quantity } from '../quantities';
 import { figureOf, type ComparedGroup } from '../uncertainty';
 import { finite, Num } from './num';
@@ -10,6 +11,7 @@ interface ReadOutProps {
   titles: Map<string, string>;
   groups: ComparedGroup[] | undefined;
   speed: number | null;
+  shownQuantity: Quantity; // on the main plot
   onSpeed: (speed: number) => void;
   onOpen: (curve: Curve, speed: number) => void;
 }
@@ -24,14 +26,28 @@ function CurveNum({ curve, row, quantity, column, groups }: { curve: Curve; row:
   return <Num value={value} error={value === null || relative == null ? undefined : value * relative} unit={quantity.unit} data={data} />;
 }
 
+/** The speed at which a column of any curve is greatest. */
+function greatestAt(curves: Curve[], column: string): number | null {
+  let best: number | null = null;
+  let greatest = -Infinity;
+  for (const curve of curves) {
+    curve.columns[column]!.forEach((value, row) => {
+      if (value !== null && value > greatest) [best, greatest] = [curve.columns['speed_kilometres_per_hour']![row]!, value];
+    });
+  }
+  return best;
+}
+
 /** Every number of the plots at one speed. */
-export function ReadOut({ curves, titles, groups, speed, onSpeed, onOpen }: ReadOutProps) {
+export function ReadOut({ curves, titles, groups, speed, shownQuantity, onSpeed, onOpen }: ReadOutProps) {
   const speeds = [...new Set(curves.flatMap((curve) => curve.columns['speed_kilometres_per_hour'] as number[]))].sort((a, b) => a - b);
   const at = speed !== null && speeds.includes(speed) ? speed : speeds[Math.floor(speeds.length / 2)]!;
   const index = speeds.indexOf(at);
+  const worst = greatestAt(curves, shownQuantity.columns.at(-1)!);
   const fluids = fluidsOf(curves);
   const simulations = curves.map((curve) => curve.simulation);
   const columns = QUANTITIES.flatMap((quantity) => quantity.columns.map((column, k) => ({ quantity, column, k })));
+  const torque = finite(curves[0]!.columns['pinion_torque_newton_metres']![curves[0]!.columns['speed_kilometres_per_hour']!.indexOf(at)]);
   const errors = curves.map((curve) => {
     const row = curve.columns['speed_kilometres_per_hour']!.indexOf(at);
     return curve.columns['estimated_relative_error']![row];
@@ -39,7 +55,8 @@ export function ReadOut({ curves, titles, groups, speed, onSpeed, onOpen }: Read
   return (
     <section class="read-out" aria-labelledby="read-out-title">
       <div class="heading">
-        <h2 id="read-out-title">At {at} km/h</h2>
+        <h2 id="read-out-title">{isInRpm() ? <>At {rounded(shown(at, speedUnitOf(curves[0])), 1)} rpm <span class="count">{at} km/h{torque !== null && <>, {rounded(torque)} N m on the pinion</>}</span></> : `At ${at} km/h`}</h2>
+        {worst !== null && <button onClick={() => onSpeed(worst)}>To the greatest {shownQuantity.label.toLowerCase()}</button>}
         <input type="range" min={0} max={speeds.length - 1} value={index} aria-label="Speed" aria-valuetext={`${at} kilometres per hour`}
           onInput={(event) => onSpeed(speeds[event.currentTarget.valueAsNumber]!)} />
       </div>

@@ -10,15 +10,23 @@ interface TakeAwayProps {
   csv?: () => string; // a table of the numbers shown
   requests: unknown;
   commands: string[];
+  link?: string; // to the page as it is, with revisions; default: its address
   children?: ComponentChildren; // further downloads
 }
 
 /** Everything that can be taken away from a view: figure, numbers, request, command line, link. */
-export function TakeAway({ name, spec, footer = [], csv, requests, commands, children }: TakeAwayProps) {
+export function TakeAway({ name, spec, footer = [], csv, requests, commands, link, children }: TakeAwayProps) {
   const [copied, setCopied] = useState('');
+  const [byHand, setByHand] = useState('');
+  const linkText = link === undefined ? location.href : location.origin + link;
   const copy = async (what: string, text: string) => {
-    await navigator.clipboard.writeText(text);
-    setCopied(what);
+    try {
+      await navigator.clipboard.writeText(text);
+      setCopied(what);
+    } catch {
+      // Browsers have a clipboard for addresses with TLS and of this machine alone.
+      return setByHand(text);
+    }
     setTimeout(() => setCopied(''), 2000);
   };
   const svg = () => svgOf(spec!, footer);
@@ -33,7 +41,8 @@ export function TakeAway({ name, spec, footer = [], csv, requests, commands, chi
         {children}
         <button onClick={() => save('request.json', new Blob([JSON.stringify(requests, null, 2)], { type: 'application/json' }))}>Request as JSON</button>
         {commands.length > 0 && <button onClick={() => void copy('command', commands.join('\n'))}>{copied === 'command' ? 'Copied' : 'Copy the command line'}</button>}
-        <button onClick={() => void copy('link', location.href)}>{copied === 'link' ? 'Copied' : 'Copy a link to this page'}</button>
+        <button onClick={() => void copy('link', linkText)}>{copied === 'link' ? 'Copied' : 'Copy a link to this page'}</button>
+        {byHand && <label>Copy this by hand<input readOnly value={byHand} onFocus={(event) => event.currentTarget.select()} /></label>}
         {commands.length > 0 && <pre class="command" tabIndex={0} aria-label="Command line">{commands.join('\n')}</pre>}
       </div>
     </details>

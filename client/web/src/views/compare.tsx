@@ -9,6 +9,7 @@ import { Bars, type Bar } from '../components/bars';
 import { finite, Num } from '../components/num';
 import { Failure, Notice } from '../components/notice';
 import { Swatch } from '../components/swatch';
+import { Validity } from '../components/validity';
 import { csvOf, TakeAway } from '../components/take_away';
 import {
   COMPARED, compareBodyOf, compareCommandsOf, compareQueryOf, compareRequestOf, differenceSpec, explainBodyOf, figuresSpec, GROUPS,
@@ -75,7 +76,7 @@ export function Compare() {
               <Headline difference={other!.mean_difference} names={names} />
               <TakeAway name="comparison" spec={specs.difference} footer={footerOf(answer.value!, request)}
                 csv={() => tableOf(lines, speeds)} requests={{ compare: compareBodyOf(request), explain: explainBodyOf(request, explained) }}
-                commands={compareCommandsOf(request, explained, project)} />
+                commands={compareCommandsOf(request, explained, project)} link={pinned(request, lines, query)} />
             </div>
             <Unstated answer={answer.value!} names={names} />
             <figure class="figure" aria-label={`${quantity.label} of both fluids`}>
@@ -109,6 +110,9 @@ export function Compare() {
                 <Reasons explanation={at === null ? reasons.value.mean : reasons.value.points?.[0]} names={names} />
               )}
             </section>
+            <Validity remarks={[]} isChecked={false}>
+              <li class="note">Draws of the inputs are not compared with the ranges of the laws. <a href={address('/curves', { f: `${request.a},${request.b}`, sump: String(request.sump) })}>The curves of both</a> are.</li>
+            </Validity>
             {difference && <MeasureNext difference={difference} names={lines} titles={names} />}
             <SpeedTable lines={lines} names={names} speeds={speeds} />
             <Inputs a={request.a} b={request.b} names={names} />
@@ -122,6 +126,12 @@ export function Compare() {
 
 const nearest = (speeds: number[], wanted: number): number =>
   speeds.reduce((best, speed) => (Math.abs(speed - wanted) < Math.abs(best - wanted) ? speed : best), speeds[0]!);
+
+/** The address of a comparison with the revisions that were compared: it shows the same tomorrow. */
+function pinned(request: CompareRequest, lines: ComparedLubricant[], query: URLSearchParams): string {
+  const [a, b] = lines.map((each) => revisionIdOf(each.lubricant_revision));
+  return address('/compare', { ...compareQueryOf({ ...request, a: a!, b: b! }), at: query.get('at') ?? undefined, y: query.get('y') ?? undefined });
+}
 
 interface FormProps {
   request: CompareRequest;

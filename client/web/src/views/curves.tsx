@@ -10,16 +10,16 @@ import { Failure, Notice } from '../components/notice';
 import { ReadOut } from '../components/read_out';
 import { Swatch } from '../components/swatch';
 import { Validity } from '../components/validity';
-import { bandsOf, fluidsOf, optionsOf, readCurve, readSimulation, remarksOf, shortTitle, specOf, splitSpecOf, variantOf, type Curve } from '../curve';
+import { bandsOf, fluidsOf, optionsOf, readCurve, readSimulation, remarksOf, shortTitle, specOf, speedNear, speedUnitOf, splitSpecOf, variantOf, type Curve } from '../curve';
 import { idOf, revisionIdOf } from '../format';
 import { QUANTITIES, quantityOf } from '../quantities';
 import { warningOf } from '../validity';
 import { bodiesOf, DEFAULTS, inputsOf, queryOf, requestOf, requestOfSimulations, type CurveRequest } from '../request';
-import { HISTORY_COLUMNS, MESH_CYCLES, SAMPLES_PER_MESH_CYCLE } from '../histories';
+import { studyOf } from '../histories';
 import { titlesOf, useGearSets, useLubricants } from '../resources';
 import { address, go, place, set } from '../router';
 import { useStore } from '../store';
-import { units, watts } from '../units';
+import { shown, units, watts } from '../units';
 import { differencesOf, needsContactFigures, specWithIntervals, useUncertainty, type ComparedGroup } from '../uncertainty';
 import { POINTS } from '../comparison';
 import { Num } from '../components/num';
@@ -143,10 +143,12 @@ export function Curves() {
   const hasBands = query.get('u') !== '0';
   const uncertainty = useUncertainty(done, reference, hasBands && needsContactFigures(quantity.columns), done.length === jobs.length && done.length > 0);
   const groups = uncertainty.isStale ? undefined : uncertainty.value;
+  const speedUnit = speedUnitOf(done[0]); // addresses have km/h
+  const onPlace = (place: number) => setSpeed(speedNear(done, place));
   const zoom = useMemo<[number, number] | undefined>(() => {
     const [from, to] = (query.get('x') ?? '').split('-').map(Number);
-    return from !== undefined && to !== undefined && to > from ? [from, to] : undefined;
-  }, [query.get('x')]);
+    return from !== undefined && to !== undefined && to > from ? [shown(from, speedUnit), shown(to, speedUnit)] : undefined;
+  }, [query.get('x'), speedUnit.factor]);
   const hasErrors = query.get('e') !== '0';
   const specs = useMemo(
     () => new Map(QUANTITIES.map((each) => [each.id, {
@@ -162,7 +164,7 @@ export function Curves() {
     const found = differencesOf(groups, fluidsOf(done), titles);
     return found && { ...found, hasErrors, ...(zoom ? { xRange: zoom } : {}), parted: spec.parted, outside: spec.outside };
   }, [groups, titles, spec]);
-  const onZoom = (range: [number, number] | null) => set({ x: range ? range.map((each) => Number(each.toFixed(2))).join('-') : undefined });
+  const onZoom = (range: [number, number] | null) => set({ x: range ? range.map((each) => Number((each / speedUnit.factor).toFixed(2))).join('-') : undefined });
   const failed = jobs.filter((job) => job.simulation.state === 'FAILED' || job.simulation.state === 'CANCELLED');
 
   const submit = async (bodies: Simulation[], shownIds: string[] = []) => {
@@ -181,10 +183,7 @@ export function Curves() {
     try {
       const point = await change<Simulation>('POST', url('simulations'), {
         ...inputsOf(curve.simulation),
-        operating_point: {
-          cruise: { speed_kilometres_per_hour: at },
-          history: { columns: HISTORY_COLUMNS, mesh_cycles: MESH_CYCLES, samples_per_mesh_cycle: SAMPLES_PER_MESH_CYCLE },
-        },
+        operating_point: studyOf({ cruise: { speed_kilometres_per_hour: at } }),
       });
       go(address(`/point/${idOf(point.name)}`));
     } catch (problem) {
@@ -249,9 +248,9 @@ export function Curves() {
                 ))}
                 <button aria-pressed={isSplit} onClick={() => set({ y: 'split' })}>Loss split</button>
               </div>
-              {isSplit ? <LossSplit curves={done} titles={titles} xRange={zoom} onSpeed={setSpeed} onZoom={onZoom} /> : (
-                <CurveChart spec={spec} height={matchMedia('(max-width: 640px)').matches ? 260 : 360} sync="curves" onSpeed={setSpeed}
-                  onPick={(at) => set({ v: String(at) })} onZoom={onZoom} />
+              {isSplit ? <LossSplit curves={done} titles={titles} xRange={zoom} onSpeed={onPlace} onZoom={onZoom} /> : (
+                <CurveChart spec={spec} height={matchMedia('(max-width: 640px)').matches ? 260 : 360} sync="curves" onSpeed={onPlace}
+                  onPick={(at) => set({ v: String(speedNear(done, at)) })} onZoom={onZoom} />
               )}
               <p class="axis-title">{spec.xLabel}</p>
               <div class="under-chart">
@@ -261,13 +260,14 @@ export function Curves() {
                   <label class="choice"><input type="checkbox" checked={hasErrors} onChange={() => set({ e: hasErrors ? '0' : undefined })} /> Error of the solver</label>
                   {zoom && <button onClick={() => onZoom(null)}>Show all speeds</button>}
                 </div>
+                <p class="small hint">Drag to zoom, with Shift to move; double-click shows all speeds.</p>
               </div>
             </figure>
             {uncertainty.error !== undefined && <Failure error={uncertainty.error} onRetry={uncertainty.reload} />}
             {difference && (
-              <Differences spec={difference} groups={groups!} titles={titles} fluids={fluids} reference={reference} onSpeed={setSpeed} onZoom={onZoom} />
+              <Differences spec={difference} groups={groups!} titles={titles} fluids={fluids} reference={reference} onSpeed={onPlace} onZoom={onZoom} />
             )}
-            <ReadOut curves={done} titles={titles} groups={hasBands ? groups : undefined} speed={speed} onSpeed={setSpeed} onOpen={(curve, at) => void openPoint(curve, at)} />
+            <ReadOut curves={done} titles={titles} groups={hasBands ? groups : undefined} speed={speed} shownQuantity={quantity} onSpeed={setSpeed} onOpen={(curve, at) => void openPoint(curve, at)} />
             <CurveValidity curves={done} />
             <div class="multiples">
               {QUANTITIES.map((each) => (

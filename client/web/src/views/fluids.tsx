@@ -72,6 +72,8 @@ function FluidList() {
 
 const useLubricant = (id: string) => useLoaded((signal) => get<Lubricant>(url(`lubricants/${id}`), signal), `lubricant ${id}`);
 
+const REFERENCE = 'paper-fluid-1'; // that a new oil is compared with first
+
 function FluidPage({ id }: { id: string }) {
   const { value: lubricant, error, reload } = useLubricant(id);
   const schema = useSchema();
@@ -104,6 +106,7 @@ function FluidPage({ id }: { id: string }) {
         <div><h1>{title} <span class="count">{note}</span></h1><p class="muted">{plainId}, revision {lubricant.revision}, {ago(lubricant.revision_create_time)}</p></div>
         <div class="actions">
           <a class="button primary" href={address('/curves', { f: id })}>Run a curve</a>
+          <a class="button" href={address('/compare', { a: plainId === REFERENCE ? undefined : REFERENCE, b: id })}>Compare</a>
           {session.value?.scope !== 'read' && <a class="button" href={address(`/fluids/${plainId}/edit`)}>Edit</a>}
         </div>
       </div>
@@ -133,6 +136,10 @@ function EditFluid({ id }: { id: string }) {
   return value ? <FluidForm lubricant={value} /> : <p class="muted">Loading …</p>;
 }
 
+/** An id that follows from a name: "my-oil" of "My oil". */
+const idFrom = (name: string): string =>
+  name.normalize('NFKD').toLowerCase().replace(/[^a-z0-9]+/g, '-').replace(/^[^a-z]+|-+$/g, '').slice(0, 60);
+
 /** Text of a file as base64, as JSON carries bytes. */
 const base64 = (text: string): string =>
   btoa(Array.from(new TextEncoder().encode(text), (byte) => String.fromCharCode(byte)).join(''));
@@ -141,8 +148,9 @@ const base64 = (text: string): string =>
 function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
   const schema = useSchema();
   const constraints = schema.value?.constraints;
-  const [id, setId] = useState('');
+  const [typedId, setId] = useState<string | null>(null);
   const [name, setName] = useState(lubricant?.display_name ?? '');
+  const id = typedId ?? idFrom(name);
   const [base, setBase] = useState<string>(lubricant?.base_oil_class ?? 'BASE_OIL_CLASS_POLYALPHAOLEFIN');
   const [texts, setTexts] = useState<Record<string, string>>({});
   const [table, setTable] = useState<{ name: string; text: string } | null>(null);
@@ -220,15 +228,15 @@ function FluidForm({ lubricant }: { lubricant?: Lubricant }) {
       {problem !== null && !shownElsewhere && <Failure error={problem} />}
       <fieldset class="grid">
         <legend>Name</legend>
+        <label>Name<input value={name} placeholder="My oil" onInput={(event) => setName(event.currentTarget.value)} /></label>
         {!lubricant && (
           <label>
             Id
             <input value={id} placeholder="my-oil" spellcheck={false} aria-invalid={idViolation !== undefined} aria-describedby="note-id"
               onInput={(event) => setId(event.currentTarget.value)} />
-            <span id="note-id" class={idViolation ? 'problem' : 'small'}>{idViolation?.description ?? 'lower-case letters, digits and -'}</span>
+            <span id="note-id" class={idViolation ? 'problem' : 'small'}>{idViolation?.description ?? 'in addresses and commands: lower-case letters, digits and -'}</span>
           </label>
         )}
-        <label>Name for people<input value={name} onInput={(event) => setName(event.currentTarget.value)} /></label>
         <label>
           Base oil
           <select value={base} onChange={(event) => setBase(event.currentTarget.value)}>

@@ -1,21 +1,27 @@
 import { useEffect, useMemo, useState } from 'preact/hooks';
-import { ApiError, get, session, url } from '../api/client';
+import { ApiError, change, get, session, url } from '../api/client';
 import { watch } from '../api/events';
 import type { GearSet, PointResult, RangeWarning, Simulation } from '../api/types';
 import { CurveChart } from '../charts/curve_chart';
+import { Loop } from '../charts/loop';
 import type { Line, Spec } from '../charts/spec';
+import { Bars } from '../components/bars';
 import { JobState } from '../components/job_state';
 import { Missing } from '../components/missing';
+import { finite, Num } from '../components/num';
 import { Failure, Notice } from '../components/notice';
+import { figureWords } from '../figures';
+import { inputWords } from '../comparison';
 import { Swatch } from '../components/swatch';
 import { Validity } from '../components/validity';
 import { remarksOnce } from '../validity';
 import { INPUT_FIELDS, readSimulation, shortTitle } from '../curve';
-import { MESH_CYCLES, PHASE } from '../histories';
+import { ERROR, MESH_CYCLES, PHASE, studyOf, VELOCITY } from '../histories';
 import { idOf, revisionIdOf, rounded } from '../format';
-import { kelvin, metres, pascals, plain, shown, sumpText, units, watts, type Unit } from '../units';
+import { kelvin, metres, pascals, plain, scaled, shown, sumpText, units, watts, type Unit } from '../units';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
-import { address, place, set } from '../router';
+import { inputsOf } from '../request';
+import { address, go, place, set } from '../router';
 import { useStore } from '../store';
 
 /** A history as REST answers it; with rows_per_pair > 0 rows are minimum and maximum in turn. */
@@ -55,6 +61,7 @@ const FIGURES: { label: string; unit: Unit; value: (result: PointResult) => numb
   { label: 'Least film ratio', unit: plain(''), value: (result) => result.film_ratio?.minimum },
   { label: 'Hottest contact', unit: kelvin, value: (result) => result.contact_temperature_kelvin?.maximum },
   { label: 'Greatest pressure', unit: pascals, value: (result) => result.maximum_pressure_pascals?.maximum },
+  { label: 'Mesh frequency', unit: plain('Hz'), value: (result) => result.mesh_frequency_hertz },
   { label: 'Pinion torque', unit: plain('N m'), value: (result) => result.pinion_torque_newton_metres },
 ];
 
@@ -70,6 +77,20 @@ export function Point() {
 function PointPage({ name }: { name: string }) {
   const { value: job, error, reload } = useLoaded(() => readSimulation(name, `${INPUT_FIELDS},result.points,result.history_columns,result.history_rows,result.model_version,result.input_warnings`), name);
   const titles = titlesOf(useLubricants().value);
+  const [problem, setProblem] = useState<unknown>(null);
+  const canWrite = session.value?.scope !== 'read';
+  /** Computes the same point again with everything that this page shows. */
+  const recompute = async () => {
+    try {
+      const { history: _, ...study } = job!.operating_point!;
+      const next = await change<Simulation>('POST', url('simulations'), {
+        ...inputsOf(job!), operating_point: studyOf(study),
+      });
+      go(address(`/point/${idOf(next.name)}`));
+    } catch (refusal) {
+      setProblem(refusal);
+    }
+  };
   const isOpen = job !== undefined && !ENDED.includes(job.state!);
   useEffect(() => {
     if (!isOpen) return;
@@ -95,10 +116,93 @@ function PointPage({ name }: { name: string }) {
       {job.state === 'CANCELLED' && <Notice kind="caution">The job was cancelled.</Notice>}
       {result && <Figures result={result} inputs={job.result?.input_warnings ?? []} />}
       {result && (job.result?.history_columns?.length ?? 0) > 0 && <Histories job={job} result={result} />}
-      {result && (job.result?.history_columns?.length ?? 0) === 0 && <p class="muted">This job kept no time histories. Open a point from a curve to see them.</p>}
+      {result && <Flanks result={result} />}
+      {result && <Sensitivities result={result} />}
+      {result && !isComplete(job) && canWrite && (
+        <section class="reasons">
+          <p class="muted">This job kept {(job.result?.history_columns?.length ?? 0) === 0 ? 'no time histories' : 'fewer histories than this page shows'}{!result.sensitivities && ' and has no sensitivities'}.</p>
+          <button onClick={() => void recompute()}>Compute the point with histories and sensitivities</button>
+          {problem !== null && <Failure error={problem} />}
+        </section>
+      )}
     </>
   );
 }
+
+/** Whether a job kept all that this page shows. */
+const isComplete = (job: Simulation): boolean =>
+  (job.result?.history_columns ?? []).includes(VELOCITY) && job.operating_point?.sensitivities === true;
+
+/** What each flank slot loses: a pair of teeth passes slots 1 to 3. */
+function Flanks({ result }: { result: PointResult }) {
+  const flanks = result.flank_losses ?? [];
+  if (flanks.length === 0) return null;
+  return (
+    <section class="reasons" aria-labelledby="flanks">
+      <h2 id="flanks">Which flanks lose power</h2>
+      <p class="muted small">Mean over the mesh cycle. A pair of teeth enters the mesh as flank 1 and leaves it as flank 3, or before.</p>
+      <Bars label="Loss of each flank" bars={flanks.flatMap((flank, k) => [
+        { key: `${k} viscous`, label: <span class="with-swatch"><Swatch series={k} /> flank {k + 1}, viscous</span>, value: flank.viscous_watts ?? 0, text: <><Num value={flank.viscous_watts} unit={watts} /> {watts.symbol}</> },
+        { key: `${k} boundary`, label: <span class="with-swatch"><Swatch series={-1} /> flank {k + 1}, boundary</span>, value: flank.boundary_watts ?? 0, text: <><Num value={flank.boundary_watts} unit={watts} /> {watts.symbol}</> },
+      ])} />
+    </section>
+  );
+}
+
+const SHOWN_SENSITIVITIES = 12;
+const ELASTICITY: Unit = plain('%');
+
+/** How far one per cent more of each parameter moves a figure: what matters at this point. */
+function Sensitivities({ result }: { result: PointResult }) {
+  const { query } = useStore(place);
+  const [isLong, setLong] = useState(false);
+  const given = result.sensitivities;
+  if (!given) return null;
+  const figures = given.figures ?? [];
+  const chosen = Math.max(0, figures.indexOf(query.get('s') ?? 'inefficiency_energy_mean_percent'));
+  const rows = (given.parameters ?? []).map((each) => ({ parameter: each.parameter!, value: finite(each.elasticities?.[chosen]) ?? 0 }))
+    .filter((each) => each.value !== 0).sort((a, b) => Math.abs(b.value) - Math.abs(a.value));
+  const shownRows = isLong ? rows : rows.slice(0, SHOWN_SENSITIVITIES);
+  return (
+    <section class="reasons" aria-labelledby="sensitivities">
+      <div class="heading">
+        <h2 id="sensitivities">What moves it: % of the figure for 1 % of a parameter</h2>
+        <label class="inline">Figure
+          <select aria-label="Figure whose sensitivities are shown" value={figures[chosen]} onChange={(event) => set({ s: event.currentTarget.value })}>
+            {figures.map((each) => <option key={each} value={each}>{figureWords(each)}</option>)}
+          </select>
+        </label>
+      </div>
+      <Bars label={`Sensitivities of ${figureWords(figures[chosen]!)}`} less="less" more="more"
+        bars={shownRows.map((each) => ({ key: each.parameter, label: inputWords(each.parameter), value: each.value, text: <Num value={each.value} unit={ELASTICITY} isSigned /> }))} />
+      {rows.length > shownRows.length && <button onClick={() => setLong(true)}>Show all {rows.length} parameters</button>}
+      <p class="small">Derivatives of the steady state, exact to rounding; temperatures count from 0 K.{given.one_sided && ' The response is at the edge of an event: the derivatives are those of its side.'}</p>
+    </section>
+  );
+}
+
+/** One quantity of the motion over another: a closed path for a steady state, with the phase under the cursor. */
+function PhasePortrait({ job, halfBacklash, phase }: { job: Simulation; halfBacklash: number | undefined; phase: number | null }) {
+  const inUnits = useStore(units);
+  const history = useLoaded((signal) => get<History>(url(`${job.name}:readHistory`, { alt: 'columns', columns: [PHASE, ERROR, VELOCITY] }), signal), `phase ${job.name}`);
+  const path = useMemo(() => {
+    const [x, y] = [history.value?.columns[ERROR], history.value?.columns[VELOCITY]];
+    return x && y && { x: x.map((value) => shown(value!, metres)), y: y.map((value) => shown(value!, SPEED)) };
+  }, [history.value, inUnits]);
+  if (!path) return null;
+  const phases = history.value!.columns[PHASE] as number[];
+  const index = phase === null ? -1 : phases.findIndex((each) => each >= phase);
+  return (
+    <figure class="figure">
+      <figcaption>Phase portrait: the transmission error against its rate</figcaption>
+      <Loop x={path.x} y={path.y} xLabel={`Dynamic transmission error, ${metres.symbol}`} yLabel={`Rate, ${SPEED.symbol}`} height={320}
+        level={halfBacklash === undefined ? undefined : shown(halfBacklash, metres)} at={index < 0 ? null : index} />
+      <p class="small">Dashed: half the backlash, below which the flanks are apart. The dot follows the cursor of the histories.</p>
+    </figure>
+  );
+}
+
+const SPEED: Unit = scaled('mm/s', 1e3);
 
 function Figures({ result, inputs }: { result: PointResult; inputs: RangeWarning[] }) {
   const relative = result.estimated_relative_error;
@@ -159,6 +263,7 @@ function lineOf(history: History, panel: Panel, label: string, column: string, s
 function Histories({ job, result }: { job: Simulation; result: PointResult }) {
   const { query } = useStore(place);
   const inUnits = useStore(units);
+  const [phase, setPhase] = useState<number | null>(null);
   const zoom = useMemo<[number, number] | null>(() => {
     const [from, to] = (query.get('t') ?? '').split('-').map(Number);
     return from !== undefined && to !== undefined && to > from ? [from, to] : null;
@@ -202,11 +307,14 @@ function Histories({ job, result }: { job: Simulation; result: PointResult }) {
         {specs.map((spec) => (
           <figure key={spec.title} class="figure">
             <figcaption>{spec.title}{spec.yLabel && `, ${spec.yLabel}`}</figcaption>
-            <CurveChart spec={spec} height={190} sync="histories" onZoom={onZoom} />
+            <CurveChart spec={spec} height={190} sync="histories" onSpeed={setPhase} onZoom={onZoom} />
           </figure>
         ))}
       </div>
       <p class="axis-title">Mesh cycles</p>
+      <div class="pair">
+        {(job.result?.history_columns ?? []).includes(VELOCITY) && <PhasePortrait job={job} halfBacklash={halfBacklash} phase={phase} />}
+      </div>
     </section>
   );
 }

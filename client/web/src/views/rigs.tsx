@@ -8,7 +8,7 @@ import { Swatch } from '../components/swatch';
 import { csvOf, TakeAway } from '../components/take_away';
 import { Validity } from '../components/validity';
 import { shortTitle } from '../curve';
-import { idOf, rounded } from '../format';
+import { idOf, revisionIdOf, rounded } from '../format';
 import { OPTIONS } from '../request';
 import { titlesOf, useLoaded, useLubricants } from '../resources';
 import {
@@ -40,6 +40,8 @@ export function Rigs() {
   const [at, setAt] = useState<number | null>(null);
   const update = (next: RigRequest) => go(address('/rigs', { ...rigQueryOf(next), y: next.kind === request.kind ? query.get('y') ?? undefined : undefined }), 'replace');
   const given = answers.value ?? [];
+  // The revisions that were evaluated: a link with them shows the same tomorrow.
+  const pinned = [...new Set(given.map((each) => revisionIdOf(each.answer.lubricant_revision)))];
   const refusals = new Map(given.flatMap((each) => each.answer.refusals ?? []).map((each) => [each.message, each]));
   return (
     <div class="with-panel">
@@ -53,7 +55,7 @@ export function Rigs() {
           <>
             <div class="heading">
               <div><h1>{rig.about}</h1><p class="muted">{machineText(request)}</p></div>
-              <TakeAway name={request.kind} spec={{ ...spec, title: `${rig.label}: ${spec.title}` }} requests={calls.map((each) => each.body)} commands={rigCommandsOf(request, project)}
+              <TakeAway name={request.kind} spec={{ ...spec, title: `${rig.label}: ${spec.title}` }} requests={calls.map((each) => each.body)} commands={rigCommandsOf(request, project)} link={address('/rigs', { ...rigQueryOf({ ...request, fluids: pinned }), y: query.get('y') ?? undefined })}
                 footer={[machineText(request), given[0]?.answer.model_version ?? '']} csv={() => tableOf(curves, titleOf)} />
             </div>
             <figure class="figure" aria-label={quantity.label}>
