@@ -18,7 +18,6 @@ double pressure_at(double s) { return std::expm1(s) / kC; }
 
 /// L (e^(Z s) - 1).
 struct RoelandsStress {
-  static constexpr int kArguments = 2;  // L, Z
   double factor, factor_slope, index;
 
   RoelandsStress(const ShearLaw<double>& law, const laws::LogStress<double>& at, double)
@@ -38,7 +37,6 @@ struct RoelandsStress {
 
 /// Of any other law.
 struct LawStress {
-  static constexpr int kArguments = kGrowthArguments;
   const ShearLaw<double>* law;
   double temperature;
 
